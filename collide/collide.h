@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/pose.h"
+#include "spheretree/sphere_tree.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace spherule {
+
+enum class Verdict { kFree, kCollision, kUnknown };
+
+// What a query cost.
+struct QueryCost {
+  std::uint64_t node_tests = 0;  // pairs of balls tested, leaves included
+  std::uint64_t leaf_tests = 0;  // pairs of leaves among them
+};
+
+struct CollisionRequest {
+  // Stop after this many pairs (1 finds whether there is a collision and one witness).
+  std::size_t max_pairs = std::numeric_limits<std::size_t>::max();
+  // Give up after this many node tests, with the verdict kUnknown unless a pair was found.
+  std::uint64_t max_node_tests = std::numeric_limits<std::uint64_t>::max();
+};
+
+// Indices of two overlapping spheres, into SphereTree::spheres() of a and of b.
+struct SpherePair {
+  std::int32_t a = -1;
+  std::int32_t b = -1;
+  friend auto operator<=>(const SpherePair&, const SpherePair&) = default;
+};
+
+struct CollisionResult {
+  Verdict verdict = Verdict::kUnknown;
+  // Sorted; all overlapping pairs unless a limit was reached.
+  std::vector<SpherePair> pairs;
+  bool complete = false;  // no limit cut the search short
+  // No two spheres come closer than this (0 if a pair was found or the search was cut short).
+  double distance_lower_bound = 0.0;
+  QueryCost cost;
+};
+
+// Whether two sets of balls, rigidly placed, overlap.
+//
+// G4: if two balls overlap (touching included) in exact arithmetic under exactly the given poses,
+// the answer is true. G5: if it is true, the exact gap of the two sets is at most
+// collision_slack(): the price of rounding, about 1e-14 of the size of the scene. The error budget
+// stands in collide/relative_pose.h. Does not throw and does not allocate.
+bool collides(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
+              const Pose& world_from_b) noexcept;
+
+// The same test with pairs, limits and cost.
+CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
+                        const Pose& world_from_b, const CollisionRequest& request = {});
+
+// Upper bound of the exact gap between two sets for which collides() answers true.
+double collision_slack(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
+                       const Pose& world_from_b) noexcept;
+
+}  // namespace spherule

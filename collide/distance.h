@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/collide.h"
+
+namespace spherule {
+
+struct DistanceRequest {
+  // Stop when upper - lower is at most this, or when lower exceeds `enough`.
+  double tolerance = 0.0;
+  double enough = std::numeric_limits<double>::infinity();
+  std::uint64_t max_node_tests = std::numeric_limits<std::uint64_t>::max();
+};
+
+struct DistanceResult {
+  // Bounds of the separation distance of the two sets in exact arithmetic; both 0 where they
+  // overlap (lower is 0 wherever rounding cannot tell).
+  double lower = 0.0;
+  double upper = std::numeric_limits<double>::infinity();
+  SpherePair nearest;  // the pair that gives `upper`
+  QueryCost cost;
+};
+
+// Separation distance of two sets of balls, rigidly placed, between certified bounds.
+DistanceResult distance(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
+                        const Pose& world_from_b, const DistanceRequest& request = {});
+
+}  // namespace spherule

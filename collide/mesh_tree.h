@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/collide.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <array>
+#include <vector>
+
+namespace spherule {
+
+// A sphere tree whose leaves are triangles: every leaf ball encloses one triangle. Immutable.
+class MeshTree {
+ public:
+  // Throws Error if the mesh has no triangle, an index is out of range or a number is not usable.
+  explicit MeshTree(const TriangleMesh& mesh);
+
+  const SphereTree& tree() const { return tree_; }
+  const std::array<Eigen::Vector3d, 3>& triangle(std::int32_t index) const {
+    return triangles_[static_cast<std::size_t>(index)];
+  }
+
+ private:
+  SphereTree tree_;
+  std::vector<std::array<Eigen::Vector3d, 3>> triangles_;
+};
+
+// Whether a set of balls and the surface of a mesh meet, by the same traversal with another leaf
+// test: G4 and G5 as for collides(), with triangles in the place of the second set's balls. A ball
+// wholly inside a closed mesh does not meet its surface. In a pair, `b` is the triangle.
+bool collides(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
+              const Pose& world_from_b) noexcept;
+CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
+                        const Pose& world_from_b, const CollisionRequest& request = {});
+
+}  // namespace spherule

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/robot/robot_model.h"
+
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// Poses world_from_link of all links, in the order of RobotModel::links(), for a configuration of
+// variable_count() positions (radians or metres; limits are not enforced) and a placed root.
+// `world_from_link` is resized and reused, so that a warm call does not allocate.
+// Throws Error for a configuration of the wrong size or with a number that is not finite.
+void forward_kinematics(const RobotModel& robot, std::span<const double> configuration,
+                        std::vector<Pose>& world_from_link, const Pose& world_from_root = {});
+
+// Bound on the distance between a point at distance at most `reach` from a link's frame mapped by
+// the computed pose and by the exact mechanism, in metres, for any configuration with |q| <= 100.
+double kinematics_error_bound(const RobotModel& robot, double reach);
+
+}  // namespace spherule

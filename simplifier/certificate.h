@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/external_spheres.h"
+#include "spheretree/sphere.h"
+#include "spheretree/sphere_file.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+namespace spherule {
+
+struct CertifyOptions {
+  // The simplified solid to certify against. Without it |M| itself is certified: its complement is
+  // flooded with cells of size `resolution`, and what the flood does not reach counts as inside.
+  const ExternalSpheres* external = nullptr;
+  // Without `external`: padding t, to which the mesh's vertex_error is added.
+  double padding = 0.0;
+  // Smallest piece of surface and cell of space that is examined, as a share of the box diagonal. A
+  // piece of this size that no single ball contains is reported as a leak with its depth.
+  double resolution = 1.0 / 4096.0;
+  // Protrusion over |M| is searched to within this share of the box diagonal; 0 leaves it out.
+  double protrusion_tolerance = 1.0 / 512.0;
+  bool volume = true;  // estimate the volume ratio
+  int threads = 0;     // 0: all
+  Progress progress;
+};
+
+// A stretch between two proved bounds.
+struct Bounds {
+  double lower = 0.0;
+  double upper = 0.0;
+};
+
+// What is proved about a set of balls, with outward rounding, on the numbers as given.
+struct Certificate {
+  // G1: M grown by the padding and S (without external spheres: |M|) are subsets of the union of
+  // the balls. True only if proved; false may also mean that the proof did not reach the bottom,
+  // then the depth bounds tell how much remains.
+  bool covered = false;
+  // Uncovered depth, the largest distance from a point of the set to the union of the balls; lower
+  // is witnessed by a point, upper proved. Of the surface M (grown), and of the solid.
+  Bounds surface_depth;
+  Bounds solid_depth;
+  // The larger of the two.
+  Bounds uncovered_depth;
+  // The point that witnesses uncovered_depth.lower, if that is positive.
+  Eigen::Vector3d deepest_leak = Eigen::Vector3d::Zero();
+  // G2: proved upper bound of the protrusion of the balls over S; absent without external spheres.
+  std::optional<double> protrusion_over_simplified_max;
+  // Proved bounds of the protrusion over |M|; absent if not asked for.
+  std::optional<Bounds> protrusion_over_mesh;
+  std::optional<double> volume_ratio;  // of the union of the balls to the solid mesh; estimated
+  std::size_t sphere_count = 0;
+  std::size_t pieces = 0;  // surface pieces examined
+  std::size_t cells = 0;   // cells of space examined
+};
+
+// Certifies any set of balls against a mesh, ours or not (guarantee.md, G1 and G2). Independent of
+// how the balls were found. Throws Error for a mesh that validate() refuses, for balls that are not
+// usable and for options out of range; an empty set of balls is certified (as covering nothing).
+Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
+                    const CertifyOptions& options = {});
+
+// The part of a certificate that is stored beside the spheres.
+CertificateRecord record(const Certificate& certificate);
+
+}  // namespace spherule

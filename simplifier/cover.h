@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/external_spheres.h"
+#include "spheretree/sphere.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace spherule {
+
+enum class CoverMethod {
+  kCover,  // few spheres, two-sided guarantee (default)
+  kPaper   // the paper's Algorithm 1, second loop
+};
+
+struct CoverOptions {
+  CoverMethod method = CoverMethod::kCover;
+  // E: how far the balls may protrude from S. Positive.
+  double max_error = 0.0;
+  // No ball of the result is smaller than this radius (a tool made of such balls passes stage 1 of
+  // what it meets unchanged). Protrusion may exceed E where it forces a larger ball.
+  double min_radius = 0.0;
+  // kPaper: diameter at which a ball is seeded (the paper's min_internal_size); 0 chooses E / 2.
+  double min_internal_diameter = 0.0;
+  std::uint64_t seed = 1;
+  // kPaper: record the history (costs some time).
+  bool history = false;
+  int threads = 0;  // 0: all
+  Progress progress;
+};
+
+// One step of the paper's loop, for its figures 6 to 8. "Before" and "after" refer to inflating
+// every ball by the error that remains at that step.
+struct CoverHistoryEntry {
+  std::size_t sphere_count = 0;
+  // Greatest distance from a point of S to the balls (section II.B): proved bounds, before
+  // inflation.
+  double max_error_lower = 0.0;
+  double max_error_upper = 0.0;
+  // Greatest distance from a point of the mesh surface to the balls (figure 6), over samples.
+  double surface_error_before = 0.0;
+  double surface_error_after = 0.0;
+  // Share of the solid mesh that is covered (figure 7), and volume of the balls outside of the
+  // solid mesh over the volume of the solid mesh (figure 8), over samples.
+  double coverage_before = 0.0;
+  double coverage_after = 0.0;
+  double excess_before = 0.0;
+  double excess_after = 0.0;
+};
+
+// Stage 2's result.
+struct SphereCover {
+  std::vector<Sphere> spheres;
+  // kPaper: the balls before inflation, and the certified error they were inflated by.
+  std::vector<Sphere> spheres_before_inflation;
+  double inflation = 0.0;
+  std::vector<CoverHistoryEntry> history;
+  std::size_t seeds_rejected = 0;  // kPaper: seeds that had to be moved before a ball fitted
+};
+
+// Stage 2: covers S with balls that protrude from it by at most E (covering.md, sections 1 and 4;
+// the paper, Algorithm 1). On return the union of the balls contains S: the search ends only when
+// an octree over S has proved it; certify() proves it again, independently. Deterministic for equal
+// input and options on any number of threads. Throws Error for options out of range.
+SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
+                  const CoverOptions& options);
+
+}  // namespace spherule

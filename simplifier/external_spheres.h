@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/sphere.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace spherule {
+
+enum class ExternalPlacement {
+  kReachable,  // deterministic flood from outside (default)
+  kRandom,     // the paper's Algorithm 1
+  kNone        // no external sphere: S is the box of M
+};
+
+// Called from time to time with the done share (0 to 1, or negative where unknown) and a word on
+// what is being done.
+using Progress = std::function<void(double share, const char* what)>;
+
+struct ExternalOptions {
+  ExternalPlacement placement = ExternalPlacement::kReachable;
+  // D, the diameter of the smallest thing that will meet the model (the paper's min_ext_size).
+  double min_external_diameter = 0.0;
+  // t: everything holds for M grown by this much.
+  double padding = 0.0;
+  // Grid step of the flood; 0 chooses sqrt(0.04 * max_error * D / 2), at most D / 8.
+  double grid_step = 0.0;
+  // E, used for the choice of the grid step only.
+  double max_error = 0.0;
+  // Random placement: number of attempts (the paper's "limit") and seed.
+  std::size_t limit = 100000;
+  std::uint64_t seed = 1;
+  Progress progress;
+};
+
+// Stage 1's result. It defines the simplified solid S exactly: the closed box minus the union of
+// the open balls. Every ball is disjoint from M grown by `padding`, of diameter at least D, and was
+// reached from outside the box by a ball of diameter D without touching M; hence M and |M| are
+// subsets of S, whatever balls were kept.
+struct ExternalSpheres {
+  std::vector<Sphere> balls;
+  Eigen::AlignedBox3d box;             // of M grown by the padding, rounded outwards
+  double min_external_diameter = 0.0;  // D
+  double padding = 0.0;                // t, the mesh's vertex_error included
+  double grid_step = 0.0;              // of the flood; 0 for the other placements
+  std::size_t nodes_examined = 0;      // distance evaluations
+  // Bound on how much wider than D a gap may be and still have been closed by the grid.
+  double closing_slack = 0.0;
+};
+
+// Stage 1 (paper, section II and Algorithm 1; covering.md section 2). Deterministic for equal
+// options. Throws Error for a mesh that validate() refuses and for options out of range (D must be
+// positive and finite unless nothing is placed, padding finite and not negative, the grid not finer
+// than the resolution of the coordinates or 2^20 steps).
+ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalOptions& options);
+
+}  // namespace spherule

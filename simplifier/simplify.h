@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/certificate.h"
+#include "simplifier/cover.h"
+#include "simplifier/external_spheres.h"
+#include "spheretree/sphere_file.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace spherule {
+
+struct SimplifyOptions {
+  // E: how far the result may protrude from the simplified solid; 0 chooses 1 % of the box
+  // diagonal.
+  double max_error = 0.0;
+  // D: diameter of the smallest thing that will meet the model; 0 chooses 4 E.
+  double min_external_diameter = 0.0;
+  // t: grow M by this much (chord error of the tessellation, calibration).
+  double padding = 0.0;
+  // No ball of the result is smaller than this radius.
+  double min_radius = 0.0;
+  CoverMethod method = CoverMethod::kCover;
+  ExternalPlacement external = ExternalPlacement::kReachable;
+  std::size_t external_limit = 100000;  // attempts of the random placement
+  double min_internal_diameter = 0.0;   // of the paper's loop; 0 chooses E / 2
+  std::uint64_t seed = 1;
+  bool history = false;  // of the paper's loop
+  int threads = 0;       // 0: all; the result does not depend on it
+  Progress progress;
+};
+
+// Wall-clock seconds of the parts.
+struct SimplifyTimes {
+  double external = 0.0;
+  double cover = 0.0;
+  double certify = 0.0;
+};
+
+struct Simplification {
+  ExternalSpheres external;
+  SphereCover cover;
+  Certificate certificate;
+  SimplifyOptions options;  // as used, the defaults filled in
+  SimplifyTimes times;
+};
+
+// Both stages and the certificate: the function that most users call. The certificate is proved
+// independently of the fit, on the spheres returned.
+// Throws Error for a mesh that validate() refuses and for options out of range.
+Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
+
+// The options under their command-line names, for SphereFile::options; `scale` is the one the mesh
+// was read with. And back, for an audit: what is absent keeps its default, Error names a bad value.
+std::map<std::string, OptionValue> option_record(const SimplifyOptions& options, double scale);
+SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& record);
+
+// Spheres, certificate and options in one, ready for save_spheres().
+SphereFile sphere_file(const Simplification& simplification, double scale = 1.0);
+
+}  // namespace spherule

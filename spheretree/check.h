@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/sphere_tree.h"
+
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// What check() found. `problems` names the invariant and the node, at most kMaxProblems of them.
+struct TreeReport {
+  static constexpr std::size_t kMaxProblems = 20;
+
+  bool valid = false;
+  std::vector<std::string> problems;
+  std::size_t sphere_count = 0;
+  std::size_t node_count = 0;
+  std::size_t leaf_count = 0;
+  int depth = 0;      // edges on the longest way from the root to a leaf
+  int branching = 0;  // largest number of children
+  double root_radius = 0.0;
+  // Mean over inner nodes of radius / largest child radius: how much a level loses.
+  double mean_growth = 0.0;
+};
+
+// Checks all five invariants of SphereTree with outward rounding: `valid` is true only if they hold
+// in exact arithmetic. A ball that encloses another by less than a few units in the last place may
+// be refused; build_tree never makes one.
+TreeReport check(const SphereTreeData& data);
+TreeReport check(const SphereTree& tree);
+
+}  // namespace spherule

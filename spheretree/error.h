@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace spherule {
+
+// Bad input: a file, a mesh, an option or a pose that cannot be used. Thrown at the boundary only
+// (readers, option checks, makers of a Pose), never inside a query. `what()` is "subject: reason",
+// where the subject names the file, the option or the argument.
+class Error : public std::runtime_error {
+ public:
+  Error(const std::string& subject, const std::string& reason)
+      : std::runtime_error(subject + ": " + reason), subject_(subject), reason_(reason) {}
+
+  const std::string& subject() const noexcept { return subject_; }
+  const std::string& reason() const noexcept { return reason_; }
+
+ private:
+  std::string subject_;
+  std::string reason_;
+};
+
+}  // namespace spherule

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/pose.h"
+
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <cmath>
+
+namespace spherule {
+namespace {
+
+// See kRotationEntryError for the error analysis. The components are first scaled by a power of
+// two, which is exact, so that the squares neither overflow nor vanish.
+Eigen::Matrix3d rotation_matrix(const Eigen::Quaterniond& q) {
+  int exponent = 0;
+  std::frexp(q.coeffs().cwiseAbs().maxCoeff(), &exponent);
+  const double w = std::ldexp(q.w(), -exponent);
+  const double x = std::ldexp(q.x(), -exponent);
+  const double y = std::ldexp(q.y(), -exponent);
+  const double z = std::ldexp(q.z(), -exponent);
+  const double s = 2.0 / (w * w + x * x + y * y + z * z);
+  Eigen::Matrix3d m;
+  m << 1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
+      s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x),   //
+      s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y);
+  return m;
+}
+
+Eigen::Quaterniond unit(const Eigen::Quaterniond& q) {
+  const double scale = q.coeffs().cwiseAbs().maxCoeff();
+  return Eigen::Quaterniond(Eigen::Vector4d((q.coeffs() / scale).normalized()));
+}
+
+}  // namespace
+
+Pose::Pose(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation)
+    : rotation_(rotation), translation_(translation) {
+  if (!rotation.coeffs().allFinite()) throw Error("pose", "the rotation is not finite");
+  if (!(rotation.coeffs().cwiseAbs().maxCoeff() > 0.0)) {
+    throw Error("pose", "the quaternion is zero, which is no rotation");
+  }
+  if (!is_usable_point(translation)) {
+    throw Error("pose", "the translation is not finite or exceeds 1e15");
+  }
+  matrix_ = rotation_matrix(rotation);
+}
+
+Pose Pose::from_isometry(const Eigen::Isometry3d& target_from_source) {
+  constexpr double kTolerance = 1e-6;
+  const Eigen::Matrix3d m = target_from_source.linear();
+  if (!m.allFinite()) throw Error("pose", "the rotation is not finite");
+  const double deviation = (m.transpose() * m - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(deviation <= kTolerance) || m.determinant() < 0.0) {
+    throw Error("pose", "the matrix is not a rotation");
+  }
+  return Pose(Eigen::Quaterniond(m), target_from_source.translation());
+}
+
+Eigen::Isometry3d Pose::isometry() const {
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  result.linear() = matrix_;
+  result.translation() = translation_;
+  return result;
+}
+
+Pose Pose::operator*(const Pose& other) const {
+  return Pose(unit(unit(rotation()) * unit(other.rotation())), *this * other.translation_);
+}
+
+Pose Pose::inverse() const {
+  return Pose(rotation().conjugate(), -(matrix_.transpose() * translation_));
+}
+
+}  // namespace spherule

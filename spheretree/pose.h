@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace spherule {
+
+// Bound on the difference between an entry of Pose::matrix() and the same entry of the exact
+// rotation of q / norm(q). With n = q.q (relative error 4 u, four squares and three sums of
+// positive terms) and s = 2 / n (5 u): a diagonal entry is 1 - s (a^2 + b^2), whose product carries
+// 8 u of a value of at most 2, and the subtraction 1 u more; an off-diagonal entry s (a b +- c d)
+// carries 6 u of a value of at most 1 and 2 u from the two products, because |a b| + |c d| <= n
+// / 2. So 17 u to first order.
+inline constexpr double kRotationEntryError = 20.0 * 0x1p-53;
+
+// A rigid motion, named target_from_source: it maps a point given in the source frame to the target
+// frame, p_target = R(q / norm(q)) p_source + t. The pose *is* the stored quaternion and
+// translation, exactly; every guarantee is about that motion, and the matrix is a rounded image of
+// it. Checked when made: a Pose is always finite and a rotation, so queries need no check.
+class Pose {
+ public:
+  // The identity.
+  Pose() = default;
+
+  // Any finite quaternion that is not zero; it is stored as given, not normalised.
+  // Throws Error if a number is not finite, the quaternion is zero, or a translation exceeds
+  // kMaxCoordinate.
+  Pose(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation);
+
+  // Throws Error also if the linear part is not a rotation: R^T R must be the identity to within
+  // 1e-6 an entry and the determinant positive. The quaternion nearest to the matrix is taken.
+  static Pose from_isometry(const Eigen::Isometry3d& target_from_source);
+
+  static Pose from_translation(const Eigen::Vector3d& translation) {
+    return Pose(Eigen::Quaterniond::Identity(), translation);
+  }
+
+  Eigen::Quaterniond rotation() const { return Eigen::Quaterniond(rotation_); }
+  const Eigen::Vector3d& translation() const { return translation_; }
+
+  // The rotation matrix, each entry within kRotationEntryError of the exact one.
+  const Eigen::Matrix3d& matrix() const { return matrix_; }
+
+  Eigen::Isometry3d isometry() const;
+
+  // Rounded to nearest; the error of a mapped point is at most 40 u (|p| + |t|).
+  Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return matrix_ * p + translation_; }
+
+  // Composition a_from_c = a_from_b * b_from_c and inverse, rounded to nearest: the result is a
+  // pose in its own right, exact in the sense above. Rotations are renormalised, so chains stay
+  // unit.
+  Pose operator*(const Pose& other) const;
+  Pose inverse() const;
+
+ private:
+  // Not aligned, so that the layout does not depend on the instruction set a user compiles for.
+  Eigen::Quaternion<double, Eigen::DontAlign> rotation_{1.0, 0.0, 0.0, 0.0};
+  Eigen::Vector3d translation_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d matrix_ = Eigen::Matrix3d::Identity();
+};
+
+}  // namespace spherule

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/sphere.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace spherule {
+
+// What a certificate says, as stored beside the spheres (the proof itself:
+// simplifier/certificate.h). Lengths in the unit of the spheres.
+struct CertificateRecord {
+  bool covered = false;
+  // Proved bounds on the largest distance from a point of the solid to the union of the balls.
+  double uncovered_depth_lower = 0.0;
+  double uncovered_depth_upper = 0.0;
+  // Proved upper bounds on the protrusion; absent where it was not asked for.
+  std::optional<double> protrusion_over_simplified_max;
+  std::optional<double> protrusion_over_mesh_max;
+  std::size_t sphere_count = 0;
+  // Volume of the union of the balls over the volume of the solid mesh, estimated.
+  std::optional<double> volume_ratio;
+};
+
+using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
+
+// The content of a SPHERES.json file. Infinite values cannot be stored in JSON; they are written as
+// the strings "inf" and "-inf".
+struct SphereFile {
+  std::vector<Sphere> spheres;
+  std::optional<CertificateRecord> certificate;
+  // The options of the fit under their command-line names without dashes ("max-error").
+  std::map<std::string, OptionValue> options;
+};
+
+// Writes {"format":"spherule-spheres","version":1,...}; doubles survive the round trip bit for bit.
+// The file appears whole or not at all. Throws Error naming the file.
+void save_spheres(const SphereFile& file, const std::filesystem::path& path);
+
+// Throws Error, naming file and reason, for a file that cannot be read, is not JSON, is not of this
+// format or a newer version of it, or holds a number that is not usable (is_usable).
+SphereFile load_spheres(const std::filesystem::path& path);
+
+}  // namespace spherule

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/sphere.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// The plain content of a sphere tree: nodes in breadth-first order, as a structure of arrays. The
+// children of a node are consecutive, so that one wide load per array brings all of them.
+struct SphereTreeData {
+  std::vector<double> x, y, z, radius;    // ball of every node
+  std::vector<std::int32_t> first_child;  // inner node: its first child; leaf: index of its sphere
+  std::vector<std::int32_t> child_count;  // 0 marks a leaf
+  std::vector<Sphere> spheres;            // the spheres the tree stands for, in the caller's order
+};
+
+// Bounding sphere hierarchy over a set of spheres; immutable, so threads may share it freely.
+//
+// Invariants, verified by check() (spheretree/check.h) whenever a tree is made from data:
+//  1. there is at least one sphere, and all numbers are usable (finite, radii not negative);
+//  2. every node but the root (node 0) is the child of exactly one node, and children come after
+//     their parent in the arrays (breadth-first order), so there are no cycles;
+//  3. every sphere is the ball of exactly one leaf, bit for bit;
+//  4. layered: the ball of every inner node encloses the balls of its children in exact arithmetic
+//     (hence, by induction, every ball below it);
+//  5. no inner node has more than kMaxBranching children.
+class SphereTree {
+ public:
+  static constexpr int kMaxBranching = 16;
+
+  // Makes the tree that `data` describes. Throws Error, naming the node, if an invariant fails.
+  explicit SphereTree(SphereTreeData data);
+
+  std::span<const Sphere> spheres() const { return data_.spheres; }
+  std::size_t node_count() const { return data_.radius.size(); }
+
+  Sphere ball(std::size_t node) const {
+    return {{data_.x[node], data_.y[node], data_.z[node]}, data_.radius[node]};
+  }
+  bool is_leaf(std::size_t node) const { return data_.child_count[node] == 0; }
+  std::int32_t first_child(std::size_t node) const { return data_.first_child[node]; }
+  std::int32_t child_count(std::size_t node) const { return data_.child_count[node]; }
+  // Index into spheres(); only for leaves.
+  std::int32_t sphere_index(std::size_t leaf) const { return data_.first_child[leaf]; }
+
+  // Edges on the longest way from the root to a leaf.
+  int depth() const { return depth_; }
+  // Largest number of children of a node.
+  int branching() const { return branching_; }
+
+  // The balls that stand at distance `level` from the root, and the leaves above them: a set of
+  // balls whose union contains all spheres. level 0 is the root, level depth() the spheres
+  // themselves.
+  std::vector<Sphere> level(int level) const;
+
+  const SphereTreeData& data() const { return data_; }
+
+ private:
+  SphereTreeData data_;
+  int depth_ = 0;
+  int branching_ = 0;
+};
+
+}  // namespace spherule

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/sphere_tree.h"
+
+#include <filesystem>
+
+namespace spherule {
+
+// Writes the tree in the binary format of docs/tree-file.md: magic, format version, counts, the
+// arrays as little-endian IEEE doubles and 32-bit integers, and a checksum of all of it. The file
+// appears whole or not at all (written beside, then renamed). Equal trees give equal bytes.
+void save_tree(const SphereTree& tree, const std::filesystem::path& path);
+
+// Reads it back: the same numbers bit for bit. Throws Error, naming file and reason, if it is not
+// such a file, is cut short or too long, has a newer version or a wrong checksum, or if the tree in
+// it breaks an invariant of SphereTree.
+SphereTree load_tree(const std::filesystem::path& path);
+
+}  // namespace spherule

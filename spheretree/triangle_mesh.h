@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace spherule {
+
+// Triangles as read: a closed set of points M, with no assumption of watertightness, orientation or
+// freedom from duplicates. Indices refer to `vertices`; lengths are in the unit of the model.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Eigen::Vector3i> triangles;
+
+  // Bound on the distance between a vertex as stored here and as written in the file it was read
+  // from (a reader that rounds to 32-bit floats, node transforms, scale). Zero for meshes made in
+  // memory. The simplifier adds it to the padding, so that its promises hold for the file's mesh.
+  double vertex_error = 0.0;
+};
+
+}  // namespace spherule
