@@ -1,5 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What every target of the project shares: the include root, the warnings, the floating-point model.
+# What every target of the project shares: the include roots, the warnings, the floating-point
+# model, and how a library is installed.
+include(GNUInstallDirs)
+
+# Users write <spherule/spheretree/sphere.h>. In the build tree this link leads there; installed, the
+# headers stand under include/spherule/.
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/spherule SYMBOLIC)
 
 # Applies the project's compile settings to TARGET. The guarantees rest on `-ffp-contract=off` in our
 # own sources (see spheretree/rounding.h); inline code in headers is valid with and without contraction.
@@ -10,17 +17,36 @@ function(spherule_compile_settings target)
 endfunction()
 
 # Declares the library spherule::NAME from HEADERS (public), SOURCES (everything else) and LINKS
-# (public dependencies). Headers are reached as "spheretree/sphere.h" from inside the repository and
-# as <spherule/spheretree/sphere.h> by users.
+# (public dependencies), and installs it as the component NAME of the package. Headers are reached as
+# "spheretree/sphere.h" from inside the repository and as <spherule/spheretree/sphere.h> by users.
 function(spherule_library name)
   cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES;LINKS" ${ARGN})
   set(target spherule_${name})
   add_library(${target} ${ARG_SOURCES})
   add_library(spherule::${name} ALIAS ${target})
+  # Before 1.0 a minor version may change the binary interface.
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
-                        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+                        VERSION ${PROJECT_VERSION}
+                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+                        INSTALL_RPATH "$ORIGIN")
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
                  FILES ${ARG_HEADERS})
+  target_include_directories(${target} INTERFACE $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PUBLIC ${ARG_LINKS})
   spherule_compile_settings(${target})
+
+  # One export per component, so that a user of one does not load the dependencies of another. The
+  # components this one links are recorded for the package configuration (SpheruleInstall.cmake).
+  set(needs ${ARG_LINKS})
+  list(FILTER needs INCLUDE REGEX "^spherule::")
+  list(TRANSFORM needs REPLACE "^spherule::" "")
+  set_property(GLOBAL APPEND PROPERTY SPHERULE_COMPONENTS ${name})
+  set_property(GLOBAL PROPERTY SPHERULE_NEEDS_${name} "${needs}")
+  if(SPHERULE_INSTALL)
+    install(TARGETS ${target} EXPORT spherule-${name}
+            FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/spherule)
+    install(EXPORT spherule-${name} NAMESPACE spherule:: FILE spherule-${name}.cmake
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/spherule)
+  endif()
 endfunction()

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Writes and installs the package configuration for find_package(spherule); include it after all
+# libraries are declared.
+include(CMakePackageConfigHelpers)
+
+# Declared in the order in which they depend on each other.
+get_property(SPHERULE_COMPONENTS GLOBAL PROPERTY SPHERULE_COMPONENTS)
+set(SPHERULE_COMPONENT_NEEDS "")
+foreach(component IN LISTS SPHERULE_COMPONENTS)
+  get_property(needs GLOBAL PROPERTY SPHERULE_NEEDS_${component})
+  string(APPEND SPHERULE_COMPONENT_NEEDS "set(_spherule_needs_${component} \"${needs}\")\n")
+endforeach()
+
+# Private dependencies of a shared library are its own affair; a static one hands them on.
+get_target_property(library_type spherule_spheretree TYPE)
+if(library_type STREQUAL "STATIC_LIBRARY")
+  set(SPHERULE_SIMPLIFIER_PACKAGES "assimp;TBB")
+else()
+  set(SPHERULE_SIMPLIFIER_PACKAGES "")
+endif()
+
+set(destination ${CMAKE_INSTALL_LIBDIR}/cmake/spherule)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/spheruleConfig.cmake.in
+                              ${PROJECT_BINARY_DIR}/spheruleConfig.cmake
+                              INSTALL_DESTINATION ${destination}
+                              NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/spheruleConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/spheruleConfig.cmake
+              ${PROJECT_BINARY_DIR}/spheruleConfigVersion.cmake
+        DESTINATION ${destination})
