@@ -41,7 +41,10 @@ Vector3d nearest_on_triangle(const Vector3d& a, const Vector3d& b, const Vector3
     return b + t * (c - b);
   }
   const double scale = 1.0 / (va + vb + vc);
-  return a + (vb * scale) * ab + (vc * scale) * ac;
+  const double v = vb * scale;
+  const double w = vc * scale;
+  if (!(v >= 0.0 && w >= 0.0 && v + w <= 1.0)) return Vector3d::Constant(std::nan(""));
+  return a + v * ab + w * ac;
 }
 
 double lower_bound(const Vector3d& q, const Vector3d& a, const Vector3d& b, const Vector3d& c,

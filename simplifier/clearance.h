@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/external_spheres.h"
+#include "simplifier/internal/ball_hierarchy.h"
+
+#include <Eigen/Geometry>
+
+#include <vector>
+
+namespace spherule {
+
+// Clearance of a point to the outside of S: the least gap to an external ball or to a face of the box.
+// Not negative exactly for the points of S, where it is the distance to the outside of S.
+struct ClearanceAt {
+  // Bounds of the exact value.
+  double lower = 0.0;
+  double upper = 0.0;
+  // Unit direction away from the nearest contact: moving there raises the clearance at rate 1 until
+  // another contact takes over.
+  Eigen::Vector3d away = Eigen::Vector3d::UnitX();
+};
+
+// Safe to share between threads.
+class Clearance {
+ public:
+  explicit Clearance(const ExternalSpheres& external);
+
+  ClearanceAt operator()(const Eigen::Vector3d& point) const;
+
+  const Eigen::AlignedBox3d& box() const { return box_; }
+
+ private:
+  std::vector<Eigen::Vector3d> centers_;
+  internal::BallHierarchy balls_;
+  Eigen::AlignedBox3d box_;
+};
+
+}  // namespace spherule

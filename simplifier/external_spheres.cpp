@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/external_spheres.h"
+
+#include "simplifier/internal/flood_grid.h"
+#include "simplifier/internal/random_placement.h"
+#include "simplifier/mesh_distance.h"
+#include "simplifier/mesh_report.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+using internal::FloodGrid;
+
+void check_options(const ExternalOptions& options) {
+  if (!(options.padding >= 0.0 && options.padding <= kMaxCoordinate)) {
+    throw Error("padding", "must be finite and not negative");
+  }
+  if (!(options.max_error >= 0.0) || !(options.grid_step >= 0.0)) {
+    throw Error("grid step", "must not be negative or undefined");
+  }
+  if (options.placement == ExternalPlacement::kNone) return;
+  const double d = options.min_external_diameter;
+  if (!(d > 0.0 && d <= kMaxCoordinate)) {
+    throw Error("min external diameter", "must be positive and finite");
+  }
+  if (options.placement == ExternalPlacement::kRandom && options.limit > 100'000'000) {
+    throw Error("external limit", "at most 100 million attempts");
+  }
+}
+
+Eigen::AlignedBox3d grown_outwards(const Eigen::AlignedBox3d& box, double by) {
+  Eigen::AlignedBox3d grown;
+  for (int axis = 0; axis < 3; ++axis) {
+    grown.min()[axis] = sub_down(box.min()[axis], by);
+    grown.max()[axis] = add_up(box.max()[axis], by);
+  }
+  return grown;
+}
+
+double chosen_step(const ExternalOptions& options) {
+  if (options.grid_step > 0.0) return options.grid_step;
+  const double coarsest = options.min_external_diameter / 8.0;
+  if (options.max_error == 0.0) return coarsest / 2.0;
+  return std::min(coarsest,
+                  std::sqrt(0.04 * options.max_error * options.min_external_diameter / 2.0));
+}
+
+// A cube around the box that leaves a ball of radius rho and three steps of room on every side.
+FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double step) {
+  const double edge = box.sizes().maxCoeff() + 2.0 * (rho + 3.0 * step);
+  FloodGrid::Shape shape{Vector3d::Zero(), step, 0};
+  while (std::ldexp(step, shape.levels) < edge) ++shape.levels;
+  const double magnitude = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() + edge;
+  if (shape.levels > 20 || step < 1e6 * kUnitRoundoff * magnitude) {
+    throw Error("grid step", "too fine for a model of this size");
+  }
+  shape.origin = box.center() - Vector3d::Constant(std::ldexp(step, shape.levels) / 2.0);
+  return shape;
+}
+
+// Makes external balls sit close to concave edges and corners, which the grid meets only by chance:
+// the centre of a cell beside a reached node is pushed away from the surface until a ball of radius
+// rho has room, and kept if such a ball provably gets there from the node.
+class SnugBalls {
+ public:
+  SnugBalls(const MeshDistance& distance, double padding, double rho, double step)
+      : distance_(distance), padding_(padding), rho_(rho), step_(step) {}
+
+  // A ball of radius 0 where nothing is to be had or flat surface makes it useless.
+  Sphere operator()(const FloodGrid::Frontier& frontier) const {
+    constexpr int kMaxPushes = 6;
+    const double wanted = rho_ + 0.02 * step_;
+    Vector3d x = frontier.center;
+    for (int push = 0; push <= kMaxPushes; ++push) {
+      const SurfaceDistance d = distance_(x);
+      const double clearance = sub_down(d.lower, padding_);
+      if (clearance >= rho_) {
+        if (push < 2) return {};  // one surface only: the grid does as well
+        const Sphere ball{x, clearance};
+        return passes({frontier.neighbour.center, frontier.neighbour.clearance}, ball, 0)
+                   ? ball
+                   : Sphere{};
+      }
+      const Vector3d away = x - d.closest;
+      const double norm = away.norm();
+      if (!(norm > 0.0)) return {};
+      x += away * ((wanted - clearance) / norm);
+      if ((x - frontier.center).norm() > 2.0 * step_) return {};
+    }
+    return {};
+  }
+
+ private:
+  // Whether a ball of radius rho provably passes on the straight way, by bisection.
+  bool passes(const Sphere& a, const Sphere& b, int depth) const {
+    constexpr int kMaxDepth = 8;
+    const double gap = distance_upper(a.center, b.center);
+    if (sub_down(add_down(a.radius, b.radius), gap) >= 2.0 * rho_ * kRelativeUp) return true;
+    if (depth == kMaxDepth) return false;
+    Sphere middle{(a.center + b.center) / 2.0, 0.0};
+    middle.radius = sub_down(distance_(middle.center).lower, padding_);
+    return middle.radius >= rho_ && passes(a, middle, depth + 1) && passes(middle, b, depth + 1);
+  }
+
+  const MeshDistance& distance_;
+  double padding_;
+  double rho_;
+  double step_;
+};
+
+void place_reachable(const MeshDistance& distance, double rho, const ExternalOptions& options,
+                     ExternalSpheres& result) {
+  const double step = chosen_step(options);
+  FloodGrid grid(distance, result.padding, rho, grid_shape(result.box, rho, step));
+  grid.flood();
+  result.grid_step = step;
+  result.nodes_examined = grid.evaluations();
+  for (const FloodGrid::Cell& cell : grid.reached_cells()) {
+    result.balls.push_back({cell.center, cell.clearance});
+  }
+  const std::vector<FloodGrid::Frontier> frontier = grid.frontier();
+  std::vector<Sphere> snug(frontier.size());
+  const SnugBalls place(distance, result.padding, rho, step);
+  tbb::parallel_for(std::size_t{0}, frontier.size(),
+                    [&](std::size_t i) { snug[i] = place(frontier[i]); });
+  std::copy_if(snug.begin(), snug.end(), std::back_inserter(result.balls),
+               [](const Sphere& s) { return s.radius > 0.0; });
+  // A ball of diameter D + s on its way has clearance at least rho + s / 2. Each node whose cell the
+  // way crosses lies within sqrt(3) h / 2 of a point of it, so two of them that share a face satisfy
+  // the passage rule if rho + s / 2 - 0.8661 h - h / 2 >= rho.
+  result.closing_slack = 2.0 * (0.8661 + 0.5) * step;
+}
+
+}  // namespace
+
+ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalOptions& options) {
+  validate(mesh, "mesh");
+  check_options(options);
+  const MeshDistance distance(mesh);
+  ExternalSpheres result;
+  result.padding = add_up(options.padding, mesh.vertex_error);
+  result.min_external_diameter = options.min_external_diameter;
+  result.box = grown_outwards(distance.box(), result.padding);
+  const double rho = options.min_external_diameter / 2.0;
+  switch (options.placement) {
+    case ExternalPlacement::kReachable:
+      place_reachable(distance, rho, options, result);
+      break;
+    case ExternalPlacement::kRandom: {
+      internal::RandomPlacement placement = internal::place_random(
+          distance, result.padding, rho, result.box, options.limit, options.seed);
+      result.balls = std::move(placement.balls);
+      result.nodes_examined = placement.attempts;
+      break;
+    }
+    case ExternalPlacement::kNone:
+      break;
+  }
+  // What does not meet the box takes nothing from S.
+  std::erase_if(result.balls, [&](const Sphere& s) {
+    return result.box.exteriorDistance(s.center) * (1.0 - 1e-12) >= s.radius;
+  });
+  return result;
+}
+
+}  // namespace spherule

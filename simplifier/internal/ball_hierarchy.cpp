@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/internal/ball_hierarchy.h"
+
+#include "spheretree/rounding.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::int32_t kLeafSize = 8;
+// Halved at every level, so at most 32 deep; one waiting sibling a level.
+constexpr std::size_t kStackSize = 40;
+
+}  // namespace
+
+BallHierarchy::BallHierarchy(std::span<const Sphere> balls) {
+  balls_.reserve(balls.size());
+  for (const Sphere& s : balls) balls_.push_back({s, static_cast<std::int32_t>(balls_.size())});
+  nodes_.reserve(balls_.size() / 2 + 1);
+  if (!balls_.empty()) build(0, static_cast<std::int32_t>(balls_.size()));
+}
+
+void BallHierarchy::build(std::int32_t begin, std::int32_t end) {
+  Eigen::AlignedBox3d centers;
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = 0.0;
+  for (auto i = begin; i < end; ++i) {
+    const Sphere& s = balls_[static_cast<std::size_t>(i)].ball;
+    centers.extend(s.center);
+    least = std::min(least, s.radius);
+    greatest = std::max(greatest, s.radius);
+  }
+  const std::size_t self = nodes_.size();
+  nodes_.push_back({centers.min(), centers.max(), greatest, -1, begin, end});
+  if (end - begin <= kLeafSize) return;
+  int axis = 0;
+  const bool by_radius = greatest - least > centers.sizes().maxCoeff(&axis);
+  const auto key = [=](const Entry& e) { return by_radius ? e.ball.radius : e.ball.center[axis]; };
+  const std::int32_t middle = begin + (end - begin) / 2;
+  std::nth_element(balls_.begin() + begin, balls_.begin() + middle, balls_.begin() + end,
+                   [key](const Entry& a, const Entry& b) {
+                     return key(a) < key(b) || (key(a) == key(b) && a.index < b.index);
+                   });
+  build(begin, middle);
+  nodes_[self].right = static_cast<std::int32_t>(nodes_.size());
+  build(middle, end);
+}
+
+// Values are compared as computed and the rounding is charged once, at the end. For a ball at distance
+// d with radius R the computed v = d - R errs by at most 3.5 u d + u |v|; with d = v + R that is below
+// 8 u (|v| + R). A node's bound (box distance less largest radius) errs by no more, with the largest
+// radius of all in the place of R. As v - 8 u |v| grows with v, whatever was skipped or compared less
+// favourably is exactly at least v - 8 u (|v| + R_max) for the v that is returned.
+NearestBall BallHierarchy::nearest(const Vector3d& point, double limit) const {
+  NearestBall best{limit, limit, -1};
+  if (nodes_.empty()) return best;
+  double nearest = limit;
+  const auto bound = [&](std::int32_t i) {
+    const Node& n = nodes_[static_cast<std::size_t>(i)];
+    const Vector3d d = (n.low - point).cwiseMax(point - n.high).cwiseMax(0.0);
+    return std::pair{d.norm() - n.max_radius, i};
+  };
+  std::array<std::pair<double, std::int32_t>, kStackSize> stack;
+  std::size_t size = 0;
+  stack[size++] = bound(0);
+  while (size > 0) {
+    const auto [node_bound, index] = stack[--size];
+    if (node_bound >= nearest) continue;
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (node.right < 0) {
+      for (auto i = node.begin; i < node.end; ++i) {
+        const Entry& entry = balls_[static_cast<std::size_t>(i)];
+        const double v = (point - entry.ball.center).norm() - entry.ball.radius;
+        if (v < nearest) {
+          nearest = v;
+          best.index = entry.index;
+        }
+      }
+      continue;
+    }
+    auto near = bound(index + 1);
+    auto far = bound(node.right);
+    if (far.first < near.first) std::swap(near, far);
+    stack[size++] = far;
+    stack[size++] = near;
+  }
+  if (std::isinf(nearest)) return best;
+  const double slack =
+      8.0 * kUnitRoundoff * (std::abs(nearest) + nodes_[0].max_radius) + kUnderflow;
+  best.lower = sub_down(nearest, slack);
+  best.upper = best.index < 0 ? limit : add_up(nearest, slack);
+  return best;
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/mesh_distance.h"
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace spherule::internal {
+
+// The free space of a ball of radius rho around a mesh, as a sparse octree over a cube that leaves
+// the ball room on every side of the mesh. Cells are examined from coarse to fine, so that memory
+// grows with the surface over the square of the finest step, not with the volume:
+//  - a coarse cell all of whose points have clearance >= rho + 1.2 h is free as a whole;
+//  - a cell all of whose points have clearance < rho is blocked;
+//  - a finest cell, of edge h, is a node: free if the clearance at its centre is at least rho.
+// Clearance is the proved lower bound of the distance to the mesh, less the padding.
+class FloodGrid {
+ public:
+  struct Cell {
+    Eigen::Vector3d center;
+    double clearance = 0.0;  // lower bound at the centre
+  };
+  // A finest cell that was not reached beside one that was.
+  struct Frontier {
+    Eigen::Vector3d center;
+    Cell neighbour;
+  };
+  struct Shape {
+    Eigen::Vector3d origin;  // low corner of the cube
+    double step = 0.0;       // h
+    int levels = 0;          // the cube has the edge h * 2^levels; at most 20
+  };
+
+  FloodGrid(const MeshDistance& distance, double padding, double rho, const Shape& shape);
+
+  // Marks the cells that the ball reaches from outside the cube. A step between two nodes counts
+  // only if the ball provably passes: (d1 + d2 - h) / 2 >= rho. A step between a node and a coarse
+  // free cell always passes: over the half step h / 2 to the cell's face the clearance is at least
+  // (d1 + rho + 1.2 h - h / 2) / 2 >= rho. So does one between two coarse free cells.
+  void flood();
+
+  // After flood(). Order: from coarse to fine, along the Morton curve.
+  std::vector<Cell> reached_cells() const;
+  std::vector<Frontier> frontier() const;
+
+  // Distances computed; all of them are kept, 24 bytes each.
+  std::size_t evaluations() const { return cells_.size(); }
+
+ private:
+  enum class State : std::uint8_t { kBlocked, kRefined, kFree };
+  using Index = std::array<std::uint32_t, 3>;
+  struct Entry {
+    std::uint64_t code = 0;  // Morton code of the index within its level
+    double clearance = 0.0;
+    std::uint32_t first_child = 0;  // of eight consecutive ones, if refined
+    State state = State::kBlocked;
+    bool reached = false;
+  };
+
+  Eigen::Vector3d center(int level, const Index& index) const;
+  void examine(const MeshDistance& distance, int level);
+  // The cell of `level` or coarser that holds the index and is not refined; cells_.size() if that
+  // one is refined further.
+  std::size_t locate(int level, const Index& index) const;
+  // Calls visit(cell, index) for the face neighbours of the same size or coarser, and
+  // visit(cells_.size(), index) for each face on the boundary of the cube.
+  template <typename Visit>
+  void for_each_face_neighbour(int level, const Index& index, Visit visit) const;
+
+  double padding_;
+  double rho_;
+  Shape shape_;
+  std::vector<Entry> cells_;
+  std::vector<std::size_t> level_begin_;
+};
+
+}  // namespace spherule::internal
