@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/check.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <sstream>
+
+namespace spherule {
+namespace {
+
+// Equality of all bits: unlike ==, it tells -0.0 from 0.0.
+bool same_bits(const Sphere& a, const Sphere& b) {
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  return bits(a.center.x()) == bits(b.center.x()) && bits(a.center.y()) == bits(b.center.y()) &&
+         bits(a.center.z()) == bits(b.center.z()) && bits(a.radius) == bits(b.radius);
+}
+
+// One run of check(). Nothing about the data is taken for granted: each step reads only what the
+// steps before it have found in order.
+class Checker {
+ public:
+  explicit Checker(const SphereTreeData& data) : data_(data) {}
+
+  TreeReport run() {
+    report_.sphere_count = data_.spheres.size();
+    report_.node_count = data_.radius.size();
+    if (check_sizes()) {
+      check_numbers();
+      const bool structure = check_structure();
+      check_leaves();
+      if (structure) {
+        check_enclosure();
+        measure_depth();
+      }
+      report_.root_radius = data_.radius[0];
+    }
+    report_.valid = report_.problems.empty();
+    return std::move(report_);
+  }
+
+ private:
+  template <typename... Parts>
+  void problem(const Parts&... parts) {
+    if (report_.problems.size() >= TreeReport::kMaxProblems) return;
+    std::ostringstream text;
+    text.precision(std::numeric_limits<double>::max_digits10);
+    (text << ... << parts);
+    report_.problems.push_back(text.str());
+  }
+
+  std::size_t node_count() const { return report_.node_count; }
+
+  Sphere ball(std::size_t node) const {
+    return {{data_.x[node], data_.y[node], data_.z[node]}, data_.radius[node]};
+  }
+
+  bool check_sizes() {
+    const std::size_t n = node_count();
+    if (data_.x.size() != n || data_.y.size() != n || data_.z.size() != n ||
+        data_.first_child.size() != n || data_.child_count.size() != n) {
+      problem("the arrays of the nodes differ in length");
+    } else if (n == 0) {
+      problem("there is no node");
+    } else if (n > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
+      problem(n, " nodes are more than 32-bit indices can name");
+    }
+    if (data_.spheres.empty()) problem("there is no sphere");
+    return report_.problems.empty();
+  }
+
+  // Invariant 1.
+  void check_numbers() {
+    for (std::size_t node = 0; node < node_count(); ++node) {
+      if (!is_usable(ball(node))) problem("node ", node, ": a number is not usable");
+    }
+    for (std::size_t i = 0; i < data_.spheres.size(); ++i) {
+      if (!is_usable(data_.spheres[i])) problem("sphere ", i, ": a number is not usable");
+    }
+  }
+
+  // Invariants 2 and 5. The children of the inner nodes, in the order of their parents, must number
+  // the nodes from 1 on without gap or overlap; then every node but the root has one parent.
+  bool check_structure() {
+    const auto n = static_cast<std::int64_t>(node_count());
+    std::int64_t next = 1;
+    for (std::int64_t node = 0; node < n; ++node) {
+      const std::int64_t count = data_.child_count[static_cast<std::size_t>(node)];
+      const std::int64_t first = data_.first_child[static_cast<std::size_t>(node)];
+      if (node >= next) {
+        problem("node ", node, " is the child of no node before it");
+        return false;
+      }
+      if (count == 0) continue;
+      if (count < 0 || count > SphereTree::kMaxBranching) {
+        problem("node ", node, ": ", count, " children; 0 to ", SphereTree::kMaxBranching,
+                " are allowed");
+        return false;
+      }
+      report_.branching = std::max(report_.branching, static_cast<int>(count));
+      if (first != next) {
+        problem("node ", node, ": the first child is ", first, " where breadth-first order has ",
+                next);
+        return false;
+      }
+      next += count;
+      if (next > n) {
+        problem("node ", node, ": children up to ", next - 1, ", but there are only ", n, " nodes");
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // Invariant 3.
+  void check_leaves() {
+    std::vector<bool> seen(data_.spheres.size(), false);
+    for (std::size_t node = 0; node < node_count(); ++node) {
+      if (data_.child_count[node] != 0) continue;
+      ++report_.leaf_count;
+      const std::int32_t index = data_.first_child[node];
+      if (index < 0 || static_cast<std::size_t>(index) >= seen.size()) {
+        problem("leaf ", node, ": sphere ", index, " does not exist");
+        continue;
+      }
+      const auto sphere = static_cast<std::size_t>(index);
+      if (seen[sphere]) problem("leaf ", node, ": sphere ", sphere, " has another leaf already");
+      seen[sphere] = true;
+      if (!same_bits(ball(node), data_.spheres[sphere])) {
+        problem("leaf ", node, ": its ball is not that of sphere ", sphere);
+      }
+    }
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (!seen[i]) problem("sphere ", i, " has no leaf");
+    }
+  }
+
+  // Invariant 4.
+  void check_enclosure() {
+    double growth = 0.0;
+    std::size_t inner_count = 0;
+    for (std::size_t node = 0; node < node_count(); ++node) {
+      const auto first = static_cast<std::size_t>(data_.first_child[node]);
+      const auto count = static_cast<std::size_t>(data_.child_count[node]);
+      if (count == 0) continue;
+      const Sphere parent = ball(node);
+      double largest = 0.0;
+      for (std::size_t child = first; child < first + count; ++child) {
+        if (!certainly_encloses(parent, ball(child))) {
+          problem("node ", node, " of radius ", parent.radius, " does not enclose its child ",
+                  child, ", which reaches ",
+                  (parent.center - ball(child).center).norm() + data_.radius[child]);
+        }
+        largest = std::max(largest, data_.radius[child]);
+      }
+      // Points (radius 0) have no growth to speak of.
+      if (largest > 0.0) {
+        growth += parent.radius / largest;
+        ++inner_count;
+      }
+    }
+    if (inner_count > 0) report_.mean_growth = growth / static_cast<double>(inner_count);
+  }
+
+  void measure_depth() {
+    std::size_t begin = 0;
+    std::size_t end = 1;
+    for (int depth = 0; begin < end; ++depth) {
+      report_.depth = depth;
+      std::size_t next_end = end;
+      for (std::size_t node = begin; node < end; ++node) {
+        next_end += static_cast<std::size_t>(data_.child_count[node]);
+      }
+      begin = end;
+      end = next_end;
+    }
+  }
+
+  const SphereTreeData& data_;
+  TreeReport report_;
+};
+
+}  // namespace
+
+TreeReport check(const SphereTreeData& data) {
+  return Checker(data).run();
+}
+
+TreeReport check(const SphereTree& tree) {
+  return check(tree.data());
+}
+
+}  // namespace spherule

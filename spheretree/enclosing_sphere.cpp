@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/enclosing_sphere.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+// The smallest enclosing ball of balls is an LP-type problem (Fischer and Gaertner, "The smallest
+// enclosing ball of balls", 2003): it is determined by a basis of at most four balls whose centres
+// are affinely independent, and it touches each of them from inside. We keep such a basis and
+// exchange it for one of a larger ball while some ball sticks out, taking the farthest each time.
+// Departure from the paper: which of the at most 15 subsets is the new basis is not decided by
+// signs of coordinates, which rounding can turn over, but by the value that we want to minimise,
+// max |c - c_i| + r_i over the at most five balls at hand. A degenerate subset (nested, coincident,
+// collinear, coplanar balls) yields no centre or a poor one and simply loses.
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kMaxBasis = 4;
+
+// Each exchange makes the ball of the basis strictly larger, so the loop ends by itself; a dozen
+// exchanges are usual. The cap only bounds the time if rounding made it creep; the result encloses
+// all balls in any case.
+constexpr int kMaxExchanges = 1000;
+
+// The basis has settled when no ball sticks out by more than this factor: rounding of `reach`.
+constexpr double kSettled = 1.0 + 8.0 * kUnitRoundoff;
+
+struct BallSet {
+  std::array<Sphere, kMaxBasis + 1> balls;
+  std::size_t size = 0;
+
+  void add(const Sphere& ball) { balls[size++] = ball; }
+  std::span<const Sphere> span() const { return {balls.data(), size}; }
+};
+
+struct Solution {
+  BallSet basis;
+  Vector3d center = Vector3d::Zero();
+  double radius = std::numeric_limits<double>::infinity();
+};
+
+// Radius of the smallest ball about `center` that encloses all `balls`, and the ball that sets it.
+struct Reach {
+  double radius = -1.0;
+  std::size_t farthest = 0;
+};
+
+Reach reach(const Vector3d& center, std::span<const Sphere> balls) {
+  Reach result;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    const double radius = (balls[i].center - center).norm() + balls[i].radius;
+    if (radius > result.radius) result = {radius, i};
+  }
+  return result;
+}
+
+// Solves rows[i] . x = right[i] for the x of least norm, by orthonormalising the rows (at most
+// three). Constructed once and used for several right-hand sides.
+class MinimumNormSolver {
+ public:
+  explicit MinimumNormSolver(std::span<const Vector3d> rows) : size_(rows.size()) {
+    for (std::size_t i = 0; i < size_; ++i) {
+      Vector3d rest = rows[i];
+      for (int pass = 0; pass < 2; ++pass) {  // the second pass removes the rounding of the first
+        for (std::size_t j = 0; j < i; ++j) {
+          const double along = rest.dot(axes_[j]);
+          lower_[i][j] += along;
+          rest -= along * axes_[j];
+        }
+      }
+      lower_[i][i] = rest.norm();
+      if (!(lower_[i][i] > kDegenerate * rows[i].norm())) {
+        regular_ = false;
+        return;
+      }
+      axes_[i] = rest / lower_[i][i];
+    }
+  }
+
+  bool regular() const { return regular_; }
+
+  Vector3d solve(const std::array<double, 3>& right) const {
+    Vector3d x = Vector3d::Zero();
+    std::array<double, 3> y{};
+    for (std::size_t i = 0; i < size_; ++i) {
+      double rest = right[i];
+      for (std::size_t j = 0; j < i; ++j) rest -= lower_[i][j] * y[j];
+      y[i] = rest / lower_[i][i];
+      x += y[i] * axes_[i];
+    }
+    return x;
+  }
+
+ private:
+  // Rows closer to dependent than this give no digit of x; such a subset is never needed, because
+  // the centre lies in the convex hull of affinely independent centres (Caratheodory).
+  static constexpr double kDegenerate = 1e-14;
+
+  std::size_t size_;
+  bool regular_ = true;
+  std::array<Vector3d, 3> axes_;
+  std::array<std::array<double, 3>, 3> lower_{};
+};
+
+// One Newton step for |center - c_i| + r_i = R over all balls, within the affine hull of their
+// centres. It restores digits that the squared equations lose for nearly nested balls.
+Vector3d refined(const Vector3d& center, std::span<const Sphere> balls) {
+  std::array<Vector3d, kMaxBasis> directions;
+  std::array<double, kMaxBasis> reaches{};
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    const Vector3d offset = center - balls[i].center;
+    const double length = offset.norm();
+    if (!(length > 0.0)) return center;
+    directions[i] = offset / length;
+    reaches[i] = length + balls[i].radius;
+  }
+  std::array<Vector3d, 3> rows;
+  std::array<double, 3> right{};
+  for (std::size_t i = 1; i < balls.size(); ++i) {
+    rows[i - 1] = directions[i] - directions[0];
+    right[i - 1] = reaches[0] - reaches[i];
+  }
+  const MinimumNormSolver solver(std::span<const Vector3d>(rows).first(balls.size() - 1));
+  return solver.regular() ? Vector3d(center + solver.solve(right)) : center;
+}
+
+// Calls `visit(center)` for each ball whose centre lies in the affine hull of the centres of
+// `balls` and that is touched by all of them from inside (at most two; none if degenerate).
+//
+// With x = c - c_0, q_i = c_i - c_0, s_i = r_0 - r_i and rho = R - r_0 the conditions are
+// |x| = rho and q_i . x = (|q_i|^2 - s_i^2) / 2 - rho s_i; so x = a + rho b, and rho is a root of
+// (|b|^2 - 1) rho^2 + 2 a.b rho + |a|^2. All lengths are first scaled by a power of two.
+template <typename Visit>
+void tangent_centers(std::span<const Sphere> balls, const Visit& visit) {
+  const Sphere& origin = balls[0];
+  if (balls.size() == 1) {
+    visit(origin.center);
+    return;
+  }
+  std::array<Vector3d, 3> q;
+  std::array<double, 3> s{};
+  double largest = 0.0;
+  const std::size_t count = balls.size() - 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    q[i] = balls[i + 1].center - origin.center;
+    s[i] = origin.radius - balls[i + 1].radius;
+    largest = std::max({largest, q[i].cwiseAbs().maxCoeff(), std::abs(s[i])});
+  }
+  if (!(largest > 0.0)) return;
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  std::array<double, 3> constant{};
+  std::array<double, 3> linear{};
+  for (std::size_t i = 0; i < count; ++i) {
+    q[i] = q[i].unaryExpr([exponent](double v) { return std::ldexp(v, -exponent); });
+    s[i] = std::ldexp(s[i], -exponent);
+    const double length = q[i].norm();
+    constant[i] = 0.5 * (length - s[i]) * (length + s[i]);
+    linear[i] = -s[i];
+  }
+  const MinimumNormSolver solver(std::span<const Vector3d>(q).first(count));
+  if (!solver.regular()) return;
+  const Vector3d a = solver.solve(constant);
+  const Vector3d b = solver.solve(linear);
+  const double b_norm = b.norm();
+  const double leading = (b_norm - 1.0) * (b_norm + 1.0);
+  const double half = a.dot(b);
+  const double root = std::sqrt(std::max(0.0, half * half - leading * a.squaredNorm()));
+  const double t = -(half + std::copysign(root, half));
+  for (const double rho : {t / leading, a.squaredNorm() / t}) {
+    if (!(rho >= 0.0) || !(rho <= kMaxCoordinate)) continue;
+    const Vector3d x = a + rho * b;
+    const Vector3d center =
+        origin.center + x.unaryExpr([exponent](double v) { return std::ldexp(v, exponent); });
+    visit(center);
+    visit(refined(center, balls));
+  }
+}
+
+// The smallest enclosing ball of the balls of `basis` and of `added`, which sticks out of the ball
+// of `basis` and is therefore part of every new basis.
+Solution exchange(const BallSet& basis, const Sphere& added) {
+  BallSet all = basis;
+  all.add(added);
+  Solution best;
+  for (unsigned mask = 0; mask < (1U << basis.size); ++mask) {
+    if (std::popcount(mask) >= kMaxBasis) continue;
+    BallSet subset;
+    subset.add(added);
+    for (std::size_t i = 0; i < basis.size; ++i) {
+      if ((mask >> i & 1U) != 0U) subset.add(basis.balls[i]);
+    }
+    tangent_centers(subset.span(), [&](const Vector3d& center) {
+      const double radius = reach(center, all.span()).radius;
+      if (radius < best.radius) best = {subset, center, radius};
+    });
+  }
+  return best;
+}
+
+Vector3d smallest_center(std::span<const Sphere> balls) {
+  const auto largest =
+      std::max_element(balls.begin(), balls.end(),
+                       [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
+  Solution current;
+  current.basis.add(*largest);
+  current.center = largest->center;
+  current.radius = largest->radius;
+  Vector3d best = current.center;
+  double best_radius = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMaxExchanges; ++i) {
+    const Reach out = reach(current.center, balls);
+    if (out.radius < best_radius) {
+      best = current.center;
+      best_radius = out.radius;
+    }
+    if (out.radius <= current.radius * kSettled) break;
+    const Solution next = exchange(current.basis, balls[out.farthest]);
+    if (!(next.radius > current.radius)) break;
+    current = next;
+  }
+  return best;
+}
+
+// The smallest radius for which certainly_encloses() holds for all balls: the same expression.
+double enclosing_radius(const Vector3d& center, std::span<const Sphere> balls) {
+  double radius = 0.0;
+  for (const Sphere& ball : balls) {
+    radius = std::max(radius, add_up(distance_upper(center, ball.center), ball.radius));
+  }
+  return radius;
+}
+
+}  // namespace
+
+Sphere enclosing_sphere(std::span<const Sphere> balls) {
+  assert(!balls.empty());
+  const Vector3d center = smallest_center(balls);
+  return {center, enclosing_radius(center, balls)};
+}
+
+Sphere enclosing_sphere(std::span<const Vector3d> points) {
+  std::vector<Sphere> balls;
+  balls.reserve(points.size());
+  for (const Vector3d& point : points) balls.push_back({point, 0.0});
+  return enclosing_sphere(balls);
+}
+
+}  // namespace spherule

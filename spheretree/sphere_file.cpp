@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/sphere_file.h"
+
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string_view>
+
+namespace spherule {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr std::string_view kFormat = "spherule-spheres";
+constexpr std::int64_t kVersion = 1;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::string_view kInfinityText = "inf";
+constexpr std::string_view kMinusInfinityText = "-inf";
+
+bool is_infinity_text(const std::string& text) {
+  return text == kInfinityText || text == kMinusInfinityText;
+}
+
+// All refusals go through here, so that each names the file.
+class Refusal {
+ public:
+  explicit Refusal(std::string file) : file_(std::move(file)) {}
+
+  [[noreturn]] void operator()(const std::string& reason) const { throw Error(file_, reason); }
+
+  void unless(bool good, const std::string& reason) const {
+    if (!good) (*this)(reason);
+  }
+
+ private:
+  std::string file_;
+};
+
+// --- writing ---
+
+ordered_json number(double value, const std::string& what, const Refusal& refuse) {
+  refuse.unless(!std::isnan(value), what + " is not a number");
+  if (std::isinf(value)) return value > 0.0 ? kInfinityText : kMinusInfinityText;
+  return value;
+}
+
+ordered_json written(const CertificateRecord& record, const Refusal& refuse) {
+  const auto put = [&refuse](double value, const std::string& key) {
+    return number(value, "certificate: " + key, refuse);
+  };
+  ordered_json certificate;
+  certificate["covered"] = record.covered;
+  certificate["uncovered_depth"] = {put(record.uncovered_depth_lower, "uncovered_depth"),
+                                    put(record.uncovered_depth_upper, "uncovered_depth")};
+  const auto put_optional = [&](const char* key, const std::optional<double>& value) {
+    if (value) certificate[key] = put(*value, key);
+  };
+  put_optional("protrusion_over_simplified_max", record.protrusion_over_simplified_max);
+  put_optional("protrusion_over_mesh_max", record.protrusion_over_mesh_max);
+  certificate["sphere_count"] = record.sphere_count;
+  put_optional("volume_ratio", record.volume_ratio);
+  return certificate;
+}
+
+ordered_json written(const std::string& name, const OptionValue& value, const Refusal& refuse) {
+  if (const auto* real = std::get_if<double>(&value)) {
+    return number(*real, "option " + name, refuse);
+  }
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    refuse.unless(!is_infinity_text(*text),
+                  "option " + name + ": the text \"" + *text + "\" stands for a number");
+  }
+  return std::visit([](const auto& plain) { return ordered_json(plain); }, value);
+}
+
+// JSON with one sphere a line, so that files can be compared line by line.
+std::string encode(const SphereFile& file, const Refusal& refuse) {
+  std::string text = "{\"format\":\"" + std::string(kFormat) +
+                     "\",\"version\":" + std::to_string(kVersion) + ",\n\"spheres\":[";
+  for (std::size_t i = 0; i < file.spheres.size(); ++i) {
+    const Sphere& s = file.spheres[i];
+    refuse.unless(is_usable(s), "sphere " + std::to_string(i) + " is not usable");
+    const ordered_json center = {s.center.x(), s.center.y(), s.center.z()};
+    text += i == 0 ? "\n" : ",\n";
+    text += "{\"center\":" + center.dump() + ",\"radius\":" + ordered_json(s.radius).dump() + "}";
+  }
+  text += "\n]";
+  if (file.certificate) {
+    refuse.unless(file.certificate->sphere_count == file.spheres.size(),
+                  "the certificate is not for this number of spheres");
+    text += ",\n\"certificate\":" + written(*file.certificate, refuse).dump();
+  }
+  ordered_json options = ordered_json::object();
+  for (const auto& [name, value] : file.options) options[name] = written(name, value, refuse);
+  try {
+    text += ",\n\"options\":" + options.dump();
+  } catch (const json::exception&) {
+    refuse("an option is not valid UTF-8");
+  }
+  return text + "}\n";
+}
+
+// --- reading ---
+
+// Notices keys that an object holds twice; the parser would silently keep the last.
+class DuplicateKeys {
+ public:
+  void see(int depth, json::parse_event_t event, const json& parsed) {
+    const auto level = static_cast<std::size_t>(depth);
+    if (event == json::parse_event_t::object_start) {
+      keys_.resize(level + 1);
+      keys_[level].clear();
+    } else if (event == json::parse_event_t::key) {
+      const auto& key = parsed.get_ref<const std::string&>();
+      if (!keys_[level - 1].insert(key).second && duplicate_.empty()) duplicate_ = key;
+    }
+  }
+
+  const std::string& duplicate() const { return duplicate_; }
+
+ private:
+  std::vector<std::set<std::string>> keys_;
+  std::string duplicate_;
+};
+
+json parsed(const std::string& text, const Refusal& refuse) {
+  DuplicateKeys keys;
+  json document;
+  try {
+    document = json::parse(text, [&keys](int depth, json::parse_event_t event, json& part) {
+      keys.see(depth, event, part);
+      return true;
+    });
+  } catch (const json::exception& error) {
+    refuse(std::string("is not JSON: ") + error.what());
+  }
+  refuse.unless(keys.duplicate().empty(), "the key \"" + keys.duplicate() + "\" appears twice");
+  return document;
+}
+
+const json& member(const json& object, const char* key, const std::string& where,
+                   const Refusal& refuse) {
+  const auto found = object.find(key);
+  if (found == object.end()) refuse(where + ": \"" + key + "\" is missing");
+  return *found;
+}
+
+double read_number(const json& value, const std::string& what, const Refusal& refuse) {
+  if (value.is_string() && is_infinity_text(value.get_ref<const std::string&>())) {
+    return value.get_ref<const std::string&>() == kInfinityText ? kInfinity : -kInfinity;
+  }
+  refuse.unless(value.is_number(), what + " is not a number");
+  return value.get<double>();
+}
+
+Sphere read_sphere(const json& value, std::size_t index, const Refusal& refuse) {
+  const std::string where = "sphere " + std::to_string(index);
+  refuse.unless(value.is_object(), where + " is not an object");
+  const json& center = member(value, "center", where, refuse);
+  refuse.unless(center.is_array() && center.size() == 3, where + ": \"center\" is not [x,y,z]");
+  Sphere sphere;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    sphere.center[static_cast<Eigen::Index>(axis)] =
+        read_number(center[axis], where + ": a coordinate", refuse);
+  }
+  sphere.radius =
+      read_number(member(value, "radius", where, refuse), where + ": \"radius\"", refuse);
+  refuse.unless(sphere.radius >= 0.0, where + ": \"radius\" is negative");
+  refuse.unless(is_usable(sphere), where + ": a number is beyond 1e15");
+  return sphere;
+}
+
+CertificateRecord read_certificate(const json& value, std::size_t sphere_count,
+                                   const Refusal& refuse) {
+  const std::string where = "certificate";
+  refuse.unless(value.is_object(), where + " is not an object");
+  CertificateRecord record;
+  const json& covered = member(value, "covered", where, refuse);
+  refuse.unless(covered.is_boolean(), where + ": \"covered\" is not true or false");
+  record.covered = covered.get<bool>();
+  const json& depth = member(value, "uncovered_depth", where, refuse);
+  refuse.unless(depth.is_array() && depth.size() == 2,
+                where + ": \"uncovered_depth\" is not [lower,upper]");
+  record.uncovered_depth_lower = read_number(depth[0], where + ": \"uncovered_depth\"", refuse);
+  record.uncovered_depth_upper = read_number(depth[1], where + ": \"uncovered_depth\"", refuse);
+  refuse.unless(record.uncovered_depth_lower <= record.uncovered_depth_upper,
+                where + ": \"uncovered_depth\" is not in order");
+  const auto optional = [&](const char* key) -> std::optional<double> {
+    const auto found = value.find(key);
+    if (found == value.end() || found->is_null()) return std::nullopt;
+    return read_number(*found, where + ": \"" + key + "\"", refuse);
+  };
+  record.protrusion_over_simplified_max = optional("protrusion_over_simplified_max");
+  record.protrusion_over_mesh_max = optional("protrusion_over_mesh_max");
+  record.volume_ratio = optional("volume_ratio");
+  const json& count = member(value, "sphere_count", where, refuse);
+  refuse.unless(count.is_number_unsigned() && count.get<std::uint64_t>() == sphere_count,
+                where + ": \"sphere_count\" is not the number of spheres in the file");
+  record.sphere_count = sphere_count;
+  return record;
+}
+
+OptionValue read_option(const std::string& name, const json& value, const Refusal& refuse) {
+  if (value.is_boolean()) return value.get<bool>();
+  if (value.is_number_float()) return value.get<double>();
+  if (value.is_number_unsigned()) {
+    refuse.unless(value.get<std::uint64_t>() <=
+                      static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()),
+                  "option " + name + " is too large");
+  }
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  refuse.unless(value.is_string(),
+                "option " + name + " is neither a number, a text nor a truth value");
+  const auto& text = value.get_ref<const std::string&>();
+  if (is_infinity_text(text)) return read_number(value, "option " + name, refuse);
+  return text;
+}
+
+SphereFile decode(const std::string& text, const Refusal& refuse) {
+  const json document = parsed(text, refuse);
+  refuse.unless(document.is_object(), "is not an object");
+  const auto format = document.find("format");
+  refuse.unless(format != document.end() && *format == kFormat,
+                "is not of format \"" + std::string(kFormat) + "\"");
+  const json& version = member(document, "version", "file", refuse);
+  refuse.unless(version.is_number_unsigned() && version.get<std::uint64_t>() >= 1,
+                "\"version\" is not a positive integer");
+  refuse.unless(version.get<std::uint64_t>() <= kVersion,
+                "has format version " + version.dump() + "; this program reads versions up to " +
+                    std::to_string(kVersion));
+  const json& spheres = member(document, "spheres", "file", refuse);
+  refuse.unless(spheres.is_array(), "\"spheres\" is not a list");
+
+  SphereFile file;
+  file.spheres.reserve(spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    file.spheres.push_back(read_sphere(spheres[i], i, refuse));
+  }
+  const auto certificate = document.find("certificate");
+  if (certificate != document.end() && !certificate->is_null()) {
+    file.certificate = read_certificate(*certificate, file.spheres.size(), refuse);
+  }
+  const auto options = document.find("options");
+  if (options != document.end() && !options->is_null()) {
+    refuse.unless(options->is_object(), "\"options\" is not an object");
+    for (const auto& [name, value] : options->items()) {
+      file.options[name] = read_option(name, value, refuse);
+    }
+  }
+  return file;
+}
+
+}  // namespace
+
+void save_spheres(const SphereFile& file, const std::filesystem::path& path) {
+  write_file_atomically(path, encode(file, Refusal(path.string())));
+}
+
+SphereFile load_spheres(const std::filesystem::path& path) {
+  return decode(read_file(path), Refusal(path.string()));
+}
+
+}  // namespace spherule

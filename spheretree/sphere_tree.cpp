@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/sphere_tree.h"
+
+#include "spheretree/check.h"
+#include "spheretree/error.h"
+
+#include <cassert>
+#include <utility>
+
+namespace spherule {
+
+SphereTree::SphereTree(SphereTreeData data) : data_(std::move(data)) {
+  const TreeReport report = check(data_);
+  if (!report.valid) throw Error("sphere tree", report.problems.front());
+  depth_ = report.depth;
+  branching_ = report.branching;
+}
+
+std::vector<Sphere> SphereTree::level(int level) const {
+  assert(level >= 0);
+  std::vector<Sphere> balls;
+  // Breadth-first order: the nodes at one distance from the root are consecutive.
+  std::size_t begin = 0;
+  std::size_t end = 1;
+  for (int distance = 0; begin < end; ++distance) {
+    std::size_t next_end = end;
+    for (std::size_t node = begin; node < end; ++node) {
+      if (distance == level || is_leaf(node)) balls.push_back(ball(node));
+      next_end += static_cast<std::size_t>(child_count(node));
+    }
+    if (distance == level) break;
+    begin = end;
+    end = next_end;
+  }
+  return balls;
+}
+
+}  // namespace spherule

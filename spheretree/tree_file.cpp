@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/tree_file.h"
+
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+#include "spheretree/internal/crc64.h"
+
+#include <bit>
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+
+// The format is described in docs/tree-file.md; a change of one needs a change of the other.
+namespace spherule {
+namespace {
+
+// As in PNG: a byte above 127 and two kinds of line end show transfers that are not binary.
+constexpr std::string_view kMagic = "\x89SPT\r\n\x1a\n";
+constexpr std::uint32_t kByteOrderMark = 0x01020304;
+constexpr std::uint32_t kSwappedByteOrderMark = 0x04030201;
+constexpr std::uint32_t kVersion = 1;
+
+constexpr std::size_t kHeaderSize = 32;  // magic, byte-order mark, version, two counts
+constexpr std::size_t kNodeSize = 40;    // four doubles, two 32-bit integers
+constexpr std::size_t kChecksumSize = 8;
+
+template <std::unsigned_integral T>
+void append(std::string& bytes, T value) {
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    bytes.push_back(static_cast<char>(value >> (8 * i) & 0xFFU));
+  }
+}
+
+// The caller has made sure that the bytes are there.
+template <std::unsigned_integral T>
+T take(std::string_view& bytes) {
+  T value = 0;
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    value |= static_cast<T>(static_cast<T>(static_cast<unsigned char>(bytes[i])) << (8 * i));
+  }
+  bytes.remove_prefix(sizeof(T));
+  return value;
+}
+
+void append(std::string& bytes, const std::vector<double>& values) {
+  for (const double value : values) append(bytes, std::bit_cast<std::uint64_t>(value));
+}
+void append(std::string& bytes, const std::vector<std::int32_t>& values) {
+  for (const std::int32_t value : values) append(bytes, std::bit_cast<std::uint32_t>(value));
+}
+
+void take(std::string_view& bytes, std::size_t count, std::vector<double>& values) {
+  values.resize(count);
+  for (double& value : values) value = std::bit_cast<double>(take<std::uint64_t>(bytes));
+}
+void take(std::string_view& bytes, std::size_t count, std::vector<std::int32_t>& values) {
+  values.resize(count);
+  for (std::int32_t& value : values) {
+    value = std::bit_cast<std::int32_t>(take<std::uint32_t>(bytes));
+  }
+}
+
+std::string encode(const SphereTreeData& data) {
+  std::string bytes;
+  bytes.reserve(kHeaderSize + kNodeSize * data.radius.size() + kChecksumSize);
+  bytes += kMagic;
+  append(bytes, kByteOrderMark);
+  append(bytes, kVersion);
+  append(bytes, std::uint64_t{data.spheres.size()});
+  append(bytes, std::uint64_t{data.radius.size()});
+  for (const auto* array : {&data.x, &data.y, &data.z, &data.radius}) append(bytes, *array);
+  for (const auto* array : {&data.first_child, &data.child_count}) append(bytes, *array);
+  append(bytes, internal::crc64(bytes));
+  return bytes;
+}
+
+// Puts the ball of every leaf at the index it names. A sphere that no leaf names, or two leaves
+// name, is left to check().
+void restore_spheres(SphereTreeData& data, std::size_t sphere_count) {
+  data.spheres.resize(sphere_count);
+  for (std::size_t node = 0; node < data.radius.size(); ++node) {
+    if (data.child_count[node] != 0) continue;
+    const auto index = static_cast<std::size_t>(data.first_child[node]);
+    if (data.first_child[node] < 0 || index >= sphere_count) continue;
+    data.spheres[index] = {{data.x[node], data.y[node], data.z[node]}, data.radius[node]};
+  }
+}
+
+SphereTreeData decode(std::string_view file, const std::string& name) {
+  std::string_view rest = file;
+  if (rest.substr(0, kMagic.size()) != kMagic) {
+    throw Error(name, kMagic.starts_with(rest) ? "the file is cut short" : "is not a sphere tree");
+  }
+  if (rest.size() < kHeaderSize) throw Error(name, "the file is cut short");
+  rest.remove_prefix(kMagic.size());
+  const auto mark = take<std::uint32_t>(rest);
+  if (mark == kSwappedByteOrderMark) throw Error(name, "is in big-endian byte order");
+  if (mark != kByteOrderMark) throw Error(name, "the byte-order mark is damaged");
+  const auto version = take<std::uint32_t>(rest);
+  if (version > kVersion) {
+    throw Error(name, "has format version " + std::to_string(version) +
+                          "; this program reads versions up to " + std::to_string(kVersion));
+  }
+  if (version == 0) throw Error(name, "has format version 0, which does not exist");
+
+  // The counts are compared with the size of the file before anything is allocated from them.
+  const auto sphere_count = take<std::uint64_t>(rest);
+  const auto node_count = take<std::uint64_t>(rest);
+  if (rest.size() < kChecksumSize || node_count > (rest.size() - kChecksumSize) / kNodeSize) {
+    throw Error(name, "the file is cut short: " + std::to_string(file.size()) + " bytes for " +
+                          std::to_string(node_count) + " nodes");
+  }
+  if (rest.size() != node_count * kNodeSize + kChecksumSize) {
+    throw Error(name, "the file is too long: " + std::to_string(file.size()) + " bytes for " +
+                          std::to_string(node_count) + " nodes");
+  }
+  std::string_view checksum = file.substr(file.size() - kChecksumSize);
+  if (take<std::uint64_t>(checksum) !=
+      internal::crc64(file.substr(0, file.size() - kChecksumSize))) {
+    throw Error(name, "the checksum is wrong: the file is damaged");
+  }
+  if (sphere_count > node_count) {
+    throw Error(name, std::to_string(sphere_count) + " spheres cannot be the leaves of " +
+                          std::to_string(node_count) + " nodes");
+  }
+
+  SphereTreeData data;
+  for (auto* array : {&data.x, &data.y, &data.z, &data.radius}) take(rest, node_count, *array);
+  for (auto* array : {&data.first_child, &data.child_count}) take(rest, node_count, *array);
+  restore_spheres(data, sphere_count);
+  return data;
+}
+
+}  // namespace
+
+void save_tree(const SphereTree& tree, const std::filesystem::path& path) {
+  write_file_atomically(path, encode(tree.data()));
+}
+
+SphereTree load_tree(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  SphereTreeData data = decode(bytes, path.string());
+  try {
+    return SphereTree(std::move(data));
+  } catch (const Error& error) {
+    throw Error(path.string(), error.reason());
+  }
+}
+
+}  // namespace spherule
