@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/command.h"
+#include "cli/json.h"
+#include "cli/print.h"
+#include "cli/progress.h"
+#include "simplifier/mesh_io.h"
+#include "simplifier/simplify.h"
+#include "spheretree/error.h"
+#include "spheretree/sphere_file.h"
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace spherule::cli {
+namespace {
+
+struct AuditArguments {
+  std::string mesh;
+  std::string spheres;
+  std::optional<double> scale;
+  std::optional<double> min_external;
+  bool json = false;
+};
+
+// The scale the file was fitted at, where the user gives none.
+double scale_of(const AuditArguments& arguments, const SphereFile& file) {
+  if (arguments.scale) return *arguments.scale;
+  const auto found = file.options.find("scale");
+  if (found == file.options.end()) return 1.0;
+  if (const double* scale = std::get_if<double>(&found->second)) return *scale;
+  if (const auto* whole = std::get_if<std::int64_t>(&found->second)) {
+    return static_cast<double>(*whole);
+  }
+  throw Error(arguments.spheres, "option 'scale' is not a number");
+}
+
+SimplifyOptions options_of(const AuditArguments& arguments, const SphereFile& file) {
+  try {
+    return options_from_record(file.options);
+  } catch (const Error& error) {
+    throw Error(arguments.spheres, error.what());
+  }
+}
+
+// Stage 1 as simplify() runs it. Where E is not known, D / 4: the natural ratio.
+ExternalOptions external_options(const SimplifyOptions& options) {
+  return {.placement = options.external,
+          .min_external_diameter = options.min_external_diameter,
+          .padding = options.padding,
+          .max_error =
+              options.max_error > 0.0 ? options.max_error : options.min_external_diameter / 4.0,
+          .limit = options.external_limit,
+          .seed = options.seed,
+          .progress = options.progress};
+}
+
+void print(const AuditArguments& arguments, const Certificate& certificate,
+           const std::optional<ExternalSpheres>& external) {
+  if (!arguments.json) {
+    std::cout << describe(certificate,
+                          external ? "the simplified solid (D " +
+                                         to_text(to_json(external->min_external_diameter), -1) + ")"
+                                   : "the mesh and its inside");
+    return;
+  }
+  Json json = to_json(certificate);
+  json["against"] = external ? "simplified solid" : "mesh and its inside";
+  if (external) {
+    json["min_external_diameter"] = to_json(external->min_external_diameter);
+    json["padding"] = to_json(external->padding);
+    json["external_sphere_count"] = external->balls.size();
+  }
+  std::cout << to_text(json);
+}
+
+int audit(const AuditArguments& arguments) {
+  const SphereFile file = load_spheres(arguments.spheres);
+  SimplifyOptions options = options_of(arguments, file);
+  const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = scale_of(arguments, file)});
+
+  ProgressBar bar;
+  options.progress = bar.callback();
+  CertifyOptions certify_options;
+  certify_options.padding = options.padding;
+  certify_options.progress = options.progress;
+  if (arguments.min_external) {
+    options.min_external_diameter = *arguments.min_external;
+    if (options.external == ExternalPlacement::kNone) {
+      options.external = ExternalPlacement::kReachable;
+    }
+  }
+  std::optional<ExternalSpheres> external;
+  if (arguments.min_external || file.options.contains("min-external")) {
+    external = place_external_spheres(mesh, external_options(options));
+    certify_options.external = &*external;
+  }
+  const Certificate certificate = certify(mesh, file.spheres, certify_options);
+  print(arguments, certificate, external);
+  return certificate.covered ? kYes : kNo;
+}
+
+}  // namespace
+
+void add_audit(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("audit", "Prove whether spheres cover a mesh; exit 0 covered, 1 leaks");
+  auto arguments = std::make_shared<AuditArguments>();
+  command->add_option("mesh", arguments->mesh, "The mesh")->required();
+  command->add_option("spheres", arguments->spheres, "Spheres (JSON), of any origin")->required();
+  command->add_option("--scale", arguments->scale,
+                      "Output units per mesh unit (default: as the spheres were fitted)");
+  command->add_option("--min-external", arguments->min_external,
+                      "D, against which simplified solid (default: as the spheres were fitted)");
+  command->add_flag("--json", arguments->json, "Print the certificate as JSON");
+  command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
+}
+
+}  // namespace spherule::cli

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace spherule::cli {
+
+// Exit codes of every command. What "no" means stands with each command: a leak (fit, audit), a
+// collision (collide).
+inline constexpr int kYes = 0;
+inline constexpr int kNo = 1;
+inline constexpr int kBadInput = 2;
+
+// Each adds one command to `app`. When the command line has been read without fault, the command
+// runs and stores its exit code; it throws spherule::Error for bad input.
+void add_fit(CLI::App& app, int& exit_code);
+void add_audit(CLI::App& app, int& exit_code);
+void add_tree(CLI::App& app, int& exit_code);
+void add_info(CLI::App& app, int& exit_code);
+void add_collide(CLI::App& app, int& exit_code);
+void add_view(CLI::App& app, int& exit_code);
+
+}  // namespace spherule::cli

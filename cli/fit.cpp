@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/command.h"
+#include "cli/fit_report.h"
+#include "cli/output.h"
+#include "cli/print.h"
+#include "cli/progress.h"
+#include "cli/view_page.h"
+#include "simplifier/mesh_io.h"
+#include "simplifier/simplify.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/build.h"
+#include "spheretree/tree_file.h"
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace spherule::cli {
+namespace {
+
+struct FitArguments {
+  std::string mesh;
+  std::string spheres;
+  std::string report;
+  std::string tree;
+  std::string view;
+  std::string method = "cover";
+  std::string external = "reachable";
+  double scale = 1.0;
+  SimplifyOptions options;
+};
+
+CoverMethod method_named(const std::string& name) {
+  return name == "paper" ? CoverMethod::kPaper : CoverMethod::kCover;
+}
+
+ExternalPlacement placement_named(const std::string& name) {
+  if (name == "random") return ExternalPlacement::kRandom;
+  return name == "none" ? ExternalPlacement::kNone : ExternalPlacement::kReachable;
+}
+
+void write_view(const FitArguments& arguments, const TriangleMesh& mesh,
+                const Simplification& result, const std::optional<SphereTree>& tree) {
+  std::vector<ViewItem> items;
+  items.push_back({.name = arguments.mesh, .content = mesh});
+  items.push_back({.name = "external spheres", .content = result.external.balls, .shown = false});
+  if (tree) {
+    items.push_back({.name = arguments.spheres, .content = *tree});
+  } else {
+    items.push_back({.name = arguments.spheres, .content = result.cover.spheres});
+  }
+  write_file_atomically(arguments.view, make_view_page(arguments.mesh, items));
+}
+
+// Fails (kNo) if the spheres are not proved to cover; the files are written nevertheless and say
+// so.
+int fit(const FitArguments& arguments) {
+  check_outputs({arguments.spheres, arguments.report, arguments.tree, arguments.view},
+                {arguments.mesh});
+  SimplifyOptions options = arguments.options;
+  options.method = method_named(arguments.method);
+  options.external = placement_named(arguments.external);
+  options.history = !arguments.report.empty();
+
+  const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
+  const MeshReport report = mesh_report(mesh);
+  std::cout << describe(report) << std::flush;
+
+  Simplification result = [&] {
+    ProgressBar bar;
+    options.progress = bar.callback();
+    return simplify(mesh, options);
+  }();
+
+  write_uninterrupted([&] {
+    save_spheres(sphere_file(result, arguments.scale), arguments.spheres);
+    if (!arguments.report.empty()) {
+      write_file_atomically(arguments.report,
+                            fit_report(arguments.mesh, mesh, report, result, arguments.scale));
+    }
+    std::optional<SphereTree> tree;
+    if (!arguments.tree.empty() || !arguments.view.empty()) tree = build_tree(result.cover.spheres);
+    if (!arguments.tree.empty()) save_tree(*tree, arguments.tree);
+    if (!arguments.view.empty()) write_view(arguments, mesh, result, tree);
+  });
+
+  std::cout << "options: max error " << result.options.max_error << ", min external diameter "
+            << result.options.min_external_diameter << ", padding " << result.external.padding
+            << " (rounding of the file included)\n"
+            << "external spheres: " << result.external.balls.size() << "\n"
+            << "spheres: " << result.cover.spheres.size() << "\n"
+            << describe(result.certificate, "the simplified solid") << "seconds: external "
+            << result.times.external << ", cover " << result.times.cover << ", certify "
+            << result.times.certify << "\n";
+  if (result.certificate.covered) return kYes;
+  std::cerr << "spherule: " << arguments.spheres << ": the spheres are not proved to cover\n";
+  return kNo;
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("fit", "Cover a mesh with few spheres, with a proof");
+  auto arguments = std::make_shared<FitArguments>();
+  SimplifyOptions& options = arguments->options;
+  command->add_option("mesh", arguments->mesh, "STL, OBJ, PLY, OFF, DAE, 3MF, glTF or GLB")
+      ->required();
+  command->add_option("-o,--output", arguments->spheres, "Where the spheres go (JSON)")->required();
+  command->add_option("--scale", arguments->scale, "Output units per mesh unit");
+  command->add_option("--min-external", options.min_external_diameter,
+                      "D, diameter of the smallest thing that will meet the model (default: 4 E)");
+  command->add_option("--max-error", options.max_error,
+                      "E, how far the spheres may protrude (default: 1 % of the box diagonal)");
+  command->add_option("--padding", options.padding, "Grow the mesh by this much");
+  command->add_option("--min-radius", options.min_radius, "No sphere is smaller than this");
+  command->add_option("--method", arguments->method, "How the inside is covered: cover, paper")
+      ->check(CLI::IsMember({"cover", "paper"}));
+  command
+      ->add_option("--external", arguments->external,
+                   "How external spheres are placed: reachable, random, none")
+      ->check(CLI::IsMember({"reachable", "random", "none"}));
+  command->add_option("--external-limit", options.external_limit,
+                      "Attempts of the random placement");
+  command->add_option("--min-internal", options.min_internal_diameter,
+                      "Diameter at which the paper's loop seeds a sphere (default: E / 2)");
+  command->add_option("--seed", options.seed, "Seed of everything random");
+  command->add_option("--threads", options.threads, "Threads, 0: all; the result is the same")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--report", arguments->report,
+                      "Where the full report goes (JSON): external spheres, history, times");
+  command->add_option("--tree", arguments->tree, "Where the sphere tree goes");
+  command->add_option("--view", arguments->view, "Where a page to look at goes (HTML)");
+  command->callback([arguments, &exit_code] { exit_code = fit(*arguments); });
+}
+
+}  // namespace spherule::cli

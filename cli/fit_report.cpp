@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/fit_report.h"
+
+#include "cli/json.h"
+
+namespace spherule::cli {
+namespace {
+
+Json to_json(const Eigen::AlignedBox3d& box) {
+  return {{"min", cli::to_json(Eigen::Vector3d(box.min()))},
+          {"max", cli::to_json(Eigen::Vector3d(box.max()))}};
+}
+
+Json to_json(const std::string& file, const TriangleMesh& mesh, const MeshReport& report) {
+  return {{"file", file},
+          {"vertices", report.vertices},
+          {"triangles", report.triangles},
+          {"degenerate_triangles", report.degenerate_triangles},
+          {"duplicate_triangles", report.duplicate_triangles},
+          {"boundary_edges", report.boundary_edges},
+          {"non_manifold_edges", report.non_manifold_edges},
+          {"misoriented_edges", report.misoriented_edges},
+          {"components", report.components},
+          {"inverted_components", report.inverted_components},
+          {"self_intersections", report.self_intersections},
+          {"closed", report.closed},
+          {"box", to_json(report.box)},
+          {"area", report.area},
+          {"volume", report.volume},
+          {"vertex_error", mesh.vertex_error}};
+}
+
+Json to_json(const ExternalSpheres& external) {
+  return {{"box", to_json(external.box)},
+          {"min_external_diameter", cli::to_json(external.min_external_diameter)},
+          {"padding", external.padding},
+          {"grid_step", external.grid_step},
+          {"closing_slack", cli::to_json(external.closing_slack)},
+          {"nodes_examined", external.nodes_examined},
+          {"external_spheres", cli::to_json(external.balls)}};
+}
+
+Json to_json(const CoverHistoryEntry& entry) {
+  return {{"sphere_count", entry.sphere_count},
+          {"max_error",
+           cli::to_json(Bounds{.lower = entry.max_error_lower, .upper = entry.max_error_upper})},
+          {"surface_error_before", cli::to_json(entry.surface_error_before)},
+          {"surface_error_after", cli::to_json(entry.surface_error_after)},
+          {"coverage_before", entry.coverage_before},
+          {"coverage_after", entry.coverage_after},
+          {"excess_before", entry.excess_before},
+          {"excess_after", entry.excess_after}};
+}
+
+Json to_json(const SphereCover& cover) {
+  Json json;
+  json["inflation"] = cli::to_json(cover.inflation);
+  json["seeds_rejected"] = cover.seeds_rejected;
+  json["spheres_before_inflation"] = cli::to_json(cover.spheres_before_inflation);
+  json["history"] = Json::array();
+  for (const CoverHistoryEntry& entry : cover.history) json["history"].push_back(to_json(entry));
+  return json;
+}
+
+}  // namespace
+
+std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
+                       const MeshReport& report, const Simplification& result, double scale) {
+  Json json;
+  json["format"] = "spherule-report";
+  json["version"] = 1;
+  json["mesh"] = to_json(mesh_file, mesh, report);
+  json["options"] = cli::to_json(option_record(result.options, scale));
+  json["seconds"] = {{"external", result.times.external},
+                     {"cover", result.times.cover},
+                     {"certify", result.times.certify}};
+  json["certificate"] = cli::to_json(result.certificate);
+  json["simplified_solid"] = to_json(result.external);
+  json["cover"] = to_json(result.cover);
+  return to_text(json);
+}
+
+}  // namespace spherule::cli

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/mesh_report.h"
+#include "simplifier/simplify.h"
+
+#include <string>
+
+namespace spherule::cli {
+
+// The text of REPORT.json: everything that is needed to judge a fit without repeating it: mesh,
+// options, times, the simplified solid (box, D, padding, external spheres), history, certificate.
+// `mesh_file` is named in it; `scale` is the one the mesh was read with.
+std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
+                       const MeshReport& report, const Simplification& result, double scale);
+
+}  // namespace spherule::cli

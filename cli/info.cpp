@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/command.h"
+#include "cli/recognize.h"
+#include "simplifier/mesh_io.h"
+#include "simplifier/mesh_report.h"
+#include "spheretree/check.h"
+#include "spheretree/enclosing_sphere.h"
+#include "spheretree/sphere_file.h"
+#include "spheretree/tree_file.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <variant>
+
+namespace spherule::cli {
+namespace {
+
+void print_ball(const char* what, const Sphere& ball) {
+  std::cout << what << ": center (" << ball.center.x() << ", " << ball.center.y() << ", "
+            << ball.center.z() << "), radius " << ball.radius << "\n";
+}
+
+void print_spheres(const SphereFile& file) {
+  std::cout << "spheres: " << file.spheres.size() << "\n";
+  if (!file.spheres.empty()) {
+    const auto [smallest, largest] =
+        std::minmax_element(file.spheres.begin(), file.spheres.end(),
+                            [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
+    std::cout << "radius: " << smallest->radius << " to " << largest->radius << "\n";
+    print_ball("enclosing sphere", enclosing_sphere(file.spheres));
+  }
+  for (const auto& [name, value] : file.options) {
+    std::cout << "option " << name << ": ";
+    std::visit([](const auto& v) { std::cout << v << "\n"; }, value);
+  }
+  if (!file.certificate) {
+    std::cout << "certificate: none\n";
+    return;
+  }
+  const CertificateRecord& certificate = *file.certificate;
+  std::cout << "certificate (as stored, not proved again): "
+            << (certificate.covered ? "covered" : "not covered") << ", uncovered depth "
+            << certificate.uncovered_depth_lower << " to " << certificate.uncovered_depth_upper
+            << "\n";
+  const auto print_optional = [](const char* what, const std::optional<double>& value) {
+    if (value) std::cout << "  " << what << ": " << *value << "\n";
+  };
+  print_optional("protrusion over the simplified solid, at most",
+                 certificate.protrusion_over_simplified_max);
+  print_optional("protrusion over the mesh, at most", certificate.protrusion_over_mesh_max);
+  print_optional("volume ratio", certificate.volume_ratio);
+}
+
+void print_tree(const SphereTree& tree) {
+  const TreeReport report = check(tree);
+  std::cout << "tree: " << report.sphere_count << " spheres, " << report.node_count << " nodes, "
+            << report.leaf_count << " leaves, depth " << report.depth << ", branching "
+            << report.branching << "\n"
+            << "invariants: " << (report.valid ? "all hold" : "broken") << "\n"
+            << "mean growth of a level: " << report.mean_growth << "\n";
+  print_ball("root", tree.ball(0));
+}
+
+int info(const std::string& file) {
+  std::cout << "file: " << file << "\n";
+  switch (recognize(file)) {
+    case FileKind::kMesh:
+      std::cout << describe(mesh_report(read_mesh(file)));
+      break;
+    case FileKind::kSpheres:
+      print_spheres(load_spheres(file));
+      break;
+    case FileKind::kTree:
+      print_tree(load_tree(file));
+      break;
+  }
+  return kYes;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("info", "Say what is in a mesh, spheres or tree file");
+  auto file = std::make_shared<std::string>();
+  command->add_option("file", *file, "The file; its content tells what it is")->required();
+  command->callback([file, &exit_code] { exit_code = info(*file); });
+}
+
+}  // namespace spherule::cli

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/certificate.h"
+#include "simplifier/simplify.h"
+
+#include <nlohmann/json.hpp>
+
+#include <span>
+#include <string>
+
+namespace spherule::cli {
+
+using Json = nlohmann::ordered_json;
+
+// JSON knows no infinity: infinite numbers become the strings "inf" and "-inf", as in SPHERES.json.
+Json to_json(double value);
+Json to_json(const Eigen::Vector3d& point);
+Json to_json(const Bounds& bounds);
+Json to_json(std::span<const Sphere> spheres);
+Json to_json(const std::map<std::string, OptionValue>& options);
+// Everything a certificate says; the keys that SPHERES.json has too mean the same there.
+Json to_json(const Certificate& certificate);
+
+template <class T>
+Json to_json(const std::optional<T>& value) {
+  return value ? to_json(*value) : Json(nullptr);
+}
+
+// The text of a JSON document, with a line break at its end. File names that are not UTF-8 are
+// written with replacement characters.
+std::string to_text(const Json& json, int indent = 2);
+
+}  // namespace spherule::cli

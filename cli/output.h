@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
+
+namespace spherule::cli {
+
+// Throws Error, before long work is done for nothing, if a file of `outputs` cannot be made where
+// it is asked for, is one of `inputs`, or is named twice. Empty paths are outputs not asked for.
+void check_outputs(std::initializer_list<std::filesystem::path> outputs,
+                   std::initializer_list<std::filesystem::path> inputs);
+
+// Runs `write`, which writes files beside their place and renames them, to its end even if the user
+// interrupts, and obeys the interruption afterwards: Ctrl-C leaves no half-written file.
+void write_uninterrupted(const std::function<void()>& write);
+
+}  // namespace spherule::cli

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/print.h"
+
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+namespace spherule::cli {
+
+std::string describe(const Certificate& certificate, const std::string& solid) {
+  std::ostringstream out;
+  out << "certificate: " << certificate.sphere_count << " spheres ";
+  if (certificate.covered) {
+    out << "cover " << solid << " (proved)\n";
+  } else {
+    const Bounds& depth = certificate.uncovered_depth;
+    out << "are not proved to cover " << solid << "\n";
+    out << "  leak: a point at a depth of " << depth.lower << ", none deeper than " << depth.upper
+        << "\n";
+    if (depth.lower > 0.0) {
+      // All digits, so that the witness can be checked.
+      const Eigen::Vector3d& leak = certificate.deepest_leak;
+      out << std::setprecision(std::numeric_limits<double>::max_digits10) << "  deepest at ("
+          << leak.x() << ", " << leak.y() << ", " << leak.z() << ")\n"
+          << std::setprecision(6);
+    }
+  }
+  if (certificate.protrusion_over_simplified_max) {
+    out << "  protrusion over the simplified solid: at most "
+        << *certificate.protrusion_over_simplified_max << "\n";
+  }
+  if (certificate.protrusion_over_mesh) {
+    out << "  protrusion over the mesh and its inside: " << certificate.protrusion_over_mesh->lower
+        << " to " << certificate.protrusion_over_mesh->upper << "\n";
+  }
+  if (certificate.volume_ratio) {
+    out << "  volume of the spheres over that of the mesh: about " << *certificate.volume_ratio
+        << "\n";
+  }
+  return out.str();
+}
+
+}  // namespace spherule::cli

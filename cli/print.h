@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/certificate.h"
+
+#include <string>
+
+namespace spherule::cli {
+
+// What a certificate says, in a few lines for a person. `solid` names what was to be covered.
+std::string describe(const Certificate& certificate, const std::string& solid);
+
+}  // namespace spherule::cli

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/progress.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <unistd.h>
+
+namespace spherule::cli {
+namespace {
+
+constexpr int kBarWidth = 30;
+constexpr std::chrono::milliseconds kRedrawInterval{100};
+// Return to the first column and erase the line.
+constexpr const char* kEraseLine = "\r\x1b[K";
+
+}  // namespace
+
+ProgressBar::ProgressBar() : on_terminal_(isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() {
+  if (drawn_) std::fputs(kEraseLine, stderr);
+}
+
+Progress ProgressBar::callback() {
+  if (!on_terminal_) return {};
+  return [this](double share, const char* what) { show(share, what); };
+}
+
+void ProgressBar::show(double share, const char* what) {
+  const std::lock_guard lock(mutex_);
+  const auto now = std::chrono::steady_clock::now();
+  if (drawn_ && last_what_ == what && now - last_time_ < kRedrawInterval) return;
+  drawn_ = true;
+  last_what_ = what;
+  last_time_ = now;
+  if (share < 0.0) {
+    std::fprintf(stderr, "%s%s ...", kEraseLine, what);
+    return;
+  }
+  const double done = std::min(share, 1.0);
+  const int full = static_cast<int>(done * kBarWidth);
+  const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
+                          std::string(static_cast<std::size_t>(kBarWidth - full), '.');
+  std::fprintf(stderr, "%s[%s] %3d%% %s", kEraseLine, bar.c_str(), static_cast<int>(done * 100.0),
+               what);
+}
+
+}  // namespace spherule::cli

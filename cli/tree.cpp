@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/command.h"
+#include "cli/output.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "spheretree/sphere_file.h"
+#include "spheretree/tree_file.h"
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <memory>
+#include <string>
+
+namespace spherule::cli {
+namespace {
+
+struct TreeArguments {
+  std::string spheres;
+  std::string tree;
+};
+
+int make_tree(const TreeArguments& arguments) {
+  check_outputs({arguments.tree}, {arguments.spheres});
+  const SphereFile file = load_spheres(arguments.spheres);
+  if (file.spheres.empty()) throw Error(arguments.spheres, "holds no spheres");
+  const SphereTree tree = build_tree(file.spheres);
+  write_uninterrupted([&] { save_tree(tree, arguments.tree); });
+  std::cout << "tree: " << tree.spheres().size() << " spheres, " << tree.node_count()
+            << " nodes, depth " << tree.depth() << ", branching " << tree.branching() << "\n";
+  return kYes;
+}
+
+}  // namespace
+
+void add_tree(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("tree", "Build the sphere tree of a set of spheres");
+  auto arguments = std::make_shared<TreeArguments>();
+  command->add_option("spheres", arguments->spheres, "Spheres (JSON)")->required();
+  command->add_option("-o,--output", arguments->tree, "Where the tree goes")->required();
+  command->callback([arguments, &exit_code] { exit_code = make_tree(*arguments); });
+}
+
+}  // namespace spherule::cli
