@@ -21,8 +21,8 @@ class MeshTree {
   }
 
  private:
-  SphereTree tree_;
   std::vector<std::array<Eigen::Vector3d, 3>> triangles_;
+  SphereTree tree_;  // sphere i is the ball of triangle i
 };
 
 // Whether a set of balls and the surface of a mesh meet, by the same traversal with another leaf

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/collide.h"
+
+#include "collide/internal/ball_leaves.h"
+#include "collide/internal/queries.h"
+
+namespace spherule {
+
+bool collides(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
+              const Pose& world_from_b) noexcept {
+  const RelativePose pose(a, world_from_a, b, world_from_b);
+  return internal::any_pair(a, b, pose, internal::BallLeaves(a, b, pose));
+}
+
+CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
+                        const Pose& world_from_b, const CollisionRequest& request) {
+  const RelativePose pose(a, world_from_a, b, world_from_b);
+  return internal::all_pairs(a, b, pose, internal::BallLeaves(a, b, pose), request);
+}
+
+double collision_slack(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
+                       const Pose& world_from_b) noexcept {
+  return RelativePose(a, world_from_a, b, world_from_b).slack();
+}
+
+}  // namespace spherule

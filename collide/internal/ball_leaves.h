@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/relative_pose.h"
+#include "collide/tree_pair.h"
+
+namespace spherule::internal {
+
+// Leaf test of two sphere trees.
+class BallLeaves {
+ public:
+  BallLeaves(const SphereTree& a, const SphereTree& b, const RelativePose& pose)
+      : a_(a), b_(b), pose_(pose) {}
+
+  bool touches(NodePair pair) const { return pose_.touches(ball_a(pair), ball_b(pair)); }
+  double gap(NodePair pair) const { return pose_.gap(ball_a(pair), ball_b(pair)); }
+
+ private:
+  Sphere ball_a(NodePair pair) const { return a_.ball(static_cast<std::size_t>(pair.node[0])); }
+  Sphere ball_b(NodePair pair) const { return b_.ball(static_cast<std::size_t>(pair.node[1])); }
+
+  const SphereTree& a_;
+  const SphereTree& b_;
+  const RelativePose& pose_;
+};
+
+}  // namespace spherule::internal

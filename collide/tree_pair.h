@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/internal/ball_tests.h"
+#include "collide/relative_pose.h"
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+
+namespace spherule {
+
+// A node of a (node[0]) and a node of b (node[1]).
+struct NodePair {
+  std::int32_t node[2];
+};
+
+// A pair of nodes with one of them opened: the other's ball, in the frame of the opened node's
+// children.
+struct OpenedPair {
+  std::int32_t side;   // the tree that was opened: 0 for a, 1 for b
+  std::int32_t first;  // children first .. first + count - 1
+  std::int32_t count;
+  internal::QueryBall ball;  // radius without pad
+};
+
+// Two placed trees with both changes of frame, ready to be traversed. The descent rule stands here
+// and nowhere else: the larger ball is opened, a's of two equal ones; a leaf is never opened.
+class TreePair {
+ public:
+  TreePair(const SphereTree& a, const SphereTree& b, const RelativePose& pose)
+      : sides_{Side(a, pose.a_from_b()), Side(b, pose.b_from_a())} {}
+
+  const internal::BallArrays& balls(int side) const { return sides_[side].balls; }
+  bool is_leaf(int side, std::int32_t node) const { return sides_[side].child_count[node] == 0; }
+  bool is_leaf_pair(NodePair pair) const {
+    return is_leaf(0, pair.node[0]) && is_leaf(1, pair.node[1]);
+  }
+
+  // The pair must not be a pair of leaves. Free of branches on data: which ball is larger is a coin
+  // toss that a processor cannot predict.
+  OpenedPair open(NodePair pair) const {
+    const auto [a, b] = pair.node;
+    const bool smaller = sides_[0].balls.radius[a] < sides_[1].balls.radius[b];
+    const int side = static_cast<int>(is_leaf(0, a)) |
+                     (static_cast<int>(smaller) & static_cast<int>(!is_leaf(1, b)));
+    const Side& opened = sides_[side];
+    const Side& other = sides_[1 - side];
+    const std::int32_t node = pair.node[side];
+    const std::int32_t kept = pair.node[1 - side];
+    assert(opened.child_count[node] > 0);
+    const double x = other.balls.x[kept];
+    const double y = other.balls.y[kept];
+    const double z = other.balls.z[kept];
+    const FrameChange& change = opened.from_other;
+    return {side,
+            opened.first_child[node],
+            opened.child_count[node],
+            {change.x(x, y, z), change.y(x, y, z), change.z(x, y, z), other.balls.radius[kept]}};
+  }
+
+ private:
+  struct Side {
+    Side(const SphereTree& tree, const FrameChange& change)
+        : balls{tree.data().x.data(), tree.data().y.data(), tree.data().z.data(),
+                tree.data().radius.data()},
+          first_child(tree.data().first_child.data()),
+          child_count(tree.data().child_count.data()),
+          from_other(change) {}
+
+    internal::BallArrays balls;
+    const std::int32_t* first_child;
+    const std::int32_t* child_count;
+    FrameChange from_other;
+  };
+
+  Side sides_[2];
+};
+
+}  // namespace spherule
