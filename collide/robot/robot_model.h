@@ -22,7 +22,7 @@ struct Joint {
   JointType type = JointType::kFixed;
   int parent_link = -1;
   int child_link = -1;
-  Pose parent_from_joint;                           // at position zero
+  Pose parent_from_joint;                           // at position zero; made unit when added
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit length is made when added
   double lower = 0.0;                               // limits of the position
   double upper = 0.0;
