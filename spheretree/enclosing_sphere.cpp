@@ -36,6 +36,7 @@ struct BallSet {
   std::size_t size = 0;
 
   void add(const Sphere& ball) { balls[size++] = ball; }
+  std::span<Sphere> span() { return {balls.data(), size}; }
   std::span<const Sphere> span() const { return {balls.data(), size}; }
 };
 
@@ -44,6 +45,11 @@ struct Solution {
   Vector3d center = Vector3d::Zero();
   double radius = std::numeric_limits<double>::infinity();
 };
+
+auto largest_ball(auto balls) {
+  return std::max_element(balls.begin(), balls.end(),
+                          [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
+}
 
 // Radius of the smallest ball about `center` that encloses all `balls`, and the ball that sets it.
 struct Reach {
@@ -137,12 +143,16 @@ Vector3d refined(const Vector3d& center, std::span<const Sphere> balls) {
 // |x| = rho and q_i . x = (|q_i|^2 - s_i^2) / 2 - rho s_i; so x = a + rho b, and rho is a root of
 // (|b|^2 - 1) rho^2 + 2 a.b rho + |a|^2. All lengths are first scaled by a power of two.
 template <typename Visit>
-void tangent_centers(std::span<const Sphere> balls, const Visit& visit) {
-  const Sphere& origin = balls[0];
-  if (balls.size() == 1) {
-    visit(origin.center);
+void tangent_centers(BallSet subset, const Visit& visit) {
+  if (subset.size == 1) {
+    visit(subset.balls[0].center);
     return;
   }
+  // Measured from the largest ball: rho is least there, so that it keeps its digits when the other
+  // balls stick out of this one by a hair only.
+  std::iter_swap(subset.balls.begin(), largest_ball(subset.span()));
+  const std::span<const Sphere> balls = subset.span();
+  const Sphere& origin = balls[0];
   std::array<Vector3d, 3> q;
   std::array<double, 3> s{};
   double largest = 0.0;
@@ -196,7 +206,7 @@ Solution exchange(const BallSet& basis, const Sphere& added) {
     for (std::size_t i = 0; i < basis.size; ++i) {
       if ((mask >> i & 1U) != 0U) subset.add(basis.balls[i]);
     }
-    tangent_centers(subset.span(), [&](const Vector3d& center) {
+    tangent_centers(subset, [&](const Vector3d& center) {
       const double radius = reach(center, all.span()).radius;
       if (radius < best.radius) best = {subset, center, radius};
     });
@@ -205,9 +215,7 @@ Solution exchange(const BallSet& basis, const Sphere& added) {
 }
 
 Vector3d smallest_center(std::span<const Sphere> balls) {
-  const auto largest =
-      std::max_element(balls.begin(), balls.end(),
-                       [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
+  const auto largest = largest_ball(balls);
   Solution current;
   current.basis.add(*largest);
   current.center = largest->center;

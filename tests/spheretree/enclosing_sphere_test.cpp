@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/enclosing_sphere.h"
+
+#include "enclosing_oracle.h"
+#include "exact.h"
+#include "spheres.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+
+double largest_coordinate(std::span<const Sphere> balls) {
+  double largest = 0.0;
+  for (const Sphere& ball : balls) {
+    largest = std::max({largest, ball.center.cwiseAbs().maxCoeff(), ball.radius});
+  }
+  return largest;
+}
+
+// Encloses all in exact arithmetic and by our own predicate, and is the smallest up to rounding:
+// `relative` of its radius plus a few units in the last place of the largest coordinate (the centre
+// must be rounded to doubles). kUnderflow is the padding that stands for squares that underflow.
+void expect_smallest(const Sphere& result, std::span<const Sphere> balls, double relative = 1e-13) {
+  for (const Sphere& ball : balls) {
+    ASSERT_TRUE(encloses_exactly(result, ball));
+    ASSERT_TRUE(certainly_encloses(result, ball));
+  }
+  const long double slack = relative * static_cast<long double>(result.radius) +
+                            16.0L * kUnitRoundoff * largest_coordinate(balls) + 2.0L * kUnderflow;
+  EXPECT_LE(static_cast<long double>(result.radius),
+            smallest_radius_lower_bound(result, balls) + slack);
+}
+
+TEST(EnclosingSphere, SmallSetsOfEveryFamilyAreEnclosedTightly) {
+  for (std::size_t count = 1; count <= 20; ++count) {
+    for (std::uint64_t seed = 1; seed <= 25; ++seed) {
+      for (const Family& family : sphere_families(count, seed)) {
+        SCOPED_TRACE(family.name + ", " + std::to_string(count) + " balls, seed " +
+                     std::to_string(seed));
+        expect_smallest(enclosing_sphere(family.spheres), family.spheres);
+        if (HasFailure()) return;
+      }
+    }
+  }
+}
+
+TEST(EnclosingSphere, LargeSetsOfEveryFamilyAreEnclosedTightly) {
+  for (const Family& family : sphere_families(3000, 7)) {
+    SCOPED_TRACE(family.name);
+    expect_smallest(enclosing_sphere(family.spheres), family.spheres);
+  }
+}
+
+// Nearly nested balls are the ill-conditioned case: the unit ball and others that stick out of it
+// by a hair.
+TEST(EnclosingSphere, NearlyNestedBalls) {
+  Random random(11);
+  for (int i = 0; i < 3000; ++i) {
+    std::vector<Sphere> balls = {{Vector3d::Zero(), 1.0}};
+    const std::size_t count = 1 + random.below(5);
+    for (std::size_t k = 0; k < count; ++k) {
+      const double radius = random.unit();
+      const double excess = std::pow(10.0, random.between(-16.0, -1.0));
+      balls.push_back({(1.0 - radius + excess) * random.direction(), radius});
+    }
+    SCOPED_TRACE(i);
+    expect_smallest(enclosing_sphere(balls), balls);
+    if (HasFailure()) return;
+  }
+}
+
+// Textbook cases with a known answer.
+TEST(EnclosingSphere, KnownBalls) {
+  const auto expect_near = [](const Sphere& s, const Vector3d& center, double radius) {
+    EXPECT_LT((s.center - center).norm(), 1e-14);
+    EXPECT_NEAR(s.radius, radius, 1e-14);
+  };
+  expect_near(enclosing_sphere(std::vector<Vector3d>{{1, 2, 3}}), {1, 2, 3}, 0.0);
+  expect_near(enclosing_sphere(std::vector<Vector3d>{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}}), {0, 0, 0},
+              1.0);
+  expect_near(
+      enclosing_sphere(std::vector<Vector3d>{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}),
+      {0, 0, 0}, std::sqrt(3.0));
+  expect_near(enclosing_sphere(std::vector<Sphere>{{{0, 0, 0}, 1.0}, {{3, 0, 0}, 2.0}}), {2, 0, 0},
+              3.0);
+  expect_near(enclosing_sphere(std::vector<Sphere>{{{0, 0, 0}, 4.0}, {{1, 0, 0}, 2.0}}), {0, 0, 0},
+              4.0);
+  // The case in which Welzl's algorithm, which is right for points, fails for balls: the answer is
+  // determined by other balls than those of a smaller set's boundary.
+  expect_near(enclosing_sphere(std::vector<Sphere>{
+                  {{-2, 0, 0}, 1.0}, {{2, 0, 0}, 1.0}, {{0, 0, 0}, 2.5}, {{0, 0.25, 0}, 2.5}}),
+              {0, 0, 0}, 3.0);
+}
+
+TEST(EnclosingSphere, DoesNotDependOnPointsBeingGivenAsBalls) {
+  Random random(5);
+  std::vector<Vector3d> points;
+  std::vector<Sphere> balls;
+  for (int i = 0; i < 500; ++i) {
+    points.push_back(random.in_cube(3.0));
+    balls.push_back({points.back(), 0.0});
+  }
+  EXPECT_EQ(enclosing_sphere(points), enclosing_sphere(balls));
+}
+
+// The oracle itself must be able to say no: a ball a little too large is not accepted.
+TEST(EnclosingSphere, TheOracleSeesBallsThatAreTooLarge) {
+  Random random(3);
+  for (const Family& family : sphere_families(12, 3)) {
+    if (family.name == "squares underflow") continue;  // the padding is larger than the balls
+    Sphere ball = enclosing_sphere(family.spheres);
+    ball.radius *= 1.0 + 1e-5;
+    EXPECT_LT(smallest_radius_lower_bound(ball, family.spheres), ball.radius * (1.0 - 1e-6L))
+        << family.name;
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test
