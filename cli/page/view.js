@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 "use strict";
 // Draws the scene of the page: meshes as triangles, spheres as exact ray-cast balls on squares.
 (() => {

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs PROJECT_BUILD below WORK, then configures, builds and runs the consumer in SOURCE against
+# it. With FORBIDDEN (a regular expression of libraries), none of them may be found, stand in the
+# link line, or be loaded by the program.
+cmake_minimum_required(VERSION 3.25)
+
+function(run)
+  execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE out ERROR_VARIABLE out)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGV " " command)
+    message(FATAL_ERROR "${command}\nfailed with ${result}:\n${out}")
+  endif()
+  set(output "${out}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+run(${CMAKE_COMMAND} --install ${PROJECT_BUILD} --prefix ${WORK}/prefix)
+
+set(options "")
+if(FORBIDDEN)
+  # find_package for these fails even where they are installed.
+  set(options -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON -DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON)
+endif()
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR}
+    -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}"
+    -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF ${options})
+run(${CMAKE_COMMAND} --build ${WORK}/build)
+set(program ${WORK}/build/consumer)
+run(${program})
+message("${output}")
+
+if(FORBIDDEN)
+  file(GLOB link_lines ${WORK}/build/build.ninja ${WORK}/build/CMakeFiles/consumer.dir/link.txt)
+  if(NOT link_lines)
+    message(FATAL_ERROR "the link line cannot be looked at with the generator ${GENERATOR}")
+  endif()
+  foreach(file IN LISTS link_lines)
+    file(STRINGS ${file} lines REGEX "(${FORBIDDEN})")
+    if(lines)
+      message(FATAL_ERROR "the build names ${FORBIDDEN}:\n${lines}")
+    endif()
+  endforeach()
+  run(ldd ${program})
+  if(output MATCHES "${FORBIDDEN}")
+    message(FATAL_ERROR "the program loads ${FORBIDDEN}:\n${output}")
+  endif()
+endif()

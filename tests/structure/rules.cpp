@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/structure/rules.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <span>
+
+namespace spherule {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Names = std::vector<std::string_view>;
+
+// A room, the rooms it may include besides itself, and the third parties it may see. Where a third
+// party is seen by one file only, `one_file` names it.
+struct Room {
+  std::string_view folder;
+  Names rooms;
+  Names third_parties;
+  std::vector<std::pair<std::string_view, std::string_view>> one_file;
+};
+
+const std::vector<Room>& rooms() {
+  static const Names kCores = {"spheretree", "simplifier", "collide"};
+  static const Names kLibraries = {"spheretree",    "simplifier",  "simplifier/baseline", "collide",
+                                   "collide/robot", "collide/fcl", "collide/ompl"};
+  static const std::vector<Room> kRooms = {
+      {"spheretree", {}, {"Eigen"}, {{"nlohmann", "spheretree/sphere_file.cpp"}}},
+      {"simplifier",
+       {"spheretree"},
+       {"Eigen", "tbb"},
+       {{"assimp", "simplifier/internal/scene_file.cpp"},
+        {"nlohmann", "simplifier/internal/check_gltf.cpp"}}},
+      {"simplifier/baseline",
+       {"spheretree", "simplifier"},
+       {"Eigen"},
+       {{"meshoptimizer", "simplifier/baseline/decimation.cpp"},
+        {"OpenMesh", "simplifier/baseline/decimation.cpp"},
+        {"qhull", "simplifier/baseline/convex_hull.cpp"},
+        {"bullet", "simplifier/baseline/convex_decomposition.cpp"}}},
+      {"collide", {"spheretree"}, {"Eigen"}, {}},
+      {"collide/robot",
+       kCores,
+       {"Eigen"},
+       {{"urdfdom", "collide/robot/urdf.cpp"},
+        {"tinyxml2", "collide/robot/srdf.cpp"},
+        {"yaml-cpp", "collide/robot/sphere_formats.cpp"}}},
+      {"collide/fcl", kCores, {"Eigen", "fcl", "ccd"}, {}},
+      {"collide/ompl",
+       {"spheretree", "simplifier", "collide", "collide/robot"},
+       {"Eigen", "ompl"},
+       {}},
+      {"cli", kLibraries, {"Eigen", "CLI", "nlohmann"}, {}},
+      {"bench", kLibraries, {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann"}, {}},
+      {"tests",
+       {"spheretree", "simplifier", "simplifier/baseline", "collide", "collide/robot",
+        "collide/fcl", "collide/ompl", "bench"},
+       {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann"},
+       {}},
+      // Users of the installed package: they see the library from outside.
+      {"tests/consumer", {}, {"Eigen", "spherule"}, {}},
+  };
+  return kRooms;
+}
+
+// The first part of an include in angle brackets, and the third party it stands for. What is not
+// listed and has a slash or ends in .h is unknown, and so refused.
+struct Prefix {
+  std::string_view start;
+  std::string_view third_party;
+};
+constexpr Prefix kPrefixes[] = {{"Eigen/", "Eigen"},
+                                {"nlohmann/", "nlohmann"},
+                                {"assimp/", "assimp"},
+                                {"tbb/", "tbb"},
+                                {"oneapi/tbb/", "tbb"},
+                                {"fcl/", "fcl"},
+                                {"ccd/", "ccd"},
+                                {"CLI/", "CLI"},
+                                {"gtest/", "gtest"},
+                                {"gmock/", "gmock"},
+                                {"benchmark/", "benchmark"},
+                                {"boost/", "boost"},
+                                {"gmp", "gmp"},
+                                {"mpfr", "gmp"},
+                                {"kdl/", "kdl"},
+                                {"urdf_parser/", "urdfdom"},
+                                {"urdf_model/", "urdfdom"},
+                                {"tinyxml2.h", "tinyxml2"},
+                                {"yaml-cpp/", "yaml-cpp"},
+                                {"ompl/", "ompl"},
+                                {"bullet/", "bullet"},
+                                {"LinearMath/", "bullet"},
+                                {"hacd", "bullet"},
+                                {"meshoptimizer.h", "meshoptimizer"},
+                                {"OpenMesh/", "OpenMesh"},
+                                {"libqhull", "qhull"},
+                                {"spherule/", "spherule"}};
+
+// Of the machine rather than of the language: allowed everywhere, or in one folder only.
+constexpr std::string_view kSystemHeaders[] = {"fcntl.h",    "signal.h",      "stdlib.h",
+                                               "unistd.h",   "sys/stat.h",    "sys/types.h",
+                                               "sys/wait.h", "sys/resource.h"};
+constexpr std::string_view kSimdHeaders[] = {"emmintrin.h", "immintrin.h", "arm_neon.h", "cpuid.h"};
+constexpr std::string_view kSimdFolder = "collide/internal/";
+
+template <class Range>
+bool contains(const Range& range, std::string_view value) {
+  return std::find(std::begin(range), std::end(range), value) != std::end(range);
+}
+
+// The innermost room that holds `path`, or null.
+const Room* room_of(std::string_view path) {
+  const Room* best = nullptr;
+  for (const Room& room : rooms()) {
+    const bool inside = path.starts_with(room.folder) && path.size() > room.folder.size() &&
+                        path[room.folder.size()] == '/';
+    if (inside && (!best || room.folder.size() > best->folder.size())) best = &room;
+  }
+  return best;
+}
+
+std::string check_own_include(const Room& room, std::string_view target) {
+  const Room* included = room_of(target);
+  if (!included) return "does not start at the root of the project";
+  if (included != &room && !contains(room.rooms, included->folder)) {
+    return "points the wrong way: " + std::string(room.folder) + " may not include " +
+           std::string(included->folder);
+  }
+  const bool looks_inside = room.folder == "tests" || room.folder == "bench";
+  if (included != &room && target.find("/internal/") != std::string_view::npos && !looks_inside) {
+    return "is private to " + std::string(included->folder);
+  }
+  return {};
+}
+
+std::string check_foreign_include(const std::string& path, const Room& room,
+                                  std::string_view target) {
+  if (contains(kSystemHeaders, target)) return {};
+  if (contains(kSimdHeaders, target)) {
+    return path.starts_with(kSimdFolder) ? "" : "is for " + std::string(kSimdFolder) + " only";
+  }
+  for (const auto& [start, third_party] : kPrefixes) {
+    if (!target.starts_with(start)) continue;
+    if (contains(room.third_parties, third_party)) return {};
+    for (const auto& [name, file] : room.one_file) {
+      if (name == third_party) return path == file ? "" : "is for " + std::string(file) + " only";
+    }
+    return "is a third party that " + std::string(room.folder) + " may not see";
+  }
+  const bool standard = target.find_first_of("/.") == std::string_view::npos;
+  return standard ? "" : "is not a header that the rules know";
+}
+
+bool is_cpp(std::string_view path) {
+  return path.ends_with(".h") || path.ends_with(".cpp");
+}
+
+bool is_source(const fs::path& path) {
+  static const std::set<std::string> kExtensions = {".h",  ".cpp", ".cmake", ".in",
+                                                    ".js", ".css", ".sh"};
+  const std::string name = path.filename().string();
+  return kExtensions.contains(path.extension().string()) || name == "CMakeLists.txt" ||
+         name == "run";
+}
+
+std::vector<std::string> split_lines(std::string_view text) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> check_file(const std::string& path, std::string_view text) {
+  static const std::regex kInclude(R"(^\s*#\s*include\s*(["<])([^">]+)[">].*)");
+  std::vector<std::string> problems;
+  const auto report = [&](std::size_t line, const std::string& what) {
+    problems.push_back(path + ":" + std::to_string(line) + ": " + what);
+  };
+  const std::vector<std::string> lines = split_lines(text);
+  // A script starts with the program that runs it.
+  const std::size_t spdx = !lines.empty() && lines[0].starts_with("#!") ? 1 : 0;
+  if (lines.size() <= spdx ||
+      lines[spdx].find("SPDX-License-Identifier: BSD-3-Clause") == std::string::npos) {
+    report(spdx + 1, "the licence line is missing");
+  }
+  if (lines.size() > kMaxLines) {
+    report(lines.size(), "is longer than " + std::to_string(kMaxLines) + " lines");
+  }
+  if (!is_cpp(path)) return problems;
+
+  if (path.ends_with(".h") &&
+      std::find(lines.begin(), lines.end(), "#pragma once") == lines.end()) {
+    report(1, "#pragma once is missing");
+  }
+  const Room* room = room_of(path);
+  if (!room) {
+    report(1, "stands in no room of the project");
+    return problems;
+  }
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    std::smatch match;
+    if (!std::regex_match(lines[i], match, kInclude)) continue;
+    const std::string target = match[2];
+    const std::string problem = match[1] == "\"" ? check_own_include(*room, target)
+                                                 : check_foreign_include(path, *room, target);
+    if (!problem.empty()) report(i + 1, "\"" + target + "\" " + problem);
+  }
+  return problems;
+}
+
+std::vector<std::string> check_sources(const fs::path& root, std::size_t& files) {
+  static constexpr std::array kTop = {".ci",        "bench",      "cli",  "collide",
+                                      "simplifier", "spheretree", "tests"};
+  std::vector<std::string> problems;
+  files = 0;
+  const auto check = [&](const fs::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    const std::string text((std::istreambuf_iterator<char>(stream)), {});
+    const auto found = check_file(fs::relative(path, root).generic_string(), text);
+    problems.insert(problems.end(), found.begin(), found.end());
+    ++files;
+  };
+  check(root / "CMakeLists.txt");
+  for (const char* folder : kTop) {
+    for (auto entry = fs::recursive_directory_iterator(root / folder);
+         entry != fs::recursive_directory_iterator(); ++entry) {
+      if (entry->path() == root / "bench" / "out") entry.disable_recursion_pending();
+      if (entry->is_regular_file() && is_source(entry->path())) check(entry->path());
+    }
+  }
+  return problems;
+}
+
+}  // namespace spherule

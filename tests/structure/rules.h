@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spherule {
+
+// Checks the sources of the project against its rules: who may include whom, which third party is
+// seen by which file (the table stands in rules.cpp), SPDX line first, at most kMaxLines lines,
+// `#pragma once` in headers.
+inline constexpr std::size_t kMaxLines = 400;
+
+// What is wrong with one file, given its path relative to the root of the project. Each problem
+// names file and line.
+std::vector<std::string> check_file(const std::string& path, std::string_view text);
+
+// The same for all sources below `root`; `files` counts them.
+std::vector<std::string> check_sources(const std::filesystem::path& root, std::size_t& files);
+
+}  // namespace spherule

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/structure/rules.h"
+
+#include <gtest/gtest.h>
+
+namespace spherule {
+namespace {
+
+const std::string kLicence = "// SPDX-License-Identifier: BSD-3-Clause\n";
+
+// The problems of a file with one include, joined.
+std::string verdict(const std::string& path, const std::string& include) {
+  std::string text;
+  for (const std::string& problem :
+       check_file(path, kLicence + "#pragma once\n#include " + include + "\n")) {
+    text += problem + "\n";
+  }
+  return text;
+}
+
+TEST(Structure, SourcesKeepTheRules) {
+  std::size_t files = 0;
+  const auto problems = check_sources(SPHERULE_SOURCE_DIR, files);
+  for (const std::string& problem : problems) ADD_FAILURE() << problem;
+  EXPECT_GT(files, 80u);  // the scan did look
+}
+
+TEST(Structure, ArrowsOfTheTableAreAllowed) {
+  for (const auto& [path, include] : std::vector<std::pair<std::string, std::string>>{
+           {"spheretree/build.cpp", "\"spheretree/check.h\""},
+           {"simplifier/cover.cpp", "\"spheretree/sphere.h\""},
+           {"collide/collide.cpp", "\"collide/internal/packed.h\""},
+           {"collide/robot/urdf.cpp", "\"simplifier/mesh_io.h\""},
+           {"collide/robot/kinematics.h", "\"collide/collide.h\""},
+           {"cli/fit.cpp", "\"collide/robot/kinematics.h\""},
+           {"tests/bench/scene_test.cpp", "\"bench/scenes/work_cell.h\""},
+           {"tests/spheretree/crc64_test.cpp", "\"spheretree/internal/crc64.h\""},
+           {"spheretree/sphere_file.cpp", "<nlohmann/json.hpp>"},
+           {"simplifier/internal/scene_file.cpp", "<assimp/scene.h>"},
+           {"collide/internal/kernel_avx2.cpp", "<immintrin.h>"},
+           {"collide/collide.h", "<vector>"},
+           {"tests/consumer/collide/main.cpp", "<spherule/collide/collide.h>"}}) {
+    EXPECT_EQ(verdict(path, include), "");
+  }
+}
+
+TEST(Structure, WrongArrowsAreFound) {
+  for (const auto& [path, include] : std::vector<std::pair<std::string, std::string>>{
+           {"spheretree/build.cpp", "\"collide/collide.h\""},
+           {"spheretree/build.cpp", "\"simplifier/cover.h\""},
+           {"simplifier/cover.cpp", "\"collide/collide.h\""},
+           {"collide/collide.cpp", "\"simplifier/cover.h\""},
+           {"collide/collide.cpp", "\"collide/robot/kinematics.h\""},
+           {"collide/robot/urdf.cpp", "\"collide/fcl/adapter.h\""},
+           {"collide/robot/urdf.cpp", "\"cli/json.h\""},
+           {"cli/fit.cpp", "\"bench/scenes/work_cell.h\""},
+           {"cli/fit.cpp", "\"tests/support/shapes.h\""},
+           {"bench/pairs.cpp", "\"tests/support/shapes.h\""},
+           {"collide/collide.cpp", "\"spheretree/internal/crc64.h\""},
+           {"collide/collide.cpp", "\"collide.h\""},
+           {"collide/collide.cpp", "  \"../spheretree/sphere.h\""}}) {
+    EXPECT_NE(verdict(path, include), "") << path << " " << include;
+  }
+}
+
+TEST(Structure, MisplacedThirdPartiesAreFound) {
+  for (const auto& [path, include] : std::vector<std::pair<std::string, std::string>>{
+           {"spheretree/tree_file.cpp", "<nlohmann/json.hpp>"},
+           {"spheretree/sphere_file.h", "<nlohmann/json.hpp>"},
+           {"simplifier/mesh_io.h", "<assimp/scene.h>"},
+           {"simplifier/cover.cpp", "<assimp/scene.h>"},
+           {"collide/collide.cpp", "<tbb/parallel_for.h>"},
+           {"collide/collide.cpp", "<fcl/fcl.h>"},
+           {"collide/collide.cpp", "<immintrin.h>"},
+           {"cli/fit.cpp", "<gtest/gtest.h>"},
+           {"tests/cli/fit_test.cpp", "<spherule/collide/collide.h>"},
+           {"collide/collide.cpp", "<some_new_library/api.h>"}}) {
+    EXPECT_NE(verdict(path, include), "") << path << " " << include;
+  }
+}
+
+TEST(Structure, FormFaultsAreFound) {
+  EXPECT_TRUE(check_file("collide/a.h", kLicence + "#pragma once\n").empty());
+  EXPECT_FALSE(check_file("collide/a.h", kLicence).empty());
+  EXPECT_FALSE(check_file("collide/a.h", "#pragma once\n").empty());
+  EXPECT_FALSE(check_file("collide/a.cpp", "").empty());
+  EXPECT_FALSE(check_file("elsewhere/a.cpp", kLicence).empty());
+  EXPECT_TRUE(
+      check_file("tests/run", "#!/bin/bash\n# SPDX-License-Identifier: BSD-3-Clause\n").empty());
+  EXPECT_FALSE(check_file("tests/run", "#!/bin/bash\necho\n").empty());
+  std::string longest = kLicence;
+  for (std::size_t line = 1; line < kMaxLines; ++line) longest += "\n";
+  EXPECT_TRUE(check_file("collide/a.cpp", longest).empty());
+  EXPECT_FALSE(check_file("collide/a.cpp", longest + "\n").empty());
+}
+
+}  // namespace
+}  // namespace spherule
