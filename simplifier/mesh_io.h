@@ -12,13 +12,22 @@ struct MeshReadOptions {
   double scale = 1.0;
 };
 
-// Reads STL (text and binary), OBJ, PLY, OFF, DAE, 3MF, glTF and GLB. All meshes of the file are
-// joined, each under its node transforms, with polygons as triangle fans. Degenerate, duplicated,
-// open, non-manifold, inverted and self-intersecting triangles are kept (mesh_report() tells of
-// them). `vertex_error` bounds what reading cost: half a unit in the last place of a 32-bit float
-// where the file stores more than that, and the rounding of transforms and scale. Throws Error,
-// naming file and reason: no such file, not a mesh, no triangles, a coordinate that is not finite
-// or beyond kMaxCoordinate after scaling, an index out of range, a bad option.
+// Reads STL (text and binary), OBJ, PLY, OFF, DAE, 3MF, glTF and GLB, told apart by the extension.
+// All meshes of the file are joined, each under its node transforms, with polygons as triangle
+// fans; vertices that are equal bit for bit are joined. Degenerate, duplicated, open, non-manifold,
+// inverted and self-intersecting triangles are kept (mesh_report() tells of them); points and lines
+// are left out. A DAE file comes out in metres, times `scale` (its own <unit> is applied), with the
+// axes as they stand in it (<up_axis> is ignored, as the tools of ROS do); the other formats come
+// out in their own numbers times `scale`.
+//
+// `vertex_error` bounds what reading cost: nothing for binary STL and PLY and for glTF without node
+// transforms; 2^-53 of the largest coordinate for numbers in text, which are read as doubles; some
+// 2^-21 of it for DAE and 3MF, whose reader works in 32-bit floats, and for node transforms; and
+// the rounding of the scale. (Per coordinate; the bound itself is of the distance.)
+//
+// Throws Error, naming file and reason: no such file, not a mesh, cut short, no triangles, a
+// coordinate that is not finite or beyond kMaxCoordinate after scaling, an index out of range, a
+// bad option.
 TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 // Writes binary STL; the coordinates are rounded to 32-bit floats. The file appears whole or not at

@@ -10,19 +10,23 @@
 
 namespace spherule {
 
+inline constexpr std::size_t kMaxSelfIntersections = 1'000'000;
+
 // What is unusual about a mesh. Nothing here stops the simplifier: it is told to the user. Vertices
 // count as one if their coordinates are equal bit for bit.
 struct MeshReport {
   std::size_t vertices = 0;  // distinct ones
   std::size_t triangles = 0;
-  std::size_t degenerate_triangles = 0;  // zero area: two equal corners, or collinear
-  std::size_t duplicate_triangles = 0;   // beyond the first of each, in either orientation
-  std::size_t boundary_edges = 0;        // used by one triangle
-  std::size_t non_manifold_edges = 0;    // used by more than two
-  std::size_t misoriented_edges = 0;     // used twice in the same direction
-  std::size_t components = 0;            // connected by shared vertices
-  std::size_t inverted_components = 0;   // closed, with negative volume
-  std::size_t self_intersections = 0;    // pairs of triangles without a common vertex that meet
+  std::size_t degenerate_triangles =
+      0;  // zero area: two equal corners, or collinear to within rounding
+  std::size_t duplicate_triangles = 0;  // beyond the first of each, in either orientation
+  std::size_t boundary_edges = 0;       // used by one triangle
+  std::size_t non_manifold_edges = 0;   // used by more than two
+  std::size_t misoriented_edges = 0;    // used twice in the same direction
+  std::size_t components = 0;           // connected by shared vertices
+  std::size_t inverted_components = 0;  // closed, with negative volume
+  // Pairs of triangles without a common vertex that meet; counting stops at kMaxSelfIntersections.
+  std::size_t self_intersections = 0;
   // Every edge is used as often in one direction as in the other, so that the winding number of a
   // point is a whole number, and one that is not zero proves the point to be inside.
   bool closed = false;

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/internal/scene_file.h"
+
+#include "simplifier/internal/raw_mesh.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <Eigen/Eigenvalues>
+#include <assimp/BaseImporter.h>
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/fast_atof.h>
+#include <assimp/importerdesc.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <sstream>
+#include <vector>
+
+namespace spherule::internal {
+namespace {
+
+constexpr double kFloatRoundoff = 0x1p-24;
+// Relative error of a decimal number as read by assimp: up to three roundings of a float and a
+// power of ten of two more. check_decimals() proves it for each number of a text.
+constexpr double kDecimalError = 8.0 * kFloatRoundoff;
+// The entries of a node matrix, relative to its norm: decimals, the sine and cosine of a rotation,
+// and the product of the few elementary transforms a node may list.
+constexpr double kTransformError = 16.0 * kFloatRoundoff;
+
+// Stands for assimp's own exception, which its library does not export. Not thrown: what is given
+// to the parser is a number.
+struct UnreadableNumber {
+  template <class... Parts>
+  explicit UnreadableNumber(Parts&&...) {}
+};
+
+// Opens the file itself, and for glTF the buffers in its folder or below; nothing else.
+class ConfinedIo : public Assimp::DefaultIOSystem {
+ public:
+  ConfinedIo(const std::filesystem::path& file, bool with_buffers)
+      : file_(std::filesystem::weakly_canonical(file)), with_buffers_(with_buffers) {}
+
+  bool Exists(const char* name) const override { return allowed(name); }
+  Assimp::IOStream* Open(const char* name, const char* mode = "rb") override {
+    return allowed(name) ? DefaultIOSystem::Open(name, mode) : nullptr;
+  }
+
+ private:
+  bool allowed(const char* name) const {
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::weakly_canonical(name, error);
+    if (error || !std::filesystem::is_regular_file(path, error)) return false;
+    if (path == file_) return true;
+    const auto relative = path.lexically_relative(file_.parent_path());
+    return with_buffers_ && !relative.empty() && *relative.begin() != "..";
+  }
+
+  std::filesystem::path file_;
+  bool with_buffers_;
+};
+
+// Leaves only the importer of the extension, so that no other parser sees the file. glTF 1 shares
+// its extensions with glTF 2 and is told apart by its name.
+void keep_importer(Assimp::Importer& importer, const std::string& extension) {
+  std::vector<Assimp::BaseImporter*> others;
+  for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
+    const aiImporterDesc& info = *importer.GetImporterInfo(i);
+    std::istringstream extensions(info.mFileExtensions);
+    bool keep = false;
+    for (std::string word; extensions >> word;) keep |= word == extension;
+    keep &= std::string_view(info.mName).find("glTF Importer") == std::string_view::npos;
+    if (!keep) others.push_back(importer.GetImporter(i));
+  }
+  for (Assimp::BaseImporter* other : others) {
+    const std::unique_ptr<Assimp::BaseImporter> owner(other);  // it is given back to us
+    importer.UnregisterLoader(other);
+  }
+}
+
+struct Affine {
+  Eigen::Matrix3d linear;
+  Eigen::Vector3d offset;
+};
+
+Affine to_affine(const aiMatrix4x4& m, const std::string& subject) {
+  Affine result;
+  result.linear << m.a1, m.a2, m.a3, m.b1, m.b2, m.b3, m.c1, m.c2, m.c3;
+  result.offset << m.a4, m.b4, m.c4;
+  if (!result.linear.allFinite() || !result.offset.allFinite() || m.d1 != 0 || m.d2 != 0 ||
+      m.d3 != 0 || m.d4 != 1) {
+    throw Error(subject, "a node transform that is not affine and finite");
+  }
+  return result;
+}
+
+class SceneReader {
+ public:
+  SceneReader(const aiScene& scene, double coordinate_error, const std::string& subject)
+      : scene_(scene), coordinate_error_(coordinate_error), subject_(subject) {}
+
+  TriangleMesh run() {
+    visit(*scene_.mRootNode);
+    return std::move(result_);
+  }
+
+ private:
+  void visit(const aiNode& node) {
+    // Exactly: IsIdentity() of assimp has a tolerance.
+    const bool moves = node.mTransformation != aiMatrix4x4();
+    if (moves) chain_.push_back(to_affine(node.mTransformation, subject_));
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      if (node.mMeshes[i] >= scene_.mNumMeshes) throw Error(subject_, "a node shows no mesh");
+      add(*scene_.mMeshes[node.mMeshes[i]]);
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i]);
+    if (moves) chain_.pop_back();
+  }
+
+  void add(const aiMesh& mesh) {
+    TriangleMesh part;
+    part.vertices.reserve(mesh.mNumVertices);
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      const aiVector3D& v = mesh.mVertices[i];
+      part.vertices.emplace_back(v.x, v.y, v.z);
+    }
+    std::vector<std::int64_t> corners;
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      const aiFace& face = mesh.mFaces[i];
+      corners.assign(face.mIndices, face.mIndices + face.mNumIndices);
+      add_polygon(part, corners, part.vertices.size(), subject_);
+    }
+    if (part.triangles.empty()) return;
+    transform(part);
+    append(part);
+  }
+
+  // Applies the chain from the mesh's own node up to the root. With a point p of size s, off by e,
+  // and a matrix (A, t), off by d = kTransformError relative to its norms, A p + t has a size of at
+  // most |A| s + |t| and is off by at most |A| e + d (|A| (s + e) + |t|); 2^-50 of the size
+  // covers the roundings of the product and of these bounds.
+  void transform(TriangleMesh& part) const {
+    double size = rounding_distance(largest_coordinate(part), 1.0);
+    double error = coordinate_error_ * size;
+    for (auto it = chain_.rbegin(); it != chain_.rend(); ++it) {
+      const double gain = it->linear.operatorNorm() * (1.0 + 0x1p-40);
+      const double grown = gain * (size + error) + it->offset.norm();
+      error = gain * error + (kTransformError + 0x1p-50) * grown;
+      size = grown;
+      for (Eigen::Vector3d& v : part.vertices) v = it->linear * v + it->offset;
+    }
+    part.vertex_error = error * (1.0 + 0x1p-40);
+  }
+
+  void append(const TriangleMesh& part) {
+    const std::size_t first = result_.vertices.size();
+    std::vector<std::int64_t> corners(3);
+    result_.vertices.insert(result_.vertices.end(), part.vertices.begin(), part.vertices.end());
+    for (const Eigen::Vector3i& t : part.triangles) {
+      for (int k = 0; k < 3; ++k) {
+        corners[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(first) + t[k];
+      }
+      add_polygon(result_, corners, result_.vertices.size(), subject_);
+    }
+    result_.vertex_error = std::max(result_.vertex_error, part.vertex_error);
+  }
+
+  const aiScene& scene_;
+  double coordinate_error_;
+  const std::string& subject_;
+  std::vector<Affine> chain_;
+  TriangleMesh result_;
+};
+
+std::size_t count_faces(const aiScene& scene) {
+  std::size_t count = 0;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[i];
+    count += static_cast<std::size_t>(
+        std::count_if(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
+                      [](const aiFace& face) { return face.mNumIndices >= 3; }));
+  }
+  return count;
+}
+
+}  // namespace
+
+void check_decimals(std::string_view text, const std::string& subject) {
+  constexpr std::string_view kSeparators = " \t\r\n<>\"'=";
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t begin = std::min(text.find_first_not_of(kSeparators, at), text.size());
+    const std::size_t end = std::min(text.find_first_of(kSeparators, begin), text.size());
+    at = end;
+    const std::string token(text.substr(begin, end - begin));
+    double value = 0.0;
+    const auto parsed = std::from_chars(token.data(), token.data() + token.size(), value);
+    if (parsed.ptr != token.data() + token.size() || parsed.ec != std::errc() ||
+        !std::isfinite(value) || token.empty()) {
+      continue;
+    }
+    ai_real read = 0;
+    Assimp::fast_atoreal_move<ai_real, UnreadableNumber>(token.c_str(), read);
+    // Below the normal floats the error is absolute and far below any model's size.
+    const double error = std::abs(static_cast<double>(read) - value);
+    if (!(error <= kDecimalError * std::abs(value) + 0x1p-100) && std::abs(value) <= 0x1p127) {
+      throw Error(subject, "the number " + token.substr(0, 60) + " cannot be read exactly enough");
+    }
+  }
+}
+
+TriangleMesh read_scene(const std::filesystem::path& path, std::string_view bytes,
+                        const std::string& extension) {
+  const std::string subject = path.string();
+  const bool gltf = extension == "gltf" || extension == "glb";
+  const std::size_t expected = gltf ? check_gltf(bytes, subject) : 0;
+  try {
+    if (extension == "dae") check_decimals(bytes, subject);
+    Assimp::Importer importer;
+    keep_importer(importer, extension);
+    importer.SetIOHandler(new ConfinedIo(path, gltf));  // the importer owns it
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    // Without this, a file that has bones and no mesh would show the bones as triangles.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+    // No post-processing: those steps move, join and drop vertices.
+    const aiScene* scene = importer.ReadFile(subject, 0);
+    if (scene == nullptr || scene->mRootNode == nullptr) {
+      throw Error(subject, std::string("not a mesh: ") + importer.GetErrorString());
+    }
+    if (gltf && count_faces(*scene) != expected) {
+      throw Error(subject, "a corner of a triangle is out of range");
+    }
+    return SceneReader(*scene, gltf ? 0.0 : kDecimalError, subject).run();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& fault) {
+    throw Error(subject, std::string("not a mesh: ") + fault.what());
+  }
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/mesh_io.h"
+
+#include "simplifier/internal/raw_mesh.h"
+#include "simplifier/internal/scene_file.h"
+#include "simplifier/mesh_report.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <Eigen/Geometry>
+
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+namespace spherule {
+namespace {
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+void check_scale(double scale) {
+  if (!(scale > 0.0) || !std::isfinite(scale)) {
+    throw Error("scale", "must be a positive finite number, not " + std::to_string(scale));
+  }
+}
+
+std::string read_regular_file(const std::filesystem::path& path) {
+  const std::string subject = path.string();
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) throw Error(subject, "no such file");
+  if (error) throw Error(subject, error.message());
+  if (std::filesystem::is_directory(status)) throw Error(subject, "is a directory");
+  if (!std::filesystem::is_regular_file(status)) throw Error(subject, "is not a regular file");
+  std::string bytes = read_file(path);
+  if (bytes.empty()) throw Error(subject, "the file is empty");
+  return bytes;
+}
+
+TriangleMesh read_by_extension(const std::filesystem::path& path) {
+  const std::string subject = path.string();
+  const std::string extension = lower_extension(path);
+  const std::string bytes = read_regular_file(path);
+  if (extension == "stl") return internal::read_stl(bytes, subject);
+  if (extension == "obj") return internal::read_obj(bytes, subject);
+  if (extension == "ply") return internal::read_ply(bytes, subject);
+  if (extension == "off") return internal::read_off(bytes, subject);
+  if (extension == "dae" || extension == "3mf" || extension == "gltf" || extension == "glb") {
+    return internal::read_scene(path, bytes, extension);
+  }
+  throw Error(subject, "not a mesh format that can be read (STL, OBJ, PLY, OFF, DAE, 3MF, glTF)");
+}
+
+void apply_scale(TriangleMesh& mesh, double scale) {
+  if (scale == 1.0) return;
+  for (Eigen::Vector3d& v : mesh.vertices) v *= scale;
+  mesh.vertex_error =
+      add_up(mul_up(mesh.vertex_error, scale),
+             internal::rounding_distance(internal::largest_coordinate(mesh), 2.0 * kUnitRoundoff));
+}
+
+// Little-endian image of a number, appended.
+template <class T>
+void append(std::string& bytes, T value) {
+  char image[sizeof(T)];
+  std::memcpy(image, &value, sizeof(T));
+  bytes.append(image, sizeof(T));
+}
+
+void append(std::string& bytes, const Eigen::Vector3f& v) {
+  for (int k = 0; k < 3; ++k) append(bytes, v[k]);
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options) {
+  check_scale(options.scale);
+  TriangleMesh mesh = read_by_extension(path);
+  if (mesh.triangles.empty()) throw Error(path.string(), "the file holds no triangles");
+  apply_scale(mesh, options.scale);
+  mesh = internal::weld(mesh);
+  validate(mesh, path.string());
+  return mesh;
+}
+
+void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path) {
+  validate(mesh, path.string());
+  std::string bytes = "binary STL";  // must not begin with "solid", which marks text
+  bytes.resize(80, ' ');
+  bytes.reserve(84 + 50 * mesh.triangles.size());
+  append(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const Eigen::Vector3d& a = mesh.vertices[static_cast<std::size_t>(t[0])];
+    const Eigen::Vector3d& b = mesh.vertices[static_cast<std::size_t>(t[1])];
+    const Eigen::Vector3d& c = mesh.vertices[static_cast<std::size_t>(t[2])];
+    append(bytes, Eigen::Vector3f((b - a).cross(c - a).stableNormalized().cast<float>()));
+    for (const Eigen::Vector3d* corner : {&a, &b, &c}) {
+      append(bytes, Eigen::Vector3f(corner->cast<float>()));
+    }
+    append(bytes, std::uint16_t{0});
+  }
+  write_file_atomically(path, bytes);
+}
+
+}  // namespace spherule
