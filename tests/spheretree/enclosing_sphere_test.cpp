@@ -26,7 +26,7 @@ double largest_coordinate(std::span<const Sphere> balls) {
 // Encloses all in exact arithmetic and by our own predicate, and is the smallest up to rounding:
 // `relative` of its radius plus a few units in the last place of the largest coordinate (the centre
 // must be rounded to doubles). kUnderflow is the padding that stands for squares that underflow.
-void expect_smallest(const Sphere& result, std::span<const Sphere> balls, double relative = 1e-13) {
+void expect_smallest(const Sphere& result, std::span<const Sphere> balls, double relative = 1e-14) {
   for (const Sphere& ball : balls) {
     ASSERT_TRUE(encloses_exactly(result, ball));
     ASSERT_TRUE(certainly_encloses(result, ball));

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/build.h"
+
+#include "exact.h"
+#include "spheres.h"
+#include "spheretree/check.h"
+#include "spheretree/error.h"
+#include "tree_oracle.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+
+// The bound that the comment of build_tree gives: mean splits down to 2 log2 n + 8, then medians.
+int largest_depth(std::size_t count) {
+  const int log2 = static_cast<int>(std::bit_width(count - 1));  // rounded up
+  return 2 * log2 + 8 + 1 + log2;
+}
+
+bool same_tree(const SphereTree& a, const SphereTree& b) {
+  const SphereTreeData& p = a.data();
+  const SphereTreeData& q = b.data();
+  return p.x == q.x && p.y == q.y && p.z == q.z && p.radius == q.radius &&
+         p.first_child == q.first_child && p.child_count == q.child_count && p.spheres == q.spheres;
+}
+
+void expect_good(const SphereTree& tree, std::span<const Sphere> spheres, int branching) {
+  EXPECT_EQ(fault_of(tree.data()), "");
+  ASSERT_EQ(tree.spheres().size(), spheres.size());
+  EXPECT_TRUE(std::equal(spheres.begin(), spheres.end(), tree.spheres().begin()));
+  EXPECT_LE(tree.node_count(), 2 * spheres.size() - 1);
+  EXPECT_EQ(tree.depth(), depth_of(tree.data()));
+  EXPECT_LE(tree.depth(), largest_depth(spheres.size()));
+  EXPECT_LE(tree.branching(), branching);
+}
+
+TEST(BuildTree, EveryFamilyGivesAValidTree) {
+  std::vector<std::size_t> counts = {333, 2000};
+  for (std::size_t count = 1; count <= 20; ++count) counts.push_back(count);
+  for (const std::size_t count : counts) {
+    for (const Family& family : sphere_families(count, count)) {
+      for (const int branching : {2, 3, 8, 16}) {
+        SCOPED_TRACE(family.name + ", " + std::to_string(count) + " spheres, branching " +
+                     std::to_string(branching));
+        expect_good(build_tree(family.spheres, {.branching = branching}), family.spheres,
+                    branching);
+        if (HasFailure()) return;
+      }
+    }
+  }
+}
+
+TEST(BuildTree, OneSphereIsALeaf) {
+  const SphereTree tree = build_tree(std::vector<Sphere>{{{1, 2, 3}, 0.5}});
+  EXPECT_EQ(tree.node_count(), 1U);
+  EXPECT_TRUE(tree.is_leaf(0));
+  EXPECT_EQ(tree.depth(), 0);
+  EXPECT_EQ(tree.ball(0), (Sphere{{1, 2, 3}, 0.5}));
+}
+
+TEST(BuildTree, TheRootOfFewSpheresIsTheirSmallestBall) {
+  const std::vector<Sphere> corners = {
+      {{1, 1, 1}, 0.5}, {{1, -1, -1}, 0.5}, {{-1, 1, -1}, 0.5}, {{-1, -1, 1}, 0.5}};
+  const Sphere root = build_tree(corners).ball(0);
+  EXPECT_LT(root.center.norm(), 1e-14);
+  EXPECT_NEAR(root.radius, std::sqrt(3.0) + 0.5, 1e-14);
+}
+
+// A million spheres that no split can tell apart, or that lie on a line, or whose clusters shrink
+// geometrically so that the mean splits off one at a time: neither deep recursion nor quadratic
+// time (which would not end within the test's time limit).
+TEST(BuildTree, AMillionDegenerateSpheres) {
+  constexpr std::size_t kCount = 1000000;
+  std::vector<Sphere> coincident(kCount, Sphere{{1, 2, 3}, 0.25});
+  std::vector<Sphere> line;
+  std::vector<Sphere> geometric;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    line.push_back({{static_cast<double>(i), 0.0, 0.0}, 0.75});
+    geometric.push_back({{std::ldexp(1.0, -static_cast<int>(i % 1000)), 0.0, 0.0}, 0.0});
+  }
+  for (const auto* spheres : {&coincident, &line, &geometric}) {
+    const SphereTree tree = build_tree(*spheres);  // the constructor runs check()
+    EXPECT_LE(tree.depth(), largest_depth(kCount));
+    EXPECT_TRUE(encloses_exactly(tree.ball(0), spheres->front()));
+    EXPECT_TRUE(encloses_exactly(tree.ball(0), spheres->back()));
+  }
+}
+
+TEST(BuildTree, IsDeterministic) {
+  for (const Family& family : sphere_families(500, 42)) {
+    EXPECT_TRUE(same_tree(build_tree(family.spheres), build_tree(family.spheres))) << family.name;
+  }
+}
+
+// Where the spheres are spread out, each level must be a good deal tighter than the one above it:
+// a tree that is valid but useless (for example, all balls as large as the root) fails here.
+TEST(BuildTree, LevelsShrink) {
+  Random random(9);
+  std::vector<Sphere> spheres;
+  for (int i = 0; i < 4096; ++i) spheres.push_back({random.in_cube(1.0), 0.01});
+  const SphereTree tree = build_tree(spheres);
+  EXPECT_LE(tree.depth(), 8);
+  EXPECT_LE(tree.node_count(), 6000U);
+  EXPECT_LE(tree.ball(0).radius, 1.2 * std::sqrt(3.0));
+  double previous = tree.ball(0).radius;
+  for (int level = 1; level <= 3; ++level) {
+    double sum = 0.0;
+    const std::vector<Sphere> balls = tree.level(level);
+    for (const Sphere& ball : balls) sum += ball.radius;
+    const double mean = sum / static_cast<double>(balls.size());
+    EXPECT_LT(mean, 0.75 * previous) << "level " << level;
+    previous = mean;
+  }
+}
+
+TEST(BuildTree, LevelsCoverAllSpheres) {
+  const std::vector<Sphere> spheres = sphere_families(300, 4).front().spheres;
+  const SphereTree tree = build_tree(spheres);
+  for (int level = 0; level <= tree.depth(); ++level) {
+    const std::vector<Sphere> balls = tree.level(level);
+    for (const Sphere& sphere : spheres) {
+      EXPECT_TRUE(std::any_of(balls.begin(), balls.end(),
+                              [&](const Sphere& b) { return encloses_exactly(b, sphere); }));
+    }
+  }
+  EXPECT_EQ(tree.level(0).size(), 1U);
+  EXPECT_EQ(tree.level(tree.depth()).size(), spheres.size());
+}
+
+TEST(BuildTree, RefusesBadInput) {
+  const std::vector<Sphere> good = {{{0, 0, 0}, 1.0}, {{1, 0, 0}, 1.0}};
+  EXPECT_THROW(build_tree(std::vector<Sphere>{}), Error);
+  for (const int branching : {-1, 0, 1, 17, 1000}) {
+    EXPECT_THROW(build_tree(good, {.branching = branching}), Error) << branching;
+  }
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const Sphere& bad :
+       {Sphere{{nan, 0, 0}, 1.0}, Sphere{{0, infinity, 0}, 1.0}, Sphere{{0, 0, 0}, nan},
+        Sphere{{0, 0, 0}, -1.0}, Sphere{{0, 0, 2e15}, 1.0}, Sphere{{0, 0, 0}, infinity}}) {
+    std::vector<Sphere> spheres = good;
+    spheres.push_back(bad);
+    EXPECT_THROW(build_tree(spheres), Error);
+  }
+  // Each is usable, but no usable ball encloses them all.
+  const Vector3d corner(1e15, 1e15, 1e15);
+  EXPECT_THROW(build_tree(std::vector<Sphere>{{corner, 1.0}, {-corner, 1.0}}), Error);
+}
+
+}  // namespace
+}  // namespace spherule::test
