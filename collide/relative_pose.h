@@ -71,7 +71,8 @@ struct FrameChange {
   }
 };
 
-// What all tests between two placed trees share. Cheap: a root test needs no more than this.
+// What all tests between two placed trees share. Cheap: a root test needs no more than this. Refers
+// to the two poses, which must outlive it.
 class RelativePose {
  public:
   RelativePose(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,

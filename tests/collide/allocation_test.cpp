@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A program of its own, because it replaces the global operator new: collides() allocates nothing
+// on trees that build_tree makes, and answers right where no memory is to be had.
+
+#include "collide/collide.h"
+#include "collide/mesh_tree.h"
+#include "collide/traversal.h"
+#include "spheretree/build.h"
+#include "tests/collide/trees.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+int allocations = 0;
+bool exhausted = false;
+
+void* allocate(std::size_t size) {
+  ++allocations;
+  return exhausted ? nullptr : std::malloc(size);
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  if (void* block = allocate(size)) return block;
+  throw std::bad_alloc();
+}
+void* operator new[](std::size_t size) {
+  return operator new(size);
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return allocate(size);
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return allocate(size);
+}
+void operator delete(void* block) noexcept {
+  std::free(block);
+}
+void operator delete[](void* block) noexcept {
+  std::free(block);
+}
+void operator delete(void* block, std::size_t) noexcept {
+  std::free(block);
+}
+void operator delete[](void* block, std::size_t) noexcept {
+  std::free(block);
+}
+
+namespace spherule::test {
+namespace {
+
+TEST(Allocation, CollidesTakesNoMemory) {
+  Random random(1);
+  const SphereTree a = build_tree(random_spheres(random, 2000, 1.0, 0.02));
+  const SphereTree b = build_tree(random_spheres(random, 2000, 1.0, 0.02), {.branching = 16});
+  const MeshTree mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}});
+  int hits = 0;
+  int mesh_hits = 0;
+  std::vector<Pose> poses;
+  for (int i = 0; i < 100; ++i) poses.push_back(random.pose(2.0));
+  const int before = allocations;
+  for (const Pose& pose : poses) {
+    hits += collides(a, Pose(), b, pose);
+    mesh_hits += collides(a, Pose(), mesh, pose);
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(hits, 0);
+  EXPECT_LT(hits, 100);
+  EXPECT_GT(mesh_hits, 0);
+}
+
+TEST(Allocation, CollidesAnswersWithoutMemoryForTheStack) {
+  const SphereTree a = caterpillar(900, 2, false);
+  const SphereTree b = caterpillar(1300, 2, true);
+  ASSERT_GT(traversal_stack_bound(a, b), kInlineStack);
+  const Pose inside = Pose::from_translation({2.5, 0.0, 0.0});
+  const int before = allocations;
+  exhausted = true;
+  const bool hit = collides(a, Pose(), b, Pose());
+  const bool free = !collides(a, Pose(), b, inside);
+  exhausted = false;
+  EXPECT_EQ(allocations, before + 2) << "the degenerate trees did ask for memory";
+  EXPECT_TRUE(hit);
+  EXPECT_TRUE(free);
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// G4 and G5 on single pairs of balls, against exact arithmetic.
+
+#include "collide/collide.h"
+#include "collide/relative_pose.h"
+#include "spheretree/build.h"
+#include "tests/collide/exact_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace spherule::test {
+namespace {
+
+SphereTree tree_of(const Sphere& sphere) {
+  return build_tree(std::span(&sphere, 1));
+}
+
+// What a test without a pad would say.
+bool plain_test(const PlacedBalls& balls) {
+  const Eigen::Vector3d offset =
+      (balls.world_from_a.matrix() * balls.a.center -
+       balls.world_from_b.matrix() * balls.b.center) +
+      (balls.world_from_a.translation() - balls.world_from_b.translation());
+  const double limit = balls.a.radius + balls.b.radius;
+  return offset.squaredNorm() <= limit * limit;
+}
+
+struct Tally {
+  int pairs = 0;
+  int overlapping = 0;
+  int pad_needed = 0;  // overlapping, and missed without the pad
+  int extra = 0;       // free, and called a collision
+};
+
+void judge(const PlacedBalls& balls, Tally& tally) {
+  const SphereTree a = tree_of(balls.a);
+  const SphereTree b = tree_of(balls.b);
+  const bool answer = collides(a, balls.world_from_a, b, balls.world_from_b);
+  const bool overlap = balls.overlap();
+  ++tally.pairs;
+  tally.overlapping += overlap;
+  tally.pad_needed += overlap && !plain_test(balls);
+  tally.extra += answer && !overlap;
+  ASSERT_TRUE(answer || !overlap) << "missed, gap " << balls.gap();
+  ASSERT_EQ(answer, collides(b, balls.world_from_b, a, balls.world_from_a)) << "not symmetric";
+  const double slack = collision_slack(a, balls.world_from_a, b, balls.world_from_b);
+  ASSERT_TRUE(!answer || balls.gap() <= slack) << "gap " << balls.gap() << ", slack " << slack;
+}
+
+// Sets the larger radius so that the balls are within a few ulps of contact, on either side.
+bool bring_to_contact(PlacedBalls& balls, int ulps) {
+  const Real rest = balls.center_distance() - balls.b.radius;
+  if (rest <= 0) return false;
+  balls.a.radius = rest.convert_to<double>();
+  for (int i = 0; i < std::abs(ulps); ++i) {
+    balls.a.radius = std::nextafter(balls.a.radius, ulps > 0 ? 1e300 : 0.0);
+  }
+  return true;
+}
+
+struct Scene {
+  const char* name;
+  double size;      // of the coordinates in the frames of the bodies
+  double away;      // distance of both bodies from the origin of the world
+  double apart;     // distance of one body from the other
+  double radius_b;  // largest radius of b
+};
+
+void PrintTo(const Scene& scene, std::ostream* out) {
+  *out << scene.name;
+}
+
+class NearContact : public testing::TestWithParam<Scene> {};
+
+TEST_P(NearContact, IsNeverMissedAndExtraOnlyWithinTheSlack) {
+  const Scene& scene = GetParam();
+  Random random(7);
+  Tally tally;
+  for (int i = 0; i < 4000; ++i) {
+    PlacedBalls balls;
+    const Eigen::Vector3d center = random.point(scene.away);
+    balls.a.center = random.point(scene.size);
+    balls.b = {random.point(scene.size), random.uniform(0.0, scene.radius_b)};
+    balls.world_from_a = Pose(random.quaternion(), center + random.point(scene.apart));
+    balls.world_from_b = Pose(random.quaternion(), center + random.point(scene.apart));
+    if (!bring_to_contact(balls, random.whole(-2, 2))) continue;
+    judge(balls, tally);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(tally.pairs, 3000);
+  EXPECT_GT(tally.overlapping, tally.pairs / 3);
+  EXPECT_GT(tally.pad_needed, 50);
+  EXPECT_GT(tally.extra, 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, NearContact,
+    testing::Values(Scene{"metres", 1.0, 1.0, 1.0, 0.5}, Scene{"points", 1.0, 1.0, 1.0, 0.0},
+                    Scene{"far_from_the_origin", 1.0, 1e6, 1.0, 0.5},
+                    Scene{"far_frames", 1e6, 1.0, 1.0, 0.5}, Scene{"tiny", 1e-9, 1e-9, 1e-9, 1e-9},
+                    Scene{"huge", 1e9, 1e9, 1e9, 1e9}, Scene{"no_translation", 1.0, 0.0, 0.0, 0.5},
+                    Scene{"mixed", 1e-3, 10.0, 1e3, 100.0}),
+    [](const auto& scene) { return std::string(scene.param.name); });
+
+// Contact that doubles represent exactly: rational rotations and whole numbers.
+TEST(Touching, IsACollision) {
+  const std::vector<Eigen::Quaterniond> rotations = {{1, 0, 0, 0}, {1, 1, 0, 0},  {0, 0, 3, 0},
+                                                     {1, 1, 1, 1}, {1, -1, 0, 0}, {2, 2, 2, -2}};
+  const std::vector<Eigen::Vector3d> steps = {
+      {3, 4, 0}, {1, 2, 2}, {2, 3, 6}, {0, 0, 5}, {-4, 4, 7}};
+  int touching = 0;
+  for (const auto& qa : rotations) {
+    for (const auto& qb : rotations) {
+      for (const auto& step : steps) {
+        for (const double scale : {1.0, 0x1p-30, 0x1p30}) {
+          PlacedBalls balls;
+          balls.a = {{scale, 2.0 * scale, 3.0 * scale}, 0.25 * scale * step.norm()};
+          balls.b = {{-scale, 0.0, scale}, 0.75 * scale * step.norm()};
+          // Right-angled rotations: rounding the image to whole multiples of the scale is exact.
+          const auto image = [&](const Eigen::Quaterniond& q, const Eigen::Vector3d& p) {
+            return Eigen::Vector3d((q.normalized() * (p / scale)).array().round() * scale);
+          };
+          balls.world_from_a = Pose(qa, Eigen::Vector3d(1.0, 2.0, 3.0) * scale);
+          balls.world_from_b =
+              Pose(qb, balls.world_from_a.translation() + image(qa, balls.a.center) -
+                           image(qb, balls.b.center) + scale * step);
+          const Rational sum = Rational(balls.a.radius) + Rational(balls.b.radius);
+          ASSERT_EQ(balls.squared_center_distance<Rational>(), Rational(sum * sum));
+          ASSERT_TRUE(
+              collides(tree_of(balls.a), balls.world_from_a, tree_of(balls.b), balls.world_from_b));
+          ++touching;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(touching, 6 * 6 * 5 * 3);
+}
+
+TEST(Touching, PointsOnOneSpotAreACollision) {
+  const SphereTree point = tree_of({{0.0, 0.0, 0.0}, 0.0});
+  EXPECT_TRUE(collides(point, Pose(), point, Pose()));
+  const Pose far = Pose::from_translation({1e15, -1e15, 1e15});
+  EXPECT_TRUE(collides(point, far, point, far));
+  EXPECT_FALSE(collides(point, Pose(), point, Pose::from_translation({1e-100, 0.0, 0.0})));
+}
+
+TEST(Slack, IsAboutTheRoundingOfTheSceneAndNotOfTheWorld) {
+  const SphereTree ball = tree_of({{1.0, 0.0, 0.0}, 0.5});
+  const Pose pose = Pose::from_translation({1.0, 0.0, 0.0});
+  const Pose far = Pose::from_translation({1e9 + 1.0, 1e9, 0.0});
+  const Pose far_origin = Pose::from_translation({1e9, 1e9, 0.0});
+  const double near_slack = collision_slack(ball, pose, ball, Pose());
+  EXPECT_LT(near_slack, 1e-13);
+  EXPECT_GT(near_slack, 0.0);
+  EXPECT_EQ(collision_slack(ball, far, ball, far_origin), near_slack);
+}
+
+// The constants of the budget against what rounding really does, so that a wrong proof shows.
+TEST(ErrorBudget, CoversTheImagesOfBothFrames) {
+  Random random(11);
+  double worst = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    const double size = std::ldexp(1.0, random.whole(-20, 20));
+    PlacedBalls balls{
+        {random.point(size), 0.0}, {random.point(1.0), 0.0}, random.pose(1.0), random.pose(1.0)};
+    const SphereTree a = tree_of(balls.a);
+    const SphereTree b = tree_of(balls.b);
+    const RelativePose pose(a, balls.world_from_a, b, balls.world_from_b);
+    const double exact = balls.center_distance().convert_to<double>();
+    const auto distance_by = [](const FrameChange& change, const Eigen::Vector3d& x,
+                                const Eigen::Vector3d& y) {
+      const Eigen::Vector3d image(change.x(x[0], x[1], x[2]), change.y(x[0], x[1], x[2]),
+                                  change.z(x[0], x[1], x[2]));
+      return (image - y).norm();
+    };
+    for (const double computed : {distance_by(pose.b_from_a(), balls.a.center, balls.b.center),
+                                  distance_by(pose.a_from_b(), balls.b.center, balls.a.center),
+                                  pose.gap(balls.a, balls.b)}) {
+      ASSERT_LE(std::abs(computed - exact), pose.gap_error());
+      worst = std::max(worst, std::abs(computed - exact) / pose.gap_error());
+    }
+  }
+  EXPECT_GT(worst, 1e-3);
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/sphere_tree.h"
+#include "tests/collide/exact_scene.h"
+
+#include <vector>
+
+namespace spherule::test {
+
+// `count` spheres with centres in a cube of half side `size`.
+std::vector<Sphere> random_spheres(Random& random, int count, double size, double largest_radius);
+
+// A tree as deep as can be: every inner node has `branching` - 1 leaves and, but for the last, one
+// inner node, which is its last child (or its first). All its balls meet near the origin, so that a
+// traversal of two of them prunes nothing.
+SphereTree caterpillar(int depth, int branching, bool inner_first);
+
+}  // namespace spherule::test
