@@ -3,6 +3,7 @@
 
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/internal/file_content.h"
 
 #include <nlohmann/json.hpp>
 
@@ -79,33 +80,6 @@ ordered_json written(const std::string& name, const OptionValue& value, const Re
   return std::visit([](const auto& plain) { return ordered_json(plain); }, value);
 }
 
-// JSON with one sphere a line, so that files can be compared line by line.
-std::string encode(const SphereFile& file, const Refusal& refuse) {
-  std::string text = "{\"format\":\"" + std::string(kFormat) +
-                     "\",\"version\":" + std::to_string(kVersion) + ",\n\"spheres\":[";
-  for (std::size_t i = 0; i < file.spheres.size(); ++i) {
-    const Sphere& s = file.spheres[i];
-    refuse.unless(is_usable(s), "sphere " + std::to_string(i) + " is not usable");
-    const ordered_json center = {s.center.x(), s.center.y(), s.center.z()};
-    text += i == 0 ? "\n" : ",\n";
-    text += "{\"center\":" + center.dump() + ",\"radius\":" + ordered_json(s.radius).dump() + "}";
-  }
-  text += "\n]";
-  if (file.certificate) {
-    refuse.unless(file.certificate->sphere_count == file.spheres.size(),
-                  "the certificate is not for this number of spheres");
-    text += ",\n\"certificate\":" + written(*file.certificate, refuse).dump();
-  }
-  ordered_json options = ordered_json::object();
-  for (const auto& [name, value] : file.options) options[name] = written(name, value, refuse);
-  try {
-    text += ",\n\"options\":" + options.dump();
-  } catch (const json::exception&) {
-    refuse("an option is not valid UTF-8");
-  }
-  return text + "}\n";
-}
-
 // --- reading ---
 
 // Notices keys that an object holds twice; the parser would silently keep the last.
@@ -129,7 +103,7 @@ class DuplicateKeys {
   std::string duplicate_;
 };
 
-json parsed(const std::string& text, const Refusal& refuse) {
+json parsed(std::string_view text, const Refusal& refuse) {
   DuplicateKeys keys;
   json document;
   try {
@@ -222,7 +196,38 @@ OptionValue read_option(const std::string& name, const json& value, const Refusa
   return text;
 }
 
-SphereFile decode(const std::string& text, const Refusal& refuse) {
+}  // namespace
+
+// JSON with one sphere a line, so that files can be compared line by line.
+std::string internal::encode_spheres(const SphereFile& file, const std::string& name) {
+  const Refusal refuse(name);
+  std::string text = "{\"format\":\"" + std::string(kFormat) +
+                     "\",\"version\":" + std::to_string(kVersion) + ",\n\"spheres\":[";
+  for (std::size_t i = 0; i < file.spheres.size(); ++i) {
+    const Sphere& s = file.spheres[i];
+    refuse.unless(is_usable(s), "sphere " + std::to_string(i) + " is not usable");
+    const ordered_json center = {s.center.x(), s.center.y(), s.center.z()};
+    text += i == 0 ? "\n" : ",\n";
+    text += "{\"center\":" + center.dump() + ",\"radius\":" + ordered_json(s.radius).dump() + "}";
+  }
+  text += "\n]";
+  if (file.certificate) {
+    refuse.unless(file.certificate->sphere_count == file.spheres.size(),
+                  "the certificate is not for this number of spheres");
+    text += ",\n\"certificate\":" + written(*file.certificate, refuse).dump();
+  }
+  ordered_json options = ordered_json::object();
+  for (const auto& [key, value] : file.options) options[key] = written(key, value, refuse);
+  try {
+    text += ",\n\"options\":" + options.dump();
+  } catch (const json::exception&) {
+    refuse("an option is not valid UTF-8");
+  }
+  return text + "}\n";
+}
+
+SphereFile internal::decode_spheres(std::string_view text, const std::string& name) {
+  const Refusal refuse(name);
   const json document = parsed(text, refuse);
   refuse.unless(document.is_object(), "is not an object");
   const auto format = document.find("format");
@@ -249,21 +254,19 @@ SphereFile decode(const std::string& text, const Refusal& refuse) {
   const auto options = document.find("options");
   if (options != document.end() && !options->is_null()) {
     refuse.unless(options->is_object(), "\"options\" is not an object");
-    for (const auto& [name, value] : options->items()) {
-      file.options[name] = read_option(name, value, refuse);
+    for (const auto& [key, option] : options->items()) {
+      file.options[key] = read_option(key, option, refuse);
     }
   }
   return file;
 }
 
-}  // namespace
-
 void save_spheres(const SphereFile& file, const std::filesystem::path& path) {
-  write_file_atomically(path, encode(file, Refusal(path.string())));
+  write_file_atomically(path, internal::encode_spheres(file, path.string()));
 }
 
 SphereFile load_spheres(const std::filesystem::path& path) {
-  return decode(read_file(path), Refusal(path.string()));
+  return internal::decode_spheres(read_file(path), path.string());
 }
 
 }  // namespace spherule

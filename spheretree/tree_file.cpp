@@ -4,6 +4,7 @@
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "spheretree/internal/crc64.h"
+#include "spheretree/internal/file_content.h"
 
 #include <bit>
 #include <concepts>
@@ -62,20 +63,6 @@ void take(std::string_view& bytes, std::size_t count, std::vector<std::int32_t>&
   }
 }
 
-std::string encode(const SphereTreeData& data) {
-  std::string bytes;
-  bytes.reserve(kHeaderSize + kNodeSize * data.radius.size() + kChecksumSize);
-  bytes += kMagic;
-  append(bytes, kByteOrderMark);
-  append(bytes, kVersion);
-  append(bytes, std::uint64_t{data.spheres.size()});
-  append(bytes, std::uint64_t{data.radius.size()});
-  for (const auto* array : {&data.x, &data.y, &data.z, &data.radius}) append(bytes, *array);
-  for (const auto* array : {&data.first_child, &data.child_count}) append(bytes, *array);
-  append(bytes, internal::crc64(bytes));
-  return bytes;
-}
-
 // Puts the ball of every leaf at the index it names. A sphere that no leaf names, or two leaves
 // name, is left to check().
 void restore_spheres(SphereTreeData& data, std::size_t sphere_count) {
@@ -88,7 +75,7 @@ void restore_spheres(SphereTreeData& data, std::size_t sphere_count) {
   }
 }
 
-SphereTreeData decode(std::string_view file, const std::string& name) {
+SphereTreeData read_tree_data(std::string_view file, const std::string& name) {
   std::string_view rest = file;
   if (rest.substr(0, kMagic.size()) != kMagic) {
     throw Error(name, kMagic.starts_with(rest) ? "the file is cut short" : "is not a sphere tree");
@@ -135,18 +122,36 @@ SphereTreeData decode(std::string_view file, const std::string& name) {
 
 }  // namespace
 
-void save_tree(const SphereTree& tree, const std::filesystem::path& path) {
-  write_file_atomically(path, encode(tree.data()));
+std::string internal::encode_tree(const SphereTree& tree) {
+  const SphereTreeData& data = tree.data();
+  std::string bytes;
+  bytes.reserve(kHeaderSize + kNodeSize * data.radius.size() + kChecksumSize);
+  bytes += kMagic;
+  append(bytes, kByteOrderMark);
+  append(bytes, kVersion);
+  append(bytes, std::uint64_t{data.spheres.size()});
+  append(bytes, std::uint64_t{data.radius.size()});
+  for (const auto* array : {&data.x, &data.y, &data.z, &data.radius}) append(bytes, *array);
+  for (const auto* array : {&data.first_child, &data.child_count}) append(bytes, *array);
+  append(bytes, crc64(bytes));
+  return bytes;
 }
 
-SphereTree load_tree(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path);
-  SphereTreeData data = decode(bytes, path.string());
+SphereTree internal::decode_tree(std::string_view bytes, const std::string& name) {
+  SphereTreeData data = read_tree_data(bytes, name);
   try {
     return SphereTree(std::move(data));
   } catch (const Error& error) {
-    throw Error(path.string(), error.reason());
+    throw Error(name, error.reason());
   }
+}
+
+void save_tree(const SphereTree& tree, const std::filesystem::path& path) {
+  write_file_atomically(path, internal::encode_tree(tree));
+}
+
+SphereTree load_tree(const std::filesystem::path& path) {
+  return internal::decode_tree(read_file(path), path.string());
 }
 
 }  // namespace spherule

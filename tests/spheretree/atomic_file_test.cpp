@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/atomic_file.h"
+
+#include "temporary_folder.h"
+
+#include <csignal>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+namespace spherule::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AtomicFile : public TemporaryFolder {};
+
+TEST_F(AtomicFile, WritesExactlyTheBytes) {
+  for (const std::string& bytes :
+       {std::string(), std::string("a\r\n\0b", 5), std::string(1000000, 'x')}) {
+    write_file_atomically(path("file"), bytes);
+    EXPECT_EQ(bytes_of(path("file")), bytes);
+    EXPECT_EQ(read_file(path("file")), bytes);
+    EXPECT_EQ(files_in_folder(), 1U);
+  }
+}
+
+TEST_F(AtomicFile, NewFilesGetTheUsualPermissionsAndOldOnesKeepTheirs) {
+  const mode_t mask = ::umask(027);
+  write_file_atomically(path("new"), "x");
+  ::umask(mask);
+  EXPECT_EQ(static_cast<int>(fs::status(path("new")).permissions()), 0640);
+  fs::permissions(path("new"), fs::perms::owner_read | fs::perms::owner_write);
+  write_file_atomically(path("new"), "y");
+  EXPECT_EQ(static_cast<int>(fs::status(path("new")).permissions()), 0600);
+}
+
+TEST_F(AtomicFile, FollowsASymbolicLink) {
+  write_file_atomically(path("target"), "old");
+  fs::create_symlink("target", path("link"));
+  write_file_atomically(path("link"), "new");
+  EXPECT_TRUE(fs::is_symlink(path("link")));
+  EXPECT_EQ(bytes_of(path("target")), "new");
+}
+
+TEST_F(AtomicFile, AFailureLeavesNothingBehindAndTheOldFileAsItWas) {
+  fs::create_directory(path("folder"));
+  for (const fs::path& bad : {path("folder"), path("missing/file"), path("folder/"), fs::path(),
+                              path(std::string(255, 'n'))}) {
+    const std::string error = error_of([&] { write_file_atomically(bad, "x"); });
+    EXPECT_TRUE(error.starts_with(bad.string() + ": ")) << error;
+    EXPECT_FALSE(error.empty());
+  }
+  EXPECT_EQ(files_in_folder(), 1U);
+  EXPECT_TRUE(fs::is_empty(path("folder")));
+  // A device is not replaced by a file.
+  EXPECT_NE(error_of([] { write_file_atomically("/dev/null", "x"); }), "");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(AtomicFile, AFullDiskIsReportedAndTheOldFileStays) {
+  write_file_atomically(path("file"), "old");
+  // A limit on the size of files stands for the full disk; it must not end the program.
+  struct rlimit limit = {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  struct rlimit small = limit;
+  small.rlim_cur = 4096;
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string error =
+      error_of([&] { write_file_atomically(path("file"), std::string(100000, 'x')); });
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  ::signal(SIGXFSZ, handler);
+  EXPECT_NE(error.find("cannot be written"), std::string::npos) << error;
+  EXPECT_EQ(bytes_of(path("file")), "old");
+  EXPECT_EQ(files_in_folder(), 1U);
+}
+
+TEST_F(AtomicFile, ReadRefusesWhatIsNoFile) {
+  for (const fs::path& bad : {path(""), path("missing"), fs::path("/dev/zero")}) {
+    const std::string error = error_of([&] { read_file(bad); });
+    EXPECT_TRUE(error.starts_with(bad.string() + ": ")) << error;
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test
