@@ -43,6 +43,12 @@ class Refusal {
   std::string file_;
 };
 
+void check_depth(const CertificateRecord& record, const Refusal& refuse) {
+  refuse.unless(record.uncovered_depth_lower >= 0.0 &&
+                    record.uncovered_depth_lower <= record.uncovered_depth_upper,
+                "certificate: \"uncovered_depth\" is not a lower and an upper bound");
+}
+
 // --- writing ---
 
 ordered_json number(double value, const std::string& what, const Refusal& refuse) {
@@ -52,6 +58,7 @@ ordered_json number(double value, const std::string& what, const Refusal& refuse
 }
 
 ordered_json written(const CertificateRecord& record, const Refusal& refuse) {
+  check_depth(record, refuse);
   const auto put = [&refuse](double value, const std::string& key) {
     return number(value, "certificate: " + key, refuse);
   };
@@ -163,8 +170,7 @@ CertificateRecord read_certificate(const json& value, std::size_t sphere_count,
                 where + ": \"uncovered_depth\" is not [lower,upper]");
   record.uncovered_depth_lower = read_number(depth[0], where + ": \"uncovered_depth\"", refuse);
   record.uncovered_depth_upper = read_number(depth[1], where + ": \"uncovered_depth\"", refuse);
-  refuse.unless(record.uncovered_depth_lower <= record.uncovered_depth_upper,
-                where + ": \"uncovered_depth\" is not in order");
+  check_depth(record, refuse);
   const auto optional = [&](const char* key) -> std::optional<double> {
     const auto found = value.find(key);
     if (found == value.end() || found->is_null()) return std::nullopt;

@@ -22,17 +22,17 @@ struct CertificateRecord {
   double uncovered_depth_lower = 0.0;
   double uncovered_depth_upper = 0.0;
   // Proved upper bounds on the protrusion; absent where it was not asked for.
-  std::optional<double> protrusion_over_simplified_max;
-  std::optional<double> protrusion_over_mesh_max;
-  std::size_t sphere_count = 0;
+  std::optional<double> protrusion_over_simplified_max = std::nullopt;
+  std::optional<double> protrusion_over_mesh_max = std::nullopt;
+  std::size_t sphere_count = 0;  // the number of spheres in the file, checked by both functions
   // Volume of the union of the balls over the volume of the solid mesh, estimated.
-  std::optional<double> volume_ratio;
+  std::optional<double> volume_ratio = std::nullopt;
 };
 
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
 
 // The content of a SPHERES.json file. Infinite values cannot be stored in JSON; they are written as
-// the strings "inf" and "-inf".
+// the strings "inf" and "-inf", which therefore cannot be the text of an option.
 struct SphereFile {
   std::vector<Sphere> spheres;
   std::optional<CertificateRecord> certificate;
@@ -41,11 +41,14 @@ struct SphereFile {
 };
 
 // Writes {"format":"spherule-spheres","version":1,...}; doubles survive the round trip bit for bit.
-// The file appears whole or not at all. Throws Error naming the file.
+// The file appears whole or not at all. Equal content gives equal bytes. Throws Error naming the
+// file if it cannot be written or holds something that load_spheres() would refuse.
 void save_spheres(const SphereFile& file, const std::filesystem::path& path);
 
 // Throws Error, naming file and reason, for a file that cannot be read, is not JSON, is not of this
-// format or a newer version of it, or holds a number that is not usable (is_usable).
+// format or a newer version of it, holds a number that is not usable (is_usable), a value of a
+// wrong type, a key twice or a certificate for another number of spheres. Keys that are not known
+// are passed over.
 SphereFile load_spheres(const std::filesystem::path& path);
 
 }  // namespace spherule
