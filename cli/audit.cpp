@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -88,6 +89,9 @@ int audit(const AuditArguments& arguments) {
   certify_options.padding = options.padding;
   certify_options.progress = options.progress;
   if (arguments.min_external) {
+    if (!(*arguments.min_external > 0.0) || !std::isfinite(*arguments.min_external)) {
+      throw Error("--min-external", "must be positive and finite");
+    }
     options.min_external_diameter = *arguments.min_external;
     if (options.external == ExternalPlacement::kNone) {
       options.external = ExternalPlacement::kReachable;

@@ -67,7 +67,7 @@ int fit(const FitArguments& arguments) {
 
   const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
   const MeshReport report = mesh_report(mesh);
-  std::cout << describe(report) << std::flush;
+  std::cout << describe(report) << std::endl;
 
   Simplification result = [&] {
     ProgressBar bar;
@@ -122,11 +122,14 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->add_option("--external", arguments->external,
                    "How external spheres are placed: reachable, random, none")
       ->check(CLI::IsMember({"reachable", "random", "none"}));
-  command->add_option("--external-limit", options.external_limit,
-                      "Attempts of the random placement");
+  command
+      ->add_option("--external-limit", options.external_limit, "Attempts of the random placement")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--min-internal", options.min_internal_diameter,
                       "Diameter at which the paper's loop seeds a sphere (default: E / 2)");
-  command->add_option("--seed", options.seed, "Seed of everything random");
+  // Without the check CLI11 takes -1 for the largest number.
+  command->add_option("--seed", options.seed, "Seed of everything random")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--threads", options.threads, "Threads, 0: all; the result is the same")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--report", arguments->report,

@@ -66,10 +66,9 @@ void print_tree(const SphereTree& tree) {
 }
 
 int info(const std::string& file) {
-  std::cout << "file: " << file << "\n";
   switch (recognize(file)) {
     case FileKind::kMesh:
-      std::cout << describe(mesh_report(read_mesh(file)));
+      std::cout << describe(mesh_report(read_mesh(file))) << "\n";
       break;
     case FileKind::kSpheres:
       print_spheres(load_spheres(file));

@@ -45,6 +45,11 @@ int run(int argc, char** argv) {
     return app.exit(request);
   } catch (const CLI::ExtrasError&) {
     return bad_input(describe_extras(app));
+  } catch (const CLI::RequiredError& error) {
+    if (!app.get_subcommands().empty()) return bad_input(error.what());
+    const auto extras = app.remaining();
+    return bad_input(extras.empty() ? "a command is required (see --help)"
+                                    : "unknown command: " + extras.front());
   } catch (const CLI::ParseError& error) {
     return bad_input(error.what());
   }

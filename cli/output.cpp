@@ -49,7 +49,7 @@ class HoldInterruptions {
 
 fs::path place_of(const fs::path& path) {
   std::error_code error;
-  const fs::path place = fs::weakly_canonical(path, error);
+  const fs::path place = fs::weakly_canonical(fs::absolute(path), error);
   return error ? fs::absolute(path).lexically_normal() : place;
 }
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/cli/command_test_support.h"
+
+#include <cmath>
+
+namespace spherule {
+namespace {
+
+using nlohmann::json;
+
+class AuditTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write_box("box.stl", {2, 2, 2});
+  }
+};
+
+TEST_F(AuditTest, ForeignSpheresThatCover) {
+  write_spheres("ball.json", {{1, 1, 1, 1.75}});  // the corners are at sqrt(3)
+  const Outcome result = run({"audit", "box.stl", "ball.json", "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const json certificate = json::parse(result.out);
+  EXPECT_EQ(certificate.at("covered"), true);
+  EXPECT_EQ(certificate.at("against"), "mesh and its inside");
+  EXPECT_TRUE(certificate.at("deepest_leak").is_null());
+  const std::string text = run({"audit", "box.stl", "ball.json"}).out;
+  EXPECT_NE(text.find("(proved)"), std::string::npos) << text;
+}
+
+TEST_F(AuditTest, ForeignSpheresThatLeak) {
+  write_spheres("ball.json", {{1, 1, 1, 1.5}});
+  const Outcome result = run({"audit", "box.stl", "ball.json", "--json"});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  const json certificate = json::parse(result.out);
+  EXPECT_EQ(certificate.at("covered"), false);
+  const double depth = std::sqrt(3.0) - 1.5;
+  EXPECT_LE(certificate.at("uncovered_depth").at(0), depth * (1 + 1e-9));
+  EXPECT_GE(certificate.at("uncovered_depth").at(1), depth * (1 - 1e-9));
+  EXPECT_NEAR(certificate.at("uncovered_depth").at(0), depth, 0.05);
+  // The witness is near one of the corners.
+  for (const json& x : certificate.at("deepest_leak")) {
+    EXPECT_NEAR(std::abs(x.get<double>() - 1.0), 1.0, 0.05);
+  }
+  const Outcome text = run({"audit", "box.stl", "ball.json"});
+  EXPECT_EQ(text.exit_code, 1);
+  EXPECT_NE(text.out.find("deepest at ("), std::string::npos) << text.out;
+}
+
+TEST_F(AuditTest, NoSpheresCoverNothing) {
+  write_spheres("none.json", {});
+  EXPECT_EQ(run({"audit", "box.stl", "none.json"}).exit_code, 1);
+}
+
+TEST_F(AuditTest, MinExternalChoosesTheSolid) {
+  write_spheres("ball.json", {{1, 1, 1, 1.75}});
+  const Outcome result = run({"audit", "box.stl", "ball.json", "--min-external", "4", "--json"});
+  const json certificate = json::parse(result.out);
+  EXPECT_EQ(certificate.at("against"), "simplified solid");
+  EXPECT_EQ(certificate.at("min_external_diameter"), 4.0);
+  EXPECT_GT(certificate.at("external_sphere_count"), 0);
+  EXPECT_TRUE(certificate.at("protrusion_over_simplified_max").is_number());
+}
+
+TEST_F(AuditTest, ScaleOverrides) {
+  write_spheres("ball.json", {{0.1, 0.1, 0.1, 0.175}});
+  EXPECT_EQ(run({"audit", "box.stl", "ball.json"}).exit_code, 1);
+  EXPECT_EQ(run({"audit", "box.stl", "ball.json", "--scale", "0.1"}).exit_code, 0);
+}
+
+TEST_F(AuditTest, BadInput) {
+  write_spheres("ball.json", {{1, 1, 1, 1.75}});
+  write("broken.json", "{\"format\":\"spherule-spheres\"");
+  write("other.json", "{\"format\":\"something-else\",\"version\":1,\"spheres\":[]}");
+  expect_refusal({"audit", "missing.stl", "ball.json"}, "missing.stl: ");
+  expect_refusal({"audit", "box.stl", "missing.json"}, "missing.json: ");
+  expect_refusal({"audit", "box.stl", "broken.json"}, "broken.json: ");
+  expect_refusal({"audit", "box.stl", "other.json", "--json"}, "other.json: ");
+  expect_refusal({"audit", "box.stl", "ball.json", "--min-external", "-1"}, "--min-external: ");
+  expect_refusal({"audit", "box.stl", "ball.json", "--min-external", "nan"}, "--min-external: ");
+  expect_refusal({"audit", "box.stl", "ball.json", "--scale", "0"}, "scale");
+}
+
+}  // namespace
+}  // namespace spherule

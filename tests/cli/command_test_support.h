@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <sys/types.h>
+#include <vector>
+
+namespace spherule {
+
+// What a run of the built command left behind. A run that a signal ended has exit code -signal.
+struct Outcome {
+  int exit_code = 0;
+  std::string out;
+  std::string err;
+};
+
+// Tests of the command as a process, in an empty folder of their own that is removed at the end.
+class CommandTest : public ::testing::Test {
+ protected:
+  void SetUp() override;
+  void TearDown() override;
+
+  // Runs `spherule arguments...` in the folder.
+  Outcome run(const std::vector<std::string>& arguments);
+  // Starts it and returns its process; finish() waits for it.
+  pid_t start(const std::vector<std::string>& arguments);
+  Outcome finish(pid_t process);
+
+  // Runs it and expects the refusal of bad input: exit code 2, nothing on standard output, one line
+  // on standard error that holds `reason`.
+  void expect_refusal(const std::vector<std::string>& arguments, const std::string& reason);
+
+  void write(const std::string& file, const std::string& bytes);
+  std::string read(const std::string& file) const;
+  nlohmann::json read_json(const std::string& file) const;
+  bool exists(const std::string& file) const;
+  // Names of all files in the folder, sorted, without the records of the runs.
+  std::vector<std::string> files() const;
+
+  // A closed box from the origin, as text STL.
+  void write_box(const std::string& file, const std::array<double, 3>& size);
+  // A SPHERES.json as another program would write it: x, y, z, radius a sphere; no options.
+  void write_spheres(const std::string& file, const std::vector<std::array<double, 4>>& spheres);
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace spherule

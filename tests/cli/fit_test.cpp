@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/cli/command_test_support.h"
+
+#include <cmath>
+
+namespace spherule {
+namespace {
+
+using nlohmann::json;
+
+class FitTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write_box("box.stl", {40, 20, 10});
+  }
+};
+
+TEST_F(FitTest, ChainFromMeshToCollision) {
+  const Outcome fit = run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--report",
+                           "report.json", "--tree", "fit.tree", "--view", "fit.html"});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_EQ(fit.err, "");  // no progress bar: not a terminal
+  EXPECT_EQ(files(), (std::vector<std::string>{"box.json", "box.stl", "fit.html", "fit.tree",
+                                               "report.json"}));
+
+  const json spheres = read_json("box.json");
+  EXPECT_EQ(spheres.at("format"), "spherule-spheres");
+  EXPECT_EQ(spheres.at("version"), 1);
+  EXPECT_EQ(spheres.at("certificate").at("covered"), true);
+  EXPECT_LE(spheres.at("certificate").at("protrusion_over_simplified_max"), 2.0 * (1 + 1e-9));
+  EXPECT_EQ(spheres.at("certificate").at("sphere_count"), spheres.at("spheres").size());
+  EXPECT_EQ(spheres.at("options").at("max-error"), 2.0);
+  EXPECT_EQ(spheres.at("options").at("min-external"), 8.0);
+
+  const Outcome audit = run({"audit", "box.stl", "box.json", "--json"});
+  EXPECT_EQ(audit.exit_code, 0) << audit.err;
+  const json certificate = json::parse(audit.out);
+  EXPECT_EQ(certificate.at("covered"), true);
+  EXPECT_EQ(certificate.at("min_external_diameter"), 8.0);
+  EXPECT_EQ(certificate.at("against"), "simplified solid");
+
+  ASSERT_EQ(run({"tree", "box.json", "-o", "box.tree"}).exit_code, 0);
+  EXPECT_EQ(read("box.tree"), read("fit.tree"));
+
+  EXPECT_NE(run({"info", "box.stl"}).out.find("triangles"), std::string::npos);
+  EXPECT_NE(run({"info", "box.json"}).out.find("option max-error: 2"), std::string::npos);
+  EXPECT_NE(run({"info", "box.tree"}).out.find("invariants: all hold"), std::string::npos);
+
+  EXPECT_EQ(run({"collide", "box.tree", "box.tree"}).exit_code, 1);
+  EXPECT_EQ(run({"collide", "box.tree", "box.tree", "--pose-b", "39 0 0 0 0 0 1"}).exit_code, 1);
+  EXPECT_EQ(run({"collide", "box.tree", "box.tree", "--pose-b", "45 0 0 0 0 0 1"}).exit_code, 0);
+}
+
+// Whoever has the report can judge G2: the external spheres are free of the mesh.
+TEST_F(FitTest, ReportHoldsTheSimplifiedSolid) {
+  ASSERT_EQ(run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--padding", "0.25",
+                 "--method", "paper", "--report", "report.json"})
+                .exit_code,
+            0);
+  const json report = read_json("report.json");
+  EXPECT_EQ(report.at("mesh").at("triangles"), 12);
+  EXPECT_EQ(report.at("mesh").at("closed"), true);
+  EXPECT_NEAR(report.at("mesh").at("volume"), 8000.0, 1e-6);
+  for (const char* part : {"external", "cover", "certify"}) {
+    EXPECT_GE(report.at("seconds").at(part), 0.0);
+  }
+  EXPECT_FALSE(report.at("cover").at("history").empty());
+  EXPECT_FALSE(report.at("cover").at("spheres_before_inflation").empty());
+  const json& solid = report.at("simplified_solid");
+  EXPECT_EQ(solid.at("min_external_diameter"), 8.0);
+  EXPECT_GE(solid.at("padding"), 0.25);
+  EXPECT_LE(solid.at("box").at("min").at(0), -0.25);
+  const std::array<double, 3> size = {40, 20, 10};
+  ASSERT_FALSE(solid.at("external_spheres").empty());
+  for (const json& ball : solid.at("external_spheres")) {
+    double squares = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double x = ball.at("center").at(axis);
+      const double outside = std::max({-x, x - size[axis], 0.0});
+      squares += outside * outside;
+    }
+    const double radius = ball.at("radius");
+    EXPECT_GE(radius, 4.0);
+    EXPECT_GE(std::sqrt(squares), radius + 0.25 - 1e-9);
+  }
+}
+
+// G7: equal bytes on any number of threads, and in a second run.
+TEST_F(FitTest, ThreadsDoNotChangeTheOutput) {
+  for (const char* method : {"cover", "paper"}) {
+    for (const char* external : {"reachable", "random"}) {
+      const auto fit = [&](const char* threads, const std::string& name) {
+        const Outcome result = run({"fit", "box.stl", "-o", name + ".json", "--max-error", "2",
+                                    "--method", method, "--external", external, "--external-limit",
+                                    "300", "--threads", threads, "--tree", name + ".tree"});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+      };
+      fit("1", "one");
+      fit("2", "two");
+      fit("2", "again");
+      EXPECT_EQ(read("one.json"), read("two.json")) << method << " " << external;
+      EXPECT_EQ(read("one.tree"), read("two.tree")) << method << " " << external;
+      EXPECT_EQ(read("two.json"), read("again.json")) << method << " " << external;
+    }
+  }
+}
+
+TEST_F(FitTest, OptionsArriveInTheFile) {
+  ASSERT_EQ(run({"fit", "box.stl", "-o", "scaled.json", "--scale", "10", "--min-external", "100",
+                 "--max-error", "20", "--min-radius", "15", "--external", "none", "--seed", "7"})
+                .exit_code,
+            0);
+  const json file = read_json("scaled.json");
+  EXPECT_EQ(file.at("options").at("scale"), 10.0);
+  EXPECT_EQ(file.at("options").at("min-external"), 100.0);
+  EXPECT_EQ(file.at("options").at("min-radius"), 15.0);
+  EXPECT_EQ(file.at("options").at("external"), "none");
+  EXPECT_EQ(file.at("options").at("seed"), 7);
+  for (const json& sphere : file.at("spheres")) EXPECT_GE(sphere.at("radius"), 15.0);
+  // The audit takes the scale from the file.
+  EXPECT_EQ(run({"audit", "box.stl", "scaled.json"}).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace spherule

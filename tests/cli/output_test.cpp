@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/cli/command_test_support.h"
+
+#include <chrono>
+#include <signal.h>
+#include <thread>
+
+namespace spherule {
+namespace {
+
+class OutputTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write_box("box.stl", {40, 20, 10});
+  }
+};
+
+using Files = std::vector<std::string>;
+
+TEST_F(OutputTest, FailureLeavesTheOlderFile) {
+  write("out.json", "precious");
+  write("bad.stl", "solid bad\nfacet normal 0 0 0\nouter loop\nvertex 0 0 nan\n");
+  expect_refusal({"fit", "bad.stl", "-o", "out.json"}, "bad.stl: ");
+  expect_refusal({"fit", "missing.stl", "-o", "out.json"}, "missing.stl: ");
+  expect_refusal({"tree", "missing.json", "-o", "out.json"}, "missing.json: ");
+  expect_refusal({"view", "missing.json", "-o", "out.json"}, "missing.json: ");
+  EXPECT_EQ(read("out.json"), "precious");
+  EXPECT_EQ(files(), (Files{"bad.stl", "box.stl", "out.json"}));
+}
+
+TEST_F(OutputTest, PlacesAreCheckedBeforeTheWork) {
+  // Fine enough to take minutes, were it begun.
+  const Files fit = {"fit", "box.stl", "--max-error", "0.01"};
+  const auto with = [&](const Files& more) {
+    Files all = fit;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  expect_refusal(with({"-o", "nowhere/out.json"}), "nowhere/out.json: no such folder");
+  expect_refusal(with({"-o", "out.json", "--report", "nowhere/r.json"}), "nowhere/r.json: ");
+  expect_refusal(with({"-o", "box.stl"}), "box.stl: is named twice");
+  expect_refusal(with({"-o", "out.json", "--tree", "./out.json"}), "out.json: is named twice");
+  expect_refusal(with({"-o", "."}), "is a folder");
+  EXPECT_EQ(files(), Files{"box.stl"});
+}
+
+TEST_F(OutputTest, SuccessReplacesTheOlderFileAndLeavesNothingBeside) {
+  write("out.json", "old");
+  ASSERT_EQ(run({"fit", "box.stl", "-o", "out.json", "--max-error", "3"}).exit_code, 0);
+  EXPECT_EQ(read_json("out.json").at("format"), "spherule-spheres");
+  EXPECT_EQ(files(), (Files{"box.stl", "out.json"}));
+}
+
+TEST_F(OutputTest, InterruptionLeavesNoHalfWrittenFile) {
+  write("out.json", "precious");
+  for (const int milliseconds : {1, 20, 300}) {
+    const pid_t process = start(
+        {"fit", "box.stl", "-o", "out.json", "--max-error", "0.02", "--report", "report.json"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    kill(process, SIGINT);
+    EXPECT_EQ(finish(process).exit_code, -SIGINT);
+    EXPECT_EQ(read("out.json"), "precious");
+    EXPECT_EQ(files(), (Files{"box.stl", "out.json"}));
+  }
+}
+
+// Interrupted at any moment, a command that writes leaves the old file, or the new one whole.
+TEST_F(OutputTest, InterruptionWhileWriting) {
+  std::vector<std::array<double, 4>> many;
+  for (int i = 0; i < 4000; ++i) many.push_back({1.0 * i, 0.5 * (i % 7), 0.0, 1.0});
+  write_spheres("many.json", many);
+  ASSERT_EQ(run({"tree", "many.json", "-o", "out.tree"}).exit_code, 0);
+  const std::string whole = read("out.tree");
+  for (int delay = 0; delay < 60; ++delay) {
+    write("out.tree", "old");
+    const pid_t process = start({"tree", "many.json", "-o", "out.tree"});
+    std::this_thread::sleep_for(std::chrono::microseconds(1000 * delay));
+    kill(process, SIGINT);
+    finish(process);
+    const std::string left = read("out.tree");
+    EXPECT_TRUE(left == "old" || left == whole) << "after " << delay << " ms";
+    EXPECT_EQ(files(), (Files{"box.stl", "many.json", "out.tree"}));
+  }
+}
+
+}  // namespace
+}  // namespace spherule

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/cli/command_test_support.h"
+
+namespace spherule {
+namespace {
+
+using UsageTest = CommandTest;
+
+TEST_F(UsageTest, HelpAndVersionAreNoFaults) {
+  for (const char* command : {"fit", "audit", "tree", "info", "collide", "view"}) {
+    const Outcome help = run({command, "--help"});
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_NE(help.out.find("Usage:"), std::string::npos);
+    EXPECT_EQ(help.err, "");
+    EXPECT_NE(run({"--help"}).out.find(command), std::string::npos);
+  }
+  const Outcome version = run({"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_TRUE(version.out.starts_with("spherule 0."));
+}
+
+TEST_F(UsageTest, FaultyCommandLinesAreRefused) {
+  write_box("box.stl", {1, 1, 1});
+  expect_refusal({}, "a command is required");
+  expect_refusal({"frobnicate"}, "unknown command: frobnicate");
+  expect_refusal({"fit", "box.stl"}, "--output");
+  expect_refusal({"fit", "-o", "out.json"}, "mesh");
+  expect_refusal({"fit", "box.stl", "-o", "out.json", "--max-error", "fast"}, "--max-error");
+  expect_refusal({"fit", "box.stl", "-o", "out.json", "--seed", "-1"}, "--seed");
+  expect_refusal({"fit", "box.stl", "-o", "out.json", "--threads", "-1"}, "--threads");
+  expect_refusal({"fit", "box.stl", "-o", "out.json", "--seed", "1", "--seed", "2"}, "--seed");
+  expect_refusal({"collide", "a.tree"}, "b");
+  EXPECT_EQ(files(), std::vector<std::string>{"box.stl"});
+}
+
+// What belongs to the command line of a later version is refused, not ignored.
+TEST_F(UsageTest, OptionsThatAreNotThereYetAreRefused) {
+  write_box("box.stl", {1, 1, 1});
+  const std::vector<std::string> fit = {"fit", "box.stl", "-o", "out.json"};
+  const std::vector<std::vector<std::string>> later = {{"--tool", "tool.json"},
+                                                       {"--effort", "3"},
+                                                       {"--seconds", "5"},
+                                                       {"--levels", "1,2"},
+                                                       {"--zones", "zones.txt"}};
+  for (const auto& option : later) {
+    auto arguments = fit;
+    arguments.insert(arguments.end(), option.begin(), option.end());
+    expect_refusal(arguments, "unexpected option: " + option.front());
+  }
+  for (const char* method : {"medial", "packing"}) {
+    auto arguments = fit;
+    arguments.insert(arguments.end(), {"--method", method});
+    expect_refusal(arguments, method);
+  }
+  expect_refusal({"audit", "box.stl", "out.json", "--repair", "better.json"},
+                 "unexpected option: --repair");
+  for (const char* command : {"robot", "audit-robot", "check", "baseline"}) {
+    expect_refusal({command, "x"}, std::string("unknown command: ") + command);
+  }
+  EXPECT_EQ(files(), std::vector<std::string>{"box.stl"});
+}
+
+}  // namespace
+}  // namespace spherule
