@@ -10,7 +10,8 @@ namespace spherule {
 namespace {
 
 // See kRotationEntryError for the error analysis. The components are first scaled by a power of
-// two, which is exact, so that the squares neither overflow nor vanish.
+// two, so that the squares neither overflow nor vanish; this is exact but for components that are
+// below 2^-1022 times the largest.
 Eigen::Matrix3d rotation_matrix(const Eigen::Quaterniond& q) {
   int exponent = 0;
   std::frexp(q.coeffs().cwiseAbs().maxCoeff(), &exponent);
@@ -24,6 +25,16 @@ Eigen::Matrix3d rotation_matrix(const Eigen::Quaterniond& q) {
       s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x),   //
       s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y);
   return m;
+}
+
+// The rotation nearest to a matrix that is within 1e-6 of one: two steps of Newton's iteration for
+// the polar factor, X (3 - X^T X) / 2, which squares the deviation each time.
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& m) {
+  Eigen::Matrix3d x = m;
+  for (int i = 0; i < 2; ++i) {
+    x = (0.5 * x * (3.0 * Eigen::Matrix3d::Identity() - x.transpose() * x)).eval();
+  }
+  return x;
 }
 
 Eigen::Quaterniond unit(const Eigen::Quaterniond& q) {
@@ -53,7 +64,7 @@ Pose Pose::from_isometry(const Eigen::Isometry3d& target_from_source) {
   if (!(deviation <= kTolerance) || m.determinant() < 0.0) {
     throw Error("pose", "the matrix is not a rotation");
   }
-  return Pose(Eigen::Quaterniond(m), target_from_source.translation());
+  return Pose(Eigen::Quaterniond(nearest_rotation(m)), target_from_source.translation());
 }
 
 Eigen::Isometry3d Pose::isometry() const {

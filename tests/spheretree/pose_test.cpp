@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/pose.h"
+
+#include "spheres.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+// The oracle works with 100 decimal digits and its own formula: R p = p + 2 v x (v x p + w p) for
+// the unit quaternion (w, v).
+using Real = boost::multiprecision::cpp_bin_float_100;
+using Point = std::array<Real, 3>;
+
+Point point(const Vector3d& v) {
+  return {Real(v.x()), Real(v.y()), Real(v.z())};
+}
+
+Point cross(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Point exact_map(const Pose& pose, const Point& p) {
+  const Quaterniond q = pose.rotation();
+  const Real w(q.w());
+  const Point v = {Real(q.x()), Real(q.y()), Real(q.z())};
+  const Real norm2 = w * w + v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  Point inner = cross(v, p);
+  for (int i = 0; i < 3; ++i) inner[i] += w * p[i];
+  const Point outer = cross(v, inner);
+  const Point t = point(pose.translation());
+  Point result;
+  for (int i = 0; i < 3; ++i) result[i] = p[i] + 2 * outer[i] / norm2 + t[i];
+  return result;
+}
+
+double distance(const Point& a, const Point& b) {
+  Real sum = 0;
+  for (int i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return static_cast<double>(sqrt(sum));
+}
+
+Quaterniond random_quaternion(Random& random) {
+  return {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1),
+          random.between(-1, 1)};
+}
+
+// Random ones, half turns, tiny turns, and components of very different size.
+std::vector<Quaterniond> quaternions(std::size_t count) {
+  Random random(17);
+  std::vector<Quaterniond> result = {{1, 0, 0, 0},
+                                     {0, 1, 0, 0},
+                                     {0, 0, -3, 0},
+                                     {0, 0, 0, 1e-300},
+                                     {1, 1, 1, 1},
+                                     {1e200, -1e200, 0, 1e200},
+                                     {1e-200, 2e-200, -3e-200, 4e-200},
+                                     {1e200, 1e-200, 1, 0},
+                                     {0x1p-1074, 0x1p-1074, 0, 0},
+                                     {1e308, 1e308, 1e308, 1e308}};
+  for (std::size_t i = 0; i < count; ++i) {
+    Quaterniond q = random_quaternion(random);
+    for (int k = 0; k < 4; ++k) {
+      if (i % 3 == 1) q.coeffs()[k] *= std::pow(10.0, random.between(-18.0, 0.0));
+    }
+    const double scale = i % 4 == 0 ? std::pow(10.0, random.between(-290.0, 290.0)) : 1.0;
+    q.coeffs() *= scale;
+    result.push_back(q);
+  }
+  return result;
+}
+
+TEST(Pose, MatrixEntriesAreWithinTheStatedError) {
+  double worst = 0.0;
+  for (const Quaterniond& q : quaternions(20000)) {
+    const Pose pose(q, Vector3d::Zero());
+    for (int column = 0; column < 3; ++column) {
+      const Point exact = exact_map(pose, point(Vector3d::Unit(column)));
+      for (int row = 0; row < 3; ++row) {
+        const Real difference = Real(pose.matrix()(row, column)) - exact[row];
+        worst = std::max(worst, std::abs(static_cast<double>(difference)));
+      }
+    }
+  }
+  EXPECT_LE(worst, kRotationEntryError);
+  EXPECT_GE(worst, 0.05 * kRotationEntryError);  // the bound is not idle
+}
+
+TEST(Pose, MapsPointsWithinTheStatedError) {
+  Random random(23);
+  for (const Quaterniond& q : quaternions(5000)) {
+    const double scale = std::pow(10.0, random.between(-9.0, 9.0));
+    const Pose pose(q, scale * random.in_cube(1.0));
+    const Vector3d p = std::pow(10.0, random.between(-3.0, 3.0)) * scale * random.in_cube(1.0);
+    const double error = distance(point(pose * p), exact_map(pose, point(p)));
+    ASSERT_LE(error, 40.0 * kUnitRoundoff * (p.norm() + pose.translation().norm()));
+  }
+}
+
+TEST(Pose, CompositionAndInverseAreAccurate) {
+  Random random(29);
+  const std::vector<Quaterniond> rotations = quaternions(5000);
+  for (std::size_t i = 1; i < rotations.size(); ++i) {
+    const Pose a(rotations[i], random.in_cube(10.0));
+    const Pose b(rotations[i - 1], random.in_cube(0.1));
+    const Vector3d p = random.in_cube(1.0);
+    const double size = p.norm() + a.translation().norm() + b.translation().norm();
+    const Point ab = exact_map(a, exact_map(b, point(p)));
+    ASSERT_LE(distance(exact_map(a * b, point(p)), ab), 80.0 * kUnitRoundoff * size) << i;
+    const Point back = exact_map(a.inverse(), exact_map(a, point(p)));
+    ASSERT_LE(distance(back, point(p)), 80.0 * kUnitRoundoff * size) << i;
+  }
+}
+
+TEST(Pose, LongChainsStayUnit) {
+  Random random(31);
+  Pose pose;
+  const Pose step(random_quaternion(random), Vector3d::Zero());
+  for (int i = 0; i < 100000; ++i) pose = pose * step;
+  EXPECT_NEAR(pose.rotation().norm(), 1.0, 1e-15);
+}
+
+TEST(Pose, FromIsometryTakesTheNearestRotation) {
+  Random random(37);
+  for (int i = 0; i < 2000; ++i) {
+    const Pose pose(random_quaternion(random).normalized(), random.in_cube(5.0));
+    EXPECT_LT((Pose::from_isometry(pose.isometry()).matrix() - pose.matrix()).norm(), 4e-15);
+    EXPECT_EQ(Pose::from_isometry(pose.isometry()).translation(), pose.translation());
+    // A symmetric stretch does not change the polar factor, which is the nearest rotation.
+    Matrix3d stretch = Matrix3d::Identity();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column <= row; ++column) {
+        const double value = random.between(-1e-7, 1e-7);
+        stretch(row, column) += value;
+        if (row != column) stretch(column, row) += value;
+      }
+    }
+    Isometry3d stretched = pose.isometry();
+    stretched.linear() = pose.matrix() * stretch;
+    EXPECT_LT((Pose::from_isometry(stretched).matrix() - pose.matrix()).norm(), 1e-14);
+  }
+  EXPECT_EQ(Pose::from_isometry(Isometry3d::Identity()).matrix(), Matrix3d::Identity());
+}
+
+TEST(Pose, RefusesWhatIsNoRigidMotion) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Vector3d zero = Vector3d::Zero();
+  for (const double bad : {nan, infinity, -infinity}) {
+    for (int k = 0; k < 4; ++k) {
+      Quaterniond q(1, 2, 3, 4);
+      q.coeffs()[k] = bad;
+      EXPECT_THROW(Pose(q, zero), Error);
+    }
+    EXPECT_THROW(Pose::from_translation({0, bad, 0}), Error);
+  }
+  EXPECT_THROW(Pose(Quaterniond(0, 0, 0, 0), zero), Error);
+  EXPECT_THROW(Pose(Quaterniond(-0.0, 0, -0.0, 0), zero), Error);
+  EXPECT_THROW(Pose::from_translation({0, 0, 1.1e15}), Error);
+  EXPECT_NO_THROW(Pose::from_translation({0, 0, -1e15}));
+  const Pose far = Pose::from_translation({6e14, 0, 0});
+  EXPECT_THROW(far * far, Error);
+
+  const auto linear = [](const Matrix3d& m) {
+    Isometry3d result = Isometry3d::Identity();
+    result.linear() = m;
+    return result;
+  };
+  const Matrix3d identity = Matrix3d::Identity();
+  Matrix3d sheared = identity;
+  sheared(0, 1) = 1e-5;
+  Matrix3d not_a_number = identity;
+  not_a_number(2, 0) = nan;
+  for (const Matrix3d& bad : {Matrix3d(-identity), Matrix3d(2.0 * identity), sheared, not_a_number,
+                              Matrix3d(Matrix3d::Zero()), Matrix3d(1e200 * identity),
+                              Matrix3d(Vector3d(1, 1, -1).asDiagonal())}) {
+    EXPECT_THROW(Pose::from_isometry(linear(bad)), Error);
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test
