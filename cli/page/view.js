@@ -5,7 +5,6 @@
   const scene = JSON.parse(document.getElementById("scene").textContent);
   const canvas = document.getElementById("canvas");
   const gl = canvas.getContext("webgl2", {antialias: true});
-  document.querySelector("h1").textContent = document.title;
   if (!gl) {
     const failure = document.getElementById("failure");
     failure.textContent = "This browser cannot draw WebGL 2.";
@@ -230,11 +229,13 @@
     drawing = true;
   }
 
+  const short_name = (path) => path.slice(path.lastIndexOf("/") + 1);
   function element(tag, properties, ...children) {
     const node = Object.assign(document.createElement(tag), properties);
     node.append(...children);
     return node;
   }
+  document.querySelector("h1").textContent = short_name(document.title);
   for (const item of items) {
     const box = element("input", {type: "checkbox", checked: item.shown});
     box.addEventListener("change", () => {
@@ -245,7 +246,8 @@
     swatch.style.background = `rgb(${item.color.map((c) => Math.round(255 * c)).join(",")})`;
     const note = element("p", {className: "note"});
     const row = element("div", {className: "item"},
-                        element("label", {}, box, swatch, element("span", {}, item.name)), note);
+                        element("label", {title: item.name}, box, swatch,
+                                element("span", {}, short_name(item.name))), note);
     const describe = () => {
       const count = item.levels[item.level].count;
       note.textContent = item.is_mesh ? `${count / 3} triangles`
