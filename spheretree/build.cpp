@@ -57,7 +57,7 @@ struct Bounds {
 class Splitter {
  public:
   explicit Splitter(std::size_t count)
-      // 2 log2 n + 8, see BuildOptions.
+      // 2 log2 n + 8, see build_tree().
       : max_mean_depth_(2 * static_cast<int>(std::bit_width(count - 1)) + 8) {
     scratch_.reserve(count);
   }

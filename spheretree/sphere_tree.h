@@ -23,8 +23,9 @@ struct SphereTreeData {
 //
 // Invariants, verified by check() (spheretree/check.h) whenever a tree is made from data:
 //  1. there is at least one sphere, and all numbers are usable (finite, radii not negative);
-//  2. every node but the root (node 0) is the child of exactly one node, and children come after
-//     their parent in the arrays (breadth-first order), so there are no cycles;
+//  2. every node but the root (node 0) is the child of exactly one node, and the arrays are in
+//     breadth-first order: the children of the inner nodes, in the order of their parents, number
+//     the nodes from 1 on without gap, so there are no cycles;
 //  3. every sphere is the ball of exactly one leaf, bit for bit;
 //  4. layered: the ball of every inner node encloses the balls of its children in exact arithmetic
 //     (hence, by induction, every ball below it);
