@@ -16,7 +16,7 @@
 #include <optional>
 #include <string>
 
-namespace spherule::cli {
+namespace spherule {
 namespace {
 
 struct AuditArguments {
@@ -123,4 +123,4 @@ void add_audit(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule::cli {
+namespace spherule {
 namespace {
 
 struct CollideArguments {
@@ -74,15 +74,15 @@ Json to_json(const CollisionResult& result) {
   json["pairs"] = Json::array();
   for (const SpherePair& pair : result.pairs)
     json["pairs"].push_back(Json::array({pair.a, pair.b}));
-  json["distance_lower_bound"] = cli::to_json(result.distance_lower_bound);
+  json["distance_lower_bound"] = spherule::to_json(result.distance_lower_bound);
   json["node_tests"] = result.cost.node_tests;
   json["leaf_tests"] = result.cost.leaf_tests;
   return json;
 }
 
 Json to_json(const DistanceResult& result) {
-  return {{"lower", cli::to_json(result.lower)},
-          {"upper", cli::to_json(result.upper)},
+  return {{"lower", spherule::to_json(result.lower)},
+          {"upper", spherule::to_json(result.upper)},
           {"nearest", Json::array({result.nearest.a, result.nearest.b})},
           {"node_tests", result.cost.node_tests},
           {"leaf_tests", result.cost.leaf_tests}};
@@ -135,4 +135,4 @@ void add_collide(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run_collide(*arguments); });
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

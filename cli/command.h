@@ -5,7 +5,7 @@ namespace CLI {
 class App;
 }
 
-namespace spherule::cli {
+namespace spherule {
 
 // Exit codes of every command. What "no" means stands with each command: a leak (fit, audit), a
 // collision (collide).
@@ -22,4 +22,4 @@ void add_info(CLI::App& app, int& exit_code);
 void add_collide(CLI::App& app, int& exit_code);
 void add_view(CLI::App& app, int& exit_code);
 
-}  // namespace spherule::cli
+}  // namespace spherule

@@ -18,7 +18,7 @@
 #include <optional>
 #include <string>
 
-namespace spherule::cli {
+namespace spherule {
 namespace {
 
 struct FitArguments {
@@ -139,4 +139,4 @@ void add_fit(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = fit(*arguments); });
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

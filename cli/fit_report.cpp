@@ -3,12 +3,12 @@
 
 #include "cli/json.h"
 
-namespace spherule::cli {
+namespace spherule {
 namespace {
 
 Json to_json(const Eigen::AlignedBox3d& box) {
-  return {{"min", cli::to_json(Eigen::Vector3d(box.min()))},
-          {"max", cli::to_json(Eigen::Vector3d(box.max()))}};
+  return {{"min", spherule::to_json(Eigen::Vector3d(box.min()))},
+          {"max", spherule::to_json(Eigen::Vector3d(box.max()))}};
 }
 
 Json to_json(const std::string& file, const TriangleMesh& mesh, const MeshReport& report) {
@@ -32,20 +32,20 @@ Json to_json(const std::string& file, const TriangleMesh& mesh, const MeshReport
 
 Json to_json(const ExternalSpheres& external) {
   return {{"box", to_json(external.box)},
-          {"min_external_diameter", cli::to_json(external.min_external_diameter)},
+          {"min_external_diameter", spherule::to_json(external.min_external_diameter)},
           {"padding", external.padding},
           {"grid_step", external.grid_step},
-          {"closing_slack", cli::to_json(external.closing_slack)},
+          {"closing_slack", spherule::to_json(external.closing_slack)},
           {"nodes_examined", external.nodes_examined},
-          {"external_spheres", cli::to_json(external.balls)}};
+          {"external_spheres", spherule::to_json(external.balls)}};
 }
 
 Json to_json(const CoverHistoryEntry& entry) {
   return {{"sphere_count", entry.sphere_count},
-          {"max_error",
-           cli::to_json(Bounds{.lower = entry.max_error_lower, .upper = entry.max_error_upper})},
-          {"surface_error_before", cli::to_json(entry.surface_error_before)},
-          {"surface_error_after", cli::to_json(entry.surface_error_after)},
+          {"max_error", spherule::to_json(Bounds{.lower = entry.max_error_lower,
+                                                 .upper = entry.max_error_upper})},
+          {"surface_error_before", spherule::to_json(entry.surface_error_before)},
+          {"surface_error_after", spherule::to_json(entry.surface_error_after)},
           {"coverage_before", entry.coverage_before},
           {"coverage_after", entry.coverage_after},
           {"excess_before", entry.excess_before},
@@ -54,9 +54,9 @@ Json to_json(const CoverHistoryEntry& entry) {
 
 Json to_json(const SphereCover& cover) {
   Json json;
-  json["inflation"] = cli::to_json(cover.inflation);
+  json["inflation"] = spherule::to_json(cover.inflation);
   json["seeds_rejected"] = cover.seeds_rejected;
-  json["spheres_before_inflation"] = cli::to_json(cover.spheres_before_inflation);
+  json["spheres_before_inflation"] = spherule::to_json(cover.spheres_before_inflation);
   json["history"] = Json::array();
   for (const CoverHistoryEntry& entry : cover.history) json["history"].push_back(to_json(entry));
   return json;
@@ -70,14 +70,14 @@ std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
   json["format"] = "spherule-report";
   json["version"] = 1;
   json["mesh"] = to_json(mesh_file, mesh, report);
-  json["options"] = cli::to_json(option_record(result.options, scale));
+  json["options"] = spherule::to_json(option_record(result.options, scale));
   json["seconds"] = {{"external", result.times.external},
                      {"cover", result.times.cover},
                      {"certify", result.times.certify}};
-  json["certificate"] = cli::to_json(result.certificate);
+  json["certificate"] = spherule::to_json(result.certificate);
   json["simplified_solid"] = to_json(result.external);
   json["cover"] = to_json(result.cover);
   return to_text(json);
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace spherule::cli {
+namespace spherule {
 
 // The text of REPORT.json: everything that is needed to judge a fit without repeating it: mesh,
 // options, times, the simplified solid (box, D, padding, external spheres), history, certificate.
@@ -14,4 +14,4 @@ namespace spherule::cli {
 std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
                        const MeshReport& report, const Simplification& result, double scale);
 
-}  // namespace spherule::cli
+}  // namespace spherule

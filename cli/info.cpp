@@ -16,7 +16,7 @@
 #include <string>
 #include <variant>
 
-namespace spherule::cli {
+namespace spherule {
 namespace {
 
 void print_ball(const char* what, const Sphere& ball) {
@@ -89,4 +89,4 @@ void add_info(CLI::App& app, int& exit_code) {
   command->callback([file, &exit_code] { exit_code = info(*file); });
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <variant>
 
-namespace spherule::cli {
+namespace spherule {
 
 Json to_json(double value) {
   if (std::isfinite(value)) return value;
@@ -63,4 +63,4 @@ std::string to_text(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

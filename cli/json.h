@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-namespace spherule::cli {
+namespace spherule {
 
 using Json = nlohmann::ordered_json;
 
@@ -31,4 +31,4 @@ Json to_json(const std::optional<T>& value) {
 // written with replacement characters.
 std::string to_text(const Json& json, int indent = 2);
 
-}  // namespace spherule::cli
+}  // namespace spherule

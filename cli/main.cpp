@@ -6,11 +6,11 @@
 
 #include <exception>
 #include <iostream>
+#include <new>
 #include <string>
 
+namespace spherule {
 namespace {
-
-using namespace spherule::cli;  // NOLINT(google-build-using-namespace): the program itself
 
 int bad_input(const std::string& message) {
   std::cerr << "spherule: " << message << '\n';
@@ -57,9 +57,8 @@ int run(int argc, char** argv) {
   return exit_code;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+// What no command expects ends here, so that it is told in the same form.
+int run_guarded(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
@@ -67,4 +66,11 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return bad_input(error.what());
   }
+}
+
+}  // namespace
+}  // namespace spherule
+
+int main(int argc, char** argv) {
+  return spherule::run_guarded(argc, argv);
 }

@@ -9,7 +9,7 @@
 #include <signal.h>
 #include <system_error>
 
-namespace spherule::cli {
+namespace spherule {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,4 +76,4 @@ void write_uninterrupted(const std::function<void()>& write) {
   write();
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

@@ -5,7 +5,7 @@
 #include <functional>
 #include <initializer_list>
 
-namespace spherule::cli {
+namespace spherule {
 
 // Throws Error, before long work is done for nothing, if a file of `outputs` cannot be made where
 // it is asked for, is one of `inputs`, or is named twice. Empty paths are outputs not asked for.
@@ -16,4 +16,4 @@ void check_outputs(std::initializer_list<std::filesystem::path> outputs,
 // interrupts, and obeys the interruption afterwards: Ctrl-C leaves no half-written file.
 void write_uninterrupted(const std::function<void()>& write);
 
-}  // namespace spherule::cli
+}  // namespace spherule

@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-namespace spherule::cli {
+namespace spherule {
 
 std::string describe(const Certificate& certificate, const std::string& solid) {
   std::ostringstream out;
@@ -40,4 +40,4 @@ std::string describe(const Certificate& certificate, const std::string& solid) {
   return out.str();
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

@@ -5,9 +5,9 @@
 
 #include <string>
 
-namespace spherule::cli {
+namespace spherule {
 
 // What a certificate says, in a few lines for a person. `solid` names what was to be covered.
 std::string describe(const Certificate& certificate, const std::string& solid);
 
-}  // namespace spherule::cli
+}  // namespace spherule

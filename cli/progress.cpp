@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <unistd.h>
 
-namespace spherule::cli {
+namespace spherule {
 namespace {
 
 constexpr int kBarWidth = 30;
@@ -45,4 +45,4 @@ void ProgressBar::show(double share, const char* what) {
                what);
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

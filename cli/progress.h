@@ -7,7 +7,7 @@
 #include <mutex>
 #include <string>
 
-namespace spherule::cli {
+namespace spherule {
 
 // A progress bar on standard error, if that is a terminal; nothing at all elsewhere.
 class ProgressBar {
@@ -31,4 +31,4 @@ class ProgressBar {
   std::chrono::steady_clock::time_point last_time_;
 };
 
-}  // namespace spherule::cli
+}  // namespace spherule

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace spherule::cli {
+namespace spherule {
 namespace {
 
 // What the two formats of the library begin with or hold (docs/tree-file.md, sphere_file.h).
@@ -24,4 +24,4 @@ FileKind recognize(const std::filesystem::path& path) {
   return FileKind::kMesh;
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

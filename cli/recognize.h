@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace spherule::cli {
+namespace spherule {
 
 enum class FileKind { kMesh, kSpheres, kTree };
 
@@ -12,4 +12,4 @@ enum class FileKind { kMesh, kSpheres, kTree };
 // cannot be read.
 FileKind recognize(const std::filesystem::path& path);
 
-}  // namespace spherule::cli
+}  // namespace spherule

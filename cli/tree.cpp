@@ -12,7 +12,7 @@
 #include <memory>
 #include <string>
 
-namespace spherule::cli {
+namespace spherule {
 namespace {
 
 struct TreeArguments {
@@ -41,4 +41,4 @@ void add_tree(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = make_tree(*arguments); });
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

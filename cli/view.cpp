@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule::cli {
+namespace spherule {
 namespace {
 
 struct ViewArguments {
@@ -60,4 +60,4 @@ void add_view(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = view(*arguments); });
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

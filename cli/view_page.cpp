@@ -11,7 +11,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace spherule::cli {
+namespace spherule {
 namespace {
 
 std::string base64(std::string_view bytes) {
@@ -168,4 +168,4 @@ std::string make_view_page(const std::string& title, std::span<const ViewItem> i
   return page;
 }
 
-}  // namespace spherule::cli
+}  // namespace spherule

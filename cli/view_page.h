@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-namespace spherule::cli {
+namespace spherule {
 
 // One thing to look at. Of a tree, a slider on the page chooses the level.
 struct ViewItem {
@@ -22,4 +22,4 @@ struct ViewItem {
 // written as 32-bit floats relative to the middle of the scene: the page is for looking only.
 std::string make_view_page(const std::string& title, std::span<const ViewItem> items);
 
-}  // namespace spherule::cli
+}  // namespace spherule
