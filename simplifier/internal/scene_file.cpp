@@ -10,13 +10,10 @@
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
-#include <assimp/fast_atof.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <exception>
 #include <memory>
 #include <sstream>
@@ -26,19 +23,9 @@ namespace spherule::internal {
 namespace {
 
 constexpr double kFloatRoundoff = 0x1p-24;
-// Relative error of a decimal number as read by assimp: up to three roundings of a float and a
-// power of ten of two more. check_decimals() proves it for each number of a text.
-constexpr double kDecimalError = 8.0 * kFloatRoundoff;
 // The entries of a node matrix, relative to its norm: decimals, the sine and cosine of a rotation,
 // and the product of the few elementary transforms a node may list.
 constexpr double kTransformError = 16.0 * kFloatRoundoff;
-
-// Stands for assimp's own exception, which its library does not export. Not thrown: what is given
-// to the parser is a number.
-struct UnreadableNumber {
-  template <class... Parts>
-  explicit UnreadableNumber(Parts&&...) {}
-};
 
 // Opens the file itself, and for glTF the buffers in its folder or below; nothing else.
 class ConfinedIo : public Assimp::DefaultIOSystem {
@@ -190,36 +177,13 @@ std::size_t count_faces(const aiScene& scene) {
 
 }  // namespace
 
-void check_decimals(std::string_view text, const std::string& subject) {
-  constexpr std::string_view kSeparators = " \t\r\n<>\"'=";
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t begin = std::min(text.find_first_not_of(kSeparators, at), text.size());
-    const std::size_t end = std::min(text.find_first_of(kSeparators, begin), text.size());
-    at = end;
-    const std::string token(text.substr(begin, end - begin));
-    double value = 0.0;
-    const auto parsed = std::from_chars(token.data(), token.data() + token.size(), value);
-    if (parsed.ptr != token.data() + token.size() || parsed.ec != std::errc() ||
-        !std::isfinite(value) || token.empty()) {
-      continue;
-    }
-    ai_real read = 0;
-    Assimp::fast_atoreal_move<ai_real, UnreadableNumber>(token.c_str(), read);
-    // Below the normal floats the error is absolute and far below any model's size.
-    const double error = std::abs(static_cast<double>(read) - value);
-    if (!(error <= kDecimalError * std::abs(value) + 0x1p-100) && std::abs(value) <= 0x1p127) {
-      throw Error(subject, "the number " + token.substr(0, 60) + " cannot be read exactly enough");
-    }
-  }
-}
-
 TriangleMesh read_scene(const std::filesystem::path& path, std::string_view bytes,
                         const std::string& extension) {
   const std::string subject = path.string();
   const bool gltf = extension == "gltf" || extension == "glb";
   const std::size_t expected = gltf ? check_gltf(bytes, subject) : 0;
   try {
-    if (extension == "dae") check_decimals(bytes, subject);
+    if (extension == "dae") check_collada(bytes, subject);
     Assimp::Importer importer;
     keep_importer(importer, extension);
     importer.SetIOHandler(new ConfinedIo(path, gltf));  // the importer owns it

@@ -26,9 +26,14 @@ namespace spherule::internal {
 TriangleMesh read_scene(const std::filesystem::path& path, std::string_view bytes,
                         const std::string& extension);
 
-// Throws Error if a number in the text would not be read by assimp to within kDecimalError (it
-// drops digits beyond the 15th decimal, and whole parts of 20 digits wrap around or become zero).
-void check_decimals(std::string_view text, const std::string& subject);
+// Relative error of a decimal number as read by assimp: up to three roundings of a float and a
+// power of ten of two more.
+inline constexpr double kDecimalError = 8.0 * 0x1p-24;
+
+// Throws Error if assimp would misread the COLLADA text without a word, or never come back: a
+// number that it does not read to within kDecimalError (it drops digits beyond the 15th decimal,
+// and whole parts of 20 digits wrap around or become zero), or an index that is not a whole number.
+void check_collada(std::string_view text, const std::string& subject);
 
 // Throws Error if the glTF or GLB file holds something that assimp reads wrongly without a word or
 // falls over: positions that are not 32-bit floats (it copies their bytes), compressed meshes,
