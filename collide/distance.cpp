@@ -29,11 +29,11 @@ class Search {
   DistanceResult run(double root_gap) {
     if (request_.max_node_tests == 0) return result_;
     result_.cost.node_tests = 1;
-    if (trees_.is_leaf_pair({{0, 0}})) {
+    if (trees_.is_leaf_pair(NodePair(0, 0))) {
       ++result_.cost.leaf_tests;
-      visit_leaves({{0, 0}});
+      visit_leaves(NodePair(0, 0));
     } else {
-      queue_.push({root_gap, {{0, 0}}});
+      queue_.push({root_gap, NodePair(0, 0)});
     }
     while (!finished()) {
       const NodePair pair = queue_.top().pair;
@@ -57,8 +57,8 @@ class Search {
     // on the queue.
     bool operator<(const Waiting& other) const {
       if (gap != other.gap) return gap > other.gap;
-      if (pair.node[0] != other.pair.node[0]) return pair.node[0] < other.pair.node[0];
-      return pair.node[1] < other.pair.node[1];
+      if (pair.node(0) != other.pair.node(0)) return pair.node(0) < other.pair.node(0);
+      return pair.node(1) < other.pair.node(1);
     }
   };
 
@@ -79,8 +79,7 @@ class Search {
     double gaps[SphereTree::kMaxBranching];
     internal::ball_gaps(trees_.balls(opened.side), opened.first, opened.count, opened.ball, gaps);
     for (std::int32_t i = 0; i < opened.count; ++i) {
-      NodePair child = pair;
-      child.node[opened.side] = opened.first + i;
+      const NodePair child = pair.with(opened.side, opened.first + i);
       const bool leaves = trees_.is_leaf_pair(child);
       result_.cost.leaf_tests += leaves ? 1u : 0u;
       if (leaves) {
@@ -95,8 +94,7 @@ class Search {
     const double gap = leaves_.gap(pair);
     if (!(gap < best_gap_)) return;
     best_gap_ = gap;
-    result_.nearest = {a_.sphere_index(static_cast<std::size_t>(pair.node[0])),
-                       b_.sphere_index(static_cast<std::size_t>(pair.node[1]))};
+    result_.nearest = {a_.sphere_index(pair.index(0)), b_.sphere_index(pair.index(1))};
   }
 
   const SphereTree& a_;

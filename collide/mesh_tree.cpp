@@ -65,16 +65,13 @@ class TriangleLeaves {
   double gap(NodePair pair) const { return lower(pair) - radius(pair); }
 
  private:
-  double radius(NodePair pair) const {
-    return a_.data().radius[static_cast<std::size_t>(pair.node[0])];
-  }
+  double radius(NodePair pair) const { return a_.data().radius[pair.index(0)]; }
 
   double lower(NodePair pair) const {
-    const Eigen::Vector3d c = a_.ball(static_cast<std::size_t>(pair.node[0])).center;
+    const Eigen::Vector3d c = a_.ball(pair.index(0)).center;
     const Eigen::Vector3d p(b_from_a_.x(c.x(), c.y(), c.z()), b_from_a_.y(c.x(), c.y(), c.z()),
                             b_from_a_.z(c.x(), c.y(), c.z()));
-    const Triangle& corners =
-        b_.triangle(b_.tree().sphere_index(static_cast<std::size_t>(pair.node[1])));
+    const Triangle& corners = b_.triangle(b_.tree().sphere_index(pair.index(1)));
     return point_triangle_distance(p, corners[0], corners[1], corners[2]).lower;
   }
 

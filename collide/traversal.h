@@ -42,7 +42,7 @@ bool traverse_with(NodePair* stack, [[maybe_unused]] std::size_t capacity, const
                    const RelativePose& pose, Policy& policy) {
   const double node_pad = pose.node_pad();
   std::size_t top = 0;
-  stack[top++] = {{0, 0}};
+  stack[top++] = NodePair(0, 0);
   while (top > 0) {
     const NodePair pair = stack[--top];
     if (trees.is_leaf_pair(pair)) {
@@ -52,7 +52,7 @@ bool traverse_with(NodePair* stack, [[maybe_unused]] std::size_t capacity, const
     const OpenedPair opened = trees.open(pair);
     const auto leaf_pairs = [&] {
       std::uint64_t count = 0;
-      if (!trees.is_leaf(1 - opened.side, pair.node[1 - opened.side])) return count;
+      if (!trees.is_leaf(1 - opened.side, pair.node(1 - opened.side))) return count;
       for (std::int32_t i = 0; i < opened.count; ++i) {
         count += trees.is_leaf(opened.side, opened.first + i) ? 1u : 0u;
       }
@@ -73,9 +73,7 @@ bool traverse_with(NodePair* stack, [[maybe_unused]] std::size_t capacity, const
     }
     assert(top + static_cast<std::size_t>(std::popcount(mask)) <= capacity);
     for (; mask != 0; mask &= mask - 1) {
-      NodePair& child = stack[top++];
-      child = pair;
-      child.node[opened.side] = opened.first + std::countr_zero(mask);
+      stack[top++] = pair.with(opened.side, opened.first + std::countr_zero(mask));
     }
   }
   return true;
@@ -94,7 +92,7 @@ bool traverse_exhaustively(const SphereTree& a, const SphereTree& b, const TreeP
     for (std::int32_t j = 0; j < nodes_b; ++j) {
       if (!trees.is_leaf(1, j)) continue;
       if (!policy.afford(OpenedPair{1, j, 1, {}}, one_pair)) return false;
-      if (!policy.leaves({{i, j}})) return false;
+      if (!policy.leaves(NodePair(i, j))) return false;
     }
   }
   return true;
@@ -103,7 +101,7 @@ bool traverse_exhaustively(const SphereTree& a, const SphereTree& b, const TreeP
 // The traversal with a stack of the proved size, wherever that fits. Never throws.
 template <class Policy>
 bool traverse(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
-              Policy& policy) noexcept(noexcept(policy.leaves(NodePair{}))) {
+              Policy& policy) noexcept(noexcept(policy.leaves(NodePair(0, 0)))) {
   const TreePair trees(a, b, pose);
   const std::size_t capacity = traversal_stack_bound(a, b);
   if (capacity <= kInlineStack) {

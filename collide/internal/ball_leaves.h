@@ -16,8 +16,8 @@ class BallLeaves {
   double gap(NodePair pair) const { return pose_.gap(ball_a(pair), ball_b(pair)); }
 
  private:
-  Sphere ball_a(NodePair pair) const { return a_.ball(static_cast<std::size_t>(pair.node[0])); }
-  Sphere ball_b(NodePair pair) const { return b_.ball(static_cast<std::size_t>(pair.node[1])); }
+  Sphere ball_a(NodePair pair) const { return a_.ball(pair.index(0)); }
+  Sphere ball_b(NodePair pair) const { return b_.ball(pair.index(1)); }
 
   const SphereTree& a_;
   const SphereTree& b_;

@@ -59,8 +59,7 @@ class CollectPairs {
     }
     found_ = true;
     if (result_.pairs.size() < request_.max_pairs) {
-      result_.pairs.push_back({a_.sphere_index(static_cast<std::size_t>(pair.node[0])),
-                               b_.sphere_index(static_cast<std::size_t>(pair.node[1]))});
+      result_.pairs.push_back({a_.sphere_index(pair.index(0)), b_.sphere_index(pair.index(1))});
     }
     return result_.pairs.size() < request_.max_pairs;
   }

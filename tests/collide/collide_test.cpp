@@ -48,7 +48,7 @@ Scene random_scene(Random& random, int largest_count) {
   const double size = std::ldexp(1.0, random.whole(-20, 20));
   const auto tree = [&] {
     const int count = random.whole(1, largest_count);
-    const double largest_radius = size * random.uniform(0.0, 2.0) / std::sqrt(count);
+    const double largest_radius = size * random.uniform(0.0, 4.0) / std::sqrt(count);
     return build_tree(random_spheres(random, count, size, largest_radius),
                       {.branching = random.whole(2, SphereTree::kMaxBranching)});
   };
@@ -98,7 +98,7 @@ TEST(Collide, AgreesWithExactArithmeticOnEveryPair) {
       }
     }
   }
-  EXPECT_GT(touching, 100);
+  EXPECT_GT(touching, 50);
 }
 
 TEST(Collide, DoesNotDependOnTheShapeOfTheTree) {

@@ -31,16 +31,16 @@ struct Peak {
 
 // Runs on a stack of exactly the proved size, with watched entries behind it.
 Peak traverse_on_tight_stack(const SphereTree& a, const SphereTree& b) {
-  constexpr NodePair kUntouched{{-7, -7}};
+  const NodePair untouched(-7, -7);
   const std::size_t bound = traversal_stack_bound(a, b);
-  std::vector<NodePair> stack(bound + 64, kUntouched);
+  std::vector<NodePair> stack(bound + 64, untouched);
   const Pose origin;
   const RelativePose pose(a, origin, b, origin);
   CountLeaves policy;
   EXPECT_TRUE(traverse_with(stack.data(), bound, TreePair(a, b, pose), pose, policy));
   Peak peak{0, policy.count};
   for (std::size_t i = 0; i < stack.size(); ++i) {
-    if (stack[i].node[0] != kUntouched.node[0]) peak.entries = i + 1;
+    if (!(stack[i] == untouched)) peak.entries = i + 1;
   }
   EXPECT_LE(peak.entries, bound);
   return peak;

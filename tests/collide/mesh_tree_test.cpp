@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Balls against triangles, with the distance of point and triangle in 100 digits as the oracle.
+
+#include "collide/mesh_tree.h"
+
+#include "collide/relative_pose.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "tests/collide/trees.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spherule::test {
+namespace {
+
+using Triangle = std::array<Vector<Real>, 3>;
+
+Vector<Real> difference(const Vector<Real>& a, const Vector<Real>& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Real dot(const Vector<Real>& a, const Vector<Real>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Real segment_distance(const Vector<Real>& p, const Vector<Real>& a, const Vector<Real>& b) {
+  const Vector<Real> ab = difference(b, a);
+  const Real length = dot(ab, ab);
+  Real t = length > 0 ? Real(dot(difference(p, a), ab) / length) : Real(0);
+  t = t < 0 ? Real(0) : t > 1 ? Real(1) : t;
+  return sqrt(squared_distance(p, {a[0] + t * ab[0], a[1] + t * ab[1], a[2] + t * ab[2]}));
+}
+
+// The foot on the plane where it lies inside the triangle, else the nearest edge.
+Real triangle_distance(const Vector<Real>& p, const Triangle& triangle) {
+  const Vector<Real> ab = difference(triangle[1], triangle[0]);
+  const Vector<Real> ac = difference(triangle[2], triangle[0]);
+  const Vector<Real> ap = difference(p, triangle[0]);
+  const Real bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac);
+  const Real determinant = bb * cc - bc * bc;
+  if (determinant > 0) {
+    const Real v = (cc * dot(ap, ab) - bc * dot(ap, ac)) / determinant;
+    const Real w = (bb * dot(ap, ac) - bc * dot(ap, ab)) / determinant;
+    if (v >= 0 && w >= 0 && v + w <= 1) {
+      return sqrt(squared_distance(
+          ap, {v * ab[0] + w * ac[0], v * ab[1] + w * ac[1], v * ab[2] + w * ac[2]}));
+    }
+  }
+  Real least = segment_distance(p, triangle[0], triangle[1]);
+  for (const Real& edge : {segment_distance(p, triangle[1], triangle[2]),
+                           segment_distance(p, triangle[2], triangle[0])}) {
+    if (edge < least) least = edge;
+  }
+  return least;
+}
+
+Real exact_distance(const Sphere& ball, const Pose& world_from_a,
+                    const std::array<Eigen::Vector3d, 3>& corners, const Pose& world_from_b) {
+  Triangle triangle;
+  for (std::size_t i = 0; i < 3; ++i) {
+    triangle[i] = transform(world_from_b, exact<Real>(corners[i]));
+  }
+  return triangle_distance(transform(world_from_a, exact<Real>(ball.center)), triangle);
+}
+
+// Random triangles, or needles where `thin` is small.
+TriangleMesh random_mesh(Random& random, int count, double size, double thin) {
+  TriangleMesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const int first = 3 * i;
+    const Eigen::Vector3d a = random.point(size);
+    const Eigen::Vector3d edge = random.point(size);
+    mesh.vertices.insert(mesh.vertices.end(),
+                         {a, a + edge, a + random.uniform(0.0, 1.0) * edge + random.point(thin)});
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+  }
+  return mesh;
+}
+
+SphereTree tree_of(const Sphere& sphere) {
+  return build_tree(std::span(&sphere, 1));
+}
+
+void compare_near_contact(double thin, double largest_excess, int least_extra) {
+  Random random(1);
+  int touching = 0;
+  int extra = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const MeshTree mesh(random_mesh(random, 1, 1.0, thin));
+    const Pose world_from_a = random.pose(1.0);
+    const Pose world_from_b = random.pose(1.0);
+    Sphere ball{random.point(1.0), 0.0};
+    const Real exact = exact_distance(ball, world_from_a, mesh.triangle(0), world_from_b);
+    ball.radius = exact.convert_to<double>() * (1.0 + random.whole(-2, 2) * 0x1p-52);
+    const SphereTree tree = tree_of(ball);
+    const bool hit = collides(tree, world_from_a, mesh, world_from_b);
+    const Real gap = exact - ball.radius;
+    ASSERT_TRUE(hit || gap > 0) << "missed by " << gap;
+    const double slack =
+        2.5 * collision_slack(tree, world_from_a, mesh.tree(), world_from_b) + largest_excess;
+    ASSERT_TRUE(!hit || gap <= slack) << gap;
+    touching += gap <= 0;
+    extra += hit && gap > 0;
+
+    // Clearly apart must be free.
+    const SphereTree smaller =
+        tree_of({ball.center, std::max(0.0, ball.radius - 2.0 * slack - 1e-12)});
+    if (ball.radius > 1e-3) {
+      ASSERT_FALSE(collides(smaller, world_from_a, mesh, world_from_b));
+    }
+  }
+  EXPECT_GT(touching, 300);
+  EXPECT_GT(extra, least_extra);
+}
+
+TEST(MeshTree, ContactWithATriangleIsNeverMissed) {
+  compare_near_contact(1.0, 0.0, 300);
+}
+TEST(MeshTree, ContactWithANeedleIsNeverMissed) {
+  compare_near_contact(1e-9, 1e-10, 100);
+}
+TEST(MeshTree, ContactWithADegenerateTriangleIsNeverMissed) {
+  compare_near_contact(0.0, 1e-10, 100);
+}
+
+TEST(MeshTree, FindsThePairsOfAllPairs) {
+  Random random(2);
+  int hits = 0;
+  for (int i = 0; i < 20; ++i) {
+    const SphereTree a = build_tree(random_spheres(random, 30, 1.0, 0.2));
+    const MeshTree b(random_mesh(random, 20, 0.5, 0.5));
+    const Pose world_from_a = random.pose(0.5);
+    const Pose world_from_b = random.pose(0.5);
+    const CollisionResult result = collide(a, world_from_a, b, world_from_b);
+    ASSERT_TRUE(result.complete);
+    ASSERT_TRUE(std::is_sorted(result.pairs.begin(), result.pairs.end()));
+    ASSERT_EQ(collides(a, world_from_a, b, world_from_b), result.verdict == Verdict::kCollision);
+    for (int j = 0; j < 30; ++j) {
+      for (int k = 0; k < 20; ++k) {
+        const bool found =
+            std::binary_search(result.pairs.begin(), result.pairs.end(), SpherePair{j, k});
+        const Sphere& ball = a.spheres()[static_cast<std::size_t>(j)];
+        const Real gap =
+            exact_distance(ball, world_from_a, b.triangle(k), world_from_b) - ball.radius;
+        ASSERT_EQ(found, gap <= 0) << gap;
+        ASSERT_LE(result.distance_lower_bound, std::max(Real(0), gap));
+        hits += found;
+      }
+    }
+  }
+  EXPECT_GT(hits, 30);
+}
+
+TEST(MeshTree, ABallInsideAClosedMeshDoesNotMeetItsSurface) {
+  const MeshTree tetrahedron(
+      {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}});
+  EXPECT_FALSE(collides(tree_of({{0.2, 0.2, 0.2}, 0.1}), Pose(), tetrahedron, Pose()));
+  EXPECT_TRUE(collides(tree_of({{0.2, 0.2, 0.2}, 0.2}), Pose(), tetrahedron, Pose()));
+}
+
+TEST(MeshTree, RefusesAMeshItCannotUse) {
+  EXPECT_THROW(MeshTree(TriangleMesh{}), Error);
+  EXPECT_THROW(MeshTree(TriangleMesh{{{0, 0, 0}}, {{0, 0, 1}}}), Error);
+  EXPECT_THROW(MeshTree(TriangleMesh{{{0, 0, 0}}, {{0, 0, -1}}}), Error);
+  EXPECT_THROW(MeshTree(TriangleMesh{{{0, 0, std::nan("")}}, {{0, 0, 0}}}), Error);
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/robot/robot_model.h"
+#include "tests/collide/exact_scene.h"
+
+#include <vector>
+
+namespace spherule::test {
+
+// A mechanism of `joints` random joints: a serial chain, or a tree where `branching`.
+RobotModel random_robot(Random& random, int joints, bool branching);
+
+// Positions of all its variables within +-`largest`.
+std::vector<double> random_configuration(Random& random, const RobotModel& robot, double largest);
+
+}  // namespace spherule::test
