@@ -101,6 +101,9 @@ int audit(const AuditArguments& arguments) {
   if (arguments.min_external || file.options.contains("min-external")) {
     external = place_external_spheres(mesh, external_options(options));
     certify_options.external = &*external;
+    // A file that says how it was fitted was proved at this resolution.
+    certify_options.resolution =
+        proof_resolution(options.max_error, external->box.diagonal().norm());
   }
   const Certificate certificate = certify(mesh, file.spheres, certify_options);
   print(arguments, certificate, external);

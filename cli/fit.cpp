@@ -13,7 +13,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdint>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -127,9 +129,9 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--min-internal", options.min_internal_diameter,
                       "Diameter at which the paper's loop seeds a sphere (default: E / 2)");
-  // Without the check CLI11 takes -1 for the largest number.
+  // Without the check CLI11 takes -1 for the largest number; files store 63 bits.
   command->add_option("--seed", options.seed, "Seed of everything random")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
   command->add_option("--threads", options.threads, "Threads, 0: all; the result is the same")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--report", arguments->report,
