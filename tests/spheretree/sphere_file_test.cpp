@@ -98,7 +98,7 @@ TEST_F(SphereFiles, RoundTripOfManyRandomDoubles) {
       if (std::abs(value) <= kMaxCoordinate) return value;
     }
   };
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < 5000; ++i) {
     const double x = any();
     const double y = any();
     file.spheres.push_back({{x, y, any()}, std::abs(any())});
