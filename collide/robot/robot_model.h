@@ -18,11 +18,11 @@ enum class JointType { kFixed, kRevolute, kPrismatic };
 // Joint between a parent link and its child: child frame = origin, then the motion about or along
 // `axis`. Lengths in metres, angles in radians.
 struct Joint {
-  std::string name;
+  std::string name{};
   JointType type = JointType::kFixed;
   int parent_link = -1;
   int child_link = -1;
-  Pose parent_from_joint;                           // at position zero; made unit when added
+  Pose parent_from_joint{};                         // at position zero; made unit when added
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit length is made when added
   double lower = 0.0;                               // limits of the position
   double upper = 0.0;

@@ -56,7 +56,11 @@ void compare_with_kdl(bool branching) {
   Random random(1);
   for (int i = 0; i < 100; ++i) {
     const RobotModel robot = random_robot(random, random.whole(1, 12), branching);
-    const KDL::Tree tree = kdl_tree(robot);
+    if (robot.variable_count() == 0) continue;  // KDL asks for a position even then
+    // A copy of a KDL tree numbers its joints depth-first, whatever the numbers of the original,
+    // and the solver keeps a copy; a copy of a copy keeps the numbers.
+    const KDL::Tree original = kdl_tree(robot);
+    const KDL::Tree tree(original);
     ASSERT_EQ(tree.getNrOfJoints(), static_cast<unsigned>(robot.variable_count()));
     KDL::TreeFkSolverPos_recursive solver(tree);
     const std::vector<double> configuration = random_configuration(random, robot, 3.0);
@@ -104,7 +108,7 @@ Vector<Real> rotate(const std::array<Real, 4>& q, const Vector<Real>& p) {
               (w * w - x * x - y * y + z * z) * p[2]};
 }
 
-Vector<Real> apply(const ExactPose& pose, const Vector<Real>& p) {
+Vector<Real> image(const ExactPose& pose, const Vector<Real>& p) {
   const Vector<Real> r = rotate(pose.q, p);
   return {r[0] + pose.t[0], r[1] + pose.t[1], r[2] + pose.t[2]};
 }
@@ -139,7 +143,7 @@ ExactPose exact_motion(const Joint& joint, double position) {
 }
 
 ExactPose compose(const ExactPose& a, const ExactPose& b) {
-  return {product(a.q, b.q), apply(a, b.t)};
+  return {product(a.q, b.q), image(a, b.t)};
 }
 
 TEST(Kinematics, ErrorBoundCoversTheErrorAndIsNotIdle) {
@@ -164,7 +168,7 @@ TEST(Kinematics, ErrorBoundCoversTheErrorAndIsNotIdle) {
       const Vector<Real> computed =
           transform(poses[static_cast<std::size_t>(joint.child_link)], exact<Real>(point));
       const Real error =
-          sqrt(squared_distance(computed, apply(exact_poses.back(), exact<Real>(point))));
+          sqrt(squared_distance(computed, image(exact_poses.back(), exact<Real>(point))));
       ASSERT_LE(error, bound);
       worst = std::max(worst, (error / bound).convert_to<double>());
     }
