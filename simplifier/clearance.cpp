@@ -9,14 +9,13 @@ namespace spherule {
 
 using Eigen::Vector3d;
 
-Clearance::Clearance(const ExternalSpheres& external)
-    : balls_(external.balls), box_(external.box) {
+Clearance::Clearance(const ExternalSpheres& external) : balls_(external.balls), box_(external.box) {
   centers_.reserve(external.balls.size());
   for (const Sphere& s : external.balls) centers_.push_back(s.center);
 }
 
 // A face of the box is an external ball of infinite radius; its gap is a single difference.
-ClearanceAt Clearance::operator()(const Vector3d& point) const {
+ClearanceAt Clearance::operator()(const Vector3d& point, double tolerance, double limit) const {
   ClearanceAt result;
   double nearest = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -33,7 +32,7 @@ ClearanceAt Clearance::operator()(const Vector3d& point) const {
   }
   result.lower = next_down(nearest);
   result.upper = next_up(nearest);
-  const internal::NearestBall ball = balls_.nearest(point, nearest);
+  const internal::NearestBall ball = balls_.nearest(point, std::min(nearest, limit), tolerance);
   if (ball.index < 0) {
     if (!balls_.empty()) result.lower = std::min(result.lower, ball.lower);
     return result;

@@ -133,9 +133,9 @@ void place_reachable(const MeshDistance& distance, double rho, const ExternalOpt
                     [&](std::size_t i) { snug[i] = place(frontier[i]); });
   std::copy_if(snug.begin(), snug.end(), std::back_inserter(result.balls),
                [](const Sphere& s) { return s.radius > 0.0; });
-  // A ball of diameter D + s on its way has clearance at least rho + s / 2. Each node whose cell the
-  // way crosses lies within sqrt(3) h / 2 of a point of it, so two of them that share a face satisfy
-  // the passage rule if rho + s / 2 - 0.8661 h - h / 2 >= rho.
+  // A ball of diameter D + s on its way has clearance at least rho + s / 2. Each node whose cell
+  // the way crosses lies within sqrt(3) h / 2 of a point of it, so two of them that share a face
+  // satisfy the passage rule if rho + s / 2 - 0.8661 h - h / 2 >= rho.
   result.closing_slack = 2.0 * (0.8661 + 0.5) * step;
 }
 

@@ -54,6 +54,10 @@ struct Simplification {
 // Throws Error for a mesh that validate() refuses and for options out of range.
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
 
+// How finely an audit of a cover made with error E must look (CertifyOptions::resolution), for a
+// mesh with the given box diagonal: a cover keeps a reserve of a few hundredths of E for the proof.
+double proof_resolution(double max_error, double diagonal);
+
 // The options under their command-line names, for SphereFile::options; `scale` is the one the mesh
 // was read with. And back, for an audit: what is absent keeps its default, Error names a bad value.
 std::map<std::string, OptionValue> option_record(const SimplifyOptions& options, double scale);

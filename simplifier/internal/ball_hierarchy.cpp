@@ -4,6 +4,7 @@
 #include "spheretree/rounding.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -23,7 +24,10 @@ constexpr std::size_t kStackSize = 40;
 
 BallHierarchy::BallHierarchy(std::span<const Sphere> balls) {
   balls_.reserve(balls.size());
-  for (const Sphere& s : balls) balls_.push_back({s, static_cast<std::int32_t>(balls_.size())});
+  for (const Sphere& s : balls) {
+    balls_.push_back({s, static_cast<std::int32_t>(balls_.size())});
+    magnitude_ = std::max(magnitude_, s.center.norm());
+  }
   nodes_.reserve(balls_.size() / 2 + 1);
   if (!balls_.empty()) build(0, static_cast<std::int32_t>(balls_.size()));
 }
@@ -39,7 +43,13 @@ void BallHierarchy::build(std::int32_t begin, std::int32_t end) {
     greatest = std::max(greatest, s.radius);
   }
   const std::size_t self = nodes_.size();
-  nodes_.push_back({centers.min(), centers.max(), greatest, -1, begin, end});
+  nodes_.emplace_back();
+  nodes_[self].low = centers.min();
+  nodes_[self].high = centers.max();
+  nodes_[self].max_radius = greatest;
+  nodes_[self].begin = begin;
+  nodes_[self].end = end;
+  fit_half_space(nodes_[self]);
   if (end - begin <= kLeafSize) return;
   int axis = 0;
   const bool by_radius = greatest - least > centers.sizes().maxCoeff(&axis);
@@ -54,26 +64,56 @@ void BallHierarchy::build(std::int32_t begin, std::int32_t end) {
   build(middle, end);
 }
 
-// Values are compared as computed and the rounding is charged once, at the end. For a ball at distance
-// d with radius R the computed v = d - R errs by at most 3.5 u d + u |v|; with d = v + R that is below
-// 8 u (|v| + R). A node's bound (box distance less largest radius) errs by no more, with the largest
-// radius of all in the place of R. As v - 8 u |v| grows with v, whatever was skipped or compared less
-// favourably is exactly at least v - 8 u (|v| + R_max) for the v that is returned.
-NearestBall BallHierarchy::nearest(const Vector3d& point, double limit) const {
+void BallHierarchy::fit_half_space(Node& node) const {
+  const auto balls = std::span(balls_).subspan(static_cast<std::size_t>(node.begin),
+                                               static_cast<std::size_t>(node.end - node.begin));
+  Vector3d mean = Vector3d::Zero();
+  double mean_radius = 0.0;
+  for (const Entry& e : balls) {
+    mean += e.ball.center;
+    mean_radius += e.ball.radius;
+  }
+  mean /= static_cast<double>(balls.size());
+  mean_radius /= static_cast<double>(balls.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Vector3d slope = Vector3d::Zero();
+  for (const Entry& e : balls) {
+    const Vector3d d = e.ball.center - mean;
+    covariance += d * d.transpose();
+    slope += d * (e.ball.radius - mean_radius);
+  }
+  const Vector3d normal = covariance.inverse() * slope;
+  const double norm = normal.norm();
+  // Without a usable direction the half-space is all of space.
+  const bool usable = std::isfinite(norm) && norm > 0.0;
+  node.normal = usable ? Vector3d(normal / (norm * kRelativeUp)) : Vector3d::Zero();
+  node.offset = std::numeric_limits<double>::infinity();
+  for (const Entry& e : balls) {
+    node.offset = std::min(node.offset, node.normal.dot(e.ball.center) - e.ball.radius);
+  }
+}
+
+// Values are compared as computed and the rounding is charged once, at the end. For a ball at
+// distance d with radius R the computed v = d - R errs by at most 3.5 u d + u |v|; with d = v + R
+// that is below 8 u (|v| + R). A node's bound (box distance less largest radius) errs by no more,
+// with the largest radius of all in the place of R. As v - 8 u |v| grows with v, whatever was
+// skipped or compared less favourably is exactly at least v - 8 u (|v| + R_max) for the v that is
+// returned, less the tolerance.
+NearestBall BallHierarchy::nearest(const Vector3d& point, double limit, double tolerance) const {
   NearestBall best{limit, limit, -1};
   if (nodes_.empty()) return best;
   double nearest = limit;
   const auto bound = [&](std::int32_t i) {
     const Node& n = nodes_[static_cast<std::size_t>(i)];
     const Vector3d d = (n.low - point).cwiseMax(point - n.high).cwiseMax(0.0);
-    return std::pair{d.norm() - n.max_radius, i};
+    return std::pair{std::max(d.norm() - n.max_radius, n.offset - n.normal.dot(point)), i};
   };
   std::array<std::pair<double, std::int32_t>, kStackSize> stack;
   std::size_t size = 0;
   stack[size++] = bound(0);
   while (size > 0) {
     const auto [node_bound, index] = stack[--size];
-    if (node_bound >= nearest) continue;
+    if (node_bound >= nearest - tolerance) continue;
     const Node& node = nodes_[static_cast<std::size_t>(index)];
     if (node.right < 0) {
       for (auto i = node.begin; i < node.end; ++i) {
@@ -94,8 +134,9 @@ NearestBall BallHierarchy::nearest(const Vector3d& point, double limit) const {
   }
   if (std::isinf(nearest)) return best;
   const double slack =
-      8.0 * kUnitRoundoff * (std::abs(nearest) + nodes_[0].max_radius) + kUnderflow;
-  best.lower = sub_down(nearest, slack);
+      8.0 * kUnitRoundoff * (std::abs(nearest) + nodes_[0].max_radius + magnitude_ + point.norm()) +
+      kUnderflow;
+  best.lower = sub_down(sub_down(nearest, tolerance), slack);
   best.upper = best.index < 0 ? limit : add_up(nearest, slack);
   return best;
 }

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/certificate.h"
+
+#include "simplifier/clearance.h"
+#include "simplifier/internal/proof.h"
+#include "simplifier/internal/protrusion.h"
+#include "simplifier/mesh_distance.h"
+#include "simplifier/mesh_report.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <string>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+
+// Without external spheres, |M| is what a ball of this share of the box diagonal cannot reach.
+constexpr double kPointFlood = 1.0 / 128.0;
+
+void check_options(std::span<const Sphere> spheres, const CertifyOptions& options) {
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    if (!is_usable(spheres[i])) {
+      throw Error("sphere " + std::to_string(i), "not finite, too large, or of negative radius");
+    }
+  }
+  if (!(options.resolution > 0.0 && options.resolution <= 1.0)) {
+    throw Error("resolution", "must be above 0 and at most 1");
+  }
+  if (!(options.protrusion_tolerance >= 0.0 && options.protrusion_tolerance <= 1.0)) {
+    throw Error("protrusion tolerance", "must be between 0 and 1");
+  }
+  if (!(options.padding >= 0.0 && options.padding <= kMaxCoordinate)) {
+    throw Error("padding", "must be finite and not negative");
+  }
+}
+
+// What certifies |M| itself: everything that a small ball cannot reach from outside.
+ExternalSpheres flood_closely(const TriangleMesh& mesh, double padding, double diagonal) {
+  ExternalOptions options;
+  options.min_external_diameter = kPointFlood * diagonal;
+  options.grid_step = options.min_external_diameter / 2.0;
+  options.padding = padding;
+  return place_external_spheres(mesh, options);
+}
+
+}  // namespace
+
+Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
+                    const CertifyOptions& options) {
+  validate(mesh, "mesh");
+  check_options(spheres, options);
+  const tbb::global_control threads(
+      tbb::global_control::max_allowed_parallelism,
+      options.threads > 0
+          ? static_cast<std::size_t>(options.threads)
+          : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  const MeshDistance distance(mesh);
+  const double diagonal = distance.box().diagonal().norm();
+  const ExternalSpheres own = options.external != nullptr
+                                  ? ExternalSpheres{}
+                                  : flood_closely(mesh, options.padding, diagonal);
+  const ExternalSpheres& external = options.external != nullptr ? *options.external : own;
+  const Clearance clearance(external);
+  const internal::BallHierarchy hierarchy(spheres);
+  const internal::BallsToProve balls{spheres, hierarchy};
+  const double finest = std::max(options.resolution * diagonal, kUnderflow);
+
+  Certificate result;
+  result.sphere_count = spheres.size();
+  if (options.progress) options.progress(-1.0, "proving the surface");
+  const internal::CoverageProof surface =
+      internal::prove_surface(mesh, external.padding, balls, finest);
+  if (options.progress) options.progress(-1.0, "proving the solid");
+  const bool closed = mesh_report(mesh).closed;
+  // Every point of S is a witness against S; against |M| itself only one that is proved to be
+  // inside.
+  const internal::CoverageProof solid =
+      internal::prove_solid(clearance, balls, finest, [&](const Vector3d& p) {
+        return options.external != nullptr ||
+               (closed && std::abs(distance.winding_number(p)) > 0.5);
+      });
+  result.surface_depth = {surface.lower, surface.upper};
+  result.solid_depth = {solid.lower, solid.upper};
+  result.uncovered_depth = {std::max(surface.lower, solid.lower),
+                            std::max(surface.upper, solid.upper)};
+  result.deepest_leak = solid.lower > surface.lower ? solid.deepest : surface.deepest;
+  result.covered = result.uncovered_depth.upper == 0.0;
+  result.pieces = surface.examined;
+  result.cells = solid.examined;
+  if (options.external != nullptr) {
+    result.protrusion_over_simplified_max =
+        internal::protrusion_over_solid(clearance, distance, spheres);
+  }
+  if (options.protrusion_tolerance > 0.0) {
+    if (options.progress) options.progress(-1.0, "measuring the protrusion");
+    result.protrusion_over_mesh = internal::protrusion_over_mesh(
+        distance, closed, clearance, balls, options.protrusion_tolerance * diagonal);
+  }
+  if (options.volume && closed && !spheres.empty()) {
+    result.volume_ratio = internal::estimate_volume_ratio(distance, balls);
+  }
+  return result;
+}
+
+CertificateRecord record(const Certificate& certificate) {
+  CertificateRecord r;
+  r.covered = certificate.covered;
+  r.uncovered_depth_lower = certificate.uncovered_depth.lower;
+  r.uncovered_depth_upper = certificate.uncovered_depth.upper;
+  r.protrusion_over_simplified_max = certificate.protrusion_over_simplified_max;
+  if (certificate.protrusion_over_mesh) {
+    r.protrusion_over_mesh_max = certificate.protrusion_over_mesh->upper;
+  }
+  r.sphere_count = certificate.sphere_count;
+  r.volume_ratio = certificate.volume_ratio;
+  return r;
+}
+
+}  // namespace spherule

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/rounding.h"
+
+#include <Eigen/Geometry>
+
+#include <array>
+
+namespace spherule::internal {
+
+// An axis-aligned cell of a subdivision. Half extents carry a margin above the rounding of centres
+// (1e-12 of themselves a halving, and a start above the resolution of the coordinates), so that the
+// halves of a cell cover it in exact arithmetic.
+struct BoxCell {
+  Eigen::Vector3d center;
+  Eigen::Vector3d half;
+
+  static BoxCell around(const Eigen::AlignedBox3d& box) {
+    const double magnitude = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+    return {box.center(), (box.sizes() / 2.0) * (1.0 + 1e-12) +
+                              Eigen::Vector3d::Constant(64.0 * kUnitRoundoff * magnitude)};
+  }
+
+  // Every point of the cell is within this of the centre.
+  double reach() const { return norm_upper(half); }
+
+  std::array<BoxCell, 2> halves() const {
+    int axis = 0;
+    half.maxCoeff(&axis);
+    BoxCell low = *this;
+    low.half[axis] =
+        0.5 * half[axis] * (1.0 + 1e-12) + 2.0 * kUnitRoundoff * std::abs(center[axis]);
+    BoxCell high = low;
+    low.center[axis] = center[axis] - 0.5 * half[axis];
+    high.center[axis] = center[axis] + 0.5 * half[axis];
+    return {low, high};
+  }
+};
+
+}  // namespace spherule::internal

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/internal/protrusion.h"
+
+#include "simplifier/internal/box_cell.h"
+#include "simplifier/internal/medial_ascent.h"
+#include "simplifier/internal/random.h"
+#include "spheretree/rounding.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRelativeTolerance = 0.02;
+
+// Distance from `c` to some point of S.
+double distance_to_solid(const Clearance& clearance, const MeshDistance& distance,
+                         const Vector3d& c, double radius) {
+  double nearest = distance(c).upper;
+  for (const Vector3d& p :
+       ascend(clearance, c, {.first_step = 0.01 * radius, .least_step = 1e-4 * radius})) {
+    if (clearance(p).lower >= 0.0) nearest = std::min(nearest, distance_upper(c, p));
+  }
+  return nearest;
+}
+
+Eigen::AlignedBox3d box_of(std::span<const Sphere> balls) {
+  Eigen::AlignedBox3d box;
+  for (const Sphere& s : balls) {
+    box.extend(Vector3d(s.center - Vector3d::Constant(s.radius)));
+    box.extend(Vector3d(s.center + Vector3d::Constant(s.radius)));
+  }
+  return box;
+}
+
+struct Cell {
+  BoxCell box;
+  double upper;  // no point of the cell is further from M
+  bool outside;  // known to be free of M with winding number zero
+};
+
+bool below(const Cell& a, const Cell& b) {
+  return a.upper < b.upper;
+}
+
+}  // namespace
+
+double protrusion_over_solid(const Clearance& clearance, const MeshDistance& distance,
+                             std::span<const Sphere> balls) {
+  std::vector<double> each(balls.size());
+  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
+    const Sphere& ball = balls[i];
+    const double d = clearance(ball.center).lower;
+    each[i] = d >= 0.0 ? sub_up(ball.radius, d)
+                       : add_up(ball.radius,
+                                distance_to_solid(clearance, distance, ball.center, ball.radius));
+  });
+  return std::accumulate(each.begin(), each.end(), 0.0,
+                         [](double a, double b) { return std::max(a, b); });
+}
+
+Bounds protrusion_over_mesh(const MeshDistance& distance, bool closed, const Clearance& clearance,
+                            const BallsToProve& balls, double tolerance) {
+  Bounds result;
+  if (balls.balls.empty()) return result;
+  std::vector<Cell> heap{
+      {BoxCell::around(box_of(balls.balls)), std::numeric_limits<double>::infinity(), false}};
+  // The greatest distance met in the balls at a point that is not known to be inside: where the
+  // search may stop. Only points outside of S count as witnesses.
+  double met = 0.0;
+  while (!heap.empty()) {
+    std::pop_heap(heap.begin(), heap.end(), below);
+    Cell cell = heap.back();
+    heap.pop_back();
+    if (cell.upper <= met + std::max(tolerance, kRelativeTolerance * met)) {
+      result.upper = std::max({result.upper, cell.upper, 0.0});
+      break;
+    }
+    const Vector3d& q = cell.box.center;
+    const double reach = cell.box.reach();
+    const NearestBall gap = balls.hierarchy.nearest(q);
+    if (gap.lower > reach) continue;
+    const SurfaceDistance d = distance(q);
+    if (closed && !cell.outside && d.lower > reach) {
+      if (std::abs(distance.winding_number(q)) > 0.5) continue;
+      cell.outside = true;
+    }
+    cell.upper = std::min(cell.upper, add_up(d.upper, reach));
+    if (gap.upper <= 0.0 && d.lower > met &&
+        (cell.outside || !closed || std::abs(distance.winding_number(q)) < 0.5)) {
+      met = d.lower;
+      if (clearance(q).upper < 0.0) result.lower = std::max(result.lower, d.lower);
+    }
+    for (const BoxCell& half : cell.box.halves()) {
+      heap.push_back({half, cell.upper, cell.outside});
+      std::push_heap(heap.begin(), heap.end(), below);
+    }
+  }
+  return result;
+}
+
+double estimate_volume_ratio(const MeshDistance& distance, const BallsToProve& balls) {
+  constexpr std::size_t kSamples = 200'000;
+  constexpr double kMaxTriangleTests = 1e8;
+  const auto share = [](const Eigen::AlignedBox3d& box, std::size_t samples, auto inside) {
+    Random random(1);
+    std::vector<Vector3d> points(samples);
+    for (Vector3d& p : points) p = random.in(box);
+    std::vector<char> hit(samples);
+    tbb::parallel_for(std::size_t{0}, samples,
+                      [&](std::size_t i) { hit[i] = inside(points[i]) ? 1 : 0; });
+    const auto count = std::count(hit.begin(), hit.end(), char{1});
+    return static_cast<double>(count) / static_cast<double>(samples) * box.volume();
+  };
+  const auto triangles = static_cast<double>(distance.triangle_count());
+  const auto few = static_cast<std::size_t>(
+      std::clamp(kMaxTriangleTests / triangles, 2000.0, static_cast<double>(kSamples)));
+  const double solid = share(distance.box(), few, [&](const Vector3d& p) {
+    return std::abs(distance.winding_number(p)) > 0.5;
+  });
+  const double covered = share(box_of(balls.balls), kSamples, [&](const Vector3d& p) {
+    return balls.hierarchy.nearest(p, 0.0).index >= 0;
+  });
+  return covered / solid;
+}
+
+}  // namespace spherule::internal

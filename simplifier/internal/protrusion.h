@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/certificate.h"
+#include "simplifier/clearance.h"
+#include "simplifier/internal/proof.h"
+#include "simplifier/mesh_distance.h"
+
+namespace spherule::internal {
+
+// Upper bound of the protrusion over S: a ball with its centre in S, of clearance d, protrudes by
+// at most r - d; one with its centre outside of S by at most r + the distance to a point of S (of
+// the mesh, or met on the way away from the contact).
+double protrusion_over_solid(const Clearance& clearance, const MeshDistance& distance,
+                             std::span<const Sphere> balls);
+
+// Bounds of the protrusion over |M|, the largest distance from a point of the balls to |M|,
+// searched best-first until they are `tolerance` (or 2 % of their value) apart. The upper bound is
+// proved: it counts a point as inside only where the winding number of a closed mesh says so
+// (`closed`), and measures from the surface elsewhere, so sealed hollows and open meshes can make
+// it too large. The lower bound is witnessed by points outside of S.
+Bounds protrusion_over_mesh(const MeshDistance& distance, bool closed, const Clearance& clearance,
+                            const BallsToProve& balls, double tolerance);
+
+// Volume of the union of the balls over the volume inside of a closed mesh, from fixed samples.
+double estimate_volume_ratio(const MeshDistance& distance, const BallsToProve& balls);
+
+}  // namespace spherule::internal

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/internal/proof.h"
+#include "simplifier/internal/subdivision.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Piece {
+  std::array<Vector3d, 3> corner;
+};
+
+// A midpoint is off by at most sqrt(3) u times the largest coordinate, and the midpoint of points
+// that are off by some amount is off by no more than that plus one rounding. An edge is halved
+// fewer than 100 times before it is shorter than any `finest`, so 256 u times the largest
+// coordinate bounds how far the pieces are from tiling the triangle.
+double subdivision_error(const TriangleMesh& mesh) {
+  double magnitude = 0.0;
+  for (const Vector3d& v : mesh.vertices) magnitude = std::max(magnitude, v.cwiseAbs().maxCoeff());
+  return 256.0 * kUnitRoundoff * magnitude;
+}
+
+void halve(const Piece& piece, std::vector<Piece>& parts) {
+  const auto& p = piece.corner;
+  std::size_t longest = 0;
+  double length = -1.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double l = (p[(k + 1) % 3] - p[k]).squaredNorm();
+    if (l > length) {
+      length = l;
+      longest = k;
+    }
+  }
+  const Vector3d& from = p[longest];
+  const Vector3d& to = p[(longest + 1) % 3];
+  const Vector3d& apex = p[(longest + 2) % 3];
+  const Vector3d middle = (from + to) / 2.0;
+  parts.push_back({{from, middle, apex}});
+  parts.push_back({{middle, to, apex}});
+}
+
+}  // namespace
+
+CoverageProof prove_surface(const TriangleMesh& mesh, double padding, const BallsToProve& balls,
+                            double finest) {
+  const double error = subdivision_error(mesh);
+  const double reach = add_up(padding, error);
+  const auto examine = [&](const Piece& piece) {
+    const auto& [a, b, c] = piece.corner;
+    Finding found;
+    found.point = (a + b + c) / 3.0;
+    const NearestBall gap = balls.hierarchy.nearest(found.point);
+    if (gap.index >= 0) {
+      const Sphere& ball = balls.balls[static_cast<std::size_t>(gap.index)];
+      found.settled = std::ranges::all_of(
+          piece.corner, [&](const Vector3d& p) { return certainly_contains(ball, p, reach); });
+    }
+    const double radius = std::max({distance_upper(found.point, a), distance_upper(found.point, b),
+                                    distance_upper(found.point, c)});
+    found.smallest = radius <= finest;
+    found.upper = add_up(gap.upper, add_up(radius, reach));
+    found.depth = sub_down(gap.lower, error);
+    found.witness = true;
+    return found;
+  };
+  std::vector<Piece> pieces;
+  pieces.reserve(mesh.triangles.size());
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const auto vertex = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+    pieces.push_back({{vertex(0), vertex(1), vertex(2)}});
+  }
+  return Subdivision<Piece, decltype(examine), decltype(&halve)>(finest, examine, &halve)
+      .prove(pieces);
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/clearance.h"
+#include "simplifier/internal/ball_set.h"
+#include "simplifier/internal/box_cell.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace spherule::internal {
+
+// Finds the point of S that is furthest from a growing set of balls, with proved bounds: best-first
+// subdivision of the box of S. A cell with centre q and half diagonal g is at most
+// min(|q - c| - r) + g from the balls everywhere; cells that lie outside of S, or within the
+// target, are dropped for good, since balls are only added. Bounds that are out of date are upper
+// bounds, so a cell is brought up to date only when it comes to the top.
+class UncoveredSearch {
+ public:
+  // `target`: errors up to this are not of interest. The greatest error is bracketed to within
+  // `tolerance`, or a tenth of what it exceeds the target by if that is more.
+  UncoveredSearch(const Clearance& clearance, double target, double tolerance);
+
+  struct Peak {
+    Eigen::Vector3d point;
+    double upper = 0.0;     // no point of S is further from the balls
+    double lower = 0.0;     // `point` is this far from them, if it is in S
+    bool in_solid = false;  // whether `point` is proved to be in S
+  };
+
+  // The furthest point for the balls as they are now; `upper` is the target where none exceeds it
+  // (then `point` means nothing and `lower` is 0).
+  Peak next(const BallSet& balls);
+
+  std::size_t cells_examined() const { return examined_; }
+
+ private:
+  struct Cell {
+    BoxCell box;
+    double upper;
+    std::uint64_t order;  // ties are broken by age
+    bool inside;          // the cell is wholly in S
+  };
+  static bool below(const Cell& a, const Cell& b);
+  void push(const Cell& cell);
+  Cell pop();
+
+  const Clearance& clearance_;
+  double target_;
+  double tolerance_;
+  std::vector<Cell> heap_;
+  std::uint64_t made_ = 0;
+  std::size_t examined_ = 0;
+};
+
+}  // namespace spherule::internal

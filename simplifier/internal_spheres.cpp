@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/internal_spheres.h"
+
+#include "simplifier/internal/cover_history.h"
+#include "simplifier/internal/medial_ascent.h"
+#include "simplifier/internal/uncovered_search.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+using internal::UncoveredSearch;
+
+// Shares of E. The loop stops at kLoopLimit; the rest is kept for the margin below, which lets
+// every piece of a subdivision down to that size lie inside a single inflated ball, as the proof
+// needs it.
+constexpr double kLoopLimit = 0.97;
+constexpr double kProofMargin = 0.02;
+constexpr double kPeakTolerance = 0.01;
+constexpr double kLeastStep = 0.05;
+// No part is worth a hundred million balls: the error is then too small for the model.
+constexpr std::size_t kMaxSpheres = 2'000'000;
+
+// The ball that grows from a seed at `peak`.
+class Grower {
+ public:
+  Grower(const Clearance& clearance, double max_error, double seed_diameter)
+      : clearance_(clearance), max_error_(max_error), seed_radius_(seed_diameter / 2.0) {}
+
+  Sphere operator()(const Vector3d& seed, std::size_t& rejected) const {
+    if (clearance_(seed).lower < seed_radius_) ++rejected;
+    const std::vector<Vector3d> path =
+        internal::ascend(clearance_, seed,
+                         {.first_step = std::max(seed_radius_, kLeastStep * max_error_),
+                          .least_step = std::min(seed_radius_, kLeastStep * max_error_),
+                          .tolerance = kPeakTolerance * max_error_});
+    const Sphere grown = ball_at(path.back());
+    if (gap(grown, seed) <= 0.9 * max_error_) return grown;
+    // The gap grows along the way, from at most zero; take the last position that keeps it small.
+    for (auto it = path.rbegin() + 1; it != path.rend(); ++it) {
+      const Sphere ball = ball_at(*it);
+      if (gap(ball, seed) <= 0.5 * max_error_) return ball;
+    }
+    return ball_at(seed);
+  }
+
+ private:
+  Sphere ball_at(const Vector3d& c) const { return {c, std::max(0.0, clearance_(c).lower)}; }
+  static double gap(const Sphere& ball, const Vector3d& p) {
+    return (p - ball.center).norm() - ball.radius;
+  }
+
+  const Clearance& clearance_;
+  double max_error_;
+  double seed_radius_;
+};
+
+}  // namespace
+
+SphereCover place_internal_spheres(const TriangleMesh& mesh, const Clearance& clearance,
+                                   const CoverOptions& options) {
+  const double limit = options.max_error * kLoopLimit;
+  const double seed_diameter =
+      options.min_internal_diameter > 0.0 ? options.min_internal_diameter : options.max_error / 2.0;
+  UncoveredSearch search(clearance, limit, kPeakTolerance * options.max_error);
+  const Grower grow(clearance, options.max_error, seed_diameter);
+  std::optional<internal::CoverHistory> history;
+  if (options.history) {
+    history.emplace(mesh, clearance.box(), options.max_error, options.seed);
+  }
+  internal::BallSet balls;
+  SphereCover result;
+  double error = 0.0;
+  while (true) {
+    const UncoveredSearch::Peak peak = search.next(balls);
+    error = peak.upper;
+    if (history && !balls.balls().empty()) {
+      CoverHistoryEntry entry = history->entry(error + kProofMargin * options.max_error);
+      entry.max_error_lower = peak.lower;
+      entry.max_error_upper = peak.upper;
+      result.history.push_back(entry);
+    }
+    if (peak.upper <= limit) break;
+    const Sphere ball = grow(peak.point, result.seeds_rejected);
+    balls.add(ball);
+    if (history) history->add(ball);
+    if (balls.balls().size() > kMaxSpheres) {
+      throw Error("max error", "too small for this model: more than two million spheres");
+    }
+    if (options.progress) options.progress(-1.0, "placing internal spheres");
+  }
+  result.spheres_before_inflation = balls.balls();
+  result.inflation = add_up(error, kProofMargin * options.max_error);
+  for (const Sphere& s : balls.balls()) {
+    result.spheres.push_back(
+        {s.center, std::max(options.min_radius, add_up(s.radius, result.inflation))});
+  }
+  return result;
+}
+
+}  // namespace spherule

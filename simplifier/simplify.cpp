@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/simplify.h"
+
+#include "simplifier/mesh_report.h"
+#include "spheretree/rounding.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <chrono>
+
+namespace spherule {
+namespace {
+
+constexpr double kDefaultError = 0.01;    // of the box diagonal
+constexpr double kDefaultDiameter = 4.0;  // of E: 90-degree edges ask for balls of radius 2 E
+constexpr double kResolutionOfError = 0.005;
+
+double box_diagonal(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) box.extend(mesh.vertices[static_cast<std::size_t>(t[k])]);
+  }
+  return box.diagonal().norm();
+}
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
+  validate(mesh, "mesh");
+  Simplification result;
+  SimplifyOptions& used = result.options = options;
+  const double diagonal = box_diagonal(mesh);
+  if (used.max_error == 0.0) used.max_error = kDefaultError * diagonal;
+  if (used.min_external_diameter == 0.0) {
+    used.min_external_diameter = kDefaultDiameter * used.max_error;
+  }
+
+  const Stopwatch external_time;
+  result.external =
+      place_external_spheres(mesh, {.placement = used.external,
+                                    .min_external_diameter = used.min_external_diameter,
+                                    .padding = used.padding,
+                                    .max_error = used.max_error,
+                                    .limit = used.external_limit,
+                                    .seed = used.seed,
+                                    .progress = used.progress});
+  result.times.external = external_time.seconds();
+
+  const Stopwatch cover_time;
+  result.cover = cover(mesh, result.external,
+                       {.method = used.method,
+                        .max_error = used.max_error,
+                        .min_radius = used.min_radius,
+                        .min_internal_diameter = used.min_internal_diameter,
+                        .seed = used.seed,
+                        .history = used.history,
+                        .threads = used.threads,
+                        .progress = used.progress});
+  result.times.cover = cover_time.seconds();
+
+  const Stopwatch certify_time;
+  CertifyOptions certify_options;
+  certify_options.external = &result.external;
+  certify_options.resolution = proof_resolution(used.max_error, diagonal);
+  certify_options.threads = used.threads;
+  certify_options.progress = used.progress;
+  result.certificate = certify(mesh, result.cover.spheres, certify_options);
+  result.times.certify = certify_time.seconds();
+  return result;
+}
+
+double proof_resolution(double max_error, double diagonal) {
+  const double finest = CertifyOptions{}.resolution;
+  if (!(max_error > 0.0 && diagonal > 0.0)) return finest;
+  return std::min(finest, kResolutionOfError * max_error / diagonal);
+}
+
+}  // namespace spherule
