@@ -14,6 +14,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 
 namespace spherule {
@@ -62,10 +63,13 @@ ExternalOptions external_options(const SimplifyOptions& options) {
 void print(const AuditArguments& arguments, const Certificate& certificate,
            const std::optional<ExternalSpheres>& external) {
   if (!arguments.json) {
-    std::cout << describe(certificate,
-                          external ? "the simplified solid (D " +
-                                         to_text(to_json(external->min_external_diameter), -1) + ")"
-                                   : "the mesh and its inside");
+    std::ostringstream solid;
+    if (external) {
+      solid << "the simplified solid (D " << external->min_external_diameter << ")";
+    } else {
+      solid << "the mesh and its inside";
+    }
+    std::cout << describe(certificate, solid.str());
     return;
   }
   Json json = to_json(certificate);

@@ -77,7 +77,8 @@ std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
   json["certificate"] = spherule::to_json(result.certificate);
   json["simplified_solid"] = to_json(result.external);
   json["cover"] = to_json(result.cover);
-  return to_text(json);
+  // Indented, hundreds of thousands of external spheres would take three times the room.
+  return to_text(json, Layout::kCompact);
 }
 
 }  // namespace spherule

@@ -59,7 +59,8 @@ Json to_json(const Certificate& certificate) {
   return json;
 }
 
-std::string to_text(const Json& json, int indent) {
+std::string to_text(const Json& json, Layout layout) {
+  const int indent = layout == Layout::kIndented ? 2 : -1;
   return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

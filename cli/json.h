@@ -27,8 +27,10 @@ Json to_json(const std::optional<T>& value) {
   return value ? to_json(*value) : Json(nullptr);
 }
 
+enum class Layout { kIndented, kCompact };
+
 // The text of a JSON document, with a line break at its end. File names that are not UTF-8 are
 // written with replacement characters.
-std::string to_text(const Json& json, int indent = 2);
+std::string to_text(const Json& json, Layout layout = Layout::kIndented);
 
 }  // namespace spherule

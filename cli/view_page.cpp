@@ -108,7 +108,7 @@ struct ContentEncoder {
 // JSON that may stand inside a script element: no "</script>" and no "<!--" can occur in it.
 std::string script_text(const Json& json) {
   std::string text;
-  for (const char c : to_text(json, -1)) {
+  for (const char c : to_text(json, Layout::kCompact)) {
     if (c == '<') {
       text += "\\u003c";
     } else {
