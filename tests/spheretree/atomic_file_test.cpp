@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/atomic_file.h"
 
-#include "temporary_folder.h"
+#include "tests/spheretree/temporary_folder.h"
 
 #include <csignal>
 #include <sys/resource.h>

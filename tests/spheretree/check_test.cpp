@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/check.h"
 
-#include "exact.h"
-#include "spheres.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
-#include "tree_oracle.h"
+#include "tests/spheretree/exact.h"
+#include "tests/spheretree/spheres.h"
+#include "tests/spheretree/tree_oracle.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "enclosing_oracle.h"
+#include "tests/spheretree/enclosing_oracle.h"
 
 #include <Eigen/Dense>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/enclosing_sphere.h"
 
-#include "enclosing_oracle.h"
-#include "exact.h"
-#include "spheres.h"
+#include "tests/spheretree/enclosing_oracle.h"
+#include "tests/spheretree/exact.h"
+#include "tests/spheretree/spheres.h"
 
 #include <gtest/gtest.h>
 

@@ -3,12 +3,12 @@
 // Seeded mutations of valid files: a loader either throws Error or returns something valid. Run
 // under the sanitizers, this also shows that no byte sequence leads to undefined behaviour.
 
-#include "spheres.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/internal/crc64.h"
 #include "spheretree/internal/file_content.h"
-#include "tree_oracle.h"
+#include "tests/spheretree/spheres.h"
+#include "tests/spheretree/tree_oracle.h"
 
 #include <gtest/gtest.h>
 

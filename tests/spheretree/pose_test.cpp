@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/pose.h"
 
-#include "spheres.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
+#include "tests/spheretree/spheres.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/sphere_file.h"
 
-#include "spheres.h"
 #include "spheretree/internal/file_content.h"
-#include "temporary_folder.h"
+#include "tests/spheretree/spheres.h"
+#include "tests/spheretree/temporary_folder.h"
 
 #include <bit>
 #include <cmath>

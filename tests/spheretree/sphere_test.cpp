@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/sphere.h"
 
-#include "exact.h"
-#include "spheres.h"
+#include "tests/spheretree/exact.h"
+#include "tests/spheretree/spheres.h"
 
 #include <gtest/gtest.h>
 

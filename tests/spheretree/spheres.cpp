@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheres.h"
+#include "tests/spheretree/spheres.h"
 
 #include <cmath>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/tree_file.h"
 
-#include "spheres.h"
 #include "spheretree/build.h"
 #include "spheretree/internal/crc64.h"
 #include "spheretree/internal/file_content.h"
-#include "temporary_folder.h"
-#include "tree_oracle.h"
+#include "tests/spheretree/spheres.h"
+#include "tests/spheretree/temporary_folder.h"
+#include "tests/spheretree/tree_oracle.h"
 
 #include <bit>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tree_oracle.h"
+#include "tests/spheretree/tree_oracle.h"
 
-#include "exact.h"
+#include "tests/spheretree/exact.h"
 
 #include <algorithm>
 #include <cmath>
