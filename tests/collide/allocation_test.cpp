@@ -1,55 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program of its own, because it replaces the global operator new: collides() allocates nothing
+// A program of its own, because it replaces the global operator new. collides() allocates nothing
 // on trees that build_tree makes, and answers right where no memory is to be had.
 
 #include "collide/collide.h"
 #include "collide/mesh_tree.h"
 #include "collide/traversal.h"
 #include "spheretree/build.h"
+#include "tests/collide/counting_new.h"
 #include "tests/collide/trees.h"
 
 #include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <new>
-
-namespace {
-
-int allocations = 0;
-bool exhausted = false;
-
-void* allocate(std::size_t size) {
-  ++allocations;
-  return exhausted ? nullptr : std::malloc(size);
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  if (void* block = allocate(size)) return block;
-  throw std::bad_alloc();
-}
-void* operator new[](std::size_t size) {
-  return operator new(size);
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  return allocate(size);
-}
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
-  return allocate(size);
-}
-void operator delete(void* block) noexcept {
-  std::free(block);
-}
-void operator delete[](void* block) noexcept {
-  std::free(block);
-}
-void operator delete(void* block, std::size_t) noexcept {
-  std::free(block);
-}
-void operator delete[](void* block, std::size_t) noexcept {
-  std::free(block);
-}
 
 namespace spherule::test {
 namespace {
