@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cli/check_length.h"
 #include "cli/command.h"
 #include "cli/fit_report.h"
 #include "cli/output.h"
@@ -112,12 +113,18 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("-o,--output", arguments->spheres, "Where the spheres go (JSON)")->required();
   command->add_option("--scale", arguments->scale, "Output units per mesh unit");
-  command->add_option("--min-external", options.min_external_diameter,
-                      "D, diameter of the smallest thing that will meet the model (default: 4 E)");
-  command->add_option("--max-error", options.max_error,
-                      "E, how far the spheres may protrude (default: 1 % of the box diagonal)");
-  command->add_option("--padding", options.padding, "Grow the mesh by this much");
-  command->add_option("--min-radius", options.min_radius, "No sphere is smaller than this");
+  command
+      ->add_option("--min-external", options.min_external_diameter,
+                   "D, diameter of the smallest thing that will meet the model (default: 4 E)")
+      ->check(check_length);
+  command
+      ->add_option("--max-error", options.max_error,
+                   "E, how far the spheres may protrude (default: 1 % of the box diagonal)")
+      ->check(check_length);
+  command->add_option("--padding", options.padding, "Grow the mesh by this much")
+      ->check(check_length);
+  command->add_option("--min-radius", options.min_radius, "No sphere is smaller than this")
+      ->check(check_length);
   command->add_option("--method", arguments->method, "How the inside is covered: cover, paper")
       ->check(CLI::IsMember({"cover", "paper"}));
   command
@@ -127,8 +134,10 @@ void add_fit(CLI::App& app, int& exit_code) {
   command
       ->add_option("--external-limit", options.external_limit, "Attempts of the random placement")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--min-internal", options.min_internal_diameter,
-                      "Diameter at which the paper's loop seeds a sphere (default: E / 2)");
+  command
+      ->add_option("--min-internal", options.min_internal_diameter,
+                   "Diameter at which the paper's loop seeds a sphere (default: E / 2)")
+      ->check(check_length);
   // Without the check CLI11 takes -1 for the largest number; files store 63 bits.
   command->add_option("--seed", options.seed, "Seed of everything random")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));

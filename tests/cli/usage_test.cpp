@@ -29,6 +29,13 @@ TEST_F(UsageTest, FaultyCommandLinesAreRefused) {
   expect_refusal({"fit", "box.stl", "-o", "out.json", "--seed", "-1"}, "--seed");
   expect_refusal({"fit", "box.stl", "-o", "out.json", "--threads", "-1"}, "--threads");
   expect_refusal({"fit", "box.stl", "-o", "out.json", "--seed", "1", "--seed", "2"}, "--seed");
+  for (const char* length :
+       {"--max-error", "--min-external", "--padding", "--min-radius", "--min-internal"}) {
+    for (const char* value : {"-1", "nan", "inf", "1e999"}) {
+      expect_refusal({"fit", "box.stl", "-o", "out.json", length, value},
+                     std::string(length) + ": must be finite");
+    }
+  }
   expect_refusal({"collide", "a.tree"}, "b");
   EXPECT_EQ(files(), std::vector<std::string>{"box.stl"});
 }
