@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The whole chain against FCL on the meshes themselves: mesh, spheres, tree, collision. No contact
+// of the meshes may be missed, and where we say "collision" and the meshes are apart, they are
+// nearer than the two certified protrusions and the slack of the query.
+#include "collide/collide.h"
+#include "tests/collide_truth/fitted_model.h"
+#include "tests/collide_truth/near_contact.h"
+#include "tests/support/models.h"
+#include "tests/support/random.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+using test::FittedModel;
+
+// A relative error that FCL's own distance may have.
+constexpr double kFclDistanceError = 1e-9;
+constexpr std::size_t kDefaultPoses = 200000;
+
+// Poses of all pairs of the plain shapes together; SPHERULE_TEST_POSES sets another number.
+std::size_t total_poses() {
+  const char* text = std::getenv("SPHERULE_TEST_POSES");
+  return text == nullptr || *text == '\0' ? kDefaultPoses : std::strtoull(text, nullptr, 10);
+}
+
+struct Tally {
+  std::size_t poses = 0, touching = 0, missed = 0, extra = 0;
+  double worst_excess = -1e300;  // of an extra's distance over the bound
+  double worst_share = 0.0;      // of the bound
+};
+
+Tally compare(const FittedModel& a, const FittedModel& b, std::size_t count, std::uint64_t seed) {
+  test::Random random(seed);
+  Tally tally;
+  for (const test::JudgedPose& pose : judged_poses(a, b, count, random)) {
+    const bool ours = collides(a.tree, pose.world_from_a, b.tree, pose.world_from_b);
+    ++tally.poses;
+    tally.touching += pose.touching;
+    tally.missed += pose.touching && !ours;
+    if (!ours || pose.touching) continue;
+    ++tally.extra;
+    const double distance = surface_distance(a.mesh, pose.world_from_a, b.mesh, pose.world_from_b);
+    const double bound = a.protrusion_bound + b.protrusion_bound +
+                         collision_slack(a.tree, pose.world_from_a, b.tree, pose.world_from_b) +
+                         kFclDistanceError * (a.radius + b.radius);
+    tally.worst_excess = std::max(tally.worst_excess, distance - bound);
+    tally.worst_share = std::max(tally.worst_share, distance / bound);
+  }
+  return tally;
+}
+
+void expect_sound(const FittedModel& a, const FittedModel& b, std::size_t count,
+                  std::uint64_t seed) {
+  SCOPED_TRACE(a.name + " and " + b.name);
+  const Tally tally = compare(a, b, count, seed);
+  std::cout << a.name << " (" << a.tree.spheres().size() << " spheres) and " << b.name << " ("
+            << b.tree.spheres().size() << "): " << tally.poses << " poses, " << tally.touching
+            << " touching, " << tally.missed << " missed, " << tally.extra << " extra, furthest at "
+            << tally.worst_share << " of the bound\n";
+  EXPECT_EQ(tally.missed, 0u);
+  EXPECT_LE(tally.worst_excess, 0.0);
+  // The poses are worth something only if many lie on each side.
+  EXPECT_GT(tally.touching, tally.poses / 10);
+  EXPECT_LT(tally.touching, tally.poses * 9 / 10);
+}
+
+using Names = std::vector<std::pair<std::string, std::string>>;
+
+// Each list is a test case of its own, so that they run side by side; together 28 pairs.
+const std::vector<Names> kShapePairs = {
+    {{"cube", "cube"}, {"cube", "sphere"}, {"sphere", "cylinder"}, {"cube", "cone"}},
+    {{"slab", "cube"}, {"slab", "cone"}, {"slab", "pipe"}, {"slab", "slab"}},
+    {{"torus", "torus"}, {"torus", "cylinder"}, {"torus", "cone"}, {"torus", "bracket"}},
+    {{"pipe", "pipe"}, {"pipe", "sphere"}, {"pipe", "bracket"}, {"pipe", "cylinder"}},
+    {{"plate", "cylinder"}, {"plate", "bracket"}, {"plate", "cone"}, {"bracket", "bracket"}},
+    {{"open-box", "cube"}, {"shells", "cone"}, {"soup", "sphere"}, {"shells", "soup"}},
+    {{"torus", "probe"}, {"pipe", "probe"}, {"plate", "probe"}, {"cube", "probe"}}};
+
+class ShapeTruth : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(ShapeTruth, NothingMissedAndExtrasAreNear) {
+  std::size_t pairs = 0;
+  for (const Names& names : kShapePairs) pairs += names.size();
+  std::uint64_t seed = 1000 * GetParam();
+  for (const auto& [a, b] : kShapePairs[GetParam()]) {
+    expect_sound(test::shape_model(a), test::shape_model(b), total_poses() / pairs + 1, ++seed);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, ShapeTruth, ::testing::Range<std::size_t>(0, 7));
+
+struct RealModel {
+  std::string file;
+  double millimetres;  // of the unit of the file
+};
+
+struct RealPair {
+  RealModel a, b;
+};
+
+const std::string kArm = "robots/abb_irb4400l/meshes/irb4400l_30_243/";
+const RealModel kForearm{kArm + "visual/link_4.stl", 1000},
+    kWrist{kArm + "visual/link_5.stl", 1000}, kUpperArm{kArm + "visual/link_2.stl", 1000},
+    kShoulder{kArm + "collision/link_1.stl", 1000}, kTorch{"torch/torch.stl", 10},
+    kPipe{"parts/pipe_id40.stl", 1}, kPipes{"parts/three_pipes.stl", 1},
+    kGear{"parts/spur_gear_m2_z24.stl", 1}, kSheet{"parts/bent_sheet_1mm.stl", 1},
+    kHousing{"parts/sealed_housing_with_core.stl", 1},
+    kFinger{"robots/franka_panda/meshes/collision/finger.obj", 1000},
+    kHand{"robots/franka_panda/meshes/collision/hand.obj", 1000},
+    kRiser{"parts/idler_riser.STL", 25.4};
+
+class RealTruth : public ::testing::TestWithParam<RealPair> {};
+
+TEST_P(RealTruth, NothingMissedAndExtrasAreNear) {
+  if (!test::models_dir()) GTEST_SKIP() << "SPHERULE_MODELS is not set";
+  const auto& [a, b] = GetParam();
+  expect_sound(test::real_model(a.file, a.millimetres), test::real_model(b.file, b.millimetres),
+               total_poses() / 100 + 1, 77);
+}
+
+INSTANTIATE_TEST_SUITE_P(, RealTruth,
+                         ::testing::Values(RealPair{kForearm, kPipes}, RealPair{kWrist, kTorch},
+                                           RealPair{kUpperArm, kShoulder}, RealPair{kTorch, kPipe},
+                                           RealPair{kGear, kGear}, RealPair{kSheet, kGear},
+                                           RealPair{kHousing, kSheet}, RealPair{kFinger, kHand},
+                                           RealPair{kRiser, kPipe}, RealPair{kWrist, kSheet}));
+
+// The comparison is able to fail: a cover whose balls are a tenth too small is caught.
+TEST(TruthTest, ShrunkBallsAreCaught) {
+  const FittedModel shrunk = test::fit_model("shrunk", test::shape_mesh("cube"), 0.05, 0.9);
+  EXPECT_GT(compare(shrunk, test::shape_model("probe"), 10000, 5).missed, 0u);
+}
+
+}  // namespace
+}  // namespace spherule
