@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/fit_parts.h"
+
+#include "simplifier/simplify.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+
+#include <chrono>
+#include <memory>
+
+namespace spherule {
+namespace {
+
+FitRecord fit(Part& part) {
+  SimplifyOptions options;
+  options.max_error = part.max_error;
+  options.min_external_diameter = part.min_external_diameter;
+  const auto start = std::chrono::steady_clock::now();
+  const Simplification result = simplify(part.mesh, options);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  if (!result.certificate.covered) throw Error(part.name, "the fit's certificate does not hold");
+  part.tree = std::make_shared<const SphereTree>(build_tree(result.cover.spheres));
+  return {part.name,
+          part.mesh.triangles.size(),
+          result.cover.spheres.size(),
+          part.max_error,
+          part.min_external_diameter,
+          elapsed.count(),
+          true};
+}
+
+}  // namespace
+
+std::vector<FitRecord> fit_parts(Workload& workload) {
+  std::vector<FitRecord> records;
+  for (Body& body : workload.bodies) records.push_back(fit(body.part));
+  for (Obstacle& obstacle : workload.obstacles) records.push_back(fit(obstacle.part));
+  return records;
+}
+
+}  // namespace spherule

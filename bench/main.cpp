@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How fast is a collision check of the paper's work cell, engine by engine, and is the answer
+// right? See bench/README.md for the protocol.
+#include "bench/fit_parts.h"
+#include "bench/measure.h"
+#include "bench/methods.h"
+#include "bench/oracle.h"
+#include "bench/real_models.h"
+#include "bench/report.h"
+#include "bench/scene_files.h"
+#include "spheretree/error.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+// A configuration of the first weld, for the picture.
+constexpr std::size_t kShownConfiguration = 300;
+
+struct Arguments {
+  std::filesystem::path out = "bench/out";
+  bool quick = false;
+};
+
+Arguments parse(int count, char** values) {
+  Arguments arguments;
+  for (int i = 1; i < count; ++i) {
+    const std::string option = values[i];
+    if (option == "--quick") {
+      arguments.quick = true;
+    } else if (option == "--out" && i + 1 < count) {
+      arguments.out = values[++i];
+    } else {
+      throw Error(option, "unknown option, or its value is lacking (see bench/run --help)");
+    }
+  }
+  return arguments;
+}
+
+WorkloadResult run(Workload workload, const Arguments& arguments) {
+  std::printf("%s: fitting\n", workload.name.c_str());
+  std::fflush(stdout);
+  std::vector<FitRecord> fits = fit_parts(workload);
+  write_scene(workload, workload.program[kShownConfiguration], arguments.out / workload.name);
+  std::printf("%s: asking the oracle\n", workload.name.c_str());
+  std::fflush(stdout);
+  const auto touching = Oracle(workload).touching_bodies(workload.program);
+  const std::vector<Method> methods = make_methods(workload);
+  std::printf("%s: timing\n", workload.name.c_str());
+  std::fflush(stdout);
+  const MeasureOptions options = arguments.quick
+                                     ? MeasureOptions{.rounds = 3, .stride = 4, .slow_stride = 512}
+                                     : MeasureOptions{};
+  auto measurements = measure(methods, workload.program, options);
+  WorkloadResult result =
+      evaluate(workload, std::move(fits), methods, std::move(measurements), touching);
+  print_table(result);
+  return result;
+}
+
+int bench(const Arguments& arguments) {
+  std::filesystem::create_directories(arguments.out);
+  std::vector<WorkloadResult> results;
+  results.push_back(run(make_paper_cell(), arguments));
+  if (const char* models = std::getenv("SPHERULE_MODELS"); models != nullptr && *models != '\0') {
+    results.push_back(run(make_real_cell(models), arguments));
+  }
+  write_results(results, arguments.out);
+  for (const WorkloadResult& result : results) {
+    for (const MethodResult& method : result.methods) {
+      if (method.name.starts_with("spherule") && method.missed > 0) {
+        throw Error(result.name, method.name + " missed collisions");
+      }
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace spherule
+
+int main(int count, char** values) {
+  try {
+    return spherule::bench(spherule::parse(count, values));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "spherule_bench: %s\n", error.what());
+    return 1;
+  }
+}

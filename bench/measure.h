@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/workload.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// An engine under test.
+struct Method {
+  std::string name;
+  std::string setting;  // in words
+  std::unique_ptr<Checker> checker;
+  std::size_t primitives = 0;  // triangles or spheres, all parts together
+  bool slow = false;           // timed on a sample of the program
+};
+
+struct MeasureOptions {
+  int rounds = 5;
+  std::size_t stride = 1;         // time every so manieth configuration
+  std::size_t slow_stride = 128;  // the same for slow methods
+};
+
+struct Measurement {
+  double ns_per_query = 0.0;  // median over the rounds
+  double p50_ns = 0.0;        // over single queries, the clock's own cost taken off
+  double p99_ns = 0.0;
+  std::array<double, 101> percentiles_ns{};
+  std::size_t timed_queries = 0;
+  std::vector<std::uint8_t> verdicts;  // of the whole program
+};
+
+// Times the methods in alternating rounds, so that a slow moment of the machine meets all of them,
+// then single queries, and collects all verdicts.
+std::vector<Measurement> measure(const std::vector<Method>& methods,
+                                 const std::vector<JointPositions>& program,
+                                 const MeasureOptions& options);
+
+}  // namespace spherule

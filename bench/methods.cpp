@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/methods.h"
+
+#include "bench/brute_force_checker.h"
+#include "bench/fcl_mesh_checker.h"
+#include "bench/fcl_sphere_checker.h"
+#include "bench/tree_checker.h"
+
+#include <utility>
+
+namespace spherule {
+namespace {
+
+template <class Count>
+std::size_t sum(const Workload& workload, const Count& count) {
+  std::size_t result = 0;
+  for (const Body& body : workload.bodies) result += count(body.part);
+  for (const Obstacle& obstacle : workload.obstacles) result += count(obstacle.part);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Method> make_methods(const Workload& workload) {
+  const std::size_t triangles =
+      sum(workload, [](const Part& part) { return part.mesh.triangles.size(); });
+  const std::size_t spheres =
+      sum(workload, [](const Part& part) { return part.tree->spheres().size(); });
+  std::vector<Method> methods;
+  using Setting = FclMeshSetting;
+  const auto is_plain = [](const Setting& setting) {
+    return setting.precision == Setting::Precision::kDouble &&
+           setting.front == Setting::Front::kBoxes;
+  };
+  for (const Setting& setting : all_fcl_mesh_settings()) {
+    const bool rss = setting.volume == Setting::Volume::kObbRss;
+    const std::string words = to_string(setting);
+    const std::string name =
+        is_plain(setting) ? (rss ? kUsualFcl : "fcl-mesh-obb") : "fcl-mesh " + words;
+    methods.push_back({name, words, make_fcl_mesh_checker(workload, setting), triangles, false});
+  }
+  methods.push_back({"fcl-spheres", "Sphere shapes, manager against manager",
+                     make_fcl_sphere_checker(workload), spheres, true});
+  methods.push_back({"brute-force-spheres", "all pairs, float", make_brute_force_checker(workload),
+                     spheres, true});
+  methods.push_back({"spherule-single", "sphere trees, one configuration a call",
+                     make_tree_checker(workload), spheres, false});
+  return methods;
+}
+
+}  // namespace spherule

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/workload.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// Ground truth for the solids themselves: two bodies touch if FCL finds two triangles that do
+// (OBBRSS, double), or if a point of a connected component of one lies inside the other (one point
+// a component, both ways), because FCL tests surfaces only.
+class Oracle {
+ public:
+  explicit Oracle(const Workload& workload);
+  ~Oracle();
+
+  // Bit i: body i of the workload touches an obstacle. One word for each configuration.
+  std::vector<std::uint32_t> touching_bodies(std::span<const JointPositions> configurations) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace spherule

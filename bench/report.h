@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/fit_parts.h"
+#include "bench/measure.h"
+#include "bench/workload.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// One line of the table.
+struct MethodResult {
+  std::string name;
+  std::string setting;
+  Measurement measurement;
+  std::size_t primitives = 0;
+  std::size_t collisions = 0;
+  std::size_t missed = 0;  // the oracle says collision, the method free
+  std::size_t extra = 0;   // the reverse
+};
+
+struct WorkloadResult {
+  std::string name;
+  std::size_t queries = 0;
+  std::size_t oracle_collisions = 0;
+  std::vector<std::pair<std::string, std::size_t>> oracle_by_body;
+  std::vector<FitRecord> fits;
+  std::vector<MethodResult> methods;
+};
+
+// Compares with the oracle and picks fcl-mesh-fastest.
+WorkloadResult evaluate(const Workload& workload, std::vector<FitRecord> fits,
+                        const std::vector<Method>& methods, std::vector<Measurement> measurements,
+                        const std::vector<std::uint32_t>& touching_bodies);
+
+void print_table(const WorkloadResult& result);
+
+// results.json, and for the plots a file a workload of ratios, percentiles and spheres. Throws
+// Error.
+void write_results(const std::vector<WorkloadResult>& results, const std::filesystem::path& folder);
+
+}  // namespace spherule

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/scenes/robot.h"
+#include "spheretree/pose.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace spherule {
+
+inline constexpr std::size_t kProgramSize = 15178;  // collision checks of the paper's experiment
+
+// Where table and workpiece stand in the robot's base frame.
+Pose world_from_table();
+Pose world_from_workpiece();
+
+// The weld program of the work cell, in the order in which the robot runs it: from home over the
+// workpiece, down to a seam, along it a few millimetres off with weave and tilt, up and home again,
+// for passes over the joint's seams, along the pipes and around their rims. In places the wire is
+// pushed on to the metal (tack points); between some passes the torch is taken to a station behind
+// the fixture post by a move that does not mind the post, so that forearm and wrist hit it.
+// Continuous, within the joint limits, the same numbers on every machine (see on_joint_grid()).
+// Throws Error if a target is out of reach.
+std::vector<JointPositions> make_program(const Pose& flange_from_wire);
+
+// The same configurations in an order without coherence (seeded, the same on every machine).
+std::vector<JointPositions> shuffled(std::vector<JointPositions> program, std::uint64_t seed);
+
+}  // namespace spherule

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/workload.h"
+
+#include <memory>
+
+namespace spherule {
+
+// Sphere trees, one configuration a call: collides() for every tested pair, until one hits.
+std::unique_ptr<Checker> make_tree_checker(const Workload& workload);
+
+}  // namespace spherule

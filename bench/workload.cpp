@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/workload.h"
+
+#include "bench/scenes/program.h"
+#include "bench/scenes/table.h"
+#include "bench/scenes/torch.h"
+#include "bench/scenes/workpiece.h"
+#include "collide/robot/kinematics.h"
+
+#include <utility>
+
+namespace spherule {
+namespace {
+
+// E and D in metres. The torch's are tighter than the robot's: its nozzle works millimetres off the
+// metal, and D is what passes between the wire and the nozzle's rim.
+constexpr double kRobotError = 0.020;
+constexpr double kTorchError = 0.003;
+constexpr double kWorkpieceError = 0.001;
+constexpr double kTableError = 0.010;
+constexpr double kExternal = 0.100;
+constexpr double kTorchExternal = 0.012;
+
+TriangleMesh moved(TriangleMesh mesh, const Pose& pose) {
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex = pose * vertex;
+  return mesh;
+}
+
+}  // namespace
+
+bool is_tested(const Body& body, const Obstacle& obstacle) {
+  return body.link != 0 || obstacle.part.name != "table";
+}
+
+Workload make_cell(std::string name, std::span<const TriangleMesh> links, const TriangleMesh& torch,
+                   const Pose& flange_from_wire) {
+  Workload cell{.name = std::move(name), .robot = make_robot()};
+  const int last = static_cast<int>(links.size()) - 1;
+  cell.bodies.push_back({{.name = "torch",
+                          .mesh = moved(torch, link6_from_flange()),
+                          .max_error = kTorchError,
+                          .min_external_diameter = kTorchExternal},
+                         last});
+  for (int link = last; link >= 0; --link) {
+    const auto index = static_cast<std::size_t>(link);
+    cell.bodies.push_back({{.name = cell.robot.links()[index].name,
+                            .mesh = links[index],
+                            .max_error = kRobotError,
+                            .min_external_diameter = kExternal},
+                           link});
+  }
+  cell.obstacles.push_back({{.name = "workpiece",
+                             .mesh = make_workpiece(),
+                             .max_error = kWorkpieceError,
+                             .min_external_diameter = kExternal},
+                            world_from_workpiece()});
+  cell.obstacles.push_back({{.name = "table",
+                             .mesh = make_table(),
+                             .max_error = kTableError,
+                             .min_external_diameter = kExternal},
+                            world_from_table()});
+  cell.program = make_program(flange_from_wire);
+  return cell;
+}
+
+Workload make_paper_cell() {
+  return make_cell("paper-cell", make_robot_links(), make_torch(), flange_from_wire());
+}
+
+void SingleChecker::check(std::span<const JointPositions> configurations,
+                          std::span<std::uint8_t> verdicts) {
+  for (std::size_t i = 0; i < configurations.size(); ++i) {
+    forward_kinematics(robot_, configurations[i], world_from_link_);
+    verdicts[i] = collides(world_from_link_) ? 1 : 0;
+  }
+}
+
+}  // namespace spherule
