@@ -2,13 +2,180 @@
 #include "simplifier/cover.h"
 
 #include "simplifier/clearance.h"
+#include "simplifier/internal/cover_candidates.h"
+#include "simplifier/internal/point_grid.h"
+#include "simplifier/internal/solid_sampling.h"
 #include "simplifier/internal_spheres.h"
+#include "simplifier/set_cover.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
 
 namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+using internal::Candidate;
+
+// Shares of E.
+constexpr double kSpacing = 0.5;  // half diagonal of the cells that rows stand for
+constexpr double kWorkingError =
+    0.93;                         // rows are covered with this, so that their surroundings are too
+constexpr double kFinest = 0.01;  // smallest cell of the proof
+constexpr double kLeakSpacing = 0.15;  // leaks become rows this far apart
+
+constexpr double kCube = 1.5;  // edge of the cubes that rows are sorted into
+
+constexpr std::size_t kMinStarts = 2000;
+constexpr std::size_t kMaxStarts = 10000;
+constexpr int kRounds = 8;
+
+// Greedy set cover on points of S with rounds of counterexamples, then repair.
+class Coverer {
+ public:
+  Coverer(const Clearance& clearance, const CoverOptions& options)
+      : clearance_(clearance), options_(options), error_(options.max_error) {}
+
+  std::vector<Sphere> run() {
+    add_rows(internal::sample_solid(clearance_, kSpacing * error_));
+    add_candidates(starts());
+    std::vector<Sphere> balls;
+    std::vector<Vector3d> leaks;
+    for (int round = 0; round < kRounds; ++round) {
+      balls = solve();
+      leaks = leaks_of(balls);
+      if (leaks.empty()) return balls;
+      add_rows(leaks);
+      add_candidates(leaks);
+      report(round);
+    }
+    while (!leaks.empty()) {
+      clear_rows();
+      add_rows(leaks);
+      add_candidates(leaks);
+      const std::vector<Sphere> more = solve();
+      balls.insert(balls.end(), more.begin(), more.end());
+      leaks = leaks_of(balls);
+    }
+    return balls;
+  }
+
+ private:
+  // Rows to grow candidates from, evenly picked.
+  std::vector<Vector3d> starts() const {
+    const std::size_t wanted = std::clamp(rows_.size(), kMinStarts, kMaxStarts);
+    std::vector<Vector3d> picked;
+    for (std::size_t i = 0; i < wanted; ++i) picked.push_back(rows_[i * rows_.size() / wanted]);
+    return picked;
+  }
+
+  void clear_rows() {
+    rows_.clear();
+    for (std::vector<std::uint32_t>& covered : covered_rows_) covered.clear();
+  }
+
+  void add_rows(const std::vector<Vector3d>& points) {
+    const internal::PointGrid grid(points, kCube * error_);
+    const auto first = static_cast<std::uint32_t>(rows_.size());
+    rows_.insert(rows_.end(), points.begin(), points.end());
+    tbb::parallel_for(std::size_t{0}, candidates_.size(),
+                      [&](std::size_t c) { cover_rows(grid, c, first); });
+  }
+
+  void add_candidates(const std::vector<Vector3d>& points) {
+    const std::size_t first = candidates_.size();
+    const auto grown =
+        internal::candidates_from(clearance_, points, error_, options_.seed + batch_++);
+    candidates_.insert(candidates_.end(), grown.begin(), grown.end());
+    // A ball about the point itself, so that every point of S can be covered.
+    for (const Vector3d& p : points) {
+      candidates_.push_back({p, std::max(0.0, clearance_(p).lower)});
+    }
+    covered_rows_.resize(candidates_.size());
+    const internal::PointGrid grid(rows_, kCube * error_);
+    tbb::parallel_for(first, candidates_.size(), [&](std::size_t c) { cover_rows(grid, c, 0); });
+  }
+
+  // Notes which points of the grid, numbered from `first`, candidate c covers.
+  void cover_rows(const internal::PointGrid& grid, std::size_t c, std::uint32_t first) {
+    const double radius =
+        std::max(options_.min_radius, candidates_[c].clearance) + kWorkingError * error_;
+    std::vector<std::uint32_t>& covered = covered_rows_[c];
+    const std::size_t before = covered.size();
+    grid.find(candidates_[c].center, radius, covered);
+    for (std::size_t i = before; i < covered.size(); ++i) covered[i] += first;
+  }
+
+  // The ball that is stored, protruding by E at most.
+  Sphere ball_of(const Candidate& c) const {
+    const double clearance = std::max(0.0, clearance_(c.center).lower);
+    return {c.center, std::max(options_.min_radius, next_down(add_down(clearance, error_)))};
+  }
+
+  std::vector<Sphere> solve() const {
+    SetCoverInstance instance;
+    instance.row_count = rows_.size();
+    for (const std::vector<std::uint32_t>& covered : covered_rows_) instance.add_column(covered);
+    std::vector<Sphere> balls;
+    for (const std::size_t c : greedy_set_cover(instance)) balls.push_back(ball_of(candidates_[c]));
+    return balls;
+  }
+
+  std::vector<Vector3d> leaks_of(const std::vector<Sphere>& balls) const {
+    const internal::BallHierarchy hierarchy(balls);
+    return internal::find_leaks(clearance_, {balls, hierarchy}, kFinest * error_,
+                                kLeakSpacing * error_);
+  }
+
+  void report(int round) const {
+    if (options_.progress) {
+      options_.progress(static_cast<double>(round + 1) / kRounds, "covering");
+    }
+  }
+
+  const Clearance& clearance_;
+  const CoverOptions& options_;
+  double error_;
+  std::vector<Vector3d> rows_;
+  std::vector<Candidate> candidates_;
+  std::vector<std::vector<std::uint32_t>> covered_rows_;  // of each candidate
+  std::uint64_t batch_ = 0;
+};
+
+void check_options(const CoverOptions& options) {
+  const auto usable = [](double x) { return x >= 0.0 && x <= kMaxCoordinate; };
+  if (!(usable(options.max_error) && options.max_error > 0.0)) {
+    throw Error("max error", "must be positive and finite");
+  }
+  if (!usable(options.min_radius)) throw Error("min radius", "must be finite and not negative");
+  if (!usable(options.min_internal_diameter)) {
+    throw Error("min internal diameter", "must be finite and not negative");
+  }
+}
+
+}  // namespace
 
 SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                   const CoverOptions& options) {
-  return place_internal_spheres(mesh, Clearance(external), options);
+  check_options(options);
+  const tbb::global_control threads(
+      tbb::global_control::max_allowed_parallelism,
+      options.threads > 0
+          ? static_cast<std::size_t>(options.threads)
+          : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  const Clearance clearance(external);
+  if (options.method == CoverMethod::kPaper) {
+    return place_internal_spheres(mesh, clearance, options);
+  }
+  SphereCover result;
+  result.spheres = Coverer(clearance, options).run();
+  return result;
 }
 
 }  // namespace spherule

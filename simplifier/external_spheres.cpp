@@ -50,7 +50,7 @@ double chosen_step(const ExternalOptions& options) {
   const double coarsest = options.min_external_diameter / 8.0;
   if (options.max_error == 0.0) return coarsest / 2.0;
   return std::min(coarsest,
-                  std::sqrt(0.04 * options.max_error * options.min_external_diameter / 2.0));
+                  std::sqrt(0.08 * options.max_error * options.min_external_diameter / 2.0));
 }
 
 // A cube around the box that leaves a ball of radius rho and three steps of room on every side.

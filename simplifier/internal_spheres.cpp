@@ -35,16 +35,16 @@ class Grower {
 
   Sphere operator()(const Vector3d& seed, std::size_t& rejected) const {
     if (clearance_(seed).lower < seed_radius_) ++rejected;
-    const std::vector<Vector3d> path =
+    const std::vector<internal::AscentStep> path =
         internal::ascend(clearance_, seed,
                          {.first_step = std::max(seed_radius_, kLeastStep * max_error_),
                           .least_step = std::min(seed_radius_, kLeastStep * max_error_),
                           .tolerance = kPeakTolerance * max_error_});
-    const Sphere grown = ball_at(path.back());
+    const Sphere grown = ball_at(path.back().point);
     if (gap(grown, seed) <= 0.9 * max_error_) return grown;
     // The gap grows along the way, from at most zero; take the last position that keeps it small.
     for (auto it = path.rbegin() + 1; it != path.rend(); ++it) {
-      const Sphere ball = ball_at(*it);
+      const Sphere ball = ball_at(it->point);
       if (gap(ball, seed) <= 0.5 * max_error_) return ball;
     }
     return ball_at(seed);

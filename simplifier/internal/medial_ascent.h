@@ -7,6 +7,11 @@
 
 namespace spherule::internal {
 
+struct AscentStep {
+  Eigen::Vector3d point;
+  double clearance;  // lower bound
+};
+
 struct AscentOptions {
   // Length of the first step; later ones double as long as they succeed.
   double first_step = 0.0;
@@ -22,7 +27,7 @@ struct AscentOptions {
 // first, which hardly stops it, does not count (covering.md, section 4). Moving by t against one
 // contact raises the clearance by t, so the grown ball contains the former one. Returns the
 // positions taken, from the start to the end, which is on or near the medial axis of S.
-std::vector<Eigen::Vector3d> ascend(const Clearance& clearance, const Eigen::Vector3d& start,
-                                    const AscentOptions& options);
+std::vector<AscentStep> ascend(const Clearance& clearance, const Eigen::Vector3d& start,
+                               const AscentOptions& options);
 
 }  // namespace spherule::internal

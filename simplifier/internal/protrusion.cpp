@@ -25,9 +25,9 @@ constexpr double kRelativeTolerance = 0.02;
 double distance_to_solid(const Clearance& clearance, const MeshDistance& distance,
                          const Vector3d& c, double radius) {
   double nearest = distance(c).upper;
-  for (const Vector3d& p :
+  for (const AscentStep& step :
        ascend(clearance, c, {.first_step = 0.01 * radius, .least_step = 1e-4 * radius})) {
-    if (clearance(p).lower >= 0.0) nearest = std::min(nearest, distance_upper(c, p));
+    if (step.clearance >= 0.0) nearest = std::min(nearest, distance_upper(c, step.point));
   }
   return nearest;
 }

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/internal/cover_candidates.h"
+
+#include "simplifier/internal/medial_ascent.h"
+#include "simplifier/internal/random.h"
+
+#include <tbb/parallel_for.h>
+
+namespace spherule::internal {
+namespace {
+
+constexpr double kClearanceTolerance = 0.02;  // of E
+constexpr double kContained = 0.97;
+
+}  // namespace
+
+std::vector<Candidate> candidates_from(const Clearance& clearance,
+                                       std::span<const Eigen::Vector3d> points, double max_error,
+                                       std::uint64_t seed) {
+  std::vector<std::vector<Candidate>> each(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    Random random(seed + 0x9e3779b97f4a7c15U * (i + 1));
+    const double depth = random.between(0.2, 1.5) * max_error;
+    const Eigen::Vector3d start = points[i] + depth * clearance(points[i]).away;
+    const std::vector<AscentStep> path = ascend(clearance, start,
+                                                {.first_step = random.between(0.1, 0.4) * max_error,
+                                                 .least_step = 0.05 * max_error,
+                                                 .tolerance = kClearanceTolerance * max_error});
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      if (path[k].clearance < 0.0) continue;
+      // Against a single contact the clearance grows as fast as the point moves, and the next ball
+      // contains this one.
+      const bool contained =
+          k + 1 < path.size() && path[k + 1].clearance - path[k].clearance >=
+                                     kContained * (path[k + 1].point - path[k].point).norm();
+      if (!contained) each[i].push_back({path[k].point, path[k].clearance});
+    }
+  });
+  std::vector<Candidate> all;
+  for (const auto& some : each) all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
+
+}  // namespace spherule::internal

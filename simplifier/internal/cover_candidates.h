@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/clearance.h"
+#include "spheretree/sphere.h"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace spherule::internal {
+
+// A place for a ball of the cover: radius `clearance` lies in S, `clearance` + E protrudes by E.
+struct Candidate {
+  Eigen::Vector3d center;
+  double clearance;  // lower bound, within a few hundredths of E
+};
+
+// Candidates for covering the given points of S: each point is moved inwards by a seeded random
+// depth of 0.2 to 1.5 E and from there away from its contacts (medial_ascent.h). Every position on
+// the way counts, since the best ball at an edge sits at depth E and not on the medial axis
+// (covering.md 1).
+std::vector<Candidate> candidates_from(const Clearance& clearance,
+                                       std::span<const Eigen::Vector3d> points, double max_error,
+                                       std::uint64_t seed);
+
+}  // namespace spherule::internal

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace spherule::internal {
+
+// Points sorted into cubes, to find those in a ball. Comparisons are plain double: this serves
+// the search, never a proof.
+class PointGrid {
+ public:
+  PointGrid(std::span<const Eigen::Vector3d> points, double edge) : edge_(edge) {
+    for (const Eigen::Vector3d& p : points) box_.extend(p);
+    if (points.empty()) return;
+    const Eigen::Array3d extent = (box_.sizes() / edge_).array().floor();
+    size_ = extent.cast<std::int64_t>() + 1;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      cubes_[key(cube_of(points[i]))].push_back({points[i], i});
+    }
+  }
+
+  // Appends the indices of the points within `radius` of `center`, in a fixed order.
+  void find(const Eigen::Vector3d& center, double radius, std::vector<std::uint32_t>& found) const {
+    if (cubes_.empty()) return;
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
+    const Index low = cube_of(center - reach);
+    const Index high = cube_of(center + reach);
+    const double squared = radius * radius;
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          const auto it = cubes_.find(key({x, y, z}));
+          if (it == cubes_.end()) continue;
+          for (const Entry& e : it->second) {
+            if ((e.point - center).squaredNorm() <= squared) found.push_back(e.index);
+          }
+        }
+      }
+    }
+  }
+
+ private:
+  using Index = Eigen::Array<std::int64_t, 3, 1>;
+  struct Entry {
+    Eigen::Vector3d point;
+    std::uint32_t index;
+  };
+
+  Index cube_of(const Eigen::Vector3d& p) const {
+    const Eigen::Array3d cube = ((p - box_.min()) / edge_).array().floor();
+    const Eigen::Array3d last = (size_ - 1).cast<double>();
+    return cube.max(0.0).min(last).cast<std::int64_t>();
+  }
+  std::int64_t key(const Index& cube) const {
+    return (cube[0] * size_[1] + cube[1]) * size_[2] + cube[2];
+  }
+
+  double edge_;
+  Eigen::AlignedBox3d box_;
+  Index size_ = Index::Zero();
+  std::unordered_map<std::int64_t, std::vector<Entry>> cubes_;
+};
+
+}  // namespace spherule::internal
