@@ -4,7 +4,7 @@
 #include "simplifier/clearance.h"
 #include "simplifier/internal/cover_candidates.h"
 #include "simplifier/internal/point_grid.h"
-#include "simplifier/internal/solid_sampling.h"
+#include "simplifier/internal/solid_cells.h"
 #include "simplifier/internal_spheres.h"
 #include "simplifier/set_cover.h"
 #include "spheretree/error.h"
@@ -40,10 +40,13 @@ constexpr int kRounds = 8;
 class Coverer {
  public:
   Coverer(const Clearance& clearance, const CoverOptions& options)
-      : clearance_(clearance), options_(options), error_(options.max_error) {}
+      : clearance_(clearance),
+        options_(options),
+        error_(options.max_error),
+        cells_(clearance, kSpacing * options.max_error) {}
 
   std::vector<Sphere> run() {
-    add_rows(internal::sample_solid(clearance_, kSpacing * error_));
+    add_rows(cells_.sample());
     add_candidates(starts());
     std::vector<Sphere> balls;
     std::vector<Vector3d> leaks;
@@ -127,10 +130,9 @@ class Coverer {
     return balls;
   }
 
-  std::vector<Vector3d> leaks_of(const std::vector<Sphere>& balls) const {
+  std::vector<Vector3d> leaks_of(const std::vector<Sphere>& balls) {
     const internal::BallHierarchy hierarchy(balls);
-    return internal::find_leaks(clearance_, {balls, hierarchy}, kFinest * error_,
-                                kLeakSpacing * error_);
+    return cells_.find_leaks({balls, hierarchy}, kFinest * error_, kLeakSpacing * error_);
   }
 
   void report(int round) const {
@@ -142,6 +144,7 @@ class Coverer {
   const Clearance& clearance_;
   const CoverOptions& options_;
   double error_;
+  internal::SolidCells cells_;
   std::vector<Vector3d> rows_;
   std::vector<Candidate> candidates_;
   std::vector<std::vector<std::uint32_t>> covered_rows_;  // of each candidate

@@ -11,8 +11,8 @@ namespace {
 
 // Clearances are asked for to this share of the cell's half diagonal.
 constexpr double kClearanceTolerance = 0.125;
-// A cell this much smaller than the tolerance is taken for a point of S even where its centre is not:
-// then S is that near, or a sliver outside of it is covered for nothing.
+// A cell this much smaller than the tolerance is taken for a point of S even where its centre is
+// not: then S is that near, or a sliver outside of it is covered for nothing.
 constexpr double kFinest = 1.0 / 64.0;
 // The greatest error is bracketed to this share of what it exceeds the target by.
 constexpr double kPlateau = 0.1;
