@@ -17,7 +17,7 @@ namespace {
 constexpr double kRobotError = 0.020;
 constexpr double kTorchError = 0.003;
 constexpr double kWorkpieceError = 0.001;
-constexpr double kTableError = 0.010;
+constexpr double kTableError = 0.020;
 constexpr double kExternal = 0.100;
 constexpr double kTorchExternal = 0.012;
 

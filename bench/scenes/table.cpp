@@ -46,9 +46,9 @@ TriangleMesh make_table() {
     append(mesh, placed(v_stand(), turn,
                         0.17 * axis + Vector3d(0.0, 0.0, kTableHeight + kWorkpieceHeight)));
   }
-  append(mesh, shifted(make_box({0.06, 0.06, 0.75}), {-0.32, 0.54, kTableHeight + 0.375}));
-  append(mesh, shifted(make_box({0.05, 0.16, 0.05}), {-0.32, 0.48, kTableHeight + 0.70}));
-  append(mesh, shifted(make_cylinder(0.02, 0.12, 12), {-0.32, 0.43, kTableHeight + 0.66}));
+  append(mesh, shifted(make_box({0.06, 0.06, 0.75}), {-0.32, 0.58, kTableHeight + 0.375}));
+  append(mesh, shifted(make_box({0.05, 0.16, 0.05}), {-0.32, 0.52, kTableHeight + 0.70}));
+  append(mesh, shifted(make_cylinder(0.02, 0.12, 12), {-0.32, 0.47, kTableHeight + 0.66}));
   snap(mesh);
   return mesh;
 }
