@@ -82,11 +82,11 @@ void write_plot_data(const WorkloadResult& result, const std::filesystem::path& 
     ratios << '"' << method.name << "\" "
            << time_of(result, kUsualFcl) / method.measurement.ns_per_query << ' '
            << method.measurement.ns_per_query << '\n';
+    if (percentiles.tellp() > 0) percentiles << "\n\n";  // gnuplot's mark of a new data set
     percentiles << '"' << method.name << "\"\n";
     for (std::size_t i = 0; i < method.measurement.percentiles_ns.size(); ++i) {
       percentiles << method.measurement.percentiles_ns[i] << ' ' << i << '\n';
     }
-    percentiles << "\n\n";
   }
   for (const FitRecord& fit : result.fits) {
     spheres << '"' << fit.part << "\" " << fit.triangles << ' ' << fit.spheres << '\n';

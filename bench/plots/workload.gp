@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Three plots of one workload. Variables: folder, workload, terminal (svg or png).
 if (terminal eq 'svg') {
-  set terminal svg size 900,520 font 'sans-serif,14' background 'white'
+  set terminal svg size 900,520 noenhanced font 'sans-serif,14' background 'white'
 } else {
-  set terminal pngcairo size 900,520 font 'sans-serif,11' background 'white'
+  set terminal pngcairo size 900,520 noenhanced font 'sans-serif,11' background 'white'
 }
 data(what) = sprintf('%s/%s-%s.dat', folder, workload, what)
 target(what) = sprintf('%s/%s-%s.%s', folder, workload, what, terminal)
@@ -33,7 +33,7 @@ set title sprintf('%s: time of a single check', workload)
 set xlabel 'nanoseconds'
 set ylabel 'share of the checks, %'
 set logscale x
-set format x '10^{%L}'
+set format x '%.0e'
 set yrange [0:100]
 set key outside right
 stats data('percentiles') using 1:2 nooutput name 'blocks'
@@ -48,9 +48,10 @@ unset yrange
 set output target('spheres')
 set title sprintf('%s: triangles and spheres of each part', workload)
 set ylabel 'count'
+set xtics rotate by -20
 set style data histogram
 set style histogram clustered gap 1
 set yrange [0:*]
-set key top left inside
+set key outside right
 plot data('spheres') using 2:xtic(1) lc rgb '#bcbcbc' title 'triangles', \
      '' using 3 lc rgb '#2a6f97' title 'spheres'
