@@ -73,10 +73,9 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   Certificate result;
   result.sphere_count = spheres.size();
   if (options.progress) options.progress(-1.0, "proving the surface");
-  const internal::CoverageProof surface =
-      internal::prove_surface(mesh, external.padding, balls, finest);
+  const internal::CoverageProof surface = internal::prove_surface(mesh, balls, finest);
   if (options.progress) options.progress(-1.0, "proving the solid");
-  const bool closed = mesh_report(mesh).closed;
+  const bool closed = mesh_report(mesh, {.self_intersections = false}).closed;
   // Every point of S is a witness against S; against |M| itself only one that is proved to be
   // inside.
   const internal::CoverageProof solid =

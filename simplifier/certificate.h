@@ -16,7 +16,8 @@ struct CertifyOptions {
   // The simplified solid to certify against. Without it |M| itself is certified: its complement is
   // flooded with cells of size `resolution`, and what the flood does not reach counts as inside.
   const ExternalSpheres* external = nullptr;
-  // Without `external`: padding t, to which the mesh's vertex_error is added.
+  // Without `external`: padding t, to which the mesh's vertex_error is added. With it, the padding
+  // is the one of stage 1.
   double padding = 0.0;
   // Smallest piece of surface and cell of space that is examined, as a share of the box diagonal. A
   // piece of this size that no single ball contains is reported as a leak with its depth.
@@ -25,7 +26,7 @@ struct CertifyOptions {
   double protrusion_tolerance = 1.0 / 512.0;
   bool volume = true;  // estimate the volume ratio
   int threads = 0;     // 0: all
-  Progress progress;
+  Progress progress = {};
 };
 
 // A stretch between two proved bounds.
@@ -41,7 +42,8 @@ struct Certificate {
   // then the depth bounds tell how much remains.
   bool covered = false;
   // Uncovered depth, the largest distance from a point of the set to the union of the balls; lower
-  // is witnessed by a point, upper proved. Of the surface M (grown), and of the solid.
+  // is witnessed by a point, upper proved. Of the surface M as stored, and of the solid, which
+  // holds M grown by the padding.
   Bounds surface_depth;
   Bounds solid_depth;
   // The larger of the two.

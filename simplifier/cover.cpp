@@ -117,8 +117,12 @@ class Coverer {
 
   // The ball that is stored, protruding by E at most.
   Sphere ball_of(const Candidate& c) const {
-    const double clearance = std::max(0.0, clearance_(c.center).lower);
-    return {c.center, std::max(options_.min_radius, next_down(add_down(clearance, error_)))};
+    const double clearance = clearance_(c.center).lower;
+    // A leak's cell may have its centre outside of S by less than kFinest; half of what is taken
+    // off covers that, the other half keeps the whole cell in the ball.
+    const double allowed =
+        clearance >= 0.0 ? add_down(clearance, error_) : error_ * (1.0 - 2.0 * kFinest);
+    return {c.center, std::max(options_.min_radius, next_down(allowed))};
   }
 
   std::vector<Sphere> solve() const {

@@ -29,7 +29,7 @@ struct CoverOptions {
   // kPaper: record the history (costs some time).
   bool history = false;
   int threads = 0;  // 0: all
-  Progress progress;
+  Progress progress = {};
 };
 
 // One step of the paper's loop, for its figures 6 to 8. "Before" and "after" refer to inflating

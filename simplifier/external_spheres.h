@@ -37,7 +37,7 @@ struct ExternalOptions {
   // Random placement: number of attempts (the paper's "limit") and seed.
   std::size_t limit = 100000;
   std::uint64_t seed = 1;
-  Progress progress;
+  Progress progress = {};
 };
 
 // Stage 1's result. It defines the simplified solid S exactly: the closed box minus the union of

@@ -131,7 +131,7 @@ void add_line(std::ostringstream& out, std::size_t count, const char* one, const
 
 }  // namespace
 
-MeshReport mesh_report(const TriangleMesh& input) {
+MeshReport mesh_report(const TriangleMesh& input, const MeshReportOptions& options) {
   validate(input, "mesh");
   const TriangleMesh mesh = internal::weld(input);
   MeshReport report;
@@ -163,7 +163,9 @@ MeshReport mesh_report(const TriangleMesh& input) {
     const double rounding = kZeroVolume * part.area * report.box.diagonal().norm();
     report.inverted_components += part.closed && part.volume < -rounding;
   }
-  report.self_intersections = internal::count_self_intersections(mesh, kMaxSelfIntersections);
+  if (options.self_intersections) {
+    report.self_intersections = internal::count_self_intersections(mesh, kMaxSelfIntersections);
+  }
   return report;
 }
 

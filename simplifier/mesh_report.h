@@ -35,7 +35,12 @@ struct MeshReport {
   double volume = 0.0;  // signed; meaningful if closed
 };
 
-MeshReport mesh_report(const TriangleMesh& mesh);
+struct MeshReportOptions {
+  // Pairs of meeting triangles are by far the most work to count.
+  bool self_intersections = true;
+};
+
+MeshReport mesh_report(const TriangleMesh& mesh, const MeshReportOptions& options = {});
 
 // The report in a few lines for a person: counts, size, and a sentence for everything unusual.
 std::string describe(const MeshReport& report);

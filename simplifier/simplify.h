@@ -31,7 +31,7 @@ struct SimplifyOptions {
   std::uint64_t seed = 1;
   bool history = false;  // of the paper's loop
   int threads = 0;       // 0: all; the result does not depend on it
-  Progress progress;
+  Progress progress = {};
 };
 
 // Wall-clock seconds of the parts.

@@ -39,10 +39,9 @@ struct BallsToProve {
   const BallHierarchy& hierarchy;
 };
 
-// X = the triangles grown by `padding`. Triangles are halved at their longest edge until a piece
+// X = the triangles. They are halved at their longest edge until a piece
 // lies in a single ball (a ball is convex: corners in it, piece in it) or is smaller than `finest`.
-CoverageProof prove_surface(const TriangleMesh& mesh, double padding, const BallsToProve& balls,
-                            double finest);
+CoverageProof prove_surface(const TriangleMesh& mesh, const BallsToProve& balls, double finest);
 
 // X = S. Cells of its box are halved until one lies in a single ball or outside of S, or is smaller
 // than `finest`. `is_witness` tells whether a point of S may be reported as a leak.

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/scene_file.h"
 
+#include "simplifier/internal/placed_part.h"
 #include "simplifier/internal/raw_mesh.h"
 #include "spheretree/error.h"
-#include "spheretree/rounding.h"
 
-#include <Eigen/Eigenvalues>
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
@@ -70,11 +69,6 @@ void keep_importer(Assimp::Importer& importer, const std::string& extension) {
   }
 }
 
-struct Affine {
-  Eigen::Matrix3d linear;
-  Eigen::Vector3d offset;
-};
-
 Affine to_affine(const aiMatrix4x4& m, const std::string& subject) {
   Affine result;
   result.linear << m.a1, m.a2, m.a3, m.b1, m.b2, m.b3, m.c1, m.c2, m.c3;
@@ -123,38 +117,8 @@ class SceneReader {
       add_polygon(part, corners, part.vertices.size(), subject_);
     }
     if (part.triangles.empty()) return;
-    transform(part);
-    append(part);
-  }
-
-  // Applies the chain from the mesh's own node up to the root. With a point p of size s, off by e,
-  // and a matrix (A, t), off by d = kTransformError relative to its norms, A p + t has a size of at
-  // most |A| s + |t| and is off by at most |A| e + d (|A| (s + e) + |t|); 2^-50 of the size
-  // covers the roundings of the product and of these bounds.
-  void transform(TriangleMesh& part) const {
-    double size = rounding_distance(largest_coordinate(part), 1.0);
-    double error = coordinate_error_ * size;
-    for (auto it = chain_.rbegin(); it != chain_.rend(); ++it) {
-      const double gain = it->linear.operatorNorm() * (1.0 + 0x1p-40);
-      const double grown = gain * (size + error) + it->offset.norm();
-      error = gain * error + (kTransformError + 0x1p-50) * grown;
-      size = grown;
-      for (Eigen::Vector3d& v : part.vertices) v = it->linear * v + it->offset;
-    }
-    part.vertex_error = error * (1.0 + 0x1p-40);
-  }
-
-  void append(const TriangleMesh& part) {
-    const std::size_t first = result_.vertices.size();
-    std::vector<std::int64_t> corners(3);
-    result_.vertices.insert(result_.vertices.end(), part.vertices.begin(), part.vertices.end());
-    for (const Eigen::Vector3i& t : part.triangles) {
-      for (int k = 0; k < 3; ++k) {
-        corners[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(first) + t[k];
-      }
-      add_polygon(result_, corners, result_.vertices.size(), subject_);
-    }
-    result_.vertex_error = std::max(result_.vertex_error, part.vertex_error);
+    place(part, chain_, coordinate_error_, kTransformError);
+    append(result_, part, subject_);
   }
 
   const aiScene& scene_;

@@ -47,10 +47,8 @@ void halve(const Piece& piece, std::vector<Piece>& parts) {
 
 }  // namespace
 
-CoverageProof prove_surface(const TriangleMesh& mesh, double padding, const BallsToProve& balls,
-                            double finest) {
+CoverageProof prove_surface(const TriangleMesh& mesh, const BallsToProve& balls, double finest) {
   const double error = subdivision_error(mesh);
-  const double reach = add_up(padding, error);
   const auto examine = [&](const Piece& piece) {
     const auto& [a, b, c] = piece.corner;
     Finding found;
@@ -59,12 +57,12 @@ CoverageProof prove_surface(const TriangleMesh& mesh, double padding, const Ball
     if (gap.index >= 0) {
       const Sphere& ball = balls.balls[static_cast<std::size_t>(gap.index)];
       found.settled = std::ranges::all_of(
-          piece.corner, [&](const Vector3d& p) { return certainly_contains(ball, p, reach); });
+          piece.corner, [&](const Vector3d& p) { return certainly_contains(ball, p, error); });
     }
     const double radius = std::max({distance_upper(found.point, a), distance_upper(found.point, b),
                                     distance_upper(found.point, c)});
     found.smallest = radius <= finest;
-    found.upper = add_up(gap.upper, add_up(radius, reach));
+    found.upper = add_up(gap.upper, add_up(radius, error));
     found.depth = sub_down(gap.lower, error);
     found.witness = true;
     return found;
