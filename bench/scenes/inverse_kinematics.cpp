@@ -16,7 +16,9 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 constexpr int kSteps = 200;
-constexpr double kSolved = 1e-8;  // metres and radians, before rounding to the grid
+// Metres and radians, before rounding to the grid: far below the grid, so that the result does not
+// depend on the way there.
+constexpr double kSolved = 1e-12;
 constexpr double kAccepted = 5e-6;
 constexpr double kDamping = 1e-3;
 constexpr double kLongestStep = 0.2;  // radians
