@@ -94,43 +94,52 @@ void BallHierarchy::fit_half_space(Node& node) const {
 }
 
 // Values are compared as computed and the rounding is charged once, at the end. For a ball at
-// distance d with radius R the computed v = d - R errs by at most 3.5 u d + u |v|; with d = v + R
-// that is below 8 u (|v| + R). A node's bound (box distance less largest radius) errs by no more,
-// with the largest radius of all in the place of R. As v - 8 u |v| grows with v, whatever was
-// skipped or compared less favourably is exactly at least v - 8 u (|v| + R_max) for the v that is
-// returned, less the tolerance.
+// distance d with radius R the computed v = d - R errs by at most 3.5 u d + u |v|, and the test d^2
+// < (v + R)^2 that saves the root by 5 u (v + R); with d = v + R both are below 8 u (|v| + R). A
+// node's bound (box distance less largest radius) errs by no more, with the largest radius of all
+// in the place of R; a half-space's (offset less normal.p, |normal| <= 1) errs by at most 8 u (|c|
+// + |p|) + 2 u R. As v - 8 u |v| grows with v, whatever was skipped or compared less favourably is
+// exactly at least v - 8 u (|v| + R_max + |c|_max + |p|) for the v that is returned, less the
+// tolerance.
 NearestBall BallHierarchy::nearest(const Vector3d& point, double limit, double tolerance) const {
   NearestBall best{limit, limit, -1};
   if (nodes_.empty()) return best;
   double nearest = limit;
-  const auto bound = [&](std::int32_t i) {
-    const Node& n = nodes_[static_cast<std::size_t>(i)];
-    const Vector3d d = (n.low - point).cwiseMax(point - n.high).cwiseMax(0.0);
-    return std::pair{std::max(d.norm() - n.max_radius, n.offset - n.normal.dot(point)), i};
+  struct Waiting {
+    double bound;
+    std::int32_t index;
   };
-  std::array<std::pair<double, std::int32_t>, kStackSize> stack;
+  // Infinite if the half-space alone rules the node out.
+  const auto bound = [&](std::int32_t i) -> Waiting {
+    const Node& n = nodes_[static_cast<std::size_t>(i)];
+    const double half_space = n.offset - n.normal.dot(point);
+    if (half_space >= nearest - tolerance) return {std::numeric_limits<double>::infinity(), i};
+    const Vector3d d = (n.low - point).cwiseMax(point - n.high).cwiseMax(0.0);
+    return {std::max(d.norm() - n.max_radius, half_space), i};
+  };
+  std::array<Waiting, kStackSize> stack;
   std::size_t size = 0;
   stack[size++] = bound(0);
   while (size > 0) {
-    const auto [node_bound, index] = stack[--size];
-    if (node_bound >= nearest - tolerance) continue;
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    const Waiting top = stack[--size];
+    if (top.bound >= nearest - tolerance) continue;
+    const Node& node = nodes_[static_cast<std::size_t>(top.index)];
     if (node.right < 0) {
       for (auto i = node.begin; i < node.end; ++i) {
         const Entry& entry = balls_[static_cast<std::size_t>(i)];
-        const double v = (point - entry.ball.center).norm() - entry.ball.radius;
-        if (v < nearest) {
-          nearest = v;
-          best.index = entry.index;
-        }
+        const double squared = (point - entry.ball.center).squaredNorm();
+        const double reach = nearest + entry.ball.radius;
+        if (reach <= 0.0 || squared >= reach * reach) continue;
+        nearest = std::min(nearest, std::sqrt(squared) - entry.ball.radius);
+        best.index = entry.index;
       }
       continue;
     }
-    auto near = bound(index + 1);
-    auto far = bound(node.right);
-    if (far.first < near.first) std::swap(near, far);
-    stack[size++] = far;
-    stack[size++] = near;
+    Waiting near = bound(top.index + 1);
+    Waiting far = bound(node.right);
+    if (far.bound < near.bound) std::swap(near, far);
+    if (far.bound < nearest - tolerance) stack[size++] = far;
+    if (near.bound < nearest - tolerance) stack[size++] = near;
   }
   if (std::isinf(nearest)) return best;
   const double slack =
