@@ -31,10 +31,15 @@ FitRecord fit(Part& part) {
 
 }  // namespace
 
-std::vector<FitRecord> fit_parts(Workload& workload) {
+std::vector<FitRecord> fit_parts(Workload& workload,
+                                 const std::function<void(const FitRecord&)>& done) {
   std::vector<FitRecord> records;
-  for (Body& body : workload.bodies) records.push_back(fit(body.part));
-  for (Obstacle& obstacle : workload.obstacles) records.push_back(fit(obstacle.part));
+  const auto add = [&](Part& part) {
+    records.push_back(fit(part));
+    done(records.back());
+  };
+  for (Body& body : workload.bodies) add(body.part);
+  for (Obstacle& obstacle : workload.obstacles) add(obstacle.part);
   return records;
 }
 

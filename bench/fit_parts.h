@@ -4,6 +4,7 @@
 #include "bench/workload.h"
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ struct FitRecord {
   bool covered = false;
 };
 
-// simplify() and build_tree() for every part of the workload. Throws Error if a certificate does
-// not hold: nothing measured on a set that does not cover is worth having.
-std::vector<FitRecord> fit_parts(Workload& workload);
+// simplify() and build_tree() for every part of the workload; `done` is told of each. Throws Error
+// if a certificate does not hold: nothing measured on a set that does not cover is worth having.
+std::vector<FitRecord> fit_parts(Workload& workload,
+                                 const std::function<void(const FitRecord&)>& done);
 
 }  // namespace spherule

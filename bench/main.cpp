@@ -46,7 +46,10 @@ Arguments parse(int count, char** values) {
 WorkloadResult run(Workload workload, const Arguments& arguments) {
   std::printf("%s: fitting\n", workload.name.c_str());
   std::fflush(stdout);
-  std::vector<FitRecord> fits = fit_parts(workload);
+  std::vector<FitRecord> fits = fit_parts(workload, [](const FitRecord& fit) {
+    std::printf("  %s: %zu spheres, %.1f s\n", fit.part.c_str(), fit.spheres, fit.seconds);
+    std::fflush(stdout);
+  });
   write_scene(workload, workload.program[kShownConfiguration], arguments.out / workload.name);
   std::printf("%s: asking the oracle\n", workload.name.c_str());
   std::fflush(stdout);
