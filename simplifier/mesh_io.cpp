@@ -53,7 +53,8 @@ TriangleMesh read_by_extension(const std::filesystem::path& path) {
   if (extension == "obj") return internal::read_obj(bytes, subject);
   if (extension == "ply") return internal::read_ply(bytes, subject);
   if (extension == "off") return internal::read_off(bytes, subject);
-  if (extension == "dae" || extension == "3mf" || extension == "gltf" || extension == "glb") {
+  if (extension == "3mf") return internal::read_3mf(bytes, subject);
+  if (extension == "dae" || extension == "gltf" || extension == "glb") {
     return internal::read_scene(path, bytes, extension);
   }
   throw Error(subject, "not a mesh format that can be read (STL, OBJ, PLY, OFF, DAE, 3MF, glTF)");

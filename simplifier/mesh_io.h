@@ -18,12 +18,14 @@ struct MeshReadOptions {
 // inverted and self-intersecting triangles are kept (mesh_report() tells of them); points and lines
 // are left out. A DAE file comes out in metres, times `scale` (its own <unit> is applied), with the
 // axes as they stand in it (<up_axis> is ignored, as the tools of ROS do); the other formats come
-// out in their own numbers times `scale`.
+// out in their own numbers times `scale` (a 3MF file in its own unit, of which the default is the
+// millimetre). What a 3MF file shows must be meshes: extensions of the format that it requires, or
+// that add other shapes, are refused.
 //
 // `vertex_error` bounds what reading cost: nothing for binary STL and PLY and for glTF without node
-// transforms; 2^-53 of the largest coordinate for numbers in text, which are read as doubles; some
-// 2^-21 of it for DAE and 3MF, whose reader works in 32-bit floats, and for node transforms; and
-// the rounding of the scale. (Per coordinate; the bound itself is of the distance.)
+// transforms; 2^-53 of the largest coordinate for numbers in text, which are read as doubles, and some
+// 2^-50 of it where 3MF transforms them; some 2^-21 of it for DAE, whose reader works in 32-bit
+// floats, and for the node transforms of glTF; and the rounding of the scale. (Per coordinate; the bound itself is of the distance.)
 //
 // Throws Error, naming file and reason: no such file, not a mesh, cut short, no triangles, a
 // coordinate that is not finite or beyond kMaxCoordinate after scaling, an index out of range, a

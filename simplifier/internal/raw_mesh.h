@@ -16,6 +16,7 @@
 
 namespace spherule::internal {
 
+TriangleMesh read_3mf(std::string_view bytes, const std::string& subject);
 TriangleMesh read_stl(std::string_view bytes, const std::string& subject);
 TriangleMesh read_obj(std::string_view bytes, const std::string& subject);
 TriangleMesh read_off(std::string_view bytes, const std::string& subject);

@@ -8,12 +8,12 @@
 #include <string>
 #include <string_view>
 
-// The formats that are scene graphs (COLLADA, 3MF, glTF) are read by assimp.
+// The formats that are scene graphs (COLLADA, glTF) are read by assimp.
 
 namespace spherule::internal {
 
 // Reads the scene of the file, whose content is `bytes` and whose lower-case extension is
-// `extension` ("dae", "3mf", "gltf" or "glb"): every mesh under the transforms of each node that
+// `extension` ("dae", "gltf" or "glb"): every mesh under the transforms of each node that
 // shows it. COLLADA files come out in metres (their own <unit> applied) with the axes as they stand
 // in the file (<up_axis> is ignored, as the tools of ROS do); the others come out in their own
 // numbers. Bones and morphs stay at rest.

@@ -34,6 +34,7 @@ class TextScanner {
   [[noreturn]] void fail(const std::string& reason) const;
   const std::string& subject() const { return subject_; }
   std::size_t position() const { return at_; }
+  void seek(std::size_t position) { at_ = position; }
 
  private:
   void skip_space(bool across_lines);

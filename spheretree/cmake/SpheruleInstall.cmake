@@ -14,7 +14,7 @@ endforeach()
 # Private dependencies of a shared library are its own affair; a static one hands them on.
 get_target_property(library_type spherule_spheretree TYPE)
 if(library_type STREQUAL "STATIC_LIBRARY")
-  set(SPHERULE_SIMPLIFIER_PACKAGES "assimp;TBB")
+  set(SPHERULE_SIMPLIFIER_PACKAGES "assimp;EXPAT;TBB;ZLIB")
 else()
   set(SPHERULE_SIMPLIFIER_PACKAGES "")
 endif()

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 #include <vector>
+#include <zlib.h>
 
 namespace spherule::test {
 namespace {
@@ -100,39 +101,75 @@ std::string gltf_json(const TriangleMesh& mesh, const Eigen::Vector3d& translati
   return out.str();
 }
 
-std::uint32_t crc32(std::string_view bytes) {
-  std::uint32_t crc = 0xFFFFFFFFu;
-  for (const char c : bytes) {
-    crc ^= static_cast<unsigned char>(c);
-    for (int k = 0; k < 8; ++k) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320u : 0u);
-  }
-  return ~crc;
+std::string deflated(const std::string& data) {
+  std::string result(data.size() + data.size() / 8 + 64, '\0');
+  z_stream stream{};
+  constexpr int kRaw = -15, kMemory = 8;
+  deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, kRaw, kMemory, Z_DEFAULT_STRATEGY);
+  std::string input = data;  // zlib takes its input as not constant
+  stream.next_in = reinterpret_cast<Bytef*>(input.data());
+  stream.avail_in = static_cast<uInt>(input.size());
+  stream.next_out = reinterpret_cast<Bytef*>(result.data());
+  stream.avail_out = static_cast<uInt>(result.size());
+  deflate(&stream, Z_FINISH);
+  result.resize(stream.total_out);
+  deflateEnd(&stream);
+  return result;
 }
 
-// A ZIP archive of stored (not compressed) files.
-std::string zip(const std::vector<std::pair<std::string, std::string>>& files) {
+// A ZIP archive of these files, by name and content.
+std::string zip(const std::vector<std::pair<std::string, std::string>>& files, Zip form) {
+  const bool large = form == Zip::kDeflated64;
   std::string body, directory;
   for (const auto& [name, data] : files) {
+    const std::string packed = large ? deflated(data) : data;
     const std::size_t offset = body.size();
     std::string common;  // what the local and the central header share
-    for (const int word : {20, 0, 0, 0, 33}) append(common, static_cast<std::uint16_t>(word));
-    append(common, crc32(data));
-    append(common, static_cast<std::uint32_t>(data.size()));
-    append(common, static_cast<std::uint32_t>(data.size()));
+    for (const int word : {20, 0, large ? 8 : 0, 0, 33}) {
+      append(common, static_cast<std::uint16_t>(word));
+    }
+    const uLong crc =
+        crc32(0, reinterpret_cast<const Bytef*>(data.data()), static_cast<uInt>(data.size()));
+    append(common, static_cast<std::uint32_t>(crc));
+    std::string extra;
+    if (large) {
+      common.append(8, '\xFF');
+      append(extra, std::uint16_t{1});
+      append(extra, std::uint16_t{16});
+      append(extra, std::uint64_t{data.size()});
+      append(extra, std::uint64_t{packed.size()});
+    } else {
+      append(common, static_cast<std::uint32_t>(packed.size()));
+      append(common, static_cast<std::uint32_t>(data.size()));
+    }
     append(common, static_cast<std::uint16_t>(name.size()));
-    append(common, std::uint16_t{0});
-    body += "PK\3\4" + common + name + data;
+    append(common, static_cast<std::uint16_t>(extra.size()));
+    body += "PK\3\4" + common + name + extra + packed;
     directory += "PK\1\2";
     append(directory, std::uint16_t{20});
     directory += common + std::string(10, '\0');
     append(directory, static_cast<std::uint32_t>(offset));
-    directory += name;
+    directory += name + extra;
   }
-  std::string end = "PK\5\6" + std::string(4, '\0');
-  append(end, static_cast<std::uint16_t>(files.size()));
-  append(end, static_cast<std::uint16_t>(files.size()));
-  append(end, static_cast<std::uint32_t>(directory.size()));
-  append(end, static_cast<std::uint32_t>(body.size()));
+  std::string end;
+  if (large) {
+    end = "PK\6\6";
+    append(end, std::uint64_t{44});
+    end.append(12, '\0');
+    for (const std::size_t word : {files.size(), files.size(), directory.size(), body.size()}) {
+      append(end, std::uint64_t{word});
+    }
+    end += "PK\6\7" + std::string(4, '\0');
+    append(end, std::uint64_t{body.size() + directory.size()});
+    append(end, std::uint32_t{1});
+    end += "PK\5\6" + std::string(4, '\0') + std::string(12, '\xFF');
+  } else {
+    end = "PK\5\6" + std::string(4, '\0');
+    append(end, static_cast<std::uint16_t>(files.size()));
+    append(end, static_cast<std::uint16_t>(files.size()));
+    append(end, static_cast<std::uint32_t>(directory.size()));
+    append(end, static_cast<std::uint32_t>(body.size()));
+  }
   append(end, std::uint16_t{0});
   return body + directory + end;
 }
@@ -262,13 +299,14 @@ std::string glb_bytes(const TriangleMesh& mesh, const Eigen::Vector3d& translati
   return bytes + buffer;
 }
 
-std::string threemf_bytes(const std::string& model) {
+std::string threemf_bytes(const std::string& model, Zip form) {
   return zip(
       {{"[Content_Types].xml",
         R"(<?xml version="1.0" encoding="UTF-8"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>)"},
        {"_rels/.rels",
         R"(<?xml version="1.0" encoding="UTF-8"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)"},
-       {"3D/3dmodel.model", model}});
+       {"3D/3dmodel.model", model}},
+      form);
 }
 
 std::string threemf_model(const TriangleMesh& mesh, const std::string& item_transform) {

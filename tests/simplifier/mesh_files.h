@@ -30,8 +30,10 @@ std::string dae_text(const TriangleMesh& mesh, const Eigen::Matrix4d& matrix,
 std::string gltf_text(const TriangleMesh& mesh, const Eigen::Vector3d& translation);
 std::string glb_bytes(const TriangleMesh& mesh, const Eigen::Vector3d& translation);
 
-// 3MF, a ZIP archive without compression; `model` is the XML of the model part.
-std::string threemf_bytes(const std::string& model);
+// How an archive holds its files: as they are, or deflated with the sizes in ZIP64 records.
+enum class Zip { kStored, kDeflated64 };
+// 3MF; `model` is the XML of the model part.
+std::string threemf_bytes(const std::string& model, Zip form = Zip::kStored);
 std::string threemf_model(const TriangleMesh& mesh, const std::string& item_transform = "");
 
 }  // namespace spherule::test

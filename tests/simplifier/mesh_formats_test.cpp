@@ -253,15 +253,104 @@ TEST_F(Formats, Gltf) {
 
 TEST_F(Formats, ThreeMf) {
   const std::string model = test::threemf_model(cube_, "1 0 0 0 1 0 0 0 1 10 20 30");
+  for (const test::Zip form : {test::Zip::kStored, test::Zip::kDeflated64}) {
+    const TriangleMesh mesh = read("3mf", test::threemf_bytes(model, form));
+    EXPECT_EQ(mesh_report(mesh).box.min(), Eigen::Vector3d(10, 20, 30));
+    EXPECT_TRUE(mesh_report(mesh).closed);
+    EXPECT_EQ(mesh.triangles.size(), 12u);
+  }
   const auto read_model = [&](const std::string& text) {
     return read("3mf", test::threemf_bytes(text));
   };
-  EXPECT_EQ(mesh_report(read_model(model)).box.min(), Eigen::Vector3d(10, 20, 30));
-  EXPECT_TRUE(mesh_report(read_model(model)).closed);
-  EXPECT_EQ(read_model(model).triangles.size(), 12u);
-  EXPECT_NE(error("3mf", test::threemf_bytes(replaced(model, "v3=\"3\"", "v3=\"8\""))), "");
-  EXPECT_NE(error("3mf", test::threemf_bytes(replaced(model, "objectid=\"1\"", "objectid=\"9\""))),
-            "");
+  const auto refused_model = [&](const std::string& from, const std::string& to,
+                                 const std::string& reason) {
+    return refused("3mf", test::threemf_bytes(replaced(model, from, to)), reason);
+  };
+  // Rows of the transform are the images of the axes: x goes to y.
+  const TriangleMesh turned =
+      read_model(replaced(model, "1 0 0 0 1 0 0 0 1 10 20 30", "0 2 0 -1 0 0 0 0 +3 0 0 1e1"));
+  EXPECT_EQ(mesh_report(turned).box.min(), Eigen::Vector3d(-1, 0, 10));
+  EXPECT_EQ(mesh_report(turned).box.max(), Eigen::Vector3d(0, 2, 13));
+  EXPECT_GT(turned.vertex_error, 0.0);
+  EXPECT_LT(turned.vertex_error, 1e-12);
+
+  EXPECT_TRUE(refused_model("v3=\"3\"", "v3=\"8\"", "vertex 8"));
+  EXPECT_TRUE(refused_model("v3=\"3\"", "v3=\"-1\"", "vertex -1"));
+  EXPECT_TRUE(refused_model("v3=\"3\"", "", "no attribute 'v3'"));
+  EXPECT_TRUE(refused_model("z=\"1\"", "z=\"inf\"", "number"));
+  EXPECT_TRUE(refused_model("z=\"1\"", "z=\"1e30\"", "beyond 1e15"));
+  EXPECT_TRUE(refused_model("objectid=\"1\"", "objectid=\"9\"", "object 9"));
+  EXPECT_TRUE(refused_model("1 10 20 30", "1 10 20", "number"));
+  EXPECT_TRUE(refused_model("1 10 20 30", "1 10 20 30 40", "more than twelve"));
+  EXPECT_TRUE(refused_model("1 10 20 30", "1 10 20 nan", "not a finite"));
+  EXPECT_TRUE(refused_model("unit=", "requiredextensions=\"p\" unit=", "requires extensions"));
+  EXPECT_TRUE(refused_model("<triangles>", "<beams/><triangles>", "shape"));
+  EXPECT_TRUE(refused_model("<build>", "<build><", "line 1"));
+  EXPECT_TRUE(refused_model("<model", "<!DOCTYPE m [<!ENTITY e \"x\">]><model", "document type"));
+}
+
+TEST_F(Formats, ThreeMfComponents) {
+  const std::string model = test::threemf_model(cube_);
+  const auto with_objects = [&](const std::string& objects, const std::string& shown) {
+    return test::threemf_bytes(replaced(replaced(model, "</resources>", objects + "</resources>"),
+                                        "<item objectid=\"1\"",
+                                        "<item objectid=\"" + shown + "\""));
+  };
+  const auto object = [](const std::string& id, const std::vector<std::string>& parts) {
+    std::string text = "<object id=\"" + id + "\"><components>";
+    for (const std::string& part : parts) text += "<component objectid=\"" + part + "\"/>";
+    return text + "</components></object>";
+  };
+  const std::string moved =
+      "<object id=\"2\"><components><component objectid=\"1\"/><component objectid=\"1\" "
+      "transform=\"1 0 0 0 1 0 0 0 1 5 0 0\"/></components></object>";
+  const TriangleMesh twice = read("3mf", with_objects(moved, "2"));
+  EXPECT_EQ(twice.triangles.size(), 24u);
+  EXPECT_EQ(mesh_report(twice).box.max(), Eigen::Vector3d(6, 1, 1));
+  EXPECT_EQ(read("3mf", with_objects(moved, "1")).triangles.size(), 12u);
+
+  EXPECT_TRUE(refused("3mf", with_objects(object("2", {"2"}), "2"), "not there before"));
+  EXPECT_TRUE(refused("3mf", with_objects(object("2", {"3"}) + object("3", {"2"}), "2"),
+                      "not there before"));
+  EXPECT_TRUE(refused("3mf", with_objects(object("1", {"1"}), "1"), "there twice"));
+  std::string doubled, chain;
+  for (int i = 2; i < 80; ++i) {
+    const std::string before = std::to_string(i - 1);
+    if (i < 40) doubled += object(std::to_string(i), {before, before});
+    chain += object(std::to_string(i), {before});
+  }
+  EXPECT_TRUE(refused("3mf", with_objects(doubled, "39"), "more than 2^26"));
+  EXPECT_EQ(read("3mf", with_objects(doubled, "3")).triangles.size(), 48u);
+  EXPECT_TRUE(refused("3mf", with_objects(chain, "79"), "64 deep"));
+}
+
+// Every part of the archive that could mislead: sizes, offsets, checksums, names.
+TEST_F(Formats, ThreeMfArchives) {
+  const std::string model = test::threemf_model(cube_);
+  const std::string good = test::threemf_bytes(model);
+  EXPECT_TRUE(refused("3mf", "PK", "no end record"));
+  EXPECT_TRUE(refused("3mf", good.substr(0, good.size() - 1), "no end record"));
+  EXPECT_TRUE(refused("3mf", replaced(good, "v3=\"3\"", "v3=\"4\""), "checksum"));
+  EXPECT_TRUE(refused("3mf", replaced(good, "PK\1\2", "PK\1\3"), "directory"));
+  std::string renamed = good;
+  for (std::size_t at; (at = renamed.find("3D/3dmodel.model")) != std::string::npos;) {
+    renamed.replace(at, 4, "3d/4");
+  }
+  EXPECT_TRUE(refused("3mf", renamed, "checksum"));  // the relation was renamed as well
+  const std::string packed = test::threemf_bytes(model, test::Zip::kDeflated64);
+  // The uncompressed size of the last member, in its ZIP64 record of the directory.
+  const std::size_t record = packed.rfind(std::string("\1\0\x10\0", 4));
+  ASSERT_NE(record, std::string::npos);
+  const auto with_size = [&](std::uint64_t size) {
+    std::string bytes = packed;
+    for (std::size_t i = 0; i < 8; ++i) bytes[record + 4 + i] = static_cast<char>(size >> 8 * i);
+    return bytes;
+  };
+  EXPECT_EQ(read("3mf", with_size(model.size())).triangles.size(), 12u);
+  EXPECT_TRUE(refused("3mf", with_size(model.size() - 1), "damaged"));
+  EXPECT_TRUE(refused("3mf", with_size(model.size() + 1), "damaged"));
+  EXPECT_TRUE(refused("3mf", with_size(std::uint64_t{1} << 29), "damaged"));
+  EXPECT_TRUE(refused("3mf", with_size(~std::uint64_t{0}), "larger than 2^30"));
 }
 
 }  // namespace

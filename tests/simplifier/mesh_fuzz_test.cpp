@@ -42,6 +42,8 @@ void mutate_once(std::string& bytes, test::Random& random) {
 struct Format {
   std::string extension;
   std::string bytes;
+  // Makes the file of the mutated bytes; without it, they are the file.
+  std::string (*wrap)(const std::string&) = nullptr;
 };
 
 void PrintTo(const Format& format, std::ostream* out) {
@@ -57,6 +59,7 @@ TEST_P(MeshFuzz, ErrorOrValidMesh) {
   for (int i = 0; i < kFilesPerFormat; ++i) {
     std::string bytes = GetParam().bytes;
     for (std::size_t n = 1 + random.index(4); n > 0; --n) mutate_once(bytes, random);
+    if (GetParam().wrap != nullptr) bytes = GetParam().wrap(bytes);
     const auto path = dir.write("a." + GetParam().extension, bytes);
     try {
       const TriangleMesh mesh = read_mesh(path);
@@ -73,6 +76,11 @@ TEST_P(MeshFuzz, ErrorOrValidMesh) {
 }
 
 const TriangleMesh kBall = test::icosphere(1);
+const std::string kModel = test::threemf_model(kBall, "1 0 0 0 1 0 0 0 1 10 20 30");
+
+std::string stored(const std::string& model) {
+  return test::threemf_bytes(model);
+}
 
 INSTANTIATE_TEST_SUITE_P(
     , MeshFuzz,
@@ -81,6 +89,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Format{"ply", test::ply_bytes(kBall, test::PlyForm::kText, true)},
                       Format{"ply", test::ply_bytes(kBall, test::PlyForm::kBigEndian, false)},
                       Format{"dae", test::dae_text(kBall, Eigen::Matrix4d::Identity())},
+                      Format{"3mf", test::threemf_bytes(kModel)},
+                      Format{"3mf", test::threemf_bytes(kModel, test::Zip::kDeflated64)},
+                      Format{"3mf", kModel, &stored},
                       Format{"gltf", test::gltf_text(kBall, {1, 2, 3})},
                       Format{"glb", test::glb_bytes(kBall, {1, 2, 3})}));
 
