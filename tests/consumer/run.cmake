@@ -19,7 +19,6 @@ run(${CMAKE_COMMAND} --install ${PROJECT_BUILD} --prefix ${WORK}/prefix)
 set(options "")
 if(FORBIDDEN)
   # find_package for these fails even where they are installed.
-  set(options "")
   foreach(package assimp EXPAT TBB ZLIB)
     list(APPEND options -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
   endforeach()
