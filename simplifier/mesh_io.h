@@ -23,9 +23,10 @@ struct MeshReadOptions {
 // that add other shapes, are refused.
 //
 // `vertex_error` bounds what reading cost: nothing for binary STL and PLY and for glTF without node
-// transforms; 2^-53 of the largest coordinate for numbers in text, which are read as doubles, and some
-// 2^-50 of it where 3MF transforms them; some 2^-21 of it for DAE, whose reader works in 32-bit
-// floats, and for the node transforms of glTF; and the rounding of the scale. (Per coordinate; the bound itself is of the distance.)
+// transforms; 2^-53 of the largest coordinate for numbers in text, which are read as doubles, and
+// some 2^-50 of it where 3MF transforms them; some 2^-21 of it for DAE, whose reader works in
+// 32-bit floats, and for the node transforms of glTF; and the rounding of the scale. (Per
+// coordinate; the bound itself is of the distance.)
 //
 // Throws Error, naming file and reason: no such file, not a mesh, cut short, no triangles, a
 // coordinate that is not finite or beyond kMaxCoordinate after scaling, an index out of range, a
