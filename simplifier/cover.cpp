@@ -80,13 +80,14 @@ class Coverer {
 
   void clear_rows() {
     rows_.clear();
-    for (std::vector<std::uint32_t>& covered : covered_rows_) covered.clear();
+    for (std::vector<std::uint32_t>& covered : instance_.columns) covered.clear();
   }
 
   void add_rows(const std::vector<Vector3d>& points) {
     const internal::PointGrid grid(points, kCube * error_);
     const auto first = static_cast<std::uint32_t>(rows_.size());
     rows_.insert(rows_.end(), points.begin(), points.end());
+    instance_.row_count = rows_.size();
     tbb::parallel_for(std::size_t{0}, candidates_.size(),
                       [&](std::size_t c) { cover_rows(grid, c, first); });
   }
@@ -100,7 +101,7 @@ class Coverer {
     for (const Vector3d& p : points) {
       candidates_.push_back({p, std::max(0.0, clearance_(p).lower)});
     }
-    covered_rows_.resize(candidates_.size());
+    instance_.columns.resize(candidates_.size());
     const internal::PointGrid grid(rows_, kCube * error_);
     tbb::parallel_for(first, candidates_.size(), [&](std::size_t c) { cover_rows(grid, c, 0); });
   }
@@ -109,7 +110,7 @@ class Coverer {
   void cover_rows(const internal::PointGrid& grid, std::size_t c, std::uint32_t first) {
     const double radius =
         std::max(options_.min_radius, candidates_[c].clearance) + kWorkingError * error_;
-    std::vector<std::uint32_t>& covered = covered_rows_[c];
+    std::vector<std::uint32_t>& covered = instance_.columns[c];
     const std::size_t before = covered.size();
     grid.find(candidates_[c].center, radius, covered);
     for (std::size_t i = before; i < covered.size(); ++i) covered[i] += first;
@@ -126,11 +127,9 @@ class Coverer {
   }
 
   std::vector<Sphere> solve() const {
-    SetCoverInstance instance;
-    instance.row_count = rows_.size();
-    for (const std::vector<std::uint32_t>& covered : covered_rows_) instance.add_column(covered);
     std::vector<Sphere> balls;
-    for (const std::size_t c : greedy_set_cover(instance)) balls.push_back(ball_of(candidates_[c]));
+    for (const std::size_t c : greedy_set_cover(instance_))
+      balls.push_back(ball_of(candidates_[c]));
     return balls;
   }
 
@@ -151,7 +150,7 @@ class Coverer {
   internal::SolidCells cells_;
   std::vector<Vector3d> rows_;
   std::vector<Candidate> candidates_;
-  std::vector<std::vector<std::uint32_t>> covered_rows_;  // of each candidate
+  SetCoverInstance instance_;  // a column for every candidate
   std::uint64_t batch_ = 0;
 };
 

@@ -23,9 +23,9 @@ void check_options(const ExternalOptions& options) {
   if (!(options.padding >= 0.0 && options.padding <= kMaxCoordinate)) {
     throw Error("padding", "must be finite and not negative");
   }
-  if (!(options.max_error >= 0.0) || !(options.grid_step >= 0.0)) {
-    throw Error("grid step", "must not be negative or undefined");
-  }
+  const auto usable = [](double x) { return x >= 0.0 && x <= kMaxCoordinate; };
+  if (!usable(options.max_error)) throw Error("max error", "must be finite and not negative");
+  if (!usable(options.grid_step)) throw Error("grid step", "must be finite and not negative");
   if (options.placement == ExternalPlacement::kNone) return;
   const double d = options.min_external_diameter;
   if (!(d > 0.0 && d <= kMaxCoordinate)) {

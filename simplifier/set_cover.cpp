@@ -12,11 +12,11 @@ std::vector<std::size_t> without_redundant(const SetCoverInstance& instance,
                                            std::vector<std::size_t> chosen) {
   std::vector<std::uint32_t> times(instance.row_count, 0);
   for (const std::size_t c : chosen) {
-    for (const std::uint32_t row : instance.column(c)) ++times[row];
+    for (const std::uint32_t row : instance.columns[c]) ++times[row];
   }
   std::vector<std::size_t> kept;
   for (auto it = chosen.rbegin(); it != chosen.rend(); ++it) {
-    const auto column = instance.column(*it);
+    const std::vector<std::uint32_t>& column = instance.columns[*it];
     if (std::ranges::all_of(column, [&](std::uint32_t row) { return times[row] > 1; })) {
       for (const std::uint32_t row : column) --times[row];
     } else {
@@ -38,15 +38,15 @@ std::vector<std::size_t> greedy_set_cover(const SetCoverInstance& instance) {
     }
   };
   std::priority_queue<Offer> offers;
-  for (std::size_t c = 0; c < instance.column_count(); ++c) {
-    offers.push({instance.column(c).size(), c});
+  for (std::size_t c = 0; c < instance.columns.size(); ++c) {
+    offers.push({instance.columns[c].size(), c});
   }
   std::vector<bool> covered(instance.row_count, false);
   std::vector<std::size_t> chosen;
   while (!offers.empty()) {
     Offer best = offers.top();
     offers.pop();
-    const auto column = instance.column(best.column);
+    const std::vector<std::uint32_t>& column = instance.columns[best.column];
     const auto gain = static_cast<std::size_t>(
         std::ranges::count_if(column, [&](std::uint32_t row) { return !covered[row]; }));
     if (gain == 0) continue;

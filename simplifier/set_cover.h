@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace spherule {
@@ -12,17 +11,7 @@ namespace spherule {
 // rows. Knows no geometry.
 struct SetCoverInstance {
   std::size_t row_count = 0;
-  std::vector<std::size_t> column_begin{0};  // column c holds rows[column_begin[c] .. [c + 1])
-  std::vector<std::uint32_t> rows;           // distinct within a column
-
-  std::size_t column_count() const { return column_begin.size() - 1; }
-  std::span<const std::uint32_t> column(std::size_t c) const {
-    return std::span(rows).subspan(column_begin[c], column_begin[c + 1] - column_begin[c]);
-  }
-  void add_column(std::span<const std::uint32_t> covered) {
-    rows.insert(rows.end(), covered.begin(), covered.end());
-    column_begin.push_back(rows.size());
-  }
+  std::vector<std::vector<std::uint32_t>> columns;  // rows are distinct within a column
 };
 
 // A cover by lazy greedy (Minoux 1978): the column that covers most of the rows still open is taken

@@ -2,12 +2,15 @@
 #include "simplifier/simplify.h"
 
 #include "simplifier/mesh_report.h"
+#include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <limits>
 
 namespace spherule {
 namespace {
@@ -24,6 +27,22 @@ double box_diagonal(const TriangleMesh& mesh) {
   return box.diagonal().norm();
 }
 
+// What the stages would refuse under other names, and what option_record() could not store.
+void check_options(const SimplifyOptions& options) {
+  const auto check = [](const char* name, double value) {
+    if (!(value >= 0.0 && value <= kMaxCoordinate)) {
+      throw Error(name, "must be finite and not negative");
+    }
+  };
+  check("max error", options.max_error);
+  check("min external diameter", options.min_external_diameter);
+  check("padding", options.padding);
+  check("min radius", options.min_radius);
+  check("min internal diameter", options.min_internal_diameter);
+  constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  if (options.seed > kLargest) throw Error("seed", "must be below 2^63");
+}
+
 class Stopwatch {
  public:
   double seconds() const {
@@ -38,6 +57,7 @@ class Stopwatch {
 
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
   validate(mesh, "mesh");
+  check_options(options);
   Simplification result;
   SimplifyOptions& used = result.options = options;
   const double diagonal = box_diagonal(mesh);
