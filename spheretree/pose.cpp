@@ -9,22 +9,33 @@
 namespace spherule {
 namespace {
 
-// See kRotationEntryError for the error analysis. The components are first scaled by a power of
-// two, so that the squares neither overflow nor vanish; this is exact but for components that are
-// below 2^-1022 times the largest.
+// See kRotationEntryError for the error analysis.
+Eigen::Matrix3d rotation_matrix(double w, double x, double y, double z, double squared_norm) {
+  const double s = 2.0 / squared_norm;
+  Eigen::Matrix3d m;
+  m << 1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
+      s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x),   //
+      s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y);
+  return m;
+}
+
+double squared_norm(double w, double x, double y, double z) {
+  return w * w + x * x + y * y + z * z;
+}
+
+// Components that are far from 1 are first scaled by a power of two, so that their squares neither
+// overflow nor vanish. That changes no bit of the result but where a product is below 2^-1022, and
+// there the entries by less than 2^-1000, for s is below 2^62.
 Eigen::Matrix3d rotation_matrix(const Eigen::Quaterniond& q) {
+  const double n = squared_norm(q.w(), q.x(), q.y(), q.z());
+  if (n >= 0x1p-60 && n <= 0x1p60) return rotation_matrix(q.w(), q.x(), q.y(), q.z(), n);
   int exponent = 0;
   std::frexp(q.coeffs().cwiseAbs().maxCoeff(), &exponent);
   const double w = std::ldexp(q.w(), -exponent);
   const double x = std::ldexp(q.x(), -exponent);
   const double y = std::ldexp(q.y(), -exponent);
   const double z = std::ldexp(q.z(), -exponent);
-  const double s = 2.0 / (w * w + x * x + y * y + z * z);
-  Eigen::Matrix3d m;
-  m << 1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
-      s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x),   //
-      s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y);
-  return m;
+  return rotation_matrix(w, x, y, z, squared_norm(w, x, y, z));
 }
 
 // The rotation nearest to a matrix that is within 1e-6 of one: two steps of Newton's iteration for

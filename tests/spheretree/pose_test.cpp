@@ -101,6 +101,23 @@ TEST(Pose, MatrixEntriesAreWithinTheStatedError) {
   EXPECT_GE(worst, 0.05 * kRotationEntryError);  // the bound is not idle
 }
 
+// Only quaternions far from unit length are scaled on the way, and that shows in no bit.
+TEST(Pose, PowersOfTwoChangeNoBitOfTheMatrix) {
+  Random random(4);
+  for (int i = 0; i < 20000; ++i) {
+    Quaterniond q = random_quaternion(random);
+    for (int k = 0; k < 4; ++k) {
+      if (random.between(0, 1) < 0.1) q.coeffs()[k] *= random.between(0, 1) < 0.5 ? 0.0 : 0x1p-300;
+    }
+    if (!(q.coeffs().cwiseAbs().maxCoeff() > 0.0)) continue;
+    const Matrix3d matrix = Pose(q, Vector3d::Zero()).matrix();
+    for (const double factor : {0x1p-600, 0x1p-35, 0x1p-29, 0x1p-3, 0x1p29, 0x1p35, 0x1p900}) {
+      const Quaterniond scaled(Eigen::Vector4d(factor * q.coeffs()));
+      ASSERT_EQ(Pose(scaled, Vector3d::Zero()).matrix(), matrix) << q.coeffs().transpose();
+    }
+  }
+}
+
 TEST(Pose, MapsPointsWithinTheStatedError) {
   Random random(23);
   for (const Quaterniond& q : quaternions(5000)) {
