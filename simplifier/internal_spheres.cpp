@@ -3,6 +3,7 @@
 
 #include "simplifier/internal/cover_history.h"
 #include "simplifier/internal/medial_ascent.h"
+#include "simplifier/internal/proof.h"
 #include "simplifier/internal/uncovered_search.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -76,17 +77,17 @@ SphereCover place_internal_spheres(const TriangleMesh& mesh, const Clearance& cl
   }
   internal::BallSet balls;
   SphereCover result;
-  double error = 0.0;
+  const auto note = [&](double lower, double upper) {
+    if (!history || balls.balls().empty()) return;
+    CoverHistoryEntry entry = history->entry(upper + kProofMargin * options.max_error);
+    entry.max_error_lower = lower;
+    entry.max_error_upper = upper;
+    result.history.push_back(entry);
+  };
   while (true) {
     const UncoveredSearch::Peak peak = search.next(balls);
-    error = peak.upper;
-    if (history && !balls.balls().empty()) {
-      CoverHistoryEntry entry = history->entry(error + kProofMargin * options.max_error);
-      entry.max_error_lower = peak.lower;
-      entry.max_error_upper = peak.upper;
-      result.history.push_back(entry);
-    }
     if (peak.upper <= limit) break;
+    note(peak.lower, peak.upper);
     const Sphere ball = grow(peak.point, result.seeds_rejected);
     balls.add(ball);
     if (history) history->add(ball);
@@ -95,6 +96,13 @@ SphereCover place_internal_spheres(const TriangleMesh& mesh, const Clearance& cl
     }
     if (options.progress) options.progress(-1.0, "placing internal spheres");
   }
+  // The search ends as soon as no error exceeds the limit; how large it is, the proof finds out.
+  const internal::BallHierarchy hierarchy(balls.balls());
+  const internal::CoverageProof remaining = internal::prove_solid(
+      clearance, {balls.balls(), hierarchy}, kPeakTolerance * options.max_error,
+      [](const Vector3d&) { return true; });
+  const double error = std::min(limit, remaining.upper);
+  note(remaining.lower, error);
   result.spheres_before_inflation = balls.balls();
   result.inflation = add_up(error, kProofMargin * options.max_error);
   for (const Sphere& s : balls.balls()) {
