@@ -68,6 +68,9 @@ FittedModel fit_model(const std::string& name, const TriangleMesh& mesh, double 
   if (!fit.certificate.covered || !fit.certificate.protrusion_over_mesh) {
     throw std::runtime_error(name + ": not certified");
   }
+  if (!(fit.certificate.protrusion_over_simplified_max <= error)) {
+    throw std::runtime_error(name + ": protrudes by more than E");
+  }
   std::vector<Sphere> spheres = fit.cover.spheres;
   for (Sphere& s : spheres) s.radius *= radius_factor;
   double radius = 0.0;
@@ -80,6 +83,7 @@ FittedModel fit_model(const std::string& name, const TriangleMesh& mesh, double 
           build_tree(spheres),
           box.center(),
           radius,
+          error,
           fit.certificate.protrusion_over_mesh->upper};
 }
 

@@ -20,6 +20,7 @@ struct FittedModel {
   SphereTree tree;
   Eigen::Vector3d center;   // of its box
   double radius;            // of a ball about `center` that encloses the mesh
+  double max_error;         // E
   double protrusion_bound;  // certified: no ball reaches further than this from the mesh
 };
 
