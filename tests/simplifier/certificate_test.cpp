@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/certificate.h"
+
+#include "spheretree/error.h"
+#include "tests/simplifier/effort.h"
+#include "tests/simplifier/fitting.h"
+#include "tests/simplifier/judge.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const double kRoot3 = std::numbers::sqrt3;
+const Vector3d kMiddle = Vector3d::Constant(0.5);
+
+// A solid without external balls: its box.
+ExternalSpheres box_of(const TriangleMesh& mesh) {
+  return place_external_spheres(mesh, {.placement = ExternalPlacement::kNone});
+}
+
+// One ball a cell of an n x n x n grid over the unit cube, around the cell and a little more: a
+// piece of surface that crosses from cell to cell has to fit into one of them.
+std::vector<Sphere> grid_of_balls(int n) {
+  std::vector<Sphere> balls;
+  for (int i = 0; i < n * n * n; ++i) {
+    const Vector3d cell(i % n, i / n % n, i / n / n);
+    balls.push_back({(cell + kMiddle) / n, kRoot3 / (2 * n) * 1.01});
+  }
+  return balls;
+}
+
+TEST(Certificate, ACubeIsCoveredByItsCircumscribedBallAndByNoSmallerOne) {
+  const ExternalSpheres box = box_of(cube_mesh());
+  for (const ExternalSpheres* external : {static_cast<const ExternalSpheres*>(nullptr), &box}) {
+    CertifyOptions options;
+    options.external = external;
+    const auto certificate = [&](double radius) {
+      return certify(cube_mesh(), std::vector<Sphere>{{kMiddle, radius}}, options);
+    };
+    EXPECT_TRUE(certificate(kRoot3 / 2 + 1e-9).covered);
+    const Certificate leak = certificate(0.8);
+    EXPECT_FALSE(leak.covered);
+    EXPECT_LE(leak.surface_depth.lower, kRoot3 / 2 - 0.8);
+    EXPECT_GE(leak.surface_depth.upper, kRoot3 / 2 - 0.8);
+    EXPECT_LE(leak.surface_depth.upper - leak.surface_depth.lower, 0.01);
+    EXPECT_EQ(leak.sphere_count, 1U);
+    EXPECT_GT(leak.pieces, 0U);
+    EXPECT_GT(leak.cells, 0U);
+  }
+}
+
+// Without the ball of one cell, the point of that cell that is furthest from the other balls is
+// known: the corner of the cube, or the middle of the cell, as far as its neighbours leave it.
+TEST(Certificate, AMissingBallIsALeakOfTheExactDepth) {
+  const int n = 3;
+  const ExternalSpheres box = box_of(cube_mesh());
+  CertifyOptions options;
+  options.external = &box;
+  const std::vector<Sphere> all = grid_of_balls(n);
+  EXPECT_TRUE(certify(cube_mesh(), all, options).covered);
+
+  std::vector<Sphere> hollow = all;
+  hollow.erase(hollow.begin() + (n * n * n) / 2);
+  // The middle of the middle cell, to the balls of the cells beside it.
+  const double in_the_middle = 1.0 / n - all.front().radius;
+  const Certificate inner = certify(cube_mesh(), hollow, options);
+  EXPECT_FALSE(inner.covered);
+  EXPECT_EQ(inner.surface_depth.upper, 0.0);
+  EXPECT_LE(inner.solid_depth.lower, in_the_middle);
+  EXPECT_GE(inner.solid_depth.upper, in_the_middle);
+  EXPECT_NEAR(inner.solid_depth.lower, in_the_middle, 1e-3);
+  EXPECT_NEAR(inner.solid_depth.upper, in_the_middle, 5e-3);
+  EXPECT_NEAR((inner.deepest_leak - kMiddle).norm(), 0.0, 0.01);
+
+  std::vector<Sphere> cut = all;
+  cut.erase(cut.begin());
+  const double at_the_corner = Vector3d(1.5 / n, 0.5 / n, 0.5 / n).norm() - all.front().radius;
+  const Certificate outer = certify(cube_mesh(), cut, options);
+  EXPECT_LE(outer.uncovered_depth.lower, at_the_corner);
+  EXPECT_GE(outer.uncovered_depth.upper, at_the_corner);
+  EXPECT_NEAR(outer.uncovered_depth.lower, at_the_corner, 5e-3);
+  EXPECT_NEAR(outer.uncovered_depth.upper, at_the_corner, 1e-2);
+  EXPECT_NEAR(outer.deepest_leak.norm(), 0.0, 0.02);
+}
+
+// Balls along the surface leave the inside open. The surface is covered, but |M| is not.
+TEST(Certificate, AHollowSetIsNotACoverEvenWithoutExternalSpheres) {
+  Random random(91);
+  std::vector<Sphere> balls;
+  const int n = 8;
+  for (int i = 0; i <= n; ++i) {
+    for (int k = 0; k <= n; ++k) {
+      const double u = static_cast<double>(i) / n, v = static_cast<double>(k) / n;
+      for (const double w : {0.0, 1.0}) {
+        balls.push_back({{u, v, w}, 0.12});
+        balls.push_back({{u, w, v}, 0.12});
+        balls.push_back({{w, u, v}, 0.12});
+      }
+    }
+  }
+  for (const TriangleMesh& mesh : {cube_mesh(), inverted(cube_mesh())}) {
+    const Certificate certificate = certify(mesh, balls);
+    EXPECT_FALSE(certificate.covered);
+    EXPECT_EQ(certificate.surface_depth.upper, 0.0);
+    EXPECT_NEAR(certificate.solid_depth.lower, 0.38, 0.005);
+    EXPECT_NEAR(certificate.solid_depth.upper, 0.38, 0.01);
+    EXPECT_NEAR((certificate.deepest_leak - kMiddle).norm(), 0.0, 0.01);
+  }
+  // An open box has no inside that its witness could be in, but what cannot be reached counts.
+  EXPECT_EQ(certify(open_box(), balls).surface_depth.upper, 0.0);
+}
+
+TEST(Certificate, TheProtrusionOfOneBallAroundACubeIsExact) {
+  const double radius = 1.0;
+  const std::vector<Sphere> ball{{kMiddle, radius}};
+  const ExternalSpheres box = box_of(cube_mesh());
+  CertifyOptions options;
+  options.external = &box;
+  const Certificate certificate = certify(cube_mesh(), ball, options);
+  EXPECT_TRUE(certificate.covered);
+  // Above the middle of a face.
+  const double exact = radius - 0.5;
+  ASSERT_TRUE(certificate.protrusion_over_simplified_max.has_value());
+  EXPECT_GE(*certificate.protrusion_over_simplified_max, exact);
+  EXPECT_NEAR(*certificate.protrusion_over_simplified_max, exact, 1e-9);
+  ASSERT_TRUE(certificate.protrusion_over_mesh.has_value());
+  EXPECT_LE(certificate.protrusion_over_mesh->lower, exact);
+  EXPECT_GE(certificate.protrusion_over_mesh->upper, exact);
+  EXPECT_NEAR(certificate.protrusion_over_mesh->lower, exact, 0.03);
+  EXPECT_NEAR(certificate.protrusion_over_mesh->upper, exact, 0.03);
+  ASSERT_TRUE(certificate.volume_ratio.has_value());
+  EXPECT_NEAR(*certificate.volume_ratio, 4.0 / 3.0 * std::numbers::pi, 0.05);
+}
+
+TEST(Certificate, ABallFarOffProtrudesByItsDistance) {
+  const std::vector<Sphere> balls{{kMiddle, 0.9}, {{4, 0.5, 0.5}, 0.25}};
+  const ExternalSpheres box = box_of(cube_mesh());
+  CertifyOptions options;
+  options.external = &box;
+  const Certificate certificate = certify(cube_mesh(), balls, options);
+  EXPECT_GE(*certificate.protrusion_over_simplified_max, 3.25);
+  EXPECT_LE(*certificate.protrusion_over_simplified_max, 3.26);
+  EXPECT_LE(certificate.protrusion_over_mesh->lower, 3.25);
+  EXPECT_GE(certificate.protrusion_over_mesh->upper, 3.25);
+  EXPECT_LE(certificate.protrusion_over_mesh->upper, 3.4);
+}
+
+TEST(Certificate, AnEmptySetCoversNothing) {
+  for (const TriangleMesh& mesh : {cube_mesh(), open_box(), soup(5, 1)}) {
+    const Certificate certificate = certify(mesh, {});
+    EXPECT_FALSE(certificate.covered);
+    EXPECT_EQ(certificate.uncovered_depth.upper, kInfinity);
+    EXPECT_EQ(certificate.sphere_count, 0U);
+    EXPECT_FALSE(record(certificate).covered);
+  }
+}
+
+std::string refused(const std::vector<Sphere>& balls, const CertifyOptions& options = {},
+                    const TriangleMesh& mesh = cube_mesh()) {
+  try {
+    certify(mesh, balls, options);
+  } catch (const Error& error) {
+    return error.subject();
+  }
+  return "accepted";
+}
+
+TEST(Certificate, BadBallsAndOptionsAreRefusedByName) {
+  const Sphere good{kMiddle, 1.0};
+  for (const Sphere& bad :
+       {Sphere{kMiddle, kNan}, Sphere{kMiddle, -1e-9}, Sphere{kMiddle, kInfinity},
+        Sphere{{0, kNan, 0}, 1.0}, Sphere{{kInfinity, 0, 0}, 1.0}, Sphere{kMiddle, 1e300}}) {
+    EXPECT_EQ(refused({good, bad}), "sphere 1");
+  }
+  for (const double bad : {-1.0, kNan, kInfinity, 2.0}) {
+    EXPECT_EQ(refused({good}, {.resolution = bad}), "resolution");
+    EXPECT_EQ(refused({good}, {.protrusion_tolerance = bad}), "protrusion tolerance");
+  }
+  EXPECT_EQ(refused({good}, {.resolution = 0.0}), "resolution");
+  for (const double bad : {-1.0, kNan, kInfinity}) {
+    EXPECT_EQ(refused({good}, {.padding = bad}), "padding");
+  }
+  EXPECT_EQ(refused({good}, {}, {}), "mesh");
+}
+
+// Sets that cover a part: some balls of a fit, shrunk or left out at random.
+TEST(Certificate, TheBoundsOfTheDepthHoldAgainstSampling) {
+  Random random(92);
+  std::size_t leaks = 0;
+  for (const NamedMesh& named : mesh_zoo()) {
+    SCOPED_TRACE(named.name);
+    const TriangleMesh& mesh = named.mesh;
+    CoverOptions options;
+    options.method = CoverMethod::kPaper;
+    const Fit fitted = fit(mesh, options, {.max_error = 0.1});
+    const auto count = static_cast<std::size_t>(effort(3000, 300));
+    const std::vector<Vector3d> surface = points_on_surface(mesh, count, random);
+    const std::vector<Vector3d> solid = points_of_solid(fitted.external, count, random);
+    for (int round = 0; round < effort(6, 2); ++round) {
+      std::vector<Sphere> balls;
+      for (const Sphere& s : fitted.cover.spheres) {
+        if (random.unit() < 0.1) continue;
+        balls.push_back({s.center, s.radius * random.between(0.9, 1.0)});
+      }
+      const Certificate certificate = certificate_of(mesh, fitted, balls);
+      const Judgement on_surface = judge_cover(surface, balls);
+      const Judgement in_solid = judge_cover(solid, balls);
+      ASSERT_GE(certificate.surface_depth.upper, on_surface.depth - 1e-15L);
+      ASSERT_GE(certificate.solid_depth.upper, in_solid.depth);
+      ASSERT_LE(certificate.uncovered_depth.lower, certificate.uncovered_depth.upper);
+      if (certificate.covered) {
+        ASSERT_EQ(certificate.uncovered_depth.upper, 0.0);
+        ASSERT_EQ(in_solid.uncovered, 0U);
+        ASSERT_EQ(on_surface.uncovered, 0U);
+        continue;
+      }
+      ++leaks;
+      // The lower bound is witnessed by a point of S.
+      if (certificate.uncovered_depth.lower > 0.0) {
+        ASSERT_GE(gap_to_balls(certificate.deepest_leak, balls),
+                  certificate.uncovered_depth.lower * (1.0L - 1e-12L) - 1e-15L);
+        ASSERT_TRUE(is_in_solid(certificate.deepest_leak, fitted.external));
+      }
+      // The proof comes near to the truth.
+      ASSERT_LE(certificate.uncovered_depth.upper - certificate.uncovered_depth.lower,
+                0.05 * fitted.max_error + 0.05 * certificate.uncovered_depth.upper);
+    }
+  }
+  EXPECT_GT(leaks, 10U);
+}
+
+TEST(Certificate, IsEqualOnAnyNumberOfThreads) {
+  CoverOptions fit_options;
+  fit_options.method = CoverMethod::kPaper;
+  const TriangleMesh mesh = l_bracket();
+  const Fit fitted = fit(mesh, fit_options);
+  CertifyOptions options;
+  options.external = &fitted.external;
+  std::vector<Certificate> certificates;
+  for (const int threads : {1, 2, 0}) {
+    options.threads = threads;
+    certificates.push_back(certify(mesh, fitted.cover.spheres_before_inflation, options));
+  }
+  for (const Certificate& c : certificates) {
+    EXPECT_EQ(c.uncovered_depth.lower, certificates.front().uncovered_depth.lower);
+    EXPECT_EQ(c.uncovered_depth.upper, certificates.front().uncovered_depth.upper);
+    EXPECT_EQ(c.deepest_leak, certificates.front().deepest_leak);
+    EXPECT_EQ(c.protrusion_over_mesh->upper, certificates.front().protrusion_over_mesh->upper);
+    EXPECT_EQ(c.volume_ratio, certificates.front().volume_ratio);
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/cover.h"
+
+#include "spheretree/error.h"
+#include "tests/simplifier/effort.h"
+#include "tests/simplifier/fitting.h"
+#include "tests/simplifier/judge.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <string>
+#include <tuple>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+
+std::string name_of(CoverMethod method) {
+  return method == CoverMethod::kPaper ? "paper" : "cover";
+}
+
+TriangleMesh mesh_named(const std::string& name) {
+  for (NamedMesh& named : mesh_zoo()) {
+    if (named.name == name) return named.mesh;
+  }
+  throw Error(name, "not in the zoo");
+}
+
+class CoverOfZoo : public testing::TestWithParam<std::tuple<std::size_t, CoverMethod>> {
+ protected:
+  TriangleMesh mesh() const { return mesh_zoo().at(std::get<0>(GetParam())).mesh; }
+  CoverOptions options() const {
+    CoverOptions options;
+    options.method = std::get<1>(GetParam());
+    return options;
+  }
+};
+
+void expect_covered(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t seed) {
+  const std::vector<Sphere>& balls = fitted.cover.spheres;
+  const Certificate certificate = certificate_of(mesh, fitted, balls);
+  EXPECT_TRUE(certificate.covered);
+  EXPECT_EQ(certificate.uncovered_depth.upper, 0.0);
+
+  Random random(seed);
+  const auto count = static_cast<std::size_t>(effort(6000, 600));
+  std::vector<Vector3d> surface = points_on_surface(mesh, count, random);
+  for (Vector3d& p : surface) p += 0.999999 * fitted.external.padding * random.direction();
+  const std::vector<Vector3d> solid = points_of_solid(fitted.external, count, random);
+  EXPECT_GT(solid.size(), count / 200);
+  EXPECT_EQ(judge_cover(surface, balls).uncovered, 0U);
+  EXPECT_EQ(judge_cover(solid, balls).uncovered, 0U);
+}
+
+TEST_P(CoverOfZoo, TheSolidIsCoveredAndNothingProtrudesByMoreThanTheError) {
+  const TriangleMesh mesh = this->mesh();
+  const Fit fitted = fit(mesh, options());
+  expect_covered(mesh, fitted, 71);
+
+  const double size = diagonal_of(mesh);
+  Random random(72);
+  const ProtrusionJudgement protrusion =
+      judge_protrusion(fitted.cover.spheres, mesh, fitted.external, fitted.max_error + 1e-9 * size,
+                       static_cast<std::size_t>(effort(24, 6)), random);
+  EXPECT_EQ(protrusion.beyond, 0U)
+      << "of " << protrusion.points << ", one at " << protrusion.example.transpose();
+  const Certificate certificate = certificate_of(mesh, fitted, fitted.cover.spheres);
+  ASSERT_TRUE(certificate.protrusion_over_simplified_max.has_value());
+  EXPECT_LE(*certificate.protrusion_over_simplified_max, fitted.max_error);
+}
+
+INSTANTIATE_TEST_SUITE_P(Zoo, CoverOfZoo,
+                         testing::Combine(testing::Range(std::size_t{0}, mesh_zoo().size()),
+                                          testing::Values(CoverMethod::kCover,
+                                                          CoverMethod::kPaper)),
+                         [](const auto& tested) {
+                           std::string name = mesh_zoo().at(std::get<0>(tested.param)).name + "_" +
+                                              name_of(std::get<1>(tested.param));
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+class CoverByMethod : public testing::TestWithParam<CoverMethod> {
+ protected:
+  CoverOptions options() const {
+    CoverOptions options;
+    options.method = GetParam();
+    return options;
+  }
+};
+
+TEST_P(CoverByMethod, IsEqualInEveryRunOnAnyNumberOfThreads) {
+  for (const char* name : {"l-bracket", "soup"}) {
+    const TriangleMesh mesh = mesh_named(name);
+    CoverOptions options = this->options();
+    const std::vector<Sphere> first = fit(mesh, options).cover.spheres;
+    EXPECT_EQ(fit(mesh, options).cover.spheres, first);
+    for (const int threads : {1, 2}) {
+      options.threads = threads;
+      EXPECT_EQ(fit(mesh, options).cover.spheres, first);
+    }
+  }
+}
+
+TEST_P(CoverByMethod, EveryWayToPlaceExternalSpheresGivesACoveredSolid) {
+  for (const ExternalPlacement placement : {ExternalPlacement::kRandom, ExternalPlacement::kNone}) {
+    const TriangleMesh mesh = l_bracket();
+    FitShares shares;
+    shares.placement = placement;
+    expect_covered(mesh, fit(mesh, options(), shares), 73);
+  }
+}
+
+TEST_P(CoverByMethod, WithPaddingTheGrownMeshIsCovered) {
+  for (const char* name : {"cube", "open-box", "l-bracket", "three-fins"}) {
+    SCOPED_TRACE(name);
+    for (const double padding : {0.1, 0.9, 3.0}) {
+      SCOPED_TRACE(padding);
+      TriangleMesh mesh = mesh_named(name);
+      mesh.vertex_error = 1e-3;
+      FitShares shares;
+      shares.padding = padding;
+      expect_covered(mesh, fit(mesh, options(), shares), 74);
+    }
+  }
+}
+
+TEST_P(CoverByMethod, NoBallIsSmallerThanTheLeastRadius) {
+  const TriangleMesh mesh = mesh_named("open-box");
+  for (const double share : {1.0, 2.5, 5.0}) {
+    CoverOptions options = this->options();
+    options.min_radius = share * FitShares{}.max_error * diagonal_of(mesh);
+    const Fit fitted = fit(mesh, options);
+    for (const Sphere& s : fitted.cover.spheres) ASSERT_GE(s.radius, options.min_radius);
+    expect_covered(mesh, fitted, 75);
+  }
+}
+
+// Sizes and places far from one.
+TEST_P(CoverByMethod, ScaleAndPlaceDoNotMatter) {
+  for (const double scale : {1e-6, 1e6}) {
+    for (const Vector3d& shift : {Vector3d(0, 0, 0), Vector3d(1e4, -1e4, 1e4)}) {
+      TriangleMesh mesh = l_bracket();
+      for (Vector3d& v : mesh.vertices) v = scale * (v + shift);
+      expect_covered(mesh, fit(mesh, options()), 76);
+    }
+  }
+}
+
+TEST_P(CoverByMethod, BadOptionsAreRefusedByName) {
+  const TriangleMesh mesh = cube_mesh();
+  const ExternalSpheres external = externals_of(mesh, {});
+  const auto refused = [&](const CoverOptions& options) -> std::string {
+    try {
+      cover(mesh, external, options);
+    } catch (const Error& error) {
+      return error.subject();
+    }
+    return "accepted";
+  };
+  CoverOptions good = options();
+  good.max_error = 0.3;
+  for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN(),
+                           std::numeric_limits<double>::infinity(), 1e300}) {
+    CoverOptions bad_options = good;
+    bad_options.max_error = bad;
+    EXPECT_EQ(refused(bad_options), "max error");
+    bad_options = good;
+    bad_options.min_radius = bad;
+    EXPECT_EQ(refused(bad_options), "min radius");
+    bad_options = good;
+    bad_options.min_internal_diameter = bad;
+    EXPECT_EQ(refused(bad_options), "min internal diameter");
+  }
+  CoverOptions none = good;
+  none.max_error = 0.0;
+  EXPECT_EQ(refused(none), "max error");
+  EXPECT_EQ(refused(good), "accepted");
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, CoverByMethod,
+                         testing::Values(CoverMethod::kCover, CoverMethod::kPaper),
+                         [](const auto& tested) { return name_of(tested.param); });
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/external_spheres.h"
+
+#include "spheretree/error.h"
+#include "tests/simplifier/effort.h"
+#include "tests/simplifier/judge.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <limits>
+#include <string>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::array kPlacements{ExternalPlacement::kReachable, ExternalPlacement::kRandom};
+
+ExternalOptions options_for(ExternalPlacement placement, double diameter) {
+  ExternalOptions options;
+  options.placement = placement;
+  options.min_external_diameter = diameter;
+  options.limit = 3000;
+  return options;
+}
+
+double diagonal(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& v : mesh.vertices) box.extend(v);
+  return box.diagonal().norm();
+}
+
+// Two plates of 10 x 10 x 1 with a gap between them.
+TriangleMesh two_plates(double gap) {
+  return joined(box_mesh({0, 0, 0}, {10, 10, 1}), box_mesh({0, 0, 1 + gap}, {10, 10, 2 + gap}));
+}
+
+TEST(ExternalSpheres, EveryBallIsFreeOfThePaddedMeshAndLargeEnough) {
+  for (const NamedMesh& named : mesh_zoo()) {
+    SCOPED_TRACE(named.name);
+    const double size = diagonal(named.mesh);
+    for (const ExternalPlacement placement : kPlacements) {
+      for (const double padding : {0.0, 0.03 * size}) {
+        ExternalOptions options = options_for(placement, 0.25 * size);
+        options.padding = padding;
+        TriangleMesh mesh = named.mesh;
+        mesh.vertex_error = padding / 16.0;
+        const ExternalSpheres external = place_external_spheres(mesh, options);
+        ASSERT_GE(external.padding, padding + mesh.vertex_error);
+        ASSERT_FALSE(external.balls.empty());
+        const std::size_t stride = kSanitized ? 64 : 16;
+        for (std::size_t i = 0; i < external.balls.size(); i += stride) {
+          const Sphere& ball = external.balls[i];
+          ASSERT_GE(2.0 * ball.radius, options.min_external_diameter);
+          ASSERT_LE(static_cast<Real>(ball.radius) + external.padding,
+                    judged_mesh_distance(ball.center, mesh) + 1e-17L * size);
+        }
+      }
+    }
+  }
+}
+
+TEST(ExternalSpheres, TheMeshIsInTheSimplifiedSolid) {
+  Random random(51);
+  for (const NamedMesh& named : mesh_zoo()) {
+    SCOPED_TRACE(named.name);
+    const double size = diagonal(named.mesh);
+    for (const ExternalPlacement placement : kPlacements) {
+      ExternalOptions options = options_for(placement, 0.2 * size);
+      options.padding = 0.01 * size;
+      const ExternalSpheres external = place_external_spheres(named.mesh, options);
+      for (const Vector3d& p :
+           points_on_surface(named.mesh, static_cast<std::size_t>(effort(200, 20)), random)) {
+        // The surface and a point of it grown by the padding.
+        ASSERT_TRUE(is_in_solid(p, external));
+        ASSERT_TRUE(is_in_solid(p + 0.999999 * options.padding * random.direction(), external));
+      }
+    }
+  }
+}
+
+TEST(ExternalSpheres, AGapNarrowerThanTheDiameterIsFilled) {
+  const double gap = 2.0;
+  const Vector3d middle(5, 5, 1 + gap / 2);
+  for (const ExternalPlacement placement : kPlacements) {
+    for (const double diameter : {2.0001, 2.2, 3.0}) {
+      ExternalOptions options = options_for(placement, diameter);
+      options.limit = 20000;
+      EXPECT_TRUE(is_in_solid(middle, place_external_spheres(two_plates(gap), options)));
+    }
+  }
+  // The padding narrows the gap.
+  ExternalOptions options = options_for(ExternalPlacement::kReachable, 1.5);
+  options.padding = 0.2501;
+  EXPECT_TRUE(is_in_solid(middle, place_external_spheres(two_plates(gap), options)));
+}
+
+TEST(ExternalSpheres, AGapWiderThanTheDiameterAndTheSlackIsKeptOpen) {
+  for (const double step : {0.5, 0.25, 0.17}) {
+    for (const double shift : {0.0, 0.1, 0.21}) {
+      ExternalOptions options = options_for(ExternalPlacement::kReachable, 2.0);
+      options.grid_step = step;
+      const double slack = place_external_spheres(two_plates(1.0), options).closing_slack;
+      ASSERT_GT(slack, 0.0);
+      ASSERT_LT(slack, 3.0 * step);
+      const double gap = 2.0 + slack * 1.0001;
+      // The shift moves the grid against the gap.
+      TriangleMesh mesh = two_plates(gap);
+      mesh = joined(mesh, box_mesh({0, 0, -2.0 - shift}, {0.1, 0.1, -1.0}));
+      const ExternalSpheres external = place_external_spheres(mesh, options);
+      EXPECT_EQ(external.closing_slack, slack);
+      EXPECT_FALSE(is_in_solid({5, 5, 1 + gap / 2}, external)) << step << " " << shift;
+    }
+  }
+}
+
+TEST(ExternalSpheres, AClosedCavityIsFilledHoweverLarge) {
+  const TriangleMesh hollow =
+      joined(box_mesh({0, 0, 0}, {10, 10, 10}), inverted(box_mesh({1, 1, 1}, {9, 9, 9})));
+  Random random(52);
+  const Eigen::AlignedBox3d box(Vector3d::Zero(), Vector3d::Constant(10));
+  for (const ExternalPlacement placement : kPlacements) {
+    ExternalOptions options = options_for(placement, 1.0);
+    options.grid_step = 0.25;
+    const ExternalSpheres external = place_external_spheres(hollow, options);
+    for (int i = 0; i < 1000; ++i) ASSERT_TRUE(is_in_solid(random.in_box(box), external));
+  }
+}
+
+TEST(ExternalSpheres, ABoreIsFilledForAWideToolAndOpenForANarrowOne) {
+  const TriangleMesh mesh = pipe(20, 17, 300, 81);
+  for (const ExternalPlacement placement : kPlacements) {
+    ExternalOptions options = options_for(placement, 100);
+    const ExternalSpheres wide = place_external_spheres(mesh, options);
+    options.min_external_diameter = 20;
+    options.limit = 30000;
+    const ExternalSpheres narrow = place_external_spheres(mesh, options);
+    int open = 0;
+    for (int z = 20; z <= 280; z += 10) {
+      ASSERT_TRUE(is_in_solid({0, 0, static_cast<double>(z)}, wide));
+      if (!is_in_solid({0, 0, static_cast<double>(z)}, narrow)) ++open;
+    }
+    EXPECT_EQ(open, 27);
+  }
+}
+
+TEST(ExternalSpheres, WithoutPlacementTheSolidIsTheBox) {
+  ExternalOptions options;
+  options.placement = ExternalPlacement::kNone;
+  options.padding = 0.5;
+  const ExternalSpheres external = place_external_spheres(cube_mesh(), options);
+  EXPECT_TRUE(external.balls.empty());
+  EXPECT_LE(external.box.min().maxCoeff(), -0.5);
+  EXPECT_GE(external.box.max().minCoeff(), 1.5);
+  EXPECT_NEAR(external.box.sizes().norm(), 2.0 * std::sqrt(3.0), 1e-12);
+}
+
+TEST(ExternalSpheres, AreEqualInEveryRunOnAnyNumberOfThreads) {
+  for (const ExternalPlacement placement : kPlacements) {
+    const ExternalOptions options = options_for(placement, 0.3);
+    const ExternalSpheres first = place_external_spheres(l_bracket(), options);
+    EXPECT_EQ(place_external_spheres(l_bracket(), options).balls, first.balls);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_EQ(place_external_spheres(l_bracket(), options).balls, first.balls);
+  }
+  ExternalOptions other = options_for(ExternalPlacement::kRandom, 0.3);
+  const ExternalSpheres first = place_external_spheres(l_bracket(), other);
+  other.seed = 2;
+  EXPECT_NE(place_external_spheres(l_bracket(), other).balls, first.balls);
+  EXPECT_EQ(first.nodes_examined, other.limit);
+}
+
+std::string refused(const ExternalOptions& options, const TriangleMesh& mesh = cube_mesh()) {
+  try {
+    place_external_spheres(mesh, options);
+  } catch (const Error& error) {
+    return error.subject();
+  }
+  return "accepted";
+}
+
+TEST(ExternalSpheres, BadOptionsAreRefusedByName) {
+  for (const ExternalPlacement placement : kPlacements) {
+    for (const double bad : {0.0, -1.0, kNan, kInfinity, 1e300}) {
+      EXPECT_EQ(refused(options_for(placement, bad)), "min external diameter") << bad;
+    }
+    for (const double bad : {-1.0, kNan, kInfinity}) {
+      ExternalOptions options = options_for(placement, 0.5);
+      options.padding = bad;
+      EXPECT_EQ(refused(options), "padding") << bad;
+    }
+  }
+  for (const double bad : {-1.0, kNan, 1e-12, kInfinity}) {
+    ExternalOptions options = options_for(ExternalPlacement::kReachable, 0.5);
+    options.grid_step = bad;
+    EXPECT_EQ(refused(options), "grid step") << bad;
+  }
+  EXPECT_EQ(refused(options_for(ExternalPlacement::kReachable, 1e-9)), "grid step");
+  EXPECT_EQ(refused(options_for(ExternalPlacement::kReachable, 0.5), {}), "mesh");
+  TriangleMesh broken = cube_mesh();
+  broken.vertices[3].y() = kNan;
+  EXPECT_EQ(refused(options_for(ExternalPlacement::kReachable, 0.5), broken), "mesh");
+}
+
+}  // namespace
+}  // namespace spherule::test

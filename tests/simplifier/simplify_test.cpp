@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/simplify.h"
+
+#include "spheretree/error.h"
+#include "tests/simplifier/fitting.h"
+#include "tests/simplifier/judge.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <map>
+#include <string>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+using Record = std::map<std::string, OptionValue>;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TriangleMesh triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return {{a, b, c}, {{0, 1, 2}}};
+}
+
+SimplifyOptions coarse(double max_error) {
+  SimplifyOptions options;
+  options.max_error = max_error;
+  return options;
+}
+
+TEST(Simplify, ChoosesErrorAndDiameterFromTheSizeOfTheModel) {
+  // A sheet: one per cent of its diagonal is coarse enough to be quick.
+  const TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 0.05, 0.05});
+  const Simplification result = simplify(mesh);
+  const double diagonal = diagonal_of(mesh);
+  EXPECT_DOUBLE_EQ(result.options.max_error, 0.01 * diagonal);
+  EXPECT_DOUBLE_EQ(result.options.min_external_diameter, 0.04 * diagonal);
+  EXPECT_EQ(result.external.min_external_diameter, result.options.min_external_diameter);
+  EXPECT_TRUE(result.certificate.covered);
+  EXPECT_EQ(result.certificate.sphere_count, result.cover.spheres.size());
+  EXPECT_LE(*result.certificate.protrusion_over_simplified_max, result.options.max_error);
+  EXPECT_GE(*result.certificate.volume_ratio, 1.0);
+}
+
+TEST(Simplify, KeepsWhatIsGiven) {
+  SimplifyOptions options = coarse(0.1);
+  options.min_external_diameter = 0.7;
+  options.padding = 0.01;
+  options.min_radius = 0.15;
+  options.external = ExternalPlacement::kRandom;
+  options.external_limit = 500;
+  options.seed = 5;
+  options.method = CoverMethod::kPaper;
+  const Simplification result = simplify(cube_mesh(), options);
+  EXPECT_EQ(result.options.max_error, 0.1);
+  EXPECT_EQ(result.external.min_external_diameter, 0.7);
+  EXPECT_GE(result.external.padding, 0.01);
+  EXPECT_EQ(result.external.nodes_examined, 500U);
+  EXPECT_FALSE(result.cover.spheres_before_inflation.empty());
+  for (const Sphere& s : result.cover.spheres) EXPECT_GE(s.radius, 0.15);
+  EXPECT_TRUE(result.certificate.covered);
+}
+
+TEST(Simplify, OptionsSurviveTheRecord) {
+  SimplifyOptions options;
+  options.max_error = 0.1;
+  options.min_external_diameter = 3.0;
+  options.padding = 1e-300;
+  options.min_radius = 0.25;
+  options.min_internal_diameter = 0.125;
+  options.method = CoverMethod::kPaper;
+  options.external = ExternalPlacement::kRandom;
+  options.external_limit = 77;
+  options.seed = 0x7fffffffffffffff;
+  const Record record = option_record(options, 1000.0);
+  EXPECT_EQ(std::get<double>(record.at("scale")), 1000.0);
+  const SimplifyOptions back = options_from_record(record);
+  EXPECT_EQ(option_record(back, 1000.0), record);
+  EXPECT_EQ(back.max_error, options.max_error);
+  EXPECT_EQ(back.min_external_diameter, options.min_external_diameter);
+  EXPECT_EQ(back.padding, options.padding);
+  EXPECT_EQ(back.min_radius, options.min_radius);
+  EXPECT_EQ(back.min_internal_diameter, options.min_internal_diameter);
+  EXPECT_EQ(back.method, options.method);
+  EXPECT_EQ(back.external, options.external);
+  EXPECT_EQ(back.external_limit, options.external_limit);
+  EXPECT_EQ(back.seed, options.seed);
+  for (const ExternalPlacement placement :
+       {ExternalPlacement::kReachable, ExternalPlacement::kNone}) {
+    options.external = placement;
+    EXPECT_EQ(options_from_record(option_record(options, 1.0)).external, placement);
+  }
+}
+
+TEST(Simplify, WhatARecordLacksKeepsItsDefault) {
+  const SimplifyOptions defaults;
+  EXPECT_EQ(option_record(options_from_record({}), 1.0), option_record(defaults, 1.0));
+  // Whole numbers are numbers.
+  EXPECT_EQ(options_from_record({{"max-error", std::int64_t{2}}}).max_error, 2.0);
+}
+
+TEST(Simplify, BadRecordsAreRefusedByName) {
+  const auto refused = [](const std::string& key, const OptionValue& value) -> std::string {
+    try {
+      options_from_record({{key, value}});
+    } catch (const Error& error) {
+      return error.subject();
+    }
+    return "accepted";
+  };
+  for (const char* key : {"max-error", "min-external", "padding", "min-radius", "min-internal"}) {
+    EXPECT_EQ(refused(key, std::string("wide")), key);
+    EXPECT_EQ(refused(key, true), key);
+  }
+  for (const char* key : {"seed", "external-limit"}) {
+    EXPECT_EQ(refused(key, std::int64_t{-1}), key);
+    EXPECT_EQ(refused(key, 1.5), key);
+  }
+  for (const char* key : {"method", "external"}) {
+    EXPECT_EQ(refused(key, std::string("other")), key);
+    EXPECT_EQ(refused(key, std::int64_t{1}), key);
+  }
+}
+
+TEST(Simplify, BadOptionsAreRefusedByName) {
+  const auto refused = [](SimplifyOptions options,
+                          const TriangleMesh& mesh = cube_mesh()) -> std::string {
+    if (options.max_error == 0.0) options.max_error = 0.2;
+    try {
+      simplify(mesh, options);
+    } catch (const Error& error) {
+      return error.subject();
+    }
+    return "accepted";
+  };
+  for (const double bad : {-1.0, kNan, kInfinity}) {
+    EXPECT_EQ(refused(coarse(bad)), "max error") << bad;
+    EXPECT_EQ(refused({.min_external_diameter = bad}), "min external diameter") << bad;
+    EXPECT_EQ(refused({.padding = bad}), "padding") << bad;
+    EXPECT_EQ(refused({.min_radius = bad}), "min radius") << bad;
+    EXPECT_EQ(refused({.min_internal_diameter = bad}), "min internal diameter") << bad;
+  }
+  EXPECT_EQ(refused({}, {}), "mesh");
+  TriangleMesh broken = cube_mesh();
+  broken.triangles[0][1] = 8;
+  EXPECT_EQ(refused({}, broken), "mesh");
+}
+
+// Input with no volume, no area or no extent at all, by both methods.
+TEST(Simplify, DegenerateInputIsCovered) {
+  const std::vector<NamedMesh> meshes = {
+      {"triangle", triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})},
+      {"sheet", thin_sheet(0.0)},
+      {"line", triangle({0, 0, 0}, {1, 2, 3}, {0.5, 1, 1.5})},
+      {"line along an axis", triangle({0, 0, 0}, {1, 0, 0}, {0.25, 0, 0})},
+      {"point", triangle({1, 2, 3}, {1, 2, 3}, {1, 2, 3})},
+      {"two points", joined(triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}),
+                            triangle({1, 0, 0}, {1, 0, 0}, {1, 0, 0}))}};
+  Random random(101);
+  for (const NamedMesh& named : meshes) {
+    SCOPED_TRACE(named.name);
+    for (const CoverMethod method : {CoverMethod::kCover, CoverMethod::kPaper}) {
+      SimplifyOptions options = coarse(0.1);
+      options.method = method;
+      const Simplification result = simplify(named.mesh, options);
+      EXPECT_TRUE(result.certificate.covered);
+      EXPECT_FALSE(result.cover.spheres.empty());
+      EXPECT_LE(*result.certificate.protrusion_over_simplified_max, 0.1);
+      const auto points = points_on_surface(named.mesh, 300, random);
+      EXPECT_EQ(judge_cover(points, result.cover.spheres).uncovered, 0U);
+    }
+  }
+}
+
+// The default error is a share of the diagonal, and a point has none.
+TEST(Simplify, APointNeedsAnErrorOfItsOwn) {
+  EXPECT_THROW(simplify(triangle({1, 2, 3}, {1, 2, 3}, {1, 2, 3})), Error);
+}
+
+TEST(Simplify, AFileHoldsSpheresCertificateAndOptions) {
+  const Simplification result = simplify(l_bracket(), coarse(0.1));
+  const SphereFile file = sphere_file(result, 2.0);
+  EXPECT_EQ(file.spheres, result.cover.spheres);
+  EXPECT_EQ(file.options, option_record(result.options, 2.0));
+  ASSERT_TRUE(file.certificate.has_value());
+  EXPECT_TRUE(file.certificate->covered);
+  EXPECT_EQ(file.certificate->sphere_count, file.spheres.size());
+  EXPECT_EQ(file.certificate->protrusion_over_simplified_max,
+            result.certificate.protrusion_over_simplified_max);
+  EXPECT_EQ(file.certificate->protrusion_over_mesh_max,
+            result.certificate.protrusion_over_mesh->upper);
+
+  // An audit from the file alone comes to the same end.
+  const SimplifyOptions options = options_from_record(file.options);
+  const ExternalSpheres external =
+      place_external_spheres(l_bracket(), {.placement = options.external,
+                                           .min_external_diameter = options.min_external_diameter,
+                                           .padding = options.padding,
+                                           .max_error = options.max_error,
+                                           .limit = options.external_limit,
+                                           .seed = options.seed});
+  EXPECT_EQ(external.balls, result.external.balls);
+}
+
+}  // namespace
+}  // namespace spherule::test
