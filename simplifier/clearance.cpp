@@ -30,8 +30,9 @@ ClearanceAt Clearance::operator()(const Vector3d& point, double tolerance, doubl
       result.away = -Vector3d::Unit(axis);
     }
   }
-  result.lower = next_down(nearest);
-  result.upper = next_up(nearest);
+  // The difference of two doubles is rounded to zero only if they are equal.
+  result.lower = nearest == 0.0 ? 0.0 : next_down(nearest);
+  result.upper = nearest == 0.0 ? 0.0 : next_up(nearest);
   const internal::NearestBall ball = balls_.nearest(point, std::min(nearest, limit), tolerance);
   if (ball.index < 0) {
     if (!balls_.empty()) result.lower = std::min(result.lower, ball.lower);

@@ -108,8 +108,9 @@ class Coverer {
 
   // Notes which points of the grid, numbered from `first`, candidate c covers.
   void cover_rows(const internal::PointGrid& grid, std::size_t c, std::uint32_t first) {
-    const double radius =
-        std::max(options_.min_radius, candidates_[c].clearance) + kWorkingError * error_;
+    // A reserve below the radius that ball_of() will give it.
+    const double radius = std::max(options_.min_radius, candidates_[c].clearance + error_) -
+                          (1.0 - kWorkingError) * error_;
     std::vector<std::uint32_t>& covered = instance_.columns[c];
     const std::size_t before = covered.size();
     grid.find(candidates_[c].center, radius, covered);
