@@ -1,59 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/oracle.h"
 
-#include "bench/fcl_models.h"
+#include "bench/fcl_solid.h"
 #include "collide/robot/kinematics.h"
 
-#include <fcl/narrowphase/collision.h>
-
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace spherule {
-namespace {
-
-using Model = FclModel<fcl::OBBRSSd>;
-
-struct Solid {
-  explicit Solid(const TriangleMesh& m) : mesh(m), model(m), points(component_points(m)) {}
-
-  bool contains(const Eigen::Vector3d& point) const {
-    return model.box.contains(point) && std::abs(winding_number(mesh, point)) > 0.5;
-  }
-
-  TriangleMesh mesh;
-  Model model;
-  std::vector<Eigen::Vector3d> points;
-};
-
-bool contains_a_point(const Solid& outer, const Pose& world_from_outer, const Solid& inner,
-                      const Pose& world_from_inner) {
-  const Pose outer_from_inner = world_from_outer.inverse() * world_from_inner;
-  return std::any_of(inner.points.begin(), inner.points.end(), [&](const Eigen::Vector3d& point) {
-    return outer.contains(outer_from_inner * point);
-  });
-}
-
-bool touch(const Solid& a, const Pose& world_from_a, const Solid& b, const Pose& world_from_b) {
-  const auto pose_a = fcl_pose<double>(world_from_a);
-  const auto pose_b = fcl_pose<double>(world_from_b);
-  if (!a.model.world_box(pose_a).intersects(b.model.world_box(pose_b))) return false;
-  fcl::CollisionRequestd request;
-  fcl::CollisionResultd result;
-  return fcl::collide(a.model.geometry.get(), pose_a, b.model.geometry.get(), pose_b, request,
-                      result) > 0 ||
-         contains_a_point(a, world_from_a, b, world_from_b) ||
-         contains_a_point(b, world_from_b, a, world_from_a);
-}
-
-}  // namespace
 
 struct Oracle::Impl {
   RobotModel robot;
-  std::vector<std::pair<Solid, Pose>> obstacles;
+  std::vector<std::pair<FclSolid, Pose>> obstacles;
   struct Moving {
-    Solid solid;
+    FclSolid solid;
     std::size_t link;
     std::vector<std::size_t> against;
   };
@@ -64,10 +24,10 @@ Oracle::Oracle(const Workload& workload) {
   auto impl = std::make_unique<Impl>();
   impl->robot = workload.robot;
   for (const Obstacle& obstacle : workload.obstacles) {
-    impl->obstacles.emplace_back(Solid(obstacle.part.mesh), obstacle.world_from_part);
+    impl->obstacles.emplace_back(FclSolid(obstacle.part.mesh), obstacle.world_from_part);
   }
   for (const Body& body : workload.bodies) {
-    impl->bodies.push_back({Solid(body.part.mesh), static_cast<std::size_t>(body.link), {}});
+    impl->bodies.push_back({FclSolid(body.part.mesh), static_cast<std::size_t>(body.link), {}});
     for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
       if (is_tested(body, workload.obstacles[i])) impl->bodies.back().against.push_back(i);
     }

@@ -10,9 +10,7 @@
 
 namespace spherule {
 
-// Ground truth for the solids themselves: two bodies touch if FCL finds two triangles that do
-// (OBBRSS, double), or if a point of a connected component of one lies inside the other (one point
-// a component, both ways), because FCL tests surfaces only.
+// Ground truth for the solids themselves (FclSolid).
 class Oracle {
  public:
   explicit Oracle(const Workload& workload);

@@ -58,7 +58,7 @@ TriangleMesh shape_mesh(const std::string& name) {
 
 FittedModel fit_model(const std::string& name, const TriangleMesh& mesh, double error_share,
                       double radius_factor) {
-  FclMesh fcl_mesh(mesh);
+  FclSolid fcl_mesh(mesh);
   const Eigen::AlignedBox3d box = fcl_mesh.box();
   const double error = error_share * box.diagonal().norm();
   SimplifyOptions options;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "bench/fcl_solid.h"
 #include "spheretree/sphere_tree.h"
 #include "spheretree/triangle_mesh.h"
-#include "tests/support/fcl_oracle.h"
 
 #include <Eigen/Core>
 
@@ -16,7 +16,7 @@ namespace spherule::test {
 struct FittedModel {
   std::string name;
   TriangleMesh triangles;
-  FclMesh mesh;  // the same
+  FclSolid mesh;  // the same
   SphereTree tree;
   Eigen::Vector3d center;   // of its box
   double radius;            // of a ball about `center` that encloses the mesh

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/pose.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <Eigen/Geometry>
+
+#include <memory>
+#include <vector>
+
+namespace spherule {
+
+// Ground truth: a mesh as FCL sees it (OBBRSS, double), with what FCL lacks. Its bounding volume
+// hierarchies are surfaces, so that one closed mesh wholly inside another is "free" to FCL. Here a
+// mesh is its triangles with their inside (points of winding number other than zero; none if the
+// mesh is not closed).
+class FclSolid {
+ public:
+  explicit FclSolid(const TriangleMesh& mesh);
+  FclSolid(FclSolid&&) noexcept;
+  FclSolid& operator=(FclSolid&&) noexcept;
+  ~FclSolid();
+
+  const Eigen::AlignedBox3d& box() const;
+  // By the winding number, a sum over all triangles.
+  bool contains(const Eigen::Vector3d& point) const;
+
+  // Whether the two have a point in common: two triangles do, or a point of a connected component
+  // of one is inside the other.
+  friend bool touch(const FclSolid& a, const Pose& world_from_a, const FclSolid& b,
+                    const Pose& world_from_b);
+  // Distance between the two surfaces. That is the distance of the solids unless they touch.
+  friend double surface_distance(const FclSolid& a, const Pose& world_from_a, const FclSolid& b,
+                                 const Pose& world_from_b);
+
+ private:
+  struct Model;  // keeps FCL's headers out of what uses this
+
+  bool contains_a_component_of(const FclSolid& other, const Pose& this_from_other) const;
+
+  TriangleMesh mesh_;
+  bool closed_;
+  std::vector<Eigen::Vector3d> components_;  // a point of each
+  std::unique_ptr<const Model> model_;
+};
+
+}  // namespace spherule
