@@ -111,7 +111,8 @@ std::vector<Vector3d> points_of_solid(const ExternalSpheres& external, std::size
   const auto keep = [&](const Vector3d& p) {
     if (is_in_solid(p, external)) points.push_back(p);
   };
-  for (std::size_t i = 0; i < count; ++i) {
+  // A thin solid is met seldom.
+  for (std::size_t i = 0; i < 8 * count && points.size() < count; ++i) {
     Vector3d p = random.in_box(external.box);
     switch (random.index(4)) {
       case 0:

@@ -36,7 +36,7 @@ std::vector<Eigen::Vector3d> points_on_surface(const TriangleMesh& mesh, std::si
                                                Random& random);
 
 // Points of S: some in its box, and most on its boundary, where a cover is most easily too small:
-// on the faces of the box and just off the external balls.
+// on the faces of the box and just off the external balls. At most `count`; fewer where S is thin.
 std::vector<Eigen::Vector3d> points_of_solid(const ExternalSpheres& external, std::size_t count,
                                              Random& random);
 

@@ -93,6 +93,40 @@ TEST(SetCover, CoversWhatCanBeCoveredWithoutAnyRedundantColumn) {
   }
 }
 
+// The greedy algorithm as it is defined, every gain counted anew.
+Indices plain_greedy(const SetCoverInstance& instance) {
+  Indices chosen;
+  while (true) {
+    const std::set<std::uint32_t> covered = rows_of(instance, chosen);
+    std::size_t best = 0;
+    std::size_t most = 0;
+    for (std::size_t c = 0; c < instance.columns.size(); ++c) {
+      const auto gain = static_cast<std::size_t>(std::ranges::count_if(
+          instance.columns[c], [&](std::uint32_t row) { return !covered.contains(row); }));
+      if (gain > most) {
+        most = gain;
+        best = c;
+      }
+    }
+    if (most == 0) break;
+    chosen.push_back(best);
+  }
+  for (std::size_t k = chosen.size(); k-- > 0;) {
+    if (is_redundant(instance, chosen, k)) {
+      chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  }
+  return chosen;
+}
+
+TEST(SetCover, TakesWhatThePlainGreedyAlgorithmTakes) {
+  Random random(33);
+  for (int i = 0; i < 60; ++i) {
+    const SetCoverInstance instance = random_instance(random, 60, 50, random.between(0.05, 0.3));
+    ASSERT_EQ(greedy_set_cover(instance), plain_greedy(instance));
+  }
+}
+
 TEST(SetCover, IsWithinTheGreedyBoundOfTheLeast) {
   Random random(32);
   for (int i = 0; i < 150; ++i) {
