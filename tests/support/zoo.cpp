@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/zoo.h"
 
+#include "bench/scenes/shapes.h"
+#include "bench/scenes/solids.h"
 #include "tests/support/random.h"
 
 #include <array>
@@ -39,19 +41,6 @@ TriangleMesh closed_grid(int rows, int columns, const std::function<Eigen::Vecto
     }
   }
   return mesh;
-}
-
-// A solid of revolution about z of a closed profile of (radius, z), counter-clockwise seen with the
-// radius to the right and z upwards.
-TriangleMesh revolved(const std::vector<Eigen::Vector2d>& profile, int sides) {
-  return closed_grid(
-      static_cast<int>(profile.size()), sides,
-      [&](int r, int c) {
-        const Eigen::Vector2d& p = profile[static_cast<std::size_t>(r)];
-        const double angle = 2.0 * kPi * c / sides;
-        return Eigen::Vector3d(p.x() * std::cos(angle), p.x() * std::sin(angle), p.y());
-      },
-      [](int r) { return r; });
 }
 
 }  // namespace
@@ -122,35 +111,16 @@ TriangleMesh icosphere(int levels) {
 }
 
 TriangleMesh torus(double radius, double tube_radius, int around, int across) {
-  std::vector<Eigen::Vector2d> profile;
-  for (int i = 0; i < across; ++i) {
-    const double angle = 2.0 * kPi * i / across;
-    profile.emplace_back(radius + tube_radius * std::cos(angle), tube_radius * std::sin(angle));
-  }
-  return revolved(profile, around);
+  return make_torus(radius, tube_radius, around, across);
 }
 
 TriangleMesh pipe(double outer_radius, double inner_radius, double length, int sides) {
-  return revolved(
-      {{inner_radius, 0}, {outer_radius, 0}, {outer_radius, length}, {inner_radius, length}},
-      sides);
+  return shifted(make_pipe(2.0 * outer_radius, 2.0 * inner_radius, length, sides),
+                 {0.0, 0.0, 0.5 * length});
 }
 
 TriangleMesh l_bracket() {
-  // The L in the x-z plane, counter-clockwise seen against y, between y = 0 and 0.5.
-  const std::vector<Eigen::Vector2d> outline = {{0, 0},     {1, 0},   {1, 0.2},
-                                                {0.2, 0.2}, {0.2, 1}, {0, 1}};
-  const int n = static_cast<int>(outline.size());
-  TriangleMesh mesh;
-  for (const double y : {0.0, 0.5}) {
-    for (const Eigen::Vector2d& p : outline) mesh.vertices.emplace_back(p.x(), y, p.y());
-  }
-  for (int i = 0; i < n; ++i) add_quad(mesh, i, i + n, (i + 1) % n + n, (i + 1) % n);
-  for (const auto& [a, b, c, d] : {std::array{0, 1, 2, 3}, std::array{0, 3, 4, 5}}) {
-    add_quad(mesh, a, b, c, d);
-    add_quad(mesh, d + n, c + n, b + n, a + n);
-  }
-  return mesh;
+  return shifted(make_l_bracket(1.0, 0.5, 0.2), {0.0, 0.25, 0.0});
 }
 
 TriangleMesh thin_sheet(double thickness) {
@@ -243,11 +213,7 @@ TriangleMesh with_degenerates(TriangleMesh mesh) {
 
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
   TriangleMesh mesh = a;
-  const int offset = static_cast<int>(a.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), b.vertices.begin(), b.vertices.end());
-  for (const Eigen::Vector3i& t : b.triangles) {
-    mesh.triangles.emplace_back(t + Eigen::Vector3i::Constant(offset));
-  }
+  append(mesh, b);
   return mesh;
 }
 
