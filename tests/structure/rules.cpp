@@ -64,7 +64,7 @@ const std::vector<Room>& rooms() {
       {"tests",
        {"spheretree", "simplifier", "simplifier/baseline", "collide", "collide/robot",
         "collide/fcl", "collide/ompl", "bench"},
-       {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "zlib"},
+       {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "tbb", "zlib"},
        {}},
       // Users of the installed package: they see the library from outside.
       {"tests/consumer", {}, {"Eigen", "spherule"}, {}},
