@@ -72,6 +72,14 @@ TEST(Certificate, AMissingBallIsALeakOfTheExactDepth) {
   const std::vector<Sphere> all = grid_of_balls(n);
   EXPECT_TRUE(certify(cube_mesh(), all, options).covered);
 
+  // Balls that only just meet: nothing is open, but that is not proved, and so not said.
+  std::vector<Sphere> tight = all;
+  for (Sphere& s : tight) s.radius = kRoot3 / (2 * n) * (1 + 1e-9);
+  const Certificate unproved = certify(cube_mesh(), tight, options);
+  EXPECT_FALSE(unproved.covered);
+  EXPECT_EQ(unproved.uncovered_depth.lower, 0.0);
+  EXPECT_GT(unproved.uncovered_depth.upper, 0.0);
+
   std::vector<Sphere> hollow = all;
   hollow.erase(hollow.begin() + (n * n * n) / 2);
   // The middle of the middle cell, to the balls of the cells beside it.
