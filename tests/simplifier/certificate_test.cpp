@@ -217,7 +217,7 @@ TEST(Certificate, TheBoundsOfTheDepthHoldAgainstSampling) {
     const auto count = static_cast<std::size_t>(effort(3000, 300));
     const std::vector<Vector3d> surface = points_on_surface(mesh, count, random);
     const std::vector<Vector3d> solid = points_of_solid(fitted.external, count, random);
-    for (int round = 0; round < effort(6, 2); ++round) {
+    for (int round = 0; round < effort(3, 2); ++round) {
       std::vector<Sphere> balls;
       for (const Sphere& s : fitted.cover.spheres) {
         if (random.unit() < 0.1) continue;
