@@ -79,7 +79,7 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   // Every point of S is a witness against S; against |M| itself only one that is proved to be
   // inside.
   const internal::CoverageProof solid =
-      internal::prove_solid(clearance, balls, finest, [&](const Vector3d& p) {
+      internal::prove_solid(clearance, distance, balls, finest, [&](const Vector3d& p) {
         return options.external != nullptr ||
                (closed && std::abs(distance.winding_number(p)) > 0.5);
       });

@@ -6,6 +6,7 @@
 #include "simplifier/internal/point_grid.h"
 #include "simplifier/internal/solid_cells.h"
 #include "simplifier/internal_spheres.h"
+#include "simplifier/mesh_distance.h"
 #include "simplifier/set_cover.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -39,11 +40,11 @@ constexpr int kRounds = 8;
 // Greedy set cover on points of S with rounds of counterexamples, then repair.
 class Coverer {
  public:
-  Coverer(const Clearance& clearance, const CoverOptions& options)
+  Coverer(const Clearance& clearance, const MeshDistance& distance, const CoverOptions& options)
       : clearance_(clearance),
         options_(options),
         error_(options.max_error),
-        cells_(clearance, kSpacing * options.max_error) {}
+        cells_(clearance, distance, kSpacing * options.max_error) {}
 
   std::vector<Sphere> run() {
     add_rows(cells_.sample());
@@ -181,7 +182,7 @@ SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
     return place_internal_spheres(mesh, clearance, options);
   }
   SphereCover result;
-  result.spheres = Coverer(clearance, options).run();
+  result.spheres = Coverer(clearance, MeshDistance(mesh), options).run();
   return result;
 }
 

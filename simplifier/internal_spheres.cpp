@@ -69,7 +69,8 @@ SphereCover place_internal_spheres(const TriangleMesh& mesh, const Clearance& cl
   const double limit = options.max_error * kLoopLimit;
   const double seed_diameter =
       options.min_internal_diameter > 0.0 ? options.min_internal_diameter : options.max_error / 2.0;
-  UncoveredSearch search(clearance, limit, kPeakTolerance * options.max_error);
+  const MeshDistance distance(mesh);
+  UncoveredSearch search(clearance, distance, limit, kPeakTolerance * options.max_error);
   const Grower grow(clearance, options.max_error, seed_diameter);
   std::optional<internal::CoverHistory> history;
   if (options.history) {
@@ -99,7 +100,7 @@ SphereCover place_internal_spheres(const TriangleMesh& mesh, const Clearance& cl
   // The search ends as soon as no error exceeds the limit; how large it is, the proof finds out.
   const internal::BallHierarchy hierarchy(balls.balls());
   const internal::CoverageProof remaining = internal::prove_solid(
-      clearance, {balls.balls(), hierarchy}, kPeakTolerance * options.max_error,
+      clearance, distance, {balls.balls(), hierarchy}, kPeakTolerance * options.max_error,
       [](const Vector3d&) { return true; });
   const double error = std::min(limit, remaining.upper);
   note(remaining.lower, error);

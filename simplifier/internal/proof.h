@@ -3,6 +3,7 @@
 
 #include "simplifier/clearance.h"
 #include "simplifier/internal/ball_hierarchy.h"
+#include "simplifier/mesh_distance.h"
 #include "spheretree/sphere.h"
 #include "spheretree/triangle_mesh.h"
 
@@ -33,6 +34,11 @@ struct CoverageProof {
   }
 };
 
+// A cell whose centre is outside of S is halved further than others, down to this share of what is
+// the finest elsewhere, to see whether S is there at all: a ball placed for it would protrude for
+// nothing.
+inline constexpr double kFinestOutside = 1.0 / 64.0;
+
 // The balls with their search structure.
 struct BallsToProve {
   std::span<const Sphere> balls;
@@ -45,7 +51,8 @@ CoverageProof prove_surface(const TriangleMesh& mesh, const BallsToProve& balls,
 
 // X = S. Cells of its box are halved until one lies in a single ball or outside of S, or is smaller
 // than `finest`. `is_witness` tells whether a point of S may be reported as a leak.
-CoverageProof prove_solid(const Clearance& clearance, const BallsToProve& balls, double finest,
+CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
+                          const BallsToProve& balls, double finest,
                           const std::function<bool(const Eigen::Vector3d&)>& is_witness);
 
 }  // namespace spherule::internal

@@ -10,10 +10,18 @@
 #include <set>
 
 namespace spherule::internal {
+namespace {
+
+// A cell that has shown so many leaks can wait for the next round: the balls that mend them cover
+// most of its parts, which need not be examined then.
+constexpr std::size_t kEnoughLeaks = 3;
+
+}  // namespace
 
 using Eigen::Vector3d;
 
-SolidCells::SolidCells(const Clearance& clearance, double spacing) : clearance_(clearance) {
+SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance, double spacing)
+    : clearance_(clearance), distance_(distance) {
   enum class Step : char { kDrop, kKeep, kHalve };
   std::vector<Cell> level{{BoxCell::around(clearance.box()), false, false}};
   std::vector<Step> steps;
@@ -51,7 +59,11 @@ std::vector<Vector3d> SolidCells::sample() const {
     const ClearanceAt there = clearance_(points[i]);
     if (there.lower >= 0.0) return;
     points[i] += there.away * (-2.0 * there.lower);
-    usable[i] = clearance_(points[i]).lower >= 0.0 ? 1 : 0;
+    if (clearance_(points[i]).lower >= 0.0) return;
+    // S may be as thin as the mesh itself.
+    const SurfaceDistance near = distance_(cells_[i].box.center, cells_[i].box.reach());
+    points[i] = near.closest;
+    usable[i] = near.triangle >= 0 ? 1 : 0;
   });
   std::vector<Vector3d> kept;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -78,6 +90,10 @@ SolidCells::Refined SolidCells::refine(const Cell& start, const BallsToProve& ba
   while (!waiting.empty()) {
     const Cell cell = waiting.back();
     waiting.pop_back();
+    if (result.leaks.size() >= kEnoughLeaks) {
+      result.cells.push_back(cell);
+      continue;
+    }
     const double reach = cell.box.reach();
     const NearestBall gap = balls.hierarchy.nearest(cell.box.center);
     if (gap.index >= 0 && certainly_contains(balls.balls[static_cast<std::size_t>(gap.index)],
@@ -85,10 +101,19 @@ SolidCells::Refined SolidCells::refine(const Cell& start, const BallsToProve& ba
       result.cells.push_back(cell);
       continue;
     }
-    if ((cell.center_inside && gap.lower > 0.0) || reach <= finest) {
+    if (cell.center_inside ? gap.lower > 0.0 || reach <= finest
+                           : reach <= kFinestOutside * finest) {
       result.cells.push_back(cell);
       result.leaks.push_back(cell.box.center);
       continue;
+    }
+    if (!cell.center_inside && reach <= finest) {
+      const SurfaceDistance near = distance_(cell.box.center, reach);
+      if (near.triangle >= 0) {
+        result.cells.push_back(cell);
+        result.leaks.push_back(near.closest);
+        continue;
+      }
     }
     for (const BoxCell& half : cell.box.halves()) {
       Cell part{half, cell.inside, false};

@@ -4,6 +4,7 @@
 #include "simplifier/clearance.h"
 #include "simplifier/internal/box_cell.h"
 #include "simplifier/internal/proof.h"
+#include "simplifier/mesh_distance.h"
 
 #include <Eigen/Core>
 
@@ -18,7 +19,7 @@ class SolidCells {
   // Halves the box of S until a cell lies outside of S (it is forgotten) or its half diagonal is at
   // most `spacing`, or half the clearance where that is more: a ball that covers part of the deep
   // inside covers much of it.
-  SolidCells(const Clearance& clearance, double spacing);
+  SolidCells(const Clearance& clearance, const MeshDistance& distance, double spacing);
 
   // A point of S for every cell: the centre, moved onto the boundary of S where that crosses the
   // cell. Cells without such a point near their centre give none.
@@ -27,7 +28,7 @@ class SolidCells {
   // Points where the balls do not cover S, at most one per cube of edge `spacing`. Empty only if S
   // is proved to be covered: cells that no single ball contains are halved until one does, or they
   // lie outside of S. A cell is given up as a leak where its centre is an uncovered point of S or
-  // it is smaller than `finest`.
+  // it is smaller than `finest` (a small share of that where its centre is not in S).
   std::vector<Eigen::Vector3d> find_leaks(const BallsToProve& balls, double finest, double spacing);
 
  private:
@@ -46,6 +47,7 @@ class SolidCells {
   Refined refine(const Cell& cell, const BallsToProve& balls, double finest) const;
 
   const Clearance& clearance_;
+  const MeshDistance& distance_;
   std::vector<Cell> cells_;
 };
 

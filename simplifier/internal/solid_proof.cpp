@@ -22,8 +22,13 @@ void halve(const Cell& cell, std::vector<Cell>& parts) {
 
 }  // namespace
 
-CoverageProof prove_solid(const Clearance& clearance, const BallsToProve& balls, double finest,
+CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
+                          const BallsToProve& balls, double finest,
                           const std::function<bool(const Vector3d&)>& is_witness) {
+  // How far a point found on the mesh may be from it.
+  const double rounding =
+      256.0 * kUnitRoundoff *
+      distance.box().min().cwiseAbs().cwiseMax(distance.box().max().cwiseAbs()).maxCoeff();
   const auto examine = [&](Cell& cell) {
     Finding found;
     found.point = cell.box.center;
@@ -45,7 +50,17 @@ CoverageProof prove_solid(const Clearance& clearance, const BallsToProve& balls,
       found.depth = gap.lower;
       found.witness = gap.lower > 0.0 && is_witness(found.point);
     }
-    found.smallest = reach <= finest;
+    if (!center_inside && reach <= finest) {
+      // S may be as thin as the mesh itself, which is in it.
+      const SurfaceDistance near = distance(found.point, reach);
+      if (near.triangle >= 0) {
+        found.point = near.closest;
+        found.depth = sub_down(balls.hierarchy.nearest(near.closest).lower, rounding);
+        found.witness = found.depth > 0.0 && is_witness(found.point);
+        center_inside = true;
+      }
+    }
+    found.smallest = reach <= (center_inside ? finest : kFinestOutside * finest);
     found.upper = add_up(gap.upper, reach);
     return found;
   };

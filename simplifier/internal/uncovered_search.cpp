@@ -19,8 +19,9 @@ constexpr double kPlateau = 0.1;
 
 }  // namespace
 
-UncoveredSearch::UncoveredSearch(const Clearance& clearance, double target, double tolerance)
-    : clearance_(clearance), target_(target), tolerance_(tolerance) {
+UncoveredSearch::UncoveredSearch(const Clearance& clearance, const MeshDistance& distance,
+                                 double target, double tolerance)
+    : clearance_(clearance), distance_(distance), target_(target), tolerance_(tolerance) {
   push({BoxCell::around(clearance.box()), std::numeric_limits<double>::infinity(), made_++, false});
 }
 
@@ -68,6 +69,14 @@ UncoveredSearch::Peak UncoveredSearch::next(const BallSet& balls) {
       push(cell);
       return {cell.box.center, cell.upper, std::max(0.0, center_inside ? gap.lower : 0.0),
               center_inside};
+    }
+    if (!center_inside && reach <= close) {
+      // S may be as thin as the mesh itself, which is in it.
+      const SurfaceDistance near = distance_(cell.box.center, reach);
+      if (near.triangle >= 0 && balls.nearest(near.closest).lower > target_) {
+        push(cell);
+        return {near.closest, cell.upper, 0.0, false};
+      }
     }
     for (const BoxCell& half : cell.box.halves()) push({half, cell.upper, made_++, cell.inside});
   }

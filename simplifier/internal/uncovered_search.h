@@ -4,6 +4,7 @@
 #include "simplifier/clearance.h"
 #include "simplifier/internal/ball_set.h"
 #include "simplifier/internal/box_cell.h"
+#include "simplifier/mesh_distance.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +21,8 @@ class UncoveredSearch {
  public:
   // `target`: errors up to this are not of interest. The greatest error is bracketed to within
   // `tolerance`, or a tenth of what it exceeds the target by if that is more.
-  UncoveredSearch(const Clearance& clearance, double target, double tolerance);
+  UncoveredSearch(const Clearance& clearance, const MeshDistance& distance, double target,
+                  double tolerance);
 
   struct Peak {
     Eigen::Vector3d point;
@@ -47,6 +49,7 @@ class UncoveredSearch {
   Cell pop();
 
   const Clearance& clearance_;
+  const MeshDistance& distance_;
   double target_;
   double tolerance_;
   std::vector<Cell> heap_;
