@@ -139,7 +139,10 @@ TEST(InternalSpheres, ThinAndFlatInputIsCovered) {
   TriangleMesh line;
   line.vertices = {{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}};
   line.triangles = {{0, 1, 2}};
-  for (const TriangleMesh& mesh : {thin_sheet(1e-3), line, three_fins()}) {
+  TriangleMesh flat = line;
+  flat.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  for (const TriangleMesh& mesh :
+       {thin_sheet(1e-3), thin_sheet(1e-9), thin_sheet(0.0), flat, line, three_fins()}) {
     const Fit fitted = paper_fit(mesh);
     EXPECT_TRUE(certificate_of(mesh, fitted, fitted.cover.spheres).covered);
     Random random(82);

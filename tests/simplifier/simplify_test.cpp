@@ -155,20 +155,23 @@ TEST(Simplify, DegenerateInputIsCovered) {
   const std::vector<NamedMesh> meshes = {
       {"line", triangle({0, 0, 0}, {1, 2, 3}, {0.5, 1, 1.5})},
       {"line along an axis", triangle({0, 0, 0}, {1, 0, 0}, {0.25, 0, 0})},
+      {"triangle", triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})},
       {"point", triangle({1, 2, 3}, {1, 2, 3}, {1, 2, 3})},
       {"two points", joined(triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}),
                             triangle({1, 0, 0}, {1, 0, 0}, {1, 0, 0}))}};
   Random random(101);
   for (const NamedMesh& named : meshes) {
-    SCOPED_TRACE(named.name);
-    SimplifyOptions options = coarse(0.1);
-    options.method = CoverMethod::kPaper;
-    const Simplification result = simplify(named.mesh, options);
-    EXPECT_TRUE(result.certificate.covered);
-    EXPECT_FALSE(result.cover.spheres.empty());
-    EXPECT_LE(*result.certificate.protrusion_over_simplified_max, 0.1);
-    const auto points = points_on_surface(named.mesh, 300, random);
-    EXPECT_EQ(judge_cover(points, result.cover.spheres).uncovered, 0U);
+    for (const CoverMethod method : {CoverMethod::kPaper, CoverMethod::kCover}) {
+      SCOPED_TRACE(named.name);
+      SimplifyOptions options = coarse(0.1);
+      options.method = method;
+      const Simplification result = simplify(named.mesh, options);
+      EXPECT_TRUE(result.certificate.covered);
+      EXPECT_FALSE(result.cover.spheres.empty());
+      EXPECT_LE(*result.certificate.protrusion_over_simplified_max, 0.1);
+      const auto points = points_on_surface(named.mesh, 300, random);
+      EXPECT_EQ(judge_cover(points, result.cover.spheres).uncovered, 0U);
+    }
   }
 }
 
