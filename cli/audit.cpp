@@ -48,18 +48,6 @@ SimplifyOptions options_of(const AuditArguments& arguments, const SphereFile& fi
   }
 }
 
-// Stage 1 as simplify() runs it. Where E is not known, D / 4: the natural ratio.
-ExternalOptions external_options(const SimplifyOptions& options) {
-  return {.placement = options.external,
-          .min_external_diameter = options.min_external_diameter,
-          .padding = options.padding,
-          .max_error =
-              options.max_error > 0.0 ? options.max_error : options.min_external_diameter / 4.0,
-          .limit = options.external_limit,
-          .seed = options.seed,
-          .progress = options.progress};
-}
-
 void print(const AuditArguments& arguments, const Certificate& certificate,
            const std::optional<ExternalSpheres>& external) {
   if (!arguments.json) {

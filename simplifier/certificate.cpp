@@ -4,12 +4,11 @@
 #include "simplifier/clearance.h"
 #include "simplifier/internal/proof.h"
 #include "simplifier/internal/protrusion.h"
+#include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <string>
@@ -54,11 +53,7 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                     const CertifyOptions& options) {
   validate(mesh, "mesh");
   check_options(spheres, options);
-  const tbb::global_control threads(
-      tbb::global_control::max_allowed_parallelism,
-      options.threads > 0
-          ? static_cast<std::size_t>(options.threads)
-          : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
   const double diagonal = distance.box().diagonal().norm();
   const ExternalSpheres own = options.external != nullptr

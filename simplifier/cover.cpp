@@ -5,13 +5,13 @@
 #include "simplifier/internal/cover_candidates.h"
 #include "simplifier/internal/point_grid.h"
 #include "simplifier/internal/solid_cells.h"
+#include "simplifier/internal/thread_limit.h"
 #include "simplifier/internal_spheres.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/set_cover.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -172,11 +172,7 @@ void check_options(const CoverOptions& options) {
 SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                   const CoverOptions& options) {
   check_options(options);
-  const tbb::global_control threads(
-      tbb::global_control::max_allowed_parallelism,
-      options.threads > 0
-          ? static_cast<std::size_t>(options.threads)
-          : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  const internal::ThreadLimit threads(options.threads);
   const Clearance clearance(external);
   if (options.method == CoverMethod::kPaper) {
     return place_internal_spheres(mesh, clearance, options);

@@ -67,14 +67,7 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   }
 
   const Stopwatch external_time;
-  result.external =
-      place_external_spheres(mesh, {.placement = used.external,
-                                    .min_external_diameter = used.min_external_diameter,
-                                    .padding = used.padding,
-                                    .max_error = used.max_error,
-                                    .limit = used.external_limit,
-                                    .seed = used.seed,
-                                    .progress = used.progress});
+  result.external = place_external_spheres(mesh, external_options(used));
   result.times.external = external_time.seconds();
 
   const Stopwatch cover_time;
@@ -98,6 +91,17 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   result.certificate = certify(mesh, result.cover.spheres, certify_options);
   result.times.certify = certify_time.seconds();
   return result;
+}
+
+ExternalOptions external_options(const SimplifyOptions& options) {
+  return {.placement = options.external,
+          .min_external_diameter = options.min_external_diameter,
+          .padding = options.padding,
+          .max_error = options.max_error > 0.0 ? options.max_error
+                                               : options.min_external_diameter / kDefaultDiameter,
+          .limit = options.external_limit,
+          .seed = options.seed,
+          .progress = options.progress};
 }
 
 double proof_resolution(double max_error, double diagonal) {

@@ -54,6 +54,10 @@ struct Simplification {
 // Throws Error for a mesh that validate() refuses and for options out of range.
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
 
+// The options with which simplify() runs stage 1, for an audit that runs it again. Where E is not
+// known (0), D / 4 takes its place: the natural ratio.
+ExternalOptions external_options(const SimplifyOptions& options);
+
 // How finely an audit of a cover made with error E must look (CertifyOptions::resolution), for a
 // mesh with the given box diagonal: a cover keeps a reserve of a few hundredths of E for the proof.
 double proof_resolution(double max_error, double diagonal);
