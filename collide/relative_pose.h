@@ -9,10 +9,13 @@
 //     d = ta - tb,   offset of two points   Ra x - Rb y + d,   distance D = |Ra x - Rb y + d|.
 // Nothing depends on |ta| or |tb|: two bodies far from the origin are judged as well as near it.
 //
-// Scene size. In a layered tree every ball (x, r) lies in the root ball (c, R), so |x| + r <= |c| +
-// R <= reach(root), which takes the sum of absolute coordinates for |c| and needs no root. With
-//     S = reach(root a) + reach(root b) + |d|_1
-// we have |x| + ra + |y| + rb + |d| <= S and D <= S. The computed S errs by less than 8 u S.
+// Scene size. Every sphere (x, r) of a tree has |x| + r <= reach(tree), SphereTree::reach(). With
+//     S = reach(a) + reach(b) + |d|_1
+// two spheres have |x| + ra + |y| + rb + |d| <= S and D <= S. The computed S errs by less than 8 u
+// S. It is the same for every tree over the same spheres, and so is what the canonical test
+// accepts. Balls of nodes lie in the root ball (c, R) of a layered tree, so |x| + r <= |c| + R, for
+// which the sum of absolute coordinates stands in. T is S with the larger of this and the reach for
+// each tree: it bounds the same for nodes and spheres alike, and T >= S.
 //
 // Canonical test (touches): the one test that decides whether two leaves overlap, in whatever order
 // and by whatever kernel the traversal reached them.
@@ -31,12 +34,12 @@
 // Change of frame (b_from_a and a_from_b): R = Rb^T Ra computed has |error|_F <= 60 u + 60 u + 9 u
 // (entries: three products of unit columns, 3 u each). t = Rb^T d: 60 u |d| + 1 u |d| + 5.2 u |d|.
 // The image R x + t: four terms a row, 4 sqrt(3) u |x| + 4 u |d| < 7 u |x| + 4 u |d|. So an image
-// errs by less than  f = 136 u |x| + 71 u |d|  <= 136 u S.
-//   - gap of two balls, sqrt(d2) - (r + r'): f + 3 u S (differences and squares, half of 5 u) + 3 u
-//     S (root, sum, difference): less than kGapError = 148 u S.
+// errs by less than  f = 136 u |x| + 71 u |d|  <= 136 u T.
+//   - gap of two balls, sqrt(d2) - (r + r'): f + 3 u T (differences and squares, half of 5 u) + 3 u
+//     T (root, sum, difference): less than kGapError = 148 u T.
 //   - node test, d2 <= (r + pad + r')^2: it must keep every pair of balls whose gap is at most the
-//     slack, because leaves below them may touch canonically: pad >= 152 u S + f + 4 u S + ...:
-//     less than kNodePad = 320 u S. Hence the set of reported pairs is exactly the set of pairs
+//     slack, because leaves below them may touch canonically: pad >= 152 u S + f + 4 u T + ...:
+//     less than kNodePad = 320 u T. Hence the set of reported pairs is exactly the set of pairs
 //     that touch canonically, whatever the trees between, and the same for every kernel.
 //
 // Underflow: each product may lose 2^-1075, and the squares of differences below 2^-511 vanish. The
@@ -47,6 +50,7 @@
 #include "spheretree/rounding.h"
 #include "spheretree/sphere_tree.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace spherule {
@@ -81,17 +85,21 @@ class RelativePose {
         world_from_b_(world_from_b),
         dx_(world_from_a.translation().x() - world_from_b.translation().x()),
         dy_(world_from_a.translation().y() - world_from_b.translation().y()),
-        dz_(world_from_a.translation().z() - world_from_b.translation().z()),
-        size_((reach(a) + reach(b)) + (std::abs(dx_) + std::abs(dy_) + std::abs(dz_))) {}
+        dz_(world_from_a.translation().z() - world_from_b.translation().z()) {
+    const double offset = std::abs(dx_) + std::abs(dy_) + std::abs(dz_);
+    scene_size_ = (a.reach() + b.reach()) + offset;
+    node_size_ = (node_reach(a) + node_reach(b)) + offset;
+  }
 
-  // S of the budget above.
-  double scene_size() const { return size_; }
+  // S and T of the budget above.
+  double scene_size() const { return scene_size_; }
+  double node_size() const { return node_size_; }
 
   // Pads of the radius sums in the tests, and bounds of what they may give away.
-  double leaf_pad() const { return kLeafPad * size_ + kUnderflow; }
-  double node_pad() const { return kNodePad * size_ + 8.0 * kUnderflow; }
-  double gap_error() const { return kGapError * size_ + kUnderflow; }
-  double slack() const { return kSlack * size_ + 4.0 * kUnderflow; }
+  double leaf_pad() const { return kLeafPad * scene_size_ + kUnderflow; }
+  double node_pad() const { return kNodePad * node_size_ + 8.0 * kUnderflow; }
+  double gap_error() const { return kGapError * node_size_ + kUnderflow; }
+  double slack() const { return kSlack * scene_size_ + 4.0 * kUnderflow; }
 
   // The canonical test: true if the closed balls (x, ra) of a and (y, rb) of b overlap or touch
   // under the exact poses; never true if their gap exceeds slack().
@@ -111,10 +119,12 @@ class RelativePose {
   }
 
  private:
-  static double reach(const SphereTree& tree) {
+  static double node_reach(const SphereTree& tree) {
     const Sphere root = tree.ball(0);
-    return (std::abs(root.center.x()) + std::abs(root.center.y()) + std::abs(root.center.z())) +
-           root.radius;
+    const double of_root =
+        (std::abs(root.center.x()) + std::abs(root.center.y()) + std::abs(root.center.z())) +
+        root.radius;
+    return std::max(tree.reach(), of_root);
   }
 
   static double row(const Eigen::Matrix3d& m, int i, const Eigen::Vector3d& x) {
@@ -150,7 +160,8 @@ class RelativePose {
   const Pose& world_from_a_;
   const Pose& world_from_b_;
   double dx_, dy_, dz_;
-  double size_;
+  double scene_size_;
+  double node_size_;
 };
 
 }  // namespace spherule

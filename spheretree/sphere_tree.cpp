@@ -3,7 +3,9 @@
 
 #include "spheretree/check.h"
 #include "spheretree/error.h"
+#include "spheretree/rounding.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -14,6 +16,9 @@ SphereTree::SphereTree(SphereTreeData data) : data_(std::move(data)) {
   if (!report.valid) throw Error("sphere tree", report.problems.front());
   depth_ = report.depth;
   branching_ = report.branching;
+  for (const Sphere& sphere : data_.spheres) {
+    reach_ = std::max(reach_, add_up(norm_upper(sphere.center), sphere.radius));
+  }
 }
 
 std::vector<Sphere> SphereTree::level(int level) const {

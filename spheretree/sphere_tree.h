@@ -53,6 +53,9 @@ class SphereTree {
   int depth() const { return depth_; }
   // Largest number of children of a node.
   int branching() const { return branching_; }
+  // Upper bound of the distance from the origin of the frame to any point of the spheres. The same
+  // for every tree over the same spheres, so that what depends on it does not depend on the tree.
+  double reach() const { return reach_; }
 
   // The balls that stand at distance `level` from the root, and the leaves above them: a set of
   // balls whose union contains all spheres. level 0 is the root, level depth() the spheres
@@ -65,6 +68,7 @@ class SphereTree {
   SphereTreeData data_;
   int depth_ = 0;
   int branching_ = 0;
+  double reach_ = 0.0;
 };
 
 }  // namespace spherule
