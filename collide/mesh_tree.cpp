@@ -2,10 +2,10 @@
 #include "collide/mesh_tree.h"
 
 #include "collide/internal/queries.h"
+#include "collide/internal/triangle_leaves.h"
 #include "spheretree/build.h"
 #include "spheretree/enclosing_sphere.h"
 #include "spheretree/error.h"
-#include "spheretree/point_triangle.h"
 
 #include <string>
 
@@ -46,41 +46,6 @@ SphereTree tree_of(const std::vector<Triangle>& triangles) {
   return build_tree(balls);
 }
 
-// Leaf test of a ball against a triangle, in the triangle's frame.
-//
-// The image p of the ball's centre errs by less than 136 u S (collide/relative_pose.h), and `lower`
-// bounds the distance from p to the triangle. So a ball of radius r that meets the triangle has
-// lower <= r + 136 u S, and the pad of 144 u S covers the rounding of the sum. Conversely a hit has
-// an exact gap of at most 144 u S + 136 u S + (upper - lower): the last term is below 64 u of the
-// distance to the triangle's farthest corner but for needles (spheretree/point_triangle.h).
-class TriangleLeaves {
- public:
-  TriangleLeaves(const SphereTree& a, const MeshTree& b, const RelativePose& pose)
-      : a_(a),
-        b_(b),
-        b_from_a_(pose.b_from_a()),
-        pad_(144.0 * kUnitRoundoff * pose.scene_size() + kUnderflow) {}
-
-  bool touches(NodePair pair) const { return lower(pair) <= radius(pair) + pad_; }
-  double gap(NodePair pair) const { return lower(pair) - radius(pair); }
-
- private:
-  double radius(NodePair pair) const { return a_.data().radius[pair.index(0)]; }
-
-  double lower(NodePair pair) const {
-    const Eigen::Vector3d c = a_.ball(pair.index(0)).center;
-    const Eigen::Vector3d p(b_from_a_.x(c.x(), c.y(), c.z()), b_from_a_.y(c.x(), c.y(), c.z()),
-                            b_from_a_.z(c.x(), c.y(), c.z()));
-    const Triangle& corners = b_.triangle(b_.tree().sphere_index(pair.index(1)));
-    return point_triangle_distance(p, corners[0], corners[1], corners[2]).lower;
-  }
-
-  const SphereTree& a_;
-  const MeshTree& b_;
-  const FrameChange b_from_a_;
-  const double pad_;
-};
-
 }  // namespace
 
 MeshTree::MeshTree(const TriangleMesh& mesh)
@@ -89,13 +54,13 @@ MeshTree::MeshTree(const TriangleMesh& mesh)
 bool collides(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
               const Pose& world_from_b) noexcept {
   const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
-  return internal::any_pair(a, b.tree(), pose, TriangleLeaves(a, b, pose));
+  return internal::any_pair(a, b.tree(), pose, internal::TriangleLeaves(a, b, pose));
 }
 
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
                         const Pose& world_from_b, const CollisionRequest& request) {
   const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
-  return internal::all_pairs(a, b.tree(), pose, TriangleLeaves(a, b, pose), request);
+  return internal::all_pairs(a, b.tree(), pose, internal::TriangleLeaves(a, b, pose), request);
 }
 
 }  // namespace spherule
