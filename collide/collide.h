@@ -47,10 +47,9 @@ struct CollisionResult {
 //
 // G4: if two balls overlap (touching included) in exact arithmetic under exactly the given poses,
 // the answer is true. G5: if it is true, the exact gap of the two sets is at most
-// collision_slack(): the price of rounding, about 2e-14 of the size of the scene. The error budget
-// stands in collide/relative_pose.h. Does not throw, and does not allocate on trees that
-// build_tree() makes of up to a million spheres; for deeper ones, which only a file or more spheres
-// can bring, the stack may come from the heap (traversal.h).
+// collision_slack(): the price of rounding, about 2e-14 of the size of the scene. Does not throw,
+// and does not allocate on trees that build_tree() makes of up to a million spheres; for deeper
+// ones, which only a file or more spheres can bring, the stack may come from the heap.
 bool collides(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
               const Pose& world_from_b) noexcept;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/relative_pose.h"
-#include "collide/tree_pair.h"
+#include "collide/internal/relative_pose.h"
+#include "collide/internal/tree_pair.h"
 
 namespace spherule::internal {
 

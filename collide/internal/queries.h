@@ -6,7 +6,7 @@
 //   double gap(pair) const          their distance, within gap_error() of RelativePose.
 
 #include "collide/collide.h"
-#include "collide/traversal.h"
+#include "collide/internal/traversal.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/internal/relative_pose.h"
+#include "collide/internal/tree_pair.h"
 #include "collide/mesh_tree.h"
-#include "collide/relative_pose.h"
-#include "collide/tree_pair.h"
 #include "spheretree/point_triangle.h"
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 // on trees that build_tree makes, and answers right where no memory is to be had.
 
 #include "collide/collide.h"
+#include "collide/internal/traversal.h"
 #include "collide/mesh_tree.h"
-#include "collide/traversal.h"
 #include "spheretree/build.h"
 #include "tests/collide/counting_new.h"
 #include "tests/collide/trees.h"

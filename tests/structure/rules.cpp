@@ -6,9 +6,11 @@
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
+#include <map>
 #include <regex>
 #include <set>
 #include <span>
+#include <sstream>
 
 namespace spherule {
 namespace {
@@ -229,17 +231,46 @@ std::vector<std::string> check_file(const std::string& path, std::string_view te
   return problems;
 }
 
+std::vector<std::string> check_public_headers(const std::string& folder, std::string_view cmake,
+                                              const std::vector<std::string>& headers) {
+  static const std::regex kList(R"(\bHEADERS\s([^)]*?)\bSOURCES\b)");
+  const std::string text(cmake);
+  std::smatch match;
+  if (!std::regex_search(text, match, kList)) {
+    return {folder + "/CMakeLists.txt: lists no HEADERS before SOURCES"};
+  }
+  std::istringstream list(match[1]);
+  const std::set<std::string> listed{std::istream_iterator<std::string>(list), {}};
+  std::vector<std::string> problems;
+  for (const std::string& header : headers) {
+    const bool is_private = header.starts_with("internal/");
+    if (is_private == listed.contains(header)) {
+      problems.push_back(folder + "/" + header +
+                         (is_private ? ": is private and must not be in HEADERS"
+                                     : ": is neither in HEADERS nor in internal/"));
+    }
+  }
+  return problems;
+}
+
 std::vector<std::string> check_sources(const fs::path& root, std::size_t& files) {
   static constexpr std::array kTop = {".ci",        "bench",      "cli",  "collide",
                                       "simplifier", "spheretree", "tests"};
   std::vector<std::string> problems;
   files = 0;
+  std::map<std::string, std::string> libraries;  // CMakeLists.txt of each, by folder
+  std::vector<std::string> headers;
   const auto check = [&](const fs::path& path) {
     std::ifstream stream(path, std::ios::binary);
     const std::string text((std::istreambuf_iterator<char>(stream)), {});
-    const auto found = check_file(fs::relative(path, root).generic_string(), text);
+    const std::string name = fs::relative(path, root).generic_string();
+    const auto found = check_file(name, text);
     problems.insert(problems.end(), found.begin(), found.end());
     ++files;
+    if (name.ends_with(".h")) headers.push_back(name);
+    if (name.ends_with("/CMakeLists.txt") && text.find("\nspherule_library(") != text.npos) {
+      libraries.emplace(fs::path(name).parent_path().generic_string(), text);
+    }
   };
   check(root / "CMakeLists.txt");
   for (const char* folder : kTop) {
@@ -248,6 +279,20 @@ std::vector<std::string> check_sources(const fs::path& root, std::size_t& files)
       if (entry->path() == root / "bench" / "out") entry.disable_recursion_pending();
       if (entry->is_regular_file() && is_source(entry->path())) check(entry->path());
     }
+  }
+  std::map<std::string, std::vector<std::string>> headers_of;
+  for (const std::string& header : headers) {
+    fs::path folder = fs::path(header).parent_path();  // and up to the innermost library
+    while (!folder.empty() && !libraries.contains(folder.generic_string())) {
+      folder = folder.parent_path();
+    }
+    if (folder.empty()) continue;
+    headers_of[folder.generic_string()].push_back(
+        header.substr(folder.generic_string().size() + 1));
+  }
+  for (const auto& [folder, cmake] : libraries) {
+    const auto found = check_public_headers(folder, cmake, headers_of[folder]);
+    problems.insert(problems.end(), found.begin(), found.end());
   }
   return problems;
 }

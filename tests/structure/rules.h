@@ -17,7 +17,13 @@ inline constexpr std::size_t kMaxLines = 400;
 // names file and line.
 std::vector<std::string> check_file(const std::string& path, std::string_view text);
 
-// The same for all sources below `root`; `files` counts them.
+// A header of a library is public exactly if its CMakeLists.txt lists it under HEADERS; private
+// ones live in internal/. What is wrong with the `headers` of the library in `folder`, whose paths
+// are relative to it, given the text of its CMakeLists.txt.
+std::vector<std::string> check_public_headers(const std::string& folder, std::string_view cmake,
+                                              const std::vector<std::string>& headers);
+
+// Both for all sources below `root`; `files` counts them.
 std::vector<std::string> check_sources(const std::filesystem::path& root, std::size_t& files);
 
 }  // namespace spherule

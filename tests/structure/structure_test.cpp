@@ -79,6 +79,21 @@ TEST(Structure, MisplacedThirdPartiesAreFound) {
   }
 }
 
+TEST(Structure, HeadersThatAreNeitherPublicNorInternalAreFound) {
+  const std::string cmake = "spherule_library(room\n  HEADERS a.h\n    b.h\n  SOURCES c.cpp d.h)\n";
+  const auto count = [&](const std::vector<std::string>& headers) {
+    return check_public_headers("room", cmake, headers).size();
+  };
+  EXPECT_EQ(count({"a.h", "b.h", "internal/e.h"}), 0u);
+  EXPECT_EQ(count({"a.h", "d.h"}), 1u);
+  EXPECT_EQ(count({"e.h", "sub/a.h"}), 2u);
+  EXPECT_EQ(check_public_headers("room", "spherule_library(room\n  HEADERS internal/a.h SOURCES b)",
+                                 {"internal/a.h"})
+                .size(),
+            1u);
+  EXPECT_EQ(check_public_headers("room", "spherule_library(room SOURCES a.cpp)", {}).size(), 1u);
+}
+
 TEST(Structure, FormFaultsAreFound) {
   EXPECT_TRUE(check_file("collide/a.h", kLicence + "#pragma once\n").empty());
   EXPECT_FALSE(check_file("collide/a.h", kLicence).empty());

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collide/internal/ball_tests.h"
-#include "collide/relative_pose.h"
+#include "collide/internal/relative_pose.h"
 
 #include <cassert>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/tree_pair.h"
+#include "collide/internal/tree_pair.h"
 
 #include <algorithm>
 #include <bit>
