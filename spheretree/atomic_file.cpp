@@ -59,6 +59,20 @@ mode_t default_permissions() {
   return 0666 & ~mask;
 }
 
+// Where a path that names no file yet leads, its last part followed as far as it is a symbolic
+// link.
+fs::path followed(const fs::path& path) {
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  fs::path target = path;
+  std::error_code error;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(target, error)); ++links) {
+    if (links == kMostLinks) throw Error(path.string(), "cannot be resolved: too many links");
+    target = target.parent_path() / fs::read_symlink(target, error);
+    if (error) throw Error(path.string(), "cannot be resolved: " + error.message());
+  }
+  return target;
+}
+
 }  // namespace
 
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
@@ -68,7 +82,7 @@ void write_file_atomically(const fs::path& path, std::string_view bytes) {
     throw Error(path.string(), "exists and is not a regular file");
   }
   const bool replaces = fs::exists(status);
-  const fs::path target = replaces ? fs::canonical(path, error) : path;
+  const fs::path target = replaces ? fs::canonical(path, error) : followed(path);
   if (replaces && error) throw Error(path.string(), "cannot be resolved: " + error.message());
   if (!target.has_filename()) throw Error(path.string(), "names no file");
 

@@ -42,6 +42,29 @@ TEST_F(AtomicFile, FollowsASymbolicLink) {
   EXPECT_EQ(bytes_of(path("target")), "new");
 }
 
+TEST_F(AtomicFile, FollowsASymbolicLinkToAFileThatIsNotThereYet) {
+  fs::create_directory(path("folder"));
+  fs::create_symlink("folder/second", path("first"));
+  fs::create_symlink("../target", path("folder/second"));
+  write_file_atomically(path("first"), "new");
+  EXPECT_TRUE(fs::is_symlink(path("first")));
+  EXPECT_TRUE(fs::is_symlink(path("folder/second")));
+  EXPECT_FALSE(fs::is_symlink(path("target")));
+  EXPECT_EQ(bytes_of(path("target")), "new");
+}
+
+TEST_F(AtomicFile, RefusesLinksThatLeadNowhere) {
+  fs::create_symlink("missing/file", path("link"));
+  fs::create_symlink("other", path("one"));
+  fs::create_symlink("one", path("other"));
+  for (const fs::path& bad : {path("link"), path("one")}) {
+    const std::string error = error_of([&] { write_file_atomically(bad, "x"); });
+    EXPECT_TRUE(error.starts_with(bad.string() + ": ")) << error;
+    EXPECT_TRUE(fs::is_symlink(bad));
+  }
+  EXPECT_EQ(files_in_folder(), 3U);
+}
+
 TEST_F(AtomicFile, AFailureLeavesNothingBehindAndTheOldFileAsItWas) {
   fs::create_directory(path("folder"));
   for (const fs::path& bad : {path("folder"), path("missing/file"), path("folder/"), fs::path(),
