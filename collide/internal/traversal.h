@@ -22,11 +22,11 @@ inline std::size_t traversal_stack_bound(const SphereTree& a, const SphereTree& 
   return height * static_cast<std::size_t>(branching - 1) + 1;
 }
 
-// Entries kept in the frame of the function, 16 KiB that are not touched before they are needed.
+// Entries kept in the frame of the function, 18 KiB that are not touched before they are needed.
 // Enough for any two trees of build_tree with a million spheres each, whose depth is at most
-// 2 log2 n + 8 = 48: 2 * 48 * 15 + 1 = 1441. Deeper trees, which only a file can bring, take one
-// block from the heap.
-inline constexpr std::size_t kInlineStack = 2048;
+// 3 log2 n + 9 = 69, log2 rounded up: 2 * 69 * 15 + 1 = 2071. Deeper trees, which only a file or
+// more spheres can bring, take one block from the heap.
+inline constexpr std::size_t kInlineStack = 2304;
 
 // A policy says what to do with what the traversal finds:
 //   static constexpr bool kWantsGaps   whether pruned(gap) is called for every pruned pair, gap

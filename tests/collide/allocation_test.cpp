@@ -35,7 +35,7 @@ TEST(Allocation, CollidesTakesNoMemory) {
 }
 
 TEST(Allocation, CollidesAnswersWithoutMemoryForTheStack) {
-  const SphereTree a = caterpillar(900, 2, false);
+  const SphereTree a = caterpillar(1100, 2, false);
   const SphereTree b = caterpillar(1300, 2, true);
   ASSERT_GT(traversal_stack_bound(a, b), kInlineStack);
   const Pose inside = Pose::from_translation({2.5, 0.0, 0.0});

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+
 namespace spherule::test {
 namespace {
 
@@ -63,8 +65,15 @@ TEST(Traversal, StaysWithinTheProvedStackAndDropsNothing) {
   }
 }
 
+// The bound on the depth that build_tree() gives, for a million spheres and the widest nodes.
+TEST(Traversal, InlineStackIsEnoughForAMillionSpheres) {
+  const std::size_t log2 = std::bit_width(std::size_t{1'000'000 - 1});
+  const std::size_t deepest = 3 * log2 + 9;
+  EXPECT_GE(kInlineStack, 2 * deepest * (SphereTree::kMaxBranching - 1) + 1);
+}
+
 TEST(Traversal, TakesTreesThatOutgrowTheInlineStack) {
-  const SphereTree a = caterpillar(900, 2, false);
+  const SphereTree a = caterpillar(1100, 2, false);
   const SphereTree b = caterpillar(1300, 2, true);
   ASSERT_GT(traversal_stack_bound(a, b), kInlineStack);
   EXPECT_TRUE(collides(a, Pose(), b, Pose()));
