@@ -12,7 +12,8 @@ namespace spherule {
 // variable_count() positions (radians or metres; limits are not enforced) and a placed root.
 // `world_from_link` is resized and reused, so that a warm call does not allocate.
 // `world_from_root` must not be an element of it.
-// Throws Error for a configuration of the wrong size or with a number that is not finite.
+// Throws Error for a configuration of the wrong size or with a number that is not finite, and for
+// one that moves a link beyond kMaxCoordinate from the world's origin.
 void forward_kinematics(const RobotModel& robot, std::span<const double> configuration,
                         std::vector<Pose>& world_from_link, const Pose& world_from_root = {});
 

@@ -196,6 +196,9 @@ TEST(Kinematics, RefusesABadConfiguration) {
   EXPECT_THROW(run({1.0, 2.0}), Error);
   EXPECT_THROW(run({std::nan("")}), Error);
   EXPECT_THROW(run({std::numeric_limits<double>::infinity()}), Error);
+  robot.add_link("slide", "arm", {.name = "rail", .type = JointType::kPrismatic});
+  EXPECT_NO_THROW(run({1.0, 1e15}));
+  EXPECT_THROW(run({1.0, 1.1e15}), Error);
 }
 
 TEST(RobotCollides, IsTheCollisionOfAnyTreeOnAnyLink) {
