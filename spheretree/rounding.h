@@ -58,9 +58,6 @@ inline double sub_down(double a, double b) {
 inline double mul_up(double a, double b) {
   return next_up(a * b);
 }
-inline double mul_down(double a, double b) {
-  return next_down(a * b);
-}
 
 // Bounds of the Euclidean norm of `v`, whose components are taken as exact.
 inline double norm_upper(const Eigen::Vector3d& v) {
