@@ -48,12 +48,13 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& m) {
   return x;
 }
 
-Eigen::Quaterniond unit(const Eigen::Quaterniond& q) {
+}  // namespace
+
+Eigen::Quaterniond unit_rotation(const Eigen::Quaterniond& q) {
+  if (std::abs(q.coeffs().squaredNorm() - 1.0) <= 8.0 * kUnitRoundoff) return q;
   const double scale = q.coeffs().cwiseAbs().maxCoeff();
   return Eigen::Quaterniond(Eigen::Vector4d((q.coeffs() / scale).normalized()));
 }
-
-}  // namespace
 
 Pose::Pose(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation)
     : rotation_(rotation), translation_(translation) {
@@ -86,7 +87,8 @@ Eigen::Isometry3d Pose::isometry() const {
 }
 
 Pose Pose::operator*(const Pose& other) const {
-  return Pose(unit(unit(rotation()) * unit(other.rotation())), *this * other.translation_);
+  return Pose(unit_rotation(unit_rotation(rotation()) * unit_rotation(other.rotation())),
+              *this * other.translation_);
 }
 
 Pose Pose::inverse() const {

@@ -67,4 +67,9 @@ class Pose {
   Eigen::Matrix3d matrix_ = Eigen::Matrix3d::Identity();
 };
 
+// The same rotation, rounded to nearest, with a quaternion of unit length, so that chains can be
+// composed without renormalising. Returned as it is where it is unit already, to within 8 u of the
+// squared length. `q` must be finite and not zero.
+Eigen::Quaterniond unit_rotation(const Eigen::Quaterniond& q);
+
 }  // namespace spherule

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/kinematics.h"
 
-#include "collide/robot/internal/unit_rotation.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -76,7 +75,7 @@ void forward_kinematics(const RobotModel& robot, std::span<const double> configu
   }
   world_from_link.resize(robot.links().size());
   world_from_link[0] = world_from_root;
-  const Quaterniond root_rotation = internal::unit_rotation(world_from_root.rotation());
+  const Quaterniond root_rotation = unit_rotation(world_from_root.rotation());
   for (const Joint& joint : robot.joints()) {
     const auto parent = static_cast<std::size_t>(joint.parent_link);
     const double position =

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/robot_model.h"
 
-#include "collide/robot/internal/unit_rotation.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -40,7 +39,7 @@ int RobotModel::add_link(std::string name, std::string_view parent_link, Joint j
     throw Error("joint " + joint.name, "the limits are not finite or reversed");
   }
   joint.axis = unit_axis(joint.axis, joint.name);
-  joint.parent_from_joint = Pose(internal::unit_rotation(joint.parent_from_joint.rotation()),
+  joint.parent_from_joint = Pose(unit_rotation(joint.parent_from_joint.rotation()),
                                  joint.parent_from_joint.translation());
   joint.parent_link = parent;
   joint.child_link = static_cast<int>(links_.size());
