@@ -5,9 +5,6 @@
 #include "collide/internal/triangle_leaves.h"
 #include "spheretree/build.h"
 #include "spheretree/enclosing_sphere.h"
-#include "spheretree/error.h"
-
-#include <string>
 
 namespace spherule {
 namespace {
@@ -15,26 +12,12 @@ namespace {
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
 std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) throw Error("mesh", "there is no triangle");
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    if (!is_usable_point(mesh.vertices[i])) {
-      throw Error("mesh", "vertex " + std::to_string(i) + " is not finite or exceeds 1e15");
-    }
-  }
-  const auto vertex_count = static_cast<std::int64_t>(mesh.vertices.size());
+  validate(mesh, "mesh");
   std::vector<Triangle> result;
   result.reserve(mesh.triangles.size());
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    Triangle triangle;
-    for (int k = 0; k < 3; ++k) {
-      const int vertex = mesh.triangles[i][k];
-      if (vertex < 0 || vertex >= vertex_count) {
-        throw Error("mesh",
-                    "triangle " + std::to_string(i) + " has no vertex " + std::to_string(vertex));
-      }
-      triangle[static_cast<std::size_t>(k)] = mesh.vertices[static_cast<std::size_t>(vertex)];
-    }
-    result.push_back(triangle);
+  for (const Eigen::Vector3i& indices : mesh.triangles) {
+    const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(indices[k])]; };
+    result.push_back({corner(0), corner(1), corner(2)});
   }
   return result;
 }

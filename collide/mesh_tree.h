@@ -9,10 +9,11 @@
 
 namespace spherule {
 
-// A sphere tree whose leaves are triangles: every leaf ball encloses one triangle. Immutable.
+// A sphere tree whose leaves are triangles: every leaf ball encloses one triangle. Immutable. The
+// mesh is judged as stored: its vertex_error, the distance to the file's mesh, is not added to it.
 class MeshTree {
  public:
-  // Throws Error if the mesh has no triangle, an index is out of range or a number is not usable.
+  // Throws Error for a mesh that validate() refuses.
   explicit MeshTree(const TriangleMesh& mesh);
 
   const SphereTree& tree() const { return tree_; }

@@ -45,9 +45,4 @@ MeshReport mesh_report(const TriangleMesh& mesh, const MeshReportOptions& option
 // The report in a few lines for a person: counts, size, and a sentence for everything unusual.
 std::string describe(const MeshReport& report);
 
-// Throws Error(subject, ...) unless the mesh can be used at all: at least one triangle, indices in
-// range, coordinates finite and at most kMaxCoordinate, vertex_error finite and not negative. Every
-// entry point of the simplifier calls it.
-void validate(const TriangleMesh& mesh, const std::string& subject);
-
 }  // namespace spherule

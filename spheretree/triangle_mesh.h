@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include <string>
 #include <vector>
 
 namespace spherule {
@@ -18,5 +19,10 @@ struct TriangleMesh {
   // memory. The simplifier adds it to the padding, so that its promises hold for the file's mesh.
   double vertex_error = 0.0;
 };
+
+// Throws Error(subject, ...) unless the mesh can be used at all: at least one triangle, indices in
+// range, coordinates finite and at most kMaxCoordinate, vertex_error finite and not negative. Every
+// entry point that takes a mesh calls it.
+void validate(const TriangleMesh& mesh, const std::string& subject);
 
 }  // namespace spherule

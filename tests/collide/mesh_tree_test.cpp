@@ -165,6 +165,7 @@ TEST(MeshTree, RefusesAMeshItCannotUse) {
   EXPECT_THROW(MeshTree(TriangleMesh{{{0, 0, 0}}, {{0, 0, 1}}}), Error);
   EXPECT_THROW(MeshTree(TriangleMesh{{{0, 0, 0}}, {{0, 0, -1}}}), Error);
   EXPECT_THROW(MeshTree(TriangleMesh{{{0, 0, std::nan("")}}, {{0, 0, 0}}}), Error);
+  EXPECT_THROW(MeshTree(TriangleMesh{{{0, 0, 0}}, {{0, 0, 0}}, -1.0}), Error);
 }
 
 }  // namespace
