@@ -35,7 +35,17 @@ inline bool overlaps(const BallArrays& balls, std::int32_t i, const QueryBall& q
   return dx * dx + dy * dy + dz * dz <= limit * limit;
 }
 
-// Bit i is set if ball first + i overlaps `q`; 1 <= count <= 32.
+// Bit i is set if ball first + i overlaps `q`; 1 <= count <= 32. For any machine.
+inline std::uint32_t portable_overlap_mask(const BallArrays& balls, std::int32_t first,
+                                           std::int32_t count, const QueryBall& q) {
+  std::uint32_t mask = 0;
+  for (std::int32_t i = 0; i < count; ++i) {
+    mask |= static_cast<std::uint32_t>(overlaps(balls, first + i, q)) << i;
+  }
+  return mask;
+}
+
+// The same, as fast as this machine can.
 inline std::uint32_t overlap_mask(const BallArrays& balls, std::int32_t first, std::int32_t count,
                                   const QueryBall& q) {
 #if defined(__SSE2__)
@@ -60,11 +70,7 @@ inline std::uint32_t overlap_mask(const BallArrays& balls, std::int32_t first, s
   }
   return mask;
 #else
-  std::uint32_t mask = 0;
-  for (std::int32_t i = 0; i < count; ++i) {
-    mask |= static_cast<std::uint32_t>(overlaps(balls, first + i, q)) << i;
-  }
-  return mask;
+  return portable_overlap_mask(balls, first, count, q);
 #endif
 }
 
