@@ -7,6 +7,7 @@
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/temporary_folder.h"
 #include "tests/spheretree/tree_oracle.h"
+#include "tests/support/hash.h"
 
 #include <bit>
 #include <cmath>

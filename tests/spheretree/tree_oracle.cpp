@@ -85,10 +85,4 @@ int depth_of(const SphereTreeData& data) {
   return deepest;
 }
 
-std::uint64_t hash_of(const std::string& bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return hash;
-}
-
 }  // namespace spherule::test

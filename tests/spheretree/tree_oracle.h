@@ -14,7 +14,4 @@ std::string fault_of(const SphereTreeData& data);
 // Edges on the longest way from the root, by the same walk. The data must have no fault.
 int depth_of(const SphereTreeData& data);
 
-// A 64-bit FNV-1a hash, for golden tests.
-std::uint64_t hash_of(const std::string& bytes);
-
 }  // namespace spherule::test
