@@ -9,6 +9,15 @@
 #include <memory>
 
 namespace spherule {
+
+void check_promises(const Certificate& certificate, double max_error, const std::string& part) {
+  if (!certificate.covered) throw Error(part, "the fit's certificate does not hold");
+  if (!certificate.protrusion_over_simplified_max ||
+      !(*certificate.protrusion_over_simplified_max <= max_error)) {
+    throw Error(part, "the fit is not proved to keep to the max error");
+  }
+}
+
 namespace {
 
 FitRecord fit(Part& part) {
@@ -18,7 +27,7 @@ FitRecord fit(Part& part) {
   const auto start = std::chrono::steady_clock::now();
   const Simplification result = simplify(part.mesh, options);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  if (!result.certificate.covered) throw Error(part.name, "the fit's certificate does not hold");
+  check_promises(result.certificate, part.max_error, part.name);
   part.tree = std::make_shared<const SphereTree>(build_tree(result.cover.spheres));
   return {part.name,
           part.mesh.triangles.size(),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bench/workload.h"
+#include "simplifier/certificate.h"
 
 #include <cstddef>
 #include <functional>
@@ -20,8 +21,13 @@ struct FitRecord {
   bool covered = false;
 };
 
+// Throws Error naming the part unless the certificate proves both promises of a fit: it covers, and
+// it protrudes from the simplified solid by at most `max_error`. Nothing measured on a set that
+// does not is worth having.
+void check_promises(const Certificate& certificate, double max_error, const std::string& part);
+
 // simplify() and build_tree() for every part of the workload; `done` is told of each. Throws Error
-// if a certificate does not hold: nothing measured on a set that does not cover is worth having.
+// as check_promises() does.
 std::vector<FitRecord> fit_parts(Workload& workload,
                                  const std::function<void(const FitRecord&)>& done);
 
