@@ -36,8 +36,7 @@ double distance_of(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
   return std::sqrt(x * x + y * y + z * z);
 }
 
-// Each ball but the first of every two is grown until it touches a point of the other set, up to
-// the pad of the test.
+// Random balls, every second of which touches a point of the other set, up to the test's pad.
 std::vector<Sphere> balls_near(Random& random, const Pose& world_from_balls,
                                const Pose& world_from_points,
                                const std::vector<Eigen::Vector3d>& points) {
