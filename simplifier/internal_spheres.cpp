@@ -42,19 +42,21 @@ class Grower {
                           .least_step = std::min(seed_radius_, kLeastStep * max_error_),
                           .tolerance = kPeakTolerance * max_error_});
     const Sphere grown = ball_at(path.back().point);
-    if (gap(grown, seed) <= 0.9 * max_error_) return grown;
+    if (is_near(grown, seed, 0.9)) return grown;
     // The gap grows along the way, from at most zero; take the last position that keeps it small.
     for (auto it = path.rbegin() + 1; it != path.rend(); ++it) {
       const Sphere ball = ball_at(it->point);
-      if (gap(ball, seed) <= 0.5 * max_error_) return ball;
+      if (is_near(ball, seed, 0.5)) return ball;
     }
-    return ball_at(seed);
+    return {seed, std::max(0.0, clearance_(seed).lower)};
   }
 
  private:
-  Sphere ball_at(const Vector3d& c) const { return {c, std::max(0.0, clearance_(c).lower)}; }
-  static double gap(const Sphere& ball, const Vector3d& p) {
-    return (p - ball.center).norm() - ball.radius;
+  // Of negative radius where the centre is outside of S. Inflated, such a ball would protrude by
+  // the way to S on top.
+  Sphere ball_at(const Vector3d& c) const { return {c, clearance_(c).lower}; }
+  bool is_near(const Sphere& ball, const Vector3d& p, double share) const {
+    return ball.radius >= 0.0 && (p - ball.center).norm() - ball.radius <= share * max_error_;
   }
 
   const Clearance& clearance_;
