@@ -2,6 +2,7 @@
 #include "cli/check_length.h"
 #include "cli/command.h"
 #include "cli/fit_report.h"
+#include "cli/fit_verdict.h"
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"
@@ -58,8 +59,8 @@ void write_view(const FitArguments& arguments, const TriangleMesh& mesh,
   write_file_atomically(arguments.view, make_view_page(arguments.mesh, items));
 }
 
-// Fails (kNo) if the spheres are not proved to cover; the files are written nevertheless and say
-// so.
+// Fails (kNo) if a promise about the spheres is not proved; the files are written nevertheless and
+// say so.
 int fit(const FitArguments& arguments) {
   check_outputs({arguments.spheres, arguments.report, arguments.tree, arguments.view},
                 {arguments.mesh});
@@ -98,8 +99,9 @@ int fit(const FitArguments& arguments) {
             << describe(result.certificate, "the simplified solid") << "seconds: external "
             << result.times.external << ", cover " << result.times.cover << ", certify "
             << result.times.certify << "\n";
-  if (result.certificate.covered) return kYes;
-  std::cerr << "spherule: " << arguments.spheres << ": the spheres are not proved to cover\n";
+  const std::string broken = broken_promises(result);
+  if (broken.empty()) return kYes;
+  std::cerr << "spherule: " << arguments.spheres << ": " << broken << "\n";
   return kNo;
 }
 
