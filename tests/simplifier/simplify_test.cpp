@@ -8,9 +8,11 @@
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 
 namespace spherule::test {
@@ -63,6 +65,21 @@ TEST(Simplify, KeepsWhatIsGiven) {
   EXPECT_FALSE(result.cover.spheres_before_inflation.empty());
   for (const Sphere& s : result.cover.spheres) EXPECT_GE(s.radius, 0.15);
   EXPECT_TRUE(result.certificate.covered);
+}
+
+// Every stage, the first included.
+TEST(Simplify, KeepsToTheThreadsItIsGiven) {
+  SimplifyOptions options = coarse(0.2);
+  options.threads = 1;
+  std::set<std::string> stages;
+  options.progress = [&](double, const char* what) {
+    stages.insert(what);
+    using tbb::global_control;
+    EXPECT_EQ(global_control::active_value(global_control::max_allowed_parallelism), 1U) << what;
+  };
+  simplify(cube_mesh(), options);
+  EXPECT_TRUE(stages.contains("flooding"));
+  EXPECT_TRUE(stages.contains("proving the solid"));
 }
 
 TEST(Simplify, OptionsSurviveTheRecord) {
