@@ -37,6 +37,11 @@ void check_options(const ExternalOptions& options) {
   }
 }
 
+// Exact where one of the two is zero: users see the sum.
+double sum_up(double a, double b) {
+  return a == 0.0 || b == 0.0 ? a + b : add_up(a, b);
+}
+
 Eigen::AlignedBox3d grown_outwards(const Eigen::AlignedBox3d& box, double by) {
   Eigen::AlignedBox3d grown;
   for (int axis = 0; axis < 3; ++axis) {
@@ -150,7 +155,7 @@ ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalO
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
   ExternalSpheres result;
-  result.padding = add_up(options.padding, mesh.vertex_error);
+  result.padding = sum_up(options.padding, mesh.vertex_error);
   result.min_external_diameter = options.min_external_diameter;
   result.box = grown_outwards(distance.box(), result.padding);
   const double rho = options.min_external_diameter / 2.0;

@@ -202,6 +202,20 @@ TEST(ExternalSpheres, TellOfTheirProgressAndKeepToTheThreadsTheyAreGiven) {
   }
 }
 
+TEST(ExternalSpheres, ThePaddingIsTheSumOfTheTwoGivenWhereThereAreTwo) {
+  ExternalOptions options = options_for(ExternalPlacement::kNone, 0.0);
+  TriangleMesh mesh = cube_mesh();
+  const auto padding = [&] { return place_external_spheres(mesh, options).padding; };
+  EXPECT_EQ(padding(), 0.0);
+  mesh.vertex_error = 0.1;
+  EXPECT_EQ(padding(), 0.1);
+  options.padding = 0.2;
+  EXPECT_GE(padding(), 0.1L + 0.2L);
+  EXPECT_LE(padding(), 0.3 + 1e-15);
+  mesh.vertex_error = 0.0;
+  EXPECT_EQ(padding(), 0.2);
+}
+
 std::string refused(const ExternalOptions& options, const TriangleMesh& mesh = cube_mesh()) {
   try {
     place_external_spheres(mesh, options);
