@@ -4,6 +4,7 @@
 #include "simplifier/internal/cover_history.h"
 #include "simplifier/internal/medial_ascent.h"
 #include "simplifier/internal/proof.h"
+#include "simplifier/internal/solid_query.h"
 #include "simplifier/internal/uncovered_search.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -25,7 +26,7 @@ constexpr double kLoopLimit = 0.97;
 constexpr double kProofMargin = 0.02;
 constexpr double kPeakTolerance = 0.01;
 constexpr double kLeastStep = 0.05;
-// No part is worth a hundred million balls: the error is then too small for the model.
+// No part is worth two million balls: the error is then too small for the model.
 constexpr std::size_t kMaxSpheres = 2'000'000;
 
 // The ball that grows from a seed at `peak`.
@@ -71,6 +72,9 @@ SphereCover place_internal_spheres(const TriangleMesh& mesh, const Clearance& cl
   const double limit = options.max_error * kLoopLimit;
   const double seed_diameter =
       options.min_internal_diameter > 0.0 ? options.min_internal_diameter : options.max_error / 2.0;
+  if (kPeakTolerance * options.max_error < internal::least_reach(clearance.box())) {
+    throw Error("max error", "below what coordinates of this size resolve");
+  }
   const MeshDistance distance(mesh);
   UncoveredSearch search(clearance, distance, limit, kPeakTolerance * options.max_error);
   const Grower grow(clearance, options.max_error, seed_diameter);

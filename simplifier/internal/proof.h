@@ -41,7 +41,8 @@ struct BallsToProve {
 };
 
 // X = the triangles. They are halved at their longest edge until a piece
-// lies in a single ball (a ball is convex: corners in it, piece in it) or is smaller than `finest`.
+// lies in a single ball (a ball is convex: corners in it, piece in it) or is smaller than `finest`,
+// at least 2^-40 of the largest coordinate.
 CoverageProof prove_surface(const TriangleMesh& mesh, const BallsToProve& balls, double finest);
 
 // X = S. Cells of its box are halved until one lies in a single ball or outside of S, or is smaller

@@ -14,10 +14,6 @@ constexpr double kClearanceTolerance = 0.125;
 // Steps towards S are at least this share of it.
 constexpr double kLeastStep = 1.0 / 32.0;
 
-double largest_coordinate(const Eigen::AlignedBox3d& box) {
-  return box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
-}
-
 }  // namespace
 
 double least_reach(const Eigen::AlignedBox3d& box) {

@@ -104,6 +104,22 @@ TEST(Certificate, AMissingBallIsALeakOfTheExactDepth) {
   EXPECT_NEAR(outer.deepest_leak.norm(), 0.0, 0.02);
 }
 
+// Where balls meet in a point of the surface, no piece of it is ever in one of them. The proof must
+// come to an end however close it is told to look.
+TEST(Certificate, TheSmallestResolutionIsThatOfTheCoordinates) {
+  const int n = 3;
+  std::vector<Sphere> touching = grid_of_balls(n);
+  for (Sphere& s : touching) s.radius = kRoot3 / (2 * n) * (1 - 1e-15);
+  const ExternalSpheres box = box_of(cube_mesh());
+  CertifyOptions options;
+  options.external = &box;
+  options.resolution = 1e-300;
+  const Certificate unproved = certify(cube_mesh(), touching, options);
+  EXPECT_FALSE(unproved.covered);
+  EXPECT_GT(unproved.uncovered_depth.upper, 0.0);
+  EXPECT_LT(unproved.uncovered_depth.upper, 1e-11);
+}
+
 // Balls along the surface leave the inside open. The surface is covered, but |M| is not.
 TEST(Certificate, AHollowSetIsNotACoverEvenWithoutExternalSpheres) {
   Random random(91);

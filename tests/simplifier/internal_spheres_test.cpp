@@ -2,6 +2,7 @@
 // The paper's loop (cover() with CoverMethod::kPaper).
 #include "simplifier/internal_spheres.h"
 
+#include "spheretree/error.h"
 #include "tests/simplifier/effort.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
@@ -204,6 +205,15 @@ TEST(InternalSpheres, ThinAndFlatInputIsCovered) {
     const std::vector<Vector3d> surface = points_on_surface(mesh, 500, random);
     EXPECT_EQ(judge_cover(surface, fitted.cover.spheres).uncovered, 0U);
   }
+}
+
+TEST(InternalSpheres, AnErrorBelowTheRoundingOfTheCoordinatesIsRefused) {
+  TriangleMesh mesh = cube_mesh();
+  for (Vector3d& v : mesh.vertices) v += Vector3d::Constant(1e9);
+  CoverOptions options = paper_options();
+  options.max_error = 1e-4;
+  const ExternalSpheres box = place_external_spheres(mesh, {.placement = ExternalPlacement::kNone});
+  EXPECT_THROW(cover(mesh, box, options), Error);
 }
 
 TEST(InternalSpheres, ASmallerErrorAsksForMoreBallsAndGivesLessExcess) {
