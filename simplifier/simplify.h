@@ -49,8 +49,8 @@ struct Simplification {
   SimplifyTimes times;
 };
 
-// Both stages and the certificate: the function that most users call. The certificate is proved
-// independently of the fit, on the spheres returned.
+// Both stages and the certificate: the function that most users call. The certificate comes from a
+// second search, on the spheres returned, whatever the fit found out about them.
 // Throws Error for a mesh that validate() refuses and for options out of range.
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
 
