@@ -31,20 +31,11 @@ struct FitArguments {
   std::string report;
   std::string tree;
   std::string view;
-  std::string method = "cover";
-  std::string external = "reachable";
+  std::string method = method_names().front();
+  std::string external = placement_names().front();
   double scale = 1.0;
   SimplifyOptions options;
 };
-
-CoverMethod method_named(const std::string& name) {
-  return name == "paper" ? CoverMethod::kPaper : CoverMethod::kCover;
-}
-
-ExternalPlacement placement_named(const std::string& name) {
-  if (name == "random") return ExternalPlacement::kRandom;
-  return name == "none" ? ExternalPlacement::kNone : ExternalPlacement::kReachable;
-}
 
 void write_view(const FitArguments& arguments, const TriangleMesh& mesh,
                 const Simplification& result, const std::optional<SphereTree>& tree) {
@@ -128,11 +119,11 @@ void add_fit(CLI::App& app, int& exit_code) {
   command->add_option("--min-radius", options.min_radius, "No sphere is smaller than this")
       ->check(check_length);
   command->add_option("--method", arguments->method, "How the inside is covered: cover, paper")
-      ->check(CLI::IsMember({"cover", "paper"}));
+      ->check(CLI::IsMember(method_names()));
   command
       ->add_option("--external", arguments->external,
                    "How external spheres are placed: reachable, random, none")
-      ->check(CLI::IsMember({"reachable", "random", "none"}));
+      ->check(CLI::IsMember(placement_names()));
   command
       ->add_option("--external-limit", options.external_limit, "Attempts of the random placement")
       ->check(CLI::NonNegativeNumber);

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace spherule {
 
@@ -61,6 +62,13 @@ ExternalOptions external_options(const SimplifyOptions& options);
 // How finely an audit of a cover made with error E must look (CertifyOptions::resolution), for a
 // mesh with the given box diagonal: a cover keeps a reserve of a few hundredths of E for the proof.
 double proof_resolution(double max_error, double diagonal);
+
+// The names of methods and placements on the command line and in files, the default first, and what
+// they name. Error for another name.
+std::vector<std::string> method_names();
+CoverMethod method_named(const std::string& name);
+std::vector<std::string> placement_names();
+ExternalPlacement placement_named(const std::string& name);
 
 // The options under their command-line names, for SphereFile::options; `scale` is the one the mesh
 // was read with. And back, for an audit: what is absent keeps its default, Error names a bad value.

@@ -132,6 +132,7 @@ TEST(Simplify, BadRecordsAreRefusedByName) {
   for (const char* key : {"max-error", "min-external", "padding", "min-radius", "min-internal"}) {
     EXPECT_EQ(refused(key, std::string("wide")), key);
     EXPECT_EQ(refused(key, true), key);
+    for (const double bad : {-1.0, kNan, kInfinity, 1e300}) EXPECT_EQ(refused(key, bad), key);
   }
   for (const char* key : {"seed", "external-limit"}) {
     EXPECT_EQ(refused(key, std::int64_t{-1}), key);
@@ -141,6 +142,21 @@ TEST(Simplify, BadRecordsAreRefusedByName) {
     EXPECT_EQ(refused(key, std::string("other")), key);
     EXPECT_EQ(refused(key, std::int64_t{1}), key);
   }
+}
+
+TEST(Simplify, MethodsAndPlacementsHaveNames) {
+  EXPECT_EQ(method_named(method_names().front()), SimplifyOptions{}.method);
+  EXPECT_EQ(placement_named(placement_names().front()), SimplifyOptions{}.external);
+  for (const std::string& name : method_names()) {
+    const Record record = option_record({.method = method_named(name)}, 1.0);
+    EXPECT_EQ(std::get<std::string>(record.at("method")), name);
+  }
+  for (const std::string& name : placement_names()) {
+    const Record record = option_record({.external = placement_named(name)}, 1.0);
+    EXPECT_EQ(std::get<std::string>(record.at("external")), name);
+  }
+  EXPECT_THROW(method_named("other"), Error);
+  EXPECT_THROW(placement_named(""), Error);
 }
 
 TEST(Simplify, BadOptionsAreRefusedByName) {
