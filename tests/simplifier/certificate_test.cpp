@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -218,6 +219,35 @@ TEST(Certificate, BadBallsAndOptionsAreRefusedByName) {
     EXPECT_EQ(refused({good}, {.padding = bad}), "padding");
   }
   EXPECT_EQ(refused({good}, {}, {}), "mesh");
+}
+
+// A cube whose corners eight external balls take: what remains is furthest from the middle where
+// two of them and a face of the cube meet, at (1/2, y, 0) with 1/4 + y^2 = R^2.
+TEST(Certificate, TheDepthOfALeakInACurvedSolidIsExact) {
+  ExternalSpheres external = box_of(cube_mesh());
+  for (const double taken : {0.55, 0.6, 0.7}) {
+    external.balls.clear();
+    for (int i = 0; i < 8; ++i) {
+      external.balls.push_back({Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), taken});
+    }
+    const double y = std::sqrt(taken * taken - 0.25);
+    const double furthest = Vector3d(0.0, 0.5 - y, 0.5).norm();
+    CertifyOptions options;
+    options.external = &external;
+    for (const double radius : {0.2, furthest - 0.01, furthest + 1e-3}) {
+      SCOPED_TRACE(radius);
+      // A mesh in the middle, for which the cube is box enough.
+      const Certificate certificate =
+          certify(box_mesh(Vector3d::Constant(0.45), Vector3d::Constant(0.55)),
+                  std::vector<Sphere>{{kMiddle, radius}}, options);
+      const double depth = std::max(0.0, furthest - radius);
+      EXPECT_EQ(certificate.covered, depth == 0.0);
+      EXPECT_LE(certificate.solid_depth.lower, depth * (1.0 + 1e-12));
+      EXPECT_GE(certificate.solid_depth.upper, depth * (1.0 - 1e-12));
+      EXPECT_LE(certificate.solid_depth.upper - certificate.solid_depth.lower,
+                0.04 * depth + 2e-3 * (depth > 0.0 ? 1.0 : 0.0));
+    }
+  }
 }
 
 // Sets that cover a part: some balls of a fit, shrunk or left out at random.
