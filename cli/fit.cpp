@@ -2,7 +2,6 @@
 #include "cli/check_length.h"
 #include "cli/command.h"
 #include "cli/fit_report.h"
-#include "cli/fit_verdict.h"
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"

@@ -55,6 +55,11 @@ struct Simplification {
 // Throws Error for a mesh that validate() refuses and for options out of range.
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
 
+// What was promised and is not proved, as a sentence: that the spheres cover, and, where no least
+// radius was asked for, that they protrude from the simplified solid by at most E. Empty where both
+// are proved.
+std::string broken_promises(const Simplification& simplification);
+
 // The options with which simplify() runs stage 1, for an audit that runs it again. Where E is not
 // known (0), D / 4 takes its place: the natural ratio.
 ExternalOptions external_options(const SimplifyOptions& options);

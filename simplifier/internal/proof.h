@@ -46,7 +46,8 @@ struct BallsToProve {
 CoverageProof prove_surface(const TriangleMesh& mesh, const BallsToProve& balls, double finest);
 
 // X = S. Cells of its box are halved until one lies in a single ball or outside of S, or is smaller
-// than `finest` (where its centre is outside of S, than the shares of it in solid_query.h). `is_witness` tells whether a point of S may be reported as a leak.
+// than `finest` (where its centre is outside of S, than the shares of it in solid_query.h).
+// `is_witness` tells whether a point of S may be reported as a leak.
 CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
                           const BallsToProve& balls, double finest,
                           const std::function<bool(const Eigen::Vector3d&)>& is_witness);

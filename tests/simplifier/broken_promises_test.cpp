@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/fit_verdict.h"
+#include "simplifier/simplify.h"
 
 #include <gtest/gtest.h>
 
-namespace spherule {
+#include <optional>
+
+namespace spherule::test {
 namespace {
 
 Simplification fitted(bool covered, std::optional<double> protrusion, double min_radius = 0.0) {
@@ -19,19 +21,19 @@ bool says(const Simplification& result, const char* what) {
   return broken_promises(result).find(what) != std::string::npos;
 }
 
-TEST(FitVerdict, AProvedFitIsNotBlamed) {
+TEST(BrokenPromises, AProvedFitIsNotBlamed) {
   EXPECT_EQ(broken_promises(fitted(true, 2.0)), "");
   EXPECT_EQ(broken_promises(fitted(true, 1.5, 0.5)), "");
 }
 
-TEST(FitVerdict, ALeakIsBlamed) {
+TEST(BrokenPromises, ALeakIsBlamed) {
   EXPECT_TRUE(says(fitted(false, 2.0), "not proved to cover"));
   EXPECT_FALSE(says(fitted(false, 2.0), "protrude"));
   EXPECT_TRUE(says(fitted(false, 2.5), "not proved to cover"));
   EXPECT_TRUE(says(fitted(false, 2.5), "protrude"));
 }
 
-TEST(FitVerdict, AProtrusionBeyondTheErrorIsBlamedUnlessALeastRadiusForcesIt) {
+TEST(BrokenPromises, AProtrusionBeyondTheErrorIsBlamedUnlessALeastRadiusForcesIt) {
   EXPECT_TRUE(says(fitted(true, 2.0 + 1e-15), "at most 2 from the simplified solid"));
   EXPECT_TRUE(says(fitted(true, 3.5), "only by at most 3.5"));
   EXPECT_TRUE(says(fitted(true, std::nullopt), "protrude"));
@@ -40,4 +42,4 @@ TEST(FitVerdict, AProtrusionBeyondTheErrorIsBlamedUnlessALeastRadiusForcesIt) {
 }
 
 }  // namespace
-}  // namespace spherule
+}  // namespace spherule::test

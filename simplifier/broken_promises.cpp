@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/fit_verdict.h"
+#include "simplifier/simplify.h"
 
 #include <iomanip>
 #include <sstream>
