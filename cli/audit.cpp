@@ -28,24 +28,29 @@ struct AuditArguments {
   bool json = false;
 };
 
-// The scale the file was fitted at, where the user gives none.
-double scale_of(const AuditArguments& arguments, const SphereFile& file) {
-  if (arguments.scale) return *arguments.scale;
-  const auto found = file.options.find("scale");
-  if (found == file.options.end()) return 1.0;
-  if (const double* scale = std::get_if<double>(&found->second)) return *scale;
-  if (const auto* whole = std::get_if<std::int64_t>(&found->second)) {
-    return static_cast<double>(*whole);
-  }
-  throw Error(arguments.spheres, "option 'scale' is not a number");
-}
-
-SimplifyOptions options_of(const AuditArguments& arguments, const SphereFile& file) {
+// Runs what depends on the options in the file, and blames the file for what is wrong with them.
+template <typename Use>
+auto blaming_file(const AuditArguments& arguments, Use use) {
   try {
-    return options_from_record(file.options);
+    return use();
   } catch (const Error& error) {
     throw Error(arguments.spheres, error.what());
   }
+}
+
+// The scale the file was fitted at.
+double stored_scale(const SphereFile& file) {
+  const auto found = file.options.find("scale");
+  if (found == file.options.end()) return 1.0;
+  double scale = 0.0;
+  if (const double* real = std::get_if<double>(&found->second)) scale = *real;
+  if (const auto* whole = std::get_if<std::int64_t>(&found->second)) {
+    scale = static_cast<double>(*whole);
+  }
+  if (!(scale > 0.0) || !std::isfinite(scale)) {
+    throw Error("scale", "must be a positive finite number");
+  }
+  return scale;
 }
 
 void print(const AuditArguments& arguments, const Certificate& certificate,
@@ -72,8 +77,12 @@ void print(const AuditArguments& arguments, const Certificate& certificate,
 
 int audit(const AuditArguments& arguments) {
   const SphereFile file = load_spheres(arguments.spheres);
-  SimplifyOptions options = options_of(arguments, file);
-  const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = scale_of(arguments, file)});
+  SimplifyOptions options =
+      blaming_file(arguments, [&] { return options_from_record(file.options); });
+  const double scale = arguments.scale
+                           ? *arguments.scale
+                           : blaming_file(arguments, [&] { return stored_scale(file); });
+  const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = scale});
 
   ProgressBar bar;
   options.progress = bar.callback();
@@ -91,7 +100,8 @@ int audit(const AuditArguments& arguments) {
   }
   std::optional<ExternalSpheres> external;
   if (arguments.min_external || file.options.contains("min-external")) {
-    external = place_external_spheres(mesh, external_options(options));
+    const auto place = [&] { return place_external_spheres(mesh, external_options(options)); };
+    external = arguments.min_external ? place() : blaming_file(arguments, place);
     certify_options.external = &*external;
     // A file that says how it was fitted was proved at this resolution.
     certify_options.resolution =

@@ -30,20 +30,11 @@ struct FitArguments {
   std::string report;
   std::string tree;
   std::string view;
-  std::string method = "cover";
-  std::string external = "reachable";
+  std::string method = method_names().front();
+  std::string external = placement_names().front();
   double scale = 1.0;
   SimplifyOptions options;
 };
-
-CoverMethod method_named(const std::string& name) {
-  return name == "paper" ? CoverMethod::kPaper : CoverMethod::kCover;
-}
-
-ExternalPlacement placement_named(const std::string& name) {
-  if (name == "random") return ExternalPlacement::kRandom;
-  return name == "none" ? ExternalPlacement::kNone : ExternalPlacement::kReachable;
-}
 
 void write_view(const FitArguments& arguments, const TriangleMesh& mesh,
                 const Simplification& result, const std::optional<SphereTree>& tree) {
@@ -58,8 +49,8 @@ void write_view(const FitArguments& arguments, const TriangleMesh& mesh,
   write_file_atomically(arguments.view, make_view_page(arguments.mesh, items));
 }
 
-// Fails (kNo) if the spheres are not proved to cover; the files are written nevertheless and say
-// so.
+// Fails (kNo) if a promise about the spheres is not proved; the files are written nevertheless and
+// say so.
 int fit(const FitArguments& arguments) {
   check_outputs({arguments.spheres, arguments.report, arguments.tree, arguments.view},
                 {arguments.mesh});
@@ -98,8 +89,9 @@ int fit(const FitArguments& arguments) {
             << describe(result.certificate, "the simplified solid") << "seconds: external "
             << result.times.external << ", cover " << result.times.cover << ", certify "
             << result.times.certify << "\n";
-  if (result.certificate.covered) return kYes;
-  std::cerr << "spherule: " << arguments.spheres << ": the spheres are not proved to cover\n";
+  const std::string broken = broken_promises(result);
+  if (broken.empty()) return kYes;
+  std::cerr << "spherule: " << arguments.spheres << ": " << broken << "\n";
   return kNo;
 }
 
@@ -126,11 +118,11 @@ void add_fit(CLI::App& app, int& exit_code) {
   command->add_option("--min-radius", options.min_radius, "No sphere is smaller than this")
       ->check(check_length);
   command->add_option("--method", arguments->method, "How the inside is covered: cover, paper")
-      ->check(CLI::IsMember({"cover", "paper"}));
+      ->check(CLI::IsMember(method_names()));
   command
       ->add_option("--external", arguments->external,
                    "How external spheres are placed: reachable, random, none")
-      ->check(CLI::IsMember({"reachable", "random", "none"}));
+      ->check(CLI::IsMember(placement_names()));
   command
       ->add_option("--external-limit", options.external_limit, "Attempts of the random placement")
       ->check(CLI::NonNegativeNumber);

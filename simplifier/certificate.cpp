@@ -2,6 +2,7 @@
 #include "simplifier/certificate.h"
 
 #include "simplifier/clearance.h"
+#include "simplifier/internal/box_cell.h"
 #include "simplifier/internal/proof.h"
 #include "simplifier/internal/protrusion.h"
 #include "simplifier/internal/thread_limit.h"
@@ -18,6 +19,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Of the largest coordinate.
+constexpr double kLeastResolution = 0x1p-40;
 // Without external spheres, |M| is what a ball of this share of the box diagonal cannot reach.
 constexpr double kPointFlood = 1.0 / 128.0;
 
@@ -63,7 +66,10 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   const Clearance clearance(external);
   const internal::BallHierarchy hierarchy(spheres);
   const internal::BallsToProve balls{spheres, hierarchy};
-  const double finest = std::max(options.resolution * diagonal, kUnderflow);
+  const double largest = std::max(internal::largest_coordinate(distance.box()),
+                                  internal::largest_coordinate(external.box));
+  const double finest =
+      std::max({options.resolution * diagonal, kLeastResolution * largest, kUnderflow});
 
   Certificate result;
   result.sphere_count = spheres.size();

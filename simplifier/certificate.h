@@ -20,7 +20,8 @@ struct CertifyOptions {
   // is the one of stage 1.
   double padding = 0.0;
   // Smallest piece of surface and cell of space that is examined, as a share of the box diagonal. A
-  // piece of this size that no single ball contains is reported as a leak with its depth.
+  // piece of this size that no single ball contains is reported as a leak with its depth. Never
+  // below 2^-40 of the largest coordinate, where halves of a piece are mostly rounding.
   double resolution = 1.0 / 4096.0;
   // Protrusion over |M| is searched to within this share of the box diagonal; 0 leaves it out.
   double protrusion_tolerance = 1.0 / 512.0;

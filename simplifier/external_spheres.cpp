@@ -3,6 +3,7 @@
 
 #include "simplifier/internal/flood_grid.h"
 #include "simplifier/internal/random_placement.h"
+#include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
@@ -34,6 +35,11 @@ void check_options(const ExternalOptions& options) {
   if (options.placement == ExternalPlacement::kRandom && options.limit > 100'000'000) {
     throw Error("external limit", "at most 100 million attempts");
   }
+}
+
+// Exact where one of the two is zero: users see the sum.
+double sum_up(double a, double b) {
+  return a == 0.0 || b == 0.0 ? a + b : add_up(a, b);
 }
 
 Eigen::AlignedBox3d grown_outwards(const Eigen::AlignedBox3d& box, double by) {
@@ -119,7 +125,8 @@ class SnugBalls {
 void place_reachable(const MeshDistance& distance, double rho, const ExternalOptions& options,
                      ExternalSpheres& result) {
   const double step = chosen_step(options);
-  FloodGrid grid(distance, result.padding, rho, grid_shape(result.box, rho, step));
+  FloodGrid grid(distance, result.padding, rho, grid_shape(result.box, rho, step),
+                 options.progress);
   grid.flood();
   result.grid_step = step;
   result.nodes_examined = grid.evaluations();
@@ -133,6 +140,7 @@ void place_reachable(const MeshDistance& distance, double rho, const ExternalOpt
                     [&](std::size_t i) { snug[i] = place(frontier[i]); });
   std::copy_if(snug.begin(), snug.end(), std::back_inserter(result.balls),
                [](const Sphere& s) { return s.radius > 0.0; });
+  if (options.progress) options.progress(1.0, "placing external spheres");
   // A ball of diameter D + s on its way has clearance at least rho + s / 2. Each node whose cell
   // the way crosses lies within sqrt(3) h / 2 of a point of it, so two of them that share a face
   // satisfy the passage rule if rho + s / 2 - 0.8661 h - h / 2 >= rho.
@@ -144,9 +152,10 @@ void place_reachable(const MeshDistance& distance, double rho, const ExternalOpt
 ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalOptions& options) {
   validate(mesh, "mesh");
   check_options(options);
+  const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
   ExternalSpheres result;
-  result.padding = add_up(options.padding, mesh.vertex_error);
+  result.padding = sum_up(options.padding, mesh.vertex_error);
   result.min_external_diameter = options.min_external_diameter;
   result.box = grown_outwards(distance.box(), result.padding);
   const double rho = options.min_external_diameter / 2.0;
@@ -155,8 +164,8 @@ ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalO
       place_reachable(distance, rho, options, result);
       break;
     case ExternalPlacement::kRandom: {
-      internal::RandomPlacement placement = internal::place_random(
-          distance, result.padding, rho, result.box, options.limit, options.seed);
+      internal::RandomPlacement placement =
+          internal::place_random(distance, result.padding, rho, result.box, options);
       result.balls = std::move(placement.balls);
       result.nodes_examined = placement.attempts;
       break;

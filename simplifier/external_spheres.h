@@ -29,14 +29,15 @@ struct ExternalOptions {
   double min_external_diameter = 0.0;
   // t: everything holds for M grown by this much.
   double padding = 0.0;
-  // Grid step of the flood; 0 chooses sqrt(0.08 * max_error * D / 2), at most D / 8,
-  // which leaves spikes of about 0.02 E between the balls along a flat wall.
+  // Grid step of the flood; 0 chooses sqrt(0.08 * max_error * D / 2), at most D / 8, which leaves
+  // spikes of about 0.02 E between the balls along a flat wall. Without `max_error` it is D / 16.
   double grid_step = 0.0;
   // E, used for the choice of the grid step only.
   double max_error = 0.0;
   // Random placement: number of attempts (the paper's "limit") and seed.
   std::size_t limit = 100000;
   std::uint64_t seed = 1;
+  int threads = 0;  // 0: all
   Progress progress = {};
 };
 

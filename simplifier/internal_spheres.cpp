@@ -4,6 +4,7 @@
 #include "simplifier/internal/cover_history.h"
 #include "simplifier/internal/medial_ascent.h"
 #include "simplifier/internal/proof.h"
+#include "simplifier/internal/solid_query.h"
 #include "simplifier/internal/uncovered_search.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -25,7 +26,7 @@ constexpr double kLoopLimit = 0.97;
 constexpr double kProofMargin = 0.02;
 constexpr double kPeakTolerance = 0.01;
 constexpr double kLeastStep = 0.05;
-// No part is worth a hundred million balls: the error is then too small for the model.
+// No part is worth two million balls: the error is then too small for the model.
 constexpr std::size_t kMaxSpheres = 2'000'000;
 
 // The ball that grows from a seed at `peak`.
@@ -42,19 +43,21 @@ class Grower {
                           .least_step = std::min(seed_radius_, kLeastStep * max_error_),
                           .tolerance = kPeakTolerance * max_error_});
     const Sphere grown = ball_at(path.back().point);
-    if (gap(grown, seed) <= 0.9 * max_error_) return grown;
+    if (is_near(grown, seed, 0.9)) return grown;
     // The gap grows along the way, from at most zero; take the last position that keeps it small.
     for (auto it = path.rbegin() + 1; it != path.rend(); ++it) {
       const Sphere ball = ball_at(it->point);
-      if (gap(ball, seed) <= 0.5 * max_error_) return ball;
+      if (is_near(ball, seed, 0.5)) return ball;
     }
-    return ball_at(seed);
+    return {seed, std::max(0.0, clearance_(seed).lower)};
   }
 
  private:
-  Sphere ball_at(const Vector3d& c) const { return {c, std::max(0.0, clearance_(c).lower)}; }
-  static double gap(const Sphere& ball, const Vector3d& p) {
-    return (p - ball.center).norm() - ball.radius;
+  // Of negative radius where the centre is outside of S. Inflated, such a ball would protrude by
+  // the way to S on top.
+  Sphere ball_at(const Vector3d& c) const { return {c, clearance_(c).lower}; }
+  bool is_near(const Sphere& ball, const Vector3d& p, double share) const {
+    return ball.radius >= 0.0 && (p - ball.center).norm() - ball.radius <= share * max_error_;
   }
 
   const Clearance& clearance_;
@@ -69,6 +72,9 @@ SphereCover place_internal_spheres(const TriangleMesh& mesh, const Clearance& cl
   const double limit = options.max_error * kLoopLimit;
   const double seed_diameter =
       options.min_internal_diameter > 0.0 ? options.min_internal_diameter : options.max_error / 2.0;
+  if (kPeakTolerance * options.max_error < internal::least_reach(clearance.box())) {
+    throw Error("max error", "below what coordinates of this size resolve");
+  }
   const MeshDistance distance(mesh);
   UncoveredSearch search(clearance, distance, limit, kPeakTolerance * options.max_error);
   const Grower grow(clearance, options.max_error, seed_diameter);

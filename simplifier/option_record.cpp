@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/simplify.h"
 #include "spheretree/error.h"
+#include "spheretree/rounding.h"
 
 #include <array>
 #include <utility>
@@ -18,6 +19,21 @@ constexpr Names<ExternalPlacement, 3> kPlacements{{{ExternalPlacement::kReachabl
                                                    {ExternalPlacement::kNone, "none"}}};
 
 template <typename Enum, std::size_t N>
+Enum named(const char* option, const Names<Enum, N>& names, const std::string& wanted) {
+  for (const auto& [candidate, name] : names) {
+    if (wanted == name) return candidate;
+  }
+  throw Error(option, "unknown value '" + wanted + "'");
+}
+
+template <typename Enum, std::size_t N>
+std::vector<std::string> all_of(const Names<Enum, N>& names) {
+  std::vector<std::string> all;
+  for (const auto& entry : names) all.emplace_back(entry.second);
+  return all;
+}
+
+template <typename Enum, std::size_t N>
 std::string name_of(const Names<Enum, N>& names, Enum value) {
   for (const auto& [candidate, name] : names) {
     if (candidate == value) return name;
@@ -30,7 +46,8 @@ class Reader {
  public:
   explicit Reader(const std::map<std::string, OptionValue>& record) : record_(record) {}
 
-  void number(const char* key, double& value) const {
+  // A length.
+  void length(const char* key, double& value) const {
     const OptionValue* found = find(key);
     if (found == nullptr) return;
     if (const auto* whole = std::get_if<std::int64_t>(found)) {
@@ -39,6 +56,9 @@ class Reader {
       value = *real;
     } else {
       throw Error(key, "must be a number");
+    }
+    if (!(value >= 0.0 && value <= kMaxCoordinate)) {
+      throw Error(key, "must be finite and not negative");
     }
   }
 
@@ -56,13 +76,8 @@ class Reader {
     const OptionValue* found = find(key);
     if (found == nullptr) return;
     const auto* text = std::get_if<std::string>(found);
-    for (const auto& [candidate, name] : names) {
-      if (text != nullptr && *text == name) {
-        value = candidate;
-        return;
-      }
-    }
-    throw Error(key, "unknown value");
+    if (text == nullptr) throw Error(key, "must be a name");
+    value = named(key, names, *text);
   }
 
  private:
@@ -75,6 +90,22 @@ class Reader {
 };
 
 }  // namespace
+
+std::vector<std::string> method_names() {
+  return all_of(kMethods);
+}
+
+CoverMethod method_named(const std::string& name) {
+  return named("method", kMethods, name);
+}
+
+std::vector<std::string> placement_names() {
+  return all_of(kPlacements);
+}
+
+ExternalPlacement placement_named(const std::string& name) {
+  return named("external", kPlacements, name);
+}
 
 std::map<std::string, OptionValue> option_record(const SimplifyOptions& options, double scale) {
   return {{"scale", scale},
@@ -92,14 +123,14 @@ std::map<std::string, OptionValue> option_record(const SimplifyOptions& options,
 SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& record) {
   SimplifyOptions options;
   const Reader read(record);
-  read.number("max-error", options.max_error);
-  read.number("min-external", options.min_external_diameter);
-  read.number("padding", options.padding);
-  read.number("min-radius", options.min_radius);
+  read.length("max-error", options.max_error);
+  read.length("min-external", options.min_external_diameter);
+  read.length("padding", options.padding);
+  read.length("min-radius", options.min_radius);
   read.choice("method", kMethods, options.method);
   read.choice("external", kPlacements, options.external);
   read.count("external-limit", options.external_limit);
-  read.number("min-internal", options.min_internal_diameter);
+  read.length("min-internal", options.min_internal_diameter);
   read.count("seed", options.seed);
   return options;
 }

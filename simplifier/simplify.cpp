@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/simplify.h"
 
+#include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -58,6 +59,7 @@ class Stopwatch {
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
   validate(mesh, "mesh");
   check_options(options);
+  const internal::ThreadLimit threads(options.threads);
   Simplification result;
   SimplifyOptions& used = result.options = options;
   const double diagonal = box_diagonal(mesh);
@@ -101,6 +103,7 @@ ExternalOptions external_options(const SimplifyOptions& options) {
                                                : options.min_external_diameter / kDefaultDiameter,
           .limit = options.external_limit,
           .seed = options.seed,
+          .threads = options.threads,
           .progress = options.progress};
 }
 

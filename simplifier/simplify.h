@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace spherule {
 
@@ -49,10 +50,15 @@ struct Simplification {
   SimplifyTimes times;
 };
 
-// Both stages and the certificate: the function that most users call. The certificate is proved
-// independently of the fit, on the spheres returned.
+// Both stages and the certificate: the function that most users call. The certificate comes from a
+// second search, on the spheres returned, whatever the fit found out about them.
 // Throws Error for a mesh that validate() refuses and for options out of range.
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
+
+// What was promised and is not proved, as a sentence: that the spheres cover, and, where no least
+// radius was asked for, that they protrude from the simplified solid by at most E. Empty where both
+// are proved.
+std::string broken_promises(const Simplification& simplification);
 
 // The options with which simplify() runs stage 1, for an audit that runs it again. Where E is not
 // known (0), D / 4 takes its place: the natural ratio.
@@ -61,6 +67,13 @@ ExternalOptions external_options(const SimplifyOptions& options);
 // How finely an audit of a cover made with error E must look (CertifyOptions::resolution), for a
 // mesh with the given box diagonal: a cover keeps a reserve of a few hundredths of E for the proof.
 double proof_resolution(double max_error, double diagonal);
+
+// The names of methods and placements on the command line and in files, the default first, and what
+// they name. Error for another name.
+std::vector<std::string> method_names();
+CoverMethod method_named(const std::string& name);
+std::vector<std::string> placement_names();
+ExternalPlacement placement_named(const std::string& name);
 
 // The options under their command-line names, for SphereFile::options; `scale` is the one the mesh
 // was read with. And back, for an audit: what is absent keeps its default, Error names a bad value.

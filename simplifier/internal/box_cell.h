@@ -9,6 +9,10 @@
 
 namespace spherule::internal {
 
+inline double largest_coordinate(const Eigen::AlignedBox3d& box) {
+  return box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+}
+
 // An axis-aligned cell of a subdivision. Half extents carry a margin above the rounding of centres
 // (1e-12 of themselves a halving, and a start above the resolution of the coordinates), so that the
 // halves of a cell cover it in exact arithmetic.
@@ -17,7 +21,7 @@ struct BoxCell {
   Eigen::Vector3d half;
 
   static BoxCell around(const Eigen::AlignedBox3d& box) {
-    const double magnitude = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+    const double magnitude = largest_coordinate(box);
     return {box.center(), (box.sizes() / 2.0) * (1.0 + 1e-12) +
                               Eigen::Vector3d::Constant(64.0 * kUnitRoundoff * magnitude)};
   }

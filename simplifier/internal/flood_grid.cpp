@@ -56,13 +56,15 @@ class DisjointSets {
 
 }  // namespace
 
-FloodGrid::FloodGrid(const MeshDistance& distance, double padding, double rho, const Shape& shape)
+FloodGrid::FloodGrid(const MeshDistance& distance, double padding, double rho, const Shape& shape,
+                     const Progress& progress)
     : padding_(padding), rho_(rho), shape_(shape) {
   cells_.push_back({});
   level_begin_ = {0};
   for (int level = 0; level <= shape_.levels; ++level) {
     examine(distance, level);
     level_begin_.push_back(cells_.size());
+    if (progress) progress(0.9 * std::ldexp(1.0, 2 * (level - shape_.levels)), "flooding");
     if (level == shape_.levels) break;
     for (std::size_t i = level_begin_[static_cast<std::size_t>(level)];
          i < level_begin_[static_cast<std::size_t>(level) + 1]; ++i) {

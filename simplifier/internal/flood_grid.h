@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "simplifier/external_spheres.h"
 #include "simplifier/mesh_distance.h"
 
 #include <Eigen/Geometry>
@@ -35,7 +36,10 @@ class FloodGrid {
     int levels = 0;          // the cube has the edge h * 2^levels; at most 20
   };
 
-  FloodGrid(const MeshDistance& distance, double padding, double rho, const Shape& shape);
+  // `progress` is called after every level. The share takes the finest level for nine tenths of the
+  // work and each coarser one for a quarter of the next: cells near the surface grow that fast.
+  FloodGrid(const MeshDistance& distance, double padding, double rho, const Shape& shape,
+            const Progress& progress);
 
   // Marks the cells that the ball reaches from outside the cube. A step between two nodes counts
   // only if the ball provably passes: (d1 + d2 - h) / 2 >= rho. A step between a node and a coarse

@@ -34,11 +34,6 @@ struct CoverageProof {
   }
 };
 
-// A cell whose centre is outside of S is halved further than others, down to this share of what is
-// the finest elsewhere, to see whether S is there at all: a ball placed for it would protrude for
-// nothing.
-inline constexpr double kFinestOutside = 1.0 / 64.0;
-
 // The balls with their search structure.
 struct BallsToProve {
   std::span<const Sphere> balls;
@@ -46,11 +41,13 @@ struct BallsToProve {
 };
 
 // X = the triangles. They are halved at their longest edge until a piece
-// lies in a single ball (a ball is convex: corners in it, piece in it) or is smaller than `finest`.
+// lies in a single ball (a ball is convex: corners in it, piece in it) or is smaller than `finest`,
+// at least 2^-40 of the largest coordinate.
 CoverageProof prove_surface(const TriangleMesh& mesh, const BallsToProve& balls, double finest);
 
 // X = S. Cells of its box are halved until one lies in a single ball or outside of S, or is smaller
-// than `finest`. `is_witness` tells whether a point of S may be reported as a leak.
+// than `finest` (where its centre is outside of S, than the shares of it in solid_query.h).
+// `is_witness` tells whether a point of S may be reported as a leak.
 CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
                           const BallsToProve& balls, double finest,
                           const std::function<bool(const Eigen::Vector3d&)>& is_witness);

@@ -94,19 +94,22 @@ class Waiting {
 }  // namespace
 
 RandomPlacement place_random(const MeshDistance& distance, double padding, double rho,
-                             const Eigen::AlignedBox3d& box, std::size_t limit,
-                             std::uint64_t seed) {
+                             const Eigen::AlignedBox3d& box, const ExternalOptions& options) {
+  const auto report = [&](double share) {
+    if (options.progress) options.progress(share, "placing external spheres");
+  };
   const auto clearance = [&](const Vector3d& p) {
     return std::max(0.0, sub_down(distance(p).lower, padding));
   };
   const Vector3d margin = Vector3d::Constant(rho);
   const Eigen::AlignedBox3d field(box.min() - margin, box.max() + margin);
-  Random random(seed);
-  std::vector<Sphere> tried(limit);
+  Random random(options.seed);
+  std::vector<Sphere> tried(options.limit);
   for (Sphere& s : tried) s.center = random.in(field);
-  tbb::parallel_for(std::size_t{0}, limit,
+  tbb::parallel_for(std::size_t{0}, tried.size(),
                     [&](std::size_t i) { tried[i].radius = clearance(tried[i].center); });
   std::erase_if(tried, [&](const Sphere& s) { return s.radius < rho; });
+  report(0.6);
 
   // A ball leaves the box if it passes straight on to the nearest face of the field, where a ball
   // of radius rho is outside of the box.
@@ -128,9 +131,10 @@ RandomPlacement place_random(const MeshDistance& distance, double padding, doubl
   std::vector<char> first(tried.size());
   tbb::parallel_for(std::size_t{0}, tried.size(),
                     [&](std::size_t i) { first[i] = leaves(tried[i]) ? 1 : 0; });
+  report(0.9);
 
   RandomPlacement result;
-  result.attempts = limit;
+  result.attempts = options.limit;
   std::vector<Sphere> others;
   for (std::size_t i = 0; i < tried.size(); ++i) {
     (first[i] != 0 ? result.balls : others).push_back(tried[i]);
@@ -140,6 +144,7 @@ RandomPlacement place_random(const MeshDistance& distance, double padding, doubl
     const Sphere ball = result.balls[i];
     waiting.take(ball, rho, [&](const Sphere& reached) { result.balls.push_back(reached); });
   }
+  report(1.0);
   return result;
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "simplifier/external_spheres.h"
 #include "simplifier/mesh_distance.h"
 #include "spheretree/sphere.h"
 
 #include <Eigen/Geometry>
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace spherule::internal {
@@ -25,7 +25,9 @@ struct RandomPlacement {
 // the wanted number; and a ball is kept only if a ball of radius rho gets to it from outside the
 // box through other kept balls, a step from x to y counting if (d(x) + d(y) - |x - y|) / 2 >= rho.
 // The listing would also fill closed hollows.
+//
+// Takes `limit`, `seed` and `progress` from the options.
 RandomPlacement place_random(const MeshDistance& distance, double padding, double rho,
-                             const Eigen::AlignedBox3d& box, std::size_t limit, std::uint64_t seed);
+                             const Eigen::AlignedBox3d& box, const ExternalOptions& options);
 
 }  // namespace spherule::internal

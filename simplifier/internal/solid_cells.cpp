@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/solid_cells.h"
 
+#include "simplifier/internal/solid_query.h"
 #include "spheretree/rounding.h"
 
 #include <tbb/parallel_for.h>
@@ -31,9 +32,10 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
       Cell& cell = level[i];
       const double reach = cell.box.reach();
       const ClearanceAt at = clearance_(cell.box.center, 0.125 * reach);
-      if (at.upper <= -reach) return;
-      cell.inside = at.lower >= reach;
-      cell.center_inside = at.lower >= 0.0;
+      const CellState state = state_of(at, reach);
+      if (state.outside) return;
+      cell.inside = state.inside;
+      cell.center_inside = state.center_inside;
       steps[i] = reach > std::max(spacing, 0.5 * at.lower) ? Step::kHalve : Step::kKeep;
     });
     std::vector<Cell> next;
@@ -60,10 +62,9 @@ std::vector<Vector3d> SolidCells::sample() const {
     if (there.lower >= 0.0) return;
     points[i] += there.away * (-2.0 * there.lower);
     if (clearance_(points[i]).lower >= 0.0) return;
-    // S may be as thin as the mesh itself.
-    const SurfaceDistance near = distance_(cells_[i].box.center, cells_[i].box.reach());
-    points[i] = near.closest;
-    usable[i] = near.triangle >= 0 ? 1 : 0;
+    const auto on_mesh = mesh_point_in(distance_, cells_[i].box);
+    usable[i] = on_mesh ? 1 : 0;
+    if (on_mesh) points[i] = *on_mesh;
   });
   std::vector<Vector3d> kept;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -72,15 +73,12 @@ std::vector<Vector3d> SolidCells::sample() const {
   return kept;
 }
 
-bool SolidCells::classify(Cell& cell, double reach) const {
-  if (cell.inside) {
-    cell.center_inside = true;
-    return true;
-  }
-  const ClearanceAt at = clearance_(cell.box.center, 0.125 * reach, 2.0 * reach);
-  cell.inside = at.lower >= reach;
-  cell.center_inside = at.lower >= 0.0;
-  return at.upper > -reach;
+bool SolidCells::meets_solid(Cell& cell) const {
+  const CellState state =
+      cell.inside ? CellState{false, true, true} : classify(clearance_, cell.box);
+  cell.inside = state.inside;
+  cell.center_inside = state.center_inside;
+  return !state.outside;
 }
 
 SolidCells::Refined SolidCells::refine(const Cell& start, const BallsToProve& balls,
@@ -108,16 +106,15 @@ SolidCells::Refined SolidCells::refine(const Cell& start, const BallsToProve& ba
       continue;
     }
     if (!cell.center_inside && reach <= finest) {
-      const SurfaceDistance near = distance_(cell.box.center, reach);
-      if (near.triangle >= 0) {
+      if (const auto on_mesh = mesh_point_in(distance_, cell.box)) {
         result.cells.push_back(cell);
-        result.leaks.push_back(near.closest);
+        result.leaks.push_back(*on_mesh);
         continue;
       }
     }
     for (const BoxCell& half : cell.box.halves()) {
       Cell part{half, cell.inside, false};
-      if (classify(part, half.reach())) waiting.push_back(part);
+      if (meets_solid(part)) waiting.push_back(part);
     }
   }
   return result;

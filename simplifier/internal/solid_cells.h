@@ -42,8 +42,7 @@ class SolidCells {
     std::vector<Eigen::Vector3d> leaks;
   };
 
-  // False if the cell lies outside of S.
-  bool classify(Cell& cell, double reach) const;
+  bool meets_solid(Cell& cell) const;
   Refined refine(const Cell& cell, const BallsToProve& balls, double finest) const;
 
   const Clearance& clearance_;

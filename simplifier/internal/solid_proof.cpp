@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/box_cell.h"
 #include "simplifier/internal/proof.h"
+#include "simplifier/internal/solid_query.h"
 #include "simplifier/internal/subdivision.h"
 #include "spheretree/rounding.h"
 
@@ -25,10 +26,8 @@ void halve(const Cell& cell, std::vector<Cell>& parts) {
 CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
                           const BallsToProve& balls, double finest,
                           const std::function<bool(const Vector3d&)>& is_witness) {
-  // How far a point found on the mesh may be from it.
-  const double rounding =
-      256.0 * kUnitRoundoff *
-      distance.box().min().cwiseAbs().cwiseMax(distance.box().max().cwiseAbs()).maxCoeff();
+  const double rounding = mesh_point_error(distance);
+  const double least = std::max(kFinestPinch * finest, least_reach(clearance.box()));
   const auto examine = [&](Cell& cell) {
     Finding found;
     found.point = cell.box.center;
@@ -41,26 +40,31 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
     }
     bool center_inside = cell.inside;
     if (!cell.inside) {
-      const ClearanceAt at = clearance(found.point, 0.125 * reach, 2.0 * reach);
-      found.settled = at.upper <= -reach;
-      cell.inside = at.lower >= reach;
-      center_inside = at.lower >= 0.0;
+      const CellState state = classify(clearance, cell.box);
+      found.settled = state.outside;
+      cell.inside = state.inside;
+      center_inside = state.center_inside;
     }
+    const auto note = [&](const Vector3d& point, double depth) {
+      found.point = point;
+      found.depth = depth;
+      found.witness = depth > 0.0 && is_witness(point);
+    };
     if (center_inside) {
-      found.depth = gap.lower;
-      found.witness = gap.lower > 0.0 && is_witness(found.point);
+      note(cell.box.center, gap.lower);
+      found.smallest = reach <= finest;
+    } else if (const auto on_mesh =
+                   reach <= finest ? mesh_point_in(distance, cell.box) : std::nullopt) {
+      note(*on_mesh, sub_down(balls.hierarchy.nearest(*on_mesh).lower, rounding));
+      found.smallest = true;
+    } else if (const auto in_solid = reach <= kFinestOutside * finest
+                                         ? solid_point_near(clearance, cell.box, finest)
+                                         : std::nullopt) {
+      note(*in_solid, balls.hierarchy.nearest(*in_solid).lower);
+      found.smallest = true;
+    } else {
+      found.smallest = reach <= least;
     }
-    if (!center_inside && reach <= finest) {
-      // S may be as thin as the mesh itself, which is in it.
-      const SurfaceDistance near = distance(found.point, reach);
-      if (near.triangle >= 0) {
-        found.point = near.closest;
-        found.depth = sub_down(balls.hierarchy.nearest(near.closest).lower, rounding);
-        found.witness = found.depth > 0.0 && is_witness(found.point);
-        center_inside = true;
-      }
-    }
-    found.smallest = reach <= (center_inside ? finest : kFinestOutside * finest);
     found.upper = add_up(gap.upper, reach);
     return found;
   };

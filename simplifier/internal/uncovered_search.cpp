@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/uncovered_search.h"
 
+#include "simplifier/internal/solid_query.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace spherule::internal {
 namespace {
 
-// Clearances are asked for to this share of the cell's half diagonal.
-constexpr double kClearanceTolerance = 0.125;
-// A cell this much smaller than the tolerance is taken for a point of S even where its centre is
-// not: then S is that near, or a sliver outside of it is covered for nothing.
-constexpr double kFinest = 1.0 / 64.0;
+// A point of S stands for a cell outside of it that is no further off than this share of the
+// target: a ball that is nearer to the point than the rest is near enough to the cell.
+constexpr double kNear = 0.05;
 // The greatest error is bracketed to this share of what it exceeds the target by.
 constexpr double kPlateau = 0.1;
 
@@ -21,7 +21,11 @@ constexpr double kPlateau = 0.1;
 
 UncoveredSearch::UncoveredSearch(const Clearance& clearance, const MeshDistance& distance,
                                  double target, double tolerance)
-    : clearance_(clearance), distance_(distance), target_(target), tolerance_(tolerance) {
+    : clearance_(clearance),
+      distance_(distance),
+      target_(target),
+      tolerance_(tolerance),
+      least_(std::max(kFinestPinch * tolerance, least_reach(clearance.box()))) {
   push({BoxCell::around(clearance.box()), std::numeric_limits<double>::infinity(), made_++, false});
 }
 
@@ -46,7 +50,6 @@ UncoveredSearch::Peak UncoveredSearch::next(const BallSet& balls) {
     Cell cell = pop();
     const double reach = cell.box.reach();
     const NearestBall gap = balls.nearest(cell.box.center);
-    ++examined_;
     cell.upper = std::min(cell.upper, add_up(gap.upper, reach));
     if (cell.upper <= target_) continue;
     if (!heap_.empty() && cell.upper < heap_.front().upper) {
@@ -55,35 +58,45 @@ UncoveredSearch::Peak UncoveredSearch::next(const BallSet& balls) {
     }
     bool center_inside = cell.inside;
     if (!cell.inside) {
-      const ClearanceAt at = clearance_(cell.box.center, kClearanceTolerance * reach, 2.0 * reach);
-      if (at.upper <= -reach) continue;
-      cell.inside = at.lower >= reach;
-      center_inside = at.lower >= 0.0;
+      const CellState state = classify(clearance_, cell.box);
+      if (state.outside) continue;
+      cell.inside = state.inside;
+      center_inside = state.center_inside;
     }
-    // With no ball there is no nearest one either: any point of S will do.
-    const bool settled = center_inside && gap.index < 0;
     // As long as the error is far above the target it need not be known closely; plateaus, on which
     // many points are nearly as far as the furthest, would be searched to the bottom.
     const double close = std::max(tolerance_, kPlateau * (cell.upper - target_));
-    if (settled || (center_inside && reach <= close) || reach <= kFinest * tolerance_) {
-      push(cell);
-      return {cell.box.center, cell.upper, std::max(0.0, center_inside ? gap.lower : 0.0),
-              center_inside};
-    }
-    if (!center_inside && reach <= close) {
-      // S may be as thin as the mesh itself, which is in it.
-      const SurfaceDistance near = distance_(cell.box.center, reach);
-      if (near.triangle >= 0 && balls.nearest(near.closest).lower > target_) {
-        push(cell);
-        return {near.closest, cell.upper, 0.0, false};
+    std::optional<Peak> peak;
+    if (center_inside) {
+      // With no ball there is no nearest one either: any point of S will do.
+      if (gap.index < 0 || reach <= close) {
+        peak = {cell.box.center, cell.upper, std::max(0.0, gap.lower)};
       }
+    } else if (reach <= close) {
+      peak = peak_beside(cell, balls);
+    }
+    if (peak) {
+      push(cell);
+      return *peak;
     }
     for (const BoxCell& half : cell.box.halves()) push({half, cell.upper, made_++, cell.inside});
   }
   Peak none;
-  none.point = Eigen::Vector3d::Zero();
   none.upper = target_;
   return none;
+}
+
+std::optional<UncoveredSearch::Peak> UncoveredSearch::peak_beside(const Cell& cell,
+                                                                  const BallSet& balls) const {
+  const double reach = cell.box.reach();
+  const auto on_mesh = mesh_point_in(distance_, cell.box);
+  if (on_mesh && balls.nearest(*on_mesh).lower > target_) return Peak{*on_mesh, cell.upper, 0.0};
+  if (reach > kFinestOutside * tolerance_) return std::nullopt;
+  if (const auto near = solid_point_near(clearance_, cell.box, kNear * target_)) {
+    return Peak{*near, cell.upper, std::max(0.0, balls.nearest(*near).lower)};
+  }
+  if (reach > least_) return std::nullopt;
+  return Peak{cell.box.center, cell.upper, 0.0};
 }
 
 }  // namespace spherule::internal

@@ -6,8 +6,8 @@
 #include "simplifier/internal/box_cell.h"
 #include "simplifier/mesh_distance.h"
 
-#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace spherule::internal {
@@ -25,17 +25,16 @@ class UncoveredSearch {
                   double tolerance);
 
   struct Peak {
-    Eigen::Vector3d point;
-    double upper = 0.0;     // no point of S is further from the balls
-    double lower = 0.0;     // `point` is this far from them, if it is in S
-    bool in_solid = false;  // whether `point` is proved to be in S
+    // In S, up to the rounding of points of the mesh; or, where no point of S could be found near a
+    // cell that is too small to be halved (solid_query.h), the centre of that.
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    double upper = 0.0;  // no point of S is further from the balls
+    double lower = 0.0;  // some point of S is this far from them
   };
 
   // The furthest point for the balls as they are now; `upper` is the target where none exceeds it
   // (then `point` means nothing and `lower` is 0).
   Peak next(const BallSet& balls);
-
-  std::size_t cells_examined() const { return examined_; }
 
  private:
   struct Cell {
@@ -44,6 +43,9 @@ class UncoveredSearch {
     std::uint64_t order;  // ties are broken by age
     bool inside;          // the cell is wholly in S
   };
+  // For a cell of S with its centre outside of S, small enough to stand for a peak; none if it has
+  // to be halved.
+  std::optional<Peak> peak_beside(const Cell& cell, const BallSet& balls) const;
   static bool below(const Cell& a, const Cell& b);
   void push(const Cell& cell);
   Cell pop();
@@ -52,9 +54,9 @@ class UncoveredSearch {
   const MeshDistance& distance_;
   double target_;
   double tolerance_;
+  double least_;  // half diagonal of the smallest cell
   std::vector<Cell> heap_;
   std::uint64_t made_ = 0;
-  std::size_t examined_ = 0;
 };
 
 }  // namespace spherule::internal

@@ -81,5 +81,24 @@ TEST_F(AuditTest, BadInput) {
   expect_refusal({"audit", "box.stl", "ball.json", "--scale", "0"}, "scale");
 }
 
+// What is wrong with a file is said with its name, however late it shows.
+TEST_F(AuditTest, BadOptionsInTheFileAreRefusedWithItsName) {
+  const auto refuse = [&](const std::string& options, const std::string& reason) {
+    write("bad.json",
+          R"({"format":"spherule-spheres","version":1,"spheres":[],"options":{)" + options + "}}");
+    expect_refusal({"audit", "box.stl", "bad.json"}, "bad.json: " + reason);
+  };
+  refuse(R"("min-external":0)", "min external diameter: ");
+  refuse(R"("min-external":-1)", "min-external: ");
+  refuse(R"("min-external":1e-9)", "grid step: ");
+  refuse(R"("min-external":1,"padding":-1)", "padding: ");
+  refuse(R"("padding":1e300)", "padding: ");
+  refuse(R"("max-error":-1)", "max-error: ");
+  refuse(R"("min-external":1,"external":"random","external-limit":1000000000)", "external limit: ");
+  refuse(R"("scale":-1)", "scale: ");
+  refuse(R"("scale":0)", "scale: ");
+  refuse(R"("scale":"wide")", "scale: ");
+}
+
 }  // namespace
 }  // namespace spherule

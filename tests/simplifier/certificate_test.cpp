@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -102,6 +103,22 @@ TEST(Certificate, AMissingBallIsALeakOfTheExactDepth) {
   EXPECT_NEAR(outer.uncovered_depth.lower, at_the_corner, 5e-3);
   EXPECT_NEAR(outer.uncovered_depth.upper, at_the_corner, 1e-2);
   EXPECT_NEAR(outer.deepest_leak.norm(), 0.0, 0.02);
+}
+
+// Where balls meet in a point of the surface, no piece of it is ever in one of them. The proof must
+// come to an end however close it is told to look.
+TEST(Certificate, TheSmallestResolutionIsThatOfTheCoordinates) {
+  const int n = 3;
+  std::vector<Sphere> touching = grid_of_balls(n);
+  for (Sphere& s : touching) s.radius = kRoot3 / (2 * n) * (1 - 1e-15);
+  const ExternalSpheres box = box_of(cube_mesh());
+  CertifyOptions options;
+  options.external = &box;
+  options.resolution = 1e-300;
+  const Certificate unproved = certify(cube_mesh(), touching, options);
+  EXPECT_FALSE(unproved.covered);
+  EXPECT_GT(unproved.uncovered_depth.upper, 0.0);
+  EXPECT_LT(unproved.uncovered_depth.upper, 1e-11);
 }
 
 // Balls along the surface leave the inside open. The surface is covered, but |M| is not.
@@ -202,6 +219,35 @@ TEST(Certificate, BadBallsAndOptionsAreRefusedByName) {
     EXPECT_EQ(refused({good}, {.padding = bad}), "padding");
   }
   EXPECT_EQ(refused({good}, {}, {}), "mesh");
+}
+
+// A cube whose corners eight external balls take: what remains is furthest from the middle where
+// two of them and a face of the cube meet, at (1/2, y, 0) with 1/4 + y^2 = R^2.
+TEST(Certificate, TheDepthOfALeakInACurvedSolidIsExact) {
+  ExternalSpheres external = box_of(cube_mesh());
+  for (const double taken : {0.55, 0.6, 0.7}) {
+    external.balls.clear();
+    for (int i = 0; i < 8; ++i) {
+      external.balls.push_back({Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), taken});
+    }
+    const double y = std::sqrt(taken * taken - 0.25);
+    const double furthest = Vector3d(0.0, 0.5 - y, 0.5).norm();
+    CertifyOptions options;
+    options.external = &external;
+    for (const double radius : {0.2, furthest - 0.01, furthest + 1e-3}) {
+      SCOPED_TRACE(radius);
+      // A mesh in the middle, for which the cube is box enough.
+      const Certificate certificate =
+          certify(box_mesh(Vector3d::Constant(0.45), Vector3d::Constant(0.55)),
+                  std::vector<Sphere>{{kMiddle, radius}}, options);
+      const double depth = std::max(0.0, furthest - radius);
+      EXPECT_EQ(certificate.covered, depth == 0.0);
+      EXPECT_LE(certificate.solid_depth.lower, depth * (1.0 + 1e-12));
+      EXPECT_GE(certificate.solid_depth.upper, depth * (1.0 - 1e-12));
+      EXPECT_LE(certificate.solid_depth.upper - certificate.solid_depth.lower,
+                0.04 * depth + 2e-3 * (depth > 0.0 ? 1.0 : 0.0));
+    }
+  }
 }
 
 // Sets that cover a part: some balls of a fit, shrunk or left out at random.

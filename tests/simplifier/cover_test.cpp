@@ -42,6 +42,11 @@ class CoverOfZoo : public testing::TestWithParam<std::tuple<std::size_t, CoverMe
   }
 };
 
+// Without any volume, whose solid is as thin as the external balls leave it.
+bool is_sheet(const TriangleMesh& mesh) {
+  return mesh.triangles.size() == three_fins().triangles.size();
+}
+
 void expect_covered(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t seed) {
   const std::vector<Sphere>& balls = fitted.cover.spheres;
   const Certificate certificate = certificate_of(mesh, fitted, balls);
@@ -53,7 +58,8 @@ void expect_covered(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t s
   std::vector<Vector3d> surface = points_on_surface(mesh, count, random);
   for (Vector3d& p : surface) p += 0.999999 * fitted.external.padding * random.direction();
   const std::vector<Vector3d> solid = points_of_solid(fitted.external, count, random);
-  EXPECT_GE(solid.size(), 10U);
+  // Of sheets without a volume few points are met, and nearly all of the others.
+  EXPECT_GE(solid.size(), is_sheet(mesh) ? 10U : count / 3);
   EXPECT_EQ(judge_cover(surface, balls).uncovered, 0U);
   EXPECT_EQ(judge_cover(solid, balls).uncovered, 0U);
 }

@@ -176,6 +176,46 @@ TEST(ExternalSpheres, AreEqualInEveryRunOnAnyNumberOfThreads) {
   EXPECT_EQ(first.nodes_examined, other.limit);
 }
 
+// Whether parallel loops may use one thread only, as a callback from within sees it.
+bool one_thread_allowed() {
+  using tbb::global_control;
+  return global_control::active_value(global_control::max_allowed_parallelism) == 1;
+}
+
+TEST(ExternalSpheres, TellOfTheirProgressAndKeepToTheThreadsTheyAreGiven) {
+  for (const ExternalPlacement placement : kPlacements) {
+    ExternalOptions options = options_for(placement, 0.5);
+    options.threads = 1;
+    double last = 0.0;
+    int calls = 0;
+    options.progress = [&](double share, const char* what) {
+      ++calls;
+      EXPECT_TRUE(one_thread_allowed());
+      EXPECT_GT(share, last);
+      EXPECT_LE(share, 1.0);
+      EXPECT_STRNE(what, "");
+      last = share;
+    };
+    place_external_spheres(cube_mesh(), options);
+    EXPECT_GE(calls, 3);
+    EXPECT_FALSE(one_thread_allowed());
+  }
+}
+
+TEST(ExternalSpheres, ThePaddingIsTheSumOfTheTwoGivenWhereThereAreTwo) {
+  ExternalOptions options = options_for(ExternalPlacement::kNone, 0.0);
+  TriangleMesh mesh = cube_mesh();
+  const auto padding = [&] { return place_external_spheres(mesh, options).padding; };
+  EXPECT_EQ(padding(), 0.0);
+  mesh.vertex_error = 0.1;
+  EXPECT_EQ(padding(), 0.1);
+  options.padding = 0.2;
+  EXPECT_GE(padding(), 0.1L + 0.2L);
+  EXPECT_LE(padding(), 0.3 + 1e-15);
+  mesh.vertex_error = 0.0;
+  EXPECT_EQ(padding(), 0.2);
+}
+
 std::string refused(const ExternalOptions& options, const TriangleMesh& mesh = cube_mesh()) {
   try {
     place_external_spheres(mesh, options);

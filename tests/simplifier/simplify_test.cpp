@@ -8,9 +8,11 @@
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 
 namespace spherule::test {
@@ -65,6 +67,21 @@ TEST(Simplify, KeepsWhatIsGiven) {
   EXPECT_TRUE(result.certificate.covered);
 }
 
+// Every stage, the first included.
+TEST(Simplify, KeepsToTheThreadsItIsGiven) {
+  SimplifyOptions options = coarse(0.2);
+  options.threads = 1;
+  std::set<std::string> stages;
+  options.progress = [&](double, const char* what) {
+    stages.insert(what);
+    using tbb::global_control;
+    EXPECT_EQ(global_control::active_value(global_control::max_allowed_parallelism), 1U) << what;
+  };
+  simplify(cube_mesh(), options);
+  EXPECT_TRUE(stages.contains("flooding"));
+  EXPECT_TRUE(stages.contains("proving the solid"));
+}
+
 TEST(Simplify, OptionsSurviveTheRecord) {
   SimplifyOptions options;
   options.max_error = 0.1;
@@ -115,6 +132,7 @@ TEST(Simplify, BadRecordsAreRefusedByName) {
   for (const char* key : {"max-error", "min-external", "padding", "min-radius", "min-internal"}) {
     EXPECT_EQ(refused(key, std::string("wide")), key);
     EXPECT_EQ(refused(key, true), key);
+    for (const double bad : {-1.0, kNan, kInfinity, 1e300}) EXPECT_EQ(refused(key, bad), key);
   }
   for (const char* key : {"seed", "external-limit"}) {
     EXPECT_EQ(refused(key, std::int64_t{-1}), key);
@@ -124,6 +142,21 @@ TEST(Simplify, BadRecordsAreRefusedByName) {
     EXPECT_EQ(refused(key, std::string("other")), key);
     EXPECT_EQ(refused(key, std::int64_t{1}), key);
   }
+}
+
+TEST(Simplify, MethodsAndPlacementsHaveNames) {
+  EXPECT_EQ(method_named(method_names().front()), SimplifyOptions{}.method);
+  EXPECT_EQ(placement_named(placement_names().front()), SimplifyOptions{}.external);
+  for (const std::string& name : method_names()) {
+    const Record record = option_record({.method = method_named(name)}, 1.0);
+    EXPECT_EQ(std::get<std::string>(record.at("method")), name);
+  }
+  for (const std::string& name : placement_names()) {
+    const Record record = option_record({.external = placement_named(name)}, 1.0);
+    EXPECT_EQ(std::get<std::string>(record.at("external")), name);
+  }
+  EXPECT_THROW(method_named("other"), Error);
+  EXPECT_THROW(placement_named(""), Error);
 }
 
 TEST(Simplify, BadOptionsAreRefusedByName) {

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/simplify.h"
+
+#include <iomanip>
+#include <sstream>
+
+namespace spherule {
+
+std::string broken_promises(const Simplification& simplification) {
+  const Certificate& certificate = simplification.certificate;
+  const SimplifyOptions& options = simplification.options;
+  std::ostringstream out;
+  out << std::setprecision(12);
+  if (!certificate.covered) out << "the spheres are not proved to cover";
+  // A least radius may force spheres to protrude further.
+  if (options.min_radius > 0.0) return out.str();
+  const std::optional<double>& protrusion = certificate.protrusion_over_simplified_max;
+  if (!protrusion || !(*protrusion <= options.max_error)) {
+    out << (certificate.covered ? "the spheres are not proved" : ", nor")
+        << " to protrude by at most " << options.max_error << " from the simplified solid";
+    if (protrusion) out << ", only by at most " << *protrusion;
+  }
+  return out.str();
+}
+
+}  // namespace spherule

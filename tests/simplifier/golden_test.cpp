@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// G7 (guarantee.md): equal input gives equal bits on every machine, compiler and optimisation
+// level. If a stage is changed on purpose, put the value that the failing test prints here and say
+// so in CHANGELOG.md: spheres fitted before will differ from spheres fitted after.
+#include "spheretree/internal/crc64.h"
+#include "tests/simplifier/fitting.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace spherule::test {
+namespace {
+
+// Of the bits of all numbers, the lowest byte first.
+std::uint64_t hash_of(std::span<const Sphere> spheres) {
+  std::string bytes;
+  for (const Sphere& s : spheres) {
+    for (const double x : {s.center.x(), s.center.y(), s.center.z(), s.radius}) {
+      const auto bits = std::bit_cast<std::uint64_t>(x);
+      for (int shift = 0; shift < 64; shift += 8) {
+        bytes.push_back(static_cast<char>(static_cast<unsigned char>(bits >> shift)));
+      }
+    }
+  }
+  return internal::crc64(bytes);
+}
+
+struct Golden {
+  const char* name;
+  TriangleMesh mesh;
+  ExternalPlacement placement;
+  std::uint64_t external;
+  std::uint64_t paper;
+};
+
+// Shapes whose corners are exact: those made with library sines differ by machine.
+std::vector<Golden> goldens() {
+  return {
+      {"l-bracket", l_bracket(), ExternalPlacement::kReachable, 0xfd51a7704ae268f9,
+       0x412ab2d8c8971adb},
+      {"soup", soup(60, 3), ExternalPlacement::kReachable, 0x29487cb86075b50e, 0xf2defb7aec825395},
+      {"icosphere", icosphere(2), ExternalPlacement::kReachable, 0xecb749b7ff96e378,
+       0xca0b28b3d7f33c03},
+      {"l-bracket, random", l_bracket(), ExternalPlacement::kRandom, 0xf422ca1593bbfd3d,
+       0x9aa78b2ffcb545f5}};
+}
+
+TEST(Golden, ExternalSpheresAndThePapersSpheres) {
+  for (const Golden& golden : goldens()) {
+    SCOPED_TRACE(golden.name);
+    CoverOptions options;
+    options.method = CoverMethod::kPaper;
+    FitShares shares;
+    shares.placement = golden.placement;
+    const Fit fitted = fit(golden.mesh, options, shares);
+    const std::uint64_t external = hash_of(fitted.external.balls);
+    const std::uint64_t paper = hash_of(fitted.cover.spheres);
+    EXPECT_EQ(external, golden.external) << "external: 0x" << std::hex << external;
+    EXPECT_EQ(paper, golden.paper) << "paper: 0x" << std::hex << paper;
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test
