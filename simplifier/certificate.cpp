@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/certificate.h"
 
-#include "simplifier/clearance.h"
 #include "simplifier/internal/box_cell.h"
+#include "simplifier/internal/clearance.h"
 #include "simplifier/internal/proof.h"
 #include "simplifier/internal/protrusion.h"
 #include "simplifier/internal/thread_limit.h"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cover.h"
 
-#include "simplifier/clearance.h"
+#include "simplifier/internal/clearance.h"
 #include "simplifier/internal/cover_candidates.h"
+#include "simplifier/internal/internal_spheres.h"
 #include "simplifier/internal/point_grid.h"
+#include "simplifier/internal/set_cover.h"
 #include "simplifier/internal/solid_cells.h"
 #include "simplifier/internal/thread_limit.h"
-#include "simplifier/internal_spheres.h"
 #include "simplifier/mesh_distance.h"
-#include "simplifier/set_cover.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -171,6 +171,7 @@ void check_options(const CoverOptions& options) {
 
 SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                   const CoverOptions& options) {
+  validate(mesh, "mesh");
   check_options(options);
   const internal::ThreadLimit threads(options.threads);
   const Clearance clearance(external);

@@ -27,7 +27,7 @@ struct SurfaceDistance {
 // distance to the corners of the nearest triangle. Thread-safe after construction.
 class MeshDistance {
  public:
-  // Keeps a copy of the corners. The mesh must have passed validate() (simplifier/mesh_report.h).
+  // Keeps a copy of the corners. The mesh must have passed validate() (spheretree/triangle_mesh.h).
   explicit MeshDistance(const TriangleMesh& mesh);
 
   // Bounds of the distance from `point` to the surface. With a `limit`, only triangles nearer than

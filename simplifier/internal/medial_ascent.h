@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/clearance.h"
+#include "simplifier/internal/clearance.h"
 
 #include <vector>
 

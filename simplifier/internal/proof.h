@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/clearance.h"
 #include "simplifier/internal/ball_hierarchy.h"
+#include "simplifier/internal/clearance.h"
 #include "simplifier/mesh_distance.h"
 #include "spheretree/sphere.h"
 #include "spheretree/triangle_mesh.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "simplifier/certificate.h"
-#include "simplifier/clearance.h"
+#include "simplifier/internal/clearance.h"
 #include "simplifier/internal/proof.h"
 #include "simplifier/mesh_distance.h"
 

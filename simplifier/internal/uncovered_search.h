@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/clearance.h"
 #include "simplifier/internal/ball_set.h"
 #include "simplifier/internal/box_cell.h"
+#include "simplifier/internal/clearance.h"
 #include "simplifier/mesh_distance.h"
 
 #include <cstdint>

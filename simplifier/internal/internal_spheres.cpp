@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/internal_spheres.h"
+#include "simplifier/internal/internal_spheres.h"
 
 #include "simplifier/internal/cover_history.h"
 #include "simplifier/internal/medial_ascent.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/clearance.h"
+#include "simplifier/internal/clearance.h"
 
 #include "spheretree/rounding.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/clearance.h"
 #include "simplifier/cover.h"
+#include "simplifier/internal/clearance.h"
 
 namespace spherule {
 
