@@ -133,6 +133,20 @@ void add_fit(CLI::App& app, int& exit_code) {
   // Without the check CLI11 takes -1 for the largest number; files store 63 bits.
   command->add_option("--seed", options.seed, "Seed of everything random")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+  auto* effort = command->add_option("--effort", options.effort,
+                                     "Rounds of looking for fewer spheres; 0: the first proved");
+  effort->check(CLI::NonNegativeNumber);
+  command
+      ->add_option_function<double>(
+          "--seconds",
+          [arguments](double seconds) {
+            arguments->options.seconds = seconds;
+            arguments->options.effort = std::numeric_limits<int>::max();
+          },
+          "Look for fewer spheres for so long; the result then depends on the machine")
+      ->check(CLI::PositiveNumber)
+      ->check(check_length)
+      ->excludes(effort);
   command->add_option("--threads", options.threads, "Threads, 0: all; the result is the same")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--report", arguments->report,

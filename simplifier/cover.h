@@ -26,6 +26,11 @@ struct CoverOptions {
   // kPaper: diameter at which a ball is seeded (the paper's min_internal_size); 0 chooses E / 2.
   double min_internal_diameter = 0.0;
   std::uint64_t seed = 1;
+  // kCover: rounds of looking for fewer balls after the first; 0 stops at the first proved answer.
+  int effort = 16;
+  // kCover: no new round begins after so many seconds; 0 sets no limit. The result then depends on
+  // the machine.
+  double seconds = 0.0;
   // kPaper: record the history (costs some time).
   bool history = false;
   int threads = 0;  // 0: all
@@ -61,10 +66,14 @@ struct SphereCover {
   std::size_t seeds_rejected = 0;  // kPaper: seeds that had to be moved before a ball fitted
 };
 
-// Stage 2: covers S with balls that protrude from it by at most E (covering.md, sections 1 and 4;
-// the paper, Algorithm 1). On return the union of the balls contains S: the search ends only when
-// an octree over S has proved it; certify() proves it again, independently. Deterministic for equal
-// input and options on any number of threads. Throws Error for options out of range.
+// Stage 2: covers S with balls that protrude from it by at most E (covering.md, sections 1, 4 and
+// 8; the paper, Algorithm 1). On return the union of the balls contains S: the search ends only
+// with what an octree over S has proved; certify() proves it again, by a search of its own. Every
+// ball's radius is at most E plus the distance of its centre, a point of S, to the outside of S;
+// where external balls close S by a hair and no point of S is found, a ball of 0.02 E may stand,
+// and certify() says how far it protrudes. Deterministic for equal input and options on any number
+// of threads, unless `seconds` is set. Throws Error for a mesh that validate() refuses and for
+// options out of range.
 SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                   const CoverOptions& options);
 

@@ -68,6 +68,7 @@ class Reader {
     if (found == nullptr) return;
     const auto* whole = std::get_if<std::int64_t>(found);
     if (whole == nullptr || *whole < 0) throw Error(key, "must be a whole number, not negative");
+    if (!std::in_range<Integer>(*whole)) throw Error(key, "is too large");
     value = static_cast<Integer>(*whole);
   }
 
@@ -117,7 +118,9 @@ std::map<std::string, OptionValue> option_record(const SimplifyOptions& options,
           {"external", name_of(kPlacements, options.external)},
           {"external-limit", static_cast<std::int64_t>(options.external_limit)},
           {"min-internal", options.min_internal_diameter},
-          {"seed", static_cast<std::int64_t>(options.seed)}};
+          {"seed", static_cast<std::int64_t>(options.seed)},
+          {"effort", std::int64_t{options.effort}},
+          {"seconds", options.seconds}};
 }
 
 SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& record) {
@@ -132,6 +135,8 @@ SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& re
   read.count("external-limit", options.external_limit);
   read.length("min-internal", options.min_internal_diameter);
   read.count("seed", options.seed);
+  read.count("effort", options.effort);
+  read.length("seconds", options.seconds);
   return options;
 }
 

@@ -40,6 +40,7 @@ void check_options(const SimplifyOptions& options) {
   check("padding", options.padding);
   check("min radius", options.min_radius);
   check("min internal diameter", options.min_internal_diameter);
+  check("seconds", options.seconds);
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   if (options.seed > kLargest) throw Error("seed", "must be below 2^63");
 }
@@ -79,6 +80,8 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
                         .min_radius = used.min_radius,
                         .min_internal_diameter = used.min_internal_diameter,
                         .seed = used.seed,
+                        .effort = used.effort,
+                        .seconds = used.seconds,
                         .history = used.history,
                         .threads = used.threads,
                         .progress = used.progress});

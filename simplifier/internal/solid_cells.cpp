@@ -17,12 +17,22 @@ namespace {
 // most of its parts, which need not be examined then.
 constexpr std::size_t kEnoughLeaks = 3;
 
+constexpr double kGrading = 0.5;   // of the clearance, by which deeper cells are larger
+constexpr double kThinning = 1.2;  // cells' spacing: edge of the cubes with one boundary point each
+
+using Cube = std::array<double, 3>;
+
+Cube cube_of(const Eigen::Vector3d& point, double edge) {
+  const Eigen::Vector3d cube = (point / edge).array().floor();
+  return {cube.x(), cube.y(), cube.z()};
+}
+
 }  // namespace
 
 using Eigen::Vector3d;
 
 SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance, double spacing)
-    : clearance_(clearance), distance_(distance) {
+    : clearance_(clearance), distance_(distance), spacing_(spacing) {
   enum class Step : char { kDrop, kKeep, kHalve };
   std::vector<Cell> level{{BoxCell::around(clearance.box()), false, false}};
   std::vector<Step> steps;
@@ -36,7 +46,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
       if (state.outside) return;
       cell.inside = state.inside;
       cell.center_inside = state.center_inside;
-      steps[i] = reach > std::max(spacing, 0.5 * at.lower) ? Step::kHalve : Step::kKeep;
+      steps[i] = reach > spacing + kGrading * std::max(0.0, at.lower) ? Step::kHalve : Step::kKeep;
     });
     std::vector<Cell> next;
     for (std::size_t i = 0; i < level.size(); ++i) {
@@ -67,8 +77,12 @@ std::vector<Vector3d> SolidCells::sample() const {
     if (on_mesh) points[i] = *on_mesh;
   });
   std::vector<Vector3d> kept;
+  std::set<Cube> taken;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (usable[i] != 0) kept.push_back(points[i]);
+    if (usable[i] == 0) continue;
+    if (cells_[i].inside || taken.insert(cube_of(points[i], kThinning * spacing_)).second) {
+      kept.push_back(points[i]);
+    }
   }
   return kept;
 }
@@ -79,6 +93,21 @@ bool SolidCells::meets_solid(Cell& cell) const {
   cell.inside = state.inside;
   cell.center_inside = state.center_inside;
   return !state.outside;
+}
+
+std::optional<SolidCells::Leak> SolidCells::leak_in(const Cell& cell, const NearestBall& gap,
+                                                    double finest) const {
+  const double reach = cell.box.reach();
+  if (cell.center_inside) {
+    if (gap.lower > 0.0 || reach <= finest) return Leak{cell.box.center, true};
+    return std::nullopt;
+  }
+  if (reach > finest) return std::nullopt;
+  if (const auto on_mesh = mesh_point_in(distance_, cell.box)) return Leak{*on_mesh, true};
+  if (reach > kFinestOutside * finest) return std::nullopt;
+  if (const auto near = solid_point_near(clearance_, cell.box, finest)) return Leak{*near, true};
+  if (reach > std::max(kFinestPinch * finest, least_reach(clearance_.box()))) return std::nullopt;
+  return Leak{cell.box.center, false};
 }
 
 SolidCells::Refined SolidCells::refine(const Cell& start, const BallsToProve& balls,
@@ -99,18 +128,10 @@ SolidCells::Refined SolidCells::refine(const Cell& start, const BallsToProve& ba
       result.cells.push_back(cell);
       continue;
     }
-    if (cell.center_inside ? gap.lower > 0.0 || reach <= finest
-                           : reach <= kFinestOutside * finest) {
+    if (const auto leak = leak_in(cell, gap, finest)) {
       result.cells.push_back(cell);
-      result.leaks.push_back(cell.box.center);
+      result.leaks.push_back(*leak);
       continue;
-    }
-    if (!cell.center_inside && reach <= finest) {
-      if (const auto on_mesh = mesh_point_in(distance_, cell.box)) {
-        result.cells.push_back(cell);
-        result.leaks.push_back(*on_mesh);
-        continue;
-      }
     }
     for (const BoxCell& half : cell.box.halves()) {
       Cell part{half, cell.inside, false};
@@ -120,19 +141,18 @@ SolidCells::Refined SolidCells::refine(const Cell& start, const BallsToProve& ba
   return result;
 }
 
-std::vector<Vector3d> SolidCells::find_leaks(const BallsToProve& balls, double finest,
-                                             double spacing) {
+SolidCells::Leaks SolidCells::find_leaks(const BallsToProve& balls, double finest, double spacing) {
   std::vector<Refined> refined(cells_.size());
   tbb::parallel_for(std::size_t{0}, cells_.size(),
                     [&](std::size_t i) { refined[i] = refine(cells_[i], balls, finest); });
   cells_.clear();
-  std::vector<Vector3d> thinned;
-  std::set<std::array<double, 3>> taken;
+  Leaks thinned;
+  std::set<Cube> taken;
   for (const Refined& r : refined) {
     cells_.insert(cells_.end(), r.cells.begin(), r.cells.end());
-    for (const Vector3d& p : r.leaks) {
-      const Vector3d cube = (p / spacing).array().floor();
-      if (taken.insert({cube.x(), cube.y(), cube.z()}).second) thinned.push_back(p);
+    for (const Leak& leak : r.leaks) {
+      if (!taken.insert(cube_of(leak.point, spacing)).second) continue;
+      (leak.in_solid ? thinned.in_solid : thinned.pinched).push_back(leak.point);
     }
   }
   return thinned;

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <vector>
 
 namespace spherule::internal {
@@ -17,19 +18,26 @@ namespace spherule::internal {
 class SolidCells {
  public:
   // Halves the box of S until a cell lies outside of S (it is forgotten) or its half diagonal is at
-  // most `spacing`, or half the clearance where that is more: a ball that covers part of the deep
-  // inside covers much of it.
+  // most `spacing` plus half the clearance: a ball that covers part of the deep inside covers much
+  // of it.
   SolidCells(const Clearance& clearance, const MeshDistance& distance, double spacing);
 
   // A point of S for every cell: the centre, moved onto the boundary of S where that crosses the
-  // cell. Cells without such a point near their centre give none.
+  // cell; there at most one per cube of about a cell's size. Cells without such a point near their
+  // centre give none.
   std::vector<Eigen::Vector3d> sample() const;
 
-  // Points where the balls do not cover S, at most one per cube of edge `spacing`. Empty only if S
-  // is proved to be covered: cells that no single ball contains are halved until one does, or they
-  // lie outside of S. A cell is given up as a leak where its centre is an uncovered point of S or
-  // it is smaller than `finest` (a small share of that where its centre is not in S).
-  std::vector<Eigen::Vector3d> find_leaks(const BallsToProve& balls, double finest, double spacing);
+  // Where the balls do not cover S, at most one point per cube of edge `spacing`. None only if S is
+  // proved to be covered: cells that no single ball contains are halved until one does, or they lie
+  // outside of S. A cell is given up as a leak where its centre is an uncovered point of S or it is
+  // smaller than `finest` (much smaller where no point of S is found near its centre).
+  struct Leaks {
+    std::vector<Eigen::Vector3d> in_solid;
+    // Cells that external balls only just close, if at all: no point of S is known near these.
+    std::vector<Eigen::Vector3d> pinched;
+    bool empty() const { return in_solid.empty() && pinched.empty(); }
+  };
+  Leaks find_leaks(const BallsToProve& balls, double finest, double spacing);
 
  private:
   struct Cell {
@@ -37,16 +45,23 @@ class SolidCells {
     bool inside;         // wholly in S
     bool center_inside;  // the centre is in S
   };
+  struct Leak {
+    Eigen::Vector3d point;
+    bool in_solid;
+  };
   struct Refined {
     std::vector<Cell> cells;
-    std::vector<Eigen::Vector3d> leaks;
+    std::vector<Leak> leaks;
   };
 
   bool meets_solid(Cell& cell) const;
+  // The cell as a leak, if it is one or too small to tell; `gap` is its centre's to the balls.
+  std::optional<Leak> leak_in(const Cell& cell, const NearestBall& gap, double finest) const;
   Refined refine(const Cell& cell, const BallsToProve& balls, double finest) const;
 
   const Clearance& clearance_;
   const MeshDistance& distance_;
+  double spacing_;
   std::vector<Cell> cells_;
 };
 

@@ -64,6 +64,7 @@ FittedModel fit_model(const std::string& name, const TriangleMesh& mesh, double 
   SimplifyOptions options;
   options.max_error = error;
   options.min_external_diameter = 4.0 * error;
+  options.effort = 2;
   const Simplification fit = simplify(mesh, options);
   if (!fit.certificate.covered || !fit.certificate.protrusion_over_mesh) {
     throw std::runtime_error(name + ": not certified");

@@ -9,6 +9,7 @@
 #include "simplifier/external_spheres.h"
 #include "simplifier/simplify.h"
 #include "spheretree/triangle_mesh.h"
+#include "tests/simplifier/effort.h"
 
 #include <Eigen/Geometry>
 
@@ -34,6 +35,7 @@ struct FitShares {
   double diameter = 4.0;    // D, of E
   double padding = 0.0;     // of E
   ExternalPlacement placement = ExternalPlacement::kReachable;
+  int effort = test::effort(4, 1);
 };
 
 inline ExternalSpheres externals_of(const TriangleMesh& mesh, const FitShares& shares) {
@@ -51,6 +53,7 @@ inline Fit fit(const TriangleMesh& mesh, CoverOptions options, const FitShares& 
   Fit result;
   result.external = externals_of(mesh, shares);
   result.max_error = options.max_error = shares.max_error * diagonal_of(mesh);
+  options.effort = shares.effort;
   result.cover = cover(mesh, result.external, options);
   return result;
 }

@@ -93,6 +93,8 @@ TEST(Simplify, OptionsSurviveTheRecord) {
   options.external = ExternalPlacement::kRandom;
   options.external_limit = 77;
   options.seed = 0x7fffffffffffffff;
+  options.effort = 5;
+  options.seconds = 2.5;
   const Record record = option_record(options, 1000.0);
   EXPECT_EQ(std::get<double>(record.at("scale")), 1000.0);
   const SimplifyOptions back = options_from_record(record);
@@ -106,6 +108,8 @@ TEST(Simplify, OptionsSurviveTheRecord) {
   EXPECT_EQ(back.external, options.external);
   EXPECT_EQ(back.external_limit, options.external_limit);
   EXPECT_EQ(back.seed, options.seed);
+  EXPECT_EQ(back.effort, options.effort);
+  EXPECT_EQ(back.seconds, options.seconds);
   for (const ExternalPlacement placement :
        {ExternalPlacement::kReachable, ExternalPlacement::kNone}) {
     options.external = placement;
@@ -129,12 +133,14 @@ TEST(Simplify, BadRecordsAreRefusedByName) {
     }
     return "accepted";
   };
-  for (const char* key : {"max-error", "min-external", "padding", "min-radius", "min-internal"}) {
+  for (const char* key :
+       {"max-error", "min-external", "padding", "min-radius", "min-internal", "seconds"}) {
     EXPECT_EQ(refused(key, std::string("wide")), key);
     EXPECT_EQ(refused(key, true), key);
     for (const double bad : {-1.0, kNan, kInfinity, 1e300}) EXPECT_EQ(refused(key, bad), key);
   }
-  for (const char* key : {"seed", "external-limit"}) {
+  EXPECT_EQ(refused("effort", std::int64_t{1} << 40), "effort");
+  for (const char* key : {"seed", "external-limit", "effort"}) {
     EXPECT_EQ(refused(key, std::int64_t{-1}), key);
     EXPECT_EQ(refused(key, 1.5), key);
   }

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/internal/cover_problem.h"
+
+#include "simplifier/internal/point_grid.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace spherule::internal {
+namespace {
+
+// Shares of E.
+constexpr double kCube = 1.5;          // edge of the cubes that rows are sorted into
+constexpr double kPinchRadius = 0.02;  // of a ball where no point of S is known
+
+}  // namespace
+
+CoverProblem::CoverProblem(double max_error, double min_radius)
+    : max_error_(max_error), min_radius_(min_radius) {}
+
+double CoverProblem::radius(double clearance) const {
+  return std::max(min_radius_,
+                  clearance >= 0.0 ? clearance + max_error_ : kPinchRadius * max_error_);
+}
+
+void CoverProblem::add_rows(std::span<const Eigen::Vector3d> points, double radius) {
+  const std::size_t first = rows_.size();
+  for (const Eigen::Vector3d& p : points) rows_.push_back({p, radius});
+  instance_.row_count = rows_.size();
+  cover_rows(0, first);
+}
+
+void CoverProblem::add_candidates(std::span<const Candidate> candidates) {
+  const std::size_t first = candidates_.size();
+  candidates_.insert(candidates_.end(), candidates.begin(), candidates.end());
+  instance_.columns.resize(candidates_.size());
+  cover_rows(first, 0);
+}
+
+std::vector<std::uint32_t> CoverProblem::times_covered(const Columns& solution) const {
+  std::vector<std::uint32_t> times(rows_.size(), 0);
+  for (const std::size_t c : solution) {
+    for (const std::uint32_t row : instance_.columns[c]) ++times[row];
+  }
+  return times;
+}
+
+// Notes which rows from `first_row` on the columns from `first_column` on cover.
+void CoverProblem::cover_rows(std::size_t first_column, std::size_t first_row) {
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(rows_.size() - first_row);
+  for (std::size_t r = first_row; r < rows_.size(); ++r) points.push_back(rows_[r].point);
+  const PointGrid grid(points, kCube * max_error_);
+  std::vector<std::size_t> known(candidates_.size());
+  for (std::size_t c = first_column; c < known.size(); ++c) known[c] = instance_.columns[c].size();
+  tbb::parallel_for(first_column, candidates_.size(), [&](std::size_t c) {
+    const Candidate& candidate = candidates_[c];
+    std::vector<std::uint32_t> near;
+    grid.find(candidate.center, radius(candidate.clearance), near);
+    for (const std::uint32_t i : near) {
+      const std::size_t row = first_row + i;
+      if (margin(candidate, rows_[row]) >= 0.0) {
+        instance_.columns[c].push_back(static_cast<std::uint32_t>(row));
+      }
+    }
+  });
+  columns_of_.resize(rows_.size());
+  for (std::size_t c = first_column; c < candidates_.size(); ++c) {
+    const std::vector<std::uint32_t>& covered = instance_.columns[c];
+    entries_ += covered.size() - known[c];
+    for (std::size_t i = known[c]; i < covered.size(); ++i) {
+      columns_of_[covered[i]].push_back(static_cast<std::uint32_t>(c));
+    }
+  }
+}
+
+}  // namespace spherule::internal

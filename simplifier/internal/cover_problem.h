@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/internal/cover_candidates.h"
+#include "simplifier/internal/set_cover.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace spherule::internal {
+
+// The set cover that stands for covering S: rows are points of S, each with the radius of a small
+// ball about it that has to be covered with it, so that its surroundings are covered too; columns
+// are candidates.
+class CoverProblem {
+ public:
+  using Columns = std::vector<std::size_t>;
+  struct Row {
+    Eigen::Vector3d point;
+    double radius;
+  };
+
+  // No ball has a radius below `min_radius`.
+  CoverProblem(double max_error, double min_radius);
+
+  void add_rows(std::span<const Eigen::Vector3d> points, double radius);
+  void add_candidates(std::span<const Candidate> candidates);
+
+  const SetCoverInstance& instance() const { return instance_; }
+  // The columns that cover each row.
+  const std::vector<std::vector<std::uint32_t>>& columns_of() const { return columns_of_; }
+  const std::vector<Row>& rows() const { return rows_; }
+  const Candidate& candidate(std::size_t column) const { return candidates_[column]; }
+  double max_error() const { return max_error_; }
+
+  // Radius of the ball at a place with this clearance.
+  double radius(double clearance) const;
+  // How far the small ball of the row lies inside the ball of the candidate; negative: outside.
+  double margin(const Candidate& candidate, const Row& row) const {
+    return radius(candidate.clearance) - row.radius - (row.point - candidate.center).norm();
+  }
+
+  // How many pairs of a row and a column that covers it there are.
+  std::uint64_t entries() const { return entries_; }
+  // How many columns of the solution cover each row.
+  std::vector<std::uint32_t> times_covered(const Columns& solution) const;
+
+ private:
+  void cover_rows(std::size_t first_column, std::size_t first_row);
+
+  double max_error_;
+  double min_radius_;
+  std::vector<Row> rows_;
+  std::vector<Candidate> candidates_;
+  SetCoverInstance instance_;  // a column for every candidate
+  std::vector<std::vector<std::uint32_t>> columns_of_;
+  std::uint64_t entries_ = 0;
+};
+
+}  // namespace spherule::internal
