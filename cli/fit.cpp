@@ -134,7 +134,7 @@ void add_fit(CLI::App& app, int& exit_code) {
   command->add_option("--seed", options.seed, "Seed of everything random")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
   auto* effort = command->add_option("--effort", options.effort,
-                                     "Rounds of looking for fewer spheres; 0: the first proved");
+                                     "Rounds of looking for fewer spheres than at first; 0: none");
   effort->check(CLI::NonNegativeNumber);
   command
       ->add_option_function<double>(

@@ -27,10 +27,12 @@ class MeshTree {
 };
 
 // Whether a set of balls and the surface of a mesh meet, by the same traversal with another leaf
-// test, with triangles in the place of the second set's balls: G4 as for collides(). G5 too, but
-// for needles, whose distance in double is itself an interval: a hit may then have a gap of up to
-// 1e-10 of the triangle's distance and size. Allocates as collides() does. A ball wholly inside a
-// closed mesh does not meet its surface. In a pair, `b` is the triangle.
+// test, with triangles in the place of the second set's balls: G4 as for collides(). G5 up
+// to the width of the interval in which point_triangle_distance() leaves the distance: with R the
+// distance from the ball's centre to the triangle's farthest corner, some 64 u R where the centre
+// is not near the triangle; nearer it is wider, in our tests never above 1e-7 R. Allocates as
+// collides() does. A ball wholly inside a closed mesh does not meet its surface. In a pair, `b` is
+// the triangle.
 bool collides(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
               const Pose& world_from_b) noexcept;
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,

@@ -26,7 +26,7 @@ struct CoverOptions {
   // kPaper: diameter at which a ball is seeded (the paper's min_internal_size); 0 chooses E / 2.
   double min_internal_diameter = 0.0;
   std::uint64_t seed = 1;
-  // kCover: rounds of looking for fewer balls after the first; 0 stops at the first proved answer.
+  // kCover: rounds of looking for fewer balls than the first proved answer; 0: none.
   int effort = 16;
   // kCover: no new round begins after so many seconds; 0 sets no limit. The result then depends on
   // the machine.
@@ -69,11 +69,12 @@ struct SphereCover {
 // Stage 2: covers S with balls that protrude from it by at most E (covering.md, sections 1, 4 and
 // 8; the paper, Algorithm 1). On return the union of the balls contains S: the search ends only
 // with what an octree over S has proved; certify() proves it again, by a search of its own. Every
-// ball's radius is at most E plus the distance of its centre, a point of S, to the outside of S;
-// where external balls close S by a hair and no point of S is found, a ball of 0.02 E may stand,
-// and certify() says how far it protrudes. Deterministic for equal input and options on any number
-// of threads, unless `seconds` is set. Throws Error for a mesh that validate() refuses and for
-// options out of range.
+// ball's radius is at most E plus the distance of its centre, a point of S (up to rounding, for
+// which a reserve is kept), to the outside of S, unless min_radius is larger; where external balls
+// close S by a hair and no point of S is found, a ball of 0.02 E may stand, and certify() says how
+// far it protrudes. Deterministic for equal input and options on any number of threads, unless
+// `seconds` is set. Throws Error for a mesh that validate() refuses, for options out of range, and
+// for an E too small for the rounding of the coordinates.
 SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                   const CoverOptions& options);
 

@@ -4,7 +4,8 @@
 // The yes-or-no query and the query for pairs, for any kind of leaf. A leaf test has
 //   bool touches(pair) const        the canonical test of two leaves;
 //   double gap(pair) const          their distance: above the exact one by at most gap_error() of
-//                                   RelativePose; below it by no more either, but for needles.
+//                                   RelativePose; below it by no more either, but for triangles
+//                                   (mesh_tree.h).
 
 #include "collide/collide.h"
 #include "collide/internal/traversal.h"

@@ -16,8 +16,8 @@ namespace spherule::internal {
 // The image p of the ball's centre errs by less than 136 u S (relative_pose.h), and `lower` bounds
 // the distance from p to the triangle. So a ball of radius r that meets the triangle has
 // lower <= r + 136 u S, and the pad of 144 u S covers the rounding of the sum. Conversely a hit has
-// an exact gap of at most 144 u S + 136 u S + (upper - lower): the last term is below 64 u of the
-// distance to the triangle's farthest corner but for needles (spheretree/point_triangle.h).
+// an exact gap of at most 144 u S + 136 u S + (upper - lower): the last term is the width of
+// the interval that point_triangle_distance() returns.
 //
 // That is more than the node tests are proved to keep, so the balls themselves must touch
 // canonically as well. No contact is lost, because the leaf's ball encloses the triangle; and every

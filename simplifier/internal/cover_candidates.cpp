@@ -6,11 +6,34 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+
 namespace spherule::internal {
 namespace {
 
 constexpr double kClearanceTolerance = 0.02;  // of E
 constexpr double kContained = 0.97;
+constexpr double kThinning = 0.1;  // of E
+
+// In each cube of the given edge only the candidate with the largest clearance, the first of
+// equals.
+std::vector<Candidate> thinned(const std::vector<Candidate>& candidates, double edge) {
+  std::map<std::array<double, 3>, std::size_t> best;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Eigen::Vector3d cube = (candidates[i].center / edge).array().floor();
+    const auto [at, first] = best.try_emplace({cube.x(), cube.y(), cube.z()}, i);
+    if (!first && candidates[i].clearance > candidates[at->second].clearance) at->second = i;
+  }
+  std::vector<std::size_t> kept;
+  for (const auto& [cube, i] : best) kept.push_back(i);
+  std::sort(kept.begin(), kept.end());
+  std::vector<Candidate> result;
+  for (const std::size_t i : kept) result.push_back(candidates[i]);
+  return result;
+}
 
 }  // namespace
 
@@ -38,7 +61,7 @@ std::vector<Candidate> candidates_from(const Clearance& clearance,
   });
   std::vector<Candidate> all;
   for (const auto& some : each) all.insert(all.end(), some.begin(), some.end());
-  return all;
+  return thinned(all, kThinning * max_error);
 }
 
 }  // namespace spherule::internal

@@ -15,13 +15,15 @@ namespace spherule::internal {
 // A place for a ball of the cover: radius `clearance` lies in S, `clearance` + E protrudes by E.
 struct Candidate {
   Eigen::Vector3d center;
-  double clearance;  // lower bound, within a few hundredths of E
+  double clearance;  // lower bound, within a few hundredths of E; kPinched: no point of S is known
 };
+
+inline constexpr double kPinched = -1.0;
 
 // Candidates for covering the given points of S: each point is moved inwards by a seeded random
 // depth of 0.2 to 1.5 E and from there away from its contacts (medial_ascent.h). Every position on
 // the way counts, since the best ball at an edge sits at depth E and not on the medial axis
-// (covering.md 1).
+// (covering.md 1). Of candidates that are nearly at one place the one with most clearance is kept.
 std::vector<Candidate> candidates_from(const Clearance& clearance,
                                        std::span<const Eigen::Vector3d> points, double max_error,
                                        std::uint64_t seed);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <optional>
@@ -21,7 +22,9 @@ namespace {
 using Eigen::Vector3d;
 
 // Shares of E.
-constexpr double kSpacing = 0.3;         // half diagonal of the cells that rows stand for
+// Half diagonal of the cells that rows stand for: the last for which there are not too many.
+constexpr std::array kSpacings{0.7, 0.5, 0.3};
+constexpr std::size_t kManyCells = 60000;
 constexpr double kCellRow = 0.1;         // radius of their rows
 constexpr double kLeakRow = 0.03;        // radius of the rows that leaks become
 constexpr double kFinest = 0.01;         // smallest cell of the proof
@@ -31,30 +34,47 @@ constexpr double kLeakSpacing = 0.15;    // leaks become rows this far apart
 constexpr std::size_t kMinStarts = 2000;
 constexpr std::size_t kMaxStarts = 10000;
 
-constexpr std::uint64_t kWork = 12;     // of a search: visits per entry of the problem
-constexpr std::size_t kFirstDrop = 8;   // this part of the count is the first step down
-constexpr std::size_t kStepUp = 100;    // this part of the count is a step up
+constexpr std::uint64_t kWork = 12;      // of a search: visits per entry of the problem
+constexpr std::size_t kLargestStep = 8;  // this part of the count
+constexpr std::size_t kForgetting = 4;   // times as large as it was the problem may grow
+// So many leaks more than there are balls to gain may still be mended by fewer balls.
+constexpr std::size_t kHopefulLeaks = 8;
 constexpr std::size_t kOpenRows = 100;  // that candidates are made for in a round
 
-// At most `count` of the points, evenly picked.
-std::vector<Vector3d> some_of(const std::vector<Vector3d>& points, std::size_t count) {
-  if (points.size() <= count) return points;
-  std::vector<Vector3d> picked;
-  for (std::size_t i = 0; i < count; ++i) picked.push_back(points[i * points.size() / count]);
+// At most `count` of the items, evenly picked.
+template <typename Item>
+std::vector<Item> some_of(const std::vector<Item>& items, std::size_t count) {
+  if (items.size() <= count) return items;
+  std::vector<Item> picked;
+  for (std::size_t i = 0; i < count; ++i) picked.push_back(items[i * items.size() / count]);
   return picked;
+}
+
+SolidCells cells_of(const Clearance& clearance, const MeshDistance& distance, double max_error) {
+  std::optional<SolidCells> cells;
+  for (const double spacing : kSpacings) {
+    cells.emplace(clearance, distance, spacing * max_error);
+    if (cells->size() > kManyCells) break;
+  }
+  return *std::move(cells);
 }
 
 }  // namespace
 
-void CoverFitter::Goal::raise() {
+void CoverFitter::Goal::failed() {
+  target = easier();
   step = std::max<std::size_t>(1, step / 2);
-  target = proved == 0 ? target + 1 + target / kStepUp : easier();
 }
 
-void CoverFitter::Goal::reached(std::size_t count, bool first) {
-  if (first) step = std::max<std::size_t>(1, count / kFirstDrop);
+void CoverFitter::Goal::reached(std::size_t count) {
+  const std::size_t largest = std::max<std::size_t>(1, count / kLargestStep);
+  step = proved == 0 ? largest : std::min(largest, count <= target ? 2 * step : step);
   proved = count;
   target = count - std::min(step, count - 1);
+}
+
+double CoverFitter::finest(double max_error) {
+  return kFinest * max_error;
 }
 
 CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distance,
@@ -62,7 +82,7 @@ CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distanc
     : clearance_(clearance),
       options_(options),
       error_(options.max_error),
-      cells_(clearance, distance, kSpacing * options.max_error),
+      cells_(cells_of(clearance, distance, options.max_error)),
       problem_(options.max_error, options.min_radius) {}
 
 std::vector<Sphere> CoverFitter::run() {
@@ -76,13 +96,12 @@ std::vector<Sphere> CoverFitter::run() {
     return std::max(rounds, elapsed.count() / options_.seconds);
   };
   const Points sample = cells_.sample();
-  problem_.add_rows(sample, kCellRow * error_);
-  add_candidates(problem_, some_of(sample, std::clamp(sample.size() / 2, kMinStarts, kMaxStarts)),
-                 sample);
+  add_rows(problem_, sample, kCellRow * error_,
+           some_of(sample, std::clamp(sample.size() / 2, kMinStarts, kMaxStarts)));
   solution_ = greedy_set_cover(problem_.instance());
-  goal_.target = solution_.size();
   prove_or_learn();
-  for (int round = 0; round < options_.effort && best_.size() != 1; ++round) {
+  first_entries_ = problem_.entries();
+  for (int round = 0; round < options_.effort && best_.size() > 1; ++round) {
     const double share = share_done(round);
     if (share >= 1.0) break;
     report(share);
@@ -92,51 +111,53 @@ std::vector<Sphere> CoverFitter::run() {
     } else {
       widen();
     }
+    if (problem_.entries() > kForgetting * first_entries_) forget();
   }
-  return best_.empty() ? repaired() : best_;
+  return best_;
 }
 
 bool CoverFitter::search() {
   const std::array<std::size_t, 2> targets{goal_.target, goal_.easier()};
   std::array<std::optional<CoverSearch>, 2> searches;
   std::array<bool, 2> covers{};
+  std::array<std::atomic<bool>, 2> unneeded{};  // the second, if the first succeeds
   tbb::parallel_for(std::size_t{0}, searches.size(), [&](std::size_t i) {
-    searches[i].emplace(problem_.instance(), problem_.columns_of(), solution_,
-                        options_.seed + batch_ + i);
-    covers[i] = searches[i]->reach(targets[i], kWork * problem_.entries());
+    searches[i].emplace(problem_.instance(), problem_.columns_of(), solution_);
+    covers[i] = searches[i]->reach(targets[i], kWork * problem_.entries(),
+                                   options_.seed + seeds_used_ + i, unneeded[i]);
+    if (i == 0) unneeded[1] = covers[0];
   });
-  batch_ += searches.size();
-  const std::size_t chosen = !covers[0] && covers[1] ? 1 : 0;
+  seeds_used_ += searches.size();
+  const std::size_t chosen = covers[0] ? 0 : 1;
   const std::vector<std::uint32_t>& columns = searches[chosen]->best_columns();
   solution_.assign(columns.begin(), columns.end());
-  if (!covers[0]) goal_.raise();
+  if (!covers[0]) goal_.failed();
   return covers[chosen];
 }
 
 void CoverFitter::prove_or_learn() {
   std::vector<Sphere> balls = balls_of(problem_, solution_);
-  const SolidCells::Leaks leaks = leaks_of(balls);
-  if (!leaks.empty()) {
-    learn(problem_, leaks);
-    if (best_.empty()) goal_.target += 1 + goal_.target / kStepUp;
-  } else if (best_.empty() || balls.size() < best_.size()) {
-    goal_.reached(balls.size(), best_.empty());
-    best_ = std::move(balls);
-  }
+  SolidCells::Leaks leaks = leaks_of(balls);
+  const std::size_t leak_count = leaks.in_solid.size() + leaks.pinched.size();
+  if (leak_count > 0) learn(problem_, leaks);
+  if (!best_.empty() && balls.size() + leak_count >= best_.size() + kHopefulLeaks) return;
+  balls = mended(std::move(balls), std::move(leaks));
+  if (!best_.empty() && balls.size() >= best_.size()) return;
+  goal_.reached(balls.size());
+  best_ = std::move(balls);
 }
 
 void CoverFitter::widen() {
-  std::vector<std::uint32_t> open = open_rows(problem_, solution_);
-  if (open.size() > kOpenRows) open.resize(kOpenRows);
+  const std::vector<std::uint32_t> open = some_of(open_rows(problem_, solution_), kOpenRows);
   Points points;
   for (const std::uint32_t row : open) points.push_back(problem_.rows()[row].point);
   problem_.add_candidates(reach_for(clearance_, problem_, solution_, open));
-  add_candidates(problem_, points, {});
+  problem_.add_candidates(
+      candidates_from(clearance_, points, error_, options_.seed + seeds_used_++));
 }
 
-std::vector<Sphere> CoverFitter::repaired() {
-  std::vector<Sphere> balls = balls_of(problem_, solution_);
-  for (SolidCells::Leaks leaks = leaks_of(balls); !leaks.empty(); leaks = leaks_of(balls)) {
+std::vector<Sphere> CoverFitter::mended(std::vector<Sphere> balls, SolidCells::Leaks leaks) {
+  for (; !leaks.empty(); leaks = leaks_of(balls)) {
     CoverProblem rest(error_, options_.min_radius);
     learn(rest, leaks);
     const std::vector<Sphere> more = balls_of(rest, greedy_set_cover(rest.instance()));
@@ -145,20 +166,38 @@ std::vector<Sphere> CoverFitter::repaired() {
   return balls;
 }
 
+// The columns of the solution stay, one for every row, and of the others the newer half.
+void CoverFitter::forget() {
+  const std::size_t count = problem_.instance().columns.size();
+  std::vector<char> kept(count, 0);
+  for (const std::size_t c : solution_) kept[c] = 1;
+  for (const std::vector<std::uint32_t>& columns : problem_.columns_of()) kept[columns.front()] = 1;
+  std::fill(kept.begin() + static_cast<std::ptrdiff_t>(count / 2), kept.end(), 1);
+  const std::vector<std::size_t> number = problem_.keep_only(kept);
+  for (std::size_t& c : solution_) c = number[c];
+}
+
 void CoverFitter::learn(CoverProblem& problem, const SolidCells::Leaks& leaks) {
-  problem.add_rows(leaks.in_solid, kLeakRow * error_);
-  add_candidates(problem, leaks.in_solid, leaks.in_solid);
+  add_rows(problem, leaks.in_solid, kLeakRow * error_, leaks.in_solid);
   std::vector<Candidate> tiny;
-  for (const Vector3d& p : leaks.pinched) tiny.push_back({p, -1.0});
-  problem.add_rows(leaks.pinched, 0.0);
+  for (const Vector3d& p : leaks.pinched) tiny.push_back({p, kPinched});
+  problem.add_rows(leaks.pinched, kFinest * error_);
   problem.add_candidates(tiny);
 }
 
-void CoverFitter::add_candidates(CoverProblem& problem, const Points& points, const Points& own) {
-  std::vector<Candidate> all =
-      candidates_from(clearance_, points, error_, options_.seed + batch_++);
-  for (const Vector3d& p : own) all.push_back({p, std::max(0.0, clearance_(p).lower)});
-  problem.add_candidates(all);
+void CoverFitter::add_rows(CoverProblem& problem, const Points& points, double radius,
+                           const Points& starts) {
+  const std::size_t first = problem.rows().size();
+  problem.add_rows(points, radius);
+  problem.add_candidates(
+      candidates_from(clearance_, starts, error_, options_.seed + seeds_used_++));
+  std::vector<Candidate> own;
+  for (std::size_t row = first; row < problem.rows().size(); ++row) {
+    if (!problem.columns_of()[row].empty()) continue;
+    const Vector3d& p = problem.rows()[row].point;
+    own.push_back({p, std::max(0.0, clearance_(p).lower)});
+  }
+  problem.add_candidates(own);
 }
 
 // As stored: the computed clearance of a point of S may be negative by rounding; a little less than
@@ -179,14 +218,13 @@ std::vector<Sphere> CoverFitter::balls_of(const CoverProblem& problem,
 
 void CoverFitter::report(double share) const {
   if (!options_.progress) return;
-  const std::string state = best_.empty() ? std::string("nothing proved yet")
-                                          : std::to_string(best_.size()) + " spheres proved";
-  options_.progress(share, ("covering: " + state).c_str());
+  options_.progress(share,
+                    ("covering: " + std::to_string(best_.size()) + " spheres proved").c_str());
 }
 
 SolidCells::Leaks CoverFitter::leaks_of(const std::vector<Sphere>& balls) {
   const BallHierarchy hierarchy(balls);
-  return cells_.find_leaks({balls, hierarchy}, kFinest * error_, kLeakSpacing * error_);
+  return cells_.find_leaks({balls, hierarchy}, finest(error_), kLeakSpacing * error_);
 }
 
 }  // namespace spherule::internal

@@ -17,10 +17,9 @@
 
 namespace spherule::internal {
 
-// Few balls that cover S (covering.md 4 and 8): greedy set cover with rounds of counterexamples up
-// to the first proved answer; then rounds that look for a cover of fewer balls by local search,
-// spread the balls to where they have the most to spare, and prove the result or learn from where
-// it leaks.
+// Few balls that cover S (covering.md 4 and 8): a greedy set cover, mended where it leaks, is the
+// first proved answer; then rounds look for a cover of fewer balls by local search, spread the
+// balls to where they have the most to spare, and prove the result or learn from where it leaks.
 class CoverFitter {
  public:
   CoverFitter(const Clearance& clearance, const MeshDistance& distance,
@@ -29,37 +28,43 @@ class CoverFitter {
   // The fewest balls that were proved to cover S.
   std::vector<Sphere> run();
 
+  // Half diagonal of the smallest cells that are told apart.
+  static double finest(double max_error);
+
  private:
   using Columns = CoverProblem::Columns;
   using Points = std::vector<Eigen::Vector3d>;
 
-  // How many balls to look for. Lowered by `step` after each proof; raised, and the step halved,
-  // where the search fails.
+  // How many balls to look for: fewer by `step` than are proved. The step is halved where the
+  // search fails and doubled where it succeeds.
   struct Goal {
     std::size_t target = 0;
-    std::size_t proved = 0;  // the fewest balls proved; 0: none yet
+    std::size_t proved = 0;
     std::size_t step = 1;
 
     // Half the way to what is proved, below it.
-    std::size_t easier() const {
-      return proved == 0 ? target : std::max(target, std::min(proved - 1, (target + proved) / 2));
-    }
-    void raise();
-    void reached(std::size_t count, bool first);
+    std::size_t easier() const { return std::min(proved - 1, (target + proved) / 2); }
+    void failed();
+    void reached(std::size_t count);
   };
 
-  // Looks for columns that cover all rows, for the target and for an easier one side by side.
-  // Leaves the better in solution_; false if neither search came to an end.
+  // Looks for columns that cover all rows, for the target and for an easier one side by side; true
+  // if it finds any. What it found, or came to for the easier one, is left in solution_.
   bool search();
-  // Proves solution_ or makes rows of its leaks.
+  // Proves solution_, or makes rows of its leaks; keeps it, mended where it leaks, if it is the
+  // best.
   void prove_or_learn();
   // New candidates about the rows that solution_ leaves open.
   void widen();
-  // solution_ with balls added until nothing leaks.
-  std::vector<Sphere> repaired();
+  // With balls added until nothing leaks.
+  std::vector<Sphere> mended(std::vector<Sphere> balls, SolidCells::Leaks leaks);
+  // Keeps the problem from growing for ever.
+  void forget();
+
   void learn(CoverProblem& problem, const SolidCells::Leaks& leaks);
-  // With a ball about each point itself, so that every point can be covered.
-  void add_candidates(CoverProblem& problem, const Points& points, const Points& own);
+  // Rows at the points, and candidates grown from some of them; a ball about the point itself where
+  // none of all candidates covers a row, so that every row can be covered.
+  void add_rows(CoverProblem& problem, const Points& points, double radius, const Points& starts);
 
   std::vector<Sphere> balls_of(const CoverProblem& problem, const Columns& columns) const;
   SolidCells::Leaks leaks_of(const std::vector<Sphere>& balls);
@@ -73,7 +78,8 @@ class CoverFitter {
   Columns solution_;          // the last that was tried
   std::vector<Sphere> best_;  // proved
   Goal goal_;
-  std::uint64_t batch_ = 0;
+  std::uint64_t seeds_used_ = 0;
+  std::uint64_t first_entries_ = 0;  // of the problem as it was when the rounds began
 };
 
 }  // namespace spherule::internal

@@ -29,6 +29,10 @@ std::vector<std::vector<std::uint32_t>> exclusive_rows(const CoverProblem& probl
   return exclusive;
 }
 
+bool differs(const Candidate& a, const Candidate& b) {
+  return a.center != b.center || a.clearance != b.clearance;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> open_rows(const CoverProblem& problem, const Columns& solution) {
@@ -46,17 +50,23 @@ void spread(const Clearance& clearance, CoverProblem& problem, Columns& solution
   tbb::parallel_for(std::size_t{0}, solution.size(), [&](std::size_t i) {
     shifted[i] = shift(clearance, problem, problem.candidate(solution[i]), exclusive[i]);
   });
-  const std::size_t first = problem.instance().columns.size();
-  problem.add_candidates(shifted);
+  Columns replacement(solution);
+  std::vector<Candidate> moved;
+  for (std::size_t i = 0; i < solution.size(); ++i) {
+    if (!differs(shifted[i], problem.candidate(solution[i]))) continue;
+    replacement[i] = problem.instance().columns.size() + moved.size();
+    moved.push_back(shifted[i]);
+  }
+  problem.add_candidates(moved);
   const auto& columns = problem.instance().columns;
   std::vector<std::uint32_t> times = problem.times_covered(solution);
   for (std::size_t i = 0; i < solution.size(); ++i) {
     const std::vector<std::uint32_t>& before = columns[solution[i]];
-    const std::vector<std::uint32_t>& after = columns[first + i];
+    const std::vector<std::uint32_t>& after = columns[replacement[i]];
     for (const std::uint32_t row : after) ++times[row];
     for (const std::uint32_t row : before) --times[row];
     if (std::ranges::all_of(before, [&](std::uint32_t row) { return times[row] > 0; })) {
-      solution[i] = first + i;
+      solution[i] = replacement[i];
     } else {
       for (const std::uint32_t row : before) ++times[row];
       for (const std::uint32_t row : after) --times[row];
@@ -80,7 +90,9 @@ std::vector<Candidate> reach_for(const Clearance& clearance, const CoverProblem&
     for (const auto& [gap, i] : near) {
       std::vector<std::uint32_t> rows = exclusive[i];
       rows.push_back(open[k]);
-      found[k].push_back(shift(clearance, problem, problem.candidate(solution[i]), rows));
+      const Candidate& start = problem.candidate(solution[i]);
+      const Candidate shifted = shift(clearance, problem, start, rows);
+      if (differs(shifted, start)) found[k].push_back(shifted);
     }
   });
   std::vector<Candidate> all;

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace spherule::internal {
 namespace {
@@ -36,6 +37,29 @@ void CoverProblem::add_candidates(std::span<const Candidate> candidates) {
   candidates_.insert(candidates_.end(), candidates.begin(), candidates.end());
   instance_.columns.resize(candidates_.size());
   cover_rows(first, 0);
+}
+
+std::vector<std::size_t> CoverProblem::keep_only(const std::vector<char>& kept) {
+  std::vector<std::size_t> number(candidates_.size());
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    if (kept[c] == 0) continue;
+    number[c] = count;
+    candidates_[count] = candidates_[c];
+    if (count != c) instance_.columns[count] = std::move(instance_.columns[c]);
+    ++count;
+  }
+  candidates_.resize(count);
+  instance_.columns.resize(count);
+  entries_ = 0;
+  for (std::vector<std::uint32_t>& columns : columns_of_) columns.clear();
+  for (std::size_t c = 0; c < count; ++c) {
+    entries_ += instance_.columns[c].size();
+    for (const std::uint32_t row : instance_.columns[c]) {
+      columns_of_[row].push_back(static_cast<std::uint32_t>(c));
+    }
+  }
+  return number;
 }
 
 std::vector<std::uint32_t> CoverProblem::times_covered(const Columns& solution) const {

@@ -44,6 +44,9 @@ class CoverProblem {
     return radius(candidate.clearance) - row.radius - (row.point - candidate.center).norm();
   }
 
+  // Forgets all other columns than these; returns the new numbers of the old ones that are kept.
+  std::vector<std::size_t> keep_only(const std::vector<char>& kept);
+
   // How many pairs of a row and a column that covers it there are.
   std::uint64_t entries() const { return entries_; }
   // How many columns of the solution cover each row.

@@ -22,7 +22,7 @@ void CoverSearch::IndexSet::erase(std::uint32_t i) {
 
 CoverSearch::CoverSearch(const SetCoverInstance& instance,
                          const std::vector<std::vector<std::uint32_t>>& columns_of,
-                         std::span<const std::size_t> start, std::uint64_t seed)
+                         std::span<const std::size_t> start)
     : rows_of_(instance.columns),
       columns_of_(columns_of),
       row_(instance.row_count),
@@ -31,8 +31,7 @@ CoverSearch::CoverSearch(const SetCoverInstance& instance,
       may_enter_(instance.columns.size(), 1),
       chosen_(instance.columns.size()),
       open_(instance.row_count),
-      entered_last_(std::numeric_limits<std::uint32_t>::max()),
-      seed_(seed) {
+      entered_last_(std::numeric_limits<std::uint32_t>::max()) {
   for (std::size_t c = 0; c < instance.columns.size(); ++c) {
     score_[c] = static_cast<std::int64_t>(instance.columns[c].size());
   }
@@ -121,10 +120,11 @@ void CoverSearch::weigh_open_rows() {
   }
 }
 
-bool CoverSearch::reach(std::size_t target, std::uint64_t work) {
+bool CoverSearch::reach(std::size_t target, std::uint64_t work, std::uint64_t seed,
+                        const std::atomic<bool>& unneeded) {
   while (chosen_.items().size() > target) remove(least_missed());
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  Random random(seed_++);
+  Random random(seed);
   work_ = 0;
   for (;;) {
     const std::span<const std::uint32_t> open = open_.items();
@@ -132,7 +132,7 @@ bool CoverSearch::reach(std::size_t target, std::uint64_t work) {
       fewest = open.size();
       best_columns_.assign(chosen_.items().begin(), chosen_.items().end());
     }
-    if (open.empty() || work_ >= work) return open.empty();
+    if (open.empty() || work_ >= work || unneeded) return open.empty();
     ++clock_;
     if (chosen_.items().size() >= target && !chosen_.items().empty()) remove(least_missed());
     entered_last_ = best_for(open_.items()[random.index(open_.items().size())]);

@@ -3,6 +3,7 @@
 
 #include "simplifier/internal/set_cover.h"
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -22,12 +23,13 @@ class CoverSearch {
   // least. Both must outlive the search.
   CoverSearch(const SetCoverInstance& instance,
               const std::vector<std::vector<std::uint32_t>>& columns_of,
-              std::span<const std::size_t> start, std::uint64_t seed);
+              std::span<const std::size_t> start);
 
   // Drops columns until at most `target` are left, then exchanges columns until every row is
-  // covered or `work` visits of entries of the instance have been made. True if every row is
-  // covered.
-  bool reach(std::size_t target, std::uint64_t work);
+  // covered, about `work` entries of the instance have been visited, or `unneeded` is set from
+  // outside. True if every row is covered.
+  bool reach(std::size_t target, std::uint64_t work, std::uint64_t seed,
+             const std::atomic<bool>& unneeded);
 
   // The columns chosen when the fewest rows were open, ties to the first.
   const std::vector<std::uint32_t>& best_columns() const { return best_columns_; }
@@ -72,7 +74,6 @@ class CoverSearch {
   std::uint32_t entered_last_;
   std::uint64_t clock_ = 0;
   std::uint64_t work_ = 0;  // visits so far
-  std::uint64_t seed_;
 };
 
 }  // namespace spherule::internal

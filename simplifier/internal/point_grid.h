@@ -16,7 +16,8 @@ namespace spherule::internal {
 // the search, never a proof.
 class PointGrid {
  public:
-  PointGrid(std::span<const Eigen::Vector3d> points, double edge) : edge_(edge) {
+  PointGrid(std::span<const Eigen::Vector3d> points, double edge)
+      : points_(points.begin(), points.end()), edge_(edge) {
     for (const Eigen::Vector3d& p : points) box_.extend(p);
     if (points.empty()) return;
     const Eigen::Array3d extent = (box_.sizes() / edge_).array().floor();
@@ -33,6 +34,13 @@ class PointGrid {
     const Index low = cube_of(center - reach);
     const Index high = cube_of(center + reach);
     const double squared = radius * radius;
+    const Eigen::Array3d span = (high - low + 1).cast<double>();
+    if (span.prod() > static_cast<double>(points_.size())) {
+      for (std::uint32_t i = 0; i < points_.size(); ++i) {
+        if ((points_[i] - center).squaredNorm() <= squared) found.push_back(i);
+      }
+      return;
+    }
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
@@ -62,6 +70,7 @@ class PointGrid {
     return (cube[0] * size_[1] + cube[1]) * size_[2] + cube[2];
   }
 
+  std::vector<Eigen::Vector3d> points_;
   double edge_;
   Eigen::AlignedBox3d box_;
   Index size_ = Index::Zero();

@@ -20,6 +20,10 @@ constexpr std::size_t kEnoughLeaks = 3;
 constexpr double kGrading = 0.5;   // of the clearance, by which deeper cells are larger
 constexpr double kThinning = 1.2;  // cells' spacing: edge of the cubes with one boundary point each
 
+// Cells are only ever halved, along the seams of every set of balls that was examined. From so many
+// times the first number on it is cheaper to begin again.
+constexpr std::size_t kForgetting = 8;
+
 using Cube = std::array<double, 3>;
 
 Cube cube_of(const Eigen::Vector3d& point, double edge) {
@@ -56,6 +60,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
     }
     level = std::move(next);
   }
+  first_ = cells_;
 }
 
 std::vector<Vector3d> SolidCells::sample() const {
@@ -155,6 +160,7 @@ SolidCells::Leaks SolidCells::find_leaks(const BallsToProve& balls, double fines
       (leak.in_solid ? thinned.in_solid : thinned.pinched).push_back(leak.point);
     }
   }
+  if (cells_.size() > kForgetting * first_.size()) cells_ = first_;
   return thinned;
 }
 

@@ -22,6 +22,8 @@ class SolidCells {
   // of it.
   SolidCells(const Clearance& clearance, const MeshDistance& distance, double spacing);
 
+  std::size_t size() const { return cells_.size(); }
+
   // A point of S for every cell: the centre, moved onto the boundary of S where that crosses the
   // cell; there at most one per cube of about a cell's size. Cells without such a point near their
   // centre give none.
@@ -62,6 +64,7 @@ class SolidCells {
   const Clearance& clearance_;
   const MeshDistance& distance_;
   double spacing_;
+  std::vector<Cell> first_;  // as made
   std::vector<Cell> cells_;
 };
 

@@ -11,9 +11,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -136,6 +139,18 @@ const RealModel kForearm{kArm + "visual/link_4.stl", 1000},
     kHand{"robots/franka_panda/meshes/collision/hand.obj", 1000},
     kRiser{"parts/idler_riser.STL", 25.4};
 
+std::string pair_name(const RealPair& pair) {
+  std::string name = std::filesystem::path(pair.a.file).stem().string() + "_" +
+                     std::filesystem::path(pair.b.file).stem().string();
+  std::ranges::replace_if(
+      name, [](char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
+}
+
+void PrintTo(const RealPair& pair, std::ostream* out) {
+  *out << pair_name(pair);
+}
+
 class RealTruth : public ::testing::TestWithParam<RealPair> {};
 
 TEST_P(RealTruth, NothingMissedAndExtrasAreNear) {
@@ -150,7 +165,8 @@ INSTANTIATE_TEST_SUITE_P(, RealTruth,
                                            RealPair{kUpperArm, kShoulder}, RealPair{kTorch, kPipe},
                                            RealPair{kGear, kGear}, RealPair{kSheet, kGear},
                                            RealPair{kHousing, kSheet}, RealPair{kFinger, kHand},
-                                           RealPair{kRiser, kPipe}, RealPair{kWrist, kSheet}));
+                                           RealPair{kRiser, kPipe}, RealPair{kWrist, kSheet}),
+                         [](const auto& tested) { return pair_name(tested.param); });
 
 // The comparison is able to fail: a cover whose balls are a tenth too small is caught.
 TEST(TruthTest, ShrunkBallsAreCaught) {

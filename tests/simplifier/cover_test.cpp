@@ -25,13 +25,6 @@ std::string name_of(CoverMethod method) {
   return method == CoverMethod::kPaper ? "paper" : "cover";
 }
 
-TriangleMesh mesh_named(const std::string& name) {
-  for (NamedMesh& named : mesh_zoo()) {
-    if (named.name == name) return named.mesh;
-  }
-  throw Error(name, "not in the zoo");
-}
-
 class CoverOfZoo : public testing::TestWithParam<std::tuple<std::size_t, CoverMethod>> {
  protected:
   TriangleMesh mesh() const { return mesh_zoo().at(std::get<0>(GetParam())).mesh; }

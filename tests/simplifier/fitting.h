@@ -13,7 +13,16 @@
 
 #include <Eigen/Geometry>
 
+#include <ostream>
 #include <span>
+
+namespace spherule {
+
+inline void PrintTo(CoverMethod method, std::ostream* out) {
+  *out << (method == CoverMethod::kPaper ? "paper" : "cover");
+}
+
+}  // namespace spherule
 
 namespace spherule::test {
 

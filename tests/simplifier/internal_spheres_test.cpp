@@ -136,60 +136,6 @@ TEST(InternalSpheres, SeedsThatCollideDoNotStallTheLoop) {
   }
 }
 
-void expect_nothing_beyond_the_error(const TriangleMesh& mesh, const Fit& fitted) {
-  const std::vector<Sphere>& balls = fitted.cover.spheres;
-  const Certificate certificate = certificate_of(mesh, fitted, balls);
-  EXPECT_TRUE(certificate.covered);
-  ASSERT_TRUE(certificate.protrusion_over_simplified_max.has_value());
-  EXPECT_LE(*certificate.protrusion_over_simplified_max, fitted.max_error);
-  Random random(83);
-  const double slack = 1e-9 * fitted.external.box.diagonal().norm();
-  const ProtrusionJudgement judged =
-      judge_protrusion(balls, mesh, fitted.external, fitted.max_error + slack,
-                       static_cast<std::size_t>(effort(24, 6)), random);
-  EXPECT_EQ(judged.beyond, 0U) << "of " << judged.points << ", one at "
-                               << judged.example.transpose();
-}
-
-// Eight balls about the corners of a cube that leave no room in its middle, by `depth`. The solid
-// begins about 1 above that. The box is such that its halves do not fit the cube.
-ExternalSpheres pinched(double depth) {
-  ExternalSpheres external;
-  external.box = Eigen::AlignedBox3d(Vector3d(-0.07, -0.03, -0.05), Vector3d(1.01, 1.02, 4));
-  for (int i = 0; i < 8; ++i) {
-    external.balls.push_back({Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), std::sqrt(0.75) + depth});
-  }
-  return external;
-}
-
-// Where the solid is empty by less than the search looks for uncovered points of it, a ball would
-// protrude by the whole way to the solid.
-TEST(InternalSpheres, NoBallStandsWhereExternalBallsOnlyJustCloseTheSolid) {
-  const TriangleMesh mesh = box_mesh({0.2, 0.2, 3.8}, {0.8, 0.8, 4});
-  for (const double depth : {1e-3, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6}) {
-    SCOPED_TRACE(depth);
-    Fit fitted;
-    fitted.external = pinched(depth);
-    CoverOptions options = paper_options();
-    fitted.max_error = options.max_error = 0.3;
-    fitted.cover = cover(mesh, fitted.external, options);
-    for (const Sphere& s : fitted.cover.spheres) EXPECT_GT(s.center.z(), 1.0);
-    expect_nothing_beyond_the_error(mesh, fitted);
-  }
-}
-
-TEST(InternalSpheres, NothingProtrudesHoweverExternalSpheresArePlaced) {
-  for (const NamedMesh& named : mesh_zoo()) {
-    SCOPED_TRACE(named.name);
-    for (const ExternalPlacement placement :
-         {ExternalPlacement::kRandom, ExternalPlacement::kNone}) {
-      FitShares shares;
-      shares.placement = placement;
-      expect_nothing_beyond_the_error(named.mesh, paper_fit(named.mesh, shares));
-    }
-  }
-}
-
 // Sheets and meshes without any inside: the solid is as thin as the external balls leave it.
 TEST(InternalSpheres, ThinAndFlatInputIsCovered) {
   TriangleMesh line;

@@ -121,6 +121,25 @@ TEST(PointTriangle, TheIntervalIsNarrowForOrdinaryTriangles) {
   }
 }
 
+// Widest where the point is next to the triangle, whose direction is then uncertain.
+TEST(PointTriangle, TheIntervalIsNarrowForAllTrianglesAtAllHeights) {
+  Random random(14);
+  for (int i = 0; i < effort(200000, 5000); ++i) {
+    const Kind kind = kKinds[random.index(kKinds.size())];
+    const Triangle t = random_triangle(random, kind);
+    const double u = random.unit();
+    const double v = random.between(0.0, 1.0 - u);
+    const Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    const bool upright = random.index(2) == 0 && normal.norm() > 0.0;
+    const Vector3d p = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]) +
+                       std::pow(10.0, random.between(-13.0, 0.0)) *
+                           (upright ? Vector3d(normal.normalized()) : random.direction());
+    const TriangleDistance d = point_triangle_distance(p, t[0], t[1], t[2]);
+    const double share = kind == Kind::kNeedle ? 1e-3 : 1e-5;
+    ASSERT_LE(d.upper - d.lower, share * reach(p, t)) << "case " << i;
+  }
+}
+
 // The returned point is as near as the interval says, and on the triangle up to rounding.
 TEST(PointTriangle, TheClosestPointIsOnTheTriangleAndAsNearAsSaid) {
   Random random(14);

@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 namespace spherule::test {
@@ -238,6 +239,13 @@ std::vector<NamedMesh> mesh_zoo() {
           {"needles", needles(8)},
           {"duplicates", with_duplicates(cube_mesh())},
           {"degenerates", with_degenerates(cube_mesh())}};
+}
+
+TriangleMesh mesh_named(const std::string& name) {
+  for (const NamedMesh& named : mesh_zoo()) {
+    if (named.name == name) return named.mesh;
+  }
+  throw std::out_of_range(name + " is not in the zoo");
 }
 
 }  // namespace spherule::test

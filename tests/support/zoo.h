@@ -52,5 +52,7 @@ struct NamedMesh {
   TriangleMesh mesh;
 };
 std::vector<NamedMesh> mesh_zoo();
+// Throws std::out_of_range for a name that is not there.
+TriangleMesh mesh_named(const std::string& name);
 
 }  // namespace spherule::test

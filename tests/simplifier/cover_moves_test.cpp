@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The moves between two searches of cover(), and what more of them are worth.
+#include "simplifier/internal/cover_moves.h"
+
+#include "simplifier/internal/cover_shift.h"
+#include "tests/simplifier/effort.h"
+#include "tests/simplifier/fitting.h"
+#include "tests/simplifier/judge.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+using internal::Candidate;
+using internal::CoverProblem;
+
+constexpr double kError = 0.1;
+
+// The unit cube, candidates all through it, and rows on its surface.
+struct Scene {
+  ExternalSpheres external = externals_of(cube(), {.max_error = kError / diagonal_of(cube())});
+  Clearance clearance{external};
+  CoverProblem problem{kError, 0.0};
+
+  explicit Scene(Random& random) {
+    problem.add_rows(points_on_surface(cube(), 2000, random), 0.02 * kError);
+    std::vector<Candidate> candidates;
+    while (candidates.size() < 3000) {
+      const Vector3d p(random.unit(), random.unit(), random.unit());
+      const double lower = clearance(p).lower;
+      if (lower >= 0.0) candidates.push_back({p, lower});
+    }
+    for (const CoverProblem::Row& row : problem.rows()) {
+      candidates.push_back({row.point, std::max(0.0, clearance(row.point).lower)});
+    }
+    problem.add_candidates(candidates);
+  }
+  static TriangleMesh cube() { return mesh_named("cube"); }
+};
+
+double least_margin(const CoverProblem& problem, const Candidate& candidate,
+                    const std::vector<std::uint32_t>& rows) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t row : rows) {
+    least = std::min(least, problem.margin(candidate, problem.rows()[row]));
+  }
+  return least;
+}
+
+TEST(CoverMoves, AShiftedBallHasNoLessToSpareAndItsClearanceIsABound) {
+  Random random(11);
+  const Scene scene(random);
+  int gained = 0;
+  for (int i = 0; i < 200; ++i) {
+    const std::size_t c = random.index(scene.problem.instance().columns.size());
+    const std::vector<std::uint32_t>& rows = scene.problem.instance().columns[c];
+    if (rows.empty()) continue;
+    const Candidate& start = scene.problem.candidate(c);
+    const Candidate end = shift(scene.clearance, scene.problem, start, rows);
+    const double before = least_margin(scene.problem, start, rows);
+    const double after = least_margin(scene.problem, end, rows);
+    EXPECT_GE(after, before - 1e-12);
+    gained += after > before + 0.01 * kError;
+    EXPECT_LE(end.clearance, scene.clearance(end.center).upper);
+    EXPECT_GE(end.clearance, 0.0);
+  }
+  EXPECT_GT(gained, 50);
+}
+
+TEST(CoverMoves, SpreadingOpensNoRowAndGivesMoreToSpare) {
+  Random random(12);
+  Scene scene(random);
+  CoverProblem::Columns solution = greedy_set_cover(scene.problem.instance());
+  ASSERT_TRUE(open_rows(scene.problem, solution).empty());
+  const CoverProblem::Columns before = solution;
+  spread(scene.clearance, scene.problem, solution);
+  EXPECT_EQ(solution.size(), before.size());
+  EXPECT_TRUE(open_rows(scene.problem, solution).empty());
+  EXPECT_NE(solution, before);
+}
+
+TEST(CoverMoves, BallsReachForRowsThatAreOpen) {
+  Random random(13);
+  Scene scene(random);
+  CoverProblem::Columns solution = greedy_set_cover(scene.problem.instance());
+  solution.pop_back();
+  const std::vector<std::uint32_t> open = open_rows(scene.problem, solution);
+  ASSERT_FALSE(open.empty());
+  const std::vector<Candidate> found = reach_for(scene.clearance, scene.problem, solution, open);
+  ASSERT_FALSE(found.empty());
+  const auto covers_one = [&](const Candidate& c) {
+    return std::ranges::any_of(open, [&](std::uint32_t row) {
+      return scene.problem.margin(c, scene.problem.rows()[row]) >= 0.0;
+    });
+  };
+  EXPECT_TRUE(std::ranges::any_of(found, covers_one));
+}
+
+TEST(CoverEffort, MoreOfItNeverTakesMoreSpheresAndIsProved) {
+  for (const char* name : {"cube", "l-bracket", "torus"}) {
+    SCOPED_TRACE(name);
+    const TriangleMesh mesh = mesh_named(name);
+    std::size_t least = std::numeric_limits<std::size_t>::max();
+    for (const int rounds : {0, effort(4, 1), effort(16, 2)}) {
+      const Fit fitted = fit(mesh, {}, {.effort = rounds});
+      EXPECT_LE(fitted.cover.spheres.size(), least);
+      EXPECT_TRUE(certificate_of(mesh, fitted, fitted.cover.spheres).covered);
+      least = fitted.cover.spheres.size();
+    }
+  }
+}
+
+TEST(CoverEffort, AnEndInTimeComesToAnEndAndIsProved) {
+  const TriangleMesh mesh = mesh_named("l-bracket");
+  CoverOptions options;
+  options.seconds = 1e-3;
+  const Fit fitted = fit(mesh, options, {.effort = std::numeric_limits<int>::max()});
+  EXPECT_TRUE(certificate_of(mesh, fitted, fitted.cover.spheres).covered);
+}
+
+}  // namespace
+}  // namespace spherule::test

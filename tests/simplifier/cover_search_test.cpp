@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/internal/cover_search.h"
+
+#include "tests/support/random.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+using internal::CoverSearch;
+const std::atomic<bool> kNeeded{false};
+
+using Rows = std::vector<std::uint32_t>;
+
+struct Planted {
+  SetCoverInstance instance;
+  std::vector<Rows> columns_of;
+  std::size_t known;  // columns that cover every row
+};
+
+// Rows dealt out to `known` columns, hidden among columns of the same size that hold random rows.
+Planted planted(Random& random, std::size_t rows, std::size_t known, std::size_t others) {
+  Planted made;
+  made.known = known;
+  made.instance.row_count = rows;
+  std::vector<Rows> columns(known + others);
+  for (std::uint32_t row = 0; row < rows; ++row) columns[random.index(known)].push_back(row);
+  for (std::size_t c = known; c < columns.size(); ++c) {
+    for (std::uint32_t row = 0; row < rows; ++row) {
+      if (random.index(known) == 0) columns[c].push_back(row);
+    }
+  }
+  for (std::size_t c = columns.size() - 1; c > 0; --c) {
+    std::swap(columns[c], columns[random.index(c + 1)]);
+  }
+  made.instance.columns = columns;
+  made.columns_of.resize(rows);
+  for (std::uint32_t c = 0; c < columns.size(); ++c) {
+    for (const std::uint32_t row : columns[c]) made.columns_of[row].push_back(c);
+  }
+  return made;
+}
+
+bool covers_all(const SetCoverInstance& instance, const std::vector<std::uint32_t>& chosen) {
+  std::vector<char> covered(instance.row_count, 0);
+  for (const std::uint32_t c : chosen) {
+    for (const std::uint32_t row : instance.columns[c]) covered[row] = 1;
+  }
+  return std::ranges::all_of(covered, [](char c) { return c != 0; });
+}
+
+TEST(CoverSearch, FindsPlantedCoversThatGreedyMisses) {
+  Random random(1);
+  std::size_t greedy_sum = 0;
+  std::size_t known_sum = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Planted made = planted(random, 200, 10 + random.index(10), 200);
+    const std::vector<std::size_t> greedy = greedy_set_cover(made.instance);
+    greedy_sum += greedy.size();
+    known_sum += made.known;
+    CoverSearch search(made.instance, made.columns_of, greedy);
+    EXPECT_TRUE(search.reach(made.known, 200'000'000, 5, kNeeded));
+    EXPECT_LE(search.best_columns().size(), made.known);
+    EXPECT_TRUE(covers_all(made.instance, search.best_columns()));
+  }
+  EXPECT_GT(greedy_sum, known_sum);
+}
+
+// Rows that no two columns share need as many columns as there are rows.
+TEST(CoverSearch, SaysSoWhereThereIsNoCover) {
+  SetCoverInstance instance;
+  instance.row_count = 12;
+  std::vector<Rows> columns_of(12);
+  for (std::uint32_t row = 0; row < 12; ++row) {
+    for (int copy = 0; copy < 3; ++copy) {
+      columns_of[row].push_back(static_cast<std::uint32_t>(instance.columns.size()));
+      instance.columns.push_back({row});
+    }
+  }
+  CoverSearch search(instance, columns_of, greedy_set_cover(instance));
+  EXPECT_FALSE(search.reach(11, 100'000, 1, kNeeded));
+  EXPECT_EQ(search.best_columns().size(), 11U);
+  CoverSearch enough(instance, columns_of, {});
+  EXPECT_TRUE(enough.reach(12, 100'000, 1, kNeeded));
+  EXPECT_TRUE(covers_all(instance, enough.best_columns()));
+}
+
+TEST(CoverSearch, IsEqualForEqualSeeds) {
+  Random random(2);
+  const Planted made = planted(random, 300, 20, 400);
+  const auto run = [&](std::uint64_t seed) {
+    CoverSearch search(made.instance, made.columns_of, greedy_set_cover(made.instance));
+    search.reach(made.known + 2, 300'000, seed, kNeeded);
+    return search.best_columns();
+  };
+  EXPECT_EQ(run(3), run(3));
+  EXPECT_NE(run(3), run(4));
+}
+
+TEST(CoverSearch, NothingToCoverIsCovered) {
+  const SetCoverInstance instance;
+  const std::vector<Rows> columns_of;
+  CoverSearch search(instance, columns_of, {});
+  EXPECT_TRUE(search.reach(0, 0, 1, kNeeded));
+  EXPECT_TRUE(search.best_columns().empty());
+}
+
+}  // namespace
+}  // namespace spherule::test
