@@ -21,10 +21,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Shares of E.
-// Half diagonal of the cells that rows stand for: the last for which there are not too many.
+// Half diagonal of the cells that rows stand for, as a share of E: the last for which there are not
+// too many of them.
 constexpr std::array kSpacings{0.7, 0.5, 0.3};
 constexpr std::size_t kManyCells = 60000;
+
+// Shares of E.
 constexpr double kCellRow = 0.1;         // radius of their rows
 constexpr double kLeakRow = 0.03;        // radius of the rows that leaks become
 constexpr double kFinest = 0.01;         // smallest cell of the proof

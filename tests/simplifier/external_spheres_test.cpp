@@ -72,7 +72,7 @@ TEST(ExternalSpheres, TheMeshIsInTheSimplifiedSolid) {
     SCOPED_TRACE(named.name);
     const double size = diagonal(named.mesh);
     for (const ExternalPlacement placement : kPlacements) {
-      ExternalOptions options = options_for(placement, 0.2 * size);
+      ExternalOptions options = options_for(placement, (kSanitized ? 0.5 : 0.2) * size);
       options.padding = 0.01 * size;
       const ExternalSpheres external = place_external_spheres(named.mesh, options);
       for (const Vector3d& p :

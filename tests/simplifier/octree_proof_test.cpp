@@ -62,6 +62,7 @@ TEST_P(OctreeProofOfZoo, EveryCoverIsProvedAgain) {
   options.method = std::get<0>(GetParam());
   FitShares shares;
   shares.placement = std::get<1>(GetParam());
+  if (kSanitized) shares.max_error *= 2.0;
   for (const NamedMesh& named : mesh_zoo()) {
     SCOPED_TRACE(named.name);
     const Fit fitted = fit(named.mesh, options, shares);
