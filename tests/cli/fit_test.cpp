@@ -106,6 +106,25 @@ TEST_F(FitTest, ThreadsDoNotChangeTheOutput) {
   }
 }
 
+TEST_F(FitTest, EffortOrSecondsSayHowLongToLook) {
+  const auto fit = [&](const std::string& option, const std::string& value) {
+    EXPECT_EQ(
+        run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", option, value}).exit_code, 0);
+    return read_json("box.json");
+  };
+  const json first = fit("--effort", "0");
+  const json later = fit("--effort", "6");
+  EXPECT_EQ(first.at("options").at("effort"), 0);
+  EXPECT_LT(later.at("spheres").size(), first.at("spheres").size());
+  EXPECT_EQ(fit("--seconds", "0.5").at("options").at("seconds"), 0.5);
+  EXPECT_EQ(run({"audit", "box.stl", "box.json"}).exit_code, 0);
+  expect_refusal({"fit", "box.stl", "-o", "box.json", "--effort", "1", "--seconds", "1"},
+                 "--effort excludes --seconds");
+  for (const char* option : {"--effort", "--seconds"}) {
+    expect_refusal({"fit", "box.stl", "-o", "box.json", option, "-1"}, option);
+  }
+}
+
 TEST_F(FitTest, OptionsArriveInTheFile) {
   ASSERT_EQ(run({"fit", "box.stl", "-o", "scaled.json", "--scale", "10", "--min-external", "100",
                  "--max-error", "20", "--min-radius", "15", "--external", "none", "--seed", "7"})
