@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/fit_parts.h"
 
-#include "simplifier/simplify.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 
 #include <chrono>
 #include <memory>
+#include <string>
 
 namespace spherule {
 
-void check_promises(const Certificate& certificate, double max_error, const std::string& part) {
-  if (!certificate.covered) throw Error(part, "the fit's certificate does not hold");
-  if (!certificate.protrusion_over_simplified_max ||
-      !(*certificate.protrusion_over_simplified_max <= max_error)) {
-    throw Error(part, "the fit is not proved to keep to the max error");
-  }
+void check_promises(const Simplification& fit, const std::string& part) {
+  const std::string broken = broken_promises(fit);
+  if (!broken.empty()) throw Error(part, broken);
 }
 
 namespace {
@@ -27,7 +24,7 @@ FitRecord fit(Part& part) {
   const auto start = std::chrono::steady_clock::now();
   const Simplification result = simplify(part.mesh, options);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  check_promises(result.certificate, part.max_error, part.name);
+  check_promises(result, part.name);
   part.tree = std::make_shared<const SphereTree>(build_tree(result.cover.spheres));
   return {part.name,
           part.mesh.triangles.size(),

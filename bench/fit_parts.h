@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/workload.h"
-#include "simplifier/certificate.h"
+#include "simplifier/simplify.h"
 
 #include <cstddef>
 #include <functional>
@@ -21,10 +21,9 @@ struct FitRecord {
   bool covered = false;
 };
 
-// Throws Error naming the part unless the certificate proves both promises of a fit: it covers, and
-// it protrudes from the simplified solid by at most `max_error`. Nothing measured on a set that
-// does not is worth having.
-void check_promises(const Certificate& certificate, double max_error, const std::string& part);
+// Throws Error naming the part and its broken_promises(), if there are any: nothing measured on
+// such a set is worth having.
+void check_promises(const Simplification& fit, const std::string& part);
 
 // simplify() and build_tree() for every part of the workload; `done` is told of each. Throws Error
 // as check_promises() does.

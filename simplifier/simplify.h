@@ -30,10 +30,10 @@ struct SimplifyOptions {
   std::size_t external_limit = 100000;  // attempts of the random placement
   double min_internal_diameter = 0.0;   // of the paper's loop; 0 chooses E / 2
   std::uint64_t seed = 1;
-  int effort = 16;       // of the covering search (CoverOptions::effort)
-  double seconds = 0.0;  // and its limit in time; 0: none
-  bool history = false;  // of the paper's loop
-  int threads = 0;       // 0: all; the result does not depend on it
+  int effort = CoverOptions{}.effort;  // of the covering search
+  double seconds = 0.0;                // and its limit in time; 0: none
+  bool history = false;                // of the paper's loop
+  int threads = 0;                     // 0: all; the result does not depend on it
   Progress progress = {};
 };
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/cover_candidates.h"
 
+#include "simplifier/internal/cube.h"
 #include "simplifier/internal/medial_ascent.h"
 #include "simplifier/internal/random.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <map>
 
@@ -21,10 +21,9 @@ constexpr double kThinning = 0.1;  // of E
 // In each cube of the given edge only the candidate with the largest clearance, the first of
 // equals.
 std::vector<Candidate> thinned(const std::vector<Candidate>& candidates, double edge) {
-  std::map<std::array<double, 3>, std::size_t> best;
+  std::map<Cube, std::size_t> best;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Eigen::Vector3d cube = (candidates[i].center / edge).array().floor();
-    const auto [at, first] = best.try_emplace({cube.x(), cube.y(), cube.z()}, i);
+    const auto [at, first] = best.try_emplace(cube_of(candidates[i].center, edge), i);
     if (!first && candidates[i].clearance > candidates[at->second].clearance) at->second = i;
   }
   std::vector<std::size_t> kept;

@@ -3,7 +3,6 @@
 
 #include "simplifier/internal/cover_moves.h"
 #include "simplifier/internal/cover_search.h"
-#include "spheretree/rounding.h"
 
 #include <tbb/parallel_for.h>
 
@@ -27,11 +26,10 @@ constexpr std::array kSpacings{0.7, 0.5, 0.3};
 constexpr std::size_t kManyCells = 60000;
 
 // Shares of E.
-constexpr double kCellRow = 0.1;         // radius of their rows
-constexpr double kLeakRow = 0.03;        // radius of the rows that leaks become
-constexpr double kFinest = 0.01;         // smallest cell of the proof
-constexpr double kSheetReserve = 0.005;  // off the radius where S is as thin as the mesh
-constexpr double kLeakSpacing = 0.15;    // leaks become rows this far apart
+constexpr double kCellRow = 0.1;       // radius of their rows
+constexpr double kLeakRow = 0.03;      // radius of the rows that leaks become
+constexpr double kFinest = 0.01;       // smallest cell of the proof
+constexpr double kLeakSpacing = 0.15;  // leaks become rows this far apart
 
 constexpr std::size_t kMinStarts = 2000;
 constexpr std::size_t kMaxStarts = 10000;
@@ -202,19 +200,10 @@ void CoverFitter::add_rows(CoverProblem& problem, const Points& points, double r
   problem.add_candidates(own);
 }
 
-// As stored: the computed clearance of a point of S may be negative by rounding; a little less than
-// E can still be proved there.
 std::vector<Sphere> CoverFitter::balls_of(const CoverProblem& problem,
                                           const Columns& columns) const {
   std::vector<Sphere> balls;
-  for (const std::size_t c : columns) {
-    const Candidate& at = problem.candidate(c);
-    const double exact = clearance_(at.center).lower;
-    const double allowed = at.clearance < 0.0 ? problem.radius(at.clearance)
-                           : exact < 0.0      ? error_ * (1.0 - kSheetReserve)
-                                              : next_down(add_down(exact, error_));
-    balls.push_back({at.center, std::max(options_.min_radius, allowed)});
-  }
+  for (const std::size_t c : columns) balls.push_back(problem.ball(c, clearance_));
   return balls;
 }
 

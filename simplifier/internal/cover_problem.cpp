@@ -2,6 +2,7 @@
 #include "simplifier/internal/cover_problem.h"
 
 #include "simplifier/internal/point_grid.h"
+#include "spheretree/rounding.h"
 
 #include <tbb/parallel_for.h>
 
@@ -12,8 +13,9 @@ namespace spherule::internal {
 namespace {
 
 // Shares of E.
-constexpr double kCube = 1.5;          // edge of the cubes that rows are sorted into
-constexpr double kPinchRadius = 0.02;  // of a ball where no point of S is known
+constexpr double kCube = 1.5;            // edge of the cubes that rows are sorted into
+constexpr double kPinchRadius = 0.02;    // of a ball where no point of S is known
+constexpr double kSheetReserve = 0.005;  // off the radius where S is as thin as the mesh
 
 }  // namespace
 
@@ -23,6 +25,15 @@ CoverProblem::CoverProblem(double max_error, double min_radius)
 double CoverProblem::radius(double clearance) const {
   return std::max(min_radius_,
                   clearance >= 0.0 ? clearance + max_error_ : kPinchRadius * max_error_);
+}
+
+Sphere CoverProblem::ball(std::size_t column, const Clearance& clearance) const {
+  const Candidate& at = candidates_[column];
+  const double exact = clearance(at.center).lower;
+  const double allowed = at.clearance < 0.0 ? radius(at.clearance)
+                         : exact < 0.0      ? max_error_ * (1.0 - kSheetReserve)
+                                            : next_down(add_down(exact, max_error_));
+  return {at.center, std::max(min_radius_, allowed)};
 }
 
 void CoverProblem::add_rows(std::span<const Eigen::Vector3d> points, double radius) {
@@ -53,12 +64,7 @@ std::vector<std::size_t> CoverProblem::keep_only(const std::vector<char>& kept) 
   instance_.columns.resize(count);
   entries_ = 0;
   for (std::vector<std::uint32_t>& columns : columns_of_) columns.clear();
-  for (std::size_t c = 0; c < count; ++c) {
-    entries_ += instance_.columns[c].size();
-    for (const std::uint32_t row : instance_.columns[c]) {
-      columns_of_[row].push_back(static_cast<std::uint32_t>(c));
-    }
-  }
+  for (std::size_t c = 0; c < count; ++c) enter(c, 0);
   return number;
 }
 
@@ -90,12 +96,14 @@ void CoverProblem::cover_rows(std::size_t first_column, std::size_t first_row) {
     }
   });
   columns_of_.resize(rows_.size());
-  for (std::size_t c = first_column; c < candidates_.size(); ++c) {
-    const std::vector<std::uint32_t>& covered = instance_.columns[c];
-    entries_ += covered.size() - known[c];
-    for (std::size_t i = known[c]; i < covered.size(); ++i) {
-      columns_of_[covered[i]].push_back(static_cast<std::uint32_t>(c));
-    }
+  for (std::size_t c = first_column; c < candidates_.size(); ++c) enter(c, known[c]);
+}
+
+void CoverProblem::enter(std::size_t column, std::size_t first) {
+  const std::vector<std::uint32_t>& covered = instance_.columns[column];
+  entries_ += covered.size() - first;
+  for (std::size_t i = first; i < covered.size(); ++i) {
+    columns_of_[covered[i]].push_back(static_cast<std::uint32_t>(column));
   }
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "simplifier/internal/clearance.h"
 #include "simplifier/internal/cover_candidates.h"
 #include "simplifier/internal/set_cover.h"
+#include "spheretree/sphere.h"
 
 #include <Eigen/Core>
 
@@ -39,6 +41,9 @@ class CoverProblem {
 
   // Radius of the ball at a place with this clearance.
   double radius(double clearance) const;
+  // The ball as it is stored: protruding by E at most, by the exact clearance. That of a point of S
+  // may be negative as computed; a little less than E can still be proved there.
+  Sphere ball(std::size_t column, const Clearance& clearance) const;
   // How far the small ball of the row lies inside the ball of the candidate; negative: outside.
   double margin(const Candidate& candidate, const Row& row) const {
     return radius(candidate.clearance) - row.radius - (row.point - candidate.center).norm();
@@ -53,6 +58,8 @@ class CoverProblem {
   std::vector<std::uint32_t> times_covered(const Columns& solution) const;
 
  private:
+  // Enters the rows of a column, from the `first` in its list on, into columns_of_ and entries_.
+  void enter(std::size_t column, std::size_t first);
   void cover_rows(std::size_t first_column, std::size_t first_row);
 
   double max_error_;

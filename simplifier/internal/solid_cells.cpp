@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/solid_cells.h"
 
+#include "simplifier/internal/cube.h"
 #include "simplifier/internal/solid_query.h"
 #include "spheretree/rounding.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
 
 namespace spherule::internal {
@@ -23,13 +23,6 @@ constexpr double kThinning = 1.2;  // cells' spacing: edge of the cubes with one
 // Cells are only ever halved, along the seams of every set of balls that was examined. From so many
 // times the first number on it is cheaper to begin again.
 constexpr std::size_t kForgetting = 8;
-
-using Cube = std::array<double, 3>;
-
-Cube cube_of(const Eigen::Vector3d& point, double edge) {
-  const Eigen::Vector3d cube = (point / edge).array().floor();
-  return {cube.x(), cube.y(), cube.z()};
-}
 
 }  // namespace
 

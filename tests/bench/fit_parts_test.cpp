@@ -9,16 +9,20 @@ namespace spherule {
 namespace {
 
 TEST(FitParts, StopsWhereAPromiseIsNotProved) {
-  Certificate certificate;
+  Simplification fit;
+  Certificate& certificate = fit.certificate;
   certificate.covered = true;
+  fit.options.max_error = 2.0;
   certificate.protrusion_over_simplified_max = 2.0;
-  EXPECT_NO_THROW(check_promises(certificate, 2.0, "part"));
-  EXPECT_THROW(check_promises(certificate, 1.9, "part"), Error);
+  EXPECT_NO_THROW(check_promises(fit, "part"));
+  fit.options.max_error = 1.9;
+  EXPECT_THROW(check_promises(fit, "part"), Error);
+  fit.options.max_error = 2.0;
   certificate.protrusion_over_simplified_max.reset();
-  EXPECT_THROW(check_promises(certificate, 2.0, "part"), Error);
+  EXPECT_THROW(check_promises(fit, "part"), Error);
   certificate.protrusion_over_simplified_max = 1.0;
   certificate.covered = false;
-  EXPECT_THROW(check_promises(certificate, 2.0, "part"), Error);
+  EXPECT_THROW(check_promises(fit, "part"), Error);
 }
 
 }  // namespace

@@ -66,11 +66,10 @@ FittedModel fit_model(const std::string& name, const TriangleMesh& mesh, double 
   options.min_external_diameter = 4.0 * error;
   options.effort = 2;
   const Simplification fit = simplify(mesh, options);
-  if (!fit.certificate.covered || !fit.certificate.protrusion_over_mesh) {
-    throw std::runtime_error(name + ": not certified");
-  }
-  if (!(fit.certificate.protrusion_over_simplified_max <= error)) {
-    throw std::runtime_error(name + ": protrudes by more than E");
+  const std::string broken = broken_promises(fit);
+  if (!broken.empty()) throw std::runtime_error(name + ": " + broken);
+  if (!fit.certificate.protrusion_over_mesh) {
+    throw std::runtime_error(name + ": protrusion over the mesh is not known");
   }
   std::vector<Sphere> spheres = fit.cover.spheres;
   for (Sphere& s : spheres) s.radius *= radius_factor;

@@ -21,18 +21,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::string name_of(CoverMethod method) {
-  return method == CoverMethod::kPaper ? "paper" : "cover";
-}
-
 class CoverOfZoo : public testing::TestWithParam<std::tuple<std::size_t, CoverMethod>> {
  protected:
   TriangleMesh mesh() const { return mesh_zoo().at(std::get<0>(GetParam())).mesh; }
-  CoverOptions options() const {
-    CoverOptions options;
-    options.method = std::get<1>(GetParam());
-    return options;
-  }
+  CoverOptions options() const { return options_for(std::get<1>(GetParam())); }
 };
 
 // Without any volume, whose solid is as thin as the external balls leave it.
@@ -87,11 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Zoo, CoverOfZoo,
 
 class CoverByMethod : public testing::TestWithParam<CoverMethod> {
  protected:
-  CoverOptions options() const {
-    CoverOptions options;
-    options.method = GetParam();
-    return options;
-  }
+  CoverOptions options() const { return options_for(GetParam()); }
 };
 
 TEST_P(CoverByMethod, IsEqualInEveryRunOnAnyNumberOfThreads) {

@@ -15,11 +15,16 @@
 
 #include <ostream>
 #include <span>
+#include <string>
 
 namespace spherule {
 
+inline std::string name_of(CoverMethod method) {
+  return method == CoverMethod::kPaper ? "paper" : "cover";
+}
+
 inline void PrintTo(CoverMethod method, std::ostream* out) {
-  *out << (method == CoverMethod::kPaper ? "paper" : "cover");
+  *out << name_of(method);
 }
 
 }  // namespace spherule
@@ -31,6 +36,12 @@ inline double diagonal_of(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
   return box.diagonal().norm();
+}
+
+inline CoverOptions options_for(CoverMethod method) {
+  CoverOptions options;
+  options.method = method;
+  return options;
 }
 
 struct Fit {

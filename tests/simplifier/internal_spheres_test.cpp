@@ -22,9 +22,7 @@ namespace {
 using Eigen::Vector3d;
 
 CoverOptions paper_options() {
-  CoverOptions options;
-  options.method = CoverMethod::kPaper;
-  return options;
+  return options_for(CoverMethod::kPaper);
 }
 
 Fit paper_fit(const TriangleMesh& mesh, const FitShares& shares = {}) {

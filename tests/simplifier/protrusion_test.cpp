@@ -19,11 +19,7 @@ using Eigen::Vector3d;
 
 class Protrusion : public testing::TestWithParam<CoverMethod> {
  protected:
-  CoverOptions options() const {
-    CoverOptions options;
-    options.method = GetParam();
-    return options;
-  }
+  CoverOptions options() const { return options_for(GetParam()); }
 };
 
 void expect_nothing_beyond_the_error(const TriangleMesh& mesh, const Fit& fitted) {
@@ -82,9 +78,7 @@ TEST_P(Protrusion, NothingProtrudesHoweverExternalSpheresArePlaced) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, Protrusion,
                          testing::Values(CoverMethod::kCover, CoverMethod::kPaper),
-                         [](const auto& tested) {
-                           return tested.param == CoverMethod::kPaper ? "paper" : "cover";
-                         });
+                         [](const auto& tested) { return name_of(tested.param); });
 
 }  // namespace
 }  // namespace spherule::test
