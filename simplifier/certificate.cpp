@@ -63,7 +63,7 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                                   ? ExternalSpheres{}
                                   : flood_closely(mesh, options.padding, diagonal);
   const ExternalSpheres& external = options.external != nullptr ? *options.external : own;
-  const Clearance clearance(external);
+  const Clearance clearance(external, distance);
   const internal::BallHierarchy hierarchy(spheres);
   const internal::BallsToProve balls{spheres, hierarchy};
   const double largest = std::max(internal::largest_coordinate(distance.box()),

@@ -33,7 +33,8 @@ SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
   validate(mesh, "mesh");
   check_options(options);
   const internal::ThreadLimit threads(options.threads);
-  const Clearance clearance(external);
+  const MeshDistance distance(mesh);
+  const Clearance clearance(external, distance);
   if (options.method == CoverMethod::kPaper) {
     return place_internal_spheres(mesh, clearance, options);
   }
@@ -41,7 +42,6 @@ SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
     throw Error("max error", "too small for coordinates of this size");
   }
   SphereCover result;
-  const MeshDistance distance(mesh);
   result.spheres = internal::CoverFitter(clearance, distance, options).run();
   return result;
 }

@@ -19,15 +19,20 @@ struct NearestBall {
       -1;  // a ball that attains it, up to rounding; -1 if none is nearer than asked
 };
 
-// Branch and bound over a binary hierarchy, split in centre and radius. A node is bounded by the
-// box of its centres with its largest radius, and by a half-space that contains its balls: balls
-// that touch a flat wall at different distances have radii that are an affine function of their
-// centres, with the wall's normal for a gradient, so the normal is found by regression. Immutable
-// and safe to share between threads.
+// Branch and bound over a binary hierarchy. What bounds a node is made for balls that touch a
+// surface, as external balls do: where it is flat they have a half-space in common, however far
+// their centres are from it, and where it turns about an axis, as along a rod or a rounded edge,
+// they leave a cylinder free, whose axis is nearly as far from all of them. Immutable and safe to
+// share between threads.
 class BallHierarchy {
  public:
   BallHierarchy() = default;
+  // Of any balls: split in centre and radius; the wall that the balls of a node touch is guessed by
+  // regression, as their radii are then an affine function of their centres.
   explicit BallHierarchy(std::span<const Sphere> balls);
+  // Of balls that touch a surface, each in its point of `contacts` (which need not be exact: wrong
+  // ones cost time only): split by contact and normal. Much faster where balls are nearly tied.
+  BallHierarchy(std::span<const Sphere> balls, std::span<const Eigen::Vector3d> contacts);
 
   // Only values below `limit` are looked for; without one, both bounds are the limit. The search
   // may be content with a ball that is up to `tolerance` worse than the nearest: many balls are
@@ -39,15 +44,22 @@ class BallHierarchy {
   bool empty() const { return balls_.empty(); }
 
  private:
-  // Depth-first order: the left child is the next node; a leaf has right < 0 and holds [begin,
-  // end).
+  // The balls [begin, end); the two children of an inner node stand side by side. In the frame of a
+  // node (normal, axis, side) its centres lie in the box [low, high]; normal.x is at least
+  // `offset`, and the distance of x from the line through `focus` along the axis at least `free`,
+  // for every point x of its balls.
   struct Node {
-    Eigen::Vector3d low;
-    Eigen::Vector3d high;
-    double max_radius = 0.0;
-    Eigen::Vector3d normal;  // |normal| <= 1; normal.x >= offset for every point x of the balls
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+    Eigen::Vector3d side = Eigen::Vector3d::Zero();
+    Eigen::Vector3d low = Eigen::Vector3d::Zero();
+    Eigen::Vector3d high = Eigen::Vector3d::Zero();
+    Eigen::Vector3d focus = Eigen::Vector3d::Zero();
     double offset = 0.0;
-    std::int32_t right = -1;
+    double free = 0.0;
+    double min_radius = 0.0;
+    double max_radius = 0.0;
+    std::int32_t children = -1;  // the first; negative for a leaf
     std::int32_t begin = 0;
     std::int32_t end = 0;
   };
@@ -55,9 +67,18 @@ class BallHierarchy {
     Sphere ball;
     std::int32_t index;
   };
+  // How a ball meets the surface.
+  struct Touch {
+    Eigen::Vector3d contact;
+    Eigen::Vector3d normal;
+  };
 
-  void build(std::int32_t begin, std::int32_t end);
-  void fit_half_space(Node& node) const;
+  void build(std::size_t self, const std::vector<Touch>& touches);
+  std::span<const Entry> balls_of(const Node& node) const;
+  Eigen::Vector3d regressed_normal(const Node& node) const;
+  void fit_cylinder(Node& node, const std::vector<Touch>& touches) const;
+  void fit_box(Node& node, const Eigen::Vector3d& normal, const Eigen::Vector3d& axis) const;
+  double bound(const Node& node, const Eigen::Vector3d& point, double enough) const;
 
   std::vector<Entry> balls_;
   std::vector<Node> nodes_;

@@ -3,16 +3,40 @@
 
 #include "spheretree/rounding.h"
 
+#include <tbb/parallel_for.h>
+
 #include <limits>
+#include <span>
 
 namespace spherule {
 
 using Eigen::Vector3d;
 
-Clearance::Clearance(const ExternalSpheres& external) : balls_(external.balls), box_(external.box) {
-  centers_.reserve(external.balls.size());
-  for (const Sphere& s : external.balls) centers_.push_back(s.center);
+namespace {
+
+std::vector<Vector3d> centers_of(std::span<const Sphere> balls) {
+  std::vector<Vector3d> centers;
+  centers.reserve(balls.size());
+  for (const Sphere& s : balls) centers.push_back(s.center);
+  return centers;
 }
+
+std::vector<Vector3d> contacts_of(std::span<const Sphere> balls, const MeshDistance& distance) {
+  std::vector<Vector3d> contacts(balls.size());
+  tbb::parallel_for(std::size_t{0}, balls.size(),
+                    [&](std::size_t i) { contacts[i] = distance(balls[i].center).closest; });
+  return contacts;
+}
+
+}  // namespace
+
+Clearance::Clearance(const ExternalSpheres& external)
+    : centers_(centers_of(external.balls)), balls_(external.balls), box_(external.box) {}
+
+Clearance::Clearance(const ExternalSpheres& external, const MeshDistance& distance)
+    : centers_(centers_of(external.balls)),
+      balls_(external.balls, contacts_of(external.balls, distance)),
+      box_(external.box) {}
 
 // A face of the box is an external ball of infinite radius; its gap is a single difference.
 ClearanceAt Clearance::operator()(const Vector3d& point, double tolerance, double limit) const {

@@ -43,7 +43,8 @@ std::vector<Candidate> candidates_from(const Clearance& clearance,
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
     Random random(seed + 0x9e3779b97f4a7c15U * (i + 1));
     const double depth = random.between(0.2, 1.5) * max_error;
-    const Eigen::Vector3d start = points[i] + depth * clearance(points[i]).away;
+    const Eigen::Vector3d start =
+        points[i] + depth * clearance(points[i], kClearanceTolerance * max_error).away;
     const std::vector<AscentStep> path = ascend(clearance, start,
                                                 {.first_step = random.between(0.1, 0.4) * max_error,
                                                  .least_step = 0.05 * max_error,

@@ -17,8 +17,10 @@ namespace {
 // most of its parts, which need not be examined then.
 constexpr std::size_t kEnoughLeaks = 3;
 
-constexpr double kGrading = 0.5;   // of the clearance, by which deeper cells are larger
-constexpr double kThinning = 1.2;  // cells' spacing: edge of the cubes with one boundary point each
+constexpr double kGrading = 0.5;  // of the clearance, by which deeper cells are larger
+// Shares of the cells' spacing.
+constexpr double kThinning = 1.2;  // edge of the cubes with one boundary point each
+constexpr double kSampleTolerance = 0.01;
 
 // Cells are only ever halved, along the seams of every set of balls that was examined. From so many
 // times the first number on it is cheaper to begin again.
@@ -38,7 +40,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
     tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
       Cell& cell = level[i];
       const double reach = cell.box.reach();
-      const ClearanceAt at = clearance_(cell.box.center, 0.125 * reach);
+      const ClearanceAt at = clearance_(cell.box.center, 0.125 * reach, 4.0 * reach);
       const CellState state = state_of(at, reach);
       if (state.outside) return;
       cell.inside = state.inside;
@@ -64,12 +66,13 @@ std::vector<Vector3d> SolidCells::sample() const {
     usable[i] = 1;
     if (cells_[i].inside) return;
     // Onto the boundary: by the clearance towards the contact, or away from it.
-    const ClearanceAt at = clearance_(points[i]);
+    const double tolerance = kSampleTolerance * spacing_;
+    const ClearanceAt at = clearance_(points[i], tolerance);
     points[i] -= at.away * at.lower;
-    const ClearanceAt there = clearance_(points[i]);
+    const ClearanceAt there = clearance_(points[i], tolerance);
     if (there.lower >= 0.0) return;
     points[i] += there.away * (-2.0 * there.lower);
-    if (clearance_(points[i]).lower >= 0.0) return;
+    if (clearance_(points[i], tolerance).lower >= 0.0) return;
     const auto on_mesh = mesh_point_in(distance_, cells_[i].box);
     usable[i] = on_mesh ? 1 : 0;
     if (on_mesh) points[i] = *on_mesh;

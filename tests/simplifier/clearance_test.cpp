@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <string>
@@ -62,6 +63,26 @@ ExternalSpheres random_external(Random& random, int i) {
   external.balls =
       random_balls(random, i % 7 == 0 ? 0 : 1 + random.index(200), i, 1.0, Vector3d::Zero());
   return external;
+}
+
+// Balls that touch a rod of radius 1 about the z axis from outside, or (every third) wrong
+// contacts.
+struct TouchingBalls {
+  std::vector<Sphere> balls;
+  std::vector<Vector3d> contacts;
+};
+TouchingBalls touching_balls(Random& random, bool wrong) {
+  TouchingBalls result;
+  for (int i = 0; i < 400; ++i) {
+    const double angle = random.between(0.0, 6.2831853);
+    const Vector3d out(std::cos(angle), std::sin(angle), 0.0);
+    const Vector3d contact = out + Vector3d(0, 0, random.between(0.0, 4.0));
+    const double radius = random.between(1.0, i % 5 == 0 ? 20.0 : 1.2);
+    result.balls.push_back({contact + radius * out, radius});
+    result.contacts.push_back(wrong ? random.in_box({Vector3d::Zero(), Vector3d::Constant(4)})
+                                    : contact);
+  }
+  return result;
 }
 
 const Eigen::AlignedBox3d kAround(Vector3d::Constant(-1), Vector3d::Constant(5));
@@ -120,6 +141,24 @@ TEST(BallHierarchy, LimitAndToleranceLoosenTheBoundsAsStated) {
   }
   EXPECT_GT(within, 50);
   EXPECT_GT(beyond, 50);
+}
+
+TEST(BallHierarchy, BoundsHoldWhereBallsAreTiedAndWhateverContactsAreSaid) {
+  Random random(43);
+  for (int i = 0; i < effort(30, 6); ++i) {
+    const TouchingBalls touching = touching_balls(random, i % 3 == 2);
+    const BallHierarchy hierarchy(touching.balls, touching.contacts);
+    for (int k = 0; k < 40; ++k) {
+      Vector3d p = random.in_box(kAround);
+      if (k % 2 == 0) p.head<2>() *= 1e-3;  // near the axis, where all balls are nearly tied
+      const Digits50 exact = exact_gap(p, touching.balls);
+      const double tolerance = k % 4 < 2 ? 0.0 : 0.01;
+      const NearestBall found = hierarchy.nearest(p, kInfinity, tolerance);
+      ASSERT_LE(Digits50(found.lower), exact);
+      ASSERT_GE(Digits50(found.upper), exact);
+      ASSERT_LE(found.upper - found.lower, tolerance + 1e-12);
+    }
+  }
 }
 
 TEST(BallHierarchy, AnEmptySetIsInfinitelyFar) {
