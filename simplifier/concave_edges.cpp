@@ -10,6 +10,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace spherule {
@@ -17,7 +18,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSharp = 150.0 / 180.0 * std::numbers::pi;
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kSharp = 150.0 * kDegree;
+// Triangles that lie on each other leave no room between them.
+constexpr double kFolded = kDegree;
 // Sharper edges are treated like this one (11 degrees), lest their zones grow without bound.
 constexpr double kLeastSine = 0.1;
 constexpr double kLeastDiameter = 1.0 / 16.0;  // of D
@@ -47,7 +51,10 @@ std::optional<double> concave_angle(const std::vector<Side>& sides) {
     least = between(sides[0], sides[1]);
   } else {
     for (std::size_t i = 0; i < sides.size(); ++i) {
-      for (std::size_t k = 0; k < i; ++k) least = std::min(least, between(sides[i], sides[k]));
+      for (std::size_t k = 0; k < i; ++k) {
+        const double angle = between(sides[i], sides[k]);
+        if (angle > kFolded) least = std::min(least, angle);
+      }
     }
   }
   if (least >= kSharp) return std::nullopt;
@@ -66,7 +73,11 @@ std::vector<Edge> concave_edges(const TriangleMesh& mesh) {
   }
   const double outwards = volume < 0.0 ? -1.0 : 1.0;
   std::map<std::pair<int, int>, std::vector<Side>> sides;
+  std::set<std::array<int, 3>> seen;
   for (const Eigen::Vector3i& t : mesh.triangles) {
+    std::array<int, 3> corners{t[0], t[1], t[2]};
+    std::ranges::sort(corners);
+    if (!seen.insert(corners).second) continue;
     const Vector3d cross = (vertex(t, 1) - vertex(t, 0)).cross(vertex(t, 2) - vertex(t, 0));
     if (!(cross.norm() > 0.0)) continue;
     const Vector3d normal = outwards * cross.normalized();

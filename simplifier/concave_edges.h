@@ -27,8 +27,9 @@ struct ConcaveEdgeOptions {
 // Edges are matched by vertices that are equal bit for bit, and the outside is where the triangles'
 // normals point (on the other side if the mesh as a whole has a negative volume). Where an edge has
 // more than two triangles, or two that contradict each other, the smallest angle between any two of
-// them counts, whichever side it opens to: a zone that is not needed costs time only. Edges with
-// one triangle, and triangles of no area, have no angle. In a fixed order.
+// them counts, whichever side it opens to, unless it is below a degree: a zone that is not needed
+// costs time only. Edges with one triangle, triangles of no area and triangles that were there
+// before have no angle. In a fixed order.
 std::vector<Zone> concave_edge_zones(const TriangleMesh& mesh, const ConcaveEdgeOptions& options);
 
 }  // namespace spherule
