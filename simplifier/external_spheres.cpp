@@ -152,11 +152,12 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
   const double step = chosen_step(options, options.min_external_diameter, options.max_error);
   std::vector<Zone> zones = options.zones;
   if (options.keep_concave_edges) {
-    result.concave_edges =
-        concave_edge_zones(mesh, {.min_external_diameter = options.min_external_diameter,
-                                  .max_error = options.max_error > 0.0 ? options.max_error : step,
-                                  .padding = result.padding,
-                                  .margin = 2.0 * step});
+    result.concave_edges = concave_edge_zones(
+        mesh, {.min_external_diameter = options.min_external_diameter,
+               .max_error = options.max_error > 0.0 ? options.max_error
+                                                    : options.min_external_diameter / 4.0,
+               .padding = result.padding,
+               .margin = 2.0 * step});
     zones.insert(zones.end(), result.concave_edges.begin(), result.concave_edges.end());
   }
   std::vector<double> zone_steps;

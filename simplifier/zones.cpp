@@ -45,8 +45,8 @@ struct Contains {
   bool operator()(const Sphere& ball) const { return certainly_contains(ball, point, reach); }
   bool operator()(const AlignedBox3d& box) const {
     for (int axis = 0; axis < 3; ++axis) {
-      const double low = sub_down(point[axis], reach);
-      const double high = add_up(point[axis], reach);
+      const double low = reach == 0.0 ? point[axis] : sub_down(point[axis], reach);
+      const double high = reach == 0.0 ? point[axis] : add_up(point[axis], reach);
       if (!(low >= box.min()[axis] && high <= box.max()[axis])) return false;
     }
     return true;
