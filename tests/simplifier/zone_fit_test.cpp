@@ -207,23 +207,20 @@ class Walk {
     });
   }
 
-  // From far away towards the target in small free steps, with turns where the way is blocked.
-  Eigen::Isometry3d run(const Vector3d& target, Random& random) const {
-    double reach = 0.0;
+  // Towards the target in small free steps, with turns where the way is blocked.
+  Eigen::Isometry3d run(Eigen::Isometry3d pose, const Vector3d& target, double step,
+                        Random& random) const {
+    double reach = 0.1;
     for (const Sphere& ball : tool_) reach = std::max(reach, ball.center.norm());
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.linear() = random.rotation().toRotationMatrix();
-    pose.translation() = target + 6.0 * random.direction();
-    for (int i = 0; i < effort(400, 100); ++i) {
-      const double step = 0.05;
-      Eigen::Isometry3d next = pose;
-      const double angle = random.between(-0.2, 0.2) * step / std::max(reach, 0.1);
+    for (int i = 0; i < effort(400, 200); ++i) {
+      const double angle = random.between(-0.2, 0.2) * step / reach;
       const Vector3d towards = target - pose.translation();
-      const Vector3d way =
-          (towards.normalized() + random.between(0.0, 1.5) * random.direction()).normalized();
+      const Vector3d astray = random.between(0.0, 1.5) * random.direction();
+      Eigen::Isometry3d next = pose;
       next.linear() = (Eigen::AngleAxisd(angle, random.direction()) * pose.linear()).eval();
-      // A ball moves by less than `step` in all: 0.8 of it and a fifth of it.
-      next.translation() += std::min(towards.norm(), 0.8 * step) * way;
+      // A ball moves by at most the step in all: 0.8 of it and a fifth of it.
+      next.translation() +=
+          std::min(towards.norm(), 0.8 * step) * (towards.normalized() + astray).normalized();
       if (is_free(next, step)) pose = next;
     }
     return pose;
@@ -235,46 +232,91 @@ class Walk {
   double room_;
 };
 
+// A thin rod, covered by balls of one radius nearly along its axis.
+std::vector<Sphere> rod() {
+  SimplifyOptions options;
+  options.max_error = 0.05;
+  options.min_radius = 0.1;
+  options.effort = 2;
+  return simplify(box_mesh({-0.01, -0.01, -0.4}, {0.01, 0.01, 0.4}), options).cover.spheres;
+}
+
+ExternalSpheres externals_for(const std::vector<Sphere>& tool, const TriangleMesh& mesh) {
+  ExternalOptions options;
+  options.min_external_diameter = tool_diameter(tool);
+  options.max_error = 0.05;
+  return place_external_spheres(mesh, options);
+}
+
+// No point of the closed balls, those next to the mesh among them, is in S.
+void expect_nothing_met(const std::vector<Sphere>& tool, const Eigen::Isometry3d& pose,
+                        const MeshDistance& distance, const ExternalSpheres& external,
+                        Random& random) {
+  for (const Sphere& ball : tool) {
+    const Vector3d c = Walk::at(pose, ball);
+    const Vector3d to_mesh = (distance(c).closest - c).normalized();
+    ASSERT_FALSE(is_in_solid(c + ball.radius * to_mesh, external));
+    for (int k = 0; k < 30; ++k) {
+      const double share = k % 3 == 0 ? random.unit() : 1.0;
+      const Vector3d beside = to_mesh + 0.3 * random.unit() * random.direction();
+      const Vector3d direction = k % 2 == 0 ? random.direction() : beside.normalized();
+      ASSERT_FALSE(is_in_solid(c + share * ball.radius * direction, external));
+    }
+  }
+}
+
+constexpr double kRoom = 0.6341;  // of closing_slack
+
 TEST(Tool, AToolThatDIsMadeForMeetsNothingOfTheSolidUnlessItMeetsTheMesh) {
-  // A rod, covered by balls that are large enough.
-  SimplifyOptions tool_options;
-  tool_options.max_error = 0.05;
-  tool_options.min_radius = 0.1;
-  tool_options.effort = 2;
-  const std::vector<Sphere> tool =
-      simplify(box_mesh({-0.05, -0.05, -0.4}, {0.05, 0.05, 0.4}), tool_options).cover.spheres;
-  const double diameter = tool_diameter(tool);
-  EXPECT_GE(diameter, 0.2);
+  const std::vector<Sphere> tool = rod();
+  EXPECT_GE(tool_diameter(tool), 0.2);
   Random random(91);
   int close = 0;
   for (const TriangleMesh& mesh : {cube_mesh(1.5), l_bracket(), pipe(0.8, 0.6, 1.0, 16)}) {
-    ExternalOptions options;
-    options.min_external_diameter = diameter;
-    options.max_error = 0.05;
-    const ExternalSpheres external = place_external_spheres(mesh, options);
+    const ExternalSpheres external = externals_for(tool, mesh);
     const MeshDistance distance(mesh);
-    const Walk walk(distance, tool, 0.6341 * external.closing_slack);
+    const Walk walk(distance, tool, kRoom * external.closing_slack);
     for (int i = 0; i < effort(60, 8); ++i) {
-      const Eigen::Isometry3d pose = walk.run(random.in_box(external.box), random);
+      const Vector3d target = random.in_box(external.box);
+      Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
+      start.linear() = random.rotation().toRotationMatrix();
+      start.translation() = target + 6.0 * random.direction();
+      const Eigen::Isometry3d pose = walk.run(start, target, 0.05, random);
       ASSERT_TRUE(walk.is_free(pose, 0.0));
-      for (const Sphere& ball : tool) {
-        const Vector3d c = Walk::at(pose, ball);
-        if (external.box.exteriorDistance(c) > ball.radius) continue;
-        ++close;
-        // No point of the closed ball, the nearest of the mesh's side among them, is in S.
-        const Vector3d to_mesh = (distance(c).closest - c).normalized();
-        ASSERT_FALSE(is_in_solid(c + ball.radius * to_mesh, external));
-        for (int k = 0; k < 30; ++k) {
-          const double share = k % 3 == 0 ? random.unit() : 1.0;
-          const Vector3d direction =
-              k % 2 == 0 ? random.direction()
-                         : (to_mesh + 0.3 * random.unit() * random.direction()).normalized();
-          ASSERT_FALSE(is_in_solid(c + share * ball.radius * direction, external));
-        }
-      }
+      expect_nothing_met(tool, pose, distance, external, random);
+      if (external.box.exteriorDistance(pose.translation()) < 0.4) ++close;
     }
   }
-  EXPECT_GT(close, effort(200, 20));
+  EXPECT_GT(close, effort(60, 8));
+}
+
+// A slot that is hardly wider than the tool and the room that it needs.
+TEST(Tool, ANarrowSlotIsOpenForTheToolThatFits) {
+  const std::vector<Sphere> tool = rod();
+  double radius = 0.0;
+  for (const Sphere& ball : tool) {
+    radius = std::max(radius, ball.radius + std::abs(ball.center.y()));
+  }
+  const double step = 0.02;
+  const double slack = externals_for(tool, cube_mesh()).closing_slack;
+  const double half = radius + kRoom * slack + step / 2.0 + 0.01;
+  const TriangleMesh mesh = joined(box_mesh({-0.5, half, -1}, {0.5, half + 0.2, 1}),
+                                   box_mesh({-0.5, -half - 0.2, -1}, {0.5, -half, 1}));
+  const ExternalSpheres external = externals_for(tool, mesh);
+  ASSERT_EQ(external.closing_slack, slack);
+  const MeshDistance distance(mesh);
+  const Walk walk(distance, tool, kRoom * slack);
+  Random random(92);
+  int inside = 0;
+  for (int i = 0; i < effort(20, 5); ++i) {
+    Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
+    start.translation() = Vector3d(-1.5, 0, 0);
+    const Vector3d target(random.between(-0.3, 0.3), 0, random.between(-0.4, 0.4));
+    const Eigen::Isometry3d pose = walk.run(start, target, step, random);
+    expect_nothing_met(tool, pose, distance, external, random);
+    if (std::abs(pose.translation().x()) < 0.4) ++inside;
+  }
+  EXPECT_GT(inside, 1);
 }
 
 }  // namespace
