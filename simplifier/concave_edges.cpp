@@ -24,7 +24,7 @@ constexpr double kSharp = 150.0 * kDegree;
 constexpr double kFolded = kDegree;
 // Sharper edges are treated like this one (11 degrees), lest their zones grow without bound.
 constexpr double kLeastSine = 0.1;
-constexpr double kLeastDiameter = 1.0 / 16.0;  // of D
+constexpr double kLeastDiameter = 1.0 / 4.0;  // of D: two halvings of the step
 constexpr double kFilletOfError = 0.5;
 constexpr double kStraight = 1.0 / 8.0;  // of the zone's diameter
 
