@@ -104,8 +104,9 @@ int audit(const AuditArguments& arguments) {
     external = arguments.min_external ? place() : blaming_file(arguments, place);
     certify_options.external = &*external;
     // A file that says how it was fitted was proved at this resolution.
-    certify_options.resolution =
-        proof_resolution(options.max_error, external->box.diagonal().norm());
+    certify_options.resolution = proof_resolution(tightest_error(options.zones, options.max_error),
+                                                  external->box.diagonal().norm());
+    certify_options.zones = options.zones;
   }
   const Certificate certificate = certify(mesh, file.spheres, certify_options);
   print(arguments, certificate, external);

@@ -8,8 +8,11 @@
 #include "cli/view_page.h"
 #include "simplifier/mesh_io.h"
 #include "simplifier/simplify.h"
+#include "simplifier/zones.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>
@@ -20,6 +23,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace spherule {
 namespace {
@@ -30,6 +34,8 @@ struct FitArguments {
   std::string report;
   std::string tree;
   std::string view;
+  std::string tool;
+  std::string zones;
   std::string method = method_names().front();
   std::string external = placement_names().front();
   double scale = 1.0;
@@ -49,15 +55,33 @@ void write_view(const FitArguments& arguments, const TriangleMesh& mesh,
   write_file_atomically(arguments.view, make_view_page(arguments.mesh, items));
 }
 
+// Runs what depends on a file that an option names, and blames that file for what is wrong with
+// `subject`.
+template <typename Use>
+auto blaming_file(const std::string& file, std::string_view subject, Use use) {
+  try {
+    return use();
+  } catch (const Error& error) {
+    if (file.empty() || !error.subject().starts_with(subject)) throw;
+    throw Error(file, error.what());
+  }
+}
+
 // Fails (kNo) if a promise about the spheres is not proved; the files are written nevertheless and
 // say so.
 int fit(const FitArguments& arguments) {
   check_outputs({arguments.spheres, arguments.report, arguments.tree, arguments.view},
-                {arguments.mesh});
+                {arguments.mesh, arguments.tool, arguments.zones});
   SimplifyOptions options = arguments.options;
   options.method = method_named(arguments.method);
   options.external = placement_named(arguments.external);
   options.history = !arguments.report.empty();
+  if (!arguments.zones.empty()) options.zones = read_zones(arguments.zones);
+  if (!arguments.tool.empty()) {
+    const SphereFile tool = load_spheres(arguments.tool);
+    options.min_external_diameter =
+        blaming_file(arguments.tool, "tool", [&] { return tool_diameter(tool.spheres); });
+  }
 
   const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
   const MeshReport report = mesh_report(mesh);
@@ -66,7 +90,7 @@ int fit(const FitArguments& arguments) {
   Simplification result = [&] {
     ProgressBar bar;
     options.progress = bar.callback();
-    return simplify(mesh, options);
+    return blaming_file(arguments.zones, "zone ", [&] { return simplify(mesh, options); });
   }();
 
   write_uninterrupted([&] {
@@ -84,8 +108,12 @@ int fit(const FitArguments& arguments) {
   std::cout << "options: max error " << result.options.max_error << ", min external diameter "
             << result.options.min_external_diameter << ", padding " << result.external.padding
             << " (rounding of the file included)\n"
-            << "external spheres: " << result.external.balls.size() << "\n"
-            << "spheres: " << result.cover.spheres.size() << "\n"
+            << "external spheres: " << result.external.balls.size() << "\n";
+  if (options.keep_concave_edges) {
+    std::cout << "zones along sharp concave edges: " << result.external.concave_edges.size()
+              << "\n";
+  }
+  std::cout << "spheres: " << result.cover.spheres.size() << "\n"
             << describe(result.certificate, "the simplified solid") << "seconds: external "
             << result.times.external << ", cover " << result.times.cover << ", certify "
             << result.times.certify << "\n";
@@ -105,10 +133,18 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("-o,--output", arguments->spheres, "Where the spheres go (JSON)")->required();
   command->add_option("--scale", arguments->scale, "Output units per mesh unit");
+  auto* diameter = command->add_option(
+      "--min-external", options.min_external_diameter,
+      "D, diameter of the smallest thing that will meet the model (default: 4 E)");
+  diameter->check(check_length);
   command
-      ->add_option("--min-external", options.min_external_diameter,
-                   "D, diameter of the smallest thing that will meet the model (default: 4 E)")
-      ->check(check_length);
+      ->add_option("--tool", arguments->tool,
+                   "D from the tool that will meet the model: the smallest of these spheres (JSON)")
+      ->excludes(diameter);
+  command->add_option("--zones", arguments->zones,
+                      "Where E and D are smaller: balls, boxes and capsules (JSON)");
+  command->add_flag("--keep-concave-edges", options.keep_concave_edges,
+                    "A smaller D along sharp concave edges, so that they are not filled");
   command
       ->add_option("--max-error", options.max_error,
                    "E, how far the spheres may protrude (default: 1 % of the box diagonal)")

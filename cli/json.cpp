@@ -52,6 +52,9 @@ Json to_json(const Certificate& certificate) {
                                          ? to_json(certificate.protrusion_over_mesh->upper)
                                          : Json(nullptr);
   json["protrusion_over_mesh"] = to_json(certificate.protrusion_over_mesh);
+  for (const double protrusion : certificate.protrusion_in_zones) {
+    json["zones"].push_back({{"protrusion_over_simplified_max", to_json(protrusion)}});
+  }
   json["sphere_count"] = certificate.sphere_count;
   json["volume_ratio"] = to_json(certificate.volume_ratio);
   json["pieces"] = certificate.pieces;

@@ -58,7 +58,9 @@ fs::path place_of(const fs::path& path) {
 void check_outputs(std::initializer_list<fs::path> outputs,
                    std::initializer_list<fs::path> inputs) {
   std::set<fs::path> taken;
-  for (const fs::path& input : inputs) taken.insert(place_of(input));
+  for (const fs::path& input : inputs) {
+    if (!input.empty()) taken.insert(place_of(input));
+  }
   for (const fs::path& output : outputs) {
     if (output.empty()) continue;
     std::error_code error;

@@ -8,7 +8,7 @@
 namespace spherule {
 
 // Throws Error, before long work is done for nothing, if a file of `outputs` cannot be made where
-// it is asked for, is one of `inputs`, or is named twice. Empty paths are outputs not asked for.
+// it is asked for, is one of `inputs`, or is named twice. Empty paths are files not asked for.
 void check_outputs(std::initializer_list<std::filesystem::path> outputs,
                    std::initializer_list<std::filesystem::path> inputs);
 

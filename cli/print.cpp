@@ -29,6 +29,9 @@ std::string describe(const Certificate& certificate, const std::string& solid) {
     out << "  protrusion over the simplified solid: at most "
         << *certificate.protrusion_over_simplified_max << "\n";
   }
+  for (std::size_t i = 0; i < certificate.protrusion_in_zones.size(); ++i) {
+    out << "  in zone " << i << ": at most " << certificate.protrusion_in_zones[i] << "\n";
+  }
   if (certificate.protrusion_over_mesh) {
     out << "  protrusion over the mesh and its inside: " << certificate.protrusion_over_mesh->lower
         << " to " << certificate.protrusion_over_mesh->upper << "\n";

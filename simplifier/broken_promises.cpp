@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/simplify.h"
 
+#include <cstddef>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 
 namespace spherule {
@@ -19,6 +21,15 @@ std::string broken_promises(const Simplification& simplification) {
     out << (certificate.covered ? "the spheres are not proved" : ", nor")
         << " to protrude by at most " << options.max_error << " from the simplified solid";
     if (protrusion) out << ", only by at most " << *protrusion;
+  }
+  for (std::size_t i = 0; i < options.zones.size(); ++i) {
+    const std::optional<double>& error = options.zones[i].max_error;
+    if (!error) continue;
+    const bool known = i < certificate.protrusion_in_zones.size();
+    if (known && certificate.protrusion_in_zones[i] <= *error) continue;
+    out << (out.str().empty() ? "the spheres are not proved" : ", nor")
+        << " to protrude by at most " << *error << " in zone " << i;
+    if (known) out << ", only by at most " << certificate.protrusion_in_zones[i];
   }
   return out.str();
 }

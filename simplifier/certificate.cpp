@@ -12,6 +12,7 @@
 #include "spheretree/rounding.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace spherule {
@@ -36,6 +37,8 @@ void check_options(std::span<const Sphere> spheres, const CertifyOptions& option
   if (!(options.protrusion_tolerance >= 0.0 && options.protrusion_tolerance <= 1.0)) {
     throw Error("protrusion tolerance", "must be between 0 and 1");
   }
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  check_zones(options.zones, kAny, kAny);
   if (!(options.padding >= 0.0 && options.padding <= kMaxCoordinate)) {
     throw Error("padding", "must be finite and not negative");
   }
@@ -93,8 +96,11 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   result.pieces = surface.examined;
   result.cells = solid.examined;
   if (options.external != nullptr) {
-    result.protrusion_over_simplified_max =
-        internal::protrusion_over_solid(clearance, distance, spheres);
+    const std::vector<double> each = internal::protrusions_over_solid(clearance, distance, spheres);
+    result.protrusion_over_simplified_max = internal::greatest(each);
+    for (const Zone& zone : options.zones) {
+      result.protrusion_in_zones.push_back(internal::greatest_in(zone, spheres, each));
+    }
   }
   if (options.protrusion_tolerance > 0.0) {
     if (options.progress) options.progress(-1.0, "measuring the protrusion");
@@ -116,6 +122,7 @@ CertificateRecord record(const Certificate& certificate) {
   if (certificate.protrusion_over_mesh) {
     r.protrusion_over_mesh_max = certificate.protrusion_over_mesh->upper;
   }
+  r.protrusion_in_zones = certificate.protrusion_in_zones;
   r.sphere_count = certificate.sphere_count;
   r.volume_ratio = certificate.volume_ratio;
   return r;

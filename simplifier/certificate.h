@@ -2,6 +2,7 @@
 #pragma once
 
 #include "simplifier/external_spheres.h"
+#include "simplifier/zones.h"
 #include "spheretree/sphere.h"
 #include "spheretree/sphere_file.h"
 #include "spheretree/triangle_mesh.h"
@@ -9,6 +10,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace spherule {
 
@@ -16,6 +18,8 @@ struct CertifyOptions {
   // The simplified solid to certify against. Without it |M| itself is certified: its complement is
   // flooded with cells of size `resolution`, and what the flood does not reach counts as inside.
   const ExternalSpheres* external = nullptr;
+  // With `external`: zones in which the protrusion is bounded apart.
+  std::span<const Zone> zones = {};
   // Without `external`: padding t, to which the mesh's vertex_error is added. With it, the padding
   // is the one of stage 1.
   double padding = 0.0;
@@ -53,6 +57,9 @@ struct Certificate {
   Eigen::Vector3d deepest_leak = Eigen::Vector3d::Zero();
   // G2: proved upper bound of the protrusion of the balls over S; absent without external spheres.
   std::optional<double> protrusion_over_simplified_max;
+  // The same for the points of the balls that lie in a zone, for every zone asked for: the greatest
+  // bound of a ball that may reach into it, 0 if none does.
+  std::vector<double> protrusion_in_zones;
   // Proved bounds of the protrusion over |M|; absent if not asked for.
   std::optional<Bounds> protrusion_over_mesh;
   std::optional<double> volume_ratio;  // of the union of the balls to the solid mesh; estimated

@@ -10,6 +10,8 @@
 #include "spheretree/error.h"
 #include "spheretree/triangle_mesh.h"
 
+#include <limits>
+
 namespace spherule {
 namespace {
 
@@ -21,6 +23,11 @@ void check_options(const CoverOptions& options) {
   if (!usable(options.min_radius)) throw Error("min radius", "must be finite and not negative");
   if (!usable(options.min_internal_diameter)) {
     throw Error("min internal diameter", "must be finite and not negative");
+  }
+  check_zones(options.zones, options.max_error, std::numeric_limits<double>::infinity());
+  if (options.method == CoverMethod::kPaper &&
+      tightest_error(options.zones, options.max_error) < options.max_error) {
+    throw Error("zones", "the method \"paper\" knows one max error only");
   }
   if (options.effort < 0) throw Error("effort", "must not be negative");
   if (!usable(options.seconds)) throw Error("seconds", "must be finite and not negative");
@@ -38,7 +45,8 @@ SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
   if (options.method == CoverMethod::kPaper) {
     return place_internal_spheres(mesh, clearance, options);
   }
-  if (internal::CoverFitter::finest(options.max_error) < internal::least_reach(clearance.box())) {
+  if (internal::CoverFitter::finest(tightest_error(options.zones, options.max_error)) <
+      internal::least_reach(clearance.box())) {
     throw Error("max error", "too small for coordinates of this size");
   }
   SphereCover result;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "simplifier/external_spheres.h"
+#include "simplifier/zones.h"
 #include "spheretree/sphere.h"
 #include "spheretree/triangle_mesh.h"
 
@@ -20,6 +21,9 @@ struct CoverOptions {
   CoverMethod method = CoverMethod::kCover;
   // E: how far the balls may protrude from S. Positive.
   double max_error = 0.0;
+  // kCover only: zones of an E of their own. Every point of the union of the balls that lies in
+  // such a zone is at most its `max_error` from S.
+  std::vector<Zone> zones = {};
   // No ball of the result is smaller than this radius (a tool made of such balls passes stage 1 of
   // what it meets unchanged). Protrusion may exceed E where it forces a larger ball.
   double min_radius = 0.0;
@@ -70,11 +74,12 @@ struct SphereCover {
 // 8; the paper, Algorithm 1). On return the union of the balls contains S: the search ends only
 // with what an octree over S has proved; certify() proves it again, by a search of its own. Every
 // ball's radius is at most E plus the distance of its centre, a point of S (up to rounding, for
-// which a reserve is kept), to the outside of S, unless min_radius is larger; where external balls
-// close S by a hair and no point of S is found, a ball of 0.02 E may stand, and certify() says how
-// far it protrudes. Deterministic for equal input and options on any number of threads, unless
-// `seconds` is set. Throws Error for a mesh that validate() refuses, for options out of range, and
-// for an E too small for the rounding of the coordinates.
+// which a reserve is kept), to the outside of S, and at most a zone's error plus that distance
+// where the ball reaches into that zone, unless min_radius is larger; where external balls close S
+// by a hair and no point of S is found, a ball of 0.02 E may stand, and certify() says how far it
+// protrudes. Deterministic for equal input and options on any number of threads, unless `seconds`
+// is set. Throws Error for a mesh that validate() refuses, for options out of range, and for an E
+// too small for the rounding of the coordinates.
 SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                   const CoverOptions& options);
 

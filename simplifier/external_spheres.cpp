@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/external_spheres.h"
 
+#include "simplifier/concave_edges.h"
 #include "simplifier/internal/flood_grid.h"
+#include "simplifier/internal/local_diameter.h"
 #include "simplifier/internal/random_placement.h"
 #include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_distance.h"
@@ -13,12 +15,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace spherule {
 namespace {
 
 using Eigen::Vector3d;
 using internal::FloodGrid;
+using internal::LocalDiameter;
 
 void check_options(const ExternalOptions& options) {
   if (!(options.padding >= 0.0 && options.padding <= kMaxCoordinate)) {
@@ -27,7 +31,17 @@ void check_options(const ExternalOptions& options) {
   const auto usable = [](double x) { return x >= 0.0 && x <= kMaxCoordinate; };
   if (!usable(options.max_error)) throw Error("max error", "must be finite and not negative");
   if (!usable(options.grid_step)) throw Error("grid step", "must be finite and not negative");
-  if (options.placement == ExternalPlacement::kNone) return;
+  const double infinity = std::numeric_limits<double>::infinity();
+  const bool none = options.placement == ExternalPlacement::kNone;
+  check_zones(options.zones, options.max_error > 0.0 ? options.max_error : infinity,
+              none ? infinity : options.min_external_diameter);
+  const bool own_diameters =
+      options.keep_concave_edges ||
+      std::ranges::any_of(options.zones, [](const Zone& z) { return !!z.min_external_diameter; });
+  if (own_diameters && options.placement != ExternalPlacement::kReachable) {
+    throw Error("zones", "a smaller min external diameter needs the placement \"reachable\"");
+  }
+  if (none) return;
   const double d = options.min_external_diameter;
   if (!(d > 0.0 && d <= kMaxCoordinate)) {
     throw Error("min external diameter", "must be positive and finite");
@@ -51,21 +65,30 @@ Eigen::AlignedBox3d grown_outwards(const Eigen::AlignedBox3d& box, double by) {
   return grown;
 }
 
-double chosen_step(const ExternalOptions& options) {
-  if (options.grid_step > 0.0) return options.grid_step;
-  const double coarsest = options.min_external_diameter / 8.0;
-  if (options.max_error == 0.0) return coarsest / 2.0;
-  return std::min(coarsest,
-                  std::sqrt(0.08 * options.max_error * options.min_external_diameter / 2.0));
+// For balls of this diameter that meet S with this error.
+double chosen_step(const ExternalOptions& options, double diameter, double max_error) {
+  if (options.grid_step > 0.0) {
+    return options.grid_step * (diameter / options.min_external_diameter);
+  }
+  const double coarsest = diameter / 8.0;
+  if (max_error == 0.0) return coarsest / 2.0;
+  return std::min(coarsest, std::sqrt(0.08 * max_error * diameter / 2.0));
+}
+
+double chosen_step(const ExternalOptions& options, const Zone& zone) {
+  return chosen_step(options, zone.min_external_diameter.value_or(options.min_external_diameter),
+                     zone.max_error.value_or(options.max_error));
 }
 
 // A cube around the box that leaves a ball of radius rho and three steps of room on every side.
-FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double step) {
+// Zones halve the step up to `halvings` times.
+FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double step, int halvings) {
   const double edge = box.sizes().maxCoeff() + 2.0 * (rho + 3.0 * step);
   FloodGrid::Shape shape{Vector3d::Zero(), step, 0};
   while (std::ldexp(step, shape.levels) < edge) ++shape.levels;
   const double magnitude = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() + edge;
-  if (shape.levels > 20 || step < 1e6 * kUnitRoundoff * magnitude) {
+  if (shape.levels + halvings > 20 ||
+      std::ldexp(step, -halvings) < 1e6 * kUnitRoundoff * magnitude) {
     throw Error("grid step", "too fine for a model of this size");
   }
   shape.origin = box.center() - Vector3d::Constant(std::ldexp(step, shape.levels) / 2.0);
@@ -77,55 +100,71 @@ FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double s
 // rho has room, and kept if such a ball provably gets there from the node.
 class SnugBalls {
  public:
-  SnugBalls(const MeshDistance& distance, double padding, double rho, double step)
-      : distance_(distance), padding_(padding), rho_(rho), step_(step) {}
+  SnugBalls(const MeshDistance& distance, double padding, const LocalDiameter& diameter)
+      : distance_(distance), padding_(padding), diameter_(diameter) {}
 
   // A ball of radius 0 where nothing is to be had or flat surface makes it useless.
   Sphere operator()(const FloodGrid::Frontier& frontier) const {
     constexpr int kMaxPushes = 6;
-    const double wanted = rho_ + 0.02 * step_;
+    const Vector3d& from = frontier.neighbour.center;
+    const double rho = diameter_.on_way(frontier.center, from);
+    const double wanted = rho + 0.02 * frontier.step;
     Vector3d x = frontier.center;
     for (int push = 0; push <= kMaxPushes; ++push) {
       const SurfaceDistance d = distance_(x);
       const double clearance = sub_down(d.lower, padding_);
-      if (clearance >= rho_) {
+      if (clearance >= rho) {
         if (push < 2) return {};  // one surface only: the grid does as well
         const Sphere ball{x, clearance};
-        return passes({frontier.neighbour.center, frontier.neighbour.clearance}, ball, 0)
-                   ? ball
-                   : Sphere{};
+        const bool reached = diameter_.on_way(from, x) <= rho &&
+                             passes({from, frontier.neighbour.clearance}, ball, rho, 0);
+        return reached ? ball : Sphere{};
       }
       const Vector3d away = x - d.closest;
       const double norm = away.norm();
       if (!(norm > 0.0)) return {};
       x += away * ((wanted - clearance) / norm);
-      if ((x - frontier.center).norm() > 2.0 * step_) return {};
+      if ((x - frontier.center).norm() > 2.0 * frontier.step) return {};
     }
     return {};
   }
 
  private:
   // Whether a ball of radius rho provably passes on the straight way, by bisection.
-  bool passes(const Sphere& a, const Sphere& b, int depth) const {
+  bool passes(const Sphere& a, const Sphere& b, double rho, int depth) const {
     constexpr int kMaxDepth = 8;
     const double gap = distance_upper(a.center, b.center);
-    if (sub_down(add_down(a.radius, b.radius), gap) >= 2.0 * rho_ * kRelativeUp) return true;
+    if (sub_down(add_down(a.radius, b.radius), gap) >= 2.0 * rho * kRelativeUp) return true;
     if (depth == kMaxDepth) return false;
     Sphere middle{(a.center + b.center) / 2.0, 0.0};
     middle.radius = sub_down(distance_(middle.center).lower, padding_);
-    return middle.radius >= rho_ && passes(a, middle, depth + 1) && passes(middle, b, depth + 1);
+    return middle.radius >= rho && passes(a, middle, rho, depth + 1) &&
+           passes(middle, b, rho, depth + 1);
   }
 
   const MeshDistance& distance_;
   double padding_;
-  double rho_;
-  double step_;
+  const LocalDiameter& diameter_;
 };
 
-void place_reachable(const MeshDistance& distance, double rho, const ExternalOptions& options,
-                     ExternalSpheres& result) {
-  const double step = chosen_step(options);
-  FloodGrid grid(distance, result.padding, rho, grid_shape(result.box, rho, step),
+void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
+                     const ExternalOptions& options, ExternalSpheres& result) {
+  const double step = chosen_step(options, options.min_external_diameter, options.max_error);
+  std::vector<Zone> zones = options.zones;
+  if (options.keep_concave_edges) {
+    result.concave_edges = concave_edge_zones(
+        mesh, {.min_external_diameter = options.min_external_diameter,
+               .max_error = options.max_error > 0.0 ? options.max_error
+                                                    : options.min_external_diameter / 4.0,
+               .padding = result.padding,
+               .margin = 2.0 * step});
+    zones.insert(zones.end(), result.concave_edges.begin(), result.concave_edges.end());
+  }
+  std::vector<double> zone_steps;
+  for (const Zone& zone : zones) zone_steps.push_back(chosen_step(options, zone));
+  const LocalDiameter diameter(options.min_external_diameter, step, zones, zone_steps);
+  FloodGrid grid(distance, result.padding, diameter,
+                 grid_shape(result.box, diameter.radius(), step, diameter.most_halvings()),
                  options.progress);
   grid.flood();
   result.grid_step = step;
@@ -135,7 +174,7 @@ void place_reachable(const MeshDistance& distance, double rho, const ExternalOpt
   }
   const std::vector<FloodGrid::Frontier> frontier = grid.frontier();
   std::vector<Sphere> snug(frontier.size());
-  const SnugBalls place(distance, result.padding, rho, step);
+  const SnugBalls place(distance, result.padding, diameter);
   tbb::parallel_for(std::size_t{0}, frontier.size(),
                     [&](std::size_t i) { snug[i] = place(frontier[i]); });
   std::copy_if(snug.begin(), snug.end(), std::back_inserter(result.balls),
@@ -143,7 +182,9 @@ void place_reachable(const MeshDistance& distance, double rho, const ExternalOpt
   if (options.progress) options.progress(1.0, "placing external spheres");
   // A ball of diameter D + s on its way has clearance at least rho + s / 2. Each node whose cell
   // the way crosses lies within sqrt(3) h / 2 of a point of it, so two of them that share a face
-  // satisfy the passage rule if rho + s / 2 - 0.8661 h - h / 2 >= rho.
+  // satisfy the passage rule if rho + s / 2 - 0.8661 h - h / 2 >= rho. Where a zone makes the grid
+  // finer, h only shrinks, for the step between cells of two sizes too, and a node then has the
+  // clearance rho + h / 2 that suffices to get to the face of any free cell.
   result.closing_slack = 2.0 * (0.8661 + 0.5) * step;
 }
 
@@ -158,14 +199,13 @@ ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalO
   result.padding = sum_up(options.padding, mesh.vertex_error);
   result.min_external_diameter = options.min_external_diameter;
   result.box = grown_outwards(distance.box(), result.padding);
-  const double rho = options.min_external_diameter / 2.0;
   switch (options.placement) {
     case ExternalPlacement::kReachable:
-      place_reachable(distance, rho, options, result);
+      place_reachable(mesh, distance, options, result);
       break;
     case ExternalPlacement::kRandom: {
-      internal::RandomPlacement placement =
-          internal::place_random(distance, result.padding, rho, result.box, options);
+      internal::RandomPlacement placement = internal::place_random(
+          distance, result.padding, options.min_external_diameter / 2.0, result.box, options);
       result.balls = std::move(placement.balls);
       result.nodes_examined = placement.attempts;
       break;

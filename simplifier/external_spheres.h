@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "simplifier/zones.h"
 #include "spheretree/sphere.h"
 #include "spheretree/triangle_mesh.h"
 
@@ -34,6 +35,14 @@ struct ExternalOptions {
   double grid_step = 0.0;
   // E, used for the choice of the grid step only.
   double max_error = 0.0;
+  // Reachable placement only: zones of a D of their own. What is reachable then: a place to which a
+  // ball can be moved from outside that may change its size on the way, and at every point x of the
+  // way of its centre has a radius of rho(x) at least: d / 2 where x lies in a zone of its own d
+  // (the least of them), D / 2 elsewhere. Zones also make the grid finer, by halvings of its step,
+  // as their d and max error ask for.
+  std::vector<Zone> zones = {};
+  // Adds such zones along sharp concave edges of the mesh (concave_edges.h).
+  bool keep_concave_edges = false;
   // Random placement: number of attempts (the paper's "limit") and seed.
   std::size_t limit = 100000;
   std::uint64_t seed = 1;
@@ -43,8 +52,9 @@ struct ExternalOptions {
 
 // Stage 1's result. It defines the simplified solid S exactly: the closed box minus the union of
 // the open balls. Every ball is disjoint from M grown by `padding`, of diameter at least D, and was
-// reached from outside the box by a ball of diameter D without touching M; hence M and |M| are
-// subsets of S, whatever balls were kept.
+// reached from outside the box by a ball of diameter D without touching M (in zones: of the
+// diameter that suffices there, see ExternalOptions::zones); hence M and |M| are subsets of S,
+// whatever balls were kept.
 struct ExternalSpheres {
   std::vector<Sphere> balls;
   Eigen::AlignedBox3d box;             // of M grown by the padding, rounded outwards
@@ -52,14 +62,19 @@ struct ExternalSpheres {
   double padding = 0.0;                // t, the mesh's vertex_error included
   double grid_step = 0.0;              // of the flood; 0 for the other placements
   std::size_t nodes_examined = 0;      // distance evaluations
-  // Bound on how much wider than D a gap may be and still have been closed by the grid.
+  // Bound on how much wider than D a gap may be and still have been closed by the grid. For the d
+  // of a zone the same share of the step there holds for ways that stay inside of the zone by such
+  // a step.
   double closing_slack = 0.0;
+  // What keep_concave_edges added.
+  std::vector<Zone> concave_edges;
 };
 
 // Stage 1 (paper, section II and Algorithm 1; covering.md section 2). Deterministic for equal
 // options. Throws Error for a mesh that validate() refuses and for options out of range (D must be
 // positive and finite unless nothing is placed, padding finite and not negative, the grid not finer
-// than the resolution of the coordinates or 2^20 steps).
+// than the resolution of the coordinates or 2^20 steps, zones usable and their values not above D
+// and E, and a smaller D only for the reachable placement).
 ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalOptions& options);
 
 }  // namespace spherule

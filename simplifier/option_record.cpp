@@ -81,6 +81,23 @@ class Reader {
     value = named(key, names, *text);
   }
 
+  void flag(const char* key, bool& value) const {
+    const OptionValue* found = find(key);
+    if (found == nullptr) return;
+    const auto* truth = std::get_if<bool>(found);
+    if (truth == nullptr) throw Error(key, "must be true or false");
+    value = *truth;
+  }
+
+  // The text of a zone file.
+  void zones(const char* key, std::vector<Zone>& value) const {
+    const OptionValue* found = find(key);
+    if (found == nullptr) return;
+    const auto* text = std::get_if<std::string>(found);
+    if (text == nullptr) throw Error(key, "must be the text of a zone file");
+    value = parse_zones(*text, key);
+  }
+
  private:
   const OptionValue* find(const char* key) const {
     const auto it = record_.find(key);
@@ -109,18 +126,23 @@ ExternalPlacement placement_named(const std::string& name) {
 }
 
 std::map<std::string, OptionValue> option_record(const SimplifyOptions& options, double scale) {
-  return {{"scale", scale},
-          {"max-error", options.max_error},
-          {"min-external", options.min_external_diameter},
-          {"padding", options.padding},
-          {"min-radius", options.min_radius},
-          {"method", name_of(kMethods, options.method)},
-          {"external", name_of(kPlacements, options.external)},
-          {"external-limit", static_cast<std::int64_t>(options.external_limit)},
-          {"min-internal", options.min_internal_diameter},
-          {"seed", static_cast<std::int64_t>(options.seed)},
-          {"effort", std::int64_t{options.effort}},
-          {"seconds", options.seconds}};
+  std::map<std::string, OptionValue> record = {
+      {"scale", scale},
+      {"max-error", options.max_error},
+      {"min-external", options.min_external_diameter},
+      {"padding", options.padding},
+      {"min-radius", options.min_radius},
+      {"method", name_of(kMethods, options.method)},
+      {"external", name_of(kPlacements, options.external)},
+      {"external-limit", static_cast<std::int64_t>(options.external_limit)},
+      {"min-internal", options.min_internal_diameter},
+      {"seed", static_cast<std::int64_t>(options.seed)},
+      {"effort", std::int64_t{options.effort}},
+      {"seconds", options.seconds}};
+  // Absent where they are not used.
+  if (!options.zones.empty()) record["zones"] = zones_text(options.zones);
+  if (options.keep_concave_edges) record["keep-concave-edges"] = true;
+  return record;
 }
 
 SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& record) {
@@ -137,6 +159,8 @@ SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& re
   read.count("seed", options.seed);
   read.count("effort", options.effort);
   read.length("seconds", options.seconds);
+  read.zones("zones", options.zones);
+  read.flag("keep-concave-edges", options.keep_concave_edges);
   return options;
 }
 

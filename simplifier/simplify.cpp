@@ -69,6 +69,10 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
     used.min_external_diameter = kDefaultDiameter * used.max_error;
   }
 
+  check_zones(used.zones, used.max_error,
+              used.external == ExternalPlacement::kNone ? std::numeric_limits<double>::infinity()
+                                                        : used.min_external_diameter);
+
   const Stopwatch external_time;
   result.external = place_external_spheres(mesh, external_options(used));
   result.times.external = external_time.seconds();
@@ -77,6 +81,7 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   result.cover = cover(mesh, result.external,
                        {.method = used.method,
                         .max_error = used.max_error,
+                        .zones = used.zones,
                         .min_radius = used.min_radius,
                         .min_internal_diameter = used.min_internal_diameter,
                         .seed = used.seed,
@@ -90,12 +95,25 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   const Stopwatch certify_time;
   CertifyOptions certify_options;
   certify_options.external = &result.external;
-  certify_options.resolution = proof_resolution(used.max_error, diagonal);
+  certify_options.zones = used.zones;
+  certify_options.resolution =
+      proof_resolution(tightest_error(used.zones, used.max_error), diagonal);
   certify_options.threads = used.threads;
   certify_options.progress = used.progress;
   result.certificate = certify(mesh, result.cover.spheres, certify_options);
   result.times.certify = certify_time.seconds();
   return result;
+}
+
+double tool_diameter(std::span<const Sphere> tool) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Sphere& ball : tool) {
+    if (!is_usable(ball)) throw Error("tool", "a sphere is not usable");
+    least = std::min(least, ball.radius);
+  }
+  if (tool.empty()) throw Error("tool", "holds no sphere");
+  if (least == 0.0) throw Error("tool", "has a sphere of radius 0: nothing is small enough for it");
+  return 2.0 * least;
 }
 
 ExternalOptions external_options(const SimplifyOptions& options) {
@@ -104,6 +122,8 @@ ExternalOptions external_options(const SimplifyOptions& options) {
           .padding = options.padding,
           .max_error = options.max_error > 0.0 ? options.max_error
                                                : options.min_external_diameter / kDefaultDiameter,
+          .zones = options.zones,
+          .keep_concave_edges = options.keep_concave_edges,
           .limit = options.external_limit,
           .seed = options.seed,
           .threads = options.threads,

@@ -4,12 +4,14 @@
 #include "simplifier/certificate.h"
 #include "simplifier/cover.h"
 #include "simplifier/external_spheres.h"
+#include "simplifier/zones.h"
 #include "spheretree/sphere_file.h"
 #include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,10 @@ struct SimplifyOptions {
   double padding = 0.0;
   // No ball of the result is smaller than this radius.
   double min_radius = 0.0;
+  // Where E and D are smaller.
+  std::vector<Zone> zones = {};
+  // D is smaller along sharp concave edges too (concave_edges.h).
+  bool keep_concave_edges = false;
   CoverMethod method = CoverMethod::kCover;
   ExternalPlacement external = ExternalPlacement::kReachable;
   std::size_t external_limit = 100000;  // attempts of the random placement
@@ -58,9 +64,17 @@ struct Simplification {
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
 
 // What was promised and is not proved, as a sentence: that the spheres cover, and, where no least
-// radius was asked for, that they protrude from the simplified solid by at most E. Empty where both
+// radius was asked for, that they protrude from the simplified solid by at most E, or by the max
+// error of a zone in that. Empty where both
 // are proved.
 std::string broken_promises(const Simplification& simplification);
+
+// D for a tool that is a union of balls: the diameter of the smallest. If all of them are free of M
+// at a place to which the tool gets from outside, they are external balls themselves, so that it
+// does not meet S either (guarantee.md, up to the grid's tightness: it has to get there with room
+// to spare all around, 0.64 of ExternalSpheres::closing_slack). Throws Error with the subject
+// "tool" if there is no ball, one is not usable, or has the radius 0.
+double tool_diameter(std::span<const Sphere> tool);
 
 // The options with which simplify() runs stage 1, for an audit that runs it again. Where E is not
 // known (0), D / 4 takes its place: the natural ratio.

@@ -71,6 +71,9 @@ ordered_json written(const CertificateRecord& record, const Refusal& refuse) {
   };
   put_optional("protrusion_over_simplified_max", record.protrusion_over_simplified_max);
   put_optional("protrusion_over_mesh_max", record.protrusion_over_mesh_max);
+  for (const double protrusion : record.protrusion_in_zones) {
+    certificate["zones"].push_back({{"protrusion_over_simplified_max", put(protrusion, "zones")}});
+  }
   certificate["sphere_count"] = record.sphere_count;
   put_optional("volume_ratio", record.volume_ratio);
   return certificate;
@@ -179,6 +182,15 @@ CertificateRecord read_certificate(const json& value, std::size_t sphere_count,
   record.protrusion_over_simplified_max = optional("protrusion_over_simplified_max");
   record.protrusion_over_mesh_max = optional("protrusion_over_mesh_max");
   record.volume_ratio = optional("volume_ratio");
+  if (const auto zones = value.find("zones"); zones != value.end()) {
+    refuse.unless(zones->is_array(), where + ": \"zones\" is not a list");
+    for (const json& zone : *zones) {
+      refuse.unless(zone.is_object(), where + ": a zone is not an object");
+      record.protrusion_in_zones.push_back(
+          read_number(member(zone, "protrusion_over_simplified_max", where + ": zone", refuse),
+                      where + ": zone", refuse));
+    }
+  }
   const json& count = member(value, "sphere_count", where, refuse);
   refuse.unless(count.is_number_unsigned() && count.get<std::uint64_t>() == sphere_count,
                 where + ": \"sphere_count\" is not the number of spheres in the file");

@@ -24,6 +24,8 @@ struct CertificateRecord {
   // Proved upper bounds on the protrusion; absent where it was not asked for.
   std::optional<double> protrusion_over_simplified_max = std::nullopt;
   std::optional<double> protrusion_over_mesh_max = std::nullopt;
+  // The first of these for the points of the balls in each zone of the options; empty without.
+  std::vector<double> protrusion_in_zones = {};
   std::size_t sphere_count = 0;  // the number of spheres in the file, checked by both functions
   // Volume of the union of the balls over the volume of the solid mesh, estimated.
   std::optional<double> volume_ratio = std::nullopt;

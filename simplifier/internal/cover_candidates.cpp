@@ -20,10 +20,12 @@ constexpr double kThinning = 0.1;  // of E
 
 // In each cube of the given edge only the candidate with the largest clearance, the first of
 // equals.
-std::vector<Candidate> thinned(const std::vector<Candidate>& candidates, double edge) {
-  std::map<Cube, std::size_t> best;
+std::vector<Candidate> thinned(const std::vector<Candidate>& candidates, double edge,
+                               const LocalError& error) {
+  std::map<GradedCube, std::size_t> best;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const auto [at, first] = best.try_emplace(cube_of(candidates[i].center, edge), i);
+    const Eigen::Vector3d& center = candidates[i].center;
+    const auto [at, first] = best.try_emplace(graded_cube_of(center, edge, error.scale(center)), i);
     if (!first && candidates[i].clearance > candidates[at->second].clearance) at->second = i;
   }
   std::vector<std::size_t> kept;
@@ -34,34 +36,68 @@ std::vector<Candidate> thinned(const std::vector<Candidate>& candidates, double 
   return result;
 }
 
+// Where on the way from one step to the next, between which the error that is allowed changes, it
+// begins to.
+Candidate turning_point(const Clearance& clearance, const LocalError& error, const AscentStep& from,
+                        const AscentStep& to, double allowed, double tolerance) {
+  constexpr int kHalvings = 5;
+  Candidate found{from.point, from.clearance};
+  double low = 0.0;
+  double high = 1.0;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (low + high) / 2.0;
+    const Eigen::Vector3d point = from.point + middle * (to.point - from.point);
+    const double d = clearance(point, tolerance).lower;
+    if (d >= 0.0 && error.allowance(point, d) == allowed) {
+      low = middle;
+      found = {point, d};
+    } else {
+      high = middle;
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 std::vector<Candidate> candidates_from(const Clearance& clearance,
                                        std::span<const Eigen::Vector3d> points, double max_error,
-                                       std::uint64_t seed) {
+                                       std::uint64_t seed, const LocalError& local) {
   std::vector<std::vector<Candidate>> each(points.size());
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
     Random random(seed + 0x9e3779b97f4a7c15U * (i + 1));
-    const double depth = random.between(0.2, 1.5) * max_error;
+    const double error = max_error * local.scale(points[i]);
+    const double depth = random.between(0.2, 1.5) * error;
     const Eigen::Vector3d start =
-        points[i] + depth * clearance(points[i], kClearanceTolerance * max_error).away;
+        points[i] + depth * clearance(points[i], kClearanceTolerance * error).away;
     const std::vector<AscentStep> path = ascend(clearance, start,
-                                                {.first_step = random.between(0.1, 0.4) * max_error,
-                                                 .least_step = 0.05 * max_error,
-                                                 .tolerance = kClearanceTolerance * max_error});
+                                                {.first_step = random.between(0.1, 0.4) * error,
+                                                 .least_step = 0.05 * error,
+                                                 .tolerance = kClearanceTolerance * error});
     for (std::size_t k = 0; k < path.size(); ++k) {
       if (path[k].clearance < 0.0) continue;
-      // Against a single contact the clearance grows as fast as the point moves, and the next ball
-      // contains this one.
-      const bool contained =
-          k + 1 < path.size() && path[k + 1].clearance - path[k].clearance >=
-                                     kContained * (path[k + 1].point - path[k].point).norm();
-      if (!contained) each[i].push_back({path[k].point, path[k].clearance});
+      if (k + 1 == path.size()) {
+        each[i].push_back({path[k].point, path[k].clearance});
+        continue;
+      }
+      // Against a single contact the clearance grows as fast as the point moves, and where the same
+      // error is allowed the next ball contains this one.
+      const AscentStep& next = path[k + 1];
+      const double allowed = local.allowance(path[k].point, path[k].clearance);
+      const double allowed_next = local.allowance(next.point, std::max(0.0, next.clearance));
+      const double growth = (next.clearance - path[k].clearance) + (allowed_next - allowed);
+      if (growth < kContained * (next.point - path[k].point).norm()) {
+        each[i].push_back({path[k].point, path[k].clearance});
+      }
+      if (allowed_next != allowed) {
+        each[i].push_back(
+            turning_point(clearance, local, path[k], next, allowed, kClearanceTolerance * error));
+      }
     }
   });
   std::vector<Candidate> all;
   for (const auto& some : each) all.insert(all.end(), some.begin(), some.end());
-  return thinned(all, kThinning * max_error);
+  return thinned(all, kThinning * max_error, local);
 }
 
 }  // namespace spherule::internal

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "simplifier/internal/clearance.h"
+#include "simplifier/internal/local_error.h"
 #include "spheretree/sphere.h"
 
 #include <Eigen/Core>
@@ -12,7 +13,8 @@
 
 namespace spherule::internal {
 
-// A place for a ball of the cover: radius `clearance` lies in S, `clearance` + E protrudes by E.
+// A place for a ball of the cover: radius `clearance` lies in S, `clearance` + E protrudes by E
+// (near zones of a smaller error it has to be smaller: LocalError).
 struct Candidate {
   Eigen::Vector3d center;
   double clearance;  // lower bound, within a few hundredths of E; kPinched: no point of S is known
@@ -23,9 +25,11 @@ inline constexpr double kPinched = -1.0;
 // Candidates for covering the given points of S: each point is moved inwards by a seeded random
 // depth of 0.2 to 1.5 E and from there away from its contacts (medial_ascent.h). Every position on
 // the way counts, since the best ball at an edge sits at depth E and not on the medial axis
-// (covering.md 1). Of candidates that are nearly at one place the one with most clearance is kept.
+// (covering.md 1). So do those where zones of a smaller error begin to hold the radius back: there
+// a ball that moves on grows too little to contain the one before. Lengths follow the error of the
+// place. Of candidates that are nearly at one place the one with most clearance is kept.
 std::vector<Candidate> candidates_from(const Clearance& clearance,
                                        std::span<const Eigen::Vector3d> points, double max_error,
-                                       std::uint64_t seed);
+                                       std::uint64_t seed, const LocalError& error);
 
 }  // namespace spherule::internal

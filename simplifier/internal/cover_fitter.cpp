@@ -50,10 +50,11 @@ std::vector<Item> some_of(const std::vector<Item>& items, std::size_t count) {
   return picked;
 }
 
-SolidCells cells_of(const Clearance& clearance, const MeshDistance& distance, double max_error) {
+SolidCells cells_of(const Clearance& clearance, const MeshDistance& distance,
+                    const LocalError& error, double max_error) {
   std::optional<SolidCells> cells;
   for (const double spacing : kSpacings) {
-    cells.emplace(clearance, distance, spacing * max_error);
+    cells.emplace(clearance, distance, error, spacing * max_error);
     if (cells->size() > kManyCells) break;
   }
   return *std::move(cells);
@@ -82,8 +83,9 @@ CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distanc
     : clearance_(clearance),
       options_(options),
       error_(options.max_error),
-      cells_(cells_of(clearance, distance, options.max_error)),
-      problem_(options.max_error, options.min_radius) {}
+      local_(options.max_error, options.zones),
+      cells_(cells_of(clearance, distance, local_, options.max_error)),
+      problem_(options.max_error, options.min_radius, options.zones) {}
 
 std::vector<Sphere> CoverFitter::run() {
   using Clock = std::chrono::steady_clock;
@@ -153,12 +155,12 @@ void CoverFitter::widen() {
   for (const std::uint32_t row : open) points.push_back(problem_.rows()[row].point);
   problem_.add_candidates(reach_for(clearance_, problem_, solution_, open));
   problem_.add_candidates(
-      candidates_from(clearance_, points, error_, options_.seed + seeds_used_++));
+      candidates_from(clearance_, points, error_, options_.seed + seeds_used_++, local_));
 }
 
 std::vector<Sphere> CoverFitter::mended(std::vector<Sphere> balls, SolidCells::Leaks leaks) {
   for (; !leaks.empty(); leaks = leaks_of(balls)) {
-    CoverProblem rest(error_, options_.min_radius);
+    CoverProblem rest(error_, options_.min_radius, options_.zones);
     learn(rest, leaks);
     const std::vector<Sphere> more = balls_of(rest, greedy_set_cover(rest.instance()));
     balls.insert(balls.end(), more.begin(), more.end());
@@ -190,7 +192,7 @@ void CoverFitter::add_rows(CoverProblem& problem, const Points& points, double r
   const std::size_t first = problem.rows().size();
   problem.add_rows(points, radius);
   problem.add_candidates(
-      candidates_from(clearance_, starts, error_, options_.seed + seeds_used_++));
+      candidates_from(clearance_, starts, error_, options_.seed + seeds_used_++, local_));
   std::vector<Candidate> own;
   for (std::size_t row = first; row < problem.rows().size(); ++row) {
     if (!problem.columns_of()[row].empty()) continue;

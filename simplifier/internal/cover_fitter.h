@@ -4,6 +4,7 @@
 #include "simplifier/cover.h"
 #include "simplifier/internal/clearance.h"
 #include "simplifier/internal/cover_problem.h"
+#include "simplifier/internal/local_error.h"
 #include "simplifier/internal/solid_cells.h"
 #include "simplifier/mesh_distance.h"
 #include "spheretree/sphere.h"
@@ -72,7 +73,8 @@ class CoverFitter {
 
   const Clearance& clearance_;
   const CoverOptions& options_;
-  double error_;
+  double error_;      // E
+  LocalError local_;  // and where it is smaller
   SolidCells cells_;
   CoverProblem problem_;
   Columns solution_;          // the last that was tried

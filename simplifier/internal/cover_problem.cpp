@@ -19,26 +19,29 @@ constexpr double kSheetReserve = 0.005;  // off the radius where S is as thin as
 
 }  // namespace
 
-CoverProblem::CoverProblem(double max_error, double min_radius)
-    : max_error_(max_error), min_radius_(min_radius) {}
+CoverProblem::CoverProblem(double max_error, double min_radius, std::span<const Zone> zones)
+    : max_error_(max_error), min_radius_(min_radius), error_(max_error, zones) {}
 
-double CoverProblem::radius(double clearance) const {
+double CoverProblem::radius(const Candidate& candidate) const {
+  const double clearance = std::max(0.0, candidate.clearance);
+  const double allowed = error_.allowance(candidate.center, clearance);
   return std::max(min_radius_,
-                  clearance >= 0.0 ? clearance + max_error_ : kPinchRadius * max_error_);
+                  candidate.clearance >= 0.0 ? clearance + allowed : kPinchRadius * allowed);
 }
 
 Sphere CoverProblem::ball(std::size_t column, const Clearance& clearance) const {
   const Candidate& at = candidates_[column];
   const double exact = clearance(at.center).lower;
-  const double allowed = at.clearance < 0.0 ? radius(at.clearance)
-                         : exact < 0.0      ? max_error_ * (1.0 - kSheetReserve)
-                                            : next_down(add_down(exact, max_error_));
+  const double error = error_.allowance(at.center, std::max(0.0, exact));
+  const double allowed = at.clearance < 0.0 ? radius(at)
+                         : exact < 0.0      ? error * (1.0 - kSheetReserve)
+                                            : next_down(add_down(exact, error));
   return {at.center, std::max(min_radius_, allowed)};
 }
 
 void CoverProblem::add_rows(std::span<const Eigen::Vector3d> points, double radius) {
   const std::size_t first = rows_.size();
-  for (const Eigen::Vector3d& p : points) rows_.push_back({p, radius});
+  for (const Eigen::Vector3d& p : points) rows_.push_back({p, radius * error_.scale(p)});
   instance_.row_count = rows_.size();
   cover_rows(0, first);
 }
@@ -87,10 +90,11 @@ void CoverProblem::cover_rows(std::size_t first_column, std::size_t first_row) {
   tbb::parallel_for(first_column, candidates_.size(), [&](std::size_t c) {
     const Candidate& candidate = candidates_[c];
     std::vector<std::uint32_t> near;
-    grid.find(candidate.center, radius(candidate.clearance), near);
+    const double reach = radius(candidate);
+    grid.find(candidate.center, reach, near);
     for (const std::uint32_t i : near) {
       const std::size_t row = first_row + i;
-      if (margin(candidate, rows_[row]) >= 0.0) {
+      if (margin(candidate, reach, rows_[row]) >= 0.0) {
         instance_.columns[c].push_back(static_cast<std::uint32_t>(row));
       }
     }

@@ -3,6 +3,7 @@
 
 #include "simplifier/internal/clearance.h"
 #include "simplifier/internal/cover_candidates.h"
+#include "simplifier/internal/local_error.h"
 #include "simplifier/internal/set_cover.h"
 #include "spheretree/sphere.h"
 
@@ -26,9 +27,10 @@ class CoverProblem {
     double radius;
   };
 
-  // No ball has a radius below `min_radius`.
-  CoverProblem(double max_error, double min_radius);
+  // No ball has a radius below `min_radius`. Zones may have an error of their own.
+  CoverProblem(double max_error, double min_radius, std::span<const Zone> zones = {});
 
+  // `radius` holds where E does, and shrinks with the error in zones.
   void add_rows(std::span<const Eigen::Vector3d> points, double radius);
   void add_candidates(std::span<const Candidate> candidates);
 
@@ -39,14 +41,20 @@ class CoverProblem {
   const Candidate& candidate(std::size_t column) const { return candidates_[column]; }
   double max_error() const { return max_error_; }
 
-  // Radius of the ball at a place with this clearance.
-  double radius(double clearance) const;
+  const LocalError& error() const { return error_; }
+
+  // Radius of the ball at a place: E, or the errors of the zones, decide how far it may protrude.
+  double radius(const Candidate& candidate) const;
   // The ball as it is stored: protruding by E at most, by the exact clearance. That of a point of S
   // may be negative as computed; a little less than E can still be proved there.
   Sphere ball(std::size_t column, const Clearance& clearance) const;
   // How far the small ball of the row lies inside the ball of the candidate; negative: outside.
   double margin(const Candidate& candidate, const Row& row) const {
-    return radius(candidate.clearance) - row.radius - (row.point - candidate.center).norm();
+    return margin(candidate, radius(candidate), row);
+  }
+  // The same for the radius of the candidate as computed before.
+  static double margin(const Candidate& candidate, double radius, const Row& row) {
+    return radius - row.radius - (row.point - candidate.center).norm();
   }
 
   // Forgets all other columns than these; returns the new numbers of the old ones that are kept.
@@ -64,6 +72,7 @@ class CoverProblem {
 
   double max_error_;
   double min_radius_;
+  LocalError error_;
   std::vector<Row> rows_;
   std::vector<Candidate> candidates_;
   SetCoverInstance instance_;  // a column for every candidate

@@ -23,8 +23,9 @@ struct Worst {
 Worst worst_row(const CoverProblem& problem, const Candidate& candidate,
                 std::span<const std::uint32_t> rows) {
   Worst worst;
+  const double radius = problem.radius(candidate);
   for (const std::uint32_t row : rows) {
-    const double margin = problem.margin(candidate, problem.rows()[row]);
+    const double margin = problem.margin(candidate, radius, problem.rows()[row]);
     if (margin < worst.margin) worst = {margin, row};
   }
   return worst;
@@ -35,7 +36,7 @@ Worst worst_row(const CoverProblem& problem, const Candidate& candidate,
 Candidate shift(const Clearance& clearance, const CoverProblem& problem, const Candidate& start,
                 std::span<const std::uint32_t> rows) {
   if (rows.empty()) return start;
-  const double max_error = problem.max_error();
+  const double max_error = problem.error().allowance(start.center, std::max(0.0, start.clearance));
   const double tolerance = kTolerance * max_error;
   ClearanceAt at = clearance(start.center, tolerance);
   Candidate here{start.center, std::max(start.clearance, at.lower)};

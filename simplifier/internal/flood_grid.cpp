@@ -56,16 +56,18 @@ class DisjointSets {
 
 }  // namespace
 
-FloodGrid::FloodGrid(const MeshDistance& distance, double padding, double rho, const Shape& shape,
-                     const Progress& progress)
-    : padding_(padding), rho_(rho), shape_(shape) {
+FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
+                     const Shape& shape, const Progress& progress)
+    : padding_(padding),
+      diameter_(diameter),
+      shape_(shape),
+      levels_(shape.levels + diameter.most_halvings()) {
   cells_.push_back({});
   level_begin_ = {0};
-  for (int level = 0; level <= shape_.levels; ++level) {
+  for (int level = 0; level <= levels_; ++level) {
     examine(distance, level);
     level_begin_.push_back(cells_.size());
-    if (progress) progress(0.9 * std::ldexp(1.0, 2 * (level - shape_.levels)), "flooding");
-    if (level == shape_.levels) break;
+    if (progress) progress(0.9 * std::ldexp(1.0, 2 * (level - levels_)), "flooding");
     for (std::size_t i = level_begin_[static_cast<std::size_t>(level)];
          i < level_begin_[static_cast<std::size_t>(level) + 1]; ++i) {
       if (cells_[i].state != State::kRefined) continue;
@@ -74,33 +76,47 @@ FloodGrid::FloodGrid(const MeshDistance& distance, double padding, double rho, c
       }
       cells_[i].first_child = static_cast<std::uint32_t>(cells_.size());
       const std::uint64_t code = cells_[i].code << 3;
-      for (std::uint64_t k = 0; k < 8; ++k) cells_.push_back({.code = code | k});
+      for (std::uint64_t k = 0; k < 8; ++k) {
+        cells_.push_back({.code = code | k, .level = static_cast<std::uint8_t>(level + 1)});
+      }
     }
   }
 }
 
+double FloodGrid::edge(int level) const {
+  return std::ldexp(shape_.step, shape_.levels - level);
+}
+
+double FloodGrid::rounding() const {
+  return 16.0 * kUnitRoundoff * (shape_.origin.cwiseAbs().maxCoeff() + edge(0));
+}
+
 Eigen::Vector3d FloodGrid::center(int level, const Index& index) const {
-  const double edge = std::ldexp(shape_.step, shape_.levels - level);
-  return shape_.origin + edge * Eigen::Vector3d(index[0] + 0.5, index[1] + 0.5, index[2] + 0.5);
+  return shape_.origin +
+         edge(level) * Eigen::Vector3d(index[0] + 0.5, index[1] + 0.5, index[2] + 0.5);
+}
+
+Eigen::Vector3d FloodGrid::center(const Entry& cell) const {
+  return center(cell.level, decode(cell.code));
 }
 
 void FloodGrid::examine(const MeshDistance& distance, int level) {
-  const double edge = std::ldexp(shape_.step, shape_.levels - level);
   // Half the diagonal, with room for the rounding of centres and faces.
-  const double half_diagonal =
-      0.8660254037844387 * edge * (1.0 + 1e-9) +
-      16.0 * kUnitRoundoff *
-          (shape_.origin.cwiseAbs().maxCoeff() + std::ldexp(shape_.step, shape_.levels));
+  const double half_diagonal = 0.8660254037844387 * edge(level) * (1.0 + 1e-9) + rounding();
   const auto begin = level_begin_[static_cast<std::size_t>(level)];
   tbb::parallel_for(begin, cells_.size(), [&](std::size_t i) {
     Entry& cell = cells_[i];
-    const SurfaceDistance d = distance(center(level, decode(cell.code)));
+    const Eigen::Vector3d middle = center(cell);
+    const SurfaceDistance d = distance(middle);
     cell.clearance = std::max(0.0, sub_down(d.lower, padding_));
-    if (level == shape_.levels) {
-      cell.state = cell.clearance >= rho_ ? State::kFree : State::kBlocked;
-    } else if (cell.clearance - half_diagonal >= rho_ + kLayer * shape_.step) {
+    const LocalDiameter::Near rho = diameter_.near(middle, half_diagonal);
+    cell.finest = level >= shape_.levels + rho.halvings;
+    if (cell.finest) {
+      cell.state = cell.clearance >= diameter_.at(middle) ? State::kFree : State::kBlocked;
+    } else if (cell.clearance - half_diagonal >=
+               rho.greatest + kLayer * std::ldexp(shape_.step, -rho.halvings)) {
       cell.state = State::kFree;
-    } else if (d.upper - padding_ + half_diagonal < rho_) {
+    } else if (d.upper - padding_ + half_diagonal < rho.least) {
       cell.state = State::kBlocked;
     } else {
       cell.state = State::kRefined;
@@ -137,30 +153,45 @@ void FloodGrid::for_each_face_neighbour(int level, const Index& index, Visit vis
   }
 }
 
+bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& face) const {
+  if (!a.finest && !b.finest) return true;
+  const auto suffices = [](double sum, double way, double rho) {
+    return sub_down(sum, way) >= 2.0 * rho * kRelativeUp;
+  };
+  const Eigen::Vector3d from = center(a);
+  const Eigen::Vector3d to = center(b);
+  if (a.finest && b.finest) {
+    const double way =
+        a.level == b.level ? edge(a.level) * (1.0 + 1e-9) + rounding() : distance_upper(from, to);
+    return suffices(a.clearance + b.clearance, way, diameter_.on_way(from, to));
+  }
+  const Entry& node = a.finest ? a : b;
+  const Entry& coarse = a.finest ? b : a;
+  const Eigen::Vector3d& start = a.finest ? from : to;
+  const Eigen::Vector3d& end = a.finest ? to : from;
+  const double way = add_up(distance_upper(start, face), rounding());
+  const double at_face = sub_down(coarse.clearance, add_up(distance_upper(face, end), rounding()));
+  const double rho = diameter_.on_way(start, face);
+  return suffices(node.clearance + at_face, way, rho) ||
+         sub_down(node.clearance, way) >= rho * kRelativeUp;
+}
+
 void FloodGrid::flood() {
   const auto outside = static_cast<std::uint32_t>(cells_.size());
   DisjointSets sets(cells_.size() + 1);
-  const auto first_node = level_begin_[static_cast<std::size_t>(shape_.levels)];
-  // Distance of neighbouring nodes as rounded.
-  const double step = shape_.step * (1.0 + 1e-9) + 16.0 * kUnitRoundoff *
-                                                       (shape_.origin.cwiseAbs().maxCoeff() +
-                                                        std::ldexp(shape_.step, shape_.levels));
-  for (int level = 0; level <= shape_.levels; ++level) {
-    for (auto i = level_begin_[static_cast<std::size_t>(level)];
-         i < level_begin_[static_cast<std::size_t>(level) + 1]; ++i) {
-      if (cells_[i].state != State::kFree) continue;
-      const auto self = static_cast<std::uint32_t>(i);
-      for_each_face_neighbour(level, decode(cells_[i].code), [&](std::size_t other, const Index&) {
-        if (other == cells_.size()) {
-          sets.unite(self, outside);
-        } else if (cells_[other].state == State::kFree) {
-          const bool both_nodes = i >= first_node && other >= first_node;
-          const bool passes = !both_nodes || sub_down(cells_[i].clearance + cells_[other].clearance,
-                                                      step) >= 2.0 * rho_ * kRelativeUp;
-          if (passes) sets.unite(self, static_cast<std::uint32_t>(other));
-        }
-      });
-    }
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const Entry& cell = cells_[i];
+    if (cell.state != State::kFree) continue;
+    const auto self = static_cast<std::uint32_t>(i);
+    const int level = cell.level;
+    for_each_face_neighbour(level, decode(cell.code), [&](std::size_t other, const Index& index) {
+      if (other == cells_.size()) {
+        sets.unite(self, outside);
+      } else if (cells_[other].state == State::kFree) {
+        const Eigen::Vector3d face = (center(cell) + center(level, index)) / 2.0;
+        if (passes(cell, cells_[other], face)) sets.unite(self, static_cast<std::uint32_t>(other));
+      }
+    });
   }
   const std::uint32_t reached = sets.find(outside);
   for (std::size_t i = 0; i < cells_.size(); ++i) {
@@ -171,12 +202,8 @@ void FloodGrid::flood() {
 
 std::vector<FloodGrid::Cell> FloodGrid::reached_cells() const {
   std::vector<Cell> result;
-  for (int level = 0; level <= shape_.levels; ++level) {
-    for (auto i = level_begin_[static_cast<std::size_t>(level)];
-         i < level_begin_[static_cast<std::size_t>(level) + 1]; ++i) {
-      if (!cells_[i].reached) continue;
-      result.push_back({center(level, decode(cells_[i].code)), cells_[i].clearance});
-    }
+  for (const Entry& cell : cells_) {
+    if (cell.reached) result.push_back({center(cell), cell.clearance});
   }
   return result;
 }
@@ -184,17 +211,21 @@ std::vector<FloodGrid::Cell> FloodGrid::reached_cells() const {
 std::vector<FloodGrid::Frontier> FloodGrid::frontier() const {
   std::vector<Frontier> result;
   std::vector<bool> seen(cells_.size(), false);
-  const auto first_node = level_begin_[static_cast<std::size_t>(shape_.levels)];
-  for (auto i = first_node; i < cells_.size(); ++i) {
-    if (!cells_[i].reached) continue;
-    const Index index = decode(cells_[i].code);
-    for_each_face_neighbour(shape_.levels, index, [&](std::size_t other, const Index& neighbour) {
-      if (other < first_node || other >= cells_.size()) return;
-      if (cells_[other].reached || seen[other]) return;
-      seen[other] = true;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (!cells_[i].finest) continue;
+    const auto visit = [&](std::size_t other, const Index&) {
+      if (other >= cells_.size() || !cells_[other].finest) return;
+      if (cells_[other].reached == cells_[i].reached) return;
+      // Of two cells of one size each visits the other.
+      if (cells_[other].reached && cells_[other].level == cells_[i].level) return;
+      const std::size_t open = cells_[i].reached ? other : i;
+      const Entry& reached = cells_[i].reached ? cells_[i] : cells_[other];
+      if (seen[open]) return;
+      seen[open] = true;
       result.push_back(
-          {center(shape_.levels, neighbour), {center(shape_.levels, index), cells_[i].clearance}});
-    });
+          {center(cells_[open]), {center(reached), reached.clearance}, edge(cells_[open].level)});
+    };
+    for_each_face_neighbour(cells_[i].level, decode(cells_[i].code), visit);
   }
   return result;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "simplifier/external_spheres.h"
+#include "simplifier/internal/local_diameter.h"
 #include "simplifier/mesh_distance.h"
 
 #include <Eigen/Geometry>
@@ -13,8 +14,9 @@
 namespace spherule::internal {
 
 // The free space of a ball of radius rho around a mesh, as a sparse octree over a cube that leaves
-// the ball room on every side of the mesh. Cells are examined from coarse to fine, so that memory
-// grows with the surface over the square of the finest step, not with the volume:
+// the ball room on every side of the mesh; rho and the finest step h are those of the place
+// (local_diameter.h). Cells are examined from coarse to fine, so that memory grows with the surface
+// over the square of the finest step, not with the volume:
 //  - a coarse cell all of whose points have clearance >= rho + 1.2 h is free as a whole;
 //  - a cell all of whose points have clearance < rho is blocked;
 //  - a finest cell, of edge h, is a node: free if the clearance at its centre is at least rho.
@@ -29,22 +31,25 @@ class FloodGrid {
   struct Frontier {
     Eigen::Vector3d center;
     Cell neighbour;
+    double step = 0.0;  // h there
   };
   struct Shape {
     Eigen::Vector3d origin;  // low corner of the cube
-    double step = 0.0;       // h
-    int levels = 0;          // the cube has the edge h * 2^levels; at most 20
+    double step = 0.0;       // h, where no zone halves it
+    int levels = 0;          // the cube has the edge h * 2^levels; with the halvings at most 20
   };
 
   // `progress` is called after every level. The share takes the finest level for nine tenths of the
   // work and each coarser one for a quarter of the next: cells near the surface grow that fast.
-  FloodGrid(const MeshDistance& distance, double padding, double rho, const Shape& shape,
-            const Progress& progress);
+  FloodGrid(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
+            const Shape& shape, const Progress& progress);
 
   // Marks the cells that the ball reaches from outside the cube. A step between two nodes counts
-  // only if the ball provably passes: (d1 + d2 - h) / 2 >= rho. A step between a node and a coarse
-  // free cell always passes: over the half step h / 2 to the cell's face the clearance is at least
-  // (d1 + rho + 1.2 h - h / 2) / 2 >= rho. So does one between two coarse free cells.
+  // only if the ball provably passes on the straight way, whose length is h: (d1 + d2 - h) / 2 >=
+  // rho, the greatest on that way. A step between two coarse free cells always passes, through
+  // their common face. So does one between a node and a coarse free cell where rho is the same: on
+  // the way of h / 2 to the common face the clearance is at least (d1 + rho + 1.2 h - h / 2) / 2 >=
+  // rho. Where zones make a difference, that way is examined.
   void flood();
 
   // After flood(). Order: from coarse to fine, along the Morton curve.
@@ -62,22 +67,32 @@ class FloodGrid {
     double clearance = 0.0;
     std::uint32_t first_child = 0;  // of eight consecutive ones, if refined
     State state = State::kBlocked;
+    std::uint8_t level = 0;
+    bool finest = false;
     bool reached = false;
   };
 
+  double edge(int level) const;
+  // Bound on the rounding of the coordinates of centres and faces.
+  double rounding() const;
   Eigen::Vector3d center(int level, const Index& index) const;
+  Eigen::Vector3d center(const Entry& cell) const;
   void examine(const MeshDistance& distance, int level);
   // The cell of `level` or coarser that holds the index and is not refined; cells_.size() if that
   // one is refined further.
   std::size_t locate(int level, const Index& index) const;
   // Calls visit(cell, index) for the face neighbours of the same size or coarser, and
   // visit(cells_.size(), index) for each face on the boundary of the cube.
+  // Whether the ball provably passes between two free cells that share a face; `face` is the centre
+  // of that.
+  bool passes(const Entry& a, const Entry& b, const Eigen::Vector3d& face) const;
   template <typename Visit>
   void for_each_face_neighbour(int level, const Index& index, Visit visit) const;
 
   double padding_;
-  double rho_;
+  const LocalDiameter& diameter_;
   Shape shape_;
+  int levels_;  // with the halvings of zones
   std::vector<Entry> cells_;
   std::vector<std::size_t> level_begin_;
 };

@@ -53,8 +53,8 @@ bool below(const Cell& a, const Cell& b) {
 
 }  // namespace
 
-double protrusion_over_solid(const Clearance& clearance, const MeshDistance& distance,
-                             std::span<const Sphere> balls) {
+std::vector<double> protrusions_over_solid(const Clearance& clearance, const MeshDistance& distance,
+                                           std::span<const Sphere> balls) {
   std::vector<double> each(balls.size());
   tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
     const Sphere& ball = balls[i];
@@ -63,8 +63,22 @@ double protrusion_over_solid(const Clearance& clearance, const MeshDistance& dis
                        : add_up(ball.radius,
                                 distance_to_solid(clearance, distance, ball.center, ball.radius));
   });
-  return std::accumulate(each.begin(), each.end(), 0.0,
+  return each;
+}
+
+double greatest(std::span<const double> protrusions) {
+  return std::accumulate(protrusions.begin(), protrusions.end(), 0.0,
                          [](double a, double b) { return std::max(a, b); });
+}
+
+double greatest_in(const Zone& zone, std::span<const Sphere> balls,
+                   std::span<const double> protrusions) {
+  double result = 0.0;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    if (balls[i].radius < distance_lower(zone.shape, balls[i].center)) continue;
+    result = std::max(result, protrusions[i]);
+  }
+  return result;
 }
 
 Bounds protrusion_over_mesh(const MeshDistance& distance, bool closed, const Clearance& clearance,

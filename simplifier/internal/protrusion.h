@@ -5,14 +5,22 @@
 #include "simplifier/internal/clearance.h"
 #include "simplifier/internal/proof.h"
 #include "simplifier/mesh_distance.h"
+#include "simplifier/zones.h"
+
+#include <span>
+#include <vector>
 
 namespace spherule::internal {
 
-// Upper bound of the protrusion over S: a ball with its centre in S, of clearance d, protrudes by
-// at most r - d; one with its centre outside of S by at most r + the distance to a point of S (of
-// the mesh, or met on the way away from the contact).
-double protrusion_over_solid(const Clearance& clearance, const MeshDistance& distance,
-                             std::span<const Sphere> balls);
+// Upper bounds of the protrusion over S, ball by ball: one with its centre in S, of clearance d,
+// protrudes by at most r - d; one with its centre outside of S by at most r + the distance to a
+// point of S (of the mesh, or met on the way away from the contact).
+std::vector<double> protrusions_over_solid(const Clearance& clearance, const MeshDistance& distance,
+                                           std::span<const Sphere> balls);
+// The greatest of them, of all balls or of those that may reach into the zone; not below 0.
+double greatest(std::span<const double> protrusions);
+double greatest_in(const Zone& zone, std::span<const Sphere> balls,
+                   std::span<const double> protrusions);
 
 // Bounds of the protrusion over |M|, the largest distance from a point of the balls to |M|,
 // searched best-first until they are `tolerance` (or 2 % of their value) apart. The upper bound is

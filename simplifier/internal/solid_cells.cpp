@@ -30,8 +30,9 @@ constexpr std::size_t kForgetting = 8;
 
 using Eigen::Vector3d;
 
-SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance, double spacing)
-    : clearance_(clearance), distance_(distance), spacing_(spacing) {
+SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
+                       const LocalError& error, double spacing)
+    : clearance_(clearance), distance_(distance), error_(error), spacing_(spacing) {
   enum class Step : char { kDrop, kKeep, kHalve };
   std::vector<Cell> level{{BoxCell::around(clearance.box()), false, false}};
   std::vector<Step> steps;
@@ -45,7 +46,8 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
       if (state.outside) return;
       cell.inside = state.inside;
       cell.center_inside = state.center_inside;
-      steps[i] = reach > spacing + kGrading * std::max(0.0, at.lower) ? Step::kHalve : Step::kKeep;
+      const double largest = spacing * error_.scale(cell.box.center, reach);
+      steps[i] = reach > largest + kGrading * std::max(0.0, at.lower) ? Step::kHalve : Step::kKeep;
     });
     std::vector<Cell> next;
     for (std::size_t i = 0; i < level.size(); ++i) {
@@ -78,10 +80,13 @@ std::vector<Vector3d> SolidCells::sample() const {
     if (on_mesh) points[i] = *on_mesh;
   });
   std::vector<Vector3d> kept;
-  std::set<Cube> taken;
+  std::set<GradedCube> taken;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (usable[i] == 0) continue;
-    if (cells_[i].inside || taken.insert(cube_of(points[i], kThinning * spacing_)).second) {
+    const auto cube = [&] {
+      return graded_cube_of(points[i], kThinning * spacing_, error_.scale(points[i]));
+    };
+    if (cells_[i].inside || taken.insert(cube()).second) {
       kept.push_back(points[i]);
     }
   }
@@ -97,8 +102,9 @@ bool SolidCells::meets_solid(Cell& cell) const {
 }
 
 std::optional<SolidCells::Leak> SolidCells::leak_in(const Cell& cell, const NearestBall& gap,
-                                                    double finest) const {
+                                                    double finest_elsewhere) const {
   const double reach = cell.box.reach();
+  const double finest = finest_elsewhere * error_.scale(cell.box.center, reach);
   if (cell.center_inside) {
     if (gap.lower > 0.0 || reach <= finest) return Leak{cell.box.center, true};
     return std::nullopt;
@@ -148,11 +154,12 @@ SolidCells::Leaks SolidCells::find_leaks(const BallsToProve& balls, double fines
                     [&](std::size_t i) { refined[i] = refine(cells_[i], balls, finest); });
   cells_.clear();
   Leaks thinned;
-  std::set<Cube> taken;
+  std::set<GradedCube> taken;
   for (const Refined& r : refined) {
     cells_.insert(cells_.end(), r.cells.begin(), r.cells.end());
     for (const Leak& leak : r.leaks) {
-      if (!taken.insert(cube_of(leak.point, spacing)).second) continue;
+      const double scale = error_.scale(leak.point);
+      if (!taken.insert(graded_cube_of(leak.point, spacing, scale)).second) continue;
       (leak.in_solid ? thinned.in_solid : thinned.pinched).push_back(leak.point);
     }
   }

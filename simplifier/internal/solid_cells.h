@@ -3,6 +3,7 @@
 
 #include "simplifier/internal/box_cell.h"
 #include "simplifier/internal/clearance.h"
+#include "simplifier/internal/local_error.h"
 #include "simplifier/internal/proof.h"
 #include "simplifier/mesh_distance.h"
 
@@ -19,8 +20,9 @@ class SolidCells {
  public:
   // Halves the box of S until a cell lies outside of S (it is forgotten) or its half diagonal is at
   // most `spacing` plus half the clearance: a ball that covers part of the deep inside covers much
-  // of it.
-  SolidCells(const Clearance& clearance, const MeshDistance& distance, double spacing);
+  // of it. This and the other lengths below hold where E does, and shrink with the error in zones.
+  SolidCells(const Clearance& clearance, const MeshDistance& distance, const LocalError& error,
+             double spacing);
 
   std::size_t size() const { return cells_.size(); }
 
@@ -63,6 +65,7 @@ class SolidCells {
 
   const Clearance& clearance_;
   const MeshDistance& distance_;
+  const LocalError& error_;
   double spacing_;
   std::vector<Cell> first_;  // as made
   std::vector<Cell> cells_;

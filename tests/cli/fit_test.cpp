@@ -2,6 +2,7 @@
 #include "tests/cli/command_test_support.h"
 
 #include <cmath>
+#include <utility>
 
 namespace spherule {
 namespace {
@@ -139,6 +140,77 @@ TEST_F(FitTest, OptionsArriveInTheFile) {
   for (const json& sphere : file.at("spheres")) EXPECT_GE(sphere.at("radius"), 15.0);
   // The audit takes the scale from the file.
   EXPECT_EQ(run({"audit", "box.stl", "scaled.json"}).exit_code, 0);
+}
+
+TEST_F(FitTest, TheToolMakesD) {
+  write_spheres("tool.json", {{0, 0, 0, 3}, {1, 0, 0, 2.5}, {5, 0, 0, 4}});
+  const Outcome fit =
+      run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--tool", "tool.json"});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_EQ(read_json("box.json").at("options").at("min-external"), 5.0);
+
+  const auto refuse = [&](const std::string& tool, const std::string& reason) {
+    expect_refusal({"fit", "box.stl", "-o", "no.json", "--tool", tool}, reason);
+  };
+  write_spheres("none.json", {});
+  refuse("none.json", "none.json: tool: holds no sphere");
+  write_spheres("point.json", {{0, 0, 0, 1}, {0, 0, 0, 0}});
+  refuse("point.json", "point.json: tool: has a sphere of radius 0");
+  refuse("absent.json", "absent.json");
+  refuse("box.stl", "box.stl");
+  expect_refusal({"fit", "box.stl", "-o", "no.json", "--tool", "tool.json", "--min-external", "3"},
+                 "--tool");
+  expect_refusal({"fit", "box.stl", "-o", "tool.json", "--tool", "tool.json"}, "named twice");
+  EXPECT_FALSE(exists("no.json"));
+}
+
+TEST_F(FitTest, ZonesAreKeptProvedAndAudited) {
+  write("zones.json", R"({"format":"spherule-zones","version":1,"zones":[
+    {"shape":"ball","center":[40,20,10],"radius":4,"max_error":0.5},
+    {"shape":"box","min":[-5,-5,-5],"max":[10,25,15],"min_external":4}]})");
+  const std::vector<std::string> arguments = {"fit",      "box.stl",     "-o",
+                                              "box.json", "--max-error", "2",
+                                              "--zones",  "zones.json",  "--keep-concave-edges"};
+  const Outcome fit = run(arguments);
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_NE(fit.out.find("zones along sharp concave edges: 0"), std::string::npos);
+  EXPECT_NE(fit.out.find("in zone 0: at most"), std::string::npos);
+  const json file = read_json("box.json");
+  const json& zones = file.at("certificate").at("zones");
+  ASSERT_EQ(zones.size(), 2U);
+  EXPECT_LE(zones.at(0).at("protrusion_over_simplified_max"), 0.5);
+  EXPECT_GT(zones.at(0).at("protrusion_over_simplified_max"), 0.0);
+  EXPECT_EQ(json::parse(file.at("options").at("zones").get<std::string>()),
+            read_json("zones.json"));
+  EXPECT_EQ(file.at("options").at("keep-concave-edges"), true);
+
+  const Outcome audit = run({"audit", "box.stl", "box.json", "--json"});
+  EXPECT_EQ(audit.exit_code, 0) << audit.err;
+  EXPECT_EQ(json::parse(audit.out).at("zones"), zones);
+  EXPECT_EQ(run({"info", "box.json"}).exit_code, 0);
+}
+
+TEST_F(FitTest, FaultsOfZonesAreNamedWithTheirFile) {
+  const auto refuse = [&](const std::string& zones, const std::string& reason) {
+    write("zones.json", R"({"format":"spherule-zones","version":1,"zones":[)" + zones + "]}");
+    expect_refusal({"fit", "box.stl", "-o", "no.json", "--max-error", "2", "--zones", "zones.json"},
+                   "zones.json: " + reason);
+  };
+  refuse(R"({"shape":"ball"})", "zone 0: \"center\" is missing");
+  refuse(R"({"shape":"ball","center":[0,0,0],"radius":1})", "zone 0: has neither");
+  // What depends on E and D is known once the mesh is read and described.
+  for (const auto& [value, reason] : {std::pair{R"("max_error":2.5)", "the max error is above"},
+                                      std::pair{R"("min_external":8.5)", "the min external"}}) {
+    write("zones.json", std::string(R"({"format":"spherule-zones","version":1,"zones":[)") +
+                            R"({"shape":"ball","center":[0,0,0],"radius":1,)" + value + "}]}");
+    const Outcome fit =
+        run({"fit", "box.stl", "-o", "no.json", "--max-error", "2", "--zones", "zones.json"});
+    EXPECT_EQ(fit.exit_code, 2);
+    EXPECT_NE(fit.err.find(std::string("zones.json: zone 0: ") + reason), std::string::npos)
+        << fit.err;
+    EXPECT_FALSE(exists("no.json"));
+  }
+  expect_refusal({"fit", "box.stl", "-o", "no.json", "--zones", "absent.json"}, "absent.json");
 }
 
 }  // namespace

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/zones.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace spherule::internal {
+
+// Zones in a hierarchy of boxes, to look up those near a point among hundreds. Immutable and safe
+// to share between threads.
+class ZoneIndex {
+ public:
+  ZoneIndex() = default;
+  explicit ZoneIndex(std::span<const Zone> zones) : zones_(zones.begin(), zones.end()) {
+    order_.resize(zones_.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    if (!zones_.empty()) build(0, static_cast<std::int32_t>(zones_.size()));
+  }
+
+  const Zone& operator[](std::size_t zone) const { return zones_[zone]; }
+  bool empty() const { return zones_.empty(); }
+
+  // Calls visit(zone) with the numbers of all zones that may be within `reach` of the point, and of
+  // some others; it returns the reach from there on, which may only shrink. In a fixed order.
+  template <typename Visit>
+  void near(const Eigen::Vector3d& point, double reach, Visit visit) const {
+    if (zones_.empty()) return;
+    // Halving keeps the depth below 32, and each level leaves at most one node waiting.
+    std::array<std::int32_t, 34> waiting{0};
+    std::size_t count = 1;
+    while (count > 0) {
+      const auto at = static_cast<std::size_t>(waiting[--count]);
+      const Node& node = nodes_[at];
+      if (distance_lower(ZoneShape(node.box), point) > reach) continue;
+      if (node.right < 0) {
+        reach = visit(node.zone);
+      } else {
+        waiting[count++] = node.right;
+        waiting[count++] = static_cast<std::int32_t>(at) + 1;
+      }
+    }
+  }
+
+ private:
+  // Depth-first order: the left child is the next node; a leaf has right < 0 and holds a zone.
+  struct Node {
+    Eigen::AlignedBox3d box;
+    std::int32_t right = -1;
+    std::size_t zone = 0;
+  };
+
+  void build(std::int32_t begin, std::int32_t end) {
+    const std::size_t self = nodes_.size();
+    nodes_.push_back({});
+    for (auto i = begin; i < end; ++i) {
+      nodes_[self].box.extend(box_of(order_[static_cast<std::size_t>(i)]));
+    }
+    if (end - begin == 1) {
+      nodes_[self].zone = order_[static_cast<std::size_t>(begin)];
+      return;
+    }
+    int axis = 0;
+    nodes_[self].box.sizes().maxCoeff(&axis);
+    const auto middle = begin + (end - begin) / 2;
+    std::stable_sort(order_.begin() + begin, order_.begin() + end,
+                     [&](std::size_t a, std::size_t b) {
+                       return box_of(a).center()[axis] < box_of(b).center()[axis];
+                     });
+    build(begin, middle);
+    nodes_[self].right = static_cast<std::int32_t>(nodes_.size());
+    build(middle, end);
+  }
+
+  Eigen::AlignedBox3d box_of(std::size_t zone) const { return bounds(zones_[zone].shape); }
+
+  std::vector<Zone> zones_;
+  std::vector<std::size_t> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace spherule::internal

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/sphere.h"
+
+#include <Eigen/Geometry>
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace spherule {
+
+// All points within `radius` of the segment between two points; a radius of 0 is the segment.
+struct Capsule {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+  double radius = 0.0;
+};
+
+inline bool operator==(const Capsule& a, const Capsule& b) {
+  return a.from == b.from && a.to == b.to && a.radius == b.radius;
+}
+
+// Closed and convex, which the rule for steps of the flood rests on.
+using ZoneShape = std::variant<Sphere, Eigen::AlignedBox3d, Capsule>;
+
+// A part of space in which E or D is smaller than elsewhere. Where zones overlap, the smallest
+// value counts.
+struct Zone {
+  ZoneShape shape;
+  // e: every point of the union of the balls that lies in the zone is at most this far from S. At
+  // most E.
+  std::optional<double> max_error = std::nullopt;
+  // d: a ball of diameter d, instead of D, is small enough to be an external ball where its centre
+  // lies in the zone. At most D. So that something gets in, the zone has to hold the centres of
+  // balls of diameter D beside it, not only the detail that is to be kept: let it reach D / 2 out
+  // of the surface, and a few grid steps more.
+  std::optional<double> min_external_diameter = std::nullopt;
+};
+
+bool operator==(const Zone& a, const Zone& b);
+
+// Never more than the distance of `point` to the shape, and 0 in it.
+double distance_lower(const ZoneShape& shape, const Eigen::Vector3d& point);
+// True only if the ball of radius `reach` about `point` is a subset of the shape; false within
+// rounding of the limit.
+bool certainly_contains(const ZoneShape& shape, const Eigen::Vector3d& point, double reach = 0.0);
+// A box that contains the shape.
+Eigen::AlignedBox3d bounds(const ZoneShape& shape);
+
+// Throws Error with the subject "zone N", N counted from 0, for a zone that cannot be used: numbers
+// that are not finite or too large, a negative radius, a box that is inside out; no value at all;
+// values that are not positive, or above the `max_error` E and the `min_external_diameter` D that
+// hold elsewhere. Infinity for these tests the rest.
+void check_zones(std::span<const Zone> zones, double max_error, double min_external_diameter);
+
+// The smallest E of all zones and the given one.
+double tightest_error(std::span<const Zone> zones, double max_error);
+
+// The file of `fit --zones`, lengths in output units:
+//   {"format":"spherule-zones","version":1,"zones":[
+//     {"shape":"ball","center":[x,y,z],"radius":r,"max_error":e,"min_external":d},
+//     {"shape":"box","min":[x,y,z],"max":[x,y,z],"max_error":e},
+//     {"shape":"capsule","from":[x,y,z],"to":[x,y,z],"radius":r,"min_external":d}]}
+// Throws Error naming file, entry and reason for everything else: a key that is not known, missing
+// or there twice, a value of a wrong type, a zone that check_zones() refuses.
+std::vector<Zone> read_zones(const std::filesystem::path& path);
+
+// The same from the text of a file, which `subject` names; and the compact text of the zones, from
+// which parse_zones() gets them back bit for bit.
+std::vector<Zone> parse_zones(std::string_view text, const std::string& subject);
+std::string zones_text(std::span<const Zone> zones);
+
+}  // namespace spherule

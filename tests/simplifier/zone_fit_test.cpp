@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Covers with zones of their own E: the balls keep both errors, the certificate knows it, and the
+// tool that made D does not notice the simplification.
+#include "simplifier/mesh_distance.h"
+#include "simplifier/simplify.h"
+#include "spheretree/error.h"
+#include "tests/simplifier/fitting.h"
+#include "tests/simplifier/judge.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+constexpr double kError = 0.1;
+constexpr double kZoneError = 0.01;
+
+bool holds(const ZoneShape& shape, const Vector3d& p) {
+  if (const auto* ball = std::get_if<Sphere>(&shape)) {
+    return (p - ball->center).norm() <= ball->radius;
+  }
+  if (const auto* box = std::get_if<AlignedBox3d>(&shape)) return box->contains(p);
+  const auto& capsule = std::get<Capsule>(shape);
+  for (int i = 0; i <= 1000; ++i) {
+    const Vector3d at = capsule.from + i / 1000.0 * (capsule.to - capsule.from);
+    if ((p - at).norm() <= capsule.radius) return true;
+  }
+  return false;
+}
+
+// Of points in balls and in the zone, densest on the balls' surfaces: how many there are outside of
+// S, and how many of these have no point of S within the error, where a ball that holds them
+// promises one: on the way to its centre.
+struct ZoneJudgement {
+  int outside = 0;
+  int beyond = 0;
+};
+
+ZoneJudgement judge_zone(const Zone& zone, const std::vector<Sphere>& balls,
+                         const ExternalSpheres& external, double error, Random& random) {
+  ZoneJudgement judgement;
+  for (const Sphere& ball : balls) {
+    for (int i = 0; i < effort(600, 150); ++i) {
+      const Vector3d direction = random.direction();
+      const double way = ball.radius * (i % 2 == 0 ? 1.0 : random.between(0.7, 1.0));
+      const Vector3d p = ball.center + way * direction;
+      if (!holds(zone.shape, p) || is_in_solid(p, external)) continue;
+      ++judgement.outside;
+      bool near = false;
+      for (const double share : {0.5, 0.9, 1.0 + 1e-9}) {
+        const double back = std::min(way, share * error);
+        near = near || is_in_solid(ball.center + (way - back) * direction, external);
+      }
+      if (!near) ++judgement.beyond;
+    }
+  }
+  return judgement;
+}
+
+SimplifyOptions options_with(std::vector<Zone> zones) {
+  SimplifyOptions options;
+  options.max_error = kError;
+  options.zones = std::move(zones);
+  options.effort = effort(4, 1);
+  return options;
+}
+
+std::vector<Zone> zones_of_all_shapes() {
+  return {{.shape = Sphere{{1, 1, 1}, 0.2}, .max_error = kZoneError},
+          {.shape = AlignedBox3d(Vector3d(-0.3, -0.3, -0.3), Vector3d(0.2, 0.15, 0.1)),
+           .max_error = 2.0 * kZoneError},
+          {.shape = Capsule{{1, 0.2, 0}, {1, 0.5, 0}, 0.1}, .max_error = kZoneError}};
+}
+
+TEST(ZoneFit, NoPointOfABallInAZoneIsFurtherFromTheSolidThanTheZoneAllows) {
+  const TriangleMesh mesh = cube_mesh();
+  Random random(81);
+  const Simplification fit = simplify(mesh, options_with(zones_of_all_shapes()));
+  EXPECT_EQ(broken_promises(fit), "");
+  ASSERT_EQ(fit.certificate.protrusion_in_zones.size(), 3U);
+  const Simplification coarse = simplify(mesh, options_with({}));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Zone& zone = fit.options.zones[i];
+    EXPECT_LE(fit.certificate.protrusion_in_zones[i], *zone.max_error);
+    EXPECT_GT(fit.certificate.protrusion_in_zones[i], 0.0);
+    const ZoneJudgement judgement =
+        judge_zone(zone, fit.cover.spheres, fit.external, *zone.max_error, random);
+    EXPECT_GT(judgement.outside, 20) << i;
+    EXPECT_EQ(judgement.beyond, 0) << i;
+    // The judge is not blind: without zones the error is E there too.
+    EXPECT_GT(
+        judge_zone(zone, coarse.cover.spheres, coarse.external, *zone.max_error, random).beyond, 20)
+        << i;
+  }
+  // G1 and G2 as ever.
+  const auto points = points_of_solid(fit.external, 20000, random);
+  EXPECT_EQ(judge_cover(points, fit.cover.spheres).uncovered, 0U);
+  EXPECT_EQ(judge_protrusion(fit.cover.spheres, mesh, fit.external, kError, 200, random).beyond,
+            0U);
+}
+
+// A small zone makes its surroundings fine, not the whole part.
+TEST(ZoneFit, ASmallZoneCostsLittle) {
+  const Zone zone{.shape = Sphere{{1, 1, 1}, 0.1}, .max_error = kZoneError};
+  const Simplification coarse = simplify(cube_mesh(), options_with({}));
+  const Simplification fit = simplify(cube_mesh(), options_with({zone}));
+  EXPECT_EQ(broken_promises(fit), "");
+  const auto elsewhere = [](const std::vector<Sphere>& balls) {
+    return std::ranges::count_if(
+        balls, [](const Sphere& s) { return (s.center - Vector3d(1, 1, 1)).norm() > 0.4; });
+  };
+  EXPECT_LE(elsewhere(fit.cover.spheres), 5 * elsewhere(coarse.cover.spheres) / 4 + 2);
+}
+
+TEST(ZoneFit, ABallThatReachesIntoAZoneTooFarIsBlamed) {
+  const std::vector<Zone> zones = zones_of_all_shapes();
+  Simplification fit = simplify(cube_mesh(), options_with({}));
+  const Certificate certificate =
+      certify(cube_mesh(), fit.cover.spheres, {.external = &fit.external, .zones = zones});
+  fit.options.zones = zones;
+  EXPECT_NE(broken_promises(fit).find("in zone 0"), std::string::npos);  // not even examined
+  fit.certificate = certificate;
+  EXPECT_NE(broken_promises(fit).find("in zone 0, only by at most 0.1"), std::string::npos)
+      << broken_promises(fit);
+}
+
+TEST(ZoneFit, ZonesSurviveTheRecordAndAnAuditPlacesTheSameExternalSpheres) {
+  TriangleMesh mesh = l_bracket();
+  SimplifyOptions options = options_with(zones_of_all_shapes());
+  options.zones[1].min_external_diameter = 0.2;
+  options.keep_concave_edges = true;
+  options.effort = 0;
+  const Simplification fit = simplify(mesh, options);
+  const SphereFile file = sphere_file(fit, 1.0);
+  const SimplifyOptions again = options_from_record(file.options);
+  EXPECT_EQ(again.zones, options.zones);
+  EXPECT_TRUE(again.keep_concave_edges);
+  EXPECT_EQ(place_external_spheres(mesh, external_options(again)).balls, fit.external.balls);
+  EXPECT_EQ(file.certificate->protrusion_in_zones, fit.certificate.protrusion_in_zones);
+  EXPECT_FALSE(option_record({}, 1.0).contains("zones"));
+  EXPECT_FALSE(option_record({}, 1.0).contains("keep-concave-edges"));
+  EXPECT_THROW(options_from_record({{"zones", std::string("[]")}}), Error);
+  EXPECT_THROW(options_from_record({{"zones", 1.0}}), Error);
+  EXPECT_THROW(options_from_record({{"keep-concave-edges", 1.0}}), Error);
+}
+
+TEST(ZoneFit, WhatCannotBeDoneIsRefused) {
+  const auto refused = [](SimplifyOptions options) {
+    try {
+      simplify(cube_mesh(), options);
+    } catch (const Error& error) {
+      return error.subject();
+    }
+    return std::string("accepted");
+  };
+  const Zone zone{.shape = Sphere{{0, 0, 0}, 1.0}, .max_error = 0.05, .min_external_diameter = 0.1};
+  SimplifyOptions options = options_with({zone});
+  options.method = CoverMethod::kPaper;
+  EXPECT_EQ(refused(options), "zones");
+  options = options_with({zone});
+  options.external = ExternalPlacement::kRandom;
+  EXPECT_EQ(refused(options), "zones");
+  options = options_with({zone, zone});
+  options.zones[1].max_error = 2.0 * kError;
+  EXPECT_EQ(refused(options), "zone 1");
+  options.zones[1] = {.shape = zone.shape, .min_external_diameter = 5.0 * kError};
+  EXPECT_EQ(refused(options), "zone 1");
+}
+
+// --- the right tool ---
+
+TEST(Tool, DIsTheDiameterOfItsSmallestBall) {
+  EXPECT_EQ(tool_diameter(std::vector<Sphere>{{{0, 0, 0}, 2.0}, {{1, 0, 0}, 0.75}}), 1.5);
+  EXPECT_THROW(tool_diameter({}), Error);
+  EXPECT_THROW(tool_diameter(std::vector<Sphere>{{{0, 0, 0}, 2.0}, {{1, 0, 0}, 0.0}}), Error);
+  EXPECT_THROW(tool_diameter(std::vector<Sphere>{{{0, 0, 0}, -2.0}}), Error);
+}
+
+// The theorem of guarantee.md. Let h be the grid step. A tool whose every ball (c, r), r >= rho,
+// keeps a room of m = 0.634 closing_slack = 1.733 h > 2 sqrt(3)/2 h beyond r all the way in meets
+// nothing of S, not even by the scallops: take a point p of the ball and c' between c and p, p
+// within rho of c', where the room is still rho + m. As m is more than closing_slack / 2, the grid
+// reaches the cell of c'. If that is a node x, |x - c'| <= 0.867 h, then d(x) >= rho + m - 0.867 h
+// > rho + 0.866 h >= |p - x|; if it is a coarse cell of half diagonal g, then d(x) >= rho + g +
+// 1.2 h > |p - x|. So p lies in the ball kept for that cell, which is open, and not in S.
+class Walk {
+ public:
+  Walk(const MeshDistance& distance, const std::vector<Sphere>& tool, double room)
+      : distance_(distance), tool_(tool), room_(room) {}
+
+  static Vector3d at(const Eigen::Isometry3d& pose, const Sphere& ball) {
+    return pose * ball.center;
+  }
+
+  // Whether every ball has the room here, and half a step more for the way here.
+  bool is_free(const Eigen::Isometry3d& pose, double step) const {
+    return std::ranges::all_of(tool_, [&](const Sphere& ball) {
+      return distance_(at(pose, ball)).lower >= ball.radius + room_ + step / 2.0;
+    });
+  }
+
+  // Towards the target in small free steps, with turns where the way is blocked.
+  Eigen::Isometry3d run(Eigen::Isometry3d pose, const Vector3d& target, double step,
+                        Random& random) const {
+    double reach = 0.1;
+    for (const Sphere& ball : tool_) reach = std::max(reach, ball.center.norm());
+    for (int i = 0; i < effort(400, 200); ++i) {
+      const double angle = random.between(-0.2, 0.2) * step / reach;
+      const Vector3d towards = target - pose.translation();
+      const Vector3d astray = random.between(0.0, 1.5) * random.direction();
+      Eigen::Isometry3d next = pose;
+      next.linear() = (Eigen::AngleAxisd(angle, random.direction()) * pose.linear()).eval();
+      // A ball moves by at most the step in all: 0.8 of it and a fifth of it.
+      next.translation() +=
+          std::min(towards.norm(), 0.8 * step) * (towards.normalized() + astray).normalized();
+      if (is_free(next, step)) pose = next;
+    }
+    return pose;
+  }
+
+ private:
+  const MeshDistance& distance_;
+  const std::vector<Sphere>& tool_;
+  double room_;
+};
+
+// A thin rod, covered by balls of one radius nearly along its axis.
+std::vector<Sphere> rod() {
+  SimplifyOptions options;
+  options.max_error = 0.05;
+  options.min_radius = 0.1;
+  options.effort = 2;
+  return simplify(box_mesh({-0.01, -0.01, -0.4}, {0.01, 0.01, 0.4}), options).cover.spheres;
+}
+
+ExternalSpheres externals_for(const std::vector<Sphere>& tool, const TriangleMesh& mesh) {
+  ExternalOptions options;
+  options.min_external_diameter = tool_diameter(tool);
+  options.max_error = 0.05;
+  return place_external_spheres(mesh, options);
+}
+
+// No point of the closed balls, those next to the mesh among them, is in S.
+void expect_nothing_met(const std::vector<Sphere>& tool, const Eigen::Isometry3d& pose,
+                        const MeshDistance& distance, const ExternalSpheres& external,
+                        Random& random) {
+  for (const Sphere& ball : tool) {
+    const Vector3d c = Walk::at(pose, ball);
+    const Vector3d to_mesh = (distance(c).closest - c).normalized();
+    ASSERT_FALSE(is_in_solid(c + ball.radius * to_mesh, external));
+    for (int k = 0; k < 30; ++k) {
+      const double share = k % 3 == 0 ? random.unit() : 1.0;
+      const Vector3d beside = to_mesh + 0.3 * random.unit() * random.direction();
+      const Vector3d direction = k % 2 == 0 ? random.direction() : beside.normalized();
+      ASSERT_FALSE(is_in_solid(c + share * ball.radius * direction, external));
+    }
+  }
+}
+
+constexpr double kRoom = 0.6341;  // of closing_slack
+
+TEST(Tool, AToolThatDIsMadeForMeetsNothingOfTheSolidUnlessItMeetsTheMesh) {
+  const std::vector<Sphere> tool = rod();
+  EXPECT_GE(tool_diameter(tool), 0.2);
+  Random random(91);
+  int close = 0;
+  for (const TriangleMesh& mesh : {cube_mesh(1.5), l_bracket(), pipe(0.8, 0.6, 1.0, 16)}) {
+    const ExternalSpheres external = externals_for(tool, mesh);
+    const MeshDistance distance(mesh);
+    const Walk walk(distance, tool, kRoom * external.closing_slack);
+    for (int i = 0; i < effort(60, 8); ++i) {
+      const Vector3d target = random.in_box(external.box);
+      Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
+      start.linear() = random.rotation().toRotationMatrix();
+      start.translation() = target + 6.0 * random.direction();
+      const Eigen::Isometry3d pose = walk.run(start, target, 0.05, random);
+      ASSERT_TRUE(walk.is_free(pose, 0.0));
+      expect_nothing_met(tool, pose, distance, external, random);
+      if (external.box.exteriorDistance(pose.translation()) < 0.4) ++close;
+    }
+  }
+  EXPECT_GT(close, effort(60, 8));
+}
+
+// A slot that is hardly wider than the tool and the room that it needs.
+TEST(Tool, ANarrowSlotIsOpenForTheToolThatFits) {
+  const std::vector<Sphere> tool = rod();
+  double radius = 0.0;
+  for (const Sphere& ball : tool) {
+    radius = std::max(radius, ball.radius + std::abs(ball.center.y()));
+  }
+  const double step = 0.02;
+  const double slack = externals_for(tool, cube_mesh()).closing_slack;
+  const double half = radius + kRoom * slack + step / 2.0 + 0.01;
+  const TriangleMesh mesh = joined(box_mesh({-0.5, half, -1}, {0.5, half + 0.2, 1}),
+                                   box_mesh({-0.5, -half - 0.2, -1}, {0.5, -half, 1}));
+  const ExternalSpheres external = externals_for(tool, mesh);
+  ASSERT_EQ(external.closing_slack, slack);
+  const MeshDistance distance(mesh);
+  const Walk walk(distance, tool, kRoom * slack);
+  Random random(92);
+  int inside = 0;
+  for (int i = 0; i < effort(20, 5); ++i) {
+    Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
+    start.translation() = Vector3d(-1.5, 0, 0);
+    const Vector3d target(random.between(-0.3, 0.3), 0, random.between(-0.4, 0.4));
+    const Eigen::Isometry3d pose = walk.run(start, target, step, random);
+    expect_nothing_met(tool, pose, distance, external, random);
+    if (std::abs(pose.translation().x()) < 0.4) ++inside;
+  }
+  EXPECT_GT(inside, 1);
+}
+
+}  // namespace
+}  // namespace spherule::test

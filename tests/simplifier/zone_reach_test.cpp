@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Zones of their own D: what gets in where, and that nothing ever meets the mesh.
+#include "simplifier/concave_edges.h"
+#include "simplifier/external_spheres.h"
+#include "spheretree/error.h"
+#include "tests/simplifier/effort.h"
+#include "tests/simplifier/judge.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+constexpr double kWide = 3.0;    // D
+constexpr double kNarrow = 1.0;  // d
+
+// Two square plates, 1 thick, with a gap between them that is open on all four sides.
+TriangleMesh two_plates(double gap, double side = 20.0) {
+  return joined(box_mesh({0, 0, -1}, {side, side, 0}),
+                box_mesh({0, 0, gap}, {side, side, 1 + gap}));
+}
+
+Zone box_zone(const Vector3d& low, const Vector3d& high, double diameter) {
+  return {.shape = AlignedBox3d(low, high), .min_external_diameter = diameter};
+}
+
+constexpr double kStep = kSanitized ? 0.9 : 0.5;
+
+ExternalSpheres placed(const TriangleMesh& mesh, std::vector<Zone> zones, double step = kStep) {
+  ExternalOptions options;
+  options.min_external_diameter = kWide;
+  options.grid_step = step;
+  options.zones = std::move(zones);
+  return place_external_spheres(mesh, options);
+}
+
+// Brute force: no ball meets the mesh, and each is as large as its place asks for.
+void expect_true_balls(const TriangleMesh& mesh, const ExternalSpheres& external,
+                       const std::vector<Zone>& zones) {
+  bool some_small = false;
+  for (const Sphere& ball : external.balls) {
+    ASSERT_LE(ball.radius, judged_mesh_distance(ball.center, mesh));
+    double least = kWide / 2.0;
+    for (const Zone& zone : zones) {
+      if (std::get<AlignedBox3d>(zone.shape).contains(ball.center)) {
+        least = std::min(least, *zone.min_external_diameter / 2.0);
+      }
+    }
+    ASSERT_GE(ball.radius, least);
+    some_small = some_small || ball.radius < kWide / 2.0;
+  }
+  EXPECT_EQ(some_small, !zones.empty());
+}
+
+TEST(ZoneReach, ASlotIsOpenInTheZoneAndClosedOutsideOfIt) {
+  // The zone holds the near third of the slot and the mouth before it.
+  const std::vector<Zone> zones = {box_zone({-5, -5, -1}, {7, 25, 3}, kNarrow)};
+  for (const double shift : {0.0, 0.13, 0.31}) {
+    const TriangleMesh mesh =
+        joined(two_plates(1.9), box_mesh({0, 0, -2.0 - shift}, {0.1, 0.1, -1.0}));
+    const ExternalSpheres external = placed(mesh, zones);
+    expect_true_balls(mesh, external, zones);
+    EXPECT_FALSE(is_in_solid({1.0, 10.0, 0.95}, external));
+    EXPECT_FALSE(is_in_solid({6.0, 10.0, 0.95}, external));
+    // What is wider than d only, beyond the zone, and at the far mouth.
+    for (const double x : {9.0, 12.0, 18.0}) {
+      EXPECT_TRUE(is_in_solid({x, 10.0, 0.95}, external)) << x;
+    }
+    EXPECT_TRUE(is_in_solid({6.0, 10.0, 0.95}, placed(mesh, {})));
+  }
+}
+
+TEST(ZoneReach, AGapNarrowerThanTheZonesDiameterStaysClosed) {
+  const std::vector<Zone> zones = {box_zone({-5, -5, -5}, {13, 13, 7}, kNarrow)};
+  for (const double gap : {0.5, 0.9, 0.999}) {
+    for (const double step : {0.5, 0.37}) {
+      const ExternalSpheres external = placed(two_plates(gap, 8.0), zones, step);
+      EXPECT_TRUE(is_in_solid({1.0, 4.0, gap / 2.0}, external)) << gap;
+      EXPECT_TRUE(is_in_solid({4.0, 4.0, gap / 2.0}, external)) << gap;
+    }
+  }
+}
+
+// A chamber behind a throat: the zone round the chamber alone does not open the throat, nor does
+// one that ends within it; neither do two zones between which a piece of the throat is left.
+TEST(ZoneReach, TheWholeWayInHasToBeWideEnough) {
+  TriangleMesh mesh = joined(two_plates(1.9), box_mesh({0, 0, -1}, {20, 0.5, 2.9}));
+  mesh = joined(mesh, box_mesh({0, 19.5, -1}, {20, 20, 2.9}));
+  mesh = joined(mesh, box_mesh({19.5, 0, -1}, {20, 20, 2.9}));
+  const Vector3d far(16.0, 10.0, 0.95);
+  const auto is_open = [&](const std::vector<Zone>& zones) {
+    return !is_in_solid(far, placed(mesh, zones));
+  };
+  const Vector3d low(-5, -5, -5);
+  const Vector3d high(25, 25, 7);
+  EXPECT_TRUE(is_open({box_zone(low, high, kNarrow)}));
+  EXPECT_FALSE(is_open({box_zone({10, -5, -5}, high, kNarrow)}));
+  EXPECT_FALSE(is_open({box_zone(low, {10, 25, 7}, kNarrow)}));
+  EXPECT_FALSE(
+      is_open({box_zone(low, {9, 25, 7}, kNarrow), box_zone({9.05, -5, -5}, high, kNarrow)}));
+  EXPECT_TRUE(is_open({box_zone(low, {10, 25, 7}, kNarrow), box_zone({8, -5, -5}, high, kNarrow)}));
+}
+
+TEST(ZoneReach, TheSlackHoldsInZonesAndAcrossTheirBorders) {
+  for (const double step : {0.5, 0.37}) {
+    const double slack = placed(cube_mesh(), {}, step).closing_slack;
+    // The grid of the zone: the same share of d, down to the next halving.
+    const double zone_slack = slack / std::exp2(std::ceil(std::log2(kWide / kNarrow)));
+    for (const double shift : {0.0, 0.19}) {
+      const auto shifted = [&](const TriangleMesh& mesh) {
+        return joined(mesh, box_mesh({0, 0, -2.0 - shift}, {0.1, 0.1, -1.0}));
+      };
+      const std::vector<Zone> all = {box_zone({-9, -9, -9}, {19, 19, 13}, kNarrow)};
+      const double narrow = kNarrow + zone_slack * 1.0001;
+      EXPECT_FALSE(
+          is_in_solid({5, 5, narrow / 2.0}, placed(shifted(two_plates(narrow, 10)), all, step)));
+      const std::vector<Zone> middle = {box_zone({3.5, -9, -9}, {6.5, 19, 13}, kNarrow)};
+      const double wide = kWide + slack * 1.0001;
+      const ExternalSpheres external = placed(shifted(two_plates(wide, 10)), middle, step);
+      for (const double x : {1.0, 3.5, 5.0, 6.5, 9.0}) {
+        EXPECT_FALSE(is_in_solid({x, 5, wide / 2.0}, external)) << x;
+      }
+    }
+  }
+}
+
+TEST(ZoneReach, BadZonesAreRefused) {
+  const std::vector<Zone> wide = {box_zone({0, 0, 0}, {1, 1, 1}, 2.0 * kWide)};
+  EXPECT_THROW(placed(cube_mesh(), wide), Error);
+  const std::vector<Zone> fine = {box_zone({0, 0, 0}, {1, 1, 1}, 1e-300)};
+  EXPECT_THROW(placed(cube_mesh(), fine), Error);
+  for (const ExternalPlacement placement : {ExternalPlacement::kRandom, ExternalPlacement::kNone}) {
+    ExternalOptions options;
+    options.placement = placement;
+    options.min_external_diameter = kWide;
+    options.zones = {box_zone({0, 0, 0}, {1, 1, 1}, kNarrow)};
+    EXPECT_THROW(place_external_spheres(cube_mesh(), options), Error);
+    options.zones.clear();
+    options.keep_concave_edges = true;
+    EXPECT_THROW(place_external_spheres(cube_mesh(), options), Error);
+  }
+}
+
+// --- sharp concave edges ---
+
+TriangleMesh subdivided(const TriangleMesh& mesh) {
+  TriangleMesh fine;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const auto v = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+    const Vector3d ab = (v(0) + v(1)) / 2.0, bc = (v(1) + v(2)) / 2.0, ca = (v(2) + v(0)) / 2.0;
+    for (const auto& [a, b, c] : {std::array{v(0), ab, ca}, std::array{ab, v(1), bc},
+                                  std::array{ca, bc, v(2)}, std::array{ab, bc, ca}}) {
+      const auto first = static_cast<int>(fine.vertices.size());
+      fine.vertices.insert(fine.vertices.end(), {a, b, c});
+      fine.triangles.push_back({first, first + 1, first + 2});
+    }
+  }
+  return fine;
+}
+
+// Two faces of 4 x 4 that meet in the z axis at the given outside angle, as an extruded wedge.
+TriangleMesh notch(double angle) {
+  const Vector3d arm(4.0 * std::cos(angle), 4.0 * std::sin(angle), 0);
+  const Vector3d up(0, 0, 4);
+  const Vector3d o(0, 0, 0), x(4, 0, 0);
+  // Normals point into the opening between the arms.
+  return {{o, x, Vector3d(x + up), up, arm, Vector3d(arm + up)},
+          {{0, 3, 2}, {0, 2, 1}, {0, 4, 5}, {0, 5, 3}}};
+}
+
+const ConcaveEdgeOptions kEdges{.min_external_diameter = 0.9, .max_error = 0.1, .margin = 0.045};
+
+TEST(ConcaveEdges, TheInsideEdgeOfABracketIsTheOnlyOne) {
+  TriangleMesh mesh = l_bracket();
+  for (int level = 0; level < 3; ++level) {
+    for (const TriangleMesh& variant : {mesh, inverted(mesh)}) {
+      const std::vector<Zone> zones = concave_edge_zones(variant, kEdges);
+      ASSERT_EQ(zones.size(), 1U);
+      const auto& capsule = std::get<Capsule>(zones[0].shape);
+      EXPECT_NEAR((capsule.to - capsule.from).norm(), 0.5, 1e-12);
+      // E / 2 = r (sqrt 2 - 1).
+      EXPECT_NEAR(*zones[0].min_external_diameter, 0.1 / (std::numbers::sqrt2 - 1.0), 1e-9);
+      EXPECT_GT(capsule.radius, 0.495 * std::numbers::sqrt2);
+      EXPECT_LT(capsule.radius, 0.6 * std::numbers::sqrt2);
+    }
+    mesh = subdivided(mesh);
+  }
+}
+
+TEST(ConcaveEdges, ConvexAndBluntEdgesAreNone) {
+  for (const TriangleMesh& mesh :
+       {cube_mesh(), icosphere(2), thin_sheet(0.01), with_duplicates(cube_mesh())}) {
+    EXPECT_TRUE(concave_edge_zones(mesh, kEdges).empty());
+  }
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  for (const double angle : {20.0, 60.0, 90.0, 120.0}) {
+    EXPECT_EQ(concave_edge_zones(notch(angle * kDegree), kEdges).size(), 1U) << angle;
+  }
+  for (const double angle : {151.0, 179.0}) {
+    ConcaveEdgeOptions options = kEdges;
+    options.max_error = 1e-3;
+    EXPECT_TRUE(concave_edge_zones(notch(angle * kDegree), options).empty()) << angle;
+  }
+  // D itself leaves little enough: r (1 / sin 60 - 1) < E / 2.
+  EXPECT_TRUE(
+      concave_edge_zones(notch(120 * kDegree), {.min_external_diameter = 2.0, .max_error = 0.4})
+          .empty());
+}
+
+TEST(ConcaveEdges, TheDiameterHasALeastShare) {
+  const std::vector<Zone> zones = concave_edge_zones(
+      notch(1.0), {.min_external_diameter = 32.0, .max_error = 1e-3, .margin = 0.1});
+  ASSERT_EQ(zones.size(), 1U);
+  EXPECT_EQ(*zones[0].min_external_diameter, 8.0);
+}
+
+// Edges whose triangles contradict each other, and those of three: in doubt they count.
+TEST(ConcaveEdges, InDoubtAnEdgeCounts) {
+  TriangleMesh mesh = notch(1.5);
+  std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
+  std::swap(mesh.triangles[1][1], mesh.triangles[1][2]);
+  EXPECT_EQ(concave_edge_zones(mesh, kEdges).size(), 1U);
+  EXPECT_EQ(concave_edge_zones(three_fins(), kEdges).size(), 1U);
+}
+
+// The fillet that is left in the corner: wide with D, at most E / 2 and the grid's share with the
+// zone; and no ball meets the mesh.
+TEST(ConcaveEdges, TheCornerIsKept) {
+  TriangleMesh bracket = l_bracket();
+  for (Vector3d& v : bracket.vertices) v *= 20.0;
+  ExternalOptions options;
+  options.min_external_diameter = 9.0;
+  options.max_error = 1.0;
+  const std::vector<Zone> zones =
+      concave_edge_zones(bracket, {.min_external_diameter = 9.0, .max_error = 1.0});
+  ASSERT_EQ(zones.size(), 1U);
+  const auto& edge = std::get<Capsule>(zones[0].shape);
+  const Vector3d middle = (edge.from + edge.to) / 2.0;
+  // Away from both arms, which lie along x and z.
+  const Vector3d inwards = Vector3d(1, 0, 1).normalized();
+  const auto fillet = [&](const ExternalSpheres& external) {
+    double depth = 0.0;
+    while (is_in_solid(middle + depth * inwards, external)) depth += 0.01;
+    return depth;
+  };
+  EXPECT_GT(fillet(place_external_spheres(bracket, options)), 4.5 * (std::numbers::sqrt2 - 1.0));
+  options.keep_concave_edges = true;
+  const ExternalSpheres kept = place_external_spheres(bracket, options);
+  EXPECT_EQ(kept.concave_edges.size(), 1U);
+  EXPECT_LT(fillet(kept), 0.5 + 0.3);  // E / 2 and a step
+  for (const Sphere& ball : kept.balls) {
+    ASSERT_LE(ball.radius, judged_mesh_distance(ball.center, bracket));
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test
