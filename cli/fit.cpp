@@ -9,7 +9,6 @@
 #include "simplifier/mesh_io.h"
 #include "simplifier/simplify.h"
 #include "spheretree/atomic_file.h"
-#include "spheretree/build.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>
@@ -30,6 +29,7 @@ struct FitArguments {
   std::string report;
   std::string tree;
   std::string view;
+  std::string levels;
   std::string method = method_names().front();
   std::string external = placement_names().front();
   double scale = 1.0;
@@ -57,6 +57,7 @@ int fit(const FitArguments& arguments) {
   SimplifyOptions options = arguments.options;
   options.method = method_named(arguments.method);
   options.external = placement_named(arguments.external);
+  if (!arguments.levels.empty()) options.levels = levels_named(arguments.levels);
   options.history = !arguments.report.empty();
 
   const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
@@ -76,7 +77,7 @@ int fit(const FitArguments& arguments) {
                             fit_report(arguments.mesh, mesh, report, result, arguments.scale));
     }
     std::optional<SphereTree> tree;
-    if (!arguments.tree.empty() || !arguments.view.empty()) tree = build_tree(result.cover.spheres);
+    if (!arguments.tree.empty() || !arguments.view.empty()) tree = sphere_tree(result);
     if (!arguments.tree.empty()) save_tree(*tree, arguments.tree);
     if (!arguments.view.empty()) write_view(arguments, mesh, result, tree);
   });
@@ -86,9 +87,9 @@ int fit(const FitArguments& arguments) {
             << " (rounding of the file included)\n"
             << "external spheres: " << result.external.balls.size() << "\n"
             << "spheres: " << result.cover.spheres.size() << "\n"
-            << describe(result.certificate, "the simplified solid") << "seconds: external "
-            << result.times.external << ", cover " << result.times.cover << ", certify "
-            << result.times.certify << "\n";
+            << describe(result.certificate, "the simplified solid") << describe(result.levels)
+            << "seconds: external " << result.times.external << ", cover " << result.times.cover
+            << ", certify " << result.times.certify << "\n";
   const std::string broken = broken_promises(result);
   if (broken.empty()) return kYes;
   std::cerr << "spherule: " << arguments.spheres << ": " << broken << "\n";
@@ -130,6 +131,9 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->add_option("--min-internal", options.min_internal_diameter,
                    "Diameter at which the paper's loop seeds a sphere (default: E / 2)")
       ->check(check_length);
+  command->add_option("--levels", arguments->levels,
+                      "E1,E2,...: fit coarser levels of detail too and join all in one tree; the "
+                      "finest is E");
   // Without the check CLI11 takes -1 for the largest number; files store 63 bits.
   command->add_option("--seed", options.seed, "Seed of everything random")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));

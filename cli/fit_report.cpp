@@ -62,6 +62,21 @@ Json to_json(const SphereCover& cover) {
   return json;
 }
 
+Json to_json(std::span<const CoverLevel> levels) {
+  Json list = Json::array();
+  for (const CoverLevel& level : levels) {
+    list.push_back({{"max_error", level.max_error},
+                    {"sphere_count", level.balls.spheres.size()},
+                    {"protrusion_over_simplified_max", level.protrusion},
+                    {"clustering",
+                     {{"sphere_count", level.clustering_count},
+                      {"protrusion_over_simplified_max", level.clustering_protrusion}}},
+                    {"parent_of_finer", level.balls.parent_of},
+                    {"spheres", spherule::to_json(level.balls.spheres)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
@@ -73,10 +88,12 @@ std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
   json["options"] = spherule::to_json(option_record(result.options, scale));
   json["seconds"] = {{"external", result.times.external},
                      {"cover", result.times.cover},
+                     {"levels", result.times.levels},
                      {"certify", result.times.certify}};
   json["certificate"] = spherule::to_json(result.certificate);
   json["simplified_solid"] = to_json(result.external);
   json["cover"] = to_json(result.cover);
+  json["levels"] = to_json(result.levels);
   // Indented, hundreds of thousands of external spheres would take three times the room.
   return to_text(json, Layout::kCompact);
 }
