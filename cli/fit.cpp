@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_length.h"
 #include "cli/command.h"
+#include "cli/cover_analysis.h"
 #include "cli/fit_report.h"
 #include "cli/output.h"
 #include "cli/print.h"
@@ -70,11 +71,18 @@ int fit(const FitArguments& arguments) {
     return simplify(mesh, options);
   }();
 
+  std::optional<CoverAnalysis> analysis;
+  if (!arguments.report.empty()) {
+    ProgressBar bar;
+    result.options.progress = bar.callback();
+    analysis = analyse(mesh, result);
+  }
+
   write_uninterrupted([&] {
     save_spheres(sphere_file(result, arguments.scale), arguments.spheres);
-    if (!arguments.report.empty()) {
-      write_file_atomically(arguments.report,
-                            fit_report(arguments.mesh, mesh, report, result, arguments.scale));
+    if (analysis) {
+      write_file_atomically(arguments.report, fit_report(arguments.mesh, mesh, report, result,
+                                                         *analysis, arguments.scale));
     }
     std::optional<SphereTree> tree;
     if (!arguments.tree.empty() || !arguments.view.empty()) tree = sphere_tree(result);
@@ -88,8 +96,9 @@ int fit(const FitArguments& arguments) {
             << "external spheres: " << result.external.balls.size() << "\n"
             << "spheres: " << result.cover.spheres.size() << "\n"
             << describe(result.certificate, "the simplified solid") << describe(result.levels)
-            << "seconds: external " << result.times.external << ", cover " << result.times.cover
-            << ", certify " << result.times.certify << "\n";
+            << (analysis ? describe(*analysis, result) : "") << "seconds: external "
+            << result.times.external << ", cover " << result.times.cover << ", certify "
+            << result.times.certify << "\n";
   const std::string broken = broken_promises(result);
   if (broken.empty()) return kYes;
   std::cerr << "spherule: " << arguments.spheres << ": " << broken << "\n";

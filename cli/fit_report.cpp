@@ -54,6 +54,7 @@ Json to_json(const CoverHistoryEntry& entry) {
 
 Json to_json(const SphereCover& cover) {
   Json json;
+  json["lower_bound"] = cover.lower_bound > 0 ? Json(cover.lower_bound) : Json(nullptr);
   json["inflation"] = spherule::to_json(cover.inflation);
   json["seeds_rejected"] = cover.seeds_rejected;
   json["spheres_before_inflation"] = spherule::to_json(cover.spheres_before_inflation);
@@ -80,7 +81,8 @@ Json to_json(std::span<const CoverLevel> levels) {
 }  // namespace
 
 std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
-                       const MeshReport& report, const Simplification& result, double scale) {
+                       const MeshReport& report, const Simplification& result,
+                       const CoverAnalysis& analysis, double scale) {
   Json json;
   json["format"] = "spherule-report";
   json["version"] = 1;
@@ -93,6 +95,7 @@ std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
   json["certificate"] = spherule::to_json(result.certificate);
   json["simplified_solid"] = to_json(result.external);
   json["cover"] = to_json(result.cover);
+  json["analysis"] = spherule::to_json(analysis);
   json["levels"] = to_json(result.levels);
   // Indented, hundreds of thousands of external spheres would take three times the room.
   return to_text(json, Layout::kCompact);
