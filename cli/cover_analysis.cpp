@@ -11,7 +11,8 @@ constexpr int kShortSearch = 4;  // rounds
 
 }  // namespace
 
-CoverAnalysis analyse(const TriangleMesh& mesh, const Simplification& result) {
+CoverAnalysis analyse(const TriangleMesh& mesh, const Simplification& result,
+                      const Progress& progress) {
   const SimplifyOptions& options = result.options;
   CoverAnalysis analysis;
   analysis.breakdown =
@@ -25,7 +26,7 @@ CoverAnalysis analyse(const TriangleMesh& mesh, const Simplification& result) {
                                      .seed = options.seed,
                                      .effort = std::min(options.effort, kShortSearch),
                                      .threads = options.threads,
-                                     .progress = options.progress});
+                                     .progress = progress});
   analysis.coarser_count = coarser.spheres.size();
   CertifyOptions certify_options;
   certify_options.external = &result.external;

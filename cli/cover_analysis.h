@@ -18,7 +18,8 @@ struct CoverAnalysis {
 };
 
 // Fits once more at 2 E, with a short search.
-CoverAnalysis analyse(const TriangleMesh& mesh, const Simplification& result);
+CoverAnalysis analyse(const TriangleMesh& mesh, const Simplification& result,
+                      const Progress& progress);
 
 Json to_json(const CoverAnalysis& analysis);
 std::string describe(const CoverAnalysis& analysis, const Simplification& result);

@@ -74,8 +74,7 @@ int fit(const FitArguments& arguments) {
   std::optional<CoverAnalysis> analysis;
   if (!arguments.report.empty()) {
     ProgressBar bar;
-    result.options.progress = bar.callback();
-    analysis = analyse(mesh, result);
+    analysis = analyse(mesh, result, bar.callback());
   }
 
   write_uninterrupted([&] {

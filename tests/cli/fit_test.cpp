@@ -66,6 +66,16 @@ TEST_F(FitTest, ReportHoldsTheSimplifiedSolid) {
     EXPECT_GE(report.at("seconds").at(part), 0.0);
   }
   EXPECT_FALSE(report.at("cover").at("history").empty());
+  const json& roles = report.at("analysis").at("spheres_by_role");
+  EXPECT_GT(roles.at("edges"), 0);
+  EXPECT_EQ(roles.at("edges").get<std::size_t>() + roles.at("thin").get<std::size_t>() +
+                roles.at("faces").get<std::size_t>() + roles.at("inside").get<std::size_t>(),
+            report.at("certificate").at("sphere_count"));
+  const json& coarser = report.at("analysis").at("at_twice_the_error");
+  EXPECT_EQ(coarser.at("max_error"), 4.0);
+  EXPECT_EQ(coarser.at("covered"), true);
+  EXPECT_GT(coarser.at("sphere_count"), 0);
+  EXPECT_LT(coarser.at("sphere_count"), report.at("certificate").at("sphere_count"));
   EXPECT_FALSE(report.at("cover").at("spheres_before_inflation").empty());
   const json& solid = report.at("simplified_solid");
   EXPECT_EQ(solid.at("min_external_diameter"), 8.0);
