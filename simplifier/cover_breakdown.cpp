@@ -28,7 +28,7 @@ using Points = std::vector<Vector3d>;
 constexpr double kEdgeSpacing = 0.25;
 constexpr double kCells = 0.5;       // half diagonal of the cells that points stand for
 constexpr double kOnBoundary = 0.1;  // depth of points of S that count as its boundary
-constexpr double kBeyond = 0.1;      // how far beyond an edge S must have ended
+constexpr double kBeyond = 0.1;      // beyond an edge of S there is nothing of it
 constexpr double kThinReach = 2.0;
 constexpr double kCube = 2.0;  // edge of the cubes that points are sorted into
 
@@ -71,7 +71,9 @@ std::vector<Edge> edges_of(const TriangleMesh& mesh) {
 }
 
 // Points of sharp convex edges, at most one per cube of the spacing.
-Points edge_points(const TriangleMesh& mesh, const Clearance& clearance, double max_error) {
+// `beyond_by`: how far beyond such an edge S must have ended.
+Points edge_points(const TriangleMesh& mesh, const Clearance& clearance, double max_error,
+                   double beyond_by) {
   const double spacing = kEdgeSpacing * max_error;
   Points points;
   std::set<std::array<std::int64_t, 3>> taken;
@@ -97,7 +99,7 @@ Points edge_points(const TriangleMesh& mesh, const Clearance& clearance, double 
                .second) {
         continue;
       }
-      if (clearance(p + kBeyond * max_error * beyond).upper < 0.0) points.push_back(p);
+      if (clearance(p + beyond_by * beyond).upper < 0.0) points.push_back(p);
     }
   }
   return points;
@@ -155,8 +157,10 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
   const Clearance clearance(external);
   const MeshDistance distance(mesh);
   const internal::SolidCells cells(clearance, distance, kCells * max_error);
+  // S holds M grown by the padding, and of that the box has the corners.
+  const double beyond_by = kBeyond * max_error + 2.0 * external.padding;
   const std::vector<char> at_edge =
-      alone_at(edge_points(mesh, clearance, max_error), spheres, max_error);
+      alone_at(edge_points(mesh, clearance, max_error, beyond_by), spheres, max_error);
   const std::vector<char> at_boundary =
       alone_at(boundary_points(cells, clearance, max_error), spheres, max_error);
   CoverBreakdown result;

@@ -152,7 +152,7 @@ TEST_F(FitTest, LevelsAreJoinedInTheTree) {
   EXPECT_NE(read("plain.tree"), read("levels.tree"));
   int hits = 0;
   for (int i = 0; i < 12; ++i) {
-    const std::string pose = std::to_string(20 + 3 * i) + " " + std::to_string(i) + " 3 0 0 " +
+    const std::string pose = std::to_string(20 + 6 * i) + " " + std::to_string(i) + " 3 0 0 " +
                              std::to_string(0.1 * i) + " 1";
     const Outcome plain = run({"collide", "plain.tree", "plain.tree", "--pose-b", pose, "--json"});
     const Outcome joined =
