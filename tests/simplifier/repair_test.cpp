@@ -143,6 +143,19 @@ TEST(RepairOf, BallsAnywhere) {
   }
 }
 
+// Balls about points outside of S are all there is at the corners, and may not grow to hold them.
+TEST(RepairOf, BallsBesideTheSolid) {
+  const TriangleMesh mesh = cube_mesh();
+  const Fit fitted = fit_of(mesh);
+  std::vector<Sphere> leaking;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3d at(corner % 2, corner / 2 % 2, corner / 4);
+    leaking.push_back({at + 0.08 * (at - Vector3d::Constant(0.5)), 0.04});
+  }
+  const Repair result = expect_repaired(mesh, fitted, leaking, fitted.max_error);
+  EXPECT_EQ(result.grown, 0U);
+}
+
 TEST(RepairOf, IsEqualInEveryRunOnAnyNumberOfThreads) {
   const TriangleMesh mesh = l_bracket();
   const Fit fitted = fit_of(mesh);
