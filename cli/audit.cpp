@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cli/check_length.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "simplifier/mesh_io.h"
+#include "simplifier/mesh_report.h"
+#include "simplifier/repair.h"
 #include "simplifier/simplify.h"
 #include "spheretree/error.h"
 #include "spheretree/sphere_file.h"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -20,11 +25,17 @@
 namespace spherule {
 namespace {
 
+// For a repair of spheres that do not say what they were made for, as in a fit.
+constexpr double kDefaultError = 0.01;    // E, of the box diagonal
+constexpr double kDefaultDiameter = 4.0;  // D, of E
+
 struct AuditArguments {
   std::string mesh;
   std::string spheres;
   std::optional<double> scale;
   std::optional<double> min_external;
+  std::optional<double> max_error;
+  std::string repaired;
   bool json = false;
 };
 
@@ -53,18 +64,14 @@ double stored_scale(const SphereFile& file) {
   return scale;
 }
 
-void print(const AuditArguments& arguments, const Certificate& certificate,
-           const std::optional<ExternalSpheres>& external) {
-  if (!arguments.json) {
-    std::ostringstream solid;
-    if (external) {
-      solid << "the simplified solid (D " << external->min_external_diameter << ")";
-    } else {
-      solid << "the mesh and its inside";
-    }
-    std::cout << describe(certificate, solid.str());
-    return;
-  }
+std::string name_of(const std::optional<ExternalSpheres>& external) {
+  if (!external) return "the mesh and its inside";
+  std::ostringstream solid;
+  solid << "the simplified solid (D " << external->min_external_diameter << ")";
+  return solid.str();
+}
+
+Json json_of(const Certificate& certificate, const std::optional<ExternalSpheres>& external) {
   Json json = to_json(certificate);
   json["against"] = external ? "simplified solid" : "mesh and its inside";
   if (external) {
@@ -72,10 +79,73 @@ void print(const AuditArguments& arguments, const Certificate& certificate,
     json["padding"] = to_json(external->padding);
     json["external_sphere_count"] = external->balls.size();
   }
-  std::cout << to_text(json);
+  return json;
+}
+
+// E, and D where there is none: what is added or grown needs a solid to keep to.
+void complete(const AuditArguments& arguments, const TriangleMesh& mesh, const SphereFile& file,
+              SimplifyOptions& options) {
+  if (!file.options.contains("max-error") || options.max_error == 0.0) {
+    const Eigen::AlignedBox3d box = mesh_report(mesh, {.self_intersections = false}).box;
+    options.max_error = arguments.max_error.value_or(kDefaultError * box.diagonal().norm());
+  }
+  if (!file.options.contains("min-external") && !arguments.min_external) {
+    options.min_external_diameter = kDefaultDiameter * options.max_error;
+  }
+}
+
+struct Repaired {
+  SphereFile file;
+  Repair repair;
+  double max_error = 0.0;
+  Certificate certificate;
+};
+
+Repaired repaired(const AuditArguments& arguments, const TriangleMesh& mesh, double scale,
+                  const SphereFile& file, const SimplifyOptions& options, const Certificate& before,
+                  const CertifyOptions& certify_options) {
+  Repaired result;
+  result.max_error = arguments.max_error.value_or(
+      std::max(options.max_error, before.protrusion_over_simplified_max.value_or(0.0)));
+  result.repair = repair(mesh, *certify_options.external, file.spheres,
+                         {.max_error = result.max_error,
+                          .zones = options.zones,
+                          .seed = options.seed,
+                          .effort = std::min(options.effort, SimplifyOptions{}.effort),
+                          .progress = options.progress});
+  result.certificate = certify(mesh, result.repair.spheres, certify_options);
+  result.file = {result.repair.spheres, record(result.certificate), option_record(options, scale)};
+  result.file.options["repair-max-error"] = result.max_error;
+  return result;
+}
+
+void print(const AuditArguments& arguments, const Certificate& certificate,
+           const std::optional<ExternalSpheres>& external, const std::optional<Repaired>& mended) {
+  if (arguments.json) {
+    Json json = json_of(certificate, external);
+    if (mended) {
+      json["repair"] = {{"file", arguments.repaired},
+                        {"max_error", to_json(mended->max_error)},
+                        {"grown", mended->repair.grown},
+                        {"largest_growth", to_json(mended->repair.largest_growth)},
+                        {"total_growth", to_json(mended->repair.total_growth)},
+                        {"added", mended->repair.added},
+                        {"certificate", json_of(mended->certificate, external)}};
+    }
+    std::cout << to_text(json);
+    return;
+  }
+  std::cout << describe(certificate, name_of(external));
+  if (!mended) return;
+  std::cout << "repair: " << mended->repair.grown << " spheres grown, by at most "
+            << mended->repair.largest_growth << ", and " << mended->repair.added
+            << " added; allowed to protrude by " << mended->max_error << "\n"
+            << describe(mended->certificate, name_of(external));
 }
 
 int audit(const AuditArguments& arguments) {
+  const bool mend = !arguments.repaired.empty();
+  check_outputs({arguments.repaired}, {arguments.mesh, arguments.spheres});
   const SphereFile file = load_spheres(arguments.spheres);
   SimplifyOptions options =
       blaming_file(arguments, [&] { return options_from_record(file.options); });
@@ -98,8 +168,9 @@ int audit(const AuditArguments& arguments) {
       options.external = ExternalPlacement::kReachable;
     }
   }
+  if (mend) complete(arguments, mesh, file, options);
   std::optional<ExternalSpheres> external;
-  if (arguments.min_external || file.options.contains("min-external")) {
+  if (mend || arguments.min_external || file.options.contains("min-external")) {
     const auto place = [&] { return place_external_spheres(mesh, external_options(options)); };
     external = arguments.min_external ? place() : blaming_file(arguments, place);
     certify_options.external = &*external;
@@ -109,8 +180,13 @@ int audit(const AuditArguments& arguments) {
     certify_options.zones = options.zones;
   }
   const Certificate certificate = certify(mesh, file.spheres, certify_options);
-  print(arguments, certificate, external);
-  return certificate.covered ? kYes : kNo;
+  std::optional<Repaired> mended;
+  if (mend) {
+    mended = repaired(arguments, mesh, scale, file, options, certificate, certify_options);
+    write_uninterrupted([&] { save_spheres(mended->file, arguments.repaired); });
+  }
+  print(arguments, certificate, external, mended);
+  return (mended ? mended->certificate : certificate).covered ? kYes : kNo;
 }
 
 }  // namespace
@@ -126,6 +202,18 @@ void add_audit(CLI::App& app, int& exit_code) {
   command->add_option("--min-external", arguments->min_external,
                       "D, against which simplified solid (default: as the spheres were fitted)");
   command->add_flag("--json", arguments->json, "Print the certificate as JSON");
+  CLI::Option* repair =
+      command->add_option("--repair", arguments->repaired,
+                          "Where the spheres go (JSON), grown and with others added so that they "
+                          "cover; exit 0 then says that these do. Without D anywhere it is 4 E, E "
+                          "being --max-error or 1 % of the box diagonal");
+  command
+      ->add_option("--max-error", arguments->max_error,
+                   "How far a repaired sphere may protrude (default: E as the spheres were fitted, "
+                   "or as far as they do)")
+      ->check(CLI::PositiveNumber)
+      ->check(check_length)
+      ->needs(repair);
   command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_length.h"
 #include "cli/command.h"
+#include "cli/cover_analysis.h"
 #include "cli/fit_report.h"
 #include "cli/output.h"
 #include "cli/print.h"
@@ -10,7 +11,6 @@
 #include "simplifier/simplify.h"
 #include "simplifier/zones.h"
 #include "spheretree/atomic_file.h"
-#include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
@@ -36,6 +36,7 @@ struct FitArguments {
   std::string view;
   std::string tool;
   std::string zones;
+  std::string levels;
   std::string method = method_names().front();
   std::string external = placement_names().front();
   double scale = 1.0;
@@ -75,6 +76,7 @@ int fit(const FitArguments& arguments) {
   SimplifyOptions options = arguments.options;
   options.method = method_named(arguments.method);
   options.external = placement_named(arguments.external);
+  if (!arguments.levels.empty()) options.levels = levels_named(arguments.levels);
   options.history = !arguments.report.empty();
   if (!arguments.zones.empty()) options.zones = read_zones(arguments.zones);
   if (!arguments.tool.empty()) {
@@ -93,14 +95,20 @@ int fit(const FitArguments& arguments) {
     return blaming_file(arguments.zones, "zone ", [&] { return simplify(mesh, options); });
   }();
 
+  std::optional<CoverAnalysis> analysis;
+  if (!arguments.report.empty()) {
+    ProgressBar bar;
+    analysis = analyse(mesh, result, bar.callback());
+  }
+
   write_uninterrupted([&] {
     save_spheres(sphere_file(result, arguments.scale), arguments.spheres);
-    if (!arguments.report.empty()) {
-      write_file_atomically(arguments.report,
-                            fit_report(arguments.mesh, mesh, report, result, arguments.scale));
+    if (analysis) {
+      write_file_atomically(arguments.report, fit_report(arguments.mesh, mesh, report, result,
+                                                         *analysis, arguments.scale));
     }
     std::optional<SphereTree> tree;
-    if (!arguments.tree.empty() || !arguments.view.empty()) tree = build_tree(result.cover.spheres);
+    if (!arguments.tree.empty() || !arguments.view.empty()) tree = sphere_tree(result);
     if (!arguments.tree.empty()) save_tree(*tree, arguments.tree);
     if (!arguments.view.empty()) write_view(arguments, mesh, result, tree);
   });
@@ -114,7 +122,8 @@ int fit(const FitArguments& arguments) {
               << "\n";
   }
   std::cout << "spheres: " << result.cover.spheres.size() << "\n"
-            << describe(result.certificate, "the simplified solid") << "seconds: external "
+            << describe(result.certificate, "the simplified solid") << describe(result.levels)
+            << (analysis ? describe(*analysis, result) : "") << "seconds: external "
             << result.times.external << ", cover " << result.times.cover << ", certify "
             << result.times.certify << "\n";
   const std::string broken = broken_promises(result);
@@ -166,6 +175,9 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->add_option("--min-internal", options.min_internal_diameter,
                    "Diameter at which the paper's loop seeds a sphere (default: E / 2)")
       ->check(check_length);
+  command->add_option("--levels", arguments->levels,
+                      "E1,E2,...: fit coarser levels of detail too and join all in one tree; the "
+                      "finest is E");
   // Without the check CLI11 takes -1 for the largest number; files store 63 bits.
   command->add_option("--seed", options.seed, "Seed of everything random")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));

@@ -54,6 +54,7 @@ Json to_json(const CoverHistoryEntry& entry) {
 
 Json to_json(const SphereCover& cover) {
   Json json;
+  json["lower_bound"] = cover.lower_bound > 0 ? Json(cover.lower_bound) : Json(nullptr);
   json["inflation"] = spherule::to_json(cover.inflation);
   json["seeds_rejected"] = cover.seeds_rejected;
   json["spheres_before_inflation"] = spherule::to_json(cover.spheres_before_inflation);
@@ -62,10 +63,26 @@ Json to_json(const SphereCover& cover) {
   return json;
 }
 
+Json to_json(std::span<const CoverLevel> levels) {
+  Json list = Json::array();
+  for (const CoverLevel& level : levels) {
+    list.push_back({{"max_error", level.max_error},
+                    {"sphere_count", level.balls.spheres.size()},
+                    {"protrusion_over_simplified_max", level.protrusion},
+                    {"clustering",
+                     {{"sphere_count", level.clustering_count},
+                      {"protrusion_over_simplified_max", level.clustering_protrusion}}},
+                    {"parent_of_finer", level.balls.parent_of},
+                    {"spheres", spherule::to_json(level.balls.spheres)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
-                       const MeshReport& report, const Simplification& result, double scale) {
+                       const MeshReport& report, const Simplification& result,
+                       const CoverAnalysis& analysis, double scale) {
   Json json;
   json["format"] = "spherule-report";
   json["version"] = 1;
@@ -73,10 +90,13 @@ std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
   json["options"] = spherule::to_json(option_record(result.options, scale));
   json["seconds"] = {{"external", result.times.external},
                      {"cover", result.times.cover},
+                     {"levels", result.times.levels},
                      {"certify", result.times.certify}};
   json["certificate"] = spherule::to_json(result.certificate);
   json["simplified_solid"] = to_json(result.external);
   json["cover"] = to_json(result.cover);
+  json["analysis"] = spherule::to_json(analysis);
+  json["levels"] = to_json(result.levels);
   // Indented, hundreds of thousands of external spheres would take three times the room.
   return to_text(json, Layout::kCompact);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/cover_analysis.h"
 #include "simplifier/mesh_report.h"
 #include "simplifier/simplify.h"
 
@@ -12,6 +13,7 @@ namespace spherule {
 // options, times, the simplified solid (box, D, padding, external spheres), history, certificate.
 // `mesh_file` is named in it; `scale` is the one the mesh was read with.
 std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
-                       const MeshReport& report, const Simplification& result, double scale);
+                       const MeshReport& report, const Simplification& result,
+                       const CoverAnalysis& analysis, double scale);
 
 }  // namespace spherule

@@ -43,4 +43,15 @@ std::string describe(const Certificate& certificate, const std::string& solid) {
   return out.str();
 }
 
+std::string describe(std::span<const CoverLevel> levels) {
+  std::ostringstream out;
+  for (const CoverLevel& level : levels) {
+    out << "level " << level.max_error << ": " << level.balls.spheres.size()
+        << " spheres, protrusion over the simplified solid at most " << level.protrusion
+        << " (plain clustering: " << level.clustering_count << " spheres, "
+        << level.clustering_protrusion << ")\n";
+  }
+  return out.str();
+}
+
 }  // namespace spherule

@@ -4,7 +4,6 @@
 #include "simplifier/internal/clearance.h"
 #include "simplifier/internal/cover_fitter.h"
 #include "simplifier/internal/internal_spheres.h"
-#include "simplifier/internal/solid_query.h"
 #include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_distance.h"
 #include "spheretree/error.h"
@@ -44,10 +43,6 @@ SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
   const Clearance clearance(external, distance);
   if (options.method == CoverMethod::kPaper) {
     return place_internal_spheres(mesh, clearance, options);
-  }
-  if (internal::CoverFitter::finest(tightest_error(options.zones, options.max_error)) <
-      internal::least_reach(clearance.box())) {
-    throw Error("max error", "too small for coordinates of this size");
   }
   SphereCover result;
   result.spheres = internal::CoverFitter(clearance, distance, options).run();

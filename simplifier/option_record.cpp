@@ -4,6 +4,9 @@
 #include "spheretree/rounding.h"
 
 #include <array>
+#include <charconv>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace spherule {
@@ -98,6 +101,14 @@ class Reader {
     value = parse_zones(*text, key);
   }
 
+  void levels(const char* key, std::vector<double>& value) const {
+    const OptionValue* found = find(key);
+    if (found == nullptr) return;
+    const auto* text = std::get_if<std::string>(found);
+    if (text == nullptr) throw Error(key, "must be a text");
+    value = levels_named(*text);
+  }
+
  private:
   const OptionValue* find(const char* key) const {
     const auto it = record_.find(key);
@@ -125,8 +136,36 @@ ExternalPlacement placement_named(const std::string& name) {
   return named("external", kPlacements, name);
 }
 
+std::vector<double> levels_named(const std::string& text) {
+  std::vector<double> levels;
+  std::string_view rest = text;
+  for (;;) {
+    const std::string_view number = rest.substr(0, rest.find(','));
+    double level = 0.0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), level);
+    if (error != std::errc{} || end != number.data() + number.size() ||
+        !is_usable_coordinate(level)) {
+      throw Error("levels", "'" + std::string(number) + "' is not a number");
+    }
+    levels.push_back(level);
+    if (number.size() == rest.size()) return levels;
+    rest.remove_prefix(number.size() + 1);
+  }
+}
+
+std::string name_of_levels(std::span<const double> levels) {
+  std::string text;
+  for (const double level : levels) {
+    std::array<char, 32> digits;
+    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), level);
+    if (!text.empty()) text += ',';
+    text.append(digits.data(), end);
+  }
+  return text;
+}
+
 std::map<std::string, OptionValue> option_record(const SimplifyOptions& options, double scale) {
-  std::map<std::string, OptionValue> record = {
+  std::map<std::string, OptionValue> record{
       {"scale", scale},
       {"max-error", options.max_error},
       {"min-external", options.min_external_diameter},
@@ -142,6 +181,7 @@ std::map<std::string, OptionValue> option_record(const SimplifyOptions& options,
   // Absent where they are not used.
   if (!options.zones.empty()) record["zones"] = zones_text(options.zones);
   if (options.keep_concave_edges) record["keep-concave-edges"] = true;
+  if (!options.levels.empty()) record["levels"] = name_of_levels(options.levels);
   return record;
 }
 
@@ -161,6 +201,7 @@ SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& re
   read.length("seconds", options.seconds);
   read.zones("zones", options.zones);
   read.flag("keep-concave-edges", options.keep_concave_edges);
+  read.levels("levels", options.levels);
   return options;
 }
 

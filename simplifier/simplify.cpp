@@ -3,6 +3,7 @@
 
 #include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_report.h"
+#include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -45,6 +46,21 @@ void check_options(const SimplifyOptions& options) {
   if (options.seed > kLargest) throw Error("seed", "must be below 2^63");
 }
 
+// Fills in E and the levels, the coarsest first and E last, where levels are asked for.
+void complete_levels(SimplifyOptions& options) {
+  if (options.levels.empty()) return;
+  options.levels = check_levels(options.levels);
+  if (options.max_error == 0.0) options.max_error = options.levels.front();
+  if (options.levels.front() < options.max_error) {
+    throw Error("levels", "must not be finer than the max error");
+  }
+  if (options.levels.front() > options.max_error) {
+    options.levels.insert(options.levels.begin(), options.max_error);
+    options.levels = check_levels(options.levels);
+  }
+  std::reverse(options.levels.begin(), options.levels.end());
+}
+
 class Stopwatch {
  public:
   double seconds() const {
@@ -63,6 +79,7 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   const internal::ThreadLimit threads(options.threads);
   Simplification result;
   SimplifyOptions& used = result.options = options;
+  complete_levels(used);
   const double diagonal = box_diagonal(mesh);
   if (used.max_error == 0.0) used.max_error = kDefaultError * diagonal;
   if (used.min_external_diameter == 0.0) {
@@ -78,19 +95,25 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   result.times.external = external_time.seconds();
 
   const Stopwatch cover_time;
-  result.cover = cover(mesh, result.external,
-                       {.method = used.method,
-                        .max_error = used.max_error,
-                        .zones = used.zones,
-                        .min_radius = used.min_radius,
-                        .min_internal_diameter = used.min_internal_diameter,
-                        .seed = used.seed,
-                        .effort = used.effort,
-                        .seconds = used.seconds,
-                        .history = used.history,
-                        .threads = used.threads,
-                        .progress = used.progress});
+  const CoverOptions cover_options{.method = used.method,
+                                   .max_error = used.max_error,
+                                   .min_radius = used.min_radius,
+                                   .min_internal_diameter = used.min_internal_diameter,
+                                   .seed = used.seed,
+                                   .effort = used.effort,
+                                   .seconds = used.seconds,
+                                   .history = used.history,
+                                   .threads = used.threads,
+                                   .progress = used.progress};
+  result.cover = cover(mesh, result.external, cover_options);
   result.times.cover = cover_time.seconds();
+
+  const Stopwatch levels_time;
+  if (used.levels.size() > 1) {
+    const std::span<const double> coarser = std::span(used.levels).first(used.levels.size() - 1);
+    result.levels = fit_levels(mesh, result.external, result.cover.spheres, coarser, cover_options);
+  }
+  result.times.levels = levels_time.seconds();
 
   const Stopwatch certify_time;
   CertifyOptions certify_options;
@@ -128,6 +151,12 @@ ExternalOptions external_options(const SimplifyOptions& options) {
           .seed = options.seed,
           .threads = options.threads,
           .progress = options.progress};
+}
+
+SphereTree sphere_tree(const Simplification& simplification) {
+  const std::vector<Sphere>& spheres = simplification.cover.spheres;
+  if (simplification.levels.empty()) return build_tree(spheres);
+  return level_tree(spheres, simplification.levels).tree;
 }
 
 double proof_resolution(double max_error, double diagonal) {

@@ -4,6 +4,7 @@
 #include "simplifier/certificate.h"
 #include "simplifier/cover.h"
 #include "simplifier/external_spheres.h"
+#include "simplifier/levels.h"
 #include "simplifier/zones.h"
 #include "spheretree/sphere_file.h"
 #include "spheretree/triangle_mesh.h"
@@ -21,6 +22,9 @@ struct SimplifyOptions {
   // E: how far the result may protrude from the simplified solid; 0 chooses 1 % of the box
   // diagonal.
   double max_error = 0.0;
+  // Errors of levels of detail to fit above the cover (levels.h), in any order; the finest is E:
+  // with a max_error of 0 it becomes that, else it must not be below it.
+  std::vector<double> levels = {};
   // D: diameter of the smallest thing that will meet the model; 0 chooses 4 E.
   double min_external_diameter = 0.0;
   // t: grow M by this much (chord error of the tessellation, calibration).
@@ -47,12 +51,14 @@ struct SimplifyOptions {
 struct SimplifyTimes {
   double external = 0.0;
   double cover = 0.0;
+  double levels = 0.0;
   double certify = 0.0;
 };
 
 struct Simplification {
   ExternalSpheres external;
   SphereCover cover;
+  std::vector<CoverLevel> levels;  // coarser than the cover, the finest first
   Certificate certificate;
   SimplifyOptions options;  // as used, the defaults filled in
   SimplifyTimes times;
@@ -91,10 +97,18 @@ CoverMethod method_named(const std::string& name);
 std::vector<std::string> placement_names();
 ExternalPlacement placement_named(const std::string& name);
 
+// Errors of levels as they are written on the command line and in files, "80,40,20", and back.
+// Error for a text that is not numbers with commas between them.
+std::vector<double> levels_named(const std::string& text);
+std::string name_of_levels(std::span<const double> levels);
+
 // The options under their command-line names, for SphereFile::options; `scale` is the one the mesh
 // was read with. And back, for an audit: what is absent keeps its default, Error names a bad value.
 std::map<std::string, OptionValue> option_record(const SimplifyOptions& options, double scale);
 SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& record);
+
+// The tree over the spheres: through the levels, where some were fitted, else that of build_tree().
+SphereTree sphere_tree(const Simplification& simplification);
 
 // Spheres, certificate and options in one, ready for save_spheres().
 SphereFile sphere_file(const Simplification& simplification, double scale = 1.0);

@@ -3,6 +3,8 @@
 
 #include "simplifier/internal/cover_moves.h"
 #include "simplifier/internal/cover_search.h"
+#include "simplifier/internal/solid_query.h"
+#include "spheretree/error.h"
 
 #include <tbb/parallel_for.h>
 
@@ -71,7 +73,7 @@ void CoverFitter::Goal::reached(std::size_t count) {
   const std::size_t largest = std::max<std::size_t>(1, count / kLargestStep);
   step = proved == 0 ? largest : std::min(largest, count <= target ? 2 * step : step);
   proved = count;
-  target = count - std::min(step, count - 1);
+  target = count - std::min(step, std::max<std::size_t>(1, count) - 1);
 }
 
 double CoverFitter::finest(double max_error) {
@@ -79,13 +81,18 @@ double CoverFitter::finest(double max_error) {
 }
 
 CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distance,
-                         const CoverOptions& options)
+                         const CoverOptions& options, std::span<const Sphere> given)
     : clearance_(clearance),
       options_(options),
       error_(options.max_error),
       local_(options.max_error, options.zones),
       cells_(cells_of(clearance, distance, local_, options.max_error)),
-      problem_(options.max_error, options.min_radius, options.zones) {}
+      problem_(options.max_error, options.min_radius, options.zones),
+      given_(given.begin(), given.end()) {
+  if (finest(tightest_error(options.zones, options.max_error)) < least_reach(clearance.box())) {
+    throw Error("max error", "too small for coordinates of this size");
+  }
+}
 
 std::vector<Sphere> CoverFitter::run() {
   using Clock = std::chrono::steady_clock;
@@ -97,7 +104,9 @@ std::vector<Sphere> CoverFitter::run() {
     const std::chrono::duration<double> elapsed = Clock::now() - start;
     return std::max(rounds, elapsed.count() / options_.seconds);
   };
-  const Points sample = cells_.sample();
+  Points sample = cells_.sample();
+  const BallHierarchy given(given_);
+  std::erase_if(sample, [&](const Vector3d& p) { return given.nearest(p, 0.0).upper < 0.0; });
   add_rows(problem_, sample, kCellRow * error_,
            some_of(sample, std::clamp(sample.size() / 2, kMinStarts, kMaxStarts)));
   solution_ = greedy_set_cover(problem_.instance());
@@ -216,8 +225,10 @@ void CoverFitter::report(double share) const {
 }
 
 SolidCells::Leaks CoverFitter::leaks_of(const std::vector<Sphere>& balls) {
-  const BallHierarchy hierarchy(balls);
-  return cells_.find_leaks({balls, hierarchy}, finest(error_), kLeakSpacing * error_);
+  std::vector<Sphere> all(given_);
+  all.insert(all.end(), balls.begin(), balls.end());
+  const BallHierarchy hierarchy(all);
+  return cells_.find_leaks({all, hierarchy}, finest(error_), kLeakSpacing * error_);
 }
 
 }  // namespace spherule::internal

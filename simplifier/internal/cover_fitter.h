@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace spherule::internal {
@@ -23,10 +24,12 @@ namespace spherule::internal {
 // balls to where they have the most to spare, and prove the result or learn from where it leaks.
 class CoverFitter {
  public:
-  CoverFitter(const Clearance& clearance, const MeshDistance& distance,
-              const CoverOptions& options);
+  // What the balls `given` cover need not be covered again. Throws Error for an E too small for the
+  // rounding of the coordinates.
+  CoverFitter(const Clearance& clearance, const MeshDistance& distance, const CoverOptions& options,
+              std::span<const Sphere> given = {});
 
-  // The fewest balls that were proved to cover S.
+  // The fewest balls that were proved to cover S, together with those given.
   std::vector<Sphere> run();
 
   // Half diagonal of the smallest cells that are told apart.
@@ -80,6 +83,7 @@ class CoverFitter {
   Columns solution_;          // the last that was tried
   std::vector<Sphere> best_;  // proved
   Goal goal_;
+  std::vector<Sphere> given_;
   std::uint64_t seeds_used_ = 0;
   std::uint64_t first_entries_ = 0;  // of the problem as it was when the rounds began
 };

@@ -68,7 +68,7 @@ std::vector<Vector3d> SolidCells::sample() const {
     usable[i] = 1;
     if (cells_[i].inside) return;
     // Onto the boundary: by the clearance towards the contact, or away from it.
-    const double tolerance = kSampleTolerance * spacing_;
+    const double tolerance = kSampleTolerance * spacing_ * error_.scale(points[i]);
     const ClearanceAt at = clearance_(points[i], tolerance);
     points[i] -= at.away * at.lower;
     const ClearanceAt there = clearance_(points[i], tolerance);

@@ -100,5 +100,27 @@ TEST_F(AuditTest, BadOptionsInTheFileAreRefusedWithItsName) {
   refuse(R"("scale":"wide")", "scale: ");
 }
 
+TEST_F(AuditTest, RepairMakesALeakingSetCover) {
+  write_spheres("ball.json", {{1, 1, 1, 1.5}, {0.5, 0.5, 0.5, 0.1}});
+  const Outcome result = run(
+      {"audit", "box.stl", "ball.json", "--json", "--repair", "mended.json", "--max-error", "0.4"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const json out = json::parse(result.out);
+  EXPECT_EQ(out.at("covered"), false);  // as it was
+  const json& repair = out.at("repair");
+  EXPECT_EQ(repair.at("certificate").at("covered"), true);
+  EXPECT_EQ(repair.at("max_error"), 0.4);
+  const json mended = read_json("mended.json");
+  EXPECT_EQ(mended.at("spheres").size(), 2 + repair.at("added").get<std::size_t>());
+  EXPECT_GT(repair.at("grown").get<std::size_t>() + repair.at("added").get<std::size_t>(), 0U);
+  EXPECT_EQ(mended.at("options").at("min-external"), 1.6);
+  EXPECT_EQ(run({"audit", "box.stl", "mended.json"}).exit_code, 0);
+  // A set that covers stays as it is.
+  ASSERT_EQ(run({"audit", "box.stl", "mended.json", "--repair", "again.json"}).exit_code, 0);
+  EXPECT_EQ(read_json("again.json").at("spheres"), mended.at("spheres"));
+  expect_refusal({"audit", "box.stl", "ball.json", "--max-error", "1"}, "--repair");
+  expect_refusal({"audit", "box.stl", "ball.json", "--repair", "ball.json"}, "ball.json");
+}
+
 }  // namespace
 }  // namespace spherule

@@ -67,6 +67,16 @@ TEST_F(FitTest, ReportHoldsTheSimplifiedSolid) {
     EXPECT_GE(report.at("seconds").at(part), 0.0);
   }
   EXPECT_FALSE(report.at("cover").at("history").empty());
+  const json& roles = report.at("analysis").at("spheres_by_role");
+  EXPECT_GT(roles.at("edges"), 0);
+  EXPECT_EQ(roles.at("edges").get<std::size_t>() + roles.at("thin").get<std::size_t>() +
+                roles.at("faces").get<std::size_t>() + roles.at("inside").get<std::size_t>(),
+            report.at("certificate").at("sphere_count"));
+  const json& coarser = report.at("analysis").at("at_twice_the_error");
+  EXPECT_EQ(coarser.at("max_error"), 4.0);
+  EXPECT_EQ(coarser.at("covered"), true);
+  EXPECT_GT(coarser.at("sphere_count"), 0);
+  EXPECT_LT(coarser.at("sphere_count"), report.at("certificate").at("sphere_count"));
   EXPECT_FALSE(report.at("cover").at("spheres_before_inflation").empty());
   const json& solid = report.at("simplified_solid");
   EXPECT_EQ(solid.at("min_external_diameter"), 8.0);
@@ -124,6 +134,41 @@ TEST_F(FitTest, EffortOrSecondsSayHowLongToLook) {
   for (const char* option : {"--effort", "--seconds"}) {
     expect_refusal({"fit", "box.stl", "-o", "box.json", option, "-1"}, option);
   }
+}
+
+// The levels stand in the tree and in the report, and no verdict depends on them.
+TEST_F(FitTest, LevelsAreJoinedInTheTree) {
+  ASSERT_EQ(run({"fit", "box.stl", "-o", "box.json", "--levels", "8,2,4", "--report", "report.json",
+                 "--tree", "levels.tree"})
+                .exit_code,
+            0);
+  EXPECT_EQ(read_json("box.json").at("options").at("levels"), "8,4,2");
+  EXPECT_EQ(read_json("box.json").at("options").at("max-error"), 2.0);
+  const json levels = read_json("report.json").at("levels");
+  ASSERT_EQ(levels.size(), 2U);
+  EXPECT_LE(levels[0].at("protrusion_over_simplified_max"), 4.0);
+  EXPECT_LE(levels[1].at("protrusion_over_simplified_max"), 8.0);
+  ASSERT_EQ(run({"audit", "box.stl", "box.json"}).exit_code, 0);
+  ASSERT_EQ(run({"tree", "box.json", "-o", "plain.tree"}).exit_code, 0);
+  EXPECT_NE(read("plain.tree"), read("levels.tree"));
+  int hits = 0;
+  for (int i = 0; i < 12; ++i) {
+    const std::string pose = std::to_string(20 + 6 * i) + " " + std::to_string(i) + " 3 0 0 " +
+                             std::to_string(0.1 * i) + " 1";
+    const Outcome plain = run({"collide", "plain.tree", "plain.tree", "--pose-b", pose, "--json"});
+    const Outcome joined =
+        run({"collide", "levels.tree", "levels.tree", "--pose-b", pose, "--json"});
+    EXPECT_EQ(plain.exit_code, joined.exit_code) << pose;
+    EXPECT_EQ(json::parse(plain.out).at("verdict"), json::parse(joined.out).at("verdict"));
+    hits += joined.exit_code;
+  }
+  EXPECT_GT(hits, 0);
+  EXPECT_LT(hits, 12);
+  expect_refusal({"fit", "box.stl", "-o", "bad.json", "--levels", "8,x"}, "'x' is not a number");
+  const Outcome finer =
+      run({"fit", "box.stl", "-o", "bad.json", "--levels", "8,1", "--max-error", "2"});
+  EXPECT_EQ(finer.exit_code, 2);
+  EXPECT_NE(finer.err.find("finer than the max error"), std::string::npos) << finer.err;
 }
 
 TEST_F(FitTest, OptionsArriveInTheFile) {

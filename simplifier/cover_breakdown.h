@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/external_spheres.h"
+#include "spheretree/sphere.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// What a ball of a cover is there for, by what it alone covers.
+enum class BallRole {
+  kEdge,   // points of a sharp convex edge of M that lies on the boundary of S
+  kThin,   // boundary of S where S is thin: the outside is within 2 E of the centre on both sides
+  kFace,   // other boundary of S, flat or curved
+  kInside  // no point of the boundary: the deep inside, or nothing
+};
+
+struct CoverBreakdown {
+  std::vector<BallRole> roles;  // of each ball: the first in the order above that fits
+  std::size_t edges = 0;
+  std::size_t thin = 0;
+  std::size_t faces = 0;
+  std::size_t inside = 0;
+};
+
+// Where the count of a cover of S goes, judged at sample points about E / 4 apart on edges and E /
+// 2 elsewhere; no proof. An edge is sharp where its faces meet at 150 degrees or less, or where a
+// sheet ends; convex where S does not go on beyond it. (Along such an edge the best ball covers no
+// more than a few E, so these balls only become fewer with a larger E.) Deterministic. Throws Error
+// for a mesh that validate() refuses and for a max_error that is not positive and finite.
+CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& external,
+                               std::span<const Sphere> spheres, double max_error);
+
+}  // namespace spherule

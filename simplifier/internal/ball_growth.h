@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/sphere.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace spherule::internal {
+
+// How far some balls have to grow, each up to a limit of its own, so that given points are covered,
+// with a small sum of growths. Plain double: it serves a search, never a proof.
+class BallGrowth {
+ public:
+  // `limits`: the largest radius of every ball, not below its own.
+  BallGrowth(std::span<const Sphere> balls, std::vector<double> limits);
+
+  // Asks for a point to be covered with the ball of radius `reserve` about it, or as much of that
+  // as the balls allow. False if the radii as they are do so already.
+  bool require(const Eigen::Vector3d& point, double reserve);
+  // Grows all balls that could come within `reach` of the point to their limits, for good. False if
+  // they are there already.
+  bool grow_fully_about(const Eigen::Vector3d& point, double reach);
+
+  // Finds new radii for all that was asked for: a point goes to the ball that has to grow least for
+  // it, those first that are hardest to reach; then balls shrink to what they alone cover, the ones
+  // that grew most first.
+  void solve();
+
+  // The balls with the radii found last.
+  std::vector<Sphere> balls() const;
+
+ private:
+  struct Offer {
+    std::uint32_t ball;
+    double radius;  // that the ball needs
+  };
+  using Demand = std::vector<Offer>;  // one of these has to be met
+
+  bool is_met(const Demand& demand) const;
+  double growth(const Offer& offer) const { return offer.radius - least_[offer.ball]; }
+  void shrink();
+
+  std::vector<Sphere> balls_;
+  std::vector<double> least_;
+  std::vector<double> limits_;
+  std::vector<double> radii_;
+  std::vector<Demand> demands_;
+};
+
+}  // namespace spherule::internal

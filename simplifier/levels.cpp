@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/levels.h"
+
+#include "simplifier/internal/clearance.h"
+#include "simplifier/internal/level_fitter.h"
+#include "simplifier/internal/protrusion.h"
+#include "simplifier/internal/thread_limit.h"
+#include "simplifier/mesh_distance.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <string>
+
+namespace spherule {
+namespace {
+
+constexpr double kLeastRatio = 1.01;  // of the errors of two levels
+
+}  // namespace
+
+std::vector<double> check_levels(std::span<const double> max_errors) {
+  std::vector<double> sorted(max_errors.begin(), max_errors.end());
+  for (const double error : sorted) {
+    if (!(error > 0.0 && error <= kMaxCoordinate)) {
+      throw Error("levels", "must be positive and finite");
+    }
+  }
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t k = 1; k < sorted.size(); ++k) {
+    if (sorted[k] < kLeastRatio * sorted[k - 1]) {
+      throw Error("levels", "each must be at least 1 % larger than the next finer one");
+    }
+  }
+  return sorted;
+}
+
+std::vector<CoverLevel> fit_levels(const TriangleMesh& mesh, const ExternalSpheres& external,
+                                   std::span<const Sphere> spheres,
+                                   std::span<const double> max_errors,
+                                   const CoverOptions& options) {
+  validate(mesh, "mesh");
+  const std::vector<double> errors = check_levels(max_errors);
+  std::vector<CoverLevel> levels;
+  if (errors.empty()) return levels;
+  const internal::ThreadLimit threads(options.threads);
+  const MeshDistance distance(mesh);
+  const Clearance clearance(external, distance);
+  const auto protrusion = [&](std::span<const Sphere> balls) {
+    return internal::greatest(internal::protrusions_over_solid(clearance, distance, balls));
+  };
+  const SphereTree clustering = build_tree(spheres);
+  levels.reserve(errors.size());
+  std::span<const Sphere> finer = spheres;
+  for (const double error : errors) {
+    if (options.progress) {
+      options.progress(static_cast<double>(levels.size()) / static_cast<double>(errors.size()),
+                       "fitting levels");
+    }
+    CoverOptions level_options = options;
+    level_options.max_error = error;
+    // With a limit in time the rounds have none.
+    if (options.seconds > 0.0) {
+      level_options.effort = std::min(options.effort, CoverOptions{}.effort);
+    }
+    CoverLevel level;
+    level.max_error = error;
+    level.balls = internal::LevelFitter(clearance, finer, level_options).run();
+    level.protrusion = protrusion(level.balls.spheres);
+    const std::vector<Sphere> clusters = cut(clustering, level.balls.spheres.size());
+    level.clustering_count = clusters.size();
+    level.clustering_protrusion = protrusion(clusters);
+    levels.push_back(std::move(level));
+    finer = levels.back().balls.spheres;
+  }
+  return levels;
+}
+
+LevelTree level_tree(std::span<const Sphere> spheres, std::span<const CoverLevel> levels) {
+  std::vector<SphereLevel> balls;
+  for (const CoverLevel& level : levels) balls.push_back(level.balls);
+  return build_tree_from_levels(spheres, balls);
+}
+
+}  // namespace spherule

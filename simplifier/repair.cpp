@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/repair.h"
+
+#include "simplifier/internal/ball_growth.h"
+#include "simplifier/internal/clearance.h"
+#include "simplifier/internal/cover_fitter.h"
+#include "simplifier/internal/local_error.h"
+#include "simplifier/internal/solid_cells.h"
+#include "simplifier/internal/thread_limit.h"
+#include "simplifier/mesh_distance.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <string>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+using internal::SolidCells;
+
+// Shares of max_error.
+constexpr double kCells = 0.7;         // half diagonal of the cells looked at first
+constexpr double kLeakReserve = 0.02;  // about a point that is found open
+constexpr double kLeakSpacing = 0.15;
+
+// Of points found open, after which all balls that could matter about them grow fully.
+constexpr int kRounds = 40;
+
+void check(std::span<const Sphere> spheres, const RepairOptions& options) {
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    if (!is_usable(spheres[i])) {
+      throw Error("sphere " + std::to_string(i), "not finite, too large, or of negative radius");
+    }
+  }
+  if (!(options.max_error > 0.0 && options.max_error <= kMaxCoordinate)) {
+    throw Error("max error", "must be positive and finite");
+  }
+  if (options.effort < 0) throw Error("effort", "must not be negative");
+}
+
+// The largest radius of each ball with which it protrudes by at most `max_error`, as certified
+// (protrusion.h); its own if that is larger.
+std::vector<double> limits_of(const Clearance& clearance, const MeshDistance& distance,
+                              std::span<const Sphere> balls, const internal::LocalError& error) {
+  std::vector<double> limits(balls.size());
+  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
+    const Vector3d& c = balls[i].center;
+    const double depth = clearance(c).lower;
+    const double allowed = error.allowance(c, std::max(0.0, depth));
+    const double limit =
+        depth >= 0.0 ? add_down(allowed, depth) : sub_down(allowed, distance(c).upper);
+    limits[i] = std::max(balls[i].radius, next_down(limit));
+  });
+  return limits;
+}
+
+std::vector<Sphere> joined(std::vector<Sphere> balls, const std::vector<Sphere>& more) {
+  balls.insert(balls.end(), more.begin(), more.end());
+  return balls;
+}
+
+// Radii with which the balls cover S together with those `added`, which they do at their limits.
+std::vector<Sphere> grown_balls(const Clearance& clearance, const MeshDistance& distance,
+                                std::span<const Sphere> balls, const std::vector<Sphere>& limit,
+                                const std::vector<Sphere>& added, double max_error,
+                                const internal::LocalError& error) {
+  std::vector<double> limits;
+  for (const Sphere& ball : limit) limits.push_back(ball.radius);
+  internal::BallGrowth growth(balls, limits);
+  SolidCells cells(clearance, distance, error, kCells * max_error);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Sphere> grown = growth.balls();
+    const std::vector<Sphere> all = joined(grown, added);
+    const internal::BallHierarchy hierarchy(all);
+    const SolidCells::Leaks leaks = cells.find_leaks(
+        {all, hierarchy}, internal::CoverFitter::finest(max_error), kLeakSpacing * max_error);
+    if (leaks.empty()) return grown;
+    bool more = false;
+    for (const auto* points : {&leaks.in_solid, &leaks.pinched}) {
+      for (const Vector3d& p : *points) {
+        // What was asked for is not enough here: several balls meet at the point.
+        more = growth.require(p, kLeakReserve * max_error) ||
+               growth.grow_fully_about(p, kLeakSpacing * max_error) || more;
+      }
+    }
+    if (!more) break;
+    growth.solve();
+  }
+  return limit;
+}
+
+}  // namespace
+
+Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
+              std::span<const Sphere> spheres, const RepairOptions& options) {
+  validate(mesh, "mesh");
+  check(spheres, options);
+  const internal::ThreadLimit threads(options.threads);
+  const MeshDistance distance(mesh);
+  const Clearance clearance(external, distance);
+  const internal::LocalError error(options.max_error, options.zones);
+  std::vector<Sphere> limit(spheres.begin(), spheres.end());
+  const std::vector<double> limits = limits_of(clearance, distance, spheres, error);
+  for (std::size_t i = 0; i < limit.size(); ++i) limit[i].radius = limits[i];
+  const CoverOptions cover_options{.max_error = options.max_error,
+                                   .zones = options.zones,
+                                   .seed = options.seed,
+                                   .effort = options.effort,
+                                   .progress = options.progress};
+  const std::vector<Sphere> added =
+      internal::CoverFitter(clearance, distance, cover_options, limit).run();
+  if (options.progress) options.progress(-1.0, "growing");
+  Repair result;
+  result.spheres =
+      grown_balls(clearance, distance, spheres, limit, added, options.max_error, error);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const double by = result.spheres[i].radius - spheres[i].radius;
+    if (by > 0.0) ++result.grown;
+    result.largest_growth = std::max(result.largest_growth, by);
+    result.total_growth += by;
+  }
+  result.added = added.size();
+  result.spheres = joined(std::move(result.spheres), added);
+  return result;
+}
+
+}  // namespace spherule

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/cover.h"
+#include "simplifier/external_spheres.h"
+#include "simplifier/zones.h"
+#include "spheretree/sphere.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+struct RepairOptions {
+  // How far a ball that is grown or added may protrude from S. Positive. The natural choice is the
+  // larger of the E the balls were made for and the certified protrusion of the balls as they are.
+  double max_error = 0.0;
+  // Where it may protrude by less (zones.h); a ball that breaks a zone as it is stays as it is.
+  std::vector<Zone> zones = {};
+  std::uint64_t seed = 1;
+  int effort = CoverOptions{}.effort;  // of the search for few balls to add
+  int threads = 0;                     // 0: all
+  Progress progress = {};
+};
+
+struct Repair {
+  // The balls of the input in their order, none moved and none smaller than it was; then those
+  // added.
+  std::vector<Sphere> spheres;
+  std::size_t grown = 0;
+  std::size_t added = 0;
+  double largest_growth = 0.0;  // of a radius
+  double total_growth = 0.0;    // of all radii
+};
+
+// Turns any balls into ones that cover S. A ball (c, r) may grow as long as it protrudes from S by
+// at most max_error: to max_error + the clearance of c where c is in S; elsewhere to max_error -
+// the distance of c from M; and in no zone by more than is allowed there. A ball that protrudes
+// further as it is stays as it is. The aim is, first, as few added balls as possible, then as small
+// a sum of growths as possible, and it is reached approximately:
+//  1. what no ball can reach by growing is covered by added balls, few by the search of cover();
+//  2. beside these, balls grow only as far as the points need it that were found open: each goes to
+//     the ball that has to grow least for it, and what others cover then is given back. That is
+//     repeated until nothing is found open.
+// Balls are not moved. On return S is proved to be covered, in the same way as by cover(). Balls
+// that cover S come back unchanged; without balls this is a cover. Deterministic for equal input on
+// any number of threads. Throws Error for a mesh that validate() refuses, balls that are not
+// usable, options out of range, and for a max_error too small for the rounding of the coordinates.
+Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
+              std::span<const Sphere> spheres, const RepairOptions& options);
+
+}  // namespace spherule

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/repair.h"
+
+#include "spheretree/error.h"
+#include "tests/simplifier/fitting.h"
+#include "tests/simplifier/judge.h"
+#include "tests/simplifier/octree_proof.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+
+// What repair() promises, by the certificate, by an independent proof and by samples.
+Repair expect_repaired(const TriangleMesh& mesh, const Fit& fitted, std::vector<Sphere> leaking,
+                       double max_error) {
+  Repair result =
+      repair(mesh, fitted.external, leaking, {.max_error = max_error, .effort = effort(4, 1)});
+  const std::vector<Sphere>& balls = result.spheres;
+  EXPECT_EQ(balls.size(), leaking.size() + result.added);
+  double largest = 0.0;
+  double total = 0.0;
+  std::size_t grown = 0;
+  for (std::size_t i = 0; i < leaking.size(); ++i) {
+    EXPECT_EQ(balls[i].center, leaking[i].center);
+    EXPECT_GE(balls[i].radius, leaking[i].radius);
+    const double by = balls[i].radius - leaking[i].radius;
+    largest = std::max(largest, by);
+    total += by;
+    grown += by > 0.0 ? 1U : 0U;
+    // Protrudes no further than it did or than it may.
+    if (by == 0.0) leaking[i].radius = 0.0;
+  }
+  EXPECT_EQ(result.grown, grown);
+  EXPECT_EQ(result.largest_growth, largest);
+  EXPECT_NEAR(result.total_growth, total, 1e-9 * total);
+  EXPECT_TRUE(certificate_of(mesh, fitted, balls).covered);
+  const OctreeProof proof = prove_by_octree(fitted.external, balls, 26, 300'000);
+  EXPECT_NE(proof.verdict, OctreeVerdict::kLeak) << proof.point.transpose();
+  Random random(91);
+  const auto count = static_cast<std::size_t>(effort(4000, 400));
+  EXPECT_EQ(judge_cover(points_of_solid(fitted.external, count, random), balls).uncovered, 0U);
+  EXPECT_EQ(judge_cover(points_on_surface(mesh, count, random), balls).uncovered, 0U);
+  std::vector<Sphere> changed;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    if (i >= leaking.size() || leaking[i].radius > 0.0) changed.push_back(balls[i]);
+  }
+  const Certificate of_changed = certificate_of(mesh, fitted, changed);
+  EXPECT_LE(*of_changed.protrusion_over_simplified_max, max_error);
+  EXPECT_EQ(judge_protrusion(changed, mesh, fitted.external, max_error + 1e-9 * diagonal_of(mesh),
+                             10, random)
+                .beyond,
+            0U);
+  return result;
+}
+
+Fit fit_of(const TriangleMesh& mesh, CoverMethod method = CoverMethod::kCover) {
+  return fit(mesh, options_for(method));
+}
+
+TEST(RepairOf, CoversThatAreWholeComeBackUnchanged) {
+  const TriangleMesh mesh = l_bracket();
+  const Fit fitted = fit_of(mesh);
+  const Repair result = expect_repaired(mesh, fitted, fitted.cover.spheres, fitted.max_error);
+  EXPECT_EQ(result.spheres, fitted.cover.spheres);
+}
+
+TEST(RepairOf, NoBallsIsACover) {
+  const TriangleMesh mesh = cube_mesh();
+  const Fit fitted = fit_of(mesh);
+  const Repair result = expect_repaired(mesh, fitted, {}, fitted.max_error);
+  EXPECT_EQ(result.grown, 0U);
+  EXPECT_LE(result.added, fitted.cover.spheres.size() + 3);
+}
+
+TEST(RepairOf, CoversWithoutSomeOfTheirBalls) {
+  for (const char* name : {"cube", "l-bracket", "torus", "open-box", "three-fins"}) {
+    SCOPED_TRACE(name);
+    const TriangleMesh mesh = mesh_named(name);
+    const Fit fitted = fit_of(mesh);
+    Random random(92);
+    std::vector<Sphere> leaking = fitted.cover.spheres;
+    std::size_t taken = 0;
+    for (; taken < 3 && leaking.size() > 1; ++taken) {
+      leaking.erase(leaking.begin() + static_cast<std::ptrdiff_t>(random.index(leaking.size())));
+    }
+    const Repair result = expect_repaired(mesh, fitted, leaking, fitted.max_error);
+    // As many as were taken would do; a search may find a few more.
+    EXPECT_LE(result.added, 2 * taken);
+    EXPECT_GT(result.added, 0U);
+  }
+}
+
+// All that is missing is within reach of the balls: none has to be added, and none grows beyond
+// what it had.
+TEST(RepairOf, CoversWithShrunkBallsGrowsThemAgain) {
+  int leaked = 0;
+  for (const char* name : {"cube", "l-bracket", "torus", "soup"}) {
+    SCOPED_TRACE(name);
+    const TriangleMesh mesh = mesh_named(name);
+    const Fit fitted = fit_of(mesh);
+    std::vector<Sphere> leaking = fitted.cover.spheres;
+    double taken = 0.0;
+    for (Sphere& ball : leaking) {
+      taken += 0.03 * ball.radius;
+      ball.radius *= 0.97;
+    }
+    const Repair result = expect_repaired(mesh, fitted, leaking, fitted.max_error);
+    EXPECT_EQ(result.added, 0U);
+    EXPECT_EQ(result.grown > 0, !certificate_of(mesh, fitted, leaking).covered);
+    EXPECT_LT(result.total_growth, taken);
+    leaked += result.grown > 0 ? 1 : 0;
+  }
+  EXPECT_GE(leaked, 3);
+}
+
+TEST(RepairOf, ThePapersBallsBeforeInflation) {
+  const TriangleMesh mesh = l_bracket();
+  const Fit fitted = fit_of(mesh, CoverMethod::kPaper);
+  const Repair result =
+      expect_repaired(mesh, fitted, fitted.cover.spheres_before_inflation, fitted.max_error);
+  EXPECT_EQ(result.added, 0U);
+  EXPECT_LE(result.largest_growth, fitted.max_error);
+}
+
+TEST(RepairOf, BallsAnywhere) {
+  for (const char* name : {"cube", "l-bracket", "open-box"}) {
+    SCOPED_TRACE(name);
+    const TriangleMesh mesh = mesh_named(name);
+    const Fit fitted = fit_of(mesh);
+    Random random(93);
+    const Eigen::AlignedBox3d box(Vector3d(fitted.external.box.min() - 0.3 * Vector3d::Ones()),
+                                  Vector3d(fitted.external.box.max() + 0.3 * Vector3d::Ones()));
+    std::vector<Sphere> junk;
+    for (int i = 0; i < 20; ++i) junk.push_back({random.in_box(box), random.between(0.0, 0.3)});
+    expect_repaired(mesh, fitted, junk, fitted.max_error);
+  }
+}
+
+// Balls about points outside of S are all there is at the corners, and may not grow to hold them.
+TEST(RepairOf, BallsBesideTheSolid) {
+  const TriangleMesh mesh = cube_mesh();
+  const Fit fitted = fit_of(mesh);
+  std::vector<Sphere> leaking;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3d at(corner % 2, corner / 2 % 2, corner / 4);
+    leaking.push_back({at + 0.08 * (at - Vector3d::Constant(0.5)), 0.04});
+  }
+  const Repair result = expect_repaired(mesh, fitted, leaking, fitted.max_error);
+  EXPECT_EQ(result.grown, 0U);
+}
+
+TEST(RepairOf, IsEqualInEveryRunOnAnyNumberOfThreads) {
+  const TriangleMesh mesh = l_bracket();
+  const Fit fitted = fit_of(mesh);
+  std::vector<Sphere> leaking = fitted.cover.spheres;
+  leaking.pop_back();
+  for (Sphere& ball : leaking) ball.radius *= 0.98;
+  const auto on = [&](int threads) {
+    return repair(mesh, fitted.external, leaking,
+                  {.max_error = fitted.max_error, .effort = 2, .threads = threads})
+        .spheres;
+  };
+  const std::vector<Sphere> first = on(1);
+  EXPECT_EQ(on(2), first);
+  EXPECT_EQ(on(0), first);
+}
+
+TEST(RepairOf, RefusesWhatItCannotUse) {
+  const TriangleMesh mesh = cube_mesh();
+  const Fit fitted = fit_of(mesh);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {0.0, -1.0, nan, 1e300, 1e-17}) {
+    EXPECT_THROW(repair(mesh, fitted.external, {}, {.max_error = bad}), Error) << bad;
+  }
+  const std::vector<Sphere> unusable = {{Vector3d::Zero(), nan}};
+  EXPECT_THROW(repair(mesh, fitted.external, unusable, {.max_error = 0.1}), Error);
+  EXPECT_THROW(repair(mesh, fitted.external, {}, {.max_error = 0.1, .effort = -1}), Error);
+}
+
+}  // namespace
+}  // namespace spherule::test
