@@ -97,6 +97,7 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   const Stopwatch cover_time;
   const CoverOptions cover_options{.method = used.method,
                                    .max_error = used.max_error,
+                                   .zones = used.zones,
                                    .min_radius = used.min_radius,
                                    .min_internal_diameter = used.min_internal_diameter,
                                    .seed = used.seed,

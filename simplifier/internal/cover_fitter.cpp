@@ -53,10 +53,14 @@ std::vector<Item> some_of(const std::vector<Item>& items, std::size_t count) {
 }
 
 SolidCells cells_of(const Clearance& clearance, const MeshDistance& distance,
-                    const LocalError& error, double max_error) {
+                    const LocalError& error, const CoverOptions& options) {
+  const double tightest = tightest_error(options.zones, options.max_error);
+  if (CoverFitter::finest(tightest) < least_reach(clearance.box())) {
+    throw Error("max error", "too small for coordinates of this size");
+  }
   std::optional<SolidCells> cells;
   for (const double spacing : kSpacings) {
-    cells.emplace(clearance, distance, error, spacing * max_error);
+    cells.emplace(clearance, distance, error, spacing * options.max_error);
     if (cells->size() > kManyCells) break;
   }
   return *std::move(cells);
@@ -86,13 +90,9 @@ CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distanc
       options_(options),
       error_(options.max_error),
       local_(options.max_error, options.zones),
-      cells_(cells_of(clearance, distance, local_, options.max_error)),
+      cells_(cells_of(clearance, distance, local_, options)),
       problem_(options.max_error, options.min_radius, options.zones),
-      given_(given.begin(), given.end()) {
-  if (finest(tightest_error(options.zones, options.max_error)) < least_reach(clearance.box())) {
-    throw Error("max error", "too small for coordinates of this size");
-  }
-}
+      given_(given.begin(), given.end()) {}
 
 std::vector<Sphere> CoverFitter::run() {
   using Clock = std::chrono::steady_clock;

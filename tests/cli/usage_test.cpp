@@ -44,19 +44,11 @@ TEST_F(UsageTest, FaultyCommandLinesAreRefused) {
 TEST_F(UsageTest, OptionsThatAreNotThereYetAreRefused) {
   write_box("box.stl", {1, 1, 1});
   const std::vector<std::string> fit = {"fit", "box.stl", "-o", "out.json"};
-  const std::vector<std::vector<std::string>> later = {{"--levels", "1,2"}};
-  for (const auto& option : later) {
-    auto arguments = fit;
-    arguments.insert(arguments.end(), option.begin(), option.end());
-    expect_refusal(arguments, "unexpected option: " + option.front());
-  }
   for (const char* method : {"medial", "packing"}) {
     auto arguments = fit;
     arguments.insert(arguments.end(), {"--method", method});
     expect_refusal(arguments, method);
   }
-  expect_refusal({"audit", "box.stl", "out.json", "--repair", "better.json"},
-                 "unexpected option: --repair");
   for (const char* command : {"robot", "audit-robot", "check", "baseline"}) {
     expect_refusal({command, "x"}, std::string("unknown command: ") + command);
   }
