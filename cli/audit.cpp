@@ -115,6 +115,7 @@ Repaired repaired(const AuditArguments& arguments, const TriangleMesh& mesh, dou
                           .progress = options.progress});
   result.certificate = certify(mesh, result.repair.spheres, certify_options);
   result.file = {result.repair.spheres, record(result.certificate), option_record(options, scale)};
+  result.file.options.erase("levels");
   result.file.options["repair-max-error"] = result.max_error;
   return result;
 }

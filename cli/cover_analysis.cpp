@@ -15,13 +15,16 @@ CoverAnalysis analyse(const TriangleMesh& mesh, const Simplification& result,
                       const Progress& progress) {
   const SimplifyOptions& options = result.options;
   CoverAnalysis analysis;
-  analysis.breakdown =
-      cover_breakdown(mesh, result.external, result.cover.spheres, options.max_error);
+  analysis.breakdown = cover_breakdown(mesh, result.external, result.cover.spheres,
+                                       options.max_error, options.threads);
   analysis.coarser_error = 2.0 * options.max_error;
+  // The paper's loop knows one max error only.
+  const std::vector<Zone> zones =
+      options.method == CoverMethod::kCover ? options.zones : std::vector<Zone>{};
   const SphereCover coarser = cover(mesh, result.external,
                                     {.method = options.method,
                                      .max_error = analysis.coarser_error,
-                                     .zones = options.zones,
+                                     .zones = zones,
                                      .min_radius = options.min_radius,
                                      .min_internal_diameter = options.min_internal_diameter,
                                      .seed = options.seed,
@@ -31,8 +34,8 @@ CoverAnalysis analyse(const TriangleMesh& mesh, const Simplification& result,
   analysis.coarser_count = coarser.spheres.size();
   CertifyOptions certify_options;
   certify_options.external = &result.external;
-  certify_options.resolution =
-      proof_resolution(analysis.coarser_error, result.external.box.diagonal().norm());
+  certify_options.resolution = proof_resolution(tightest_error(zones, analysis.coarser_error),
+                                                result.external.box.diagonal().norm());
   certify_options.protrusion_tolerance = 0.0;
   certify_options.volume = false;
   certify_options.threads = options.threads;

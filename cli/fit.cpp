@@ -77,7 +77,7 @@ int fit(const FitArguments& arguments) {
   options.method = method_named(arguments.method);
   options.external = placement_named(arguments.external);
   if (!arguments.levels.empty()) options.levels = levels_named(arguments.levels);
-  options.history = !arguments.report.empty();
+  options.history = options.lower_bound = !arguments.report.empty();
   if (!arguments.zones.empty()) options.zones = read_zones(arguments.zones);
   if (!arguments.tool.empty()) {
     const SphereFile tool = load_spheres(arguments.tool);
@@ -95,6 +95,9 @@ int fit(const FitArguments& arguments) {
     return blaming_file(arguments.zones, "zone ", [&] { return simplify(mesh, options); });
   }();
 
+  // First of all what was asked for and is proved.
+  write_uninterrupted(
+      [&] { save_spheres(sphere_file(result, arguments.scale), arguments.spheres); });
   std::optional<CoverAnalysis> analysis;
   if (!arguments.report.empty()) {
     ProgressBar bar;
@@ -102,7 +105,6 @@ int fit(const FitArguments& arguments) {
   }
 
   write_uninterrupted([&] {
-    save_spheres(sphere_file(result, arguments.scale), arguments.spheres);
     if (analysis) {
       write_file_atomically(arguments.report, fit_report(arguments.mesh, mesh, report, result,
                                                          *analysis, arguments.scale));
@@ -124,8 +126,8 @@ int fit(const FitArguments& arguments) {
   std::cout << "spheres: " << result.cover.spheres.size() << "\n"
             << describe(result.certificate, "the simplified solid") << describe(result.levels)
             << (analysis ? describe(*analysis, result) : "") << "seconds: external "
-            << result.times.external << ", cover " << result.times.cover << ", certify "
-            << result.times.certify << "\n";
+            << result.times.external << ", cover " << result.times.cover << ", levels "
+            << result.times.levels << ", certify " << result.times.certify << "\n";
   const std::string broken = broken_promises(result);
   if (broken.empty()) return kYes;
   std::cerr << "spherule: " << arguments.spheres << ": " << broken << "\n";

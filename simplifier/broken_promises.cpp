@@ -31,6 +31,12 @@ std::string broken_promises(const Simplification& simplification) {
         << " to protrude by at most " << *error << " in zone " << i;
     if (known) out << ", only by at most " << certificate.protrusion_in_zones[i];
   }
+  for (const CoverLevel& level : simplification.levels) {
+    if (level.protrusion <= level.max_error) continue;
+    out << (out.str().empty() ? "the spheres are not proved" : ", nor")
+        << " to protrude by at most " << level.max_error << " in a level, only by at most "
+        << level.protrusion;
+  }
   return out.str();
 }
 

@@ -45,7 +45,9 @@ SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
     return place_internal_spheres(mesh, clearance, options);
   }
   SphereCover result;
-  result.spheres = internal::CoverFitter(clearance, distance, options).run();
+  internal::CoverFitter fitter(clearance, distance, options);
+  result.spheres = fitter.run();
+  result.lower_bound = fitter.lower_bound();
   return result;
 }
 

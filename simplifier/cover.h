@@ -35,6 +35,9 @@ struct CoverOptions {
   // kCover: no new round begins after so many seconds; 0 sets no limit. The result then depends on
   // the machine.
   double seconds = 0.0;
+  // kCover: prove a lower bound of the count, too (SphereCover::lower_bound), once a first answer
+  // is proved: that takes longer than the answer. Not with a min_radius, which lets balls protrude.
+  bool lower_bound = false;
   // kPaper: record the history (costs some time).
   bool history = false;
   int threads = 0;  // 0: all

@@ -2,9 +2,11 @@
 #include "simplifier/cover_breakdown.h"
 
 #include "simplifier/internal/clearance.h"
+#include "simplifier/internal/cube.h"
 #include "simplifier/internal/local_error.h"
 #include "simplifier/internal/point_grid.h"
 #include "simplifier/internal/solid_cells.h"
+#include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_distance.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -34,8 +36,7 @@ constexpr double kThinReach = 2.0;
 constexpr double kCube = 2.0;  // edge of the cubes that points are sorted into
 
 constexpr std::size_t kMostPerEdge = 100000;
-constexpr double kSharp = 0.2588190451025207;  // cosine of 75 degrees, half of the sharpest blunt
-                                               // angle
+constexpr double kSharp = 0.2588190451025207;  // cosine of half of 150 degrees
 
 struct Edge {
   Vector3d from, to;
@@ -77,7 +78,7 @@ Points edge_points(const TriangleMesh& mesh, const Clearance& clearance, double 
                    double beyond_by) {
   const double spacing = kEdgeSpacing * max_error;
   Points points;
-  std::set<std::array<std::int64_t, 3>> taken;
+  std::set<internal::Cube> taken;
   for (const Edge& edge : edges_of(mesh)) {
     Vector3d beyond = Vector3d::Zero();
     for (const Vector3d& inward : edge.inward) beyond -= inward;
@@ -93,13 +94,7 @@ Points edge_points(const TriangleMesh& mesh, const Clearance& clearance, double 
     for (std::size_t i = 0; i <= steps; ++i) {
       const double share = static_cast<double>(i) / static_cast<double>(steps);
       const Vector3d p = edge.from + share * (edge.to - edge.from);
-      const Eigen::Array3d cube = (p / (0.5 * spacing)).array().floor();
-      if (!taken
-               .insert({static_cast<std::int64_t>(cube[0]), static_cast<std::int64_t>(cube[1]),
-                        static_cast<std::int64_t>(cube[2])})
-               .second) {
-        continue;
-      }
+      if (!taken.insert(internal::cube_of(p, 0.5 * spacing)).second) continue;
       if (clearance(p + beyond_by * beyond).upper < 0.0) points.push_back(p);
     }
   }
@@ -150,11 +145,12 @@ bool is_thin_at(const Clearance& clearance, const Vector3d& center, double max_e
 }  // namespace
 
 CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& external,
-                               std::span<const Sphere> spheres, double max_error) {
+                               std::span<const Sphere> spheres, double max_error, int threads) {
   validate(mesh, "mesh");
   if (!(max_error > 0.0 && max_error <= kMaxCoordinate)) {
     throw Error("max error", "must be positive and finite");
   }
+  const internal::ThreadLimit limit(threads);
   const MeshDistance distance(mesh);
   const Clearance clearance(external, distance);
   const internal::LocalError error(max_error, {});

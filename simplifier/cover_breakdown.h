@@ -33,6 +33,6 @@ struct CoverBreakdown {
 // more than a few E, so these balls only become fewer with a larger E.) Deterministic. Throws Error
 // for a mesh that validate() refuses and for a max_error that is not positive and finite.
 CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& external,
-                               std::span<const Sphere> spheres, double max_error);
+                               std::span<const Sphere> spheres, double max_error, int threads = 0);
 
 }  // namespace spherule

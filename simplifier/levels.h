@@ -31,12 +31,13 @@ struct CoverLevel {
 // cover: the finest first, each made for the one before it. A level is a set cover whose rows are
 // the finer balls: a ball about c of radius at most E + the clearance of c must hold each finer
 // ball that is its child whole. That has a solution, since a finer ball is such a ball itself. So
-// every level covers what the cover covers, protrudes from S by at most its E (unless the cover
-// itself protrudes by more), and each of its balls encloses its children in exact arithmetic, with
-// the reserve of SphereLevel. Balls are shrunk to what their children need. Uses seed, effort (at
-// most the default where `seconds` is set), min_radius, threads and progress of the options.
-// Deterministic. Throws Error for a mesh that validate() refuses, balls that are not usable and
-// errors that check_levels() refuses. Zones do not bind levels above the cover.
+// every level covers what the cover covers, protrudes from S by at most its E (unless min_radius
+// forces more, or the cover itself protrudes by more), and each of its balls encloses its children
+// in exact arithmetic, with the reserve of SphereLevel. Balls are shrunk to what their children
+// need. Uses seed, effort (at most the default where `seconds` is set), min_radius, threads and
+// progress of the options. Deterministic. Throws Error for a mesh that validate() refuses, balls
+// that are not usable and errors that check_levels() refuses. Zones do not bind levels above the
+// cover.
 std::vector<CoverLevel> fit_levels(const TriangleMesh& mesh, const ExternalSpheres& external,
                                    std::span<const Sphere> spheres,
                                    std::span<const double> max_errors, const CoverOptions& options);

@@ -14,6 +14,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 namespace spherule {
@@ -39,6 +40,7 @@ void check(std::span<const Sphere> spheres, const RepairOptions& options) {
   if (!(options.max_error > 0.0 && options.max_error <= kMaxCoordinate)) {
     throw Error("max error", "must be positive and finite");
   }
+  check_zones(options.zones, options.max_error, std::numeric_limits<double>::infinity());
   if (options.effort < 0) throw Error("effort", "must not be negative");
 }
 

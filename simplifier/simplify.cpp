@@ -103,6 +103,7 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
                                    .seed = used.seed,
                                    .effort = used.effort,
                                    .seconds = used.seconds,
+                                   .lower_bound = used.lower_bound,
                                    .history = used.history,
                                    .threads = used.threads,
                                    .progress = used.progress};

@@ -42,6 +42,7 @@ struct SimplifyOptions {
   std::uint64_t seed = 1;
   int effort = CoverOptions{}.effort;  // of the covering search
   double seconds = 0.0;                // and its limit in time; 0: none
+  bool lower_bound = false;            // CoverOptions::lower_bound
   bool history = false;                // of the paper's loop
   int threads = 0;                     // 0: all; the result does not depend on it
   Progress progress = {};
@@ -70,9 +71,8 @@ struct Simplification {
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
 
 // What was promised and is not proved, as a sentence: that the spheres cover, and, where no least
-// radius was asked for, that they protrude from the simplified solid by at most E, or by the max
-// error of a zone in that. Empty where both
-// are proved.
+// radius was asked for, that they protrude from the simplified solid by at most E, in a zone by at
+// most its own, and the balls of a level by at most that of the level. Empty where all is proved.
 std::string broken_promises(const Simplification& simplification);
 
 // D for a tool that is a union of balls: the diameter of the smallest. If all of them are free of M

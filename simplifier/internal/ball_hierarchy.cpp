@@ -26,6 +26,10 @@ constexpr std::size_t kStackSize = 40;
 // shorter than its part in a frame.
 constexpr double kShrink = 1.0 - 64.0 * kUnitRoundoff;
 
+// How long what is left of a unit vector without its part along another must be to be taken for a
+// direction: its rounding errors, then at most 4000 u, are taken out by doing it again.
+constexpr double kAcross = 1e-3;
+
 // The direction of `v`, or if it has none that can be relied on, of `other`.
 Vector3d direction_of(const Vector3d& v, const Vector3d& other) {
   const double norm = v.norm();
@@ -180,7 +184,8 @@ void BallHierarchy::fit_cylinder(Node& node, const std::vector<Touch>& touches) 
 
 void BallHierarchy::fit_box(Node& node, const Vector3d& normal, const Vector3d& axis) const {
   const Vector3d n = direction_of(normal, Vector3d::UnitX());
-  const Vector3d a = direction_of(axis - n.dot(axis) * n, any_across(n));
+  const Vector3d across = axis - n.dot(axis) * n;
+  const Vector3d a = across.norm() > kAcross ? across.normalized() : any_across(n);
   node.normal = kShrink * n;
   node.axis = kShrink * (a - n.dot(a) * n).normalized();
   node.side = kShrink * n.cross(a).normalized();

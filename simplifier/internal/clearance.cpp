@@ -5,6 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <limits>
 #include <span>
 
@@ -21,6 +22,12 @@ std::vector<Vector3d> centers_of(std::span<const Sphere> balls) {
   return centers;
 }
 
+double least_radius(std::span<const Sphere> balls) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Sphere& s : balls) least = std::min(least, s.radius);
+  return least;
+}
+
 std::vector<Vector3d> contacts_of(std::span<const Sphere> balls, const MeshDistance& distance) {
   std::vector<Vector3d> contacts(balls.size());
   tbb::parallel_for(std::size_t{0}, balls.size(),
@@ -31,12 +38,16 @@ std::vector<Vector3d> contacts_of(std::span<const Sphere> balls, const MeshDista
 }  // namespace
 
 Clearance::Clearance(const ExternalSpheres& external)
-    : centers_(centers_of(external.balls)), balls_(external.balls), box_(external.box) {}
+    : centers_(centers_of(external.balls)),
+      balls_(external.balls),
+      box_(external.box),
+      least_external_(least_radius(external.balls)) {}
 
 Clearance::Clearance(const ExternalSpheres& external, const MeshDistance& distance)
     : centers_(centers_of(external.balls)),
       balls_(external.balls, contacts_of(external.balls, distance)),
-      box_(external.box) {}
+      box_(external.box),
+      least_external_(least_radius(external.balls)) {}
 
 // A face of the box is an external ball of infinite radius; its gap is a single difference.
 ClearanceAt Clearance::operator()(const Vector3d& point, double tolerance, double limit) const {

@@ -37,11 +37,14 @@ class Clearance {
                          double limit = std::numeric_limits<double>::infinity()) const;
 
   const Eigen::AlignedBox3d& box() const { return box_; }
+  // Radius of the smallest external ball; infinite if there is none.
+  double least_external() const { return least_external_; }
 
  private:
   std::vector<Eigen::Vector3d> centers_;
   internal::BallHierarchy balls_;
   Eigen::AlignedBox3d box_;
+  double least_external_;
 };
 
 }  // namespace spherule

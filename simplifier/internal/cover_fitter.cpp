@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/cover_fitter.h"
 
+#include "simplifier/internal/cover_bound.h"
 #include "simplifier/internal/cover_moves.h"
 #include "simplifier/internal/cover_search.h"
 #include "simplifier/internal/solid_query.h"
@@ -42,6 +43,12 @@ constexpr std::size_t kForgetting = 4;   // times as large as it was the problem
 // So many leaks more than there are balls to gain may still be mended by fewer balls.
 constexpr std::size_t kHopefulLeaks = 8;
 constexpr std::size_t kOpenRows = 100;  // that candidates are made for in a round
+
+// What a lower bound is made of, for every ball proved and at least.
+constexpr std::size_t kBoundPoints = 60;
+constexpr std::size_t kMinBoundPoints = 1000;
+constexpr std::size_t kBoundCenters = 20;
+constexpr std::size_t kMinBoundCenters = 1000;
 
 // At most `count` of the items, evenly picked.
 template <typename Item>
@@ -87,6 +94,7 @@ double CoverFitter::finest(double max_error) {
 CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distance,
                          const CoverOptions& options, std::span<const Sphere> given)
     : clearance_(clearance),
+      distance_(distance),
       options_(options),
       error_(options.max_error),
       local_(options.max_error, options.zones),
@@ -112,6 +120,7 @@ std::vector<Sphere> CoverFitter::run() {
   solution_ = greedy_set_cover(problem_.instance());
   prove_or_learn();
   first_entries_ = problem_.entries();
+  bound();
   for (int round = 0; round < options_.effort && best_.size() > 1; ++round) {
     const double share = share_done(round);
     if (share >= 1.0) break;
@@ -125,6 +134,19 @@ std::vector<Sphere> CoverFitter::run() {
     if (problem_.entries() > kForgetting * first_entries_) forget();
   }
   return best_;
+}
+
+void CoverFitter::bound() {
+  if (!options_.lower_bound || options_.min_radius > 0.0 || !given_.empty()) return;
+  Points points;
+  for (const CoverProblem::Row& row : problem_.rows()) points.push_back(row.point);
+  Points centers;
+  for (std::size_t c = 0; c < problem_.instance().columns.size(); ++c) {
+    centers.push_back(problem_.candidate(c).center);
+  }
+  points = some_of(points, kBoundPoints * best_.size() + kMinBoundPoints);
+  centers = some_of(centers, kBoundCenters * best_.size() + kMinBoundCenters);
+  lower_bound_ = cover_bound({clearance_, distance_, error_, points, centers});
 }
 
 bool CoverFitter::search() {
@@ -220,8 +242,9 @@ std::vector<Sphere> CoverFitter::balls_of(const CoverProblem& problem,
 
 void CoverFitter::report(double share) const {
   if (!options_.progress) return;
-  options_.progress(share,
-                    ("covering: " + std::to_string(best_.size()) + " spheres proved").c_str());
+  options_.progress(share, ("covering: " + std::to_string(best_.size()) + " spheres proved" +
+                            (lower_bound_ > 0 ? ", at least " + std::to_string(lower_bound_) : ""))
+                               .c_str());
 }
 
 SolidCells::Leaks CoverFitter::leaks_of(const std::vector<Sphere>& balls) {

@@ -32,6 +32,10 @@ class CoverFitter {
   // The fewest balls that were proved to cover S, together with those given.
   std::vector<Sphere> run();
 
+  // After run(): that many balls at least are in any cover that keeps to E; 0 where it was not
+  // asked for or is not known.
+  std::size_t lower_bound() const { return lower_bound_; }
+
   // Half diagonal of the smallest cells that are told apart.
   static double finest(double max_error);
 
@@ -58,6 +62,8 @@ class CoverFitter {
   // Proves solution_, or makes rows of its leaks; keeps it, mended where it leaks, if it is the
   // best.
   void prove_or_learn();
+  // Sets lower_bound_, from the rows and candidates known so far.
+  void bound();
   // New candidates about the rows that solution_ leaves open.
   void widen();
   // With balls added until nothing leaks.
@@ -75,6 +81,7 @@ class CoverFitter {
   void report(double share) const;
 
   const Clearance& clearance_;
+  const MeshDistance& distance_;
   const CoverOptions& options_;
   double error_;      // E
   LocalError local_;  // and where it is smaller
@@ -84,6 +91,7 @@ class CoverFitter {
   std::vector<Sphere> best_;  // proved
   Goal goal_;
   std::vector<Sphere> given_;
+  std::size_t lower_bound_ = 0;
   std::uint64_t seeds_used_ = 0;
   std::uint64_t first_entries_ = 0;  // of the problem as it was when the rounds began
 };

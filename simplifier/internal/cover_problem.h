@@ -39,7 +39,6 @@ class CoverProblem {
   const std::vector<std::vector<std::uint32_t>>& columns_of() const { return columns_of_; }
   const std::vector<Row>& rows() const { return rows_; }
   const Candidate& candidate(std::size_t column) const { return candidates_[column]; }
-  double max_error() const { return max_error_; }
 
   const LocalError& error() const { return error_; }
 

@@ -81,11 +81,11 @@ class FloodGrid {
   // The cell of `level` or coarser that holds the index and is not refined; cells_.size() if that
   // one is refined further.
   std::size_t locate(int level, const Index& index) const;
-  // Calls visit(cell, index) for the face neighbours of the same size or coarser, and
-  // visit(cells_.size(), index) for each face on the boundary of the cube.
   // Whether the ball provably passes between two free cells that share a face; `face` is the centre
   // of that.
   bool passes(const Entry& a, const Entry& b, const Eigen::Vector3d& face) const;
+  // Calls visit(cell, index) for the face neighbours of the same size or coarser, and
+  // visit(cells_.size(), index) for each face on the boundary of the cube.
   template <typename Visit>
   void for_each_face_neighbour(int level, const Index& index, Visit visit) const;
 

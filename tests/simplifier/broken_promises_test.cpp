@@ -41,5 +41,16 @@ TEST(BrokenPromises, AProtrusionBeyondTheErrorIsBlamedUnlessALeastRadiusForcesIt
   EXPECT_TRUE(says(fitted(false, 3.5, 0.5), "not proved to cover"));
 }
 
+TEST(BrokenPromises, ALevelThatProtrudesFurtherThanItsOwnErrorIsBlamed) {
+  Simplification result = fitted(true, 2.0);
+  result.levels.resize(2);
+  result.levels[0].max_error = result.levels[0].protrusion = 4.0;
+  result.levels[1].max_error = 8.0;
+  result.levels[1].protrusion = 7.5;
+  EXPECT_EQ(broken_promises(result), "");
+  result.levels[1].protrusion = 8.5;
+  EXPECT_TRUE(says(result, "at most 8 in a level, only by at most 8.5"));
+}
+
 }  // namespace
 }  // namespace spherule::test

@@ -161,6 +161,28 @@ TEST(BallHierarchy, BoundsHoldWhereBallsAreTiedAndWhateverContactsAreSaid) {
   }
 }
 
+// Normals that are alike in threes about (1, 1, 1): their mean is then, to the last bits, the
+// direction that they have least in common with, or most.
+TEST(BallHierarchy, BoundsHoldWhereNormalAndAxisOfANodeAreOne) {
+  Random random(44);
+  for (int i = 0; i < effort(3000, 300); ++i) {
+    const double tilt = random.between(0.001, 0.5);
+    const Vector3d n(1.0 + tilt, tilt - 1.0, tilt);
+    const Vector3d contact = Vector3d::Constant(random.between(-5.0, 5.0));
+    std::vector<Sphere> balls;
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d out(n[k], n[(k + 1) % 3], n[(k + 2) % 3]);
+      balls.push_back({contact + 0.5 * out.normalized(), 0.5});
+    }
+    const BallHierarchy hierarchy(balls, std::vector<Vector3d>(3, contact));
+    const Vector3d p = Vector3d::Constant(10.0);
+    const Digits50 exact = exact_gap(p, balls);
+    const NearestBall found = hierarchy.nearest(p, 1.2 * static_cast<double>(exact));
+    ASSERT_GE(found.index, 0) << "tilt " << tilt << ", contact " << contact.x();
+    ASSERT_LE(Digits50(found.lower), exact);
+  }
+}
+
 TEST(BallHierarchy, AnEmptySetIsInfinitelyFar) {
   const BallHierarchy hierarchy;
   EXPECT_TRUE(hierarchy.empty());

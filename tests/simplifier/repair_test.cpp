@@ -182,6 +182,11 @@ TEST(RepairOf, RefusesWhatItCannotUse) {
   const std::vector<Sphere> unusable = {{Vector3d::Zero(), nan}};
   EXPECT_THROW(repair(mesh, fitted.external, unusable, {.max_error = 0.1}), Error);
   EXPECT_THROW(repair(mesh, fitted.external, {}, {.max_error = 0.1, .effort = -1}), Error);
+  const Zone upside_down{.shape = Sphere{Vector3d::Zero(), -20.0}, .max_error = 0.05};
+  EXPECT_THROW(repair(mesh, fitted.external, {}, {.max_error = 0.1, .zones = {upside_down}}),
+               Error);
+  const Zone nowhere{.shape = Sphere{Vector3d::Zero(), 1.0}, .max_error = nan};
+  EXPECT_THROW(repair(mesh, fitted.external, {}, {.max_error = 0.1, .zones = {nowhere}}), Error);
 }
 
 }  // namespace

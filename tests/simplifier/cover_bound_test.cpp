@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/cover.h"
+#include "tests/simplifier/fitting.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+namespace spherule::test {
+namespace {
+
+SphereCover bounded_cover(const TriangleMesh& mesh, double max_error, double diameter,
+                          int rounds = 4) {
+  const ExternalSpheres external =
+      place_external_spheres(mesh, {.min_external_diameter = diameter, .max_error = max_error});
+  return cover(mesh, external, {.max_error = max_error, .effort = rounds, .lower_bound = true});
+}
+
+TEST(CoverBound, IsAboveWhatIsEasyAndNeverAboveACover) {
+  const SphereCover cube = bounded_cover(cube_mesh(), 0.1, 1.0);
+  // Any cover needs a ball for each of the eight corners and more along the edges: a ball reaches
+  // 2.83 E along an edge of 10 E.
+  EXPECT_GE(cube.lower_bound, 20U);
+  EXPECT_LE(cube.lower_bound, cube.spheres.size());
+}
+
+TEST(CoverBound, IsOneWhereOneBallDoes) {
+  const SphereCover cube = bounded_cover(cube_mesh(), 0.5, 2.0);
+  EXPECT_EQ(cube.spheres.size(), 1U);
+  EXPECT_EQ(cube.lower_bound, 1U);
+}
+
+TEST(CoverBound, StaysBelowTheCountOfEveryShape) {
+  for (const auto& [name, mesh] : mesh_zoo()) {
+    SCOPED_TRACE(name);
+    const double diagonal = diagonal_of(mesh);
+    for (const double share : {0.07, 0.15}) {
+      const SphereCover result = bounded_cover(mesh, share * diagonal, 4.0 * share * diagonal);
+      EXPECT_GE(result.lower_bound, 1U);
+      EXPECT_LE(result.lower_bound, result.spheres.size());
+    }
+  }
+}
+
+TEST(CoverBound, IsUnknownWhereItWouldNotHold) {
+  const TriangleMesh mesh = cube_mesh();
+  const ExternalSpheres external =
+      place_external_spheres(mesh, {.min_external_diameter = 1.0, .max_error = 0.2});
+  EXPECT_EQ(cover(mesh, external, {.max_error = 0.2, .effort = 0}).lower_bound, 0U);
+  EXPECT_EQ(
+      cover(mesh, external, {.max_error = 0.2, .min_radius = 0.5, .effort = 0, .lower_bound = true})
+          .lower_bound,
+      0U);
+  // An external ball smaller than E may lie wholly within E of S.
+  EXPECT_EQ(cover(mesh, external, {.max_error = 0.6, .effort = 0, .lower_bound = true}).lower_bound,
+            1U);
+}
+
+}  // namespace
+}  // namespace spherule::test
