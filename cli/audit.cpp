@@ -6,7 +6,6 @@
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "simplifier/mesh_io.h"
-#include "simplifier/mesh_report.h"
 #include "simplifier/repair.h"
 #include "simplifier/simplify.h"
 #include "spheretree/error.h"
@@ -24,10 +23,6 @@
 
 namespace spherule {
 namespace {
-
-// For a repair of spheres that do not say what they were made for, as in a fit.
-constexpr double kDefaultError = 0.01;    // E, of the box diagonal
-constexpr double kDefaultDiameter = 4.0;  // D, of E
 
 struct AuditArguments {
   std::string mesh;
@@ -80,18 +75,6 @@ Json json_of(const Certificate& certificate, const std::optional<ExternalSpheres
     json["external_sphere_count"] = external->balls.size();
   }
   return json;
-}
-
-// E, and D where there is none: what is added or grown needs a solid to keep to.
-void complete(const AuditArguments& arguments, const TriangleMesh& mesh, const SphereFile& file,
-              SimplifyOptions& options) {
-  if (!file.options.contains("max-error") || options.max_error == 0.0) {
-    const Eigen::AlignedBox3d box = mesh_report(mesh, {.self_intersections = false}).box;
-    options.max_error = arguments.max_error.value_or(kDefaultError * box.diagonal().norm());
-  }
-  if (!file.options.contains("min-external") && !arguments.min_external) {
-    options.min_external_diameter = kDefaultDiameter * options.max_error;
-  }
 }
 
 struct Repaired {
@@ -169,7 +152,11 @@ int audit(const AuditArguments& arguments) {
       options.external = ExternalPlacement::kReachable;
     }
   }
-  if (mend) complete(arguments, mesh, file, options);
+  if (mend) {
+    // What is added or grown needs a solid to keep to.
+    if (options.max_error == 0.0) options.max_error = arguments.max_error.value_or(0.0);
+    complete_lengths(options, mesh);
+  }
   std::optional<ExternalSpheres> external;
   if (mend || arguments.min_external || file.options.contains("min-external")) {
     const auto place = [&] { return place_external_spheres(mesh, external_options(options)); };

@@ -26,7 +26,6 @@ using internal::SolidCells;
 // Shares of max_error.
 constexpr double kCells = 0.7;         // half diagonal of the cells looked at first
 constexpr double kLeakReserve = 0.02;  // about a point that is found open
-constexpr double kLeakSpacing = 0.15;
 
 // Of points found open, after which all balls that could matter about them grow fully.
 constexpr int kRounds = 40;
@@ -73,20 +72,21 @@ std::vector<Sphere> grown_balls(const Clearance& clearance, const MeshDistance& 
   std::vector<double> limits;
   for (const Sphere& ball : limit) limits.push_back(ball.radius);
   internal::BallGrowth growth(balls, limits);
+  const double spacing = internal::CoverFitter::leak_spacing(max_error);
   SolidCells cells(clearance, distance, error, kCells * max_error);
   for (int round = 0; round < kRounds; ++round) {
     std::vector<Sphere> grown = growth.balls();
     const std::vector<Sphere> all = joined(grown, added);
     const internal::BallHierarchy hierarchy(all);
-    const SolidCells::Leaks leaks = cells.find_leaks(
-        {all, hierarchy}, internal::CoverFitter::finest(max_error), kLeakSpacing * max_error);
+    const SolidCells::Leaks leaks =
+        cells.find_leaks({all, hierarchy}, internal::CoverFitter::finest(max_error), spacing);
     if (leaks.empty()) return grown;
     bool more = false;
     for (const auto* points : {&leaks.in_solid, &leaks.pinched}) {
       for (const Vector3d& p : *points) {
         // What was asked for is not enough here: several balls meet at the point.
-        more = growth.require(p, kLeakReserve * max_error) ||
-               growth.grow_fully_about(p, kLeakSpacing * max_error) || more;
+        more = growth.require(p, kLeakReserve * max_error) || growth.grow_fully_about(p, spacing) ||
+               more;
       }
     }
     if (!more) break;

@@ -73,6 +73,13 @@ class Stopwatch {
 
 }  // namespace
 
+void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh) {
+  if (options.max_error == 0.0) options.max_error = kDefaultError * box_diagonal(mesh);
+  if (options.min_external_diameter == 0.0) {
+    options.min_external_diameter = kDefaultDiameter * options.max_error;
+  }
+}
+
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
   validate(mesh, "mesh");
   check_options(options);
@@ -80,12 +87,7 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   Simplification result;
   SimplifyOptions& used = result.options = options;
   complete_levels(used);
-  const double diagonal = box_diagonal(mesh);
-  if (used.max_error == 0.0) used.max_error = kDefaultError * diagonal;
-  if (used.min_external_diameter == 0.0) {
-    used.min_external_diameter = kDefaultDiameter * used.max_error;
-  }
-
+  complete_lengths(used, mesh);
   check_zones(used.zones, used.max_error,
               used.external == ExternalPlacement::kNone ? std::numeric_limits<double>::infinity()
                                                         : used.min_external_diameter);
@@ -122,7 +124,7 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   certify_options.external = &result.external;
   certify_options.zones = used.zones;
   certify_options.resolution =
-      proof_resolution(tightest_error(used.zones, used.max_error), diagonal);
+      proof_resolution(tightest_error(used.zones, used.max_error), box_diagonal(mesh));
   certify_options.threads = used.threads;
   certify_options.progress = used.progress;
   result.certificate = certify(mesh, result.cover.spheres, certify_options);

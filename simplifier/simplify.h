@@ -65,6 +65,9 @@ struct Simplification {
   SimplifyTimes times;
 };
 
+// Fills in E and D where they are 0, for this mesh.
+void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh);
+
 // Both stages and the certificate: the function that most users call. The certificate comes from a
 // second search, on the spheres returned, whatever the fit found out about them.
 // Throws Error for a mesh that validate() refuses and for options out of range.

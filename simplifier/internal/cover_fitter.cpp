@@ -91,6 +91,10 @@ double CoverFitter::finest(double max_error) {
   return kFinest * max_error;
 }
 
+double CoverFitter::leak_spacing(double max_error) {
+  return kLeakSpacing * max_error;
+}
+
 CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distance,
                          const CoverOptions& options, std::span<const Sphere> given)
     : clearance_(clearance),
@@ -251,7 +255,7 @@ SolidCells::Leaks CoverFitter::leaks_of(const std::vector<Sphere>& balls) {
   std::vector<Sphere> all(given_);
   all.insert(all.end(), balls.begin(), balls.end());
   const BallHierarchy hierarchy(all);
-  return cells_.find_leaks({all, hierarchy}, finest(error_), kLeakSpacing * error_);
+  return cells_.find_leaks({all, hierarchy}, finest(error_), leak_spacing(error_));
 }
 
 }  // namespace spherule::internal

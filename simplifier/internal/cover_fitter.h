@@ -36,8 +36,10 @@ class CoverFitter {
   // asked for or is not known.
   std::size_t lower_bound() const { return lower_bound_; }
 
-  // Half diagonal of the smallest cells that are told apart.
+  // Half diagonal of the smallest cells that are told apart, and edge of the cubes of which each
+  // gives one leak at most.
   static double finest(double max_error);
+  static double leak_spacing(double max_error);
 
  private:
   using Columns = CoverProblem::Columns;
