@@ -74,7 +74,7 @@ FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDi
       if (cells_.size() + 8 > kMaxCells) {
         throw Error("grid step", "too fine for a model of this size (more than 2^27 cells)");
       }
-      cells_[i].first_child = static_cast<std::uint32_t>(cells_.size());
+      cells_[i].child_or_zone = static_cast<std::uint32_t>(cells_.size());
       const std::uint64_t code = cells_[i].code << 3;
       for (std::uint64_t k = 0; k < 8; ++k) {
         cells_.push_back({.code = code | k, .level = static_cast<std::uint8_t>(level + 1)});
@@ -109,10 +109,23 @@ void FloodGrid::examine(const MeshDistance& distance, int level) {
     const Eigen::Vector3d middle = center(cell);
     const SurfaceDistance d = distance(middle);
     cell.clearance = std::max(0.0, sub_down(d.lower, padding_));
+    // What no zone can change is known without looking for zones.
+    if (level < shape_.levels) {
+      if (cell.clearance - half_diagonal >= diameter_.radius() + kLayer * shape_.step) {
+        cell.state = State::kFree;
+        return;
+      }
+      if (d.upper - padding_ + half_diagonal < diameter_.least_radius()) {
+        cell.state = State::kBlocked;
+        return;
+      }
+    }
     const LocalDiameter::Near rho = diameter_.near(middle, half_diagonal);
     cell.finest = level >= shape_.levels + rho.halvings;
     if (cell.finest) {
-      cell.state = cell.clearance >= diameter_.at(middle) ? State::kFree : State::kBlocked;
+      const LocalDiameter::Needed needed = diameter_.at(middle);
+      cell.child_or_zone = needed.zone;
+      cell.state = cell.clearance >= needed.radius ? State::kFree : State::kBlocked;
     } else if (cell.clearance - half_diagonal >=
                rho.greatest + kLayer * std::ldexp(shape_.step, -rho.halvings)) {
       cell.state = State::kFree;
@@ -131,7 +144,7 @@ std::size_t FloodGrid::locate(int level, const Index& index) const {
     const int shift = level - l - 1;
     const std::uint32_t child = ((index[0] >> shift) & 1U) | ((index[1] >> shift) & 1U) << 1 |
                                 ((index[2] >> shift) & 1U) << 2;
-    cell = cells_[cell].first_child + child;
+    cell = cells_[cell].child_or_zone + child;
   }
   return cell;
 }
@@ -153,6 +166,14 @@ void FloodGrid::for_each_face_neighbour(int level, const Index& index, Visit vis
   }
 }
 
+double FloodGrid::needed_between(const Entry& a, const Entry& b) const {
+  if (a.child_or_zone == LocalDiameter::kNoZone || b.child_or_zone == LocalDiameter::kNoZone) {
+    return diameter_.radius();
+  }
+  if (a.child_or_zone == b.child_or_zone) return diameter_.radius_of(a.child_or_zone);
+  return diameter_.on_way(center(a), center(b));
+}
+
 bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& face) const {
   if (!a.finest && !b.finest) return true;
   const auto suffices = [](double sum, double way, double rho) {
@@ -163,7 +184,10 @@ bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& fa
   if (a.finest && b.finest) {
     const double way =
         a.level == b.level ? edge(a.level) * (1.0 + 1e-9) + rounding() : distance_upper(from, to);
-    return suffices(a.clearance + b.clearance, way, diameter_.on_way(from, to));
+    const double sum = a.clearance + b.clearance;
+    return suffices(sum, way, diameter_.radius()) ||
+           (suffices(sum, way, diameter_.least_radius()) &&
+            suffices(sum, way, needed_between(a, b)));
   }
   const Entry& node = a.finest ? a : b;
   const Entry& coarse = a.finest ? b : a;
@@ -171,9 +195,12 @@ bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& fa
   const Eigen::Vector3d& end = a.finest ? to : from;
   const double way = add_up(distance_upper(start, face), rounding());
   const double at_face = sub_down(coarse.clearance, add_up(distance_upper(face, end), rounding()));
-  const double rho = diameter_.on_way(start, face);
-  return suffices(node.clearance + at_face, way, rho) ||
-         sub_down(node.clearance, way) >= rho * kRelativeUp;
+  const auto has_room = [&](double rho) {
+    return suffices(node.clearance + at_face, way, rho) ||
+           sub_down(node.clearance, way) >= rho * kRelativeUp;
+  };
+  return has_room(diameter_.radius()) ||
+         (has_room(diameter_.least_radius()) && has_room(diameter_.on_way(start, face)));
 }
 
 void FloodGrid::flood() {

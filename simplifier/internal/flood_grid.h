@@ -65,7 +65,9 @@ class FloodGrid {
   struct Entry {
     std::uint64_t code = 0;  // Morton code of the index within its level
     double clearance = 0.0;
-    std::uint32_t first_child = 0;  // of eight consecutive ones, if refined
+    // If refined, the first of its eight consecutive children; if finest, the zone that says how
+    // much room is needed at the centre (LocalDiameter::at).
+    std::uint32_t child_or_zone = 0;
     State state = State::kBlocked;
     std::uint8_t level = 0;
     bool finest = false;
@@ -83,6 +85,8 @@ class FloodGrid {
   std::size_t locate(int level, const Index& index) const;
   // Calls visit(cell, index) for the face neighbours of the same size or coarser, and
   // visit(cells_.size(), index) for each face on the boundary of the cube.
+  // The same answer as from LocalDiameter::on_way(), between the centres of two nodes.
+  double needed_between(const Entry& a, const Entry& b) const;
   // Whether the ball provably passes between two free cells that share a face; `face` is the centre
   // of that.
   bool passes(const Entry& a, const Entry& b, const Eigen::Vector3d& face) const;
