@@ -16,6 +16,8 @@ namespace {
 
 // Width of the layer of nodes that is kept at the finest step, in steps (covering.md, section 2).
 constexpr double kLayer = 1.2;
+// Of the step: rounding that a ball may stick out of another by and still be taken for a part.
+constexpr double kContained = 1e-9;
 // Memory stays below 3 GiB.
 constexpr std::size_t kMaxCells = std::size_t{1} << 27;
 
@@ -231,6 +233,29 @@ std::vector<FloodGrid::Cell> FloodGrid::reached_cells() const {
   std::vector<Cell> result;
   for (const Entry& cell : cells_) {
     if (cell.reached) result.push_back({center(cell), cell.clearance});
+  }
+  return result;
+}
+
+bool FloodGrid::lies_in_neighbour(const Entry& node) const {
+  const Eigen::Vector3d middle = center(node);
+  bool found = false;
+  for_each_face_neighbour(node.level, decode(node.code), [&](std::size_t i, const Index&) {
+    if (found || i >= cells_.size() || !cells_[i].reached) return;
+    const double more = cells_[i].clearance - node.clearance;
+    found = more > 0.0 && (center(cells_[i]) - middle).norm() <= more + kContained * shape_.step;
+  });
+  return found;
+}
+
+std::vector<FloodGrid::Cell> FloodGrid::reached_cells_that_count() const {
+  std::vector<char> counts(cells_.size());
+  tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t i) {
+    counts[i] = cells_[i].reached && !(cells_[i].finest && lies_in_neighbour(cells_[i])) ? 1 : 0;
+  });
+  std::vector<Cell> result;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (counts[i] != 0) result.push_back({center(cells_[i]), cells_[i].clearance});
   }
   return result;
 }

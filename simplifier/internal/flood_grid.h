@@ -54,6 +54,9 @@ class FloodGrid {
 
   // After flood(). Order: from coarse to fine, along the Morton curve.
   std::vector<Cell> reached_cells() const;
+  // The same but for nodes whose ball lies in that of a cell beside it, up to 1e-9 of the step:
+  // such chains end at a larger ball that is kept.
+  std::vector<Cell> reached_cells_that_count() const;
   std::vector<Frontier> frontier() const;
 
   // Distances computed; all of them are kept, 24 bytes each.
@@ -85,6 +88,7 @@ class FloodGrid {
   std::size_t locate(int level, const Index& index) const;
   // Calls visit(cell, index) for the face neighbours of the same size or coarser, and
   // visit(cells_.size(), index) for each face on the boundary of the cube.
+  bool lies_in_neighbour(const Entry& node) const;
   // The same answer as from LocalDiameter::on_way(), between the centres of two nodes.
   double needed_between(const Entry& a, const Entry& b) const;
   // Whether the ball provably passes between two free cells that share a face; `face` is the centre
