@@ -11,7 +11,13 @@
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -53,6 +59,37 @@ ExternalSpheres flood_closely(const TriangleMesh& mesh, double padding, double d
   return place_external_spheres(mesh, options);
 }
 
+// Whether M grown by the padding is proved to be a subset of S: in the box, and met by no external
+// ball.
+bool solid_holds_mesh(const MeshDistance& distance, const ExternalSpheres& external) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(sub_down(distance.box().min()[axis], external.padding) >= external.box.min()[axis] &&
+          add_up(distance.box().max()[axis], external.padding) <= external.box.max()[axis])) {
+      return false;
+    }
+  }
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, external.balls.size()), true,
+      [&](const tbb::blocked_range<std::size_t>& range, bool free) {
+        for (std::size_t i = range.begin(); i < range.end() && free; ++i) {
+          const Sphere& ball = external.balls[i];
+          free = sub_down(distance(ball.center).lower, external.padding) >= ball.radius;
+        }
+        return free;
+      },
+      std::logical_and<>());
+}
+
+// A piece of surface may cross from ball to ball where these have next to nothing in common, and
+// then lies in no single one however small it is, while the cells of the solid end where the balls
+// do. What is proved of S holds for M if S holds M.
+void bound_by_solid(internal::CoverageProof& surface, const internal::CoverageProof& solid,
+                    const MeshDistance& distance, const ExternalSpheres& external) {
+  if (surface.upper > solid.upper && solid_holds_mesh(distance, external)) {
+    surface.upper = std::max(surface.lower, solid.upper);
+  }
+}
+
 }  // namespace
 
 Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
@@ -77,7 +114,7 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   Certificate result;
   result.sphere_count = spheres.size();
   if (options.progress) options.progress(-1.0, "proving the surface");
-  const internal::CoverageProof surface = internal::prove_surface(mesh, balls, finest);
+  internal::CoverageProof surface = internal::prove_surface(mesh, balls, finest);
   if (options.progress) options.progress(-1.0, "proving the solid");
   const bool closed = mesh_report(mesh, {.self_intersections = false}).closed;
   // Every point of S is a witness against S; against |M| itself only one that is proved to be
@@ -87,6 +124,7 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
         return options.external != nullptr ||
                (closed && std::abs(distance.winding_number(p)) > 0.5);
       });
+  bound_by_solid(surface, solid, distance, external);
   result.surface_depth = {surface.lower, surface.upper};
   result.solid_depth = {solid.lower, solid.upper};
   result.uncovered_depth = {std::max(surface.lower, solid.lower),

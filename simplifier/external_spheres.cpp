@@ -169,7 +169,9 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
   grid.flood();
   result.grid_step = step;
   result.nodes_examined = grid.evaluations();
-  for (const FloodGrid::Cell& cell : grid.reached_cells()) {
+  // Zones make the grid so fine that it pays to leave out what lies in a larger ball.
+  for (const FloodGrid::Cell& cell :
+       zones.empty() ? grid.reached_cells() : grid.reached_cells_that_count()) {
     result.balls.push_back({cell.center, cell.clearance});
   }
   const std::vector<FloodGrid::Frontier> frontier = grid.frontier();

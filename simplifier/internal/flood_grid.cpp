@@ -16,6 +16,8 @@ namespace {
 
 // Width of the layer of nodes that is kept at the finest step, in steps (covering.md, section 2).
 constexpr double kLayer = 1.2;
+// Of the step: rounding that a ball may stick out of another by and still be taken for a part.
+constexpr double kContained = 1e-9;
 // Memory stays below 3 GiB.
 constexpr std::size_t kMaxCells = std::size_t{1} << 27;
 
@@ -74,7 +76,7 @@ FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDi
       if (cells_.size() + 8 > kMaxCells) {
         throw Error("grid step", "too fine for a model of this size (more than 2^27 cells)");
       }
-      cells_[i].first_child = static_cast<std::uint32_t>(cells_.size());
+      cells_[i].child_or_zone = static_cast<std::uint32_t>(cells_.size());
       const std::uint64_t code = cells_[i].code << 3;
       for (std::uint64_t k = 0; k < 8; ++k) {
         cells_.push_back({.code = code | k, .level = static_cast<std::uint8_t>(level + 1)});
@@ -109,10 +111,23 @@ void FloodGrid::examine(const MeshDistance& distance, int level) {
     const Eigen::Vector3d middle = center(cell);
     const SurfaceDistance d = distance(middle);
     cell.clearance = std::max(0.0, sub_down(d.lower, padding_));
+    // What no zone can change is known without looking for zones.
+    if (level < shape_.levels) {
+      if (cell.clearance - half_diagonal >= diameter_.radius() + kLayer * shape_.step) {
+        cell.state = State::kFree;
+        return;
+      }
+      if (d.upper - padding_ + half_diagonal < diameter_.least_radius()) {
+        cell.state = State::kBlocked;
+        return;
+      }
+    }
     const LocalDiameter::Near rho = diameter_.near(middle, half_diagonal);
     cell.finest = level >= shape_.levels + rho.halvings;
     if (cell.finest) {
-      cell.state = cell.clearance >= diameter_.at(middle) ? State::kFree : State::kBlocked;
+      const LocalDiameter::Needed needed = diameter_.at(middle);
+      cell.child_or_zone = needed.zone;
+      cell.state = cell.clearance >= needed.radius ? State::kFree : State::kBlocked;
     } else if (cell.clearance - half_diagonal >=
                rho.greatest + kLayer * std::ldexp(shape_.step, -rho.halvings)) {
       cell.state = State::kFree;
@@ -131,7 +146,7 @@ std::size_t FloodGrid::locate(int level, const Index& index) const {
     const int shift = level - l - 1;
     const std::uint32_t child = ((index[0] >> shift) & 1U) | ((index[1] >> shift) & 1U) << 1 |
                                 ((index[2] >> shift) & 1U) << 2;
-    cell = cells_[cell].first_child + child;
+    cell = cells_[cell].child_or_zone + child;
   }
   return cell;
 }
@@ -153,6 +168,14 @@ void FloodGrid::for_each_face_neighbour(int level, const Index& index, Visit vis
   }
 }
 
+double FloodGrid::needed_between(const Entry& a, const Entry& b) const {
+  if (a.child_or_zone == LocalDiameter::kNoZone || b.child_or_zone == LocalDiameter::kNoZone) {
+    return diameter_.radius();
+  }
+  if (a.child_or_zone == b.child_or_zone) return diameter_.radius_of(a.child_or_zone);
+  return diameter_.on_way(center(a), center(b));
+}
+
 bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& face) const {
   if (!a.finest && !b.finest) return true;
   const auto suffices = [](double sum, double way, double rho) {
@@ -163,7 +186,10 @@ bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& fa
   if (a.finest && b.finest) {
     const double way =
         a.level == b.level ? edge(a.level) * (1.0 + 1e-9) + rounding() : distance_upper(from, to);
-    return suffices(a.clearance + b.clearance, way, diameter_.on_way(from, to));
+    const double sum = a.clearance + b.clearance;
+    return suffices(sum, way, diameter_.radius()) ||
+           (suffices(sum, way, diameter_.least_radius()) &&
+            suffices(sum, way, needed_between(a, b)));
   }
   const Entry& node = a.finest ? a : b;
   const Entry& coarse = a.finest ? b : a;
@@ -171,9 +197,12 @@ bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& fa
   const Eigen::Vector3d& end = a.finest ? to : from;
   const double way = add_up(distance_upper(start, face), rounding());
   const double at_face = sub_down(coarse.clearance, add_up(distance_upper(face, end), rounding()));
-  const double rho = diameter_.on_way(start, face);
-  return suffices(node.clearance + at_face, way, rho) ||
-         sub_down(node.clearance, way) >= rho * kRelativeUp;
+  const auto has_room = [&](double rho) {
+    return suffices(node.clearance + at_face, way, rho) ||
+           sub_down(node.clearance, way) >= rho * kRelativeUp;
+  };
+  return has_room(diameter_.radius()) ||
+         (has_room(diameter_.least_radius()) && has_room(diameter_.on_way(start, face)));
 }
 
 void FloodGrid::flood() {
@@ -204,6 +233,29 @@ std::vector<FloodGrid::Cell> FloodGrid::reached_cells() const {
   std::vector<Cell> result;
   for (const Entry& cell : cells_) {
     if (cell.reached) result.push_back({center(cell), cell.clearance});
+  }
+  return result;
+}
+
+bool FloodGrid::lies_in_neighbour(const Entry& node) const {
+  const Eigen::Vector3d middle = center(node);
+  bool found = false;
+  for_each_face_neighbour(node.level, decode(node.code), [&](std::size_t i, const Index&) {
+    if (found || i >= cells_.size() || !cells_[i].reached) return;
+    const double more = cells_[i].clearance - node.clearance;
+    found = more > 0.0 && (center(cells_[i]) - middle).norm() <= more + kContained * shape_.step;
+  });
+  return found;
+}
+
+std::vector<FloodGrid::Cell> FloodGrid::reached_cells_that_count() const {
+  std::vector<char> counts(cells_.size());
+  tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t i) {
+    counts[i] = cells_[i].reached && !(cells_[i].finest && lies_in_neighbour(cells_[i])) ? 1 : 0;
+  });
+  std::vector<Cell> result;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (counts[i] != 0) result.push_back({center(cells_[i]), cells_[i].clearance});
   }
   return result;
 }

@@ -54,6 +54,9 @@ class FloodGrid {
 
   // After flood(). Order: from coarse to fine, along the Morton curve.
   std::vector<Cell> reached_cells() const;
+  // The same but for nodes whose ball lies in that of a cell beside it, up to 1e-9 of the step:
+  // such chains end at a larger ball that is kept.
+  std::vector<Cell> reached_cells_that_count() const;
   std::vector<Frontier> frontier() const;
 
   // Distances computed; all of them are kept, 24 bytes each.
@@ -65,7 +68,9 @@ class FloodGrid {
   struct Entry {
     std::uint64_t code = 0;  // Morton code of the index within its level
     double clearance = 0.0;
-    std::uint32_t first_child = 0;  // of eight consecutive ones, if refined
+    // If refined, the first of its eight consecutive children; if finest, the zone that says how
+    // much room is needed at the centre (LocalDiameter::at).
+    std::uint32_t child_or_zone = 0;
     State state = State::kBlocked;
     std::uint8_t level = 0;
     bool finest = false;
@@ -81,6 +86,10 @@ class FloodGrid {
   // The cell of `level` or coarser that holds the index and is not refined; cells_.size() if that
   // one is refined further.
   std::size_t locate(int level, const Index& index) const;
+  // Whether the ball of a reached node lies in that of a reached neighbour of its size.
+  bool lies_in_neighbour(const Entry& node) const;
+  // The same answer as from LocalDiameter::on_way(), between the centres of two nodes.
+  double needed_between(const Entry& a, const Entry& b) const;
   // Whether the ball provably passes between two free cells that share a face; `face` is the centre
   // of that.
   bool passes(const Entry& a, const Entry& b, const Eigen::Vector3d& face) const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "simplifier/zones.h"
+#include "spheretree/rounding.h"
 
 #include <Eigen/Geometry>
 
@@ -33,21 +34,20 @@ class ZoneIndex {
   // some others; it returns the reach from there on, which may only shrink. In a fixed order.
   template <typename Visit>
   void near(const Eigen::Vector3d& point, double reach, Visit visit) const {
-    if (zones_.empty()) return;
-    // Halving keeps the depth below 32, and each level leaves at most one node waiting.
-    std::array<std::int32_t, 34> waiting{0};
-    std::size_t count = 1;
-    while (count > 0) {
-      const auto at = static_cast<std::size_t>(waiting[--count]);
-      const Node& node = nodes_[at];
-      if (distance_lower(ZoneShape(node.box), point) > reach) continue;
-      if (node.right < 0) {
-        reach = visit(node.zone);
-      } else {
-        waiting[count++] = node.right;
-        waiting[count++] = static_cast<std::int32_t>(at) + 1;
-      }
-    }
+    // More than the roundings of the squared distance, which may be taken for less than it is.
+    constexpr double kSlack = 1.0 + 1e-12;
+    const auto may_be_near = [&](const Eigen::AlignedBox3d& box) {
+      return box.squaredExteriorDistance(point) <= reach * reach * kSlack + kUnderflow;
+    };
+    descend(may_be_near, [&](std::size_t zone) { reach = visit(zone); });
+  }
+
+  // Calls visit(zone) with the numbers of all zones that hold both points, and of some others, in
+  // the same order.
+  template <typename Visit>
+  void holding(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Visit visit) const {
+    descend([&](const Eigen::AlignedBox3d& box) { return box.contains(a) && box.contains(b); },
+            visit);
   }
 
  private:
@@ -57,6 +57,25 @@ class ZoneIndex {
     std::int32_t right = -1;
     std::size_t zone = 0;
   };
+
+  template <typename Enter, typename Visit>
+  void descend(Enter enter, Visit visit) const {
+    if (zones_.empty()) return;
+    // Halving keeps the depth below 32, and each level leaves at most one node waiting.
+    std::array<std::int32_t, 34> waiting{0};
+    std::size_t count = 1;
+    while (count > 0) {
+      const auto at = static_cast<std::size_t>(waiting[--count]);
+      const Node& node = nodes_[at];
+      if (!enter(node.box)) continue;
+      if (node.right < 0) {
+        visit(node.zone);
+      } else {
+        waiting[count++] = node.right;
+        waiting[count++] = static_cast<std::int32_t>(at) + 1;
+      }
+    }
+  }
 
   void build(std::int32_t begin, std::int32_t end) {
     const std::size_t self = nodes_.size();

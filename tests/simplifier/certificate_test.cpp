@@ -43,6 +43,32 @@ std::vector<Sphere> grid_of_balls(int n) {
   return balls;
 }
 
+// The cells of the solid fit into the balls; the piece of an inner triangle about the middle, where
+// eight cells meet, fits into none however small it is.
+TEST(Certificate, SurfaceThatCrossesWhereBallsHardlyOverlapIsCoveredAsPartOfTheSolid) {
+  TriangleMesh mesh = cube_mesh();
+  const int first = static_cast<int>(mesh.vertices.size());
+  const Vector3d a(0.1, 0.2, 0.3), b(0.9, 0.35, 0.6);
+  mesh.vertices.insert(mesh.vertices.end(), {a, b, (kMiddle - 0.3 * a - 0.37 * b) / 0.33});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  std::vector<Sphere> balls = grid_of_balls(4);
+  for (Sphere& ball : balls) ball.radius = kRoot3 / 8 * (1 + 1e-9);
+  ExternalSpheres external = box_of(mesh);
+  CertifyOptions options;
+  options.external = &external;
+  EXPECT_TRUE(certify(mesh, balls, options).covered);
+
+  // Not if S does not hold the mesh: then nothing is proved of the rest of it.
+  external.balls.push_back({{0.5, 0.5, 0.5}, 0.3});
+  const Certificate pierced = certify(mesh, balls, options);
+  EXPECT_FALSE(pierced.covered);
+  EXPECT_EQ(pierced.solid_depth.upper, 0.0);
+  EXPECT_EQ(pierced.surface_depth.lower, 0.0);
+  external.balls.clear();
+  external.box.max().x() = 0.75;
+  EXPECT_FALSE(certify(mesh, balls, options).covered);
+}
+
 TEST(Certificate, ACubeIsCoveredByItsCircumscribedBallAndByNoSmallerOne) {
   const ExternalSpheres box = box_of(cube_mesh());
   for (const ExternalSpheres* external : {static_cast<const ExternalSpheres*>(nullptr), &box}) {
