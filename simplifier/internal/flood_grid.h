@@ -86,7 +86,7 @@ class FloodGrid {
   // The cell of `level` or coarser that holds the index and is not refined; cells_.size() if that
   // one is refined further.
   std::size_t locate(int level, const Index& index) const;
-  // Whether the ball of a reached node lies in that of a reached neighbour of its size.
+  // Whether the ball of a reached node lies in that of a reached neighbour, of its size or coarser.
   bool lies_in_neighbour(const Entry& node) const;
   // The same answer as from LocalDiameter::on_way(), between the centres of two nodes.
   double needed_between(const Entry& a, const Entry& b) const;
