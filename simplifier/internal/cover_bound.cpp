@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 using Rows = std::vector<std::uint32_t>;
 
 // Shares of E.
-constexpr double kFinest = 0.05;    // half diagonal of the smallest cells of centres
+constexpr double kFinest = 0.08;    // half diagonal of the smallest cells of centres
 constexpr double kClosely = 0.3;    // and of the largest in which points are told apart
 constexpr double kCube = 0.75;      // edge of the cubes that points are sorted into
 constexpr double kTolerance = 0.2;  // of a cell's half diagonal, of the clearance there

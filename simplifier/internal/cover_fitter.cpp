@@ -45,8 +45,8 @@ constexpr std::size_t kHopefulLeaks = 8;
 constexpr std::size_t kOpenRows = 100;  // that candidates are made for in a round
 
 // What a lower bound is made of, for every ball proved and at least.
-constexpr std::size_t kBoundPoints = 60;
-constexpr std::size_t kMinBoundPoints = 1000;
+constexpr std::size_t kBoundPoints = 40;
+constexpr std::size_t kMinBoundPoints = 2000;
 constexpr std::size_t kBoundCenters = 20;
 constexpr std::size_t kMinBoundCenters = 1000;
 
