@@ -103,7 +103,9 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                                   ? ExternalSpheres{}
                                   : flood_closely(mesh, options.padding, diagonal);
   const ExternalSpheres& external = options.external != nullptr ? *options.external : own;
-  const Clearance clearance(external, distance);
+  // The fine flood makes too many external balls for finding their contacts to pay.
+  const Clearance clearance =
+      options.external != nullptr ? Clearance(external, distance) : Clearance(external);
   const internal::BallHierarchy hierarchy(spheres);
   const internal::BallsToProve balls{spheres, hierarchy};
   const double largest = std::max(internal::largest_coordinate(distance.box()),
