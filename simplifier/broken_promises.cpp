@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <iomanip>
 #include <optional>
+#include <ostream>
 #include <sstream>
 
 namespace spherule {
@@ -16,10 +17,13 @@ std::string broken_promises(const Simplification& simplification) {
   if (!certificate.covered) out << "the spheres are not proved to cover";
   // A least radius may force spheres to protrude further.
   if (options.min_radius > 0.0) return out.str();
+  const auto begin = [&](double most) -> std::ostream& {
+    return out << (out.str().empty() ? "the spheres are not proved" : ", nor")
+               << " to protrude by at most " << most;
+  };
   const std::optional<double>& protrusion = certificate.protrusion_over_simplified_max;
   if (!protrusion || !(*protrusion <= options.max_error)) {
-    out << (certificate.covered ? "the spheres are not proved" : ", nor")
-        << " to protrude by at most " << options.max_error << " from the simplified solid";
+    begin(options.max_error) << " from the simplified solid";
     if (protrusion) out << ", only by at most " << *protrusion;
   }
   for (std::size_t i = 0; i < options.zones.size(); ++i) {
@@ -27,15 +31,12 @@ std::string broken_promises(const Simplification& simplification) {
     if (!error) continue;
     const bool known = i < certificate.protrusion_in_zones.size();
     if (known && certificate.protrusion_in_zones[i] <= *error) continue;
-    out << (out.str().empty() ? "the spheres are not proved" : ", nor")
-        << " to protrude by at most " << *error << " in zone " << i;
+    begin(*error) << " in zone " << i;
     if (known) out << ", only by at most " << certificate.protrusion_in_zones[i];
   }
   for (const CoverLevel& level : simplification.levels) {
     if (level.protrusion <= level.max_error) continue;
-    out << (out.str().empty() ? "the spheres are not proved" : ", nor")
-        << " to protrude by at most " << level.max_error << " in a level, only by at most "
-        << level.protrusion;
+    begin(level.max_error) << " in a level, only by at most " << level.protrusion;
   }
   return out.str();
 }

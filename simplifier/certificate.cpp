@@ -6,6 +6,7 @@
 #include "simplifier/internal/proof.h"
 #include "simplifier/internal/protrusion.h"
 #include "simplifier/internal/thread_limit.h"
+#include "simplifier/internal/usable_spheres.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
@@ -32,11 +33,7 @@ constexpr double kLeastResolution = 0x1p-40;
 constexpr double kPointFlood = 1.0 / 128.0;
 
 void check_options(std::span<const Sphere> spheres, const CertifyOptions& options) {
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    if (!is_usable(spheres[i])) {
-      throw Error("sphere " + std::to_string(i), "not finite, too large, or of negative radius");
-    }
-  }
+  internal::check_usable(spheres);
   if (!(options.resolution > 0.0 && options.resolution <= 1.0)) {
     throw Error("resolution", "must be above 0 and at most 1");
   }

@@ -7,6 +7,7 @@
 #include "simplifier/internal/local_error.h"
 #include "simplifier/internal/solid_cells.h"
 #include "simplifier/internal/thread_limit.h"
+#include "simplifier/internal/usable_spheres.h"
 #include "simplifier/mesh_distance.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -31,11 +32,7 @@ constexpr double kLeakReserve = 0.02;  // about a point that is found open
 constexpr int kRounds = 40;
 
 void check(std::span<const Sphere> spheres, const RepairOptions& options) {
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    if (!is_usable(spheres[i])) {
-      throw Error("sphere " + std::to_string(i), "not finite, too large, or of negative radius");
-    }
-  }
+  internal::check_usable(spheres);
   if (!(options.max_error > 0.0 && options.max_error <= kMaxCoordinate)) {
     throw Error("max error", "must be positive and finite");
   }

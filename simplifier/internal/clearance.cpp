@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace spherule {
 
@@ -38,14 +39,15 @@ std::vector<Vector3d> contacts_of(std::span<const Sphere> balls, const MeshDista
 }  // namespace
 
 Clearance::Clearance(const ExternalSpheres& external)
-    : centers_(centers_of(external.balls)),
-      balls_(external.balls),
-      box_(external.box),
-      least_external_(least_radius(external.balls)) {}
+    : Clearance(external, internal::BallHierarchy(external.balls)) {}
 
 Clearance::Clearance(const ExternalSpheres& external, const MeshDistance& distance)
+    : Clearance(external,
+                internal::BallHierarchy(external.balls, contacts_of(external.balls, distance))) {}
+
+Clearance::Clearance(const ExternalSpheres& external, internal::BallHierarchy balls)
     : centers_(centers_of(external.balls)),
-      balls_(external.balls, contacts_of(external.balls, distance)),
+      balls_(std::move(balls)),
       box_(external.box),
       least_external_(least_radius(external.balls)) {}
 

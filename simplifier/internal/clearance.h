@@ -41,6 +41,8 @@ class Clearance {
   double least_external() const { return least_external_; }
 
  private:
+  Clearance(const ExternalSpheres& external, internal::BallHierarchy balls);
+
   std::vector<Eigen::Vector3d> centers_;
   internal::BallHierarchy balls_;
   Eigen::AlignedBox3d box_;

@@ -33,8 +33,14 @@ constexpr int kRounds = 2;  // of proof, and of balancing over the balls that it
 // What a cell of heavy balls holds is balanced over if that is news, by this factor, for a point.
 constexpr double kNews = 1.03;
 constexpr std::size_t kTasks = 512;
+constexpr std::size_t kPart = 8;  // tasks in sequence
 // Far above the rounding of sums of weights, below what matters.
 constexpr double kRounding = 1e-9;
+
+// Above the rounding of points of the mesh, and of balls about them.
+double slack_of(const CoverBoundInput& input) {
+  return kRounding * (largest_coordinate(input.clearance.box()) + input.max_error);
+}
 
 class Packing {
  public:
@@ -42,7 +48,7 @@ class Packing {
       : clearance_(input.clearance),
         error_(input.max_error),
         least_external_(input.clearance.least_external()),
-        slack_(mesh_slack(input)),
+        slack_(slack_of(input)),
         points_(std::move(points)),
         grid_(points_, kCube * error_),
         weights_(points_.size(), 1.0) {
@@ -104,11 +110,13 @@ class Packing {
       cells = std::move(next);
     }
     const Heaviest none{std::vector<double>(points_.size(), 1.0), {}};
-    const Heaviest heaviest = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, cells.size(), 1), none,
+    // In the same parts whatever the threads: what is news depends on what a part saw before.
+    Heaviest heaviest = tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::size_t>(0, cells.size(), kPart), none,
         [&](const tbb::blocked_range<std::size_t>& range, Heaviest found) {
-          for (std::size_t i = range.begin(); i < range.end(); ++i)
+          for (std::size_t i = range.begin(); i < range.end(); ++i) {
             search(cells[i], nullptr, found);
+          }
           return found;
         },
         [](Heaviest a, const Heaviest& b) {
@@ -120,7 +128,7 @@ class Packing {
         });
     double sum = 0.0;
     for (std::size_t r = 0; r < points_.size(); ++r) sum += weights_[r] /= heaviest.about[r];
-    heavy = heaviest.held;
+    heavy = std::move(heaviest.held);
     return sum;
   }
 
@@ -173,10 +181,6 @@ class Packing {
     }
     std::swap(kept, weights_);
     return kept;
-  }
-
-  static double mesh_slack(const CoverBoundInput& input) {
-    return kRounding * (largest_coordinate(input.clearance.box()) + input.max_error);
   }
 
   Eigen::AlignedBox3d grown_box() const {
@@ -252,9 +256,9 @@ class Packing {
 std::size_t cover_bound(const CoverBoundInput& input) {
   if (input.max_error > input.clearance.least_external()) return 1;
   std::vector<Vector3d> points;
+  const double slack = slack_of(input);
   for (const Vector3d& p : input.points) {
-    const double rounding = kRounding * largest_coordinate(input.clearance.box());
-    if (input.clearance(p).lower >= 0.0 || input.distance(p, rounding).triangle >= 0) {
+    if (input.clearance(p).lower >= 0.0 || input.distance(p, slack).triangle >= 0) {
       points.push_back(p);
     }
   }

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+
 namespace spherule::test {
 namespace {
 
@@ -40,6 +42,20 @@ TEST(CoverBound, StaysBelowTheCountOfEveryShape) {
       EXPECT_LE(result.lower_bound, result.spheres.size());
     }
   }
+}
+
+TEST(CoverBound, IsEqualOnAnyNumberOfThreads) {
+  const TriangleMesh mesh = l_bracket();
+  const double max_error = 0.05 * diagonal_of(mesh);
+  const ExternalSpheres external = place_external_spheres(
+      mesh, {.min_external_diameter = 4.0 * max_error, .max_error = max_error});
+  const auto bound = [&](int threads) {
+    return cover(mesh, external,
+                 {.max_error = max_error, .effort = 0, .lower_bound = true, .threads = threads})
+        .lower_bound;
+  };
+  const std::size_t alone = bound(1);
+  for (int i = 0; i < effort(4, 1); ++i) EXPECT_EQ(bound(0), alone);
 }
 
 TEST(CoverBound, IsUnknownWhereItWouldNotHold) {
