@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/cli/command_test_support.h"
+#include "tests/support/effort.h"
 
 #include <cmath>
 #include <utility>
@@ -102,9 +103,10 @@ TEST_F(FitTest, ThreadsDoNotChangeTheOutput) {
   for (const char* method : {"cover", "paper"}) {
     for (const char* external : {"reachable", "random"}) {
       const auto fit = [&](const char* threads, const std::string& name) {
-        const Outcome result = run({"fit", "box.stl", "-o", name + ".json", "--max-error", "2",
-                                    "--method", method, "--external", external, "--external-limit",
-                                    "300", "--threads", threads, "--tree", name + ".tree"});
+        const Outcome result =
+            run({"fit", "box.stl", "-o", name + ".json", "--max-error",
+                 test::kSanitized ? "4" : "2", "--method", method, "--external", external,
+                 "--external-limit", "300", "--threads", threads, "--tree", name + ".tree"});
         EXPECT_EQ(result.exit_code, 0) << result.err;
       };
       fit("1", "one");

@@ -5,6 +5,7 @@
 #include "collide/collide.h"
 #include "tests/collide_truth/fitted_model.h"
 #include "tests/collide_truth/near_contact.h"
+#include "tests/support/effort.h"
 #include "tests/support/models.h"
 #include "tests/support/random.h"
 
@@ -27,7 +28,7 @@ using test::FittedModel;
 
 // A relative error that FCL's own distance may have.
 constexpr double kFclDistanceError = 1e-9;
-constexpr std::size_t kDefaultPoses = 200000;
+constexpr std::size_t kDefaultPoses = test::effort(200000, 800);
 
 // Poses of all pairs of the plain shapes together; SPHERULE_TEST_POSES sets another number.
 std::size_t total_poses() {

@@ -3,7 +3,7 @@
 
 #include "simplifier/internal/ball_hierarchy.h"
 #include "tests/simplifier/distance_oracle.h"
-#include "tests/simplifier/effort.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>

@@ -2,9 +2,9 @@
 #include "simplifier/cover.h"
 
 #include "spheretree/error.h"
-#include "tests/simplifier/effort.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // External balls are where a tool of the least diameter can get, and nowhere else.
 #include "simplifier/external_spheres.h"
-#include "tests/simplifier/effort.h"
 #include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 
@@ -95,8 +95,8 @@ TEST(ExternalReach, EveryBallCanBeReachedFromOutside) {
       ExternalOptions options;
       options.placement = placement;
       options.min_external_diameter = 1.2;
-      options.grid_step = 0.3;
-      options.limit = static_cast<std::size_t>(effort(1500, 500));
+      options.grid_step = kSanitized ? 0.4 : 0.3;
+      options.limit = static_cast<std::size_t>(effort(1500, 200));
       const ExternalSpheres external = place_external_spheres(mesh, options);
       EXPECT_EQ(reached(mesh, external), external.balls.size());
     }

@@ -2,8 +2,8 @@
 #include "simplifier/external_spheres.h"
 
 #include "spheretree/error.h"
-#include "tests/simplifier/effort.h"
 #include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 
@@ -26,7 +26,7 @@ ExternalOptions options_for(ExternalPlacement placement, double diameter) {
   ExternalOptions options;
   options.placement = placement;
   options.min_external_diameter = diameter;
-  options.limit = 3000;
+  options.limit = static_cast<std::size_t>(effort(3000, 800));
   return options;
 }
 
@@ -47,7 +47,7 @@ TEST(ExternalSpheres, EveryBallIsFreeOfThePaddedMeshAndLargeEnough) {
     const double size = diagonal(named.mesh);
     for (const ExternalPlacement placement : kPlacements) {
       for (const double padding : {0.0, 0.03 * size}) {
-        ExternalOptions options = options_for(placement, 0.25 * size);
+        ExternalOptions options = options_for(placement, (kSanitized ? 0.5 : 0.25) * size);
         options.padding = padding;
         TriangleMesh mesh = named.mesh;
         mesh.vertex_error = padding / 16.0;
@@ -91,7 +91,7 @@ TEST(ExternalSpheres, AGapNarrowerThanTheDiameterIsFilled) {
   for (const ExternalPlacement placement : kPlacements) {
     for (const double diameter : {2.0001, 2.2, 3.0}) {
       ExternalOptions options = options_for(placement, diameter);
-      options.limit = 20000;
+      options.limit = static_cast<std::size_t>(effort(20000, 4000));
       EXPECT_TRUE(is_in_solid(middle, place_external_spheres(two_plates(gap), options)));
     }
   }
@@ -102,14 +102,14 @@ TEST(ExternalSpheres, AGapNarrowerThanTheDiameterIsFilled) {
 }
 
 TEST(ExternalSpheres, AGapWiderThanTheDiameterAndTheSlackIsKeptOpen) {
-  for (const double step : {0.5, 0.25, 0.17}) {
-    for (const double shift : {0.0, 0.1, 0.21}) {
-      ExternalOptions options = options_for(ExternalPlacement::kReachable, 2.0);
-      options.grid_step = step;
-      const double slack = place_external_spheres(two_plates(1.0), options).closing_slack;
-      ASSERT_GT(slack, 0.0);
-      ASSERT_LT(slack, 3.0 * step);
-      const double gap = 2.0 + slack * 1.0001;
+  for (const double step : effort(std::vector{0.5, 0.25, 0.17}, 2)) {
+    ExternalOptions options = options_for(ExternalPlacement::kReachable, 2.0);
+    options.grid_step = step;
+    const double slack = place_external_spheres(two_plates(1.0), options).closing_slack;
+    ASSERT_GT(slack, 0.0);
+    ASSERT_LT(slack, 3.0 * step);
+    const double gap = 2.0 + slack * 1.0001;
+    for (const double shift : effort(std::vector{0.1, 0.0, 0.21}, 2)) {
       // The shift moves the grid against the gap.
       TriangleMesh mesh = two_plates(gap);
       mesh = joined(mesh, box_mesh({0, 0, -2.0 - shift}, {0.1, 0.1, -1.0}));

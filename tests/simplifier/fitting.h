@@ -9,7 +9,7 @@
 #include "simplifier/external_spheres.h"
 #include "simplifier/simplify.h"
 #include "spheretree/triangle_mesh.h"
-#include "tests/simplifier/effort.h"
+#include "tests/support/effort.h"
 
 #include <Eigen/Geometry>
 

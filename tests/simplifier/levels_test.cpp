@@ -3,10 +3,10 @@
 
 #include "simplifier/simplify.h"
 #include "spheretree/error.h"
-#include "tests/simplifier/effort.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/simplifier/octree_proof.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 
@@ -17,11 +17,14 @@
 namespace spherule::test {
 namespace {
 
+// The finest error as a share of the size, with D the same multiple of it.
+constexpr double kFinest = kSanitized ? 0.09 : 0.06;
+
 Simplification fitted_levels(const TriangleMesh& mesh, CoverMethod method = CoverMethod::kCover,
                              double min_radius = 0.0, int threads = 0) {
   const double size = diagonal_of(mesh);
-  return simplify(mesh, {.levels = {0.12 * size, 0.06 * size, 0.24 * size},
-                         .min_external_diameter = 0.24 * size,
+  return simplify(mesh, {.levels = {2.0 * kFinest * size, kFinest * size, 4.0 * kFinest * size},
+                         .min_external_diameter = 4.0 * kFinest * size,
                          .min_radius = min_radius * size,
                          .method = method,
                          .effort = effort(3, 1),
@@ -42,13 +45,14 @@ void expect_good_levels(const TriangleMesh& mesh, const Simplification& result) 
   const double size = diagonal_of(mesh);
   Random random(81);
   ASSERT_EQ(result.levels.size(), 2U);
-  EXPECT_EQ(result.options.max_error, 0.06 * size);
+  EXPECT_EQ(result.options.max_error, kFinest * size);
   std::span<const Sphere> finer = result.cover.spheres;
   for (const CoverLevel& level : result.levels) {
     SCOPED_TRACE(level.max_error);
     expect_enclosed(finer, level.balls);
     EXPECT_LE(level.balls.spheres.size(), finer.size());
-    const OctreeProof proof = prove_by_octree(result.external, level.balls.spheres, 26, 300'000);
+    const OctreeProof proof = prove_by_octree(result.external, level.balls.spheres, 26,
+                                              static_cast<std::size_t>(effort(300'000, 60'000)));
     EXPECT_NE(proof.verdict, OctreeVerdict::kLeak) << proof.point.transpose();
     if (result.options.min_radius == 0.0) {
       EXPECT_LE(level.protrusion, level.max_error);

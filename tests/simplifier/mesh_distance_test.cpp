@@ -2,7 +2,7 @@
 #include "simplifier/mesh_distance.h"
 
 #include "tests/simplifier/distance_oracle.h"
-#include "tests/simplifier/effort.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 

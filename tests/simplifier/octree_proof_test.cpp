@@ -2,9 +2,9 @@
 // The covers of the simplifier before a proof that shares no code with it (G1).
 #include "tests/simplifier/octree_proof.h"
 
-#include "tests/simplifier/effort.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 

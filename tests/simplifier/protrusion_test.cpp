@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // G2: nothing protrudes by more than E, whatever external balls there are.
 #include "simplifier/cover.h"
-#include "tests/simplifier/effort.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 

@@ -41,7 +41,8 @@ Repair expect_repaired(const TriangleMesh& mesh, const Fit& fitted, std::vector<
   EXPECT_EQ(result.largest_growth, largest);
   EXPECT_NEAR(result.total_growth, total, 1e-9 * total);
   EXPECT_TRUE(certificate_of(mesh, fitted, balls).covered);
-  const OctreeProof proof = prove_by_octree(fitted.external, balls, 26, 300'000);
+  const OctreeProof proof = prove_by_octree(fitted.external, balls, 26,
+                                            static_cast<std::size_t>(effort(300'000, 60'000)));
   EXPECT_NE(proof.verdict, OctreeVerdict::kLeak) << proof.point.transpose();
   Random random(91);
   const auto count = static_cast<std::size_t>(effort(4000, 400));
@@ -54,7 +55,7 @@ Repair expect_repaired(const TriangleMesh& mesh, const Fit& fitted, std::vector<
   const Certificate of_changed = certificate_of(mesh, fitted, changed);
   EXPECT_LE(*of_changed.protrusion_over_simplified_max, max_error);
   EXPECT_EQ(judge_protrusion(changed, mesh, fitted.external, max_error + 1e-9 * diagonal_of(mesh),
-                             10, random)
+                             static_cast<std::size_t>(effort(10, 3)), random)
                 .beyond,
             0U);
   return result;

@@ -101,9 +101,12 @@ TEST(ZoneFit, NoPointOfABallInAZoneIsFurtherFromTheSolidThanTheZoneAllows) {
         << i;
   }
   // G1 and G2 as ever.
-  const auto points = points_of_solid(fit.external, 20000, random);
+  const auto points =
+      points_of_solid(fit.external, static_cast<std::size_t>(effort(20000, 2000)), random);
   EXPECT_EQ(judge_cover(points, fit.cover.spheres).uncovered, 0U);
-  EXPECT_EQ(judge_protrusion(fit.cover.spheres, mesh, fit.external, kError, 200, random).beyond,
+  EXPECT_EQ(judge_protrusion(fit.cover.spheres, mesh, fit.external, kError,
+                             static_cast<std::size_t>(effort(200, 40)), random)
+                .beyond,
             0U);
 }
 

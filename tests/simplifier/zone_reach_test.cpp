@@ -3,8 +3,8 @@
 #include "simplifier/concave_edges.h"
 #include "simplifier/external_spheres.h"
 #include "spheretree/error.h"
-#include "tests/simplifier/effort.h"
 #include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 
@@ -35,6 +35,7 @@ Zone box_zone(const Vector3d& low, const Vector3d& high, double diameter) {
 }
 
 constexpr double kStep = kSanitized ? 0.9 : 0.5;
+constexpr std::array kSteps = {kStep, kSanitized ? 0.67 : 0.37};
 
 ExternalSpheres placed(const TriangleMesh& mesh, std::vector<Zone> zones, double step = kStep) {
   ExternalOptions options;
@@ -82,8 +83,8 @@ TEST(ZoneReach, ASlotIsOpenInTheZoneAndClosedOutsideOfIt) {
 
 TEST(ZoneReach, AGapNarrowerThanTheZonesDiameterStaysClosed) {
   const std::vector<Zone> zones = {box_zone({-5, -5, -5}, {13, 13, 7}, kNarrow)};
-  for (const double gap : {0.5, 0.9, 0.999}) {
-    for (const double step : {0.5, 0.37}) {
+  for (const double gap : effort(std::vector{0.999, 0.5, 0.9}, 2)) {
+    for (const double step : kSteps) {
       const ExternalSpheres external = placed(two_plates(gap, 8.0), zones, step);
       EXPECT_TRUE(is_in_solid({1.0, 4.0, gap / 2.0}, external)) << gap;
       EXPECT_TRUE(is_in_solid({4.0, 4.0, gap / 2.0}, external)) << gap;
@@ -101,18 +102,18 @@ TEST(ZoneReach, TheWholeWayInHasToBeWideEnough) {
   const auto is_open = [&](const std::vector<Zone>& zones) {
     return !is_in_solid(far, placed(mesh, zones));
   };
-  const Vector3d low(-5, -5, -5);
-  const Vector3d high(25, 25, 7);
+  const Vector3d low(-2, -2, -2);
+  const Vector3d high(22, 22, 4);
   EXPECT_TRUE(is_open({box_zone(low, high, kNarrow)}));
-  EXPECT_FALSE(is_open({box_zone({10, -5, -5}, high, kNarrow)}));
-  EXPECT_FALSE(is_open({box_zone(low, {10, 25, 7}, kNarrow)}));
+  EXPECT_FALSE(is_open({box_zone({10, -2, -2}, high, kNarrow)}));
+  EXPECT_FALSE(is_open({box_zone(low, {10, 22, 4}, kNarrow)}));
   EXPECT_FALSE(
-      is_open({box_zone(low, {9, 25, 7}, kNarrow), box_zone({9.05, -5, -5}, high, kNarrow)}));
-  EXPECT_TRUE(is_open({box_zone(low, {10, 25, 7}, kNarrow), box_zone({8, -5, -5}, high, kNarrow)}));
+      is_open({box_zone(low, {9, 22, 4}, kNarrow), box_zone({9.05, -2, -2}, high, kNarrow)}));
+  EXPECT_TRUE(is_open({box_zone(low, {10, 22, 4}, kNarrow), box_zone({8, -2, -2}, high, kNarrow)}));
 }
 
 TEST(ZoneReach, TheSlackHoldsInZonesAndAcrossTheirBorders) {
-  for (const double step : {0.5, 0.37}) {
+  for (const double step : kSteps) {
     const double slack = placed(cube_mesh(), {}, step).closing_slack;
     // The grid of the zone: the same share of d, down to the next halving.
     const double zone_slack = slack / std::exp2(std::ceil(std::log2(kWide / kNarrow)));

@@ -6,6 +6,7 @@
 #include "tests/spheretree/exact.h"
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/tree_oracle.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +47,7 @@ TEST(BuildTree, EveryFamilyGivesAValidTree) {
   for (std::size_t count = 1; count <= 20; ++count) counts.push_back(count);
   for (const std::size_t count : counts) {
     for (const Family& family : sphere_families(count, count)) {
-      for (const int branching : {2, 3, 8, 16}) {
+      for (const int branching : effort(std::vector{3, 16, 2, 8}, 2)) {
         SCOPED_TRACE(family.name + ", " + std::to_string(count) + " spheres, branching " +
                      std::to_string(branching));
         expect_good(build_tree(family.spheres, {.branching = branching}), family.spheres,
@@ -77,7 +78,7 @@ TEST(BuildTree, TheRootOfFewSpheresIsTheirSmallestBall) {
 // geometrically so that the mean splits off one at a time: neither deep recursion nor quadratic
 // time (which would not end within the test's time limit).
 TEST(BuildTree, AMillionDegenerateSpheres) {
-  constexpr std::size_t kCount = 1000000;
+  constexpr auto kCount = static_cast<std::size_t>(effort(1000000, 200000));
   std::vector<Sphere> coincident(kCount, Sphere{{1, 2, 3}, 0.25});
   std::vector<Sphere> line;
   std::vector<Sphere> geometric;

@@ -4,6 +4,7 @@
 #include "tests/spheretree/enclosing_oracle.h"
 #include "tests/spheretree/exact.h"
 #include "tests/spheretree/spheres.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +40,7 @@ void expect_smallest(const Sphere& result, std::span<const Sphere> balls, double
 
 TEST(EnclosingSphere, SmallSetsOfEveryFamilyAreEnclosedTightly) {
   for (std::size_t count = 1; count <= 20; ++count) {
-    for (std::uint64_t seed = 1; seed <= 25; ++seed) {
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(effort(25, 8)); ++seed) {
       for (const Family& family : sphere_families(count, seed)) {
         SCOPED_TRACE(family.name + ", " + std::to_string(count) + " balls, seed " +
                      std::to_string(seed));

@@ -6,6 +6,7 @@
 #include "tests/spheretree/exact.h"
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/tree_oracle.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -78,7 +79,7 @@ TEST(LevelTree, EveryFamilyGivesAValidTree) {
                        std::to_string(per_parent) + ", " + std::to_string(factor));
           std::vector<SphereLevel> levels = {level_over(family.spheres, per_parent, factor)};
           levels.push_back(level_over(levels[0].spheres, 4, factor));
-          for (const int branching : {2, 8, 16}) {
+          for (const int branching : effort(std::vector{8, 2, 16}, 1)) {
             expect_good(build_tree_from_levels(family.spheres, levels, {.branching = branching}),
                         family.spheres, levels);
             if (HasFailure()) return;
@@ -143,7 +144,7 @@ TEST(Cut, HoldsAllSpheresInAtMostSoManyBalls) {
   for (const Family& family : sphere_families(150, 3)) {
     SCOPED_TRACE(family.name);
     const SphereTree tree = build_tree(family.spheres);
-    for (const std::size_t count : {1U, 2U, 20U, 149U, 150U, 1000U}) {
+    for (const std::size_t count : effort(std::vector{20U, 150U, 149U, 1U, 2U, 1000U}, 2)) {
       const std::vector<Sphere> balls = cut(tree, count);
       EXPECT_LE(balls.size(), count);
       EXPECT_TRUE(count < 150 || balls.size() == 150U);

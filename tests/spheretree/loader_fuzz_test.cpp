@@ -9,6 +9,7 @@
 #include "spheretree/internal/file_content.h"
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/tree_oracle.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -53,13 +54,15 @@ std::string mutated(std::string bytes, Random& random, std::string_view alphabet
   return bytes;
 }
 
+constexpr int kCases = effort(40000, 8000);
+
 TEST(LoaderFuzz, MutatedTrees) {
   Random random(31);
   const std::string good =
       internal::encode_tree(build_tree(sphere_families(12, 1).front().spheres, {.branching = 3}));
   int valid = 0;
   int refused = 0;
-  for (int i = 0; i < 40000; ++i) {
+  for (int i = 0; i < kCases; ++i) {
     std::string bytes = mutated(good, random, {});
     // Half of them get a right checksum, or none would come past it.
     if (i % 2 == 0 && bytes.size() >= 8) {
@@ -75,8 +78,8 @@ TEST(LoaderFuzz, MutatedTrees) {
       ++refused;
     }
   }
-  EXPECT_GT(valid, 100);  // for example, a leaf that moved within its parent
-  EXPECT_GT(refused, 10000);
+  EXPECT_GT(valid, kCases / 400);  // for example, a leaf that moved within its parent
+  EXPECT_GT(refused, kCases / 4);
 }
 
 TEST(LoaderFuzz, MutatedSphereFiles) {
@@ -89,7 +92,7 @@ TEST(LoaderFuzz, MutatedSphereFiles) {
   const std::string good = internal::encode_spheres(file, "a.json");
   int valid = 0;
   int refused = 0;
-  for (int i = 0; i < 40000; ++i) {
+  for (int i = 0; i < kCases; ++i) {
     const std::string_view alphabet = i % 2 == 0 ? "0123456789.-+eE,:[]{}\"\\ntfu" : "";
     try {
       const SphereFile loaded = internal::decode_spheres(mutated(good, random, alphabet), "a.json");
@@ -104,8 +107,8 @@ TEST(LoaderFuzz, MutatedSphereFiles) {
       ++refused;
     }
   }
-  EXPECT_GT(valid, 1000);
-  EXPECT_GT(refused, 10000);
+  EXPECT_GT(valid, kCases / 40);
+  EXPECT_GT(refused, kCases / 4);
 }
 
 }  // namespace

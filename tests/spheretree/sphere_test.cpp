@@ -3,6 +3,7 @@
 
 #include "tests/spheretree/exact.h"
 #include "tests/spheretree/spheres.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -31,10 +32,12 @@ struct Tally {
   int padded = 0;  // they differ, to the safe side
 };
 
+constexpr int kCases = effort(100000, 20000);
+
 TEST(Sphere, CertainlyEnclosesIsNeverWrong) {
   Random random(1);
   Tally tally;
-  for (int i = 0; i < 100000; ++i) {
+  for (int i = 0; i < kCases; ++i) {
     const Sphere inner = random_sphere(random);
     Sphere outer = random_sphere(random);
     outer.radius = nudged((outer.center - inner.center).norm() + inner.radius, random);
@@ -44,15 +47,15 @@ TEST(Sphere, CertainlyEnclosesIsNeverWrong) {
     ASSERT_EQ(certain, certainly_contains(outer, inner.center, inner.radius));
     ++(certain ? tally.both : truth ? tally.padded : tally.neither);
   }
-  EXPECT_GT(tally.both, 10000);
-  EXPECT_GT(tally.neither, 10000);
-  EXPECT_GT(tally.padded, 1000);
+  EXPECT_GT(tally.both, kCases / 10);
+  EXPECT_GT(tally.neither, kCases / 10);
+  EXPECT_GT(tally.padded, kCases / 100);
 }
 
 TEST(Sphere, PossiblyOverlapIsNeverWrong) {
   Random random(2);
   Tally tally;
-  for (int i = 0; i < 100000; ++i) {
+  for (int i = 0; i < kCases; ++i) {
     const Sphere a = random_sphere(random);
     Sphere b = random_sphere(random);
     b.radius = nudged((a.center - b.center).norm() - a.radius, random);
@@ -61,9 +64,9 @@ TEST(Sphere, PossiblyOverlapIsNeverWrong) {
     ASSERT_TRUE(possible || !truth);
     ++(truth ? tally.both : possible ? tally.padded : tally.neither);
   }
-  EXPECT_GT(tally.both, 10000);
-  EXPECT_GT(tally.neither, 5000);
-  EXPECT_GT(tally.padded, 1000);
+  EXPECT_GT(tally.both, kCases / 10);
+  EXPECT_GT(tally.neither, kCases / 20);
+  EXPECT_GT(tally.padded, kCases / 100);
 }
 
 // The textbook merge of two balls is what this library must not do: it often loses an input.
@@ -84,7 +87,7 @@ TEST(Sphere, TheExactOracleRefusesTheTextbookMerge) {
 
 TEST(Sphere, DistanceBoundsHoldAtAllScales) {
   Random random(4);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < effort(20000, 4000); ++i) {
     const double scale = std::pow(10.0, random.between(-320.0, 15.0));
     const Eigen::Vector3d a = scale * random.in_cube(1.0);
     const Eigen::Vector3d b =

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
 namespace spherule::test {
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -18,6 +22,13 @@ inline constexpr bool kSanitized = false;
 // A number of cases: sanitizers make each several times as slow, so that they get fewer.
 constexpr int effort(int cases, int under_sanitizers) {
   return kSanitized ? under_sanitizers : cases;
+}
+
+// The same of a list of them, the most telling first.
+template <class Case>
+std::vector<Case> effort(std::vector<Case> cases, std::size_t under_sanitizers) {
+  if (kSanitized) cases.resize(std::min(cases.size(), under_sanitizers));
+  return cases;
 }
 
 }  // namespace spherule::test
