@@ -4,6 +4,7 @@
 #include "simplifier/internal/cube.h"
 #include "simplifier/internal/medial_ascent.h"
 #include "simplifier/internal/random.h"
+#include "simplifier/internal/surface_extent.h"
 
 #include <tbb/parallel_for.h>
 
@@ -16,16 +17,22 @@ namespace {
 
 constexpr double kClearanceTolerance = 0.02;  // of E
 constexpr double kContained = 0.97;
-constexpr double kThinning = 0.1;  // of E
+// Of how far a ball reaches along a plane: those of the best size for an edge, which have a
+// clearance of E, stand this share of E apart.
+constexpr double kThinning = 0.3;
+const double kReachAtEdge = cap_width(1.0, 1.0);
 
-// In each cube of the given edge only the candidate with the largest clearance, the first of
-// equals.
-std::vector<Candidate> thinned(const std::vector<Candidate>& candidates, double edge,
+// In each cube, of an edge that grows with the balls, only the candidate with the largest
+// clearance, the first of equals.
+std::vector<Candidate> thinned(const std::vector<Candidate>& candidates, double max_error,
                                const LocalError& error) {
   std::map<GradedCube, std::size_t> best;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Eigen::Vector3d& center = candidates[i].center;
-    const auto [at, first] = best.try_emplace(graded_cube_of(center, edge, error.scale(center)), i);
+    const double scale = error.scale(center);
+    const double reach = cap_width(candidates[i].clearance / max_error, scale) / kReachAtEdge;
+    const auto [at, first] =
+        best.try_emplace(graded_cube_of(center, kThinning * max_error, reach), i);
     if (!first && candidates[i].clearance > candidates[at->second].clearance) at->second = i;
   }
   std::vector<std::size_t> kept;
@@ -97,7 +104,7 @@ std::vector<Candidate> candidates_from(const Clearance& clearance,
   });
   std::vector<Candidate> all;
   for (const auto& some : each) all.insert(all.end(), some.begin(), some.end());
-  return thinned(all, kThinning * max_error, local);
+  return thinned(all, max_error, local);
 }
 
 }  // namespace spherule::internal

@@ -3,8 +3,9 @@
 
 #include "simplifier/internal/cover_bound.h"
 #include "simplifier/internal/cover_moves.h"
-#include "simplifier/internal/cover_search.h"
+#include "simplifier/internal/lazy_cover_search.h"
 #include "simplifier/internal/solid_query.h"
+#include "simplifier/internal/surface_extent.h"
 #include "spheretree/error.h"
 
 #include <tbb/parallel_for.h>
@@ -14,6 +15,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,23 +25,35 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Half diagonal of the cells that rows stand for, as a share of E: the last for which there are not
-// too many of them.
-constexpr std::array kSpacings{0.7, 0.5, 0.3};
-constexpr std::size_t kManyCells = 60000;
+// Half diagonal of the cells that rows stand for, as a share of E or of how far balls reach
+// (SolidCells): at the start the first for which there are not too few of them, in the end the last
+// before there are too many.
+constexpr std::array kSpacings{0.7, 0.5, 0.3, 0.2, 0.14};
+constexpr std::size_t kFewCells = 10000;
+constexpr std::size_t kManyCells = 30000;
+// Rounds without a better answer, after which cells become finer, or which end the search.
+constexpr int kPatience = 10;
+constexpr int kConverged = 40;
+
+// Surroundings of rows: the radii as shares of the cells' spacing and, in all, of E; the discs as
+// shares of how much further than E balls reach.
+constexpr double kCellRadius = 0.3;
+constexpr double kCellDisc = 0.05;
+constexpr double kLeakRadius = 0.1;  // of the rows that leaks become
+constexpr double kLeakDisc = 0.015;
 
 // Shares of E.
-constexpr double kCellRow = 0.1;       // radius of their rows
-constexpr double kLeakRow = 0.03;      // radius of the rows that leaks become
 constexpr double kFinest = 0.01;       // smallest cell of the proof
 constexpr double kLeakSpacing = 0.15;  // leaks become rows this far apart
+constexpr double kTolerance = 0.02;    // of the clearances of rows
 
+constexpr std::size_t kStartsPerRow = 10;  // a start for so many rows
 constexpr std::size_t kMinStarts = 2000;
 constexpr std::size_t kMaxStarts = 10000;
 
-constexpr std::uint64_t kWork = 12;      // of a search: visits per entry of the problem
-constexpr std::size_t kLargestStep = 8;  // this part of the count
-constexpr std::size_t kForgetting = 4;   // times as large as it was the problem may grow
+constexpr std::uint64_t kWork = 20;     // of a search: visits per entry of the problem
+constexpr std::size_t kSampling = 10;   // a search begins with one of so many rows
+constexpr std::size_t kForgetting = 4;  // times as large as it was the problem may grow
 // So many leaks more than there are balls to gain may still be mended by fewer balls.
 constexpr std::size_t kHopefulLeaks = 8;
 constexpr std::size_t kOpenRows = 100;  // that candidates are made for in a round
@@ -59,32 +73,11 @@ std::vector<Item> some_of(const std::vector<Item>& items, std::size_t count) {
   return picked;
 }
 
-SolidCells cells_of(const Clearance& clearance, const MeshDistance& distance,
-                    const LocalError& error, const CoverOptions& options) {
-  const double tightest = tightest_error(options.zones, options.max_error);
-  if (CoverFitter::finest(tightest) < least_reach(clearance.box())) {
-    throw Error("max error", "too small for coordinates of this size");
-  }
-  std::optional<SolidCells> cells;
-  for (const double spacing : kSpacings) {
-    cells.emplace(clearance, distance, error, spacing * options.max_error);
-    if (cells->size() > kManyCells) break;
-  }
-  return *std::move(cells);
-}
-
 }  // namespace
 
-void CoverFitter::Goal::failed() {
-  target = easier();
-  step = std::max<std::size_t>(1, step / 2);
-}
-
-void CoverFitter::Goal::reached(std::size_t count) {
-  const std::size_t largest = std::max<std::size_t>(1, count / kLargestStep);
-  step = proved == 0 ? largest : std::min(largest, count <= target ? 2 * step : step);
-  proved = count;
-  target = count - std::min(step, std::max<std::size_t>(1, count) - 1);
+void CoverFitter::Balls::append(const Balls& other) {
+  places.insert(places.end(), other.places.begin(), other.places.end());
+  spheres.insert(spheres.end(), other.spheres.begin(), other.spheres.end());
 }
 
 double CoverFitter::finest(double max_error) {
@@ -102,9 +95,13 @@ CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distanc
       options_(options),
       error_(options.max_error),
       local_(options.max_error, options.zones),
-      cells_(cells_of(clearance, distance, local_, options)),
       problem_(options.max_error, options.min_radius, options.zones),
-      given_(given.begin(), given.end()) {}
+      given_(given.begin(), given.end()) {
+  const double tightest = tightest_error(options.zones, options.max_error);
+  if (finest(tightest) < least_reach(clearance.box())) {
+    throw Error("max error", "too small for coordinates of this size");
+  }
+}
 
 std::vector<Sphere> CoverFitter::run() {
   using Clock = std::chrono::steady_clock;
@@ -116,28 +113,73 @@ std::vector<Sphere> CoverFitter::run() {
     const std::chrono::duration<double> elapsed = Clock::now() - start;
     return std::max(rounds, elapsed.count() / options_.seconds);
   };
-  Points sample = cells_.sample();
-  const BallHierarchy given(given_);
-  std::erase_if(sample, [&](const Vector3d& p) { return given.nearest(p, 0.0).upper < 0.0; });
-  add_rows(problem_, sample, kCellRow * error_,
-           some_of(sample, std::clamp(sample.size() / 2, kMinStarts, kMaxStarts)));
-  solution_ = greedy_set_cover(problem_.instance());
-  prove_or_learn();
-  first_entries_ = problem_.entries();
+  begin();
   bound();
-  for (int round = 0; round < options_.effort && best_.size() > 1; ++round) {
+  int in_vain = 0;
+  for (int round = 0; round < options_.effort && best_.spheres.size() > 1; ++round) {
     const double share = share_done(round);
     if (share >= 1.0) break;
     report(share);
-    if (search()) {
-      spread(clearance_, problem_, solution_);
-      prove_or_learn();
-    } else {
-      widen();
-    }
-    if (problem_.entries() > kForgetting * first_entries_) forget();
+    in_vain = improve() ? 0 : in_vain + 1;
+    if (in_vain >= kPatience && refine()) in_vain = 0;
+    if (in_vain >= kConverged) break;
   }
-  return best_;
+  return best_.spheres;
+}
+
+void CoverFitter::begin() {
+  for (;; ++spacing_) {
+    cells_.emplace(clearance_, distance_, local_, error_, kSpacings[spacing_]);
+    if (cells_->size() >= kFewCells || spacing_ + 1 == kSpacings.size()) break;
+  }
+  pose({});
+  solution_ = greedy_set_cover(problem_.instance());
+  prove_or_learn();
+}
+
+bool CoverFitter::improve() {
+  const std::size_t before = best_.spheres.size();
+  if (search()) {
+    spread(clearance_, problem_, solution_);
+    prove_or_learn();
+  } else {
+    widen();
+  }
+  if (problem_.entries() > kForgetting * first_entries_) forget();
+  return best_.spheres.size() < before;
+}
+
+bool CoverFitter::refine() {
+  if (cells_->size() > kManyCells || spacing_ + 1 == kSpacings.size()) return false;
+  ++spacing_;
+  const std::vector<CoverProblem::Row> rows = problem_.rows();
+  const std::size_t learned = sampled_;
+  cells_.emplace(clearance_, distance_, local_, error_, kSpacings[spacing_]);
+  pose(best_.places);
+  problem_.add_rows(std::span(rows).subspan(learned));
+  know_from(sampled_);
+  solution_.resize(best_.places.size());
+  std::iota(solution_.begin(), solution_.end(), std::size_t{0});
+  goal_.restart();
+  return true;
+}
+
+void CoverFitter::pose(const std::vector<Candidate>& candidates) {
+  problem_ = CoverProblem(error_, options_.min_radius, options_.zones);
+  problem_.add_candidates(candidates);
+  Points sample = cells_->sample();
+  const BallHierarchy given(given_);
+  std::erase_if(sample, [&](const Vector3d& p) { return given.nearest(p, 0.0).upper < 0.0; });
+  sampled_ = sample.size();
+  add_rows(problem_, sample, {kCellRadius * kSpacings[spacing_], kCellDisc},
+           some_of(sample, std::clamp(sampled_ / kStartsPerRow, kMinStarts, kMaxStarts)));
+  first_entries_ = problem_.entries();
+  known_ = {};
+  for (std::size_t row = 0; row < sampled_; row += kSampling) known_.add(row);
+}
+
+void CoverFitter::know_from(std::size_t row) {
+  for (; row < problem_.rows().size(); ++row) known_.add(row);
 }
 
 void CoverFitter::bound() {
@@ -148,39 +190,43 @@ void CoverFitter::bound() {
   for (std::size_t c = 0; c < problem_.instance().columns.size(); ++c) {
     centers.push_back(problem_.candidate(c).center);
   }
-  points = some_of(points, kBoundPoints * best_.size() + kMinBoundPoints);
-  centers = some_of(centers, kBoundCenters * best_.size() + kMinBoundCenters);
+  points = some_of(points, kBoundPoints * best_.spheres.size() + kMinBoundPoints);
+  centers = some_of(centers, kBoundCenters * best_.spheres.size() + kMinBoundCenters);
   lower_bound_ = cover_bound({clearance_, distance_, error_, points, centers});
 }
 
 bool CoverFitter::search() {
-  const std::array<std::size_t, 2> targets{goal_.target, goal_.easier()};
-  std::array<std::optional<CoverSearch>, 2> searches;
+  const std::array<std::size_t, 2> targets{goal_.target(), goal_.easier()};
+  std::array<std::optional<LazyCoverSearch>, 2> searches;
   std::array<bool, 2> covers{};
   std::array<std::atomic<bool>, 2> unneeded{};  // the second, if the first succeeds
   tbb::parallel_for(std::size_t{0}, searches.size(), [&](std::size_t i) {
-    searches[i].emplace(problem_.instance(), problem_.columns_of(), solution_);
+    searches[i].emplace(problem_.instance(), problem_.columns_of(), known_, solution_);
     covers[i] = searches[i]->reach(targets[i], kWork * problem_.entries(),
                                    options_.seed + seeds_used_ + i, unneeded[i]);
     if (i == 0) unneeded[1] = covers[0];
   });
   seeds_used_ += searches.size();
-  const std::size_t chosen = covers[0] ? 0 : 1;
-  const std::vector<std::uint32_t>& columns = searches[chosen]->best_columns();
-  solution_.assign(columns.begin(), columns.end());
+  LazyCoverSearch& chosen = *searches[covers[0] ? 0 : 1];
+  solution_ = std::move(chosen.columns);
+  known_ = std::move(chosen.rows);
   if (!covers[0]) goal_.failed();
-  return covers[chosen];
+  return covers[0] || covers[1];
 }
 
 void CoverFitter::prove_or_learn() {
-  std::vector<Sphere> balls = balls_of(problem_, solution_);
-  SolidCells::Leaks leaks = leaks_of(balls);
+  Balls balls = balls_of(problem_, solution_);
+  SolidCells::Leaks leaks = leaks_of(balls.spheres);
   const std::size_t leak_count = leaks.in_solid.size() + leaks.pinched.size();
+  const std::size_t rows = problem_.rows().size();
   if (leak_count > 0) learn(problem_, leaks);
-  if (!best_.empty() && balls.size() + leak_count >= best_.size() + kHopefulLeaks) return;
+  know_from(rows);
+  if (!best_.spheres.empty() &&
+      balls.spheres.size() + leak_count >= best_.spheres.size() + kHopefulLeaks)
+    return;
   balls = mended(std::move(balls), std::move(leaks));
-  if (!best_.empty() && balls.size() >= best_.size()) return;
-  goal_.reached(balls.size());
+  if (!best_.spheres.empty() && balls.spheres.size() >= best_.spheres.size()) return;
+  goal_.reached(balls.spheres.size());
   best_ = std::move(balls);
 }
 
@@ -193,12 +239,11 @@ void CoverFitter::widen() {
       candidates_from(clearance_, points, error_, options_.seed + seeds_used_++, local_));
 }
 
-std::vector<Sphere> CoverFitter::mended(std::vector<Sphere> balls, SolidCells::Leaks leaks) {
-  for (; !leaks.empty(); leaks = leaks_of(balls)) {
+CoverFitter::Balls CoverFitter::mended(Balls balls, SolidCells::Leaks leaks) {
+  for (; !leaks.empty(); leaks = leaks_of(balls.spheres)) {
     CoverProblem rest(error_, options_.min_radius, options_.zones);
     learn(rest, leaks);
-    const std::vector<Sphere> more = balls_of(rest, greedy_set_cover(rest.instance()));
-    balls.insert(balls.end(), more.begin(), more.end());
+    balls.append(balls_of(rest, greedy_set_cover(rest.instance())));
   }
   return balls;
 }
@@ -215,17 +260,29 @@ void CoverFitter::forget() {
 }
 
 void CoverFitter::learn(CoverProblem& problem, const SolidCells::Leaks& leaks) {
-  add_rows(problem, leaks.in_solid, kLeakRow * error_, leaks.in_solid);
+  add_rows(problem, leaks.in_solid, {kLeakRadius * kSpacings[spacing_], kLeakDisc}, leaks.in_solid);
   std::vector<Candidate> tiny;
-  for (const Vector3d& p : leaks.pinched) tiny.push_back({p, kPinched});
-  problem.add_rows(leaks.pinched, kFinest * error_);
+  std::vector<CoverProblem::Row> rows;
+  for (const Vector3d& p : leaks.pinched) {
+    tiny.push_back({p, kPinched});
+    rows.push_back({p, kFinest * error_ * local_.scale(p)});
+  }
+  problem.add_rows(rows);
   problem.add_candidates(tiny);
 }
 
-void CoverFitter::add_rows(CoverProblem& problem, const Points& points, double radius,
-                           const Points& starts) {
+void CoverFitter::add_rows(CoverProblem& problem, const Points& points,
+                           const Surroundings& surroundings, const Points& starts) {
   const std::size_t first = problem.rows().size();
-  problem.add_rows(points, radius);
+  std::vector<CoverProblem::Row> rows(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    const Vector3d& p = points[i];
+    const double error = error_ * local_.scale(p);
+    const ClearanceAt at = clearance_(p, kTolerance * error);
+    const double width = cap_width_at(clearance_, p, at, error);
+    rows[i] = {p, surroundings.radius * error, surroundings.disc * (width - error), at.away};
+  });
+  problem.add_rows(rows);
   problem.add_candidates(
       candidates_from(clearance_, starts, error_, options_.seed + seeds_used_++, local_));
   std::vector<Candidate> own;
@@ -237,25 +294,29 @@ void CoverFitter::add_rows(CoverProblem& problem, const Points& points, double r
   problem.add_candidates(own);
 }
 
-std::vector<Sphere> CoverFitter::balls_of(const CoverProblem& problem,
-                                          const Columns& columns) const {
-  std::vector<Sphere> balls;
-  for (const std::size_t c : columns) balls.push_back(problem.ball(c, clearance_));
+CoverFitter::Balls CoverFitter::balls_of(const CoverProblem& problem,
+                                         const Columns& columns) const {
+  Balls balls;
+  for (const std::size_t c : columns) {
+    balls.places.push_back(problem.candidate(c));
+    balls.spheres.push_back(problem.ball(c, clearance_));
+  }
   return balls;
 }
 
 void CoverFitter::report(double share) const {
   if (!options_.progress) return;
-  options_.progress(share, ("covering: " + std::to_string(best_.size()) + " spheres proved" +
-                            (lower_bound_ > 0 ? ", at least " + std::to_string(lower_bound_) : ""))
-                               .c_str());
+  options_.progress(share,
+                    ("covering: " + std::to_string(best_.spheres.size()) + " spheres proved" +
+                     (lower_bound_ > 0 ? ", at least " + std::to_string(lower_bound_) : ""))
+                        .c_str());
 }
 
 SolidCells::Leaks CoverFitter::leaks_of(const std::vector<Sphere>& balls) {
   std::vector<Sphere> all(given_);
   all.insert(all.end(), balls.begin(), balls.end());
   const BallHierarchy hierarchy(all);
-  return cells_.find_leaks({all, hierarchy}, finest(error_), leak_spacing(error_));
+  return cells_->find_leaks({all, hierarchy}, finest(error_), leak_spacing(error_));
 }
 
 }  // namespace spherule::internal

@@ -3,7 +3,9 @@
 
 #include "simplifier/cover.h"
 #include "simplifier/internal/clearance.h"
+#include "simplifier/internal/cover_goal.h"
 #include "simplifier/internal/cover_problem.h"
+#include "simplifier/internal/cover_search.h"
 #include "simplifier/internal/local_error.h"
 #include "simplifier/internal/solid_cells.h"
 #include "simplifier/mesh_distance.h"
@@ -14,6 +16,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +25,7 @@ namespace spherule::internal {
 // Few balls that cover S (covering.md 4 and 8): a greedy set cover, mended where it leaks, is the
 // first proved answer; then rounds look for a cover of fewer balls by local search, spread the
 // balls to where they have the most to spare, and prove the result or learn from where it leaks.
+// Where that no longer helps, cells and rows become finer.
 class CoverFitter {
  public:
   // What the balls `given` cover need not be covered again. Throws Error for an E too small for the
@@ -45,19 +49,23 @@ class CoverFitter {
   using Columns = CoverProblem::Columns;
   using Points = std::vector<Eigen::Vector3d>;
 
-  // How many balls to look for: fewer by `step` than are proved. The step is halved where the
-  // search fails and doubled where it succeeds.
-  struct Goal {
-    std::size_t target = 0;
-    std::size_t proved = 0;
-    std::size_t step = 1;
+  // Balls that stand at candidates.
+  struct Balls {
+    std::vector<Candidate> places;
+    std::vector<Sphere> spheres;
 
-    // Half the way to what is proved, below it.
-    std::size_t easier() const { return std::min(proved - 1, (target + proved) / 2); }
-    void failed();
-    void reached(std::size_t count);
+    void append(const Balls& other);
   };
 
+  // The first proved answer.
+  void begin();
+  // One round; true if fewer balls were proved.
+  bool improve();
+  // Sets out again with cells and rows of the next finer spacing, if that is not too fine; what was
+  // proved and learned stays.
+  bool refine();
+  // Makes the cells of the present spacing, and a problem of their rows and the `candidates`.
+  void pose(const std::vector<Candidate>& candidates);
   // Looks for columns that cover all rows, for the target and for an easier one side by side; true
   // if it finds any. What it found, or came to for the easier one, is left in solution_.
   bool search();
@@ -69,33 +77,44 @@ class CoverFitter {
   // New candidates about the rows that solution_ leaves open.
   void widen();
   // With balls added until nothing leaks.
-  std::vector<Sphere> mended(std::vector<Sphere> balls, SolidCells::Leaks leaks);
+  Balls mended(Balls balls, SolidCells::Leaks leaks);
   // Keeps the problem from growing for ever.
   void forget();
+  // Has the search begin with the rows from this one on.
+  void know_from(std::size_t row);
 
   void learn(CoverProblem& problem, const SolidCells::Leaks& leaks);
-  // Rows at the points, and candidates grown from some of them; a ball about the point itself where
-  // none of all candidates covers a row, so that every row can be covered.
-  void add_rows(CoverProblem& problem, const Points& points, double radius, const Points& starts);
+  // Rows at the points, with surroundings of this radius and disc, shares of E and of how much
+  // further than E balls reach there; candidates grown from some of them; and a ball about the
+  // point itself where no candidate covers a row, so that every row can be covered.
+  struct Surroundings {
+    double radius;
+    double disc;
+  };
+  void add_rows(CoverProblem& problem, const Points& points, const Surroundings& surroundings,
+                const Points& starts);
 
-  std::vector<Sphere> balls_of(const CoverProblem& problem, const Columns& columns) const;
+  Balls balls_of(const CoverProblem& problem, const Columns& columns) const;
   SolidCells::Leaks leaks_of(const std::vector<Sphere>& balls);
   void report(double share) const;
 
   const Clearance& clearance_;
   const MeshDistance& distance_;
   const CoverOptions& options_;
-  double error_;      // E
-  LocalError local_;  // and where it is smaller
-  SolidCells cells_;
+  double error_;             // E
+  LocalError local_;         // and where it is smaller
+  std::size_t spacing_ = 0;  // the number of the cells' spacing
+  std::optional<SolidCells> cells_;
   CoverProblem problem_;
-  Columns solution_;          // the last that was tried
-  std::vector<Sphere> best_;  // proved
-  Goal goal_;
+  std::size_t sampled_ = 0;  // rows that stand for cells; the others were learned
+  CoverSearch::Rows known_;  // that the search begins with
+  Columns solution_;         // the last that was tried
+  Balls best_;               // proved
+  CoverGoal goal_;
   std::vector<Sphere> given_;
   std::size_t lower_bound_ = 0;
   std::uint64_t seeds_used_ = 0;
-  std::uint64_t first_entries_ = 0;  // of the problem as it was when the rounds began
+  std::uint64_t first_entries_ = 0;  // of the problem as it was posed
 };
 
 }  // namespace spherule::internal

@@ -39,9 +39,18 @@ Sphere CoverProblem::ball(std::size_t column, const Clearance& clearance) const 
   return {at.center, std::max(min_radius_, allowed)};
 }
 
-void CoverProblem::add_rows(std::span<const Eigen::Vector3d> points, double radius) {
+Eigen::Vector3d CoverProblem::Row::furthest_from(const Eigen::Vector3d& other) const {
+  if (disc == 0.0) return point;
+  const Eigen::Vector3d to_point = point - other;
+  const Eigen::Vector3d along = to_point - to_point.dot(normal) * normal;
+  const double length = along.norm();
+  return length > 0.0 ? Eigen::Vector3d(point + disc / length * along)
+                      : Eigen::Vector3d(point + disc * normal.unitOrthogonal());
+}
+
+void CoverProblem::add_rows(std::span<const Row> rows) {
   const std::size_t first = rows_.size();
-  for (const Eigen::Vector3d& p : points) rows_.push_back({p, radius * error_.scale(p)});
+  rows_.insert(rows_.end(), rows.begin(), rows.end());
   instance_.row_count = rows_.size();
   cover_rows(0, first);
 }

@@ -16,22 +16,26 @@
 
 namespace spherule::internal {
 
-// The set cover that stands for covering S: rows are points of S, each with the radius of a small
-// ball about it that has to be covered with it, so that its surroundings are covered too; columns
-// are candidates.
+// The set cover that stands for covering S: rows are points of S, each with its surroundings, a
+// small ball or, along the boundary of S, a disc grown by one, which a single ball has to contain;
+// columns are candidates.
 class CoverProblem {
  public:
   using Columns = std::vector<std::size_t>;
   struct Row {
     Eigen::Vector3d point;
-    double radius;
+    double radius;                                      // of the ball
+    double disc = 0.0;                                  // radius of the disc about the point
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // of the disc
+
+    // Of the disc, the point furthest from another.
+    Eigen::Vector3d furthest_from(const Eigen::Vector3d& other) const;
   };
 
   // No ball has a radius below `min_radius`. Zones may have an error of their own.
   CoverProblem(double max_error, double min_radius, std::span<const Zone> zones = {});
 
-  // `radius` holds where E does, and shrinks with the error in zones.
-  void add_rows(std::span<const Eigen::Vector3d> points, double radius);
+  void add_rows(std::span<const Row> rows);
   void add_candidates(std::span<const Candidate> candidates);
 
   const SetCoverInstance& instance() const { return instance_; }
@@ -47,13 +51,13 @@ class CoverProblem {
   // The ball as it is stored: protruding by E at most, by the exact clearance. That of a point of S
   // may be negative as computed; a little less than E can still be proved there.
   Sphere ball(std::size_t column, const Clearance& clearance) const;
-  // How far the small ball of the row lies inside the ball of the candidate; negative: outside.
+  // How far the row's surroundings lie inside the ball of the candidate; negative: outside.
   double margin(const Candidate& candidate, const Row& row) const {
     return margin(candidate, radius(candidate), row);
   }
   // The same for the radius of the candidate as computed before.
   static double margin(const Candidate& candidate, double radius, const Row& row) {
-    return radius - row.radius - (row.point - candidate.center).norm();
+    return radius - row.radius - (row.furthest_from(candidate.center) - candidate.center).norm();
   }
 
   // Forgets all other columns than these; returns the new numbers of the old ones that are kept.

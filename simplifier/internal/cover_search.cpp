@@ -4,6 +4,8 @@
 #include "simplifier/internal/random.h"
 
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace spherule::internal {
 
@@ -20,25 +22,62 @@ void CoverSearch::IndexSet::erase(std::uint32_t i) {
   position_[i] = kAbsent;
 }
 
-CoverSearch::CoverSearch(const SetCoverInstance& instance,
-                         const std::vector<std::vector<std::uint32_t>>& columns_of,
-                         std::span<const std::size_t> start)
-    : rows_of_(instance.columns),
-      columns_of_(columns_of),
-      row_(instance.row_count),
-      score_(instance.columns.size()),
-      moved_at_(instance.columns.size(), 0),
-      may_enter_(instance.columns.size(), 1),
-      chosen_(instance.columns.size()),
-      open_(instance.row_count),
-      entered_last_(std::numeric_limits<std::uint32_t>::max()) {
-  for (std::size_t c = 0; c < instance.columns.size(); ++c) {
-    score_[c] = static_cast<std::int64_t>(instance.columns[c].size());
+CoverSearch::Lists::Lists(std::vector<std::uint32_t> sizes) : begin_(sizes.size()) {
+  std::exclusive_scan(sizes.begin(), sizes.end(), begin_.begin(), std::uint64_t{0});
+  end_ = begin_;
+  numbers_.resize(sizes.empty() ? 0 : begin_.back() + sizes.back());
+}
+
+CoverSearch::Lists CoverSearch::lists_of(std::span<const std::vector<std::uint32_t>> columns_of,
+                                         const Rows& rows) {
+  std::vector<std::uint32_t> sizes;
+  for (const std::uint32_t row : rows.rows) {
+    sizes.push_back(static_cast<std::uint32_t>(columns_of[row].size()));
   }
-  for (std::size_t r = 0; r < instance.row_count; ++r) {
-    open_.insert(static_cast<std::uint32_t>(r));
+  Lists lists(std::move(sizes));
+  for (std::uint32_t i = 0; i < rows.rows.size(); ++i) {
+    for (const std::uint32_t column : columns_of[rows.rows[i]]) lists.append(i, column);
+  }
+  return lists;
+}
+
+CoverSearch::Lists CoverSearch::transposed(std::size_t column_count, const Lists& columns_of,
+                                           std::size_t row_count) {
+  std::vector<std::uint32_t> sizes(column_count, 0);
+  for (std::uint32_t row = 0; row < row_count; ++row) {
+    for (const std::uint32_t column : columns_of[row]) ++sizes[column];
+  }
+  Lists lists(std::move(sizes));
+  for (std::uint32_t row = 0; row < row_count; ++row) {
+    for (const std::uint32_t column : columns_of[row]) lists.append(column, row);
+  }
+  return lists;
+}
+
+CoverSearch::CoverSearch(std::size_t column_count,
+                         std::span<const std::vector<std::uint32_t>> columns_of, const Rows& rows,
+                         std::span<const std::size_t> start)
+    : columns_of_(lists_of(columns_of, rows)),
+      rows_of_(transposed(column_count, columns_of_, rows.rows.size())),
+      row_(rows.rows.size()),
+      score_(column_count, 0),
+      moved_at_(column_count, 0),
+      may_enter_(column_count, 1),
+      chosen_(column_count),
+      open_(rows.rows.size()),
+      entered_last_(std::numeric_limits<std::uint32_t>::max()) {
+  for (std::uint32_t r = 0; r < row_.size(); ++r) {
+    row_[r].weight = rows.weights[r];
+    open_.insert(r);
+    for (const std::uint32_t c : columns_of_[r]) score_[c] += row_[r].weight;
   }
   for (const std::size_t c : start) add(static_cast<std::uint32_t>(c));
+}
+
+std::vector<std::uint32_t> CoverSearch::weights() const {
+  std::vector<std::uint32_t> weights;
+  for (const Row& row : row_) weights.push_back(row.weight);
+  return weights;
 }
 
 void CoverSearch::add(std::uint32_t column) {

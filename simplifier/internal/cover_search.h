@@ -19,11 +19,21 @@ namespace spherule::internal {
 // Deterministic.
 class CoverSearch {
  public:
-  // Starts from the columns `start`. `columns_of` lists the columns that hold each row, one at
-  // least. Both must outlive the search.
-  CoverSearch(const SetCoverInstance& instance,
-              const std::vector<std::vector<std::uint32_t>>& columns_of,
-              std::span<const std::size_t> start);
+  // Some of the rows of an instance, with what they weigh at the start, at least 1.
+  struct Rows {
+    std::vector<std::uint32_t> rows;
+    std::vector<std::uint32_t> weights;
+
+    void add(std::size_t row) {
+      rows.push_back(static_cast<std::uint32_t>(row));
+      weights.push_back(1);
+    }
+  };
+
+  // Starts from the columns `start`, of `column_count` in all. `columns_of` lists the columns that
+  // hold each row of the instance, one at least for those that are to be covered.
+  CoverSearch(std::size_t column_count, std::span<const std::vector<std::uint32_t>> columns_of,
+              const Rows& rows, std::span<const std::size_t> start);
 
   // Drops columns until at most `target` are left, then exchanges columns until every row is
   // covered, about `work` entries of the instance have been visited, or `unneeded` is set from
@@ -33,6 +43,9 @@ class CoverSearch {
 
   // The columns chosen when the fewest rows were open, ties to the first.
   const std::vector<std::uint32_t>& best_columns() const { return best_columns_; }
+  // What the rows weigh now, in the order in which they were given.
+  std::vector<std::uint32_t> weights() const;
+  std::uint64_t work() const { return work_; }
 
  private:
   // A set of small numbers with a fixed order that depends on the calls alone.
@@ -56,8 +69,25 @@ class CoverSearch {
   std::uint32_t best_for(std::uint32_t row) const;
   void weigh_open_rows();
 
-  const std::vector<std::vector<std::uint32_t>>& rows_of_;
-  const std::vector<std::vector<std::uint32_t>>& columns_of_;
+  // For each of several items a list of numbers, one after the other.
+  class Lists {
+   public:
+    explicit Lists(std::vector<std::uint32_t> sizes);
+    void append(std::uint32_t item, std::uint32_t number) { numbers_[end_[item]++] = number; }
+    std::span<const std::uint32_t> operator[](std::uint32_t item) const {
+      return {numbers_.data() + begin_[item], end_[item] - begin_[item]};
+    }
+
+   private:
+    std::vector<std::uint64_t> begin_;
+    std::vector<std::uint64_t> end_;
+    std::vector<std::uint32_t> numbers_;
+  };
+  static Lists lists_of(std::span<const std::vector<std::uint32_t>> columns_of, const Rows& rows);
+  static Lists transposed(std::size_t column_count, const Lists& columns_of, std::size_t row_count);
+
+  Lists columns_of_;
+  Lists rows_of_;
   struct Row {
     std::uint32_t weight = 1;
     std::uint32_t times = 0;       // how many chosen columns cover it

@@ -43,7 +43,8 @@ Candidate shift(const Clearance& clearance, const CoverProblem& problem, const C
   Worst worst = worst_row(problem, here, rows);
   double step = kFirstStep * max_error;
   for (int i = 0; i < kMaxSteps && step >= kLeastStep * max_error; ++i) {
-    const Vector3d to_row = (problem.rows()[worst.row].point - here.center).normalized();
+    const Vector3d furthest = problem.rows()[worst.row].furthest_from(here.center);
+    const Vector3d to_row = (furthest - here.center).normalized();
     Vector3d direction = to_row + at.away;
     // The ball already grows straight away from the row as fast as it moves.
     if (direction.norm() < 1e-3) break;

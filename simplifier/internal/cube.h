@@ -17,11 +17,11 @@ inline Cube cube_of(const Eigen::Vector3d& point, double edge) {
   return {cube.x(), cube.y(), cube.z()};
 }
 
-// Cubes whose edge follows a scale of at most 1, down to the next power of two, with that power.
+// Cubes whose edge follows a scale, down to the next power of two, with that power.
 using GradedCube = std::pair<int, Cube>;
 
 inline GradedCube graded_cube_of(const Eigen::Vector3d& point, double edge, double scale) {
-  const int power = scale >= 1.0 ? 0 : std::ilogb(scale);
+  const int power = std::ilogb(scale);
   return {power, cube_of(point, std::ldexp(edge, power))};
 }
 

@@ -42,7 +42,9 @@ LevelFitter::LevelFitter(const Clearance& clearance, std::span<const Sphere> fin
       error_(options.max_error - reserve_of(clearance, options.max_error)),
       local_(error_, {}),
       problem_(error_, options.min_radius) {
-  for (const Sphere& ball : finer) problem_.add_rows(std::array{ball.center}, ball.radius);
+  std::vector<CoverProblem::Row> rows;
+  for (const Sphere& ball : finer) rows.push_back({ball.center, ball.radius});
+  problem_.add_rows(rows);
 }
 
 SphereLevel LevelFitter::run() {
@@ -97,10 +99,12 @@ void LevelFitter::improve(Columns& solution) {
   Columns tried = solution;
   std::size_t step = std::max<std::size_t>(1, solution.size() / kLargestStep);
   std::uint64_t seed = options_.seed;
+  CoverSearch::Rows all;
+  for (std::size_t row = 0; row < finer_.size(); ++row) all.add(row);
   for (int round = 0; round < options_.effort && solution.size() > 1; ++round) {
     const std::size_t target = solution.size() - std::min(step, solution.size() - 1);
     const std::atomic<bool> unneeded{false};
-    CoverSearch search(problem_.instance(), problem_.columns_of(), tried);
+    CoverSearch search(problem_.instance().columns.size(), problem_.columns_of(), all, tried);
     const bool covers = search.reach(target, kWork * problem_.entries(), ++seed, unneeded);
     tried.assign(search.best_columns().begin(), search.best_columns().end());
     if (covers) {

@@ -3,6 +3,7 @@
 
 #include "simplifier/internal/cube.h"
 #include "simplifier/internal/solid_query.h"
+#include "simplifier/internal/surface_extent.h"
 #include "spheretree/rounding.h"
 
 #include <tbb/parallel_for.h>
@@ -21,6 +22,9 @@ constexpr double kGrading = 0.5;  // of the clearance, by which deeper cells are
 // Shares of the cells' spacing.
 constexpr double kThinning = 1.2;  // edge of the cubes with one boundary point each
 constexpr double kSampleTolerance = 0.01;
+// Halving the longest edge of a box divides its half diagonal by this at most, so that those of the
+// largest cells that are small enough are at least so much less.
+constexpr double kShrinking = 1.42;
 
 // Cells are only ever halved, along the seams of every set of balls that was examined. From so many
 // times the first number on it is cheaper to begin again.
@@ -31,8 +35,16 @@ constexpr std::size_t kForgetting = 8;
 using Eigen::Vector3d;
 
 SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
-                       const LocalError& error, double spacing)
-    : clearance_(clearance), distance_(distance), error_(error), spacing_(spacing) {
+                       const LocalError& error, double max_error, double share)
+    : clearance_(clearance), distance_(distance), error_(error), spacing_(share * max_error) {
+  // Balls of S that touch the boundary in the cell are large enough for its size, and remain so
+  // this far along it.
+  const auto is_flat = [&](const BoxCell& cell, const ClearanceAt& at, double local_error) {
+    const double width = cell.reach() / share;
+    if (width < local_error || width > kWidestCap * local_error) return false;
+    const double inside = inside_radius(width, local_error) + cell.reach();
+    return touched_by(clearance, cell.center, at, inside, local_error);
+  };
   enum class Step : char { kDrop, kKeep, kHalve };
   std::vector<Cell> level{{BoxCell::around(clearance.box()), false, false}};
   std::vector<Step> steps;
@@ -46,8 +58,10 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
       if (state.outside) return;
       cell.inside = state.inside;
       cell.center_inside = state.center_inside;
-      const double largest = spacing * error_.scale(cell.box.center, reach);
-      steps[i] = reach > largest + kGrading * std::max(0.0, at.lower) ? Step::kHalve : Step::kKeep;
+      const double local_error = max_error * error_.scale(cell.box.center, reach);
+      const double deep = kGrading * std::max(0.0, at.lower);
+      const bool fine = reach <= share * local_error + deep || is_flat(cell.box, at, local_error);
+      steps[i] = fine ? Step::kKeep : Step::kHalve;
     });
     std::vector<Cell> next;
     for (std::size_t i = 0; i < level.size(); ++i) {
@@ -84,7 +98,8 @@ std::vector<Vector3d> SolidCells::sample() const {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (usable[i] == 0) continue;
     const auto cube = [&] {
-      return graded_cube_of(points[i], kThinning * spacing_, error_.scale(points[i]));
+      const double scale = kShrinking * cells_[i].box.reach() / spacing_;
+      return graded_cube_of(points[i], kThinning * spacing_, scale);
     };
     if (cells_[i].inside || taken.insert(cube()).second) {
       kept.push_back(points[i]);

@@ -19,10 +19,13 @@ namespace spherule::internal {
 class SolidCells {
  public:
   // Halves the box of S until a cell lies outside of S (it is forgotten) or its half diagonal is at
-  // most `spacing` plus half the clearance: a ball that covers part of the deep inside covers much
-  // of it. This and the other lengths below hold where E does, and shrink with the error in zones.
+  // most the `share` of E plus half the clearance, since a ball that covers part of the deep inside
+  // covers much of it, or the share of how far balls reach along the boundary there
+  // (surface_extent.h). So the number of cells grows with the edges and thin parts of S over E, and
+  // where S is flat only with its area over E times the radius of the largest balls in it. This and
+  // the other lengths below hold where E does, and shrink with the error in zones.
   SolidCells(const Clearance& clearance, const MeshDistance& distance, const LocalError& error,
-             double spacing);
+             double max_error, double share);
 
   std::size_t size() const { return cells_.size(); }
 
@@ -66,7 +69,7 @@ class SolidCells {
   const Clearance& clearance_;
   const MeshDistance& distance_;
   const LocalError& error_;
-  double spacing_;
+  double spacing_;           // the share of E
   std::vector<Cell> first_;  // as made
   std::vector<Cell> cells_;
 };
