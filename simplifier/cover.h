@@ -31,7 +31,7 @@ struct CoverOptions {
   double min_internal_diameter = 0.0;
   std::uint64_t seed = 1;
   // kCover: rounds of looking for fewer balls than the first proved answer; 0: none.
-  int effort = 100;
+  int effort = 60;
   // kCover: no new round begins after so many seconds; 0 sets no limit. The result then depends on
   // the machine.
   double seconds = 0.0;

@@ -154,7 +154,7 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
   const MeshDistance distance(mesh);
   const Clearance clearance(external, distance);
   const internal::LocalError error(max_error, {});
-  const internal::SolidCells cells(clearance, distance, error, kCells * max_error);
+  const internal::SolidCells cells(clearance, distance, error, max_error, kCells, 1.0);
   // S holds M grown by the padding, and of that the box has the corners.
   const double beyond_by = kBeyond * max_error + 2.0 * external.padding;
   const std::vector<char> at_edge =

@@ -70,7 +70,7 @@ std::vector<Sphere> grown_balls(const Clearance& clearance, const MeshDistance& 
   for (const Sphere& ball : limit) limits.push_back(ball.radius);
   internal::BallGrowth growth(balls, limits);
   const double spacing = internal::CoverFitter::leak_spacing(max_error);
-  SolidCells cells(clearance, distance, error, kCells * max_error);
+  SolidCells cells(clearance, distance, error, max_error, kCells);
   for (int round = 0; round < kRounds; ++round) {
     std::vector<Sphere> grown = growth.balls();
     const std::vector<Sphere> all = joined(grown, added);

@@ -4,6 +4,7 @@
 #include "simplifier/internal/cover_bound.h"
 #include "simplifier/internal/cover_moves.h"
 #include "simplifier/internal/lazy_cover_search.h"
+#include "simplifier/internal/random.h"
 #include "simplifier/internal/solid_query.h"
 #include "simplifier/internal/surface_extent.h"
 #include "spheretree/error.h"
@@ -32,7 +33,7 @@ constexpr std::array kSpacings{0.7, 0.5, 0.3, 0.2, 0.14};
 constexpr std::size_t kFewCells = 10000;
 constexpr std::size_t kManyCells = 30000;
 // Rounds without a better answer, after which cells become finer, or which end the search.
-constexpr int kPatience = 10;
+constexpr int kPatience = 3;
 constexpr int kConverged = 40;
 
 // Surroundings of rows: the radii as shares of the cells' spacing and, in all, of E; the discs as
@@ -150,7 +151,7 @@ bool CoverFitter::improve() {
 }
 
 bool CoverFitter::refine() {
-  if (cells_->size() > kManyCells || spacing_ + 1 == kSpacings.size()) return false;
+  if (cells_made_ > kManyCells || spacing_ + 1 == kSpacings.size()) return false;
   ++spacing_;
   const std::vector<CoverProblem::Row> rows = problem_.rows();
   const std::size_t learned = sampled_;
@@ -167,6 +168,7 @@ bool CoverFitter::refine() {
 void CoverFitter::pose(const std::vector<Candidate>& candidates) {
   problem_ = CoverProblem(error_, options_.min_radius, options_.zones);
   problem_.add_candidates(candidates);
+  cells_made_ = cells_->size();
   Points sample = cells_->sample();
   const BallHierarchy given(given_);
   std::erase_if(sample, [&](const Vector3d& p) { return given.nearest(p, 0.0).upper < 0.0; });
@@ -234,6 +236,11 @@ void CoverFitter::widen() {
   const std::vector<std::uint32_t> open = some_of(open_rows(problem_, solution_), kOpenRows);
   Points points;
   for (const std::uint32_t row : open) points.push_back(problem_.rows()[row].point);
+  // Where few are left open it takes new places for other balls, too.
+  Random random(options_.seed + seeds_used_++);
+  while (points.size() < kOpenRows) {
+    points.push_back(problem_.rows()[random.index(problem_.rows().size())].point);
+  }
   problem_.add_candidates(reach_for(clearance_, problem_, solution_, open));
   problem_.add_candidates(
       candidates_from(clearance_, points, error_, options_.seed + seeds_used_++, local_));

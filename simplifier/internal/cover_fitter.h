@@ -105,6 +105,7 @@ class CoverFitter {
   LocalError local_;         // and where it is smaller
   std::size_t spacing_ = 0;  // the number of the cells' spacing
   std::optional<SolidCells> cells_;
+  std::size_t cells_made_ = 0;  // before the proofs halved some
   CoverProblem problem_;
   std::size_t sampled_ = 0;  // rows that stand for cells; the others were learned
   CoverSearch::Rows known_;  // that the search begins with

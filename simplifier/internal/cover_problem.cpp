@@ -44,8 +44,9 @@ Eigen::Vector3d CoverProblem::Row::furthest_from(const Eigen::Vector3d& other) c
   const Eigen::Vector3d to_point = point - other;
   const Eigen::Vector3d along = to_point - to_point.dot(normal) * normal;
   const double length = along.norm();
-  return length > 0.0 ? Eigen::Vector3d(point + disc / length * along)
-                      : Eigen::Vector3d(point + disc * normal.unitOrthogonal());
+  // What is left of a vector along the normal is rounding, of any direction.
+  return length > 1e-9 * to_point.norm() ? Eigen::Vector3d(point + disc / length * along)
+                                         : Eigen::Vector3d(point + disc * normal.unitOrthogonal());
 }
 
 void CoverProblem::add_rows(std::span<const Row> rows) {

@@ -3,7 +3,6 @@
 
 #include "simplifier/internal/cube.h"
 #include "simplifier/internal/solid_query.h"
-#include "simplifier/internal/surface_extent.h"
 #include "spheretree/rounding.h"
 
 #include <tbb/parallel_for.h>
@@ -35,13 +34,13 @@ constexpr std::size_t kForgetting = 8;
 using Eigen::Vector3d;
 
 SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
-                       const LocalError& error, double max_error, double share)
+                       const LocalError& error, double max_error, double share, double widest_cap)
     : clearance_(clearance), distance_(distance), error_(error), spacing_(share * max_error) {
   // Balls of S that touch the boundary in the cell are large enough for its size, and remain so
   // this far along it.
   const auto is_flat = [&](const BoxCell& cell, const ClearanceAt& at, double local_error) {
     const double width = cell.reach() / share;
-    if (width < local_error || width > kWidestCap * local_error) return false;
+    if (width < local_error || width > widest_cap * local_error) return false;
     const double inside = inside_radius(width, local_error) + cell.reach();
     return touched_by(clearance, cell.center, at, inside, local_error);
   };

@@ -5,6 +5,7 @@
 #include "simplifier/internal/clearance.h"
 #include "simplifier/internal/local_error.h"
 #include "simplifier/internal/proof.h"
+#include "simplifier/internal/surface_extent.h"
 #include "simplifier/mesh_distance.h"
 
 #include <Eigen/Core>
@@ -21,11 +22,12 @@ class SolidCells {
   // Halves the box of S until a cell lies outside of S (it is forgotten) or its half diagonal is at
   // most the `share` of E plus half the clearance, since a ball that covers part of the deep inside
   // covers much of it, or the share of how far balls reach along the boundary there
-  // (surface_extent.h). So the number of cells grows with the edges and thin parts of S over E, and
-  // where S is flat only with its area over E times the radius of the largest balls in it. This and
-  // the other lengths below hold where E does, and shrink with the error in zones.
+  // (surface_extent.h; `widest_cap` times E at most). So the number of cells grows with the edges
+  // and thin parts of S over E, and where S is flat only with its area over E times the radius of
+  // the largest balls in it. This and the other lengths below hold where E does, and shrink with
+  // the error in zones.
   SolidCells(const Clearance& clearance, const MeshDistance& distance, const LocalError& error,
-             double max_error, double share);
+             double max_error, double share, double widest_cap = kWidestCap);
 
   std::size_t size() const { return cells_.size(); }
 

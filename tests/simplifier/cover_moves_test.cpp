@@ -9,6 +9,7 @@
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +32,11 @@ struct Scene {
   CoverProblem problem{kError, 0.0};
 
   explicit Scene(Random& random) {
-    problem.add_rows(points_on_surface(cube(), 2000, random), 0.02 * kError);
+    std::vector<CoverProblem::Row> rows;
+    for (const Vector3d& p : points_on_surface(cube(), 2000, random)) {
+      rows.push_back({p, 0.02 * kError});
+    }
+    problem.add_rows(rows);
     std::vector<Candidate> candidates;
     while (candidates.size() < 3000) {
       const Vector3d p(random.unit(), random.unit(), random.unit());
@@ -53,6 +58,31 @@ double least_margin(const CoverProblem& problem, const Candidate& candidate,
     least = std::min(least, problem.margin(candidate, problem.rows()[row]));
   }
   return least;
+}
+
+TEST(CoverMoves, ARowsSurroundingsAreADiscGrownByABall) {
+  Random random(13);
+  const CoverProblem problem{kError, 0.0};
+  for (int i = 0; i < 200; ++i) {
+    const double disc = i % 4 == 0 ? 0.0 : random.between(0.0, 0.5);
+    const CoverProblem::Row row{random.in_box({Vector3d(-1, -1, -1), Vector3d(1, 1, 1)}),
+                                random.between(0.0, 0.1), disc, random.direction()};
+    const Candidate candidate{i % 10 == 0
+                                  ? Vector3d(row.point + 0.3 * row.normal)
+                                  : random.in_box({Vector3d(-1, -1, -1), Vector3d(1, 1, 1)}),
+                              random.between(0.0, 1.0)};
+    const Vector3d across = row.normal.unitOrthogonal();
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3600; ++k) {
+      const Eigen::AngleAxisd turn(k * 6.283185307179586 / 3600.0, row.normal);
+      const Vector3d rim = row.point + row.disc * (turn * across);
+      least =
+          std::min(least, problem.radius(candidate) - row.radius - (rim - candidate.center).norm());
+    }
+    const double margin = problem.margin(candidate, row);
+    EXPECT_LE(margin, least + 1e-12);
+    EXPECT_GE(margin, least - 1e-5);
+  }
 }
 
 TEST(CoverMoves, AShiftedBallHasNoLessToSpareAndItsClearanceIsABound) {

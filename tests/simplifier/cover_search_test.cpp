@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/cover_search.h"
 
+#include "simplifier/internal/lazy_cover_search.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <set>
 #include <vector>
 
 namespace spherule::test {
 namespace {
 
 using internal::CoverSearch;
+using internal::LazyCoverSearch;
 const std::atomic<bool> kNeeded{false};
 
 using Rows = std::vector<std::uint32_t>;
@@ -55,6 +59,21 @@ bool covers_all(const SetCoverInstance& instance, const std::vector<std::uint32_
   return std::ranges::all_of(covered, [](char c) { return c != 0; });
 }
 
+CoverSearch::Rows rows_of(const SetCoverInstance& instance, std::size_t step = 1) {
+  CoverSearch::Rows rows;
+  for (std::size_t row = 0; row < instance.row_count; row += step) rows.add(row);
+  return rows;
+}
+
+CoverSearch search_over(const SetCoverInstance& instance, const std::vector<Rows>& columns_of,
+                        const std::vector<std::size_t>& start) {
+  return {instance.columns.size(), columns_of, rows_of(instance), start};
+}
+
+std::vector<std::uint32_t> narrowed(const std::vector<std::size_t>& columns) {
+  return {columns.begin(), columns.end()};
+}
+
 TEST(CoverSearch, FindsPlantedCoversThatGreedyMisses) {
   Random random(1);
   std::size_t greedy_sum = 0;
@@ -64,7 +83,7 @@ TEST(CoverSearch, FindsPlantedCoversThatGreedyMisses) {
     const std::vector<std::size_t> greedy = greedy_set_cover(made.instance);
     greedy_sum += greedy.size();
     known_sum += made.known;
-    CoverSearch search(made.instance, made.columns_of, greedy);
+    CoverSearch search = search_over(made.instance, made.columns_of, greedy);
     EXPECT_TRUE(search.reach(made.known, 200'000'000, 5, kNeeded));
     EXPECT_LE(search.best_columns().size(), made.known);
     EXPECT_TRUE(covers_all(made.instance, search.best_columns()));
@@ -83,10 +102,10 @@ TEST(CoverSearch, SaysSoWhereThereIsNoCover) {
       instance.columns.push_back({row});
     }
   }
-  CoverSearch search(instance, columns_of, greedy_set_cover(instance));
+  CoverSearch search = search_over(instance, columns_of, greedy_set_cover(instance));
   EXPECT_FALSE(search.reach(11, 100'000, 1, kNeeded));
   EXPECT_EQ(search.best_columns().size(), 11U);
-  CoverSearch enough(instance, columns_of, {});
+  CoverSearch enough = search_over(instance, columns_of, {});
   EXPECT_TRUE(enough.reach(12, 100'000, 1, kNeeded));
   EXPECT_TRUE(covers_all(instance, enough.best_columns()));
 }
@@ -95,7 +114,8 @@ TEST(CoverSearch, IsEqualForEqualSeeds) {
   Random random(2);
   const Planted made = planted(random, 300, 20, 400);
   const auto run = [&](std::uint64_t seed) {
-    CoverSearch search(made.instance, made.columns_of, greedy_set_cover(made.instance));
+    CoverSearch search =
+        search_over(made.instance, made.columns_of, greedy_set_cover(made.instance));
     search.reach(made.known + 2, 300'000, seed, kNeeded);
     return search.best_columns();
   };
@@ -106,9 +126,43 @@ TEST(CoverSearch, IsEqualForEqualSeeds) {
 TEST(CoverSearch, NothingToCoverIsCovered) {
   const SetCoverInstance instance;
   const std::vector<Rows> columns_of;
-  CoverSearch search(instance, columns_of, {});
+  CoverSearch search = search_over(instance, columns_of, {});
   EXPECT_TRUE(search.reach(0, 0, 1, kNeeded));
   EXPECT_TRUE(search.best_columns().empty());
+}
+
+// Rows that are not asked for may stay open; heavier ones are covered first.
+TEST(CoverSearch, KnowsOnlyItsRowsAndTheirWeights) {
+  SetCoverInstance instance{3, {{0}, {1}, {2}}};
+  const std::vector<Rows> columns_of = {{0}, {1}, {2}};
+  CoverSearch search(3, columns_of, {{0, 2}, {1, 9}}, std::vector<std::size_t>{0});
+  EXPECT_FALSE(search.reach(1, 10, 1, kNeeded));
+  EXPECT_TRUE(search.reach(2, 1000, 1, kNeeded));
+  EXPECT_EQ(search.best_columns().size(), 2U);
+  EXPECT_GE(search.weights().back(), 9U);
+}
+
+TEST(LazyCoverSearch, CoversAllRowsThoughItBeginsWithFew) {
+  Random random(3);
+  for (int i = 0; i < 20; ++i) {
+    const Planted made = planted(random, 400, 10 + random.index(10), 200);
+    LazyCoverSearch search{made.instance, made.columns_of, rows_of(made.instance, 40),
+                           greedy_set_cover(made.instance)};
+    EXPECT_TRUE(search.reach(made.known, 200'000'000, 5, kNeeded));
+    EXPECT_LE(search.columns.size(), made.known);
+    EXPECT_TRUE(covers_all(made.instance, narrowed(search.columns)));
+    EXPECT_EQ(search.rows.rows.size(), search.rows.weights.size());
+    const std::set<std::uint32_t> distinct(search.rows.rows.begin(), search.rows.rows.end());
+    EXPECT_EQ(distinct.size(), search.rows.rows.size());
+  }
+}
+
+TEST(LazyCoverSearch, SaysSoWhereItsBudgetEndsBeforeAllRowsAreCovered) {
+  Random random(4);
+  const Planted made = planted(random, 400, 20, 200);
+  LazyCoverSearch search{made.instance, made.columns_of, rows_of(made.instance, 40), {}};
+  EXPECT_FALSE(search.reach(made.known - 8, 100'000, 5, kNeeded));
+  EXPECT_LE(search.columns.size(), made.known - 8);
 }
 
 }  // namespace

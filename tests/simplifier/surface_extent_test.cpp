@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/internal/surface_extent.h"
+
+#include "simplifier/external_spheres.h"
+
+#include <Eigen/Core>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+using internal::cap_width;
+using internal::cap_width_at;
+using internal::inside_radius;
+using internal::touched_by;
+
+constexpr double kSize = 100.0;
+constexpr double kError = 1.0;
+
+// S is a cube.
+struct Box {
+  ExternalSpheres external;
+  Clearance clearance;
+
+  Box() : external(make()), clearance(external) {}
+  static ExternalSpheres make() {
+    ExternalSpheres made;
+    made.box = {Vector3d::Zero(), Vector3d::Constant(kSize)};
+    return made;
+  }
+};
+
+TEST(SurfaceExtent, ACapIsAsWideAsItsGeometrySays) {
+  for (const double inside : {0.0, 0.3, 5.0, 400.0}) {
+    const double width = cap_width(inside, kError);
+    // A corner of the cap is on the ball of radius inside + E.
+    EXPECT_NEAR(std::hypot(inside, width), inside + kError, 1e-9);
+    EXPECT_NEAR(inside_radius(width, kError), inside, 1e-9);
+  }
+}
+
+TEST(SurfaceExtent, BallsThatTouchNearAnEdgeAreNoLargerThanTheWayToIt) {
+  const Box box;
+  for (const double way : {0.0, 2.0, 10.0, 45.0}) {
+    for (const double depth : {-0.5, 0.0, 1.0}) {
+      const Vector3d point(50.0, way, depth);
+      const ClearanceAt at = box.clearance(point);
+      if (depth > way || at.away != Vector3d::UnitZ()) continue;
+      EXPECT_TRUE(touched_by(box.clearance, point, at, way, kError)) << way << " " << depth;
+      EXPECT_FALSE(touched_by(box.clearance, point, at, way + 0.5, kError)) << way << " " << depth;
+      const double width = cap_width_at(box.clearance, point, at, kError);
+      EXPECT_LE(width, cap_width(way + 0.5, kError));
+      EXPECT_GE(width * 1.4, std::min(cap_width(way, kError), 15.0)) << way << " " << depth;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test
