@@ -40,7 +40,8 @@ constexpr int kConverged = 40;
 // shares of how much further than E balls reach.
 constexpr double kCellRadius = 0.3;
 constexpr double kCellDisc = 0.05;
-constexpr double kLeakRadius = 0.1;  // of the rows that leaks become
+constexpr double kLargestDisc = 0.5;  // of E: a ball about the point itself contains them all
+constexpr double kLeakRadius = 0.1;   // of the rows that leaks become
 constexpr double kLeakDisc = 0.015;
 
 // Shares of E.
@@ -158,6 +159,7 @@ bool CoverFitter::refine() {
   cells_.emplace(clearance_, distance_, local_, error_, kSpacings[spacing_]);
   pose(best_.places);
   problem_.add_rows(std::span(rows).subspan(learned));
+  add_own(problem_, sampled_);
   know_from(sampled_);
   solution_.resize(best_.places.size());
   std::iota(solution_.begin(), solution_.end(), std::size_t{0});
@@ -287,13 +289,18 @@ void CoverFitter::add_rows(CoverProblem& problem, const Points& points,
     const double error = error_ * local_.scale(p);
     const ClearanceAt at = clearance_(p, kTolerance * error);
     const double width = cap_width_at(clearance_, p, at, error);
-    rows[i] = {p, surroundings.radius * error, surroundings.disc * (width - error), at.away};
+    const double disc = std::min(surroundings.disc * (width - error), kLargestDisc * error);
+    rows[i] = {p, surroundings.radius * error, disc, at.away};
   });
   problem.add_rows(rows);
   problem.add_candidates(
       candidates_from(clearance_, starts, error_, options_.seed + seeds_used_++, local_));
+  add_own(problem, first);
+}
+
+void CoverFitter::add_own(CoverProblem& problem, std::size_t row) const {
   std::vector<Candidate> own;
-  for (std::size_t row = first; row < problem.rows().size(); ++row) {
+  for (; row < problem.rows().size(); ++row) {
     if (!problem.columns_of()[row].empty()) continue;
     const Vector3d& p = problem.rows()[row].point;
     own.push_back({p, std::max(0.0, clearance_(p).lower)});

@@ -84,9 +84,11 @@ class CoverFitter {
   void know_from(std::size_t row);
 
   void learn(CoverProblem& problem, const SolidCells::Leaks& leaks);
+  // A ball about the point itself for each of the rows from this one on that no candidate covers,
+  // so that every row can be covered.
+  void add_own(CoverProblem& problem, std::size_t row) const;
   // Rows at the points, with surroundings of this radius and disc, shares of E and of how much
-  // further than E balls reach there; candidates grown from some of them; and a ball about the
-  // point itself where no candidate covers a row, so that every row can be covered.
+  // further than E balls reach there, that can be covered; and candidates grown from some of them.
   struct Surroundings {
     double radius;
     double disc;

@@ -3,6 +3,7 @@
 
 #include "simplifier/internal/random.h"
 
+#include <cassert>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -67,6 +68,7 @@ CoverSearch::CoverSearch(std::size_t column_count,
       open_(rows.rows.size()),
       entered_last_(std::numeric_limits<std::uint32_t>::max()) {
   for (std::uint32_t r = 0; r < row_.size(); ++r) {
+    assert(!columns_of_[r].empty());
     row_[r].weight = rows.weights[r];
     open_.insert(r);
     for (const std::uint32_t c : columns_of_[r]) score_[c] += row_[r].weight;

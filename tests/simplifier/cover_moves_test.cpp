@@ -148,6 +148,18 @@ TEST(CoverEffort, MoreOfItNeverTakesMoreSpheresAndIsProved) {
   }
 }
 
+// Until cells and rows have become finer, with what was learned before.
+TEST(CoverEffort, ALongSearchTakesFewerSpheresAndIsProved) {
+  for (const char* name : effort(std::vector{"cube", "l-bracket"}, 1)) {
+    SCOPED_TRACE(name);
+    const TriangleMesh mesh = mesh_named(name);
+    const Fit quick = fit(mesh, {}, {.max_error = 0.06, .effort = 0});
+    const Fit thorough = fit(mesh, {}, {.max_error = 0.06, .effort = 30});
+    EXPECT_LT(thorough.cover.spheres.size(), quick.cover.spheres.size());
+    EXPECT_TRUE(certificate_of(mesh, thorough, thorough.cover.spheres).covered);
+  }
+}
+
 TEST(CoverEffort, AnEndInTimeComesToAnEndAndIsProved) {
   const TriangleMesh mesh = mesh_named("l-bracket");
   CoverOptions options;
