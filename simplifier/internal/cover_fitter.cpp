@@ -53,7 +53,7 @@ constexpr std::size_t kStartsPerRow = 10;  // a start for so many rows
 constexpr std::size_t kMinStarts = 2000;
 constexpr std::size_t kMaxStarts = 10000;
 
-constexpr std::uint64_t kWork = 20;     // of a search: visits per entry of the problem
+constexpr std::uint64_t kWork = 60;     // of a search: visits per entry of the rows it begins with
 constexpr std::size_t kSampling = 10;   // a search begins with one of so many rows
 constexpr std::size_t kForgetting = 4;  // times as large as it was the problem may grow
 // So many leaks more than there are balls to gain may still be mended by fewer balls.
@@ -204,10 +204,11 @@ bool CoverFitter::search() {
   std::array<std::optional<LazyCoverSearch>, 2> searches;
   std::array<bool, 2> covers{};
   std::array<std::atomic<bool>, 2> unneeded{};  // the second, if the first succeeds
+  const std::uint64_t entries_per_row = problem_.entries() / problem_.rows().size();
+  const std::uint64_t work = kWork * entries_per_row * known_.rows.size();
   tbb::parallel_for(std::size_t{0}, searches.size(), [&](std::size_t i) {
     searches[i].emplace(problem_.instance(), problem_.columns_of(), known_, solution_);
-    covers[i] = searches[i]->reach(targets[i], kWork * problem_.entries(),
-                                   options_.seed + seeds_used_ + i, unneeded[i]);
+    covers[i] = searches[i]->reach(targets[i], work, options_.seed + seeds_used_ + i, unneeded[i]);
     if (i == 0) unneeded[1] = covers[0];
   });
   seeds_used_ += searches.size();
