@@ -144,7 +144,7 @@ TEST(Cut, HoldsAllSpheresInAtMostSoManyBalls) {
   for (const Family& family : sphere_families(150, 3)) {
     SCOPED_TRACE(family.name);
     const SphereTree tree = build_tree(family.spheres);
-    for (const std::size_t count : effort(std::vector{20U, 150U, 149U, 1U, 2U, 1000U}, 2)) {
+    for (const std::size_t count : {1U, 2U, 20U, 149U, 150U, 1000U}) {
       const std::vector<Sphere> balls = cut(tree, count);
       EXPECT_LE(balls.size(), count);
       EXPECT_TRUE(count < 150 || balls.size() == 150U);
