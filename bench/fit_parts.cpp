@@ -18,7 +18,7 @@ void check_promises(const Simplification& fit, const std::string& part) {
 namespace {
 
 // Rounds of the search: fewer than by default, since the workpiece is large for its E.
-constexpr int kEffort = 16;
+constexpr int kEffort = 30;
 
 FitRecord fit(Part& part) {
   SimplifyOptions options;
