@@ -236,7 +236,8 @@ void CoverFitter::prove_or_learn() {
 }
 
 void CoverFitter::widen() {
-  const std::vector<std::uint32_t> open = some_of(open_rows(problem_, solution_), kOpenRows);
+  const std::vector<std::uint32_t> open =
+      some_of(open_rows(problem_.instance(), solution_), kOpenRows);
   Points points;
   for (const std::uint32_t row : open) points.push_back(problem_.rows()[row].point);
   // Where few are left open it takes new places for other balls, too.

@@ -35,15 +35,6 @@ bool differs(const Candidate& a, const Candidate& b) {
 
 }  // namespace
 
-std::vector<std::uint32_t> open_rows(const CoverProblem& problem, const Columns& solution) {
-  const std::vector<std::uint32_t> times = problem.times_covered(solution);
-  std::vector<std::uint32_t> open;
-  for (std::uint32_t row = 0; row < times.size(); ++row) {
-    if (times[row] == 0) open.push_back(row);
-  }
-  return open;
-}
-
 void spread(const Clearance& clearance, CoverProblem& problem, Columns& solution) {
   const auto exclusive = exclusive_rows(problem, solution);
   std::vector<Candidate> shifted(solution.size());

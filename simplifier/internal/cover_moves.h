@@ -10,10 +10,6 @@
 
 namespace spherule::internal {
 
-// The rows that no column of the solution covers.
-std::vector<std::uint32_t> open_rows(const CoverProblem& problem,
-                                     const CoverProblem::Columns& solution);
-
 // Replaces each ball of the solution by one shifted to have the most to spare over the rows that it
 // alone covers, as long as no row opens. The shifted balls become candidates of the problem.
 void spread(const Clearance& clearance, CoverProblem& problem, CoverProblem::Columns& solution);

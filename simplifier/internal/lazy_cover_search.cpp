@@ -21,14 +21,7 @@ bool LazyCoverSearch::reach(std::size_t target, std::uint64_t work, std::uint64_
     rows.weights = search.weights();
     done += search.work();
     if (!covers) return false;
-    std::vector<char> covered(instance.row_count, 0);
-    for (const std::size_t c : columns) {
-      for (const std::uint32_t row : instance.columns[c]) covered[row] = 1;
-    }
-    std::vector<std::uint32_t> open;
-    for (std::uint32_t row = 0; row < instance.row_count; ++row) {
-      if (covered[row] == 0) open.push_back(row);
-    }
+    const std::vector<std::uint32_t> open = open_rows(instance, columns);
     if (open.empty()) return true;
     if (done >= work || unneeded) return false;
     const std::size_t count = std::min(open.size(), rows.rows.size() / kShare + kLeast);

@@ -113,7 +113,7 @@ void LevelFitter::improve(Columns& solution) {
       continue;
     }
     step = std::max<std::size_t>(1, step / 2);
-    const std::vector<std::uint32_t> open = open_rows(problem_, tried);
+    const std::vector<std::uint32_t> open = open_rows(problem_.instance(), tried);
     std::vector<Vector3d> points;
     for (const std::uint32_t row : open) points.push_back(finer_[row].center);
     problem_.add_candidates(reach_for(clearance_, problem_, tried, open));

@@ -61,4 +61,17 @@ std::vector<std::size_t> greedy_set_cover(const SetCoverInstance& instance) {
   return without_redundant(instance, std::move(chosen));
 }
 
+std::vector<std::uint32_t> open_rows(const SetCoverInstance& instance,
+                                     const std::vector<std::size_t>& columns) {
+  std::vector<char> covered(instance.row_count, 0);
+  for (const std::size_t c : columns) {
+    for (const std::uint32_t row : instance.columns[c]) covered[row] = 1;
+  }
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t row = 0; row < instance.row_count; ++row) {
+    if (covered[row] == 0) open.push_back(row);
+  }
+  return open;
+}
+
 }  // namespace spherule

@@ -20,4 +20,8 @@ struct SetCoverInstance {
 // column covers stay open. Returns column indices in the order they were taken. Deterministic.
 std::vector<std::size_t> greedy_set_cover(const SetCoverInstance& instance);
 
+// The rows that none of the columns covers, in order.
+std::vector<std::uint32_t> open_rows(const SetCoverInstance& instance,
+                                     const std::vector<std::size_t>& columns);
+
 }  // namespace spherule

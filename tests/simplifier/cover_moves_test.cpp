@@ -109,11 +109,11 @@ TEST(CoverMoves, SpreadingOpensNoRowAndGivesMoreToSpare) {
   Random random(12);
   Scene scene(random);
   CoverProblem::Columns solution = greedy_set_cover(scene.problem.instance());
-  ASSERT_TRUE(open_rows(scene.problem, solution).empty());
+  ASSERT_TRUE(open_rows(scene.problem.instance(), solution).empty());
   const CoverProblem::Columns before = solution;
   spread(scene.clearance, scene.problem, solution);
   EXPECT_EQ(solution.size(), before.size());
-  EXPECT_TRUE(open_rows(scene.problem, solution).empty());
+  EXPECT_TRUE(open_rows(scene.problem.instance(), solution).empty());
   EXPECT_NE(solution, before);
 }
 
@@ -122,7 +122,7 @@ TEST(CoverMoves, BallsReachForRowsThatAreOpen) {
   Scene scene(random);
   CoverProblem::Columns solution = greedy_set_cover(scene.problem.instance());
   solution.pop_back();
-  const std::vector<std::uint32_t> open = open_rows(scene.problem, solution);
+  const std::vector<std::uint32_t> open = open_rows(scene.problem.instance(), solution);
   ASSERT_FALSE(open.empty());
   const std::vector<Candidate> found = reach_for(scene.clearance, scene.problem, solution, open);
   ASSERT_FALSE(found.empty());
