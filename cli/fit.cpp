@@ -193,7 +193,8 @@ void add_fit(CLI::App& app, int& exit_code) {
             arguments->options.seconds = seconds;
             arguments->options.effort = std::numeric_limits<int>::max();
           },
-          "Look for fewer spheres for so long; the result then depends on the machine")
+          "Look for fewer spheres for so long, less where it no longer finds any; the result then "
+          "depends on the machine")
       ->check(CLI::PositiveNumber)
       ->check(check_length)
       ->excludes(effort);

@@ -30,10 +30,11 @@ struct CoverOptions {
   // kPaper: diameter at which a ball is seeded (the paper's min_internal_size); 0 chooses E / 2.
   double min_internal_diameter = 0.0;
   std::uint64_t seed = 1;
-  // kCover: rounds of looking for fewer balls than the first proved answer; 0: none.
+  // kCover: rounds of looking for fewer balls than the first proved answer; 0: none. The search
+  // ends sooner where 40 rounds on end have gained nothing.
   int effort = 60;
-  // kCover: no new round begins after so many seconds; 0 sets no limit. The result then depends on
-  // the machine.
+  // kCover: no new round begins after so many seconds, either; 0 sets no limit. The result then
+  // depends on the machine.
   double seconds = 0.0;
   // kCover: prove a lower bound of the count, too (SphereCover::lower_bound), once a first answer
   // is proved: that takes longer than the answer. Not with a min_radius, which lets balls protrude.

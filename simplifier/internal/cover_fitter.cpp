@@ -27,8 +27,8 @@ namespace {
 using Eigen::Vector3d;
 
 // Half diagonal of the cells that rows stand for, as a share of E or of how far balls reach
-// (SolidCells): at the start the first for which there are not too few of them, in the end the last
-// before there are too many.
+// (SolidCells): at the start the first for which there are not too few of them, in the end the
+// first for which there are many.
 constexpr std::array kSpacings{0.7, 0.5, 0.3, 0.2, 0.14};
 constexpr std::size_t kFewCells = 10000;
 constexpr std::size_t kManyCells = 30000;
@@ -52,6 +52,9 @@ constexpr double kTolerance = 0.02;    // of the clearances of rows
 constexpr std::size_t kStartsPerRow = 10;  // a start for so many rows
 constexpr std::size_t kMinStarts = 2000;
 constexpr std::size_t kMaxStarts = 10000;
+// Times that candidates are grown, again from where no ball of those before covers: what is still
+// left gets a small ball of its own, of which large thin parts would need a great many.
+constexpr int kPasses = 5;
 
 constexpr std::uint64_t kWork = 60;     // of a search: visits per entry of the rows it begins with
 constexpr std::size_t kSampling = 10;   // a search begins with one of so many rows
@@ -135,6 +138,7 @@ void CoverFitter::begin() {
     if (cells_->size() >= kFewCells || spacing_ + 1 == kSpacings.size()) break;
   }
   pose({});
+  first_entries_ = problem_.entries();
   solution_ = greedy_set_cover(problem_.instance());
   prove_or_learn();
 }
@@ -161,6 +165,7 @@ bool CoverFitter::refine() {
   problem_.add_rows(std::span(rows).subspan(learned));
   add_own(problem_, sampled_);
   know_from(sampled_);
+  first_entries_ = problem_.entries();
   solution_.resize(best_.places.size());
   std::iota(solution_.begin(), solution_.end(), std::size_t{0});
   goal_.restart();
@@ -177,7 +182,6 @@ void CoverFitter::pose(const std::vector<Candidate>& candidates) {
   sampled_ = sample.size();
   add_rows(problem_, sample, {kCellRadius * kSpacings[spacing_], kCellDisc},
            some_of(sample, std::clamp(sampled_ / kStartsPerRow, kMinStarts, kMaxStarts)));
-  first_entries_ = problem_.entries();
   known_ = {};
   for (std::size_t row = 0; row < sampled_; row += kSampling) known_.add(row);
 }
@@ -212,9 +216,9 @@ bool CoverFitter::search() {
     if (i == 0) unneeded[1] = covers[0];
   });
   seeds_used_ += searches.size();
-  LazyCoverSearch& chosen = *searches[covers[0] ? 0 : 1];
-  solution_ = std::move(chosen.columns);
-  known_ = std::move(chosen.rows);
+  const LazyCoverSearch& chosen = *searches[covers[0] ? 0 : 1];
+  solution_ = chosen.columns();
+  known_ = chosen.known();
   if (!covers[0]) goal_.failed();
   return covers[0] || covers[1];
 }
@@ -272,14 +276,13 @@ void CoverFitter::forget() {
 
 void CoverFitter::learn(CoverProblem& problem, const SolidCells::Leaks& leaks) {
   add_rows(problem, leaks.in_solid, {kLeakRadius * kSpacings[spacing_], kLeakDisc}, leaks.in_solid);
-  std::vector<Candidate> tiny;
+  const std::size_t first = problem.rows().size();
   std::vector<CoverProblem::Row> rows;
   for (const Vector3d& p : leaks.pinched) {
-    tiny.push_back({p, kPinched});
-    rows.push_back({p, kFinest * error_ * local_.scale(p)});
+    rows.push_back({.point = p, .radius = kFinest * error_ * local_.scale(p), .pinched = true});
   }
   problem.add_rows(rows);
-  problem.add_candidates(tiny);
+  add_own(problem, first);
 }
 
 void CoverFitter::add_rows(CoverProblem& problem, const Points& points,
@@ -295,17 +298,29 @@ void CoverFitter::add_rows(CoverProblem& problem, const Points& points,
     rows[i] = {p, surroundings.radius * error, disc, at.away};
   });
   problem.add_rows(rows);
-  problem.add_candidates(
-      candidates_from(clearance_, starts, error_, options_.seed + seeds_used_++, local_));
+  Points grown_from = starts;
+  for (int pass = 0; pass < kPasses && !grown_from.empty(); ++pass) {
+    problem.add_candidates(
+        candidates_from(clearance_, grown_from, error_, options_.seed + seeds_used_++, local_));
+    grown_from = some_of(uncoverable(problem, first), kMaxStarts);
+  }
   add_own(problem, first);
+}
+
+CoverFitter::Points CoverFitter::uncoverable(const CoverProblem& problem, std::size_t row) {
+  Points points;
+  for (; row < problem.rows().size(); ++row) {
+    if (problem.columns_of()[row].empty()) points.push_back(problem.rows()[row].point);
+  }
+  return points;
 }
 
 void CoverFitter::add_own(CoverProblem& problem, std::size_t row) const {
   std::vector<Candidate> own;
   for (; row < problem.rows().size(); ++row) {
     if (!problem.columns_of()[row].empty()) continue;
-    const Vector3d& p = problem.rows()[row].point;
-    own.push_back({p, std::max(0.0, clearance_(p).lower)});
+    const auto& [point, radius, disc, normal, pinched] = problem.rows()[row];
+    own.push_back({point, pinched ? kPinched : std::max(0.0, clearance_(point).lower)});
   }
   problem.add_candidates(own);
 }

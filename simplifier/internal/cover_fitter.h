@@ -87,8 +87,11 @@ class CoverFitter {
   // A ball about the point itself for each of the rows from this one on that no candidate covers,
   // so that every row can be covered.
   void add_own(CoverProblem& problem, std::size_t row) const;
+  // The points of the rows from this one on that no candidate covers.
+  static Points uncoverable(const CoverProblem& problem, std::size_t row);
   // Rows at the points, with surroundings of this radius and disc, shares of E and of how much
-  // further than E balls reach there, that can be covered; and candidates grown from some of them.
+  // further than E balls reach there, that can be covered; and candidates grown from the starts and
+  // from what those leave out.
   struct Surroundings {
     double radius;
     double disc;
@@ -117,7 +120,7 @@ class CoverFitter {
   std::vector<Sphere> given_;
   std::size_t lower_bound_ = 0;
   std::uint64_t seeds_used_ = 0;
-  std::uint64_t first_entries_ = 0;  // of the problem as it was posed
+  std::uint64_t first_entries_ = 0;  // of the problem when its cells were made
 };
 
 }  // namespace spherule::internal

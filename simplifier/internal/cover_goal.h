@@ -25,9 +25,10 @@ class CoverGoal {
     proved_ = count;
     aim();
   }
-  // In small steps from here on.
+  // From here on in steps of a small part of the count.
   void restart() {
-    step_ = 1;
+    constexpr std::size_t kStep = 32;
+    step_ = std::max<std::size_t>(1, proved_ / kStep);
     aim();
   }
 

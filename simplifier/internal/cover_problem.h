@@ -27,6 +27,7 @@ class CoverProblem {
     double radius;                                      // of the ball
     double disc = 0.0;                                  // radius of the disc about the point
     Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // of the disc
+    bool pinched = false;  // no point of S is known there: its own ball is that of kPinched
 
     // Of the disc, the point furthest from another.
     Eigen::Vector3d furthest_from(const Eigen::Vector3d& other) const;

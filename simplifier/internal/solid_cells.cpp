@@ -21,8 +21,9 @@ constexpr double kGrading = 0.5;  // of the clearance, by which deeper cells are
 // Shares of the cells' spacing.
 constexpr double kThinning = 1.2;  // edge of the cubes with one boundary point each
 constexpr double kSampleTolerance = 0.01;
-// Halving the longest edge of a box divides its half diagonal by this at most, so that those of the
-// largest cells that are small enough are at least so much less.
+// Halving the longest edge of a box that is no more than twice as long as another divides its half
+// diagonal by this at most, so that those of the largest cells that are small enough are at least
+// so much less. (Flatter ones may be missed: it decides where rows stand, not what is proved.)
 constexpr double kShrinking = 1.42;
 
 // Cells are only ever halved, along the seams of every set of balls that was examined. From so many

@@ -34,7 +34,7 @@ bool touched_by(const Clearance& clearance, const Eigen::Vector3d& point, const 
                 double inside, double max_error);
 
 // The greatest cap_width of the balls that touch there, to a factor of 1.4; no more than
-// kWidestCap.
+// kWidestCap times E.
 double cap_width_at(const Clearance& clearance, const Eigen::Vector3d& point, const ClearanceAt& at,
                     double max_error);
 

@@ -135,7 +135,7 @@ TEST(CoverMoves, BallsReachForRowsThatAreOpen) {
 }
 
 TEST(CoverEffort, MoreOfItNeverTakesMoreSpheresAndIsProved) {
-  for (const char* name : {"cube", "l-bracket", "torus"}) {
+  for (const char* name : effort(std::vector{"cube", "l-bracket", "torus"}, 1)) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = mesh_named(name);
     std::size_t least = std::numeric_limits<std::size_t>::max();
@@ -154,9 +154,33 @@ TEST(CoverEffort, ALongSearchTakesFewerSpheresAndIsProved) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = mesh_named(name);
     const Fit quick = fit(mesh, {}, {.max_error = 0.06, .effort = 0});
-    const Fit thorough = fit(mesh, {}, {.max_error = 0.06, .effort = 30});
+    const Fit thorough = fit(mesh, {}, {.max_error = 0.06, .effort = effort(30, 8)});
     EXPECT_LT(thorough.cover.spheres.size(), quick.cover.spheres.size());
     EXPECT_TRUE(certificate_of(mesh, thorough, thorough.cover.spheres).covered);
+  }
+}
+
+// A large thin part: more rows than candidates are grown for at once, and rows that were learned
+// before cells become finer. A ball about the middle plane protrudes by E above a disc of radius
+// sqrt((E + 1/2)^2 - 1/4); the squares in these tile the plate.
+TEST(CoverEffort, ALargeThinPlateTakesLittleMoreThanALattice) {
+  struct Case {
+    double max_error;
+    int rounds;
+    double most;  // times a lattice
+  };
+  const TriangleMesh mesh = box_mesh({0, 0, 0}, {200, 200, 1});
+  const std::vector<Case> cases = kSanitized ? std::vector<Case>{{6.0, 4, 1.4}}
+                                             : std::vector<Case>{{1.5, 0, 1.8}, {3.0, 10, 1.6}};
+  for (const auto& [max_error, rounds, most] : cases) {
+    SCOPED_TRACE(max_error);
+    const ExternalSpheres external =
+        place_external_spheres(mesh, {.min_external_diameter = 20.0, .max_error = max_error});
+    const SphereCover fitted = cover(mesh, external, {.max_error = max_error, .effort = rounds});
+    const double disc = (max_error + 0.5) * (max_error + 0.5) - 0.25;
+    const double lattice = 200.0 * 200.0 / (2.0 * disc);
+    EXPECT_LT(static_cast<double>(fitted.spheres.size()), most * lattice);
+    EXPECT_GE(static_cast<double>(fitted.spheres.size()), 0.7 * lattice);
   }
 }
 

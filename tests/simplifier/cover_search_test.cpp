@@ -137,6 +137,7 @@ TEST(CoverSearch, KnowsOnlyItsRowsAndTheirWeights) {
   const std::vector<Rows> columns_of = {{0}, {1}, {2}};
   CoverSearch search(3, columns_of, {{0, 2}, {1, 9}}, std::vector<std::size_t>{0});
   EXPECT_FALSE(search.reach(1, 10, 1, kNeeded));
+  EXPECT_EQ(narrowed(search.best_columns()), (Rows{2}));
   EXPECT_TRUE(search.reach(2, 1000, 1, kNeeded));
   EXPECT_EQ(search.best_columns().size(), 2U);
   EXPECT_GE(search.weights().back(), 9U);
@@ -149,11 +150,11 @@ TEST(LazyCoverSearch, CoversAllRowsThoughItBeginsWithFew) {
     LazyCoverSearch search{made.instance, made.columns_of, rows_of(made.instance, 40),
                            greedy_set_cover(made.instance)};
     EXPECT_TRUE(search.reach(made.known, 200'000'000, 5, kNeeded));
-    EXPECT_LE(search.columns.size(), made.known);
-    EXPECT_TRUE(covers_all(made.instance, narrowed(search.columns)));
-    EXPECT_EQ(search.rows.rows.size(), search.rows.weights.size());
-    const std::set<std::uint32_t> distinct(search.rows.rows.begin(), search.rows.rows.end());
-    EXPECT_EQ(distinct.size(), search.rows.rows.size());
+    EXPECT_LE(search.columns().size(), made.known);
+    EXPECT_TRUE(covers_all(made.instance, narrowed(search.columns())));
+    EXPECT_EQ(search.known().rows.size(), search.known().weights.size());
+    const std::set<std::uint32_t> distinct(search.known().rows.begin(), search.known().rows.end());
+    EXPECT_EQ(distinct.size(), search.known().rows.size());
   }
 }
 
@@ -162,7 +163,7 @@ TEST(LazyCoverSearch, SaysSoWhereItsBudgetEndsBeforeAllRowsAreCovered) {
   const Planted made = planted(random, 400, 20, 200);
   LazyCoverSearch search{made.instance, made.columns_of, rows_of(made.instance, 40), {}};
   EXPECT_FALSE(search.reach(made.known - 8, 100'000, 5, kNeeded));
-  EXPECT_LE(search.columns.size(), made.known - 8);
+  EXPECT_LE(search.columns().size(), made.known - 8);
 }
 
 }  // namespace

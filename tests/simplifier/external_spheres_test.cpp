@@ -42,7 +42,7 @@ TriangleMesh two_plates(double gap) {
 }
 
 TEST(ExternalSpheres, EveryBallIsFreeOfThePaddedMeshAndLargeEnough) {
-  for (const NamedMesh& named : mesh_zoo()) {
+  for (const NamedMesh& named : zoo_to_fit()) {
     SCOPED_TRACE(named.name);
     const double size = diagonal(named.mesh);
     for (const ExternalPlacement placement : kPlacements) {
@@ -68,7 +68,7 @@ TEST(ExternalSpheres, EveryBallIsFreeOfThePaddedMeshAndLargeEnough) {
 
 TEST(ExternalSpheres, TheMeshIsInTheSimplifiedSolid) {
   Random random(51);
-  for (const NamedMesh& named : mesh_zoo()) {
+  for (const NamedMesh& named : zoo_to_fit()) {
     SCOPED_TRACE(named.name);
     const double size = diagonal(named.mesh);
     for (const ExternalPlacement placement : kPlacements) {

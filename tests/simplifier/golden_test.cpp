@@ -42,13 +42,13 @@ struct Golden {
 // Shapes whose corners are exact: those made with library sines differ by machine.
 std::vector<Golden> goldens() {
   return {{"l-bracket", l_bracket(), ExternalPlacement::kReachable, 0xfd51a7704ae268f9,
-           0xcb42317830cea7dc, 0x49e27e3a7dbf11e0},
+           0xcb42317830cea7dc, 0x707a0c66ccfb39c0},
           {"soup", soup(60, 3), ExternalPlacement::kReachable, 0x29487cb86075b50e,
-           0x513a71be29f4abbd, 0x90fb7df93b8506bc},
+           0x513a71be29f4abbd, 0xb69d15fd9cd5a867},
           {"icosphere", icosphere(2), ExternalPlacement::kReachable, 0xecb749b7ff96e378,
            0xca0b28b3d7f33c03, 0x9bd6edcd2115e5b8},
           {"l-bracket, random", l_bracket(), ExternalPlacement::kRandom, 0xf422ca1593bbfd3d,
-           0xeea6204d488abfd5, 0xe8cef731e129a364}};
+           0xeea6204d488abfd5, 0xc88b340c4661e773}};
 }
 
 TEST(Golden, ExternalSpheresAndTheSpheresOfBothMethods) {
@@ -57,6 +57,7 @@ TEST(Golden, ExternalSpheresAndTheSpheresOfBothMethods) {
     CoverOptions options;
     options.method = CoverMethod::kPaper;
     FitShares shares;
+    shares.max_error = 0.07;
     shares.placement = golden.placement;
     const Fit fitted = fit(golden.mesh, options, shares);
     const std::uint64_t external = hash_of(fitted.external.balls);

@@ -41,7 +41,7 @@ void expect_in_solid(const Sphere& s, const Fit& fitted) {
 }
 
 TEST(InternalSpheres, EveryBallOfTheSolidIsInflatedByTheSameErrorWithinTheLimit) {
-  for (const NamedMesh& named : mesh_zoo()) {
+  for (const NamedMesh& named : zoo_to_fit()) {
     SCOPED_TRACE(named.name);
     const Fit fitted = paper_fit(named.mesh);
     const SphereCover& cover = fitted.cover;
@@ -162,7 +162,7 @@ TEST(InternalSpheres, AnErrorBelowTheRoundingOfTheCoordinatesIsRefused) {
 
 TEST(InternalSpheres, ASmallerErrorAsksForMoreBallsAndGivesLessExcess) {
   std::size_t last = 0;
-  for (const double error : {0.12, 0.08, 0.05}) {
+  for (const double error : effort(std::vector{0.12, 0.08, 0.05}, 2)) {
     FitShares shares;
     shares.max_error = error;
     shares.diameter = 0.5 / error;  // D stays

@@ -65,7 +65,7 @@ TEST_P(Protrusion, NoBallStandsWhereExternalBallsOnlyJustCloseTheSolid) {
 }
 
 TEST_P(Protrusion, NothingProtrudesHoweverExternalSpheresArePlaced) {
-  for (const NamedMesh& named : mesh_zoo()) {
+  for (const NamedMesh& named : zoo_to_fit()) {
     SCOPED_TRACE(named.name);
     for (const ExternalPlacement placement :
          {ExternalPlacement::kRandom, ExternalPlacement::kNone}) {

@@ -81,7 +81,8 @@ TEST(RepairOf, NoBallsIsACover) {
 }
 
 TEST(RepairOf, CoversWithoutSomeOfTheirBalls) {
-  for (const char* name : {"cube", "l-bracket", "torus", "open-box", "three-fins"}) {
+  for (const char* name :
+       effort(std::vector{"cube", "l-bracket", "torus", "open-box", "three-fins"}, 1)) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = mesh_named(name);
     const Fit fitted = fit_of(mesh);
@@ -102,7 +103,7 @@ TEST(RepairOf, CoversWithoutSomeOfTheirBalls) {
 // what it had.
 TEST(RepairOf, CoversWithShrunkBallsGrowsThemAgain) {
   int leaked = 0;
-  for (const char* name : {"cube", "l-bracket", "torus", "soup"}) {
+  for (const char* name : effort(std::vector{"cube", "l-bracket", "torus", "soup"}, 1)) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = mesh_named(name);
     const Fit fitted = fit_of(mesh);
@@ -131,7 +132,7 @@ TEST(RepairOf, ThePapersBallsBeforeInflation) {
 }
 
 TEST(RepairOf, BallsAnywhere) {
-  for (const char* name : {"cube", "l-bracket", "open-box"}) {
+  for (const char* name : effort(std::vector{"cube", "l-bracket", "open-box"}, 1)) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = mesh_named(name);
     const Fit fitted = fit_of(mesh);

@@ -31,13 +31,14 @@ TriangleMesh triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
 SimplifyOptions coarse(double max_error) {
   SimplifyOptions options;
   options.max_error = max_error;
+  options.effort = 1;
   return options;
 }
 
 TEST(Simplify, ChoosesErrorAndDiameterFromTheSizeOfTheModel) {
   // A sheet: one per cent of its diagonal is coarse enough to be quick.
   const TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 0.05, 0.05});
-  const Simplification result = simplify(mesh);
+  const Simplification result = simplify(mesh, {.effort = 1});
   const double diagonal = diagonal_of(mesh);
   EXPECT_DOUBLE_EQ(result.options.max_error, 0.01 * diagonal);
   EXPECT_DOUBLE_EQ(result.options.min_external_diameter, 0.04 * diagonal);

@@ -20,8 +20,8 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-constexpr double kError = 0.1;
-constexpr double kZoneError = 0.01;
+constexpr double kError = kSanitized ? 0.2 : 0.1;
+constexpr double kZoneError = kSanitized ? 0.04 : 0.01;
 
 bool holds(const ZoneShape& shape, const Vector3d& p) {
   if (const auto* ball = std::get_if<Sphere>(&shape)) {

@@ -3,6 +3,7 @@
 
 #include "bench/scenes/shapes.h"
 #include "bench/scenes/solids.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 
 #include <array>
@@ -224,21 +225,25 @@ TriangleMesh moved(TriangleMesh mesh, const Eigen::Isometry3d& motion) {
 }
 
 std::vector<NamedMesh> mesh_zoo() {
-  return {{"cube", cube_mesh()},
+  return {{"l-bracket", l_bracket()},
+          {"thin-sheet", thin_sheet(1e-4)},
+          {"three-fins", three_fins()},
+          {"needles", needles(8)},
+          {"degenerates", with_degenerates(cube_mesh())},
+          {"cube", cube_mesh()},
           {"icosphere", icosphere(2)},
           {"torus", torus(1.0, 0.3, 24, 12)},
           {"pipe", pipe(0.5, 0.4, 2.0, 24)},
-          {"l-bracket", l_bracket()},
-          {"thin-sheet", thin_sheet(1e-4)},
           {"open-box", open_box()},
           {"soup", soup(60, 3)},
           {"inverted", inverted(cube_mesh())},
           {"nested-shells", nested_shells(3)},
           {"klein-bottle", klein_bottle(16, 24)},
-          {"three-fins", three_fins()},
-          {"needles", needles(8)},
-          {"duplicates", with_duplicates(cube_mesh())},
-          {"degenerates", with_degenerates(cube_mesh())}};
+          {"duplicates", with_duplicates(cube_mesh())}};
+}
+
+std::vector<NamedMesh> zoo_to_fit() {
+  return effort(mesh_zoo(), 5);
 }
 
 TriangleMesh mesh_named(const std::string& name) {
