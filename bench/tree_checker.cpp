@@ -1,45 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/tree_checker.h"
 
-#include "collide/collide.h"
+#include "collide/robot/robot_checker.h"
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace spherule {
 namespace {
 
-class TreeChecker : public SingleChecker {
+class TreeChecker : public Checker {
  public:
-  explicit TreeChecker(const Workload& workload) : SingleChecker(workload.robot) {
-    for (const Body& body : workload.bodies) {
-      for (const Obstacle& obstacle : workload.obstacles) {
-        if (!is_tested(body, obstacle)) continue;
-        pairs_.push_back({body.part.tree, static_cast<std::size_t>(body.link), obstacle.part.tree,
-                          obstacle.world_from_part});
-      }
-    }
-  }
+  explicit TreeChecker(const Workload& workload)
+      : checker_(made_for(workload)), scratch_(checker_) {}
 
- protected:
-  bool collides(std::span<const Pose> world_from_link) override {
-    for (const Pair& pair : pairs_) {
-      if (spherule::collides(*pair.body, world_from_link[pair.link], *pair.obstacle,
-                             pair.world_from_obstacle)) {
-        return true;
-      }
+  void check(std::span<const JointPositions> configurations,
+             std::span<std::uint8_t> verdicts) override {
+    for (std::size_t i = 0; i < configurations.size(); ++i) {
+      verdicts[i] = checker_.collides(configurations[i], scratch_) ? 1 : 0;
     }
-    return false;
   }
 
  private:
-  struct Pair {
-    std::shared_ptr<const SphereTree> body;
-    std::size_t link;
-    std::shared_ptr<const SphereTree> obstacle;
-    Pose world_from_obstacle;
-  };
-  std::vector<Pair> pairs_;
+  static RobotChecker made_for(const Workload& workload) {
+    RobotModel robot = workload.robot;
+    RobotCheckerOptions options;
+    std::vector<PlacedTree> obstacles;
+    for (const Obstacle& obstacle : workload.obstacles) {
+      obstacles.push_back({obstacle.part.tree, obstacle.world_from_part});
+    }
+    for (const Body& body : workload.bodies) {
+      robot.attach(robot.links()[static_cast<std::size_t>(body.link)].name, body.part.tree);
+      for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
+        if (!is_tested(body, workload.obstacles[i])) options.untested.push_back({body.link, i});
+      }
+    }
+    return RobotChecker(std::move(robot), std::move(obstacles), options);
+  }
+
+  RobotChecker checker_;
+  RobotChecker::Scratch scratch_;
 };
 
 }  // namespace

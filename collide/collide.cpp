@@ -18,6 +18,13 @@ CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const Sph
   return internal::all_pairs(a, b, pose, internal::BallLeaves(a, b, pose), request);
 }
 
+bool spheres_touch(const SphereTree& a, std::int32_t sphere_a, const Pose& world_from_a,
+                   const SphereTree& b, std::int32_t sphere_b, const Pose& world_from_b) noexcept {
+  return RelativePose(a, world_from_a, b, world_from_b)
+      .touches(a.spheres()[static_cast<std::size_t>(sphere_a)],
+               b.spheres()[static_cast<std::size_t>(sphere_b)]);
+}
+
 double collision_slack(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                        const Pose& world_from_b) noexcept {
   return RelativePose(a, world_from_a, b, world_from_b).slack();

@@ -57,6 +57,10 @@ bool collides(const SphereTree& a, const Pose& world_from_a, const SphereTree& b
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                         const Pose& world_from_b, const CollisionRequest& request = {});
 
+// The test that all of the above rest on, for one sphere of each set (indices into spheres()).
+bool spheres_touch(const SphereTree& a, std::int32_t sphere_a, const Pose& world_from_a,
+                   const SphereTree& b, std::int32_t sphere_b, const Pose& world_from_b) noexcept;
+
 // Upper bound of the exact gap between two sets for which collides() answers true.
 double collision_slack(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                        const Pose& world_from_b) noexcept;

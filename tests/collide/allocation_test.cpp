@@ -4,12 +4,18 @@
 
 #include "collide/collide.h"
 #include "collide/internal/traversal.h"
+#include "collide/mechanism_check.h"
 #include "collide/mesh_tree.h"
 #include "spheretree/build.h"
 #include "tests/collide/counting_new.h"
 #include "tests/collide/trees.h"
 
 #include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <vector>
 
 namespace spherule::test {
 namespace {
@@ -32,6 +38,35 @@ TEST(Allocation, CollidesTakesNoMemory) {
   EXPECT_GT(hits, 0);
   EXPECT_LT(hits, 100);
   EXPECT_GT(mesh_hits, 0);
+}
+
+TEST(Allocation, AMechanismsCheckTakesNoMemory) {
+  Random random(2);
+  const auto tree = [&] {
+    return std::make_shared<const SphereTree>(build_tree(random_spheres(random, 500, 1.0, 0.02)));
+  };
+  const std::vector<MechanismFrame> frames = {{.parent_from_frame = random.pose(1.0)},
+                                              {.parent = 0, .variable = 1, .prismatic = true}};
+  const std::vector<MechanismBody> bodies = {{1, random.pose(1.0), tree()}, {0, Pose(), tree()}};
+  const std::vector<MechanismObstacle> obstacles = {{random.pose(2.0), tree()}};
+  const std::vector<MechanismPair> pairs = {{0, 0}, {1, 0}};
+  const MechanismCheck check(frames, bodies, obstacles, pairs, 1e-6);
+  MechanismCheck::Scratch scratch(check);
+  int hits = 0;
+  int asked = 0;
+  const std::function<bool(const MechanismContact&)> confirm = [&](const MechanismContact&) {
+    ++asked;
+    return false;
+  };
+  const int before = allocations;
+  for (int i = 0; i < 1000; ++i) {
+    const std::array<double, 2> variables = {random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)};
+    hits += check.collides(variables, scratch, confirm) ? 1 : 0;
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(hits, 0);
+  EXPECT_LT(hits, 1000);
+  EXPECT_GT(asked, 0);
 }
 
 TEST(Allocation, CollidesAnswersWithoutMemoryForTheStack) {

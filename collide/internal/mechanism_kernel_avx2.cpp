@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// For x86 processors with AVX2 and fused multiply-add; compiled for these.
+#include "collide/internal/mechanism_kernel.h"
+
+#include <cstddef>
+
+#define SPHERULE_KERNEL avx2
+#include "collide/internal/mechanism_kernel_impl.h"
+
+namespace spherule::internal {
+
+CheckKernel avx2_check_kernel() {
+  return &avx2::check;
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// For any machine; on x86 with SSE2, which all of its 64-bit processors have.
+#include "collide/internal/mechanism_kernel.h"
+
+#include <cstddef>
+
+#define SPHERULE_KERNEL portable
+#include "collide/internal/mechanism_kernel_impl.h"
+
+namespace spherule::internal {
+
+CheckKernel portable_check_kernel() {
+  return &portable::check;
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/internal/packed_tree.h"
+
+#include "spheretree/build.h"
+#include "spheretree/enclosing_sphere.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace spherule::internal {
+namespace {
+
+// Far from everything, with a square that does not overflow.
+constexpr float kNowhere = 3e18F;
+constexpr double kAbsolute = 0x1p-60;
+// Around more spheres than these, the ball of the tree is good enough.
+constexpr std::size_t kManySpheres = 4096;
+
+float rounded_up(double x) {
+  const auto nearest = static_cast<float>(x);
+  if (static_cast<double>(nearest) >= x) return nearest;
+  return std::nextafter(nearest, std::numeric_limits<float>::infinity());
+}
+
+// Not inlined: where g++ 12 vectorises the way to single precision and back, it leaves it out.
+[[gnu::noinline]] double in_single_precision(double x) {
+  return static_cast<double>(static_cast<float>(x));
+}
+
+Sphere packed(const Sphere& ball, double inflation) {
+  const Eigen::Vector3d center(in_single_precision(ball.center.x()),
+                               in_single_precision(ball.center.y()),
+                               in_single_precision(ball.center.z()));
+  const double moved = distance_upper(center, ball.center);
+  const double radius =
+      mul_up(add_up(add_up(ball.radius, moved), inflation), 1.0 + 8.0 * kFloatRoundoff);
+  return {center, static_cast<double>(rounded_up(add_up(radius, kAbsolute)))};
+}
+
+// The tree's nodes with the smaller of the two balls that each may have.
+class CullingBalls {
+ public:
+  explicit CullingBalls(const SphereTree& tree) : tree_(tree), balls_(tree.node_count()) {
+    visit(0);
+  }
+  const Sphere& operator[](std::size_t node) const { return balls_[node]; }
+
+ private:
+  // The depth is that of the tree, which build_tree() bounds by 3 log2 n + 9.
+  void visit(std::size_t node) {
+    balls_[node] = tree_.ball(node);
+    if (tree_.is_leaf(node)) {
+      spheres_.push_back(balls_[node]);
+      return;
+    }
+    const std::size_t first = spheres_.size();
+    for (std::int32_t i = 0; i < tree_.child_count(node); ++i) {
+      visit(static_cast<std::size_t>(tree_.first_child(node) + i));
+    }
+    if (spheres_.size() - first > kManySpheres) return;
+    const Sphere around = enclosing_sphere(std::span<const Sphere>(spheres_).subspan(first));
+    if (around.radius < balls_[node].radius) balls_[node] = around;
+  }
+
+  const SphereTree& tree_;
+  std::vector<Sphere> balls_;
+  std::vector<Sphere> spheres_;  // of the leaves visited so far
+};
+
+PackedNode empty_node() {
+  PackedNode node;
+  std::fill_n(node.x, PackedNode::kWidth, kNowhere);
+  std::fill_n(node.y, PackedNode::kWidth, kNowhere);
+  std::fill_n(node.z, PackedNode::kWidth, kNowhere);
+  std::fill_n(node.radius, PackedNode::kWidth, 0.0F);
+  std::fill_n(node.child, PackedNode::kWidth, -1);
+  return node;
+}
+
+void set_lane(PackedNode& node, int lane, const Sphere& ball, std::int32_t child) {
+  node.x[lane] = static_cast<float>(ball.center.x());
+  node.y[lane] = static_cast<float>(ball.center.y());
+  node.z[lane] = static_cast<float>(ball.center.z());
+  node.radius[lane] = static_cast<float>(ball.radius);
+  node.child[lane] = child;
+}
+
+}  // namespace
+
+PackedTree::PackedTree(const SphereTree& given, double inflation) {
+  const bool fits = given.branching() <= PackedNode::kWidth;
+  const SphereTree tree =
+      fits ? given : build_tree(given.spheres(), {.branching = PackedNode::kWidth});
+  const CullingBalls balls(tree);
+  root_ = packed(balls[0], inflation);
+  depth_ = std::max(1, tree.depth());
+  for (const Sphere& sphere : tree.spheres()) {
+    const double grown = sub_up(packed(sphere, inflation).radius, sphere.radius);
+    largest_growth_ = std::max(largest_growth_, grown);
+  }
+  // Inner nodes in the order of the tree, so that a node's number is the count of those before it.
+  std::vector<std::int32_t> number(tree.node_count());
+  std::int32_t inner = 0;
+  for (std::size_t node = 0; node < tree.node_count(); ++node) {
+    number[node] = tree.is_leaf(node) ? ~tree.sphere_index(node) : inner++;
+  }
+  if (inner == 0) {
+    nodes_.push_back(empty_node());
+    set_lane(nodes_.back(), 0, packed(balls[0], inflation), number[0]);
+    return;
+  }
+  nodes_.reserve(static_cast<std::size_t>(inner));
+  for (std::size_t node = 0; node < tree.node_count(); ++node) {
+    if (tree.is_leaf(node)) continue;
+    nodes_.push_back(empty_node());
+    for (std::int32_t lane = 0; lane < tree.child_count(node); ++lane) {
+      const auto child = static_cast<std::size_t>(tree.first_child(node) + lane);
+      set_lane(nodes_.back(), lane, packed(balls[child], inflation), number[child]);
+    }
+  }
+}
+
+}  // namespace spherule::internal

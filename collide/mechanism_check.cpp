@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/mechanism_check.h"
+
+#include "collide/internal/mechanism_kernel.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+using internal::kFloatRoundoff;
+using internal::PackedTree;
+
+// Error budget, v = 2^-24, u = 2^-53; n frames lie between the root and a body. No point of the
+// body, and no centre of a node of its tree, is further from the root than W: the lengths of the
+// chain, kLargestVariable for each shift, and how far the tree reaches in its frame.
+//   angles: the sine and cosine of a frame err by less than kSineError = 2e-11, which moves a point
+//     beyond the frame by at most 2e-11 W; over n frames 2e-11 n W.
+//   the chain in double: as in forward_kinematics, below 200 u W a frame, the frames' own rounded
+//     rotations included: 2.3e-14 n W.
+//   to single precision, for a centre c in the frame and R c + t: R and t rounded, sqrt(3) v |c| +
+//     v |t|; c rounded, v |c|; three products and three sums a row, 4 v (|c| + |t|) a row at most,
+//     over three rows 7 v (|c| + |t|). Together less than 10 v W. The ball around all is placed in
+//     double and then rounded: less.
+// With the error of the poses that are to be matched, and the slack of the canonical test (152 u of
+// the scene, which is at most twice the bound X of all coordinates), a body's balls must be
+// inflated by
+//     12 v W + 1e-10 (n + 1) W + 1e-12 X + pose_error,
+// and those of an obstacle, whose centres are moved to the root's frame in double, by 1e-12 X.
+constexpr double kPerLength = 12.0 * kFloatRoundoff;
+constexpr double kPerFrame = 1e-10;
+constexpr double kPerScene = 1e-12;
+
+// How far from the origin of its frame any ball of a tree reaches, those of nodes included.
+double node_reach(const SphereTree& tree) {
+  const Sphere root = tree.ball(0);
+  return std::max(tree.reach(), root.center.lpNorm<1>() + root.radius);
+}
+
+[[noreturn]] void refuse(const std::string& what, std::size_t index, const std::string& why) {
+  throw Error("mechanism", what + " " + std::to_string(index) + ' ' + why);
+}
+
+void check_input(std::span<const MechanismFrame> frames, std::span<const MechanismBody> bodies,
+                 std::span<const MechanismObstacle> obstacles, std::span<const MechanismPair> pairs,
+                 double pose_error) {
+  const auto below = [](int index, std::size_t count) {
+    return index >= 0 && static_cast<std::size_t>(index) < count;
+  };
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].parent < -1 || frames[i].parent >= static_cast<int>(i)) {
+      refuse("frame", i, "does not come after its parent");
+    }
+    if (frames[i].variable < 0) refuse("frame", i, "has no variable");
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!below(bodies[i].frame, frames.size())) refuse("body", i, "is on no frame");
+    if (!bodies[i].tree) refuse("body", i, "has no tree");
+  }
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (!obstacles[i].tree) refuse("obstacle", i, "has no tree");
+  }
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!below(pairs[i].body, bodies.size()) || !below(pairs[i].obstacle, obstacles.size())) {
+      refuse("pair", i, "names what is not there");
+    }
+  }
+  if (!(pose_error >= 0.0 && pose_error <= kMaxCoordinate)) {
+    throw Error("pose error", "it is negative, not finite or too large");
+  }
+}
+
+// Where a sphere of a joined tree comes from.
+struct Origin {
+  int part;  // a body or an obstacle
+  std::int32_t sphere;
+};
+
+// Several trees as one, in a frame of their own.
+struct Joined {
+  std::vector<Sphere> spheres;
+  std::vector<Origin> origins;
+
+  void add(int part, const SphereTree& tree, const Pose& pose) {
+    const std::span<const Sphere> added = tree.spheres();
+    for (std::size_t i = 0; i < added.size(); ++i) {
+      spheres.push_back({pose * added[i].center, added[i].radius});
+      origins.push_back({part, static_cast<std::int32_t>(i)});
+    }
+  }
+};
+
+float up(double x) {
+  const auto nearest = static_cast<float>(x);
+  return static_cast<double>(nearest) >= x
+             ? nearest
+             : std::nextafter(nearest, std::numeric_limits<float>::infinity());
+}
+
+internal::KernelFrame kernel_frame(const MechanismFrame& frame) {
+  internal::KernelFrame result = {};
+  const Eigen::Matrix3d rotation = frame.parent_from_frame.matrix();
+  const Eigen::Vector3d& origin = frame.parent_from_frame.translation();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) result.rotation[j][i] = rotation(i, j);
+    result.origin[i] = origin[i];
+  }
+  result.parent = frame.parent;
+  result.variable = frame.variable;
+  result.prismatic = frame.prismatic;
+  return result;
+}
+
+internal::CheckKernel kernel_for(InstructionSet set) {
+#if defined(__x86_64__)
+  if (set == InstructionSet::kAvx2) return internal::avx2_check_kernel();
+#endif
+  return internal::portable_check_kernel();
+}
+
+int filled_up(int count) {
+  return (count + 3) / 4 * 4;
+}
+
+}  // namespace
+
+bool is_available(InstructionSet set) {
+#if defined(__x86_64__)
+  if (set == InstructionSet::kAvx2) {
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  }
+#endif
+  return set == InstructionSet::kPortable;
+}
+
+InstructionSet best_instruction_set() {
+  return is_available(InstructionSet::kAvx2) ? InstructionSet::kAvx2 : InstructionSet::kPortable;
+}
+
+// The kernel's problem, with what it points to.
+struct MechanismCheck::Parts {
+  std::vector<internal::KernelFrame> frames;
+  std::vector<PackedTree> trees;  // of the joined bodies, then of the joined obstacles
+  std::vector<internal::KernelBody> bodies;
+  std::vector<internal::KernelObstacle> obstacles;
+  std::vector<internal::KernelPair> pairs;
+  std::vector<std::vector<Origin>> body_origins;
+  std::vector<std::vector<Origin>> obstacle_origins;
+  internal::KernelProblem problem = {};
+  internal::CheckKernel kernel = nullptr;
+  int variable_count = 0;
+  std::int64_t task_count = 1;
+};
+
+struct MechanismCheck::Scratch::Memory {
+  std::vector<double> variables;
+  std::vector<double> sines;
+  std::vector<double> cosines;
+  std::vector<internal::KernelPose> poses;
+  std::vector<internal::KernelTask> roots;
+  std::vector<internal::KernelTask> tasks;
+  internal::KernelScratch view = {};
+};
+
+MechanismCheck::MechanismCheck(std::vector<MechanismFrame> frames,
+                               std::span<const MechanismBody> bodies,
+                               std::span<const MechanismObstacle> obstacles,
+                               std::span<const MechanismPair> pairs, double pose_error,
+                               InstructionSet instructions) {
+  check_input(frames, bodies, obstacles, pairs, pose_error);
+  if (!is_available(instructions)) throw Error("instruction set", "this machine has not got it");
+  auto parts = std::make_unique<Parts>();
+  std::vector<double> chain(frames.size());  // largest distance of a frame's origin from the root
+  std::vector<int> links(frames.size());     // frames from the root to it
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const MechanismFrame& frame = frames[i];
+    parts->frames.push_back(kernel_frame(frame));
+    parts->variable_count = std::max(parts->variable_count, frame.variable + 1);
+    const auto parent = static_cast<std::size_t>(frame.parent);
+    chain[i] = frame.parent_from_frame.translation().norm() +
+               (frame.prismatic ? internal::kLargestVariable : 0.0) +
+               (frame.parent < 0 ? 0.0 : chain[parent]);
+    links[i] = frame.parent < 0 ? 1 : links[parent] + 1;
+  }
+
+  // Obstacles that meet the same bodies are one; then bodies on one frame that meet the same.
+  std::vector<std::vector<int>> met_by(obstacles.size());
+  for (const MechanismPair& pair : pairs) {
+    met_by[static_cast<std::size_t>(pair.obstacle)].push_back(pair.body);
+  }
+  std::map<std::vector<int>, int> obstacle_groups;
+  std::vector<int> group_of_obstacle(obstacles.size(), -1);
+  std::vector<Joined> joined_obstacles;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    std::vector<int>& met = met_by[i];
+    std::sort(met.begin(), met.end());
+    met.erase(std::unique(met.begin(), met.end()), met.end());
+    if (met.empty()) continue;
+    const auto [place, is_new] =
+        obstacle_groups.emplace(met, static_cast<int>(joined_obstacles.size()));
+    if (is_new) joined_obstacles.emplace_back();
+    group_of_obstacle[i] = place->second;
+    joined_obstacles[static_cast<std::size_t>(place->second)].add(
+        static_cast<int>(i), *obstacles[i].tree, obstacles[i].root_from_tree);
+  }
+  std::vector<std::vector<int>> groups_met(bodies.size());
+  for (const MechanismPair& pair : pairs) {
+    std::vector<int>& met = groups_met[static_cast<std::size_t>(pair.body)];
+    const int group = group_of_obstacle[static_cast<std::size_t>(pair.obstacle)];
+    if (std::find(met.begin(), met.end(), group) == met.end()) met.push_back(group);
+  }
+  std::map<std::pair<int, std::vector<int>>, int> body_groups;
+  std::vector<Joined> joined_bodies;
+  std::vector<int> frame_of_group;
+  for (const MechanismPair& pair : pairs) {
+    const auto index = static_cast<std::size_t>(pair.body);
+    if (groups_met[index].empty()) continue;
+    const auto [place, is_new] = body_groups.emplace(
+        std::pair(bodies[index].frame, groups_met[index]), static_cast<int>(joined_bodies.size()));
+    if (is_new) {
+      joined_bodies.emplace_back();
+      frame_of_group.push_back(bodies[index].frame);
+      for (const int group : groups_met[index]) parts->pairs.push_back({place->second, group});
+    }
+    joined_bodies[static_cast<std::size_t>(place->second)].add(pair.body, *bodies[index].tree,
+                                                               bodies[index].frame_from_tree);
+    groups_met[index].clear();
+  }
+
+  std::vector<SphereTree> body_trees;
+  std::vector<double> reach;
+  double scene = 0.0;
+  for (std::size_t i = 0; i < joined_bodies.size(); ++i) {
+    body_trees.push_back(build_tree(joined_bodies[i].spheres));
+    reach.push_back(chain[static_cast<std::size_t>(frame_of_group[i])] +
+                    node_reach(body_trees.back()));
+    scene = std::max(scene, reach.back());
+  }
+  std::vector<SphereTree> obstacle_trees;
+  for (const Joined& joined : joined_obstacles) {
+    obstacle_trees.push_back(build_tree(joined.spheres));
+    scene = std::max(scene, node_reach(obstacle_trees.back()));
+  }
+  int body_depth = 1;
+  int obstacle_depth = 1;
+  parts->trees.reserve(body_trees.size() + obstacle_trees.size());
+  for (std::size_t i = 0; i < body_trees.size(); ++i) {
+    const auto frame = static_cast<std::size_t>(frame_of_group[i]);
+    const double inflation =
+        (kPerLength + kPerFrame * (links[frame] + 1)) * reach[i] + kPerScene * scene + pose_error;
+    const PackedTree& tree = parts->trees.emplace_back(body_trees[i], inflation);
+    body_depth = std::max(body_depth, tree.depth());
+    const Eigen::Vector3d& c = tree.root().center;
+    parts->bodies.push_back({tree.nodes(),
+                             {c.x(), c.y(), c.z()},
+                             static_cast<float>(tree.root().radius),
+                             frame_of_group[i],
+                             up(2.0 * tree.largest_growth())});
+    parts->body_origins.push_back(std::move(joined_bodies[i].origins));
+  }
+  for (std::size_t i = 0; i < obstacle_trees.size(); ++i) {
+    const PackedTree& tree = parts->trees.emplace_back(obstacle_trees[i], kPerScene * scene);
+    obstacle_depth = std::max(obstacle_depth, tree.depth());
+    const Eigen::Vector3f c = tree.root().center.cast<float>();
+    parts->obstacles.push_back({tree.nodes(),
+                                {c.x(), c.y(), c.z()},
+                                static_cast<float>(tree.root().radius),
+                                up(2.0 * tree.largest_growth())});
+    parts->obstacle_origins.push_back(std::move(joined_obstacles[i].origins));
+  }
+  parts->task_count = internal::task_bound(body_depth, obstacle_depth);
+  parts->kernel = kernel_for(instructions);
+  parts->problem = {.frames = parts->frames.data(),
+                    .frame_count = static_cast<std::int32_t>(parts->frames.size()),
+                    .variable_count = parts->variable_count,
+                    .bodies = parts->bodies.data(),
+                    .body_count = static_cast<std::int32_t>(parts->bodies.size()),
+                    .obstacles = parts->obstacles.data(),
+                    .pairs = parts->pairs.data(),
+                    .pair_count = static_cast<std::int32_t>(parts->pairs.size())};
+  parts_ = std::move(parts);
+}
+
+MechanismCheck::~MechanismCheck() = default;
+MechanismCheck::MechanismCheck(MechanismCheck&&) noexcept = default;
+MechanismCheck& MechanismCheck::operator=(MechanismCheck&&) noexcept = default;
+
+MechanismCheck::Scratch::Scratch(const MechanismCheck& check)
+    : memory_(std::make_unique<Memory>()) {
+  const Parts& parts = *check.parts_;
+  const auto variables = static_cast<std::size_t>(filled_up(parts.variable_count));
+  memory_->variables.resize(variables);
+  memory_->sines.resize(variables);
+  memory_->cosines.resize(variables);
+  memory_->poses.resize(parts.frames.size());
+  memory_->roots.resize(parts.bodies.size());
+  memory_->tasks.resize(static_cast<std::size_t>(parts.task_count));
+  memory_->view = {memory_->sines.data(), memory_->cosines.data(), memory_->poses.data(),
+                   memory_->roots.data(), memory_->tasks.data()};
+}
+
+MechanismCheck::Scratch::~Scratch() = default;
+MechanismCheck::Scratch::Scratch(Scratch&&) noexcept = default;
+MechanismCheck::Scratch& MechanismCheck::Scratch::operator=(Scratch&&) noexcept = default;
+
+bool MechanismCheck::is_in_range(std::span<const double> variables) {
+  return std::all_of(variables.begin(), variables.end(),
+                     [](double v) { return std::abs(v) <= internal::kLargestVariable; });
+}
+
+bool MechanismCheck::collides(std::span<const double> variables, Scratch& scratch,
+                              const std::function<bool(const MechanismContact&)>& confirm) const {
+  assert(is_in_range(variables));
+  assert(variables.size() >= static_cast<std::size_t>(parts_->variable_count));
+  struct Context {
+    const Parts& parts;
+    const std::function<bool(const MechanismContact&)>& confirm;
+  };
+  Context context{*parts_, confirm};
+  const internal::ConfirmContact ask = [](void* given, internal::KernelPair pair,
+                                          std::int32_t body_sphere, std::int32_t obstacle_sphere) {
+    const Context& in = *static_cast<const Context*>(given);
+    const Origin& body = in.parts.body_origins[static_cast<std::size_t>(pair.body)]
+                                              [static_cast<std::size_t>(body_sphere)];
+    const Origin& obstacle = in.parts.obstacle_origins[static_cast<std::size_t>(pair.obstacle)]
+                                                      [static_cast<std::size_t>(obstacle_sphere)];
+    return in.confirm({{body.part, obstacle.part}, body.sphere, obstacle.sphere});
+  };
+  Scratch::Memory& memory = *scratch.memory_;
+  std::copy_n(variables.begin(), parts_->variable_count, memory.variables.begin());
+  return parts_->kernel(parts_->problem, memory.variables.data(), memory.view, ask, &context);
+}
+
+}  // namespace spherule

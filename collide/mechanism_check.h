@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/pose.h"
+#include "spheretree/sphere_tree.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// Which instructions queries may use. Answers are equal for all of them.
+enum class InstructionSet { kPortable, kAvx2 };
+
+// The best that this machine has.
+InstructionSet best_instruction_set();
+bool is_available(InstructionSet set);
+
+// A frame that a variable moves: at zero its pose in the parent frame is `parent_from_frame`; then
+// it turns about its z axis by the variable (radians), or is shifted along it.
+struct MechanismFrame {
+  int parent = -1;  // an earlier frame, or -1 for the root
+  Pose parent_from_frame{};
+  int variable = 0;
+  bool prismatic = false;
+};
+
+// Spheres that are rigidly attached to a frame.
+struct MechanismBody {
+  int frame = 0;
+  Pose frame_from_tree{};
+  std::shared_ptr<const SphereTree> tree;
+};
+
+// Spheres that stand still in the root's frame.
+struct MechanismObstacle {
+  Pose root_from_tree{};
+  std::shared_ptr<const SphereTree> tree;
+};
+
+struct MechanismPair {
+  int body = 0;
+  int obstacle = 0;
+};
+
+// A contact of two spheres, in doubt.
+struct MechanismContact {
+  MechanismPair pair;
+  std::int32_t body_sphere = 0;  // indices into spheres() of the trees
+  std::int32_t obstacle_sphere = 0;
+};
+
+// Bodies of a jointed mechanism against obstacles that stand still, in single precision: a fast
+// test before an exact one. For each configuration it finds either that no two spheres of a pair
+// touch, or that some do, for sure; where rounding leaves a doubt it asks.
+//
+// Proof in mechanism_check.cpp. Exactness is meant with respect to any poses of the bodies that are
+// within `pose_error` of those of the exact mechanism (largest distance of a point of the body).
+// Bodies on one frame, and obstacles, that are tested against the same are searched as one tree.
+// Immutable; threads may share it, each with a scratch of its own.
+class MechanismCheck {
+ public:
+  // Pairs are tested in their order, as far as bodies are not searched together. Throws Error for
+  // indices out of range, a missing tree, or lengths that are not usable.
+  MechanismCheck(std::vector<MechanismFrame> frames, std::span<const MechanismBody> bodies,
+                 std::span<const MechanismObstacle> obstacles, std::span<const MechanismPair> pairs,
+                 double pose_error, InstructionSet instructions = best_instruction_set());
+  ~MechanismCheck();
+  MechanismCheck(MechanismCheck&&) noexcept;
+  MechanismCheck& operator=(MechanismCheck&&) noexcept;
+
+  // What a query writes to. Made once, for one check; no query allocates.
+  class Scratch {
+   public:
+    explicit Scratch(const MechanismCheck& check);
+    ~Scratch();
+    Scratch(Scratch&&) noexcept;
+    Scratch& operator=(Scratch&&) noexcept;
+
+   private:
+    friend class MechanismCheck;
+    struct Memory;
+    std::unique_ptr<Memory> memory_;
+  };
+
+  // Whether the variables are such that collides() can be asked: all at most 100 in magnitude.
+  static bool is_in_range(std::span<const double> variables);
+
+  // True if two spheres of a pair touch for sure or `confirm` says so of two that may; false if
+  // none do. is_in_range() must hold, for as many variables as the frames name.
+  bool collides(std::span<const double> variables, Scratch& scratch,
+                const std::function<bool(const MechanismContact&)>& confirm) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<const Parts> parts_;
+};
+
+}  // namespace spherule

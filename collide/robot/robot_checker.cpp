@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/robot_checker.h"
+
+#include "collide/collide.h"
+#include "collide/robot/kinematics.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+// The moving frames of a robot: one for each joint that a variable moves, its z axis turned into
+// the joint's axis, and where every link stands in the frame that carries it.
+struct Frames {
+  std::vector<MechanismFrame> frames;
+  std::vector<int> frame_of_link;  // -1: it stands with the root
+  std::vector<Pose> frame_from_link;
+
+  explicit Frames(const RobotModel& robot)
+      : frame_of_link(robot.links().size(), -1), frame_from_link(robot.links().size()) {
+    for (std::size_t link = 1; link < robot.links().size(); ++link) {
+      const Joint& joint =
+          robot.joints()[static_cast<std::size_t>(robot.links()[link].parent_joint)];
+      const auto parent = static_cast<std::size_t>(joint.parent_link);
+      const Pose frame_from_joint = frame_from_link[parent] * joint.parent_from_joint;
+      if (joint.type == JointType::kFixed) {
+        frame_of_link[link] = frame_of_link[parent];
+        frame_from_link[link] = frame_from_joint;
+        continue;
+      }
+      const Pose joint_from_frame(
+          Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis),
+          Eigen::Vector3d::Zero());
+      frame_of_link[link] = static_cast<int>(frames.size());
+      frame_from_link[link] = joint_from_frame.inverse();
+      frames.push_back({.parent = frame_of_link[parent],
+                        .parent_from_frame = frame_from_joint * joint_from_frame,
+                        .variable = joint.variable,
+                        .prismatic = joint.type == JointType::kPrismatic});
+    }
+  }
+};
+
+// How far a point of a link may be from where the canonical poses take it, as seen from the moving
+// frames: the error of forward_kinematics(), and that of the frames' own poses, of which a link has
+// at most four compositions a joint with 80 u of the lengths involved. Both are bounded for the
+// whole robot and scene at once.
+double pose_error(const RobotModel& robot, std::span<const PlacedTree> obstacles,
+                  const Pose& world_from_root) {
+  double reach = 0.0;
+  double length = 0.0;
+  for (const Link& link : robot.links()) {
+    for (const auto& tree : link.trees) reach = std::max(reach, tree->reach());
+  }
+  for (const Joint& joint : robot.joints()) {
+    length += joint.parent_from_joint.translation().norm() +
+              (joint.type == JointType::kPrismatic ? 100.0 : 0.0);
+  }
+  const double root = world_from_root.translation().norm();
+  double scene = reach + length + root;
+  for (const PlacedTree& obstacle : obstacles) {
+    scene = std::max(scene,
+                     obstacle.tree->reach() + obstacle.world_from_tree.translation().norm() + root);
+  }
+  const double joints = static_cast<double>(robot.joints().size());
+  return kinematics_error_bound(robot, reach, root) +
+         320.0 * kUnitRoundoff * (joints + 2.0) * scene;
+}
+
+bool is_untested(std::span<const UntestedPair> untested, std::size_t link, std::size_t obstacle) {
+  return std::any_of(untested.begin(), untested.end(), [&](const UntestedPair& pair) {
+    return static_cast<std::size_t>(pair.link) == link && pair.obstacle == obstacle;
+  });
+}
+
+void check_input(const RobotModel& robot, std::span<const PlacedTree> obstacles,
+                 std::span<const UntestedPair> untested) {
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (!obstacles[i].tree) throw Error("obstacle " + std::to_string(i), "it has no tree");
+  }
+  for (const UntestedPair& pair : untested) {
+    if (pair.link < 0 || static_cast<std::size_t>(pair.link) >= robot.links().size() ||
+        pair.obstacle >= obstacles.size()) {
+      throw Error("untested pair", "link " + std::to_string(pair.link) + " or obstacle " +
+                                       std::to_string(pair.obstacle) + " is not there");
+    }
+  }
+}
+
+}  // namespace
+
+RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
+                           const RobotCheckerOptions& options)
+    : robot_(std::move(robot)),
+      obstacles_(std::move(obstacles)),
+      world_from_root_(options.world_from_root) {
+  check_input(robot_, obstacles_, options.untested);
+  const Frames frames(robot_);
+  std::vector<Pose> standing;
+  forward_kinematics(robot_, std::vector<double>(static_cast<std::size_t>(robot_.variable_count())),
+                     standing, world_from_root_);
+  std::vector<MechanismBody> bodies;
+  for (std::size_t link = robot_.links().size(); link-- > 0;) {
+    for (const auto& tree : robot_.links()[link].trees) {
+      const bool moves = frames.frame_of_link[link] >= 0;
+      for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+        if (is_untested(options.untested, link, i)) continue;
+        if (moves) {
+          pairs_.push_back({static_cast<int>(bodies_.size()), static_cast<int>(i)});
+        } else {
+          always_ = always_ || spherule::collides(*tree, standing[link], *obstacles_[i].tree,
+                                                  obstacles_[i].world_from_tree);
+        }
+      }
+      if (!moves) continue;
+      bodies_.push_back({tree, link});
+      bodies.push_back({frames.frame_of_link[link], frames.frame_from_link[link], tree});
+    }
+  }
+  std::vector<MechanismObstacle> placed;
+  const Pose root_from_world = world_from_root_.inverse();
+  for (const PlacedTree& obstacle : obstacles_) {
+    placed.push_back({root_from_world * obstacle.world_from_tree, obstacle.tree});
+  }
+  check_.emplace(frames.frames, bodies, placed, pairs_,
+                 pose_error(robot_, obstacles_, world_from_root_), options.instructions);
+}
+
+bool RobotChecker::collides(std::span<const double> configuration, Scratch& scratch) const {
+  const bool is_usual = configuration.size() == static_cast<std::size_t>(robot_.variable_count()) &&
+                        MechanismCheck::is_in_range(configuration);
+  if (!is_usual) return collides_exactly(configuration, scratch);
+  if (always_) return true;
+  bool is_placed = false;
+  const auto confirm = [&](const MechanismContact& contact) {
+    if (!is_placed) {
+      forward_kinematics(robot_, configuration, scratch.world_from_link_, world_from_root_);
+      is_placed = true;
+    }
+    const Body& body = bodies_[static_cast<std::size_t>(contact.pair.body)];
+    const PlacedTree& obstacle = obstacles_[static_cast<std::size_t>(contact.pair.obstacle)];
+    return spheres_touch(*body.tree, contact.body_sphere, scratch.world_from_link_[body.link],
+                         *obstacle.tree, contact.obstacle_sphere, obstacle.world_from_tree);
+  };
+  return check_->collides(configuration, scratch.memory_, std::ref(confirm));
+}
+
+bool RobotChecker::collides_exactly(std::span<const double> configuration, Scratch& scratch) const {
+  std::vector<Pose>& world_from_link = scratch.world_from_link_;
+  forward_kinematics(robot_, configuration, world_from_link, world_from_root_);
+  return always_ || std::any_of(pairs_.begin(), pairs_.end(), [&](const MechanismPair& pair) {
+           const Body& body = bodies_[static_cast<std::size_t>(pair.body)];
+           const PlacedTree& obstacle = obstacles_[static_cast<std::size_t>(pair.obstacle)];
+           return spherule::collides(*body.tree, world_from_link[body.link], *obstacle.tree,
+                                     obstacle.world_from_tree);
+         });
+}
+
+}  // namespace spherule

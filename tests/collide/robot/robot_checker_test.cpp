@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/robot_checker.h"
+
+#include "collide/robot/kinematics.h"
+#include "collide/robot/robot_collision.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "tests/collide/robot/robots.h"
+#include "tests/collide/trees.h"
+#include "tests/support/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+std::vector<InstructionSet> instruction_sets() {
+  std::vector<InstructionSet> sets{InstructionSet::kPortable};
+  if (is_available(InstructionSet::kAvx2)) sets.push_back(InstructionSet::kAvx2);
+  return sets;
+}
+
+std::shared_ptr<const SphereTree> random_tree(Random& random, double size) {
+  const int count = random.whole(1, 60);
+  std::vector<Sphere> spheres = random_spheres(random, count, size, 0.1 * size);
+  return std::make_shared<const SphereTree>(
+      build_tree(spheres, {.branching = random.whole(2, SphereTree::kMaxBranching)}));
+}
+
+RobotModel random_robot_with_trees(Random& random, double size) {
+  RobotModel robot = random_robot(random, random.whole(1, 8), random.whole(0, 1) == 1);
+  for (std::size_t link = 0; link < robot.links().size(); ++link) {
+    for (int i = random.whole(0, 2); i > 0; --i) {
+      robot.attach(robot.links()[link].name, random_tree(random, size));
+    }
+  }
+  return robot;
+}
+
+// What the checker has to say, by the exact queries.
+bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+            const std::vector<double>& configuration, const Pose& world_from_root) {
+  std::vector<Pose> world_from_link;
+  forward_kinematics(robot, configuration, world_from_link, world_from_root);
+  for (const PlacedTree& obstacle : obstacles) {
+    if (robot_collides(robot, world_from_link, *obstacle.tree, obstacle.world_from_tree)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+TEST(RobotChecker, AnswersAsTheExactQueriesDo) {
+  Random random(21);
+  int hits = 0;
+  int free = 0;
+  for (int i = 0; i < effort(150, 15); ++i) {
+    const RobotModel robot = random_robot_with_trees(random, 0.3);
+    std::vector<PlacedTree> obstacles;
+    for (int k = random.whole(1, 3); k > 0; --k) {
+      obstacles.push_back({random_tree(random, 1.0), random.pose(2.0)});
+    }
+    const Pose root = i % 2 == 0 ? Pose() : random.pose(3.0);
+    for (const InstructionSet set : instruction_sets()) {
+      const RobotChecker checker(robot, obstacles, {.world_from_root = root, .instructions = set});
+      RobotChecker::Scratch scratch(checker);
+      for (int k = 0; k < 40; ++k) {
+        const double largest = k % 10 == 0 ? 99.0 : k % 10 == 1 ? 300.0 : 3.2;
+        const std::vector<double> configuration = random_configuration(random, robot, largest);
+        const bool expected = answer(robot, obstacles, configuration, root);
+        ASSERT_EQ(checker.collides(configuration, scratch), expected) << i << ' ' << k;
+        (expected ? hits : free) += 1;
+      }
+    }
+  }
+  EXPECT_GT(hits, effort(500, 50));
+  EXPECT_GT(free, effort(500, 50));
+}
+
+// A sphere of the robot is met by one that stands at a distance which single precision cannot tell
+// from contact, or can only just.
+TEST(RobotChecker, AnswersAsTheExactQueriesDoAtContact) {
+  Random random(22);
+  int hits = 0;
+  int free = 0;
+  for (int i = 0; i < effort(3000, 300); ++i) {
+    const RobotModel robot = random_robot_with_trees(random, 0.3);
+    const Pose root = i % 2 == 0 ? Pose() : random.pose(1000.0);
+    const std::vector<double> configuration = random_configuration(random, robot, 3.2);
+    std::vector<Pose> world_from_link;
+    forward_kinematics(robot, configuration, world_from_link, root);
+    std::vector<std::pair<std::size_t, Sphere>> moving;
+    for (std::size_t link = 1; link < robot.links().size(); ++link) {
+      for (const auto& tree : robot.links()[link].trees) {
+        moving.emplace_back(link, tree->spheres()[random.bits() % tree->spheres().size()]);
+      }
+    }
+    if (moving.empty()) continue;
+    const auto& [link, sphere] = moving[random.bits() % moving.size()];
+    const double gap =
+        (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-17.0, -3.0));
+    const Sphere other{random.point(1.0), random.uniform(0.0, 0.2)};
+    const Eigen::Vector3d direction = random.point(1.0).normalized();
+    const Pose turned(random.quaternion(), Eigen::Vector3d::Zero());
+    const Eigen::Vector3d center =
+        world_from_link[link] * sphere.center + (sphere.radius + other.radius + gap) * direction;
+    const std::vector<PlacedTree> obstacles = {
+        {std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{other})),
+         Pose(turned.rotation(), center - turned * other.center)}};
+    const bool expected = answer(robot, obstacles, configuration, root);
+    (expected ? hits : free) += 1;
+    for (const InstructionSet set : instruction_sets()) {
+      const RobotChecker checker(robot, obstacles, {.world_from_root = root, .instructions = set});
+      RobotChecker::Scratch scratch(checker);
+      ASSERT_EQ(checker.collides(configuration, scratch), expected) << i << ' ' << gap;
+    }
+  }
+  EXPECT_GT(hits, effort(500, 50));
+  EXPECT_GT(free, effort(500, 50));
+}
+
+std::shared_ptr<const SphereTree> ball(const Eigen::Vector3d& center, double radius) {
+  return std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{center, radius}}));
+}
+
+// An arm of length one about the z axis, with a ball at its end and one at its root.
+RobotModel arm() {
+  RobotModel robot("base");
+  robot.attach("base", ball({0, 0, 0}, 0.1));
+  robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
+  robot.attach("arm", ball({1, 0, 0}, 0.1));
+  return robot;
+}
+
+TEST(RobotChecker, WhatIsNotTestedIsNotFound) {
+  const std::vector<PlacedTree> obstacles = {{ball({0, 0, 0}, 0.05), Pose()},
+                                             {ball({0, 1, 0}, 0.05), Pose()}};
+  const auto collides = [&](std::vector<UntestedPair> untested, double angle) {
+    const RobotChecker checker(arm(), obstacles, {.untested = std::move(untested)});
+    RobotChecker::Scratch scratch(checker);
+    return checker.collides(std::vector<double>{angle}, scratch);
+  };
+  constexpr double kQuarter = 1.5707963;
+  EXPECT_TRUE(collides({}, 0.0));  // the base stands in the first obstacle
+  EXPECT_FALSE(collides({{0, 0}}, 0.0));
+  EXPECT_TRUE(collides({{0, 0}}, kQuarter));
+  EXPECT_TRUE(collides({{0, 0}}, kQuarter + 100.0 * 2.0 * 3.14159265358979));
+  EXPECT_FALSE(collides({{0, 0}, {1, 1}}, kQuarter));
+  EXPECT_TRUE(collides({{1, 0}, {1, 1}}, kQuarter));
+  EXPECT_FALSE(collides({{0, 0}, {0, 1}, {1, 0}, {1, 1}}, kQuarter));
+}
+
+TEST(RobotChecker, NothingToTestIsFree) {
+  const RobotChecker no_obstacle(arm(), {});
+  RobotChecker::Scratch scratch(no_obstacle);
+  EXPECT_FALSE(no_obstacle.collides(std::vector<double>{1.0}, scratch));
+  const RobotChecker no_robot(RobotModel("base"), {{ball({0, 0, 0}, 1.0), Pose()}});
+  RobotChecker::Scratch other(no_robot);
+  EXPECT_FALSE(no_robot.collides({}, other));
+}
+
+TEST(RobotChecker, RefusesBadInput) {
+  EXPECT_THROW(RobotChecker(arm(), {{nullptr, Pose()}}), Error);
+  const std::vector<PlacedTree> one = {{ball({5, 0, 0}, 1.0), Pose()}};
+  EXPECT_THROW(RobotChecker(arm(), one, {.untested = {{2, 0}}}), Error);
+  EXPECT_THROW(RobotChecker(arm(), one, {.untested = {{-1, 0}}}), Error);
+  EXPECT_THROW(RobotChecker(arm(), one, {.untested = {{0, 1}}}), Error);
+  const RobotChecker checker(arm(), one);
+  RobotChecker::Scratch scratch(checker);
+  for (const std::vector<double>& bad : {std::vector<double>{},
+                                         {0.0, 0.0},
+                                         {std::numeric_limits<double>::quiet_NaN()},
+                                         {std::numeric_limits<double>::infinity()}}) {
+    EXPECT_THROW(checker.collides(bad, scratch), Error);
+  }
+  EXPECT_FALSE(checker.collides(std::vector<double>{0.0}, scratch));
+}
+
+}  // namespace
+}  // namespace spherule::test
