@@ -19,8 +19,8 @@ class FitTest : public CommandTest {
 };
 
 TEST_F(FitTest, ChainFromMeshToCollision) {
-  const Outcome fit = run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--report",
-                           "report.json", "--tree", "fit.tree", "--view", "fit.html"});
+  const Outcome fit = run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--effort", "1",
+                           "--report", "report.json", "--tree", "fit.tree", "--view", "fit.html"});
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_EQ(fit.err, "");  // no progress bar: not a terminal
   EXPECT_EQ(files(), (std::vector<std::string>{"box.json", "box.stl", "fit.html", "fit.tree",
@@ -103,10 +103,10 @@ TEST_F(FitTest, ThreadsDoNotChangeTheOutput) {
   for (const char* method : {"cover", "paper"}) {
     for (const char* external : {"reachable", "random"}) {
       const auto fit = [&](const char* threads, const std::string& name) {
-        const Outcome result =
-            run({"fit", "box.stl", "-o", name + ".json", "--max-error",
-                 test::kSanitized ? "4" : "2", "--method", method, "--external", external,
-                 "--external-limit", "300", "--threads", threads, "--tree", name + ".tree"});
+        const Outcome result = run({"fit", "box.stl", "-o", name + ".json", "--max-error",
+                                    test::kSanitized ? "4" : "2", "--effort", "4", "--method",
+                                    method, "--external", external, "--external-limit", "300",
+                                    "--threads", threads, "--tree", name + ".tree"});
         EXPECT_EQ(result.exit_code, 0) << result.err;
       };
       fit("1", "one");
@@ -126,7 +126,7 @@ TEST_F(FitTest, EffortOrSecondsSayHowLongToLook) {
     return read_json("box.json");
   };
   const json first = fit("--effort", "0");
-  const json later = fit("--effort", "6");
+  const json later = fit("--effort", test::kSanitized ? "2" : "6");
   EXPECT_EQ(first.at("options").at("effort"), 0);
   EXPECT_LT(later.at("spheres").size(), first.at("spheres").size());
   EXPECT_EQ(fit("--seconds", "0.5").at("options").at("seconds"), 0.5);
@@ -140,8 +140,8 @@ TEST_F(FitTest, EffortOrSecondsSayHowLongToLook) {
 
 // The levels stand in the tree and in the report, and no verdict depends on them.
 TEST_F(FitTest, LevelsAreJoinedInTheTree) {
-  ASSERT_EQ(run({"fit", "box.stl", "-o", "box.json", "--levels", "8,2,4", "--report", "report.json",
-                 "--tree", "levels.tree"})
+  ASSERT_EQ(run({"fit", "box.stl", "-o", "box.json", "--levels", "8,2,4", "--effort", "1",
+                 "--report", "report.json", "--tree", "levels.tree"})
                 .exit_code,
             0);
   EXPECT_EQ(read_json("box.json").at("options").at("levels"), "8,4,2");
@@ -191,8 +191,8 @@ TEST_F(FitTest, OptionsArriveInTheFile) {
 
 TEST_F(FitTest, TheToolMakesD) {
   write_spheres("tool.json", {{0, 0, 0, 3}, {1, 0, 0, 2.5}, {5, 0, 0, 4}});
-  const Outcome fit =
-      run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--tool", "tool.json"});
+  const Outcome fit = run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--effort", "1",
+                           "--tool", "tool.json"});
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_EQ(read_json("box.json").at("options").at("min-external"), 5.0);
 
@@ -215,9 +215,9 @@ TEST_F(FitTest, ZonesAreKeptProvedAndAudited) {
   write("zones.json", R"({"format":"spherule-zones","version":1,"zones":[
     {"shape":"ball","center":[40,20,10],"radius":4,"max_error":0.5},
     {"shape":"box","min":[-5,-5,-5],"max":[10,25,15],"min_external":4}]})");
-  const std::vector<std::string> arguments = {"fit",      "box.stl",     "-o",
-                                              "box.json", "--max-error", "2",
-                                              "--zones",  "zones.json",  "--keep-concave-edges"};
+  const std::vector<std::string> arguments = {
+      "fit",      "box.stl", "-o",      "box.json",   "--max-error",         "2",
+      "--effort", "1",       "--zones", "zones.json", "--keep-concave-edges"};
   const Outcome fit = run(arguments);
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_NE(fit.out.find("zones along sharp concave edges: 0"), std::string::npos);

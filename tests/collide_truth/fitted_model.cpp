@@ -6,6 +6,7 @@
 #include "simplifier/simplify.h"
 #include "spheretree/build.h"
 #include "spheretree/rounding.h"
+#include "tests/support/effort.h"
 #include "tests/support/models.h"
 #include "tests/support/zoo.h"
 
@@ -60,11 +61,11 @@ FittedModel fit_model(const std::string& name, const TriangleMesh& mesh, double 
                       double radius_factor) {
   FclSolid fcl_mesh(mesh);
   const Eigen::AlignedBox3d box = fcl_mesh.box();
-  const double error = error_share * box.diagonal().norm();
+  const double error = (test::kSanitized ? 2.0 : 1.0) * error_share * box.diagonal().norm();
   SimplifyOptions options;
   options.max_error = error;
   options.min_external_diameter = 4.0 * error;
-  options.effort = 2;
+  options.effort = test::effort(2, 0);
   const Simplification fit = simplify(mesh, options);
   const std::string broken = broken_promises(fit);
   if (!broken.empty()) throw std::runtime_error(name + ": " + broken);
