@@ -7,7 +7,8 @@
 
 namespace spherule {
 
-// Sphere trees, one configuration a call: collides() for every tested pair, until one hits.
+// Sphere trees, one configuration a call: RobotChecker, which answers as collides() for every tested
+// pair would.
 std::unique_ptr<Checker> make_tree_checker(const Workload& workload);
 
 }  // namespace spherule

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/mechanism_check.h"
 
+#include "collide/internal/joined_scene.h"
 #include "collide/internal/mechanism_kernel.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
@@ -10,7 +11,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <map>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -79,26 +80,6 @@ void check_input(std::span<const MechanismFrame> frames, std::span<const Mechani
   }
 }
 
-// Where a sphere of a joined tree comes from.
-struct Origin {
-  int part;  // a body or an obstacle
-  std::int32_t sphere;
-};
-
-// Several trees as one, in a frame of their own.
-struct Joined {
-  std::vector<Sphere> spheres;
-  std::vector<Origin> origins;
-
-  void add(int part, const SphereTree& tree, const Pose& pose) {
-    const std::span<const Sphere> added = tree.spheres();
-    for (std::size_t i = 0; i < added.size(); ++i) {
-      spheres.push_back({pose * added[i].center, added[i].radius});
-      origins.push_back({part, static_cast<std::int32_t>(i)});
-    }
-  }
-};
-
 float up(double x) {
   const auto nearest = static_cast<float>(x);
   return static_cast<double>(nearest) >= x
@@ -120,6 +101,43 @@ internal::KernelFrame kernel_frame(const MechanismFrame& frame) {
   return result;
 }
 
+// Twice what was added to a radius bounds what overlaps without being sure to touch.
+internal::KernelBody kernel_body(const PackedTree& tree, int frame) {
+  const auto& [center, radius] = tree.root();
+  return {tree.nodes(),
+          {center.x(), center.y(), center.z()},
+          static_cast<float>(radius),
+          frame,
+          up(2.0 * tree.largest_growth())};
+}
+
+internal::KernelObstacle kernel_obstacle(const PackedTree& tree) {
+  const auto& [center, radius] = tree.root();
+  return {tree.nodes(),
+          {static_cast<float>(center.x()), static_cast<float>(center.y()),
+           static_cast<float>(center.z())},
+          static_cast<float>(radius),
+          up(2.0 * tree.largest_growth())};
+}
+
+// From the root to a frame: the largest distance of its origin, and how many frames it takes.
+struct Chain {
+  double length = 0.0;
+  double frames = 0.0;
+};
+
+std::vector<Chain> chains_of(std::span<const MechanismFrame> frames) {
+  std::vector<Chain> chains;
+  for (const MechanismFrame& frame : frames) {
+    Chain chain = frame.parent < 0 ? Chain() : chains[static_cast<std::size_t>(frame.parent)];
+    chain.length += frame.parent_from_frame.translation().norm() +
+                    (frame.prismatic ? internal::kLargestVariable : 0.0);
+    chain.frames += 1.0;
+    chains.push_back(chain);
+  }
+  return chains;
+}
+
 internal::CheckKernel kernel_for(InstructionSet set) {
 #if defined(__x86_64__)
   if (set == InstructionSet::kAvx2) return internal::avx2_check_kernel();
@@ -133,31 +151,17 @@ int filled_up(int count) {
 
 }  // namespace
 
-bool is_available(InstructionSet set) {
-#if defined(__x86_64__)
-  if (set == InstructionSet::kAvx2) {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  }
-#endif
-  return set == InstructionSet::kPortable;
-}
-
-InstructionSet best_instruction_set() {
-  return is_available(InstructionSet::kAvx2) ? InstructionSet::kAvx2 : InstructionSet::kPortable;
-}
-
 // The kernel's problem, with what it points to.
 struct MechanismCheck::Parts {
-  std::vector<internal::KernelFrame> frames;
-  std::vector<PackedTree> trees;  // of the joined bodies, then of the joined obstacles
-  std::vector<internal::KernelBody> bodies;
-  std::vector<internal::KernelObstacle> obstacles;
-  std::vector<internal::KernelPair> pairs;
-  std::vector<std::vector<Origin>> body_origins;
-  std::vector<std::vector<Origin>> obstacle_origins;
-  internal::KernelProblem problem = {};
+  explicit Parts(internal::JoinedScene joined) : scene(std::move(joined)) {}
+
+  internal::JoinedScene scene;
+  std::vector<internal::KernelFrame> frames{};
+  std::vector<PackedTree> trees{};
+  std::vector<internal::KernelBody> bodies{};
+  std::vector<internal::KernelObstacle> obstacles{};
+  internal::KernelProblem problem{};
   internal::CheckKernel kernel = nullptr;
-  int variable_count = 0;
   std::int64_t task_count = 1;
 };
 
@@ -171,122 +175,61 @@ struct MechanismCheck::Scratch::Memory {
   internal::KernelScratch view = {};
 };
 
-MechanismCheck::MechanismCheck(std::vector<MechanismFrame> frames,
+MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
                                std::span<const MechanismBody> bodies,
                                std::span<const MechanismObstacle> obstacles,
                                std::span<const MechanismPair> pairs, double pose_error,
                                InstructionSet instructions) {
   check_input(frames, bodies, obstacles, pairs, pose_error);
   if (!is_available(instructions)) throw Error("instruction set", "this machine has not got it");
-  auto parts = std::make_unique<Parts>();
-  std::vector<double> chain(frames.size());  // largest distance of a frame's origin from the root
-  std::vector<int> links(frames.size());     // frames from the root to it
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const MechanismFrame& frame = frames[i];
+  auto parts = std::make_unique<Parts>(internal::JoinedScene(bodies, obstacles, pairs));
+  const internal::JoinedScene& scene = parts->scene;
+  int variable_count = 0;
+  for (const MechanismFrame& frame : frames) {
     parts->frames.push_back(kernel_frame(frame));
-    parts->variable_count = std::max(parts->variable_count, frame.variable + 1);
-    const auto parent = static_cast<std::size_t>(frame.parent);
-    chain[i] = frame.parent_from_frame.translation().norm() +
-               (frame.prismatic ? internal::kLargestVariable : 0.0) +
-               (frame.parent < 0 ? 0.0 : chain[parent]);
-    links[i] = frame.parent < 0 ? 1 : links[parent] + 1;
+    variable_count = std::max(variable_count, frame.variable + 1);
   }
-
-  // Obstacles that meet the same bodies are one; then bodies on one frame that meet the same.
-  std::vector<std::vector<int>> met_by(obstacles.size());
-  for (const MechanismPair& pair : pairs) {
-    met_by[static_cast<std::size_t>(pair.obstacle)].push_back(pair.body);
-  }
-  std::map<std::vector<int>, int> obstacle_groups;
-  std::vector<int> group_of_obstacle(obstacles.size(), -1);
-  std::vector<Joined> joined_obstacles;
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    std::vector<int>& met = met_by[i];
-    std::sort(met.begin(), met.end());
-    met.erase(std::unique(met.begin(), met.end()), met.end());
-    if (met.empty()) continue;
-    const auto [place, is_new] =
-        obstacle_groups.emplace(met, static_cast<int>(joined_obstacles.size()));
-    if (is_new) joined_obstacles.emplace_back();
-    group_of_obstacle[i] = place->second;
-    joined_obstacles[static_cast<std::size_t>(place->second)].add(
-        static_cast<int>(i), *obstacles[i].tree, obstacles[i].root_from_tree);
-  }
-  std::vector<std::vector<int>> groups_met(bodies.size());
-  for (const MechanismPair& pair : pairs) {
-    std::vector<int>& met = groups_met[static_cast<std::size_t>(pair.body)];
-    const int group = group_of_obstacle[static_cast<std::size_t>(pair.obstacle)];
-    if (std::find(met.begin(), met.end(), group) == met.end()) met.push_back(group);
-  }
-  std::map<std::pair<int, std::vector<int>>, int> body_groups;
-  std::vector<Joined> joined_bodies;
-  std::vector<int> frame_of_group;
-  for (const MechanismPair& pair : pairs) {
-    const auto index = static_cast<std::size_t>(pair.body);
-    if (groups_met[index].empty()) continue;
-    const auto [place, is_new] = body_groups.emplace(
-        std::pair(bodies[index].frame, groups_met[index]), static_cast<int>(joined_bodies.size()));
-    if (is_new) {
-      joined_bodies.emplace_back();
-      frame_of_group.push_back(bodies[index].frame);
-      for (const int group : groups_met[index]) parts->pairs.push_back({place->second, group});
-    }
-    joined_bodies[static_cast<std::size_t>(place->second)].add(pair.body, *bodies[index].tree,
-                                                               bodies[index].frame_from_tree);
-    groups_met[index].clear();
-  }
-
+  const std::vector<Chain> chains = chains_of(frames);
   std::vector<SphereTree> body_trees;
-  std::vector<double> reach;
-  double scene = 0.0;
-  for (std::size_t i = 0; i < joined_bodies.size(); ++i) {
-    body_trees.push_back(build_tree(joined_bodies[i].spheres));
-    reach.push_back(chain[static_cast<std::size_t>(frame_of_group[i])] +
-                    node_reach(body_trees.back()));
-    scene = std::max(scene, reach.back());
-  }
   std::vector<SphereTree> obstacle_trees;
-  for (const Joined& joined : joined_obstacles) {
-    obstacle_trees.push_back(build_tree(joined.spheres));
-    scene = std::max(scene, node_reach(obstacle_trees.back()));
+  std::vector<double> reach;  // W of the bodies
+  double bound = 0.0;         // X
+  for (const internal::JoinedSpheres& body : scene.bodies) {
+    body_trees.push_back(build_tree(body.spheres));
+    reach.push_back(chains[static_cast<std::size_t>(body.frame)].length +
+                    node_reach(body_trees.back()));
+    bound = std::max(bound, reach.back());
+  }
+  for (const internal::JoinedSpheres& obstacle : scene.obstacles) {
+    obstacle_trees.push_back(build_tree(obstacle.spheres));
+    bound = std::max(bound, node_reach(obstacle_trees.back()));
   }
   int body_depth = 1;
   int obstacle_depth = 1;
-  parts->trees.reserve(body_trees.size() + obstacle_trees.size());
   for (std::size_t i = 0; i < body_trees.size(); ++i) {
-    const auto frame = static_cast<std::size_t>(frame_of_group[i]);
-    const double inflation =
-        (kPerLength + kPerFrame * (links[frame] + 1)) * reach[i] + kPerScene * scene + pose_error;
-    const PackedTree& tree = parts->trees.emplace_back(body_trees[i], inflation);
+    const int frame = scene.bodies[i].frame;
+    const double links = chains[static_cast<std::size_t>(frame)].frames;
+    const PackedTree& tree = parts->trees.emplace_back(
+        body_trees[i],
+        (kPerLength + kPerFrame * (links + 1.0)) * reach[i] + kPerScene * bound + pose_error);
     body_depth = std::max(body_depth, tree.depth());
-    const Eigen::Vector3d& c = tree.root().center;
-    parts->bodies.push_back({tree.nodes(),
-                             {c.x(), c.y(), c.z()},
-                             static_cast<float>(tree.root().radius),
-                             frame_of_group[i],
-                             up(2.0 * tree.largest_growth())});
-    parts->body_origins.push_back(std::move(joined_bodies[i].origins));
+    parts->bodies.push_back(kernel_body(tree, frame));
   }
-  for (std::size_t i = 0; i < obstacle_trees.size(); ++i) {
-    const PackedTree& tree = parts->trees.emplace_back(obstacle_trees[i], kPerScene * scene);
+  for (const SphereTree& obstacle : obstacle_trees) {
+    const PackedTree& tree = parts->trees.emplace_back(obstacle, kPerScene * bound);
     obstacle_depth = std::max(obstacle_depth, tree.depth());
-    const Eigen::Vector3f c = tree.root().center.cast<float>();
-    parts->obstacles.push_back({tree.nodes(),
-                                {c.x(), c.y(), c.z()},
-                                static_cast<float>(tree.root().radius),
-                                up(2.0 * tree.largest_growth())});
-    parts->obstacle_origins.push_back(std::move(joined_obstacles[i].origins));
+    parts->obstacles.push_back(kernel_obstacle(tree));
   }
   parts->task_count = internal::task_bound(body_depth, obstacle_depth);
   parts->kernel = kernel_for(instructions);
   parts->problem = {.frames = parts->frames.data(),
                     .frame_count = static_cast<std::int32_t>(parts->frames.size()),
-                    .variable_count = parts->variable_count,
+                    .variable_count = variable_count,
                     .bodies = parts->bodies.data(),
                     .body_count = static_cast<std::int32_t>(parts->bodies.size()),
                     .obstacles = parts->obstacles.data(),
-                    .pairs = parts->pairs.data(),
-                    .pair_count = static_cast<std::int32_t>(parts->pairs.size())};
+                    .pairs = scene.pairs.data(),
+                    .pair_count = static_cast<std::int32_t>(scene.pairs.size())};
   parts_ = std::move(parts);
 }
 
@@ -297,7 +240,7 @@ MechanismCheck& MechanismCheck::operator=(MechanismCheck&&) noexcept = default;
 MechanismCheck::Scratch::Scratch(const MechanismCheck& check)
     : memory_(std::make_unique<Memory>()) {
   const Parts& parts = *check.parts_;
-  const auto variables = static_cast<std::size_t>(filled_up(parts.variable_count));
+  const auto variables = static_cast<std::size_t>(filled_up(parts.problem.variable_count));
   memory_->variables.resize(variables);
   memory_->sines.resize(variables);
   memory_->cosines.resize(variables);
@@ -320,7 +263,7 @@ bool MechanismCheck::is_in_range(std::span<const double> variables) {
 bool MechanismCheck::collides(std::span<const double> variables, Scratch& scratch,
                               const std::function<bool(const MechanismContact&)>& confirm) const {
   assert(is_in_range(variables));
-  assert(variables.size() >= static_cast<std::size_t>(parts_->variable_count));
+  assert(variables.size() >= static_cast<std::size_t>(parts_->problem.variable_count));
   struct Context {
     const Parts& parts;
     const std::function<bool(const MechanismContact&)>& confirm;
@@ -329,14 +272,15 @@ bool MechanismCheck::collides(std::span<const double> variables, Scratch& scratc
   const internal::ConfirmContact ask = [](void* given, internal::KernelPair pair,
                                           std::int32_t body_sphere, std::int32_t obstacle_sphere) {
     const Context& in = *static_cast<const Context*>(given);
-    const Origin& body = in.parts.body_origins[static_cast<std::size_t>(pair.body)]
-                                              [static_cast<std::size_t>(body_sphere)];
-    const Origin& obstacle = in.parts.obstacle_origins[static_cast<std::size_t>(pair.obstacle)]
-                                                      [static_cast<std::size_t>(obstacle_sphere)];
+    const internal::SphereOrigin& body = in.parts.scene.bodies[static_cast<std::size_t>(pair.body)]
+                                             .origins[static_cast<std::size_t>(body_sphere)];
+    const internal::SphereOrigin& obstacle =
+        in.parts.scene.obstacles[static_cast<std::size_t>(pair.obstacle)]
+            .origins[static_cast<std::size_t>(obstacle_sphere)];
     return in.confirm({{body.part, obstacle.part}, body.sphere, obstacle.sphere});
   };
   Scratch::Memory& memory = *scratch.memory_;
-  std::copy_n(variables.begin(), parts_->variable_count, memory.variables.begin());
+  std::copy_n(variables.begin(), parts_->problem.variable_count, memory.variables.begin());
   return parts_->kernel(parts_->problem, memory.variables.data(), memory.view, ask, &context);
 }
 

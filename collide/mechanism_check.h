@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/instruction_set.h"
 #include "spheretree/pose.h"
 #include "spheretree/sphere_tree.h"
 
@@ -11,13 +12,6 @@
 #include <vector>
 
 namespace spherule {
-
-// Which instructions queries may use. Answers are equal for all of them.
-enum class InstructionSet { kPortable, kAvx2 };
-
-// The best that this machine has.
-InstructionSet best_instruction_set();
-bool is_available(InstructionSet set);
 
 // A frame that a variable moves: at zero its pose in the parent frame is `parent_from_frame`; then
 // it turns about its z axis by the variable (radians), or is shifted along it.
@@ -65,7 +59,7 @@ class MechanismCheck {
  public:
   // Pairs are tested in their order, as far as bodies are not searched together. Throws Error for
   // indices out of range, a missing tree, or lengths that are not usable.
-  MechanismCheck(std::vector<MechanismFrame> frames, std::span<const MechanismBody> bodies,
+  MechanismCheck(std::span<const MechanismFrame> frames, std::span<const MechanismBody> bodies,
                  std::span<const MechanismObstacle> obstacles, std::span<const MechanismPair> pairs,
                  double pose_error, InstructionSet instructions = best_instruction_set());
   ~MechanismCheck();

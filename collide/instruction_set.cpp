@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/instruction_set.h"
+
+namespace spherule {
+
+bool is_available(InstructionSet set) {
+#if defined(__x86_64__)
+  if (set == InstructionSet::kAvx2) {
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  }
+#endif
+  return set == InstructionSet::kPortable;
+}
+
+InstructionSet best_instruction_set() {
+  return is_available(InstructionSet::kAvx2) ? InstructionSet::kAvx2 : InstructionSet::kPortable;
+}
+
+}  // namespace spherule

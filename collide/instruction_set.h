@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace spherule {
+
+// Which instructions queries may use. Answers are equal for all of them (G7).
+enum class InstructionSet { kPortable, kAvx2 };
+
+// Whether this machine has it; kAvx2 asks for fused multiply-add, too.
+bool is_available(InstructionSet set);
+
+// The fastest that this machine has.
+InstructionSet best_instruction_set();
+
+}  // namespace spherule
