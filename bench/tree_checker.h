@@ -7,8 +7,8 @@
 
 namespace spherule {
 
-// Sphere trees, one configuration a call: RobotChecker, which answers as collides() for every tested
-// pair would.
+// Sphere trees, one configuration a call: RobotChecker, which answers as collides() for every
+// tested pair would.
 std::unique_ptr<Checker> make_tree_checker(const Workload& workload);
 
 }  // namespace spherule

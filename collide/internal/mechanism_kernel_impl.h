@@ -27,6 +27,7 @@ namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 
 typedef float Float8 __attribute__((vector_size(32), may_alias));
+typedef float Float4 __attribute__((vector_size(16), may_alias));
 typedef std::int32_t Int8 __attribute__((vector_size(32), may_alias));
 typedef double Double4 __attribute__((vector_size(32), may_alias));
 typedef std::int64_t Long4 __attribute__((vector_size(32), may_alias));
@@ -74,17 +75,17 @@ SPHERULE_INLINE unsigned overlaps(const Balls& balls, float x, float y, float z,
   return mask_of(dx * dx + dy * dy + dz * dz <= limit * limit);
 }
 
-// A frame's pose in single precision.
-struct Placement {
-  float r[3][3];  // columns
-  float t[3];
+// A frame's pose in single precision: three columns and the origin.
+struct alignas(16) Placement {
+  float columns[4][4];
 };
 
 SPHERULE_INLINE Balls placed(const PackedNode& node, const Placement& at) {
+  const auto& [x, y, z, t] = at.columns;
   const Balls in = balls_of(node);
-  return {at.r[0][0] * in.x + at.r[1][0] * in.y + at.r[2][0] * in.z + at.t[0],
-          at.r[0][1] * in.x + at.r[1][1] * in.y + at.r[2][1] * in.z + at.t[1],
-          at.r[0][2] * in.x + at.r[1][2] * in.y + at.r[2][2] * in.z + at.t[2], in.radius};
+  return {x[0] * in.x + y[0] * in.y + z[0] * in.z + t[0],
+          x[1] * in.x + y[1] * in.y + z[1] * in.z + t[1],
+          x[2] * in.x + y[2] * in.y + z[2] * in.z + t[2], in.radius};
 }
 
 SPHERULE_INLINE Double4 load(const double* p) {
@@ -162,14 +163,12 @@ SPHERULE_INLINE void place_frames(const KernelProblem& problem, const double* co
   }
 }
 
-Placement in_single_precision(const KernelPose& pose) {
+SPHERULE_INLINE Placement in_single_precision(const KernelPose& pose) {
   Placement at;
-  for (int column = 0; column < 3; ++column) {
-    for (int row = 0; row < 3; ++row) {
-      at.r[column][row] = static_cast<float>(pose.columns[column][row]);
-    }
+  for (int column = 0; column < 4; ++column) {
+    const Float4 rounded = __builtin_convertvector(load(pose.columns[column]), Float4);
+    __builtin_memcpy(at.columns[column], &rounded, sizeof rounded);
   }
-  for (int row = 0; row < 3; ++row) at.t[row] = static_cast<float>(pose.columns[3][row]);
   return at;
 }
 
