@@ -4,7 +4,7 @@
 namespace spherule {
 
 bool is_available(InstructionSet set) {
-#if defined(__x86_64__)
+#if defined(SPHERULE_AVX2_KERNEL)
   if (set == InstructionSet::kAvx2) {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   }

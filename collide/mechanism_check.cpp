@@ -3,6 +3,8 @@
 
 #include "collide/internal/joined_scene.h"
 #include "collide/internal/mechanism_kernel.h"
+#include "collide/internal/packed_tree.h"
+#include "collide/internal/relative_pose.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -32,20 +34,19 @@ using internal::PackedTree;
 //     v |t|; c rounded, v |c|; three products and three sums a row, 4 v (|c| + |t|) a row at most,
 //     over three rows 7 v (|c| + |t|). Together less than 10 v W. The ball around all is placed in
 //     double and then rounded: less.
-// With the error of the poses that are to be matched, and the slack of the canonical test (152 u of
-// the scene, which is at most twice the bound X of all coordinates), a body's balls must be
-// inflated by
+//   centres are moved to their frame in double: 40 u (|p| + |t|) for a point p of a tree and its
+//     pose's translation t. Let X bound that sum for all trees, and W for all bodies.
+//   the slack of the canonical test, 152 u of the scene, which is less than 4 X, and of the scene
+//   as
+//     the caller's poses have it, which is in pose_error.
+// So the balls of a body must be inflated by
 //     12 v W + 1e-10 (n + 1) W + 1e-12 X + pose_error,
-// and those of an obstacle, whose centres are moved to the root's frame in double, by 1e-12 X.
+// and those of an obstacle by 1e-12 X.
 constexpr double kPerLength = 12.0 * kFloatRoundoff;
-constexpr double kPerFrame = 1e-10;
+constexpr double kPerFrame = 5.0 * internal::kSineError;
 constexpr double kPerScene = 1e-12;
 
-// How far from the origin of its frame any ball of a tree reaches, those of nodes included.
-double node_reach(const SphereTree& tree) {
-  const Sphere root = tree.ball(0);
-  return std::max(tree.reach(), root.center.lpNorm<1>() + root.radius);
-}
+constexpr int kLargestIndex = 1 << 20;  // of a variable: there is memory for all up to it
 
 [[noreturn]] void refuse(const std::string& what, std::size_t index, const std::string& why) {
   throw Error("mechanism", what + " " + std::to_string(index) + ' ' + why);
@@ -61,7 +62,9 @@ void check_input(std::span<const MechanismFrame> frames, std::span<const Mechani
     if (frames[i].parent < -1 || frames[i].parent >= static_cast<int>(i)) {
       refuse("frame", i, "does not come after its parent");
     }
-    if (frames[i].variable < 0) refuse("frame", i, "has no variable");
+    if (frames[i].variable < 0 || frames[i].variable > kLargestIndex) {
+      refuse("frame", i, "has no variable that could be");
+    }
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!below(bodies[i].frame, frames.size())) refuse("body", i, "is on no frame");
@@ -80,13 +83,6 @@ void check_input(std::span<const MechanismFrame> frames, std::span<const Mechani
   }
 }
 
-float up(double x) {
-  const auto nearest = static_cast<float>(x);
-  return static_cast<double>(nearest) >= x
-             ? nearest
-             : std::nextafter(nearest, std::numeric_limits<float>::infinity());
-}
-
 internal::KernelFrame kernel_frame(const MechanismFrame& frame) {
   internal::KernelFrame result = {};
   const Eigen::Matrix3d rotation = frame.parent_from_frame.matrix();
@@ -101,14 +97,14 @@ internal::KernelFrame kernel_frame(const MechanismFrame& frame) {
   return result;
 }
 
-// Twice what was added to a radius bounds what overlaps without being sure to touch.
+// Margins as packed_tree.h has them.
 internal::KernelBody kernel_body(const PackedTree& tree, int frame) {
   const auto& [center, radius] = tree.root();
   return {tree.nodes(),
           {center.x(), center.y(), center.z()},
           static_cast<float>(radius),
           frame,
-          up(2.0 * tree.largest_growth())};
+          internal::rounded_up_to_single(3.0 * tree.largest_growth())};
 }
 
 internal::KernelObstacle kernel_obstacle(const PackedTree& tree) {
@@ -117,7 +113,7 @@ internal::KernelObstacle kernel_obstacle(const PackedTree& tree) {
           {static_cast<float>(center.x()), static_cast<float>(center.y()),
            static_cast<float>(center.z())},
           static_cast<float>(radius),
-          up(2.0 * tree.largest_growth())};
+          internal::rounded_up_to_single(3.0 * tree.largest_growth())};
 }
 
 // From the root to a frame: the largest distance of its origin, and how many frames it takes.
@@ -131,15 +127,21 @@ std::vector<Chain> chains_of(std::span<const MechanismFrame> frames) {
   for (const MechanismFrame& frame : frames) {
     Chain chain = frame.parent < 0 ? Chain() : chains[static_cast<std::size_t>(frame.parent)];
     chain.length += frame.parent_from_frame.translation().norm() +
-                    (frame.prismatic ? internal::kLargestVariable : 0.0);
+                    (frame.prismatic ? MechanismCheck::kLargestVariable : 0.0);
     chain.frames += 1.0;
     chains.push_back(chain);
   }
   return chains;
 }
 
+// Tasks that wait at most: every step takes one and leaves at most 64, a node of which lies a level
+// deeper, so that at most 63 wait for every level of the two trees.
+std::int64_t task_bound(int body_depth, int obstacle_depth) {
+  return 63 * (std::int64_t{body_depth} + obstacle_depth + 1) + 1;
+}
+
 internal::CheckKernel kernel_for(InstructionSet set) {
-#if defined(__x86_64__)
+#if defined(SPHERULE_AVX2_KERNEL)
   if (set == InstructionSet::kAvx2) return internal::avx2_check_kernel();
 #endif
   return internal::portable_check_kernel();
@@ -166,6 +168,7 @@ struct MechanismCheck::Parts {
 };
 
 struct MechanismCheck::Scratch::Memory {
+  const Parts* owner = nullptr;
   std::vector<double> variables;
   std::vector<double> sines;
   std::vector<double> cosines;
@@ -204,6 +207,14 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
     obstacle_trees.push_back(build_tree(obstacle.spheres));
     bound = std::max(bound, node_reach(obstacle_trees.back()));
   }
+  for (const MechanismPair& pair : pairs) {
+    const MechanismBody& body = bodies[static_cast<std::size_t>(pair.body)];
+    const MechanismObstacle& obstacle = obstacles[static_cast<std::size_t>(pair.obstacle)];
+    bound = std::max({bound, body.tree->reach() + body.frame_from_tree.translation().norm(),
+                      obstacle.tree->reach() + obstacle.root_from_tree.translation().norm()});
+  }
+  if (!(bound <= kMaxCoordinate)) throw Error("mechanism", "it or an obstacle reaches too far");
+  parts->trees.reserve(body_trees.size() + obstacle_trees.size());
   int body_depth = 1;
   int obstacle_depth = 1;
   for (std::size_t i = 0; i < body_trees.size(); ++i) {
@@ -220,7 +231,7 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
     obstacle_depth = std::max(obstacle_depth, tree.depth());
     parts->obstacles.push_back(kernel_obstacle(tree));
   }
-  parts->task_count = internal::task_bound(body_depth, obstacle_depth);
+  parts->task_count = task_bound(body_depth, obstacle_depth);
   parts->kernel = kernel_for(instructions);
   parts->problem = {.frames = parts->frames.data(),
                     .frame_count = static_cast<std::int32_t>(parts->frames.size()),
@@ -240,6 +251,7 @@ MechanismCheck& MechanismCheck::operator=(MechanismCheck&&) noexcept = default;
 MechanismCheck::Scratch::Scratch(const MechanismCheck& check)
     : memory_(std::make_unique<Memory>()) {
   const Parts& parts = *check.parts_;
+  memory_->owner = &parts;
   const auto variables = static_cast<std::size_t>(filled_up(parts.problem.variable_count));
   memory_->variables.resize(variables);
   memory_->sines.resize(variables);
@@ -257,31 +269,34 @@ MechanismCheck::Scratch& MechanismCheck::Scratch::operator=(Scratch&&) noexcept 
 
 bool MechanismCheck::is_in_range(std::span<const double> variables) {
   return std::all_of(variables.begin(), variables.end(),
-                     [](double v) { return std::abs(v) <= internal::kLargestVariable; });
+                     [](double v) { return std::abs(v) <= MechanismCheck::kLargestVariable; });
 }
 
-bool MechanismCheck::collides(std::span<const double> variables, Scratch& scratch,
-                              const std::function<bool(const MechanismContact&)>& confirm) const {
+bool MechanismCheck::collides(std::span<const double> variables, Scratch& scratch, Ask ask,
+                              void* context) const {
   assert(is_in_range(variables));
   assert(variables.size() >= static_cast<std::size_t>(parts_->problem.variable_count));
+  assert(scratch.memory_->owner == parts_.get());
   struct Context {
-    const Parts& parts;
-    const std::function<bool(const MechanismContact&)>& confirm;
+    const internal::JoinedScene& scene;
+    Ask ask;
+    void* context;
   };
-  Context context{*parts_, confirm};
-  const internal::ConfirmContact ask = [](void* given, internal::KernelPair pair,
-                                          std::int32_t body_sphere, std::int32_t obstacle_sphere) {
-    const Context& in = *static_cast<const Context*>(given);
-    const internal::SphereOrigin& body = in.parts.scene.bodies[static_cast<std::size_t>(pair.body)]
+  Context given{parts_->scene, ask, context};
+  const internal::ConfirmContact confirm = [](void* of, internal::KernelPair pair,
+                                              std::int32_t body_sphere,
+                                              std::int32_t obstacle_sphere) {
+    const Context& in = *static_cast<const Context*>(of);
+    const internal::SphereOrigin& body = in.scene.bodies[static_cast<std::size_t>(pair.body)]
                                              .origins[static_cast<std::size_t>(body_sphere)];
     const internal::SphereOrigin& obstacle =
-        in.parts.scene.obstacles[static_cast<std::size_t>(pair.obstacle)]
+        in.scene.obstacles[static_cast<std::size_t>(pair.obstacle)]
             .origins[static_cast<std::size_t>(obstacle_sphere)];
-    return in.confirm({{body.part, obstacle.part}, body.sphere, obstacle.sphere});
+    return in.ask(in.context, {{body.part, obstacle.part}, body.sphere, obstacle.sphere});
   };
   Scratch::Memory& memory = *scratch.memory_;
   std::copy_n(variables.begin(), parts_->problem.variable_count, memory.variables.begin());
-  return parts_->kernel(parts_->problem, memory.variables.data(), memory.view, ask, &context);
+  return parts_->kernel(parts_->problem, memory.variables.data(), memory.view, confirm, &given);
 }
 
 }  // namespace spherule

@@ -6,10 +6,8 @@
 #include "spheretree/sphere_tree.h"
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
-#include <vector>
 
 namespace spherule {
 
@@ -35,6 +33,7 @@ struct MechanismObstacle {
   std::shared_ptr<const SphereTree> tree;
 };
 
+// A body that is tested against an obstacle, by their indices.
 struct MechanismPair {
   int body = 0;
   int obstacle = 0;
@@ -52,13 +51,16 @@ struct MechanismContact {
 // touch, or that some do, for sure; where rounding leaves a doubt it asks.
 //
 // Proof in mechanism_check.cpp. Exactness is meant with respect to any poses of the bodies that are
-// within `pose_error` of those of the exact mechanism (largest distance of a point of the body).
+// within `pose_error` of those of the exact mechanism: the largest distance of a point of the body,
+// in the unit of the trees.
 // Bodies on one frame, and obstacles, that are tested against the same are searched as one tree.
 // Immutable; threads may share it, each with a scratch of its own.
 class MechanismCheck {
  public:
   // Pairs are tested in their order, as far as bodies are not searched together. Throws Error for
-  // indices out of range, a missing tree, or lengths that are not usable.
+  // indices out of range, a missing tree, a mechanism or obstacle that reaches beyond
+  // kMaxCoordinate (joined with those that it is searched with, too), a pose_error that is no
+  // length, or instructions that this machine has not got.
   MechanismCheck(std::span<const MechanismFrame> frames, std::span<const MechanismBody> bodies,
                  std::span<const MechanismObstacle> obstacles, std::span<const MechanismPair> pairs,
                  double pose_error, InstructionSet instructions = best_instruction_set());
@@ -66,7 +68,7 @@ class MechanismCheck {
   MechanismCheck(MechanismCheck&&) noexcept;
   MechanismCheck& operator=(MechanismCheck&&) noexcept;
 
-  // What a query writes to. Made once, for one check; no query allocates.
+  // What a query writes to: made for one check, which must outlive its use.
   class Scratch {
    public:
     explicit Scratch(const MechanismCheck& check);
@@ -80,15 +82,26 @@ class MechanismCheck {
     std::unique_ptr<Memory> memory_;
   };
 
-  // Whether the variables are such that collides() can be asked: all at most 100 in magnitude.
+  // Whether the variables are such that collides() can be asked: none larger than this in
+  // magnitude.
+  static constexpr double kLargestVariable = 100.0;
   static bool is_in_range(std::span<const double> variables);
 
-  // True if two spheres of a pair touch for sure or `confirm` says so of two that may; false if
-  // none do. is_in_range() must hold, for as many variables as the frames name.
-  bool collides(std::span<const double> variables, Scratch& scratch,
-                const std::function<bool(const MechanismContact&)>& confirm) const;
+  // True if two spheres of a pair touch for sure or `confirm`, given a MechanismContact, says so of
+  // two that may; false if none do. is_in_range() must hold, for as many variables as the frames
+  // name. Allocates nothing.
+  template <class Confirm>
+  bool collides(std::span<const double> variables, Scratch& scratch, Confirm confirm) const {
+    const Ask ask = [](void* context, const MechanismContact& contact) -> bool {
+      return (*static_cast<Confirm*>(context))(contact);
+    };
+    return collides(variables, scratch, ask, std::addressof(confirm));
+  }
 
  private:
+  using Ask = bool (*)(void* context, const MechanismContact& contact);
+  bool collides(std::span<const double> variables, Scratch& scratch, Ask ask, void* context) const;
+
   struct Parts;
   std::unique_ptr<const Parts> parts_;
 };

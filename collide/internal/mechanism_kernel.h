@@ -4,7 +4,7 @@
 // What a check of a mechanism against standing obstacles works on, as plain data, and the kernels
 // that do it, one for each instruction set. All lengths are in the frame of the mechanism's root.
 
-#include "collide/internal/packed_tree.h"
+#include "collide/internal/packed_node.h"
 
 #include <cstdint>
 
@@ -66,7 +66,7 @@ struct KernelProblem {
 };
 
 // Memory of the caller, enough of it: sines and cosines for the variables, filled up to a multiple
-// of four, a pose for every frame, a ball for every body, and tasks (see task_bound()).
+// of four, a pose for every frame, a ball for every body, and as many tasks as can wait.
 struct KernelScratch {
   double* sines;
   double* cosines;
@@ -85,18 +85,11 @@ using CheckKernel = bool (*)(const KernelProblem& problem, const double* configu
                              const KernelScratch& scratch, ConfirmContact confirm, void* context);
 
 CheckKernel portable_check_kernel();
-#if defined(__x86_64__)
+#if defined(SPHERULE_AVX2_KERNEL)
 CheckKernel avx2_check_kernel();
 #endif
 
-// Tasks that wait at most: every step takes one and leaves at most 64 whose nodes are, in all, one
-// level deeper, so that at most 63 a level wait.
-inline std::int64_t task_bound(int body_depth, int obstacle_depth) {
-  return 63 * (std::int64_t{body_depth} + obstacle_depth + 1) + 1;
-}
-
-// Bounds for the kernels' kinematics, see mechanism_kernel_impl.h.
-inline constexpr double kLargestVariable = 100.0;
+// Of a sine and its cosine together, see mechanism_kernel_impl.h.
 inline constexpr double kSineError = 2e-11;
 
 }  // namespace spherule::internal

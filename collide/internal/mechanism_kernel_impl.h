@@ -6,11 +6,11 @@
 // what the machine has. Nothing here comes from a header with inline functions, which the linker
 // could share between files that were compiled for different machines.
 //
-// Kinematics. Of an angle x with |x| <= kLargestVariable, k = x 2 / pi rounded is at most 64, and
-// x - k pi / 2 in two steps errs by less than 64 (2^-53 + 2^-106 ...) < 2e-14; the remainder lies
-// within pi / 4 + 1e-13. The sine's series up to r^11 errs by r^13 / 13! < 7.0e-12, the cosine's up
-// to r^12 by r^14 / 14! < 4e-13; a few roundings of numbers below one, 1e-15. Together both err by
-// less than 7.1e-12, the pair by less than kSineError = 2e-11.
+// Kinematics. Of an angle x with |x| <= 100 (MechanismCheck::kLargestVariable), k = x 2 / pi
+// rounded is at most 64, and x - k pi / 2 in two steps errs by less than 64 (2^-53 + 2^-106 ...) <
+// 2e-14; the remainder lies within pi / 4 + 1e-13. The sine's series up to r^11 errs by r^13 / 13!
+// < 7.0e-12, the cosine's up to r^12 by r^14 / 14! < 4e-13; a few roundings of numbers below one,
+// 1e-15. Together both err by less than 7.1e-12, the pair by less than kSineError = 2e-11.
 //
 // Which instructions and which order of operations are used changes the rounding, and so what is
 // found apart, but not the answer: a pair that is not surely apart or surely in contact is
@@ -35,6 +35,9 @@ typedef std::int64_t Long4 __attribute__((vector_size(32), may_alias));
 // The obstacle is opened until its ball is smaller than this part of the body's: opening the body
 // costs a change of frame. Measured on the workload of bench/, from 0.35 to 2.
 constexpr float kOpenBody = 0.5F;
+
+// Adding 1.5 2^52 rounds to an integer only where double is not computed with more bits.
+static_assert(__FLT_EVAL_METHOD__ == 0);
 
 #define SPHERULE_INLINE inline __attribute__((always_inline))
 
@@ -63,7 +66,20 @@ struct Balls {
   Float8 x, y, z, radius;
 };
 
-SPHERULE_INLINE Balls balls_of(const PackedNode& node) {
+// The same in memory, where single lanes are read.
+struct alignas(32) BallLanes {
+  float x[8], y[8], z[8], radius[8];
+
+  SPHERULE_INLINE void hold(const Balls& balls) {
+    __builtin_memcpy(x, &balls.x, sizeof x);
+    __builtin_memcpy(y, &balls.y, sizeof y);
+    __builtin_memcpy(z, &balls.z, sizeof z);
+    __builtin_memcpy(radius, &balls.radius, sizeof radius);
+  }
+};
+
+template <class Lanes>
+SPHERULE_INLINE Balls balls_of(const Lanes& node) {
   return {load(node.x), load(node.y), load(node.z), load(node.radius)};
 }
 
@@ -230,7 +246,7 @@ class PairCheck {
     }
     const PackedNode& body = body_.nodes[task.body];
     bool is_placed = false;
-    alignas(32) PackedNode children;
+    BallLanes children;
     for (; mask != 0; mask &= mask - 1) {
       const int lane = __builtin_ctz(mask);
       const std::int32_t child = node.child[lane];
@@ -239,7 +255,7 @@ class PairCheck {
         continue;
       }
       if (!is_placed) {
-        store(placed(body, at_), children);
+        children.hold(placed(body, at_));
         is_placed = true;
       }
       const float x = node.x[lane];
@@ -267,10 +283,11 @@ class PairCheck {
   // The ball of the task is a leaf of the obstacle.
   SPHERULE_INLINE bool open_body(const KernelTask& task) {
     const PackedNode& body = body_.nodes[task.body];
-    alignas(32) PackedNode children;
-    store(placed(body, at_), children);
-    for (unsigned hits = overlaps(balls_of(children), task.x, task.y, task.z, task.radius);
-         hits != 0; hits &= hits - 1) {
+    const Balls placed_children = placed(body, at_);
+    BallLanes children;
+    children.hold(placed_children);
+    for (unsigned hits = overlaps(placed_children, task.x, task.y, task.z, task.radius); hits != 0;
+         hits &= hits - 1) {
       const int hit = __builtin_ctz(hits);
       const std::int32_t child = body.child[hit];
       if (child >= 0) {
@@ -283,21 +300,15 @@ class PairCheck {
   }
 
   // Two leaves that single precision does not find apart.
-  SPHERULE_INLINE bool touch(const KernelTask& ball, const PackedNode& node, int lane,
+  template <class Lanes>
+  SPHERULE_INLINE bool touch(const KernelTask& ball, const Lanes& others, int lane,
                              std::int32_t body_sphere, std::int32_t obstacle_sphere) const {
-    const float dx = node.x[lane] - ball.x;
-    const float dy = node.y[lane] - ball.y;
-    const float dz = node.z[lane] - ball.z;
-    const float limit = node.radius[lane] + ball.radius - (body_.margin + obstacle_.margin);
+    const float dx = others.x[lane] - ball.x;
+    const float dy = others.y[lane] - ball.y;
+    const float dz = others.z[lane] - ball.z;
+    const float limit = others.radius[lane] + ball.radius - (body_.margin + obstacle_.margin);
     if (limit > 0.0F && dx * dx + dy * dy + dz * dz <= limit * limit) return true;
     return confirm_(context_, pair_, body_sphere, obstacle_sphere);
-  }
-
-  SPHERULE_INLINE static void store(const Balls& balls, PackedNode& node) {
-    *reinterpret_cast<Float8*>(node.x) = balls.x;
-    *reinterpret_cast<Float8*>(node.y) = balls.y;
-    *reinterpret_cast<Float8*>(node.z) = balls.z;
-    *reinterpret_cast<Float8*>(node.radius) = balls.radius;
   }
 
   const KernelBody& body_;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/packed_tree.h"
 
-#include "spheretree/build.h"
 #include "spheretree/enclosing_sphere.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -20,13 +20,8 @@ constexpr double kAbsolute = 0x1p-60;
 // Around more spheres than these, the ball of the tree is good enough.
 constexpr std::size_t kManySpheres = 4096;
 
-float rounded_up(double x) {
-  const auto nearest = static_cast<float>(x);
-  if (static_cast<double>(nearest) >= x) return nearest;
-  return std::nextafter(nearest, std::numeric_limits<float>::infinity());
-}
-
-// Not inlined: where g++ 12 vectorises the way to single precision and back, it leaves it out.
+// Not inlined: where g++ 12 vectorises the way to single precision and back (at -O2, two numbers at
+// once), it leaves it out. PackedTree.EveryBallHasRoomForTheInflatedSpheresBelow shows it.
 [[gnu::noinline]] double in_single_precision(double x) {
   return static_cast<double>(static_cast<float>(x));
 }
@@ -38,7 +33,7 @@ Sphere packed(const Sphere& ball, double inflation) {
   const double moved = distance_upper(center, ball.center);
   const double radius =
       mul_up(add_up(add_up(ball.radius, moved), inflation), 1.0 + 8.0 * kFloatRoundoff);
-  return {center, static_cast<double>(rounded_up(add_up(radius, kAbsolute)))};
+  return {center, static_cast<double>(rounded_up_to_single(add_up(radius, kAbsolute)))};
 }
 
 // The tree's nodes with the smaller of the two balls that each may have.
@@ -50,7 +45,7 @@ class CullingBalls {
   const Sphere& operator[](std::size_t node) const { return balls_[node]; }
 
  private:
-  // The depth is that of the tree, which build_tree() bounds by 3 log2 n + 9.
+  // As deep as the tree: 3 log2 n + 9 at most for those of build_tree().
   void visit(std::size_t node) {
     balls_[node] = tree_.ball(node);
     if (tree_.is_leaf(node)) {
@@ -91,10 +86,14 @@ void set_lane(PackedNode& node, int lane, const Sphere& ball, std::int32_t child
 
 }  // namespace
 
-PackedTree::PackedTree(const SphereTree& given, double inflation) {
-  const bool fits = given.branching() <= PackedNode::kWidth;
-  const SphereTree tree =
-      fits ? given : build_tree(given.spheres(), {.branching = PackedNode::kWidth});
+float rounded_up_to_single(double x) {
+  const double nearest = in_single_precision(x);
+  const auto result = static_cast<float>(nearest);
+  return nearest >= x ? result : std::nextafter(result, std::numeric_limits<float>::infinity());
+}
+
+PackedTree::PackedTree(const SphereTree& tree, double inflation) {
+  assert(tree.branching() <= PackedNode::kWidth);
   const CullingBalls balls(tree);
   root_ = packed(balls[0], inflation);
   depth_ = std::max(1, tree.depth());

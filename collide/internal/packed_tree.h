@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/internal/packed_node.h"
 #include "spheretree/sphere_tree.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace spherule::internal {
@@ -11,18 +11,8 @@ namespace spherule::internal {
 // The unit roundoff of single precision.
 inline constexpr double kFloatRoundoff = 0x1p-24;
 
-// The children of an inner node, as one wide test reads them.
-struct alignas(64) PackedNode {
-  static constexpr int kWidth = 8;
-
-  float x[kWidth];
-  float y[kWidth];
-  float z[kWidth];
-  float radius[kWidth];
-  // Of the child: a node, or ~i for the leaf of sphere i. Lanes without a child are balls of radius
-  // zero so far away that nothing reaches them.
-  std::int32_t child[kWidth];
-};
+// A number in single precision, not below the one given.
+float rounded_up_to_single(double x);
 
 // A sphere tree for filters in single precision: a test that finds two of its balls apart proves
 // that no spheres below them touch.
@@ -40,9 +30,15 @@ struct alignas(64) PackedNode {
 // (1 + 8 v)^2 > (1 + 5.1 v) / (1 - 3.1 v), d2 <= limit: they are never found apart. Squares that
 // underflow (below 2^-126) lose 2^-149 each, which the absolute term of every radius covers: it
 // makes the limit exceed s^2 by 2^-120. Coordinates of up to kMaxCoordinate do not overflow.
+//
+// What touches for sure. Let g1 and g2 bound what was added to the radii, r' <= r + g; each holds
+// the displacement and 8 v r. A test with a limit of r1' + r2' - 3 g1 - 3 g2, which rounding makes
+// larger by at most 2 v (r1 + r2), that finds d2 <= limit^2 has a displaced distance of at most
+//     (r1 + r2 - 2 g1 - 2 g2 + 2 v (r1 + r2)) (1 + 4.2 v),
+// so an exact one of at most that and g1 + g2: r1 + r2 - (g1 + g2) + 6.2 v (r1 + r2) <= r1 + r2.
 class PackedTree {
  public:
-  // `inflation` is an absolute length. The tree may have any branching.
+  // `inflation` is an absolute length. The tree's branching must be at most PackedNode::kWidth.
   PackedTree(const SphereTree& tree, double inflation);
 
   const PackedNode* nodes() const { return nodes_.data(); }

@@ -75,6 +75,15 @@ struct FrameChange {
   }
 };
 
+// How far from the origin of its frame any ball of a layered tree reaches, those of nodes included.
+inline double node_reach(const SphereTree& tree) {
+  const Sphere root = tree.ball(0);
+  const double of_root =
+      (std::abs(root.center.x()) + std::abs(root.center.y()) + std::abs(root.center.z())) +
+      root.radius;
+  return std::max(tree.reach(), of_root);
+}
+
 // What all tests between two placed trees share. Cheap: a root test needs no more than this. Refers
 // to the two poses, which must outlive it.
 class RelativePose {
@@ -119,14 +128,6 @@ class RelativePose {
   }
 
  private:
-  static double node_reach(const SphereTree& tree) {
-    const Sphere root = tree.ball(0);
-    const double of_root =
-        (std::abs(root.center.x()) + std::abs(root.center.y()) + std::abs(root.center.z())) +
-        root.radius;
-    return std::max(tree.reach(), of_root);
-  }
-
   static double row(const Eigen::Matrix3d& m, int i, const Eigen::Vector3d& x) {
     return m(i, 0) * x.x() + m(i, 1) * x.y() + m(i, 2) * x.z();
   }

@@ -7,13 +7,19 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 #include <string>
 #include <utility>
 
 namespace spherule {
 namespace {
+
+// A rotation that takes the z axis to another unit vector, to a few units in the last place: where
+// that points backwards, after a half turn, since between opposite vectors there is none to tell.
+Eigen::Quaterniond turn_from_z_to(const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  if (axis.z() >= 0.0) return Eigen::Quaterniond::FromTwoVectors(z, axis);
+  return Eigen::Quaterniond::FromTwoVectors(-z, axis) * Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0);
+}
 
 // The moving frames of a robot: one for each joint that a variable moves, its z axis turned into
 // the joint's axis, and where every link stands in the frame that carries it.
@@ -34,9 +40,7 @@ struct Frames {
         frame_from_link[link] = frame_from_joint;
         continue;
       }
-      const Pose joint_from_frame(
-          Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis),
-          Eigen::Vector3d::Zero());
+      const Pose joint_from_frame(turn_from_z_to(joint.axis), Eigen::Vector3d::Zero());
       frame_of_link[link] = static_cast<int>(frames.size());
       frame_from_link[link] = joint_from_frame.inverse();
       frames.push_back({.parent = frame_of_link[parent],
@@ -48,9 +52,10 @@ struct Frames {
 };
 
 // How far a point of a link may be from where the canonical poses take it, as seen from the moving
-// frames: the error of forward_kinematics(), and that of the frames' own poses, of which a link has
-// at most four compositions a joint with 80 u of the lengths involved. Both are bounded for the
-// whole robot and scene at once.
+// frames: the error of forward_kinematics(); that of the frames' own poses, of which a link has at
+// most four compositions a joint with 80 u of the lengths involved each, and a turn of the axis, of
+// less than 40 u; and the slack of the canonical test, 152 u of the scene. All are bounded for the
+// whole robot and scene at once. Throws Error if these are too large to be computed with.
 double pose_error(const RobotModel& robot, std::span<const PlacedTree> obstacles,
                   const Pose& world_from_root) {
   double reach = 0.0;
@@ -60,7 +65,7 @@ double pose_error(const RobotModel& robot, std::span<const PlacedTree> obstacles
   }
   for (const Joint& joint : robot.joints()) {
     length += joint.parent_from_joint.translation().norm() +
-              (joint.type == JointType::kPrismatic ? 100.0 : 0.0);
+              (joint.type == JointType::kPrismatic ? MechanismCheck::kLargestVariable : 0.0);
   }
   const double root = world_from_root.translation().norm();
   double scene = reach + length + root;
@@ -68,9 +73,10 @@ double pose_error(const RobotModel& robot, std::span<const PlacedTree> obstacles
     scene = std::max(scene,
                      obstacle.tree->reach() + obstacle.world_from_tree.translation().norm() + root);
   }
+  if (!(scene <= kMaxCoordinate)) throw Error("robot", "it or an obstacle reaches too far");
   const double joints = static_cast<double>(robot.joints().size());
   return kinematics_error_bound(robot, reach, root) +
-         320.0 * kUnitRoundoff * (joints + 2.0) * scene;
+         360.0 * kUnitRoundoff * (joints + 2.0) * scene;
 }
 
 bool is_untested(std::span<const UntestedPair> untested, std::size_t link, std::size_t obstacle) {
@@ -148,7 +154,7 @@ bool RobotChecker::collides(std::span<const double> configuration, Scratch& scra
     return spheres_touch(*body.tree, contact.body_sphere, scratch.world_from_link_[body.link],
                          *obstacle.tree, contact.obstacle_sphere, obstacle.world_from_tree);
   };
-  return check_->collides(configuration, scratch.memory_, std::ref(confirm));
+  return check_->collides(configuration, scratch.memory_, confirm);
 }
 
 bool RobotChecker::collides_exactly(std::span<const double> configuration, Scratch& scratch) const {

@@ -6,7 +6,6 @@
 #include "spheretree/pose.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,12 +13,13 @@
 
 namespace spherule {
 
-// A link's trees and an obstacle that need not be tested, by their indices.
+// A link, with all of its trees, and an obstacle that need not be tested, by their indices.
 struct UntestedPair {
   int link = 0;
   std::size_t obstacle = 0;
 };
 
+// A tree that stands still, in metres.
 struct PlacedTree {
   std::shared_ptr<const SphereTree> tree;
   Pose world_from_tree;
@@ -41,11 +41,14 @@ struct RobotCheckerOptions {
 // scratch of its own.
 class RobotChecker {
  public:
-  // Throws Error for a missing tree or an index out of range.
+  // Throws Error for a missing tree, an index out of range, a robot or obstacle that reaches beyond
+  // kMaxCoordinate from the world's origin or the robot's root, and instructions that this machine
+  // has not got.
   RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
                const RobotCheckerOptions& options = {});
 
-  // What a query writes to; no query allocates once it is warm.
+  // What a query writes to: made for one checker, which must outlive its use. No query allocates
+  // once its scratch is warm.
   class Scratch {
    public:
     explicit Scratch(const RobotChecker& checker) : memory_(*checker.check_) {}
@@ -56,9 +59,9 @@ class RobotChecker {
     std::vector<Pose> world_from_link_;
   };
 
-  // Throws Error for a configuration of the wrong size or with a number that is not finite, and as
-  // forward_kinematics() does for one that leads out of all bounds. Positions beyond 100 (radians
-  // or units of length) are answered as exactly, but slowly.
+  // Throws Error for a configuration of the wrong size or with a number that is not finite.
+  // Configurations with a position beyond 100 (radians or metres) are answered as exactly, but
+  // slowly; where such a one leads out of all bounds, forward_kinematics() throws.
   bool collides(std::span<const double> configuration, Scratch& scratch) const;
 
  private:

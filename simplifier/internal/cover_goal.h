@@ -27,8 +27,8 @@ class CoverGoal {
   }
   // From here on in steps of a small part of the count.
   void restart() {
-    constexpr std::size_t kStep = 32;
-    step_ = std::max<std::size_t>(1, proved_ / kStep);
+    constexpr std::size_t kShare = 32;
+    step_ = std::max<std::size_t>(1, proved_ / kShare);
     aim();
   }
 

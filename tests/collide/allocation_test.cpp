@@ -13,7 +13,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -54,7 +53,7 @@ TEST(Allocation, AMechanismsCheckTakesNoMemory) {
   MechanismCheck::Scratch scratch(check);
   int hits = 0;
   int asked = 0;
-  const std::function<bool(const MechanismContact&)> confirm = [&](const MechanismContact&) {
+  const auto confirm = [&](const MechanismContact&) {
     ++asked;
     return false;
   };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/robot_checker.h"
 
+#include "collide/collide.h"
 #include "collide/robot/kinematics.h"
-#include "collide/robot/robot_collision.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "tests/collide/robot/robots.h"
@@ -11,8 +11,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -44,12 +46,22 @@ RobotModel random_robot_with_trees(Random& random, double size) {
 
 // What the checker has to say, by the exact queries.
 bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
-            const std::vector<double>& configuration, const Pose& world_from_root) {
+            const std::vector<double>& configuration, const RobotCheckerOptions& options) {
   std::vector<Pose> world_from_link;
-  forward_kinematics(robot, configuration, world_from_link, world_from_root);
-  for (const PlacedTree& obstacle : obstacles) {
-    if (robot_collides(robot, world_from_link, *obstacle.tree, obstacle.world_from_tree)) {
-      return true;
+  forward_kinematics(robot, configuration, world_from_link, options.world_from_root);
+  for (std::size_t link = 0; link < robot.links().size(); ++link) {
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+      const bool is_untested =
+          std::any_of(options.untested.begin(), options.untested.end(), [&](const auto& pair) {
+            return pair.link == static_cast<int>(link) && pair.obstacle == i;
+          });
+      if (is_untested) continue;
+      for (const auto& tree : robot.links()[link].trees) {
+        if (collides(*tree, world_from_link[link], *obstacles[i].tree,
+                     obstacles[i].world_from_tree)) {
+          return true;
+        }
+      }
     }
   }
   return false;
@@ -65,14 +77,19 @@ TEST(RobotChecker, AnswersAsTheExactQueriesDo) {
     for (int k = random.whole(1, 3); k > 0; --k) {
       obstacles.push_back({random_tree(random, 1.0), random.pose(2.0)});
     }
-    const Pose root = i % 2 == 0 ? Pose() : random.pose(3.0);
+    RobotCheckerOptions options{.world_from_root = i % 2 == 0 ? Pose() : random.pose(3.0)};
+    for (int k = i % 4; k > 0; --k) {
+      options.untested.push_back({random.whole(0, static_cast<int>(robot.links().size()) - 1),
+                                  random.bits() % obstacles.size()});
+    }
     for (const InstructionSet set : instruction_sets()) {
-      const RobotChecker checker(robot, obstacles, {.world_from_root = root, .instructions = set});
+      options.instructions = set;
+      const RobotChecker checker(robot, obstacles, options);
       RobotChecker::Scratch scratch(checker);
       for (int k = 0; k < 40; ++k) {
         const double largest = k % 10 == 0 ? 99.0 : k % 10 == 1 ? 300.0 : 3.2;
         const std::vector<double> configuration = random_configuration(random, robot, largest);
-        const bool expected = answer(robot, obstacles, configuration, root);
+        const bool expected = answer(robot, obstacles, configuration, options);
         ASSERT_EQ(checker.collides(configuration, scratch), expected) << i << ' ' << k;
         (expected ? hits : free) += 1;
       }
@@ -112,16 +129,65 @@ TEST(RobotChecker, AnswersAsTheExactQueriesDoAtContact) {
     const std::vector<PlacedTree> obstacles = {
         {std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{other})),
          Pose(turned.rotation(), center - turned * other.center)}};
-    const bool expected = answer(robot, obstacles, configuration, root);
+    RobotCheckerOptions options{.world_from_root = root};
+    const bool expected = answer(robot, obstacles, configuration, options);
     (expected ? hits : free) += 1;
     for (const InstructionSet set : instruction_sets()) {
-      const RobotChecker checker(robot, obstacles, {.world_from_root = root, .instructions = set});
+      options.instructions = set;
+      const RobotChecker checker(robot, obstacles, options);
       RobotChecker::Scratch scratch(checker);
       ASSERT_EQ(checker.collides(configuration, scratch), expected) << i << ' ' << gap;
     }
   }
   EXPECT_GT(hits, effort(500, 50));
   EXPECT_GT(free, effort(500, 50));
+}
+
+// Axes that point nearly backwards, and trees far from their frames, whose offsets cancel.
+TEST(RobotChecker, AnswersAsTheExactQueriesDoForOddFrames) {
+  Random random(23);
+  int hits = 0;
+  for (int i = 0; i < effort(4000, 300); ++i) {
+    RobotModel robot("base");
+    const double far = std::pow(10.0, random.uniform(0.0, 8.0));
+    std::string parent = "base";
+    for (int k = 0; k < 6; ++k) {
+      Joint joint{.name = "joint_" + std::to_string(k), .type = JointType::kRevolute};
+      const double off = std::pow(10.0, random.uniform(-8.5, -5.5));
+      joint.axis = {off * random.uniform(-1.0, 1.0), off * random.uniform(-1.0, 1.0), -1.0};
+      joint.parent_from_joint = random.pose(0.3);
+      const std::string link = "link_" + std::to_string(k);
+      robot.add_link(link, parent, joint);
+      parent = link;
+    }
+    // A link that leads the tree's offset back to the joint.
+    const Eigen::Vector3d offset = far * random.point(1.0);
+    robot.add_link("tool", parent,
+                   {.name = "bolt", .parent_from_joint = Pose::from_translation(-offset)});
+    const Sphere sphere{offset + random.point(0.2), 0.1};
+    robot.attach("tool", std::make_shared<const SphereTree>(build_tree(std::vector{sphere})));
+    const std::vector<double> configuration = random_configuration(random, robot, 3.2);
+    std::vector<Pose> world_from_link;
+    forward_kinematics(robot, configuration, world_from_link);
+    const double gap =
+        (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-9.0, -5.0));
+    const Eigen::Vector3d away = far * random.point(1.0);
+    const Eigen::Vector3d center = world_from_link.back() * sphere.center +
+                                   (sphere.radius + 0.2 + gap) * random.point(1.0).normalized();
+    const std::vector<PlacedTree> obstacles = {
+        {std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{away, 0.2}})),
+         Pose::from_translation(center - away)}};
+    for (const InstructionSet set : instruction_sets()) {
+      RobotCheckerOptions options;
+      options.instructions = set;
+      const RobotChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);
+      const bool expected = answer(robot, obstacles, configuration, options);
+      ASSERT_EQ(checker.collides(configuration, scratch), expected) << i << ' ' << far;
+      hits += expected ? 1 : 0;
+    }
+  }
+  EXPECT_GT(hits, effort(1000, 100));
 }
 
 std::shared_ptr<const SphereTree> ball(const Eigen::Vector3d& center, double radius) {
@@ -141,7 +207,9 @@ TEST(RobotChecker, WhatIsNotTestedIsNotFound) {
   const std::vector<PlacedTree> obstacles = {{ball({0, 0, 0}, 0.05), Pose()},
                                              {ball({0, 1, 0}, 0.05), Pose()}};
   const auto collides = [&](std::vector<UntestedPair> untested, double angle) {
-    const RobotChecker checker(arm(), obstacles, {.untested = std::move(untested)});
+    RobotCheckerOptions options;
+    options.untested = std::move(untested);
+    const RobotChecker checker(arm(), obstacles, options);
     RobotChecker::Scratch scratch(checker);
     return checker.collides(std::vector<double>{angle}, scratch);
   };

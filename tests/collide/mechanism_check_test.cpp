@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/mechanism_check.h"
+
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "tests/collide/trees.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+std::shared_ptr<const SphereTree> ball(const Eigen::Vector3d& center, double radius) {
+  return std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{center, radius}}));
+}
+
+std::vector<InstructionSet> instruction_sets() {
+  std::vector<InstructionSet> sets{InstructionSet::kPortable};
+  if (is_available(InstructionSet::kAvx2)) sets.push_back(InstructionSet::kAvx2);
+  return sets;
+}
+
+// An arm of length one about the z axis.
+const std::vector<MechanismFrame> kArm(1);
+
+// Whether single precision finds a ball at the end of the arm apart from one that stands at a
+// distance of `gap` from where it is at the angle, surely in contact, or asks.
+enum class Finding { kApart, kTouch, kAsks };
+Finding find(double angle, double gap, InstructionSet set) {
+  const double way = 1.0 + 0.2 + gap;
+  const std::vector<MechanismBody> bodies = {{0, Pose(), ball({1, 0, 0}, 0.1)}};
+  const std::vector<MechanismObstacle> obstacles = {
+      {Pose(), ball({way * std::cos(angle), way * std::sin(angle), 0.0}, 0.1)}};
+  const std::vector<MechanismPair> pairs(1);
+  const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0, set);
+  MechanismCheck::Scratch scratch(check);
+  bool asked = false;
+  const auto confirm = [&](const MechanismContact& contact) {
+    EXPECT_EQ(contact.pair.body, 0);
+    EXPECT_EQ(contact.body_sphere, 0);
+    asked = true;
+    return false;
+  };
+  const bool hit = check.collides(std::array{angle}, scratch, confirm);
+  return asked ? Finding::kAsks : hit ? Finding::kTouch : Finding::kApart;
+}
+
+// The margins are thin: micrometres for an arm of a metre, at every angle that is in range.
+TEST(MechanismCheck, AsksOnlyWhereSinglePrecisionCannotTell) {
+  Random random(31);
+  std::vector<double> angles = {0.0, 100.0, -100.0};
+  for (int i = -63; i <= 63; ++i) angles.push_back(i * 0.78539816339744831);
+  for (int i = 0; i < 300; ++i) angles.push_back(random.uniform(-100.0, 100.0));
+  for (const InstructionSet set : instruction_sets()) {
+    for (const double angle : angles) {
+      SCOPED_TRACE(angle);
+      EXPECT_EQ(find(angle, 1e-5, set), Finding::kApart);
+      EXPECT_EQ(find(angle, -2e-5, set), Finding::kTouch);
+      EXPECT_EQ(find(angle, 1e-9, set), Finding::kAsks);
+      EXPECT_EQ(find(angle, -1e-9, set), Finding::kAsks);
+    }
+  }
+}
+
+// A tree far from its own frame that the pose leads back: moving its centres costs more than what
+// is left of their offsets lets think.
+TEST(MechanismCheck, OffsetsThatCancelAreMindedInTheMargins) {
+  Random random(32);
+  const std::vector<MechanismPair> pairs(1);
+  for (int i = 0; i < 3000; ++i) {
+    const Eigen::Vector3d far = std::pow(10.0, random.uniform(8.0, 12.0)) * random.point(1.0);
+    const Pose pose(Eigen::Quaterniond(random.quaternion()).normalized(), Eigen::Vector3d::Zero());
+    const Pose back(pose.rotation(), -(pose * far));
+    const Eigen::Vector3d direction = random.point(1.0).normalized();
+    const double gap = random.uniform(-1e-3, 1e-3);
+    const std::vector<MechanismBody> bodies = {{0, back, ball(far, 0.1)}};
+    const std::vector<MechanismObstacle> obstacles = {{Pose(), ball((0.2 + gap) * direction, 0.1)}};
+    const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0);
+    MechanismCheck::Scratch scratch(check);
+    bool asked = false;
+    const auto confirm = [&](const MechanismContact&) {
+      asked = true;
+      return false;
+    };
+    const bool hit = check.collides(std::array{0.0}, scratch, confirm);
+    const PlacedBalls exactly{{far, 0.1}, {(0.2 + gap) * direction, 0.1}, back, Pose()};
+    EXPECT_TRUE(asked || hit == exactly.overlap()) << i;
+  }
+}
+
+std::string refused(const std::vector<MechanismFrame>& frames,
+                    const std::vector<MechanismBody>& bodies,
+                    const std::vector<MechanismObstacle>& obstacles,
+                    const std::vector<MechanismPair>& pairs, double pose_error = 0.0) {
+  try {
+    const MechanismCheck check(frames, bodies, obstacles, pairs, pose_error);
+    return "accepted";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+TEST(MechanismCheck, RefusesBadInputByName) {
+  const std::vector<MechanismBody> bodies = {{0, Pose(), ball({1, 0, 0}, 0.1)}};
+  const std::vector<MechanismObstacle> obstacles = {{Pose(), ball({2, 0, 0}, 0.1)}};
+  const std::vector<MechanismPair> pairs(1);
+  EXPECT_EQ(refused(kArm, bodies, obstacles, pairs), "accepted");
+  const auto says = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  std::vector<MechanismFrame> frames(2);
+  frames[1].parent = 1;
+  EXPECT_TRUE(says(refused(frames, bodies, obstacles, pairs), "frame 1"));
+  frames[1] = {};
+  for (const int bad : {-1, std::numeric_limits<int>::max()}) {
+    frames[1].variable = bad;
+    EXPECT_TRUE(says(refused(frames, bodies, obstacles, pairs), "frame 1"));
+  }
+  EXPECT_TRUE(says(refused(kArm, {{1, Pose(), bodies[0].tree}}, obstacles, pairs), "body 0"));
+  EXPECT_TRUE(says(refused(kArm, {{0, Pose(), nullptr}}, obstacles, pairs), "body 0"));
+  EXPECT_TRUE(says(refused(kArm, bodies, {{Pose(), nullptr}}, pairs), "obstacle 0"));
+  EXPECT_TRUE(says(refused(kArm, bodies, obstacles, {{0, 1}}), "pair 0"));
+  EXPECT_TRUE(says(refused(kArm, bodies, obstacles, {{-1, 0}}), "pair 0"));
+  for (const double bad :
+       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_TRUE(says(refused(kArm, bodies, obstacles, pairs, bad), "pose error"));
+  }
+  frames.assign(3, {});
+  for (MechanismFrame& frame : frames) {
+    frame.parent_from_frame = Pose::from_translation({9e14, 0, 0});
+  }
+  frames[1].parent = 0;
+  frames[2].parent = 1;
+  EXPECT_TRUE(says(refused(frames, {{2, Pose(), bodies[0].tree}}, obstacles, pairs), "too far"));
+}
+
+}  // namespace
+}  // namespace spherule::test
