@@ -139,8 +139,8 @@ TEST(RobotChecker, AnswersAsTheExactQueriesDoAtContact) {
       ASSERT_EQ(checker.collides(configuration, scratch), expected) << i << ' ' << gap;
     }
   }
-  EXPECT_GT(hits, effort(500, 50));
-  EXPECT_GT(free, effort(500, 50));
+  EXPECT_GT(hits, effort(500, 25));
+  EXPECT_GT(free, effort(500, 25));
 }
 
 // Axes that point nearly backwards, and trees far from their frames, whose offsets cancel.
