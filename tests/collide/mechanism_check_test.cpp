@@ -12,21 +12,10 @@
 #include <limits>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace spherule::test {
 namespace {
-
-std::shared_ptr<const SphereTree> ball(const Eigen::Vector3d& center, double radius) {
-  return std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{center, radius}}));
-}
-
-std::vector<InstructionSet> instruction_sets() {
-  std::vector<InstructionSet> sets{InstructionSet::kPortable};
-  if (is_available(InstructionSet::kAvx2)) sets.push_back(InstructionSet::kAvx2);
-  return sets;
-}
 
 // An arm of length one about the z axis.
 const std::vector<MechanismFrame> kArm(1);

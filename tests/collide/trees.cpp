@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/collide/trees.h"
 
+#include "spheretree/build.h"
+
 namespace spherule::test {
 
 std::vector<Sphere> random_spheres(Random& random, int count, double size, double largest_radius) {
@@ -41,6 +43,16 @@ SphereTree caterpillar(int depth, int branching, bool inner_first) {
     }
   }
   return SphereTree(std::move(data));
+}
+
+std::shared_ptr<const SphereTree> ball(const Eigen::Vector3d& center, double radius) {
+  return std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{center, radius}}));
+}
+
+std::vector<InstructionSet> instruction_sets() {
+  std::vector<InstructionSet> sets{InstructionSet::kPortable};
+  if (is_available(InstructionSet::kAvx2)) sets.push_back(InstructionSet::kAvx2);
+  return sets;
 }
 
 }  // namespace spherule::test

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/instruction_set.h"
 #include "spheretree/sphere_tree.h"
 #include "tests/collide/exact_scene.h"
 
+#include <memory>
 #include <vector>
 
 namespace spherule::test {
@@ -15,5 +17,11 @@ std::vector<Sphere> random_spheres(Random& random, int count, double size, doubl
 // inner node, which is its last child (or its first). All its balls meet near the origin, so that a
 // traversal of two of them prunes nothing.
 SphereTree caterpillar(int depth, int branching, bool inner_first);
+
+// A tree of one sphere.
+std::shared_ptr<const SphereTree> ball(const Eigen::Vector3d& center, double radius);
+
+// Those that this machine has.
+std::vector<InstructionSet> instruction_sets();
 
 }  // namespace spherule::test

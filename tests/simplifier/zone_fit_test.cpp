@@ -132,7 +132,8 @@ TEST(ZoneFit, ABallThatReachesIntoAZoneTooFarIsBlamed) {
   fit.options.zones = zones;
   EXPECT_NE(broken_promises(fit).find("in zone 0"), std::string::npos);  // not even examined
   fit.certificate = certificate;
-  EXPECT_NE(broken_promises(fit).find("only by at most " + std::string(kSanitized ? "0.2" : "0.1")),
+  EXPECT_NE(broken_promises(fit).find("in zone 0, only by at most " +
+                                      std::string(kSanitized ? "0.2" : "0.1")),
             std::string::npos)
       << broken_promises(fit);
 }

@@ -21,12 +21,6 @@
 namespace spherule::test {
 namespace {
 
-std::vector<InstructionSet> instruction_sets() {
-  std::vector<InstructionSet> sets{InstructionSet::kPortable};
-  if (is_available(InstructionSet::kAvx2)) sets.push_back(InstructionSet::kAvx2);
-  return sets;
-}
-
 std::shared_ptr<const SphereTree> random_tree(Random& random, double size) {
   const int count = random.whole(1, 60);
   std::vector<Sphere> spheres = random_spheres(random, count, size, 0.1 * size);
@@ -65,6 +59,19 @@ bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
     }
   }
   return false;
+}
+
+// Asks a checker of every instruction set for one configuration; returns the exact answer.
+bool expect_answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+                   const std::vector<double>& configuration, RobotCheckerOptions options) {
+  const bool expected = answer(robot, obstacles, configuration, options);
+  for (const InstructionSet set : instruction_sets()) {
+    options.instructions = set;
+    const RobotChecker checker(robot, obstacles, options);
+    RobotChecker::Scratch scratch(checker);
+    EXPECT_EQ(checker.collides(configuration, scratch), expected);
+  }
+  return expected;
 }
 
 TEST(RobotChecker, AnswersAsTheExactQueriesDo) {
@@ -127,17 +134,12 @@ TEST(RobotChecker, AnswersAsTheExactQueriesDoAtContact) {
     const Eigen::Vector3d center =
         world_from_link[link] * sphere.center + (sphere.radius + other.radius + gap) * direction;
     const std::vector<PlacedTree> obstacles = {
-        {std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{other})),
+        {ball(other.center, other.radius),
          Pose(turned.rotation(), center - turned * other.center)}};
-    RobotCheckerOptions options{.world_from_root = root};
-    const bool expected = answer(robot, obstacles, configuration, options);
-    (expected ? hits : free) += 1;
-    for (const InstructionSet set : instruction_sets()) {
-      options.instructions = set;
-      const RobotChecker checker(robot, obstacles, options);
-      RobotChecker::Scratch scratch(checker);
-      ASSERT_EQ(checker.collides(configuration, scratch), expected) << i << ' ' << gap;
-    }
+    const RobotCheckerOptions options{.world_from_root = root};
+    SCOPED_TRACE(testing::Message() << i << ' ' << gap);
+    (expect_answer(robot, obstacles, configuration, options) ? hits : free) += 1;
+    if (HasFailure()) return;
   }
   EXPECT_GT(hits, effort(500, 25));
   EXPECT_GT(free, effort(500, 25));
@@ -165,7 +167,7 @@ TEST(RobotChecker, AnswersAsTheExactQueriesDoForOddFrames) {
     robot.add_link("tool", parent,
                    {.name = "bolt", .parent_from_joint = Pose::from_translation(-offset)});
     const Sphere sphere{offset + random.point(0.2), 0.1};
-    robot.attach("tool", std::make_shared<const SphereTree>(build_tree(std::vector{sphere})));
+    robot.attach("tool", ball(sphere.center, sphere.radius));
     const std::vector<double> configuration = random_configuration(random, robot, 3.2);
     std::vector<Pose> world_from_link;
     forward_kinematics(robot, configuration, world_from_link);
@@ -175,23 +177,12 @@ TEST(RobotChecker, AnswersAsTheExactQueriesDoForOddFrames) {
     const Eigen::Vector3d center = world_from_link.back() * sphere.center +
                                    (sphere.radius + 0.2 + gap) * random.point(1.0).normalized();
     const std::vector<PlacedTree> obstacles = {
-        {std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{away, 0.2}})),
-         Pose::from_translation(center - away)}};
-    for (const InstructionSet set : instruction_sets()) {
-      RobotCheckerOptions options;
-      options.instructions = set;
-      const RobotChecker checker(robot, obstacles, options);
-      RobotChecker::Scratch scratch(checker);
-      const bool expected = answer(robot, obstacles, configuration, options);
-      ASSERT_EQ(checker.collides(configuration, scratch), expected) << i << ' ' << far;
-      hits += expected ? 1 : 0;
-    }
+        {ball(away, 0.2), Pose::from_translation(center - away)}};
+    SCOPED_TRACE(testing::Message() << i << ' ' << far);
+    hits += expect_answer(robot, obstacles, configuration, {}) ? 1 : 0;
+    if (HasFailure()) return;
   }
   EXPECT_GT(hits, effort(1000, 100));
-}
-
-std::shared_ptr<const SphereTree> ball(const Eigen::Vector3d& center, double radius) {
-  return std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{center, radius}}));
 }
 
 // An arm of length one about the z axis, with a ball at its end and one at its root.
