@@ -44,7 +44,9 @@ std::vector<Method> make_methods(const Workload& workload) {
   methods.push_back({"brute-force-spheres", "all pairs, float", make_brute_force_checker(workload),
                      spheres, true});
   methods.push_back({"spherule-single", "sphere trees, one configuration a call",
-                     make_tree_checker(workload), spheres, false});
+                     make_tree_checker(workload, TreeMode::kSingle), spheres, false});
+  methods.push_back({"spherule-batch", "sphere trees, many configurations a call",
+                     make_tree_checker(workload, TreeMode::kBatch), spheres, false});
   return methods;
 }
 

@@ -12,11 +12,16 @@ namespace {
 
 class TreeChecker : public Checker {
  public:
-  explicit TreeChecker(const Workload& workload)
-      : checker_(made_for(workload)), scratch_(checker_) {}
+  TreeChecker(const Workload& workload, TreeMode mode)
+      : checker_(made_for(workload)), scratch_(checker_), mode_(mode) {}
 
   void check(std::span<const JointPositions> configurations,
              std::span<std::uint8_t> verdicts) override {
+    if (mode_ == TreeMode::kBatch) {
+      checker_.collides({configurations.front().data(), configurations.size() * kJoints}, scratch_,
+                        verdicts);
+      return;
+    }
     for (std::size_t i = 0; i < configurations.size(); ++i) {
       verdicts[i] = checker_.collides(configurations[i], scratch_) ? 1 : 0;
     }
@@ -41,12 +46,13 @@ class TreeChecker : public Checker {
 
   RobotChecker checker_;
   RobotChecker::Scratch scratch_;
+  TreeMode mode_;
 };
 
 }  // namespace
 
-std::unique_ptr<Checker> make_tree_checker(const Workload& workload) {
-  return std::make_unique<TreeChecker>(workload);
+std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mode) {
+  return std::make_unique<TreeChecker>(workload, mode);
 }
 
 }  // namespace spherule

@@ -41,7 +41,8 @@ using internal::PackedTree;
 //     the caller's poses have it, which is in pose_error.
 // So the balls of a body must be inflated by
 //     12 v W + 1e-10 (n + 1) W + 1e-12 X + pose_error,
-// and those of an obstacle by 1e-12 X.
+// and those of an obstacle by 1e-12 X. Where poses are computed in lanes, balls of bodies are grown
+// by lane_error(), kernel_lanes.h, beside it.
 constexpr double kPerLength = 12.0 * kFloatRoundoff;
 constexpr double kPerFrame = 5.0 * internal::kSineError;
 constexpr double kPerScene = 1e-12;
@@ -97,19 +98,44 @@ internal::KernelFrame kernel_frame(const MechanismFrame& frame) {
   return result;
 }
 
-// Margins as packed_tree.h has them.
-internal::KernelBody kernel_body(const PackedTree& tree, int frame) {
+// What is below this is an axis at a right angle, and costs less as zero: far below the budget of
+// kernel_lanes.h, where entries are rounded by up to 6e-8.
+constexpr double kNegligible = 0x1p-40;
+
+internal::KernelLaneFrame lane_frame(const internal::KernelFrame& frame) {
+  internal::KernelLaneFrame result = {};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const double entry = frame.rotation[j][i];
+      result.rotation[j][i] = std::abs(entry) < kNegligible ? 0.0F : static_cast<float>(entry);
+    }
+    result.origin[i] = static_cast<float>(frame.origin[i]);
+  }
+  result.parent = frame.parent;
+  result.variable = frame.variable;
+  result.prismatic = frame.prismatic;
+  return result;
+}
+
+// Margins as packed_tree.h has them. `reach` is W, `links` the frames between root and body.
+internal::KernelBody kernel_body(const PackedTree& tree, int frame, double reach, double links) {
   const auto& [center, radius] = tree.root();
   return {tree.nodes(),
+          tree.leaves(),
+          tree.node_count(),
           {center.x(), center.y(), center.z()},
+          {static_cast<float>(center.x()), static_cast<float>(center.y()),
+           static_cast<float>(center.z())},
           static_cast<float>(radius),
           frame,
-          internal::rounded_up_to_single(3.0 * tree.largest_growth())};
+          internal::rounded_up_to_single(3.0 * tree.largest_growth()),
+          internal::rounded_up_to_single(internal::kLaneErrorPerFrame * links * reach)};
 }
 
 internal::KernelObstacle kernel_obstacle(const PackedTree& tree) {
   const auto& [center, radius] = tree.root();
   return {tree.nodes(),
+          tree.leaves(),
           {static_cast<float>(center.x()), static_cast<float>(center.y()),
            static_cast<float>(center.z())},
           static_cast<float>(radius),
@@ -140,11 +166,12 @@ std::int64_t task_bound(int body_depth, int obstacle_depth) {
   return 63 * (std::int64_t{body_depth} + obstacle_depth + 1) + 1;
 }
 
-internal::CheckKernel kernel_for(InstructionSet set) {
-#if defined(SPHERULE_AVX2_KERNEL)
-  if (set == InstructionSet::kAvx2) return internal::avx2_check_kernel();
+const internal::Kernels& kernels_for(InstructionSet set) {
+#if defined(SPHERULE_X86_KERNELS)
+  if (set == InstructionSet::kAvx512) return internal::avx512_kernels();
+  if (set == InstructionSet::kAvx2) return internal::avx2_kernels();
 #endif
-  return internal::portable_check_kernel();
+  return internal::portable_kernels();
 }
 
 int filled_up(int count) {
@@ -159,11 +186,12 @@ struct MechanismCheck::Parts {
 
   internal::JoinedScene scene;
   std::vector<internal::KernelFrame> frames{};
+  std::vector<internal::KernelLaneFrame> lane_frames{};
   std::vector<PackedTree> trees{};
   std::vector<internal::KernelBody> bodies{};
   std::vector<internal::KernelObstacle> obstacles{};
   internal::KernelProblem problem{};
-  internal::CheckKernel kernel = nullptr;
+  const internal::Kernels* kernels = nullptr;
   std::int64_t task_count = 1;
 };
 
@@ -175,6 +203,13 @@ struct MechanismCheck::Scratch::Memory {
   std::vector<internal::KernelPose> poses;
   std::vector<internal::KernelTask> roots;
   std::vector<internal::KernelTask> tasks;
+  std::vector<internal::KernelLaneVariable> lane_variables;
+  std::vector<internal::KernelLanePose> lane_poses;
+  std::vector<internal::KernelQueue> queues;
+  std::vector<internal::KernelBalls> placed;
+  std::vector<std::uint64_t> generations;
+  std::uint64_t generation = 0;
+  std::vector<internal::KernelMemory> memories;
   internal::KernelScratch view = {};
 };
 
@@ -190,6 +225,7 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
   int variable_count = 0;
   for (const MechanismFrame& frame : frames) {
     parts->frames.push_back(kernel_frame(frame));
+    parts->lane_frames.push_back(lane_frame(parts->frames.back()));
     variable_count = std::max(variable_count, frame.variable + 1);
   }
   const std::vector<Chain> chains = chains_of(frames);
@@ -214,6 +250,10 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
                       obstacle.tree->reach() + obstacle.root_from_tree.translation().norm()});
   }
   if (!(bound <= kMaxCoordinate)) throw Error("mechanism", "it or an obstacle reaches too far");
+  if (std::any_of(chains.begin(), chains.end(),
+                  [](const Chain& chain) { return chain.frames > internal::kLongestLaneChain; })) {
+    throw Error("mechanism", "too many frames stand on each other");
+  }
   parts->trees.reserve(body_trees.size() + obstacle_trees.size());
   int body_depth = 1;
   int obstacle_depth = 1;
@@ -224,7 +264,7 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
         body_trees[i],
         (kPerLength + kPerFrame * (links + 1.0)) * reach[i] + kPerScene * bound + pose_error);
     body_depth = std::max(body_depth, tree.depth());
-    parts->bodies.push_back(kernel_body(tree, frame));
+    parts->bodies.push_back(kernel_body(tree, frame, reach[i], links));
   }
   for (const SphereTree& obstacle : obstacle_trees) {
     const PackedTree& tree = parts->trees.emplace_back(obstacle, kPerScene * bound);
@@ -232,8 +272,9 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
     parts->obstacles.push_back(kernel_obstacle(tree));
   }
   parts->task_count = task_bound(body_depth, obstacle_depth);
-  parts->kernel = kernel_for(instructions);
+  parts->kernels = &kernels_for(instructions);
   parts->problem = {.frames = parts->frames.data(),
+                    .lane_frames = parts->lane_frames.data(),
                     .frame_count = static_cast<std::int32_t>(parts->frames.size()),
                     .variable_count = variable_count,
                     .bodies = parts->bodies.data(),
@@ -259,8 +300,26 @@ MechanismCheck::Scratch::Scratch(const MechanismCheck& check)
   memory_->poses.resize(parts.frames.size());
   memory_->roots.resize(parts.bodies.size());
   memory_->tasks.resize(static_cast<std::size_t>(parts.task_count));
-  memory_->view = {memory_->sines.data(), memory_->cosines.data(), memory_->poses.data(),
-                   memory_->roots.data(), memory_->tasks.data()};
+  memory_->lane_variables.resize(variables);
+  memory_->lane_poses.resize(parts.frames.size());
+  std::size_t nodes = 0;
+  for (const internal::KernelBody& body : parts.bodies) {
+    nodes = std::max(nodes, static_cast<std::size_t>(body.node_count));
+  }
+  memory_->queues.resize(5);
+  memory_->placed.resize(nodes + 1);
+  memory_->generations.resize(nodes + 1);
+  memory_->memories.resize(parts.scene.pairs.size());
+  memory_->view = {.sines = memory_->sines.data(),
+                   .cosines = memory_->cosines.data(),
+                   .poses = memory_->poses.data(),
+                   .roots = memory_->roots.data(),
+                   .tasks = memory_->tasks.data(),
+                   .lane_variables = memory_->lane_variables.data(),
+                   .lane_poses = memory_->lane_poses.data(),
+                   .queues = {memory_->queues.data(), memory_->placed.data(),
+                              memory_->generations.data(), &memory_->generation},
+                   .memories = memory_->memories.data()};
 }
 
 MechanismCheck::Scratch::~Scratch() = default;
@@ -272,31 +331,46 @@ bool MechanismCheck::is_in_range(std::span<const double> variables) {
                      [](double v) { return std::abs(v) <= MechanismCheck::kLargestVariable; });
 }
 
-bool MechanismCheck::collides(std::span<const double> variables, Scratch& scratch, Ask ask,
-                              void* context) const {
-  assert(is_in_range(variables));
-  assert(variables.size() >= static_cast<std::size_t>(parts_->problem.variable_count));
-  assert(scratch.memory_->owner == parts_.get());
-  struct Context {
-    const internal::JoinedScene& scene;
-    Ask ask;
-    void* context;
-  };
-  Context given{parts_->scene, ask, context};
-  const internal::ConfirmContact confirm = [](void* of, internal::KernelPair pair,
-                                              std::int32_t body_sphere,
-                                              std::int32_t obstacle_sphere) {
-    const Context& in = *static_cast<const Context*>(of);
+// Asks for the spheres of joined sets as the caller knows them.
+struct MechanismCheck::Translator {
+  const internal::JoinedScene& scene;
+  Ask ask;
+  void* context;
+
+  static bool confirm(void* translator, std::int32_t lane, internal::KernelPair pair,
+                      std::int32_t body_sphere, std::int32_t obstacle_sphere) {
+    const Translator& in = *static_cast<const Translator*>(translator);
     const internal::SphereOrigin& body = in.scene.bodies[static_cast<std::size_t>(pair.body)]
                                              .origins[static_cast<std::size_t>(body_sphere)];
     const internal::SphereOrigin& obstacle =
         in.scene.obstacles[static_cast<std::size_t>(pair.obstacle)]
             .origins[static_cast<std::size_t>(obstacle_sphere)];
-    return in.ask(in.context, {{body.part, obstacle.part}, body.sphere, obstacle.sphere});
-  };
+    return in.ask(in.context, lane, {{body.part, obstacle.part}, body.sphere, obstacle.sphere});
+  }
+};
+
+bool MechanismCheck::collides(std::span<const double> variables, Scratch& scratch, Ask ask,
+                              void* context) const {
+  assert(is_in_range(variables));
+  assert(variables.size() >= static_cast<std::size_t>(parts_->problem.variable_count));
+  assert(scratch.memory_->owner == parts_.get());
+  Translator translator{parts_->scene, ask, context};
   Scratch::Memory& memory = *scratch.memory_;
   std::copy_n(variables.begin(), parts_->problem.variable_count, memory.variables.begin());
-  return parts_->kernel(parts_->problem, memory.variables.data(), memory.view, confirm, &given);
+  return parts_->kernels->check(parts_->problem, memory.variables.data(), memory.view,
+                                &Translator::confirm, &translator);
+}
+
+MechanismCheck::BlockAnswer MechanismCheck::collides(
+    std::span<const double* const, kBlock> configurations, Scratch& scratch, Ask ask,
+    void* context) const {
+  static_assert(kBlock == internal::kLanes && kLargestVariable == internal::kLargestKernelVariable);
+  assert(scratch.memory_->owner == parts_.get());
+  Translator translator{parts_->scene, ask, context};
+  const auto [hits, refused] =
+      parts_->kernels->check_block(parts_->problem, configurations.data(), scratch.memory_->view,
+                                   &Translator::confirm, &translator);
+  return {hits, refused};
 }
 
 }  // namespace spherule

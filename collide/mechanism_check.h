@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 
 namespace spherule {
 
@@ -92,17 +93,40 @@ class MechanismCheck {
   // name. Allocates nothing.
   template <class Confirm>
   bool collides(std::span<const double> variables, Scratch& scratch, Confirm confirm) const {
-    const Ask ask = [](void* context, const MechanismContact& contact) -> bool {
+    const Ask ask = [](void* context, int, const MechanismContact& contact) -> bool {
       return (*static_cast<Confirm*>(context))(contact);
     };
     return collides(variables, scratch, ask, std::addressof(confirm));
   }
 
+  // Configurations that are asked for side by side; answers are bits, the first configuration's is
+  // the lowest.
+  static constexpr std::size_t kBlock = 16;
+  struct BlockAnswer {
+    std::uint32_t collides;
+    std::uint32_t out_of_range;  // is_in_range() does not hold: no answer
+  };
+
+  // The same for a block; `confirm` is given the configuration's index, too. Each pointer leads to
+  // as many variables as the frames name. Fast where neighbours in the block differ little; the
+  // scratch remembers contacts from block to block, which changes no answer. Allocates nothing.
+  template <class Confirm>
+  BlockAnswer collides(std::span<const double* const, kBlock> configurations, Scratch& scratch,
+                       Confirm confirm) const {
+    const Ask ask = [](void* context, int index, const MechanismContact& contact) -> bool {
+      return (*static_cast<Confirm*>(context))(index, contact);
+    };
+    return collides(configurations, scratch, ask, std::addressof(confirm));
+  }
+
  private:
-  using Ask = bool (*)(void* context, const MechanismContact& contact);
+  using Ask = bool (*)(void* context, int index, const MechanismContact& contact);
   bool collides(std::span<const double> variables, Scratch& scratch, Ask ask, void* context) const;
+  BlockAnswer collides(std::span<const double* const, kBlock> configurations, Scratch& scratch,
+                       Ask ask, void* context) const;
 
   struct Parts;
+  struct Translator;
   std::unique_ptr<const Parts> parts_;
 };
 

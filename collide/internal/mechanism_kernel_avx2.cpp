@@ -9,8 +9,8 @@
 
 namespace spherule::internal {
 
-CheckKernel avx2_check_kernel() {
-  return &avx2::check;
+const Kernels& avx2_kernels() {
+  return avx2::kKernels;
 }
 
 }  // namespace spherule::internal

@@ -9,8 +9,8 @@
 
 namespace spherule::internal {
 
-CheckKernel portable_check_kernel() {
-  return &portable::check;
+const Kernels& portable_kernels() {
+  return portable::kKernels;
 }
 
 }  // namespace spherule::internal

@@ -18,4 +18,10 @@ struct alignas(64) PackedNode {
   std::int32_t child[kWidth];
 };
 
+// A leaf, as the nodes hold it.
+struct PackedBall {
+  float center[3];
+  float radius;
+};
+
 }  // namespace spherule::internal

@@ -98,8 +98,11 @@ PackedTree::PackedTree(const SphereTree& tree, double inflation) {
   root_ = packed(balls[0], inflation);
   depth_ = std::max(1, tree.depth());
   for (const Sphere& sphere : tree.spheres()) {
-    const double grown = sub_up(packed(sphere, inflation).radius, sphere.radius);
-    largest_growth_ = std::max(largest_growth_, grown);
+    const Sphere leaf = packed(sphere, inflation);
+    largest_growth_ = std::max(largest_growth_, sub_up(leaf.radius, sphere.radius));
+    leaves_.push_back({{static_cast<float>(leaf.center.x()), static_cast<float>(leaf.center.y()),
+                        static_cast<float>(leaf.center.z())},
+                       static_cast<float>(leaf.radius)});
   }
   // Inner nodes in the order of the tree, so that a node's number is the count of those before it.
   std::vector<std::int32_t> number(tree.node_count());
@@ -109,10 +112,9 @@ PackedTree::PackedTree(const SphereTree& tree, double inflation) {
   }
   if (inner == 0) {
     nodes_.push_back(empty_node());
-    set_lane(nodes_.back(), 0, packed(balls[0], inflation), number[0]);
-    return;
+    set_lane(nodes_.back(), 0, root_, number[0]);
   }
-  nodes_.reserve(static_cast<std::size_t>(inner));
+  nodes_.reserve(static_cast<std::size_t>(inner) + 1);
   for (std::size_t node = 0; node < tree.node_count(); ++node) {
     if (tree.is_leaf(node)) continue;
     nodes_.push_back(empty_node());
@@ -121,6 +123,8 @@ PackedTree::PackedTree(const SphereTree& tree, double inflation) {
       set_lane(nodes_.back(), lane, packed(balls[child], inflation), number[child]);
     }
   }
+  nodes_.push_back(empty_node());
+  set_lane(nodes_.back(), 0, root_, 0);
 }
 
 }  // namespace spherule::internal

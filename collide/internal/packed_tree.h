@@ -4,6 +4,7 @@
 #include "collide/internal/packed_node.h"
 #include "spheretree/sphere_tree.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace spherule::internal {
@@ -41,7 +42,11 @@ class PackedTree {
   // `inflation` is an absolute length. The tree's branching must be at most PackedNode::kWidth.
   PackedTree(const SphereTree& tree, double inflation);
 
+  // The root is node 0; behind the last, number node_count(), one holds the ball around all.
   const PackedNode* nodes() const { return nodes_.data(); }
+  std::int32_t node_count() const { return static_cast<std::int32_t>(nodes_.size()) - 1; }
+  // One for every sphere of the tree, in its order.
+  const PackedBall* leaves() const { return leaves_.data(); }
   // The ball around all, as the balls of the nodes; its centre is exact in single precision.
   const Sphere& root() const { return root_; }
   // Nodes on the longest way from the root to a leaf, at least one.
@@ -51,6 +56,7 @@ class PackedTree {
 
  private:
   std::vector<PackedNode> nodes_;
+  std::vector<PackedBall> leaves_;
   Sphere root_;
   int depth_ = 0;
   double largest_growth_ = 0.0;

@@ -7,6 +7,7 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -144,17 +145,57 @@ bool RobotChecker::collides(std::span<const double> configuration, Scratch& scra
   if (!is_usual) return collides_exactly(configuration, scratch);
   if (always_) return true;
   bool is_placed = false;
-  const auto confirm = [&](const MechanismContact& contact) {
-    if (!is_placed) {
-      forward_kinematics(robot_, configuration, scratch.world_from_link_, world_from_root_);
-      is_placed = true;
-    }
-    const Body& body = bodies_[static_cast<std::size_t>(contact.pair.body)];
-    const PlacedTree& obstacle = obstacles_[static_cast<std::size_t>(contact.pair.obstacle)];
-    return spheres_touch(*body.tree, contact.body_sphere, scratch.world_from_link_[body.link],
-                         *obstacle.tree, contact.obstacle_sphere, obstacle.world_from_tree);
+  return check_->collides(configuration, scratch.memory_, [&](const MechanismContact& contact) {
+    return touches(configuration, contact, is_placed, scratch);
+  });
+}
+
+// The canonical test; `is_placed` says whether the scratch holds the configuration's poses.
+bool RobotChecker::touches(std::span<const double> configuration, const MechanismContact& contact,
+                           bool& is_placed, Scratch& scratch) const {
+  if (!is_placed) {
+    forward_kinematics(robot_, configuration, scratch.world_from_link_, world_from_root_);
+    is_placed = true;
+  }
+  const Body& body = bodies_[static_cast<std::size_t>(contact.pair.body)];
+  const PlacedTree& obstacle = obstacles_[static_cast<std::size_t>(contact.pair.obstacle)];
+  return spheres_touch(*body.tree, contact.body_sphere, scratch.world_from_link_[body.link],
+                       *obstacle.tree, contact.obstacle_sphere, obstacle.world_from_tree);
+}
+
+void RobotChecker::collides(std::span<const double> configurations, Scratch& scratch,
+                            std::span<std::uint8_t> verdicts) const {
+  constexpr std::size_t kBlock = MechanismCheck::kBlock;
+  const auto variables = static_cast<std::size_t>(robot_.variable_count());
+  if (configurations.size() != verdicts.size() * variables) {
+    throw Error("configurations", std::to_string(configurations.size()) + " numbers for " +
+                                      std::to_string(verdicts.size()) +
+                                      " verdicts on a robot with " + std::to_string(variables) +
+                                      " variables");
+  }
+  const auto configuration = [&](std::size_t i) {
+    return configurations.subspan(i * variables, variables);
   };
-  return check_->collides(configuration, scratch.memory_, confirm);
+  for (std::size_t first = 0; first < verdicts.size(); first += kBlock) {
+    const std::size_t last = std::min(first + kBlock, verdicts.size()) - 1;
+    std::array<const double*, kBlock> block;  // filled up with the last one
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      block[i] = configuration(std::min(first + i, last)).data();
+    }
+    int placed = -1;
+    const MechanismCheck::BlockAnswer answer =
+        check_->collides(block, scratch.memory_, [&](int index, const MechanismContact& contact) {
+          bool is_placed = std::exchange(placed, index) == index;
+          return touches({block[static_cast<std::size_t>(index)], variables}, contact, is_placed,
+                         scratch);
+        });
+    for (std::size_t i = first; i <= last; ++i) {
+      const bool is_usual = (answer.out_of_range >> (i - first) & 1U) == 0;
+      const bool hit = is_usual ? always_ || (answer.collides >> (i - first) & 1U) != 0
+                                : collides_exactly(configuration(i), scratch);
+      verdicts[i] = hit ? 1 : 0;
+    }
+  }
 }
 
 bool RobotChecker::collides_exactly(std::span<const double> configuration, Scratch& scratch) const {

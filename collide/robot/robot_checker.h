@@ -6,6 +6,7 @@
 #include "spheretree/pose.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -64,12 +65,21 @@ class RobotChecker {
   // slowly; where such a one leads out of all bounds, forward_kinematics() throws.
   bool collides(std::span<const double> configuration, Scratch& scratch) const;
 
+  // The same for many configurations, which lie one behind the other: verdicts[i] is 1 if the i-th
+  // collides, otherwise 0. Several times faster where neighbours differ little, as on a path.
+  // Throws Error if there are not variable_count() numbers for every verdict, or one is not finite;
+  // then the verdicts mean nothing.
+  void collides(std::span<const double> configurations, Scratch& scratch,
+                std::span<std::uint8_t> verdicts) const;
+
  private:
   struct Body {
     std::shared_ptr<const SphereTree> tree;
     std::size_t link;
   };
 
+  bool touches(std::span<const double> configuration, const MechanismContact& contact,
+               bool& is_placed, Scratch& scratch) const;
   // What robot_collides() says of the pairs that are tested.
   bool collides_exactly(std::span<const double> configuration, Scratch& scratch) const;
 

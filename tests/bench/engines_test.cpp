@@ -69,7 +69,7 @@ TEST(Engines, SphereEnginesAgreeAndMissNothing) {
   add_balls(cell);
   const auto sample = every(cell, 601);
   const auto touching = Oracle(cell).touching_bodies(sample);
-  const auto by_tree = verdicts(*make_tree_checker(cell), sample);
+  const auto by_tree = verdicts(*make_tree_checker(cell, TreeMode::kSingle), sample);
   EXPECT_EQ(by_tree, verdicts(*make_brute_force_checker(cell), sample));
   EXPECT_EQ(by_tree, verdicts(*make_fcl_sphere_checker(cell), sample));
   for (std::size_t i = 0; i < sample.size(); ++i) {

@@ -85,6 +85,44 @@ TEST(MechanismCheck, OffsetsThatCancelAreMindedInTheMargins) {
   }
 }
 
+// Poses are computed in single precision where configurations are checked side by side: over a long
+// chain their error is many times what it is for one configuration.
+TEST(MechanismCheck, ABlockNeverFindsApartWhatTouches) {
+  Random random(33);
+  for (int i = 0; i < 50; ++i) {
+    std::vector<MechanismFrame> frames;
+    std::array<double, 1000> variables;
+    Pose pose;
+    for (int k = 0; k < 1000; ++k) {
+      frames.push_back({.parent = k - 1, .parent_from_frame = random.pose(0.0), .variable = k});
+      variables[static_cast<std::size_t>(k)] = random.uniform(-3.2, 3.2);
+      const Eigen::AngleAxisd turn(variables[static_cast<std::size_t>(k)],
+                                   Eigen::Vector3d::UnitZ());
+      pose = pose * frames.back().parent_from_frame *
+             Pose(Eigen::Quaterniond(turn), Eigen::Vector3d::Zero());
+    }
+    const std::vector<MechanismBody> bodies = {{999, Pose(), ball({0.3, 0, 0}, 0.1)}};
+    const Eigen::Vector3d away = (0.2 - 1e-9) * random.point(1.0).normalized();
+    const std::vector<MechanismObstacle> obstacles = {
+        {Pose(), ball(pose * Eigen::Vector3d(0.3, 0, 0) + away, 0.1)}};
+    const std::vector<MechanismPair> pairs(1);
+    for (const InstructionSet set : instruction_sets()) {
+      const MechanismCheck check(frames, bodies, obstacles, pairs, 0.0, set);
+      MechanismCheck::Scratch scratch(check);
+      std::array<const double*, MechanismCheck::kBlock> block;
+      block.fill(variables.data());
+      std::uint32_t asked = 0;
+      const auto confirm = [&](int index, const MechanismContact&) {
+        asked |= 1U << index;
+        return false;
+      };
+      const MechanismCheck::BlockAnswer answer = check.collides(block, scratch, confirm);
+      EXPECT_EQ(answer.collides | asked, 0xffffU) << i;
+      EXPECT_EQ(answer.out_of_range, 0U);
+    }
+  }
+}
+
 std::string refused(const std::vector<MechanismFrame>& frames,
                     const std::vector<MechanismBody>& bodies,
                     const std::vector<MechanismObstacle>& obstacles,

@@ -51,7 +51,9 @@ std::shared_ptr<const SphereTree> ball(const Eigen::Vector3d& center, double rad
 
 std::vector<InstructionSet> instruction_sets() {
   std::vector<InstructionSet> sets{InstructionSet::kPortable};
-  if (is_available(InstructionSet::kAvx2)) sets.push_back(InstructionSet::kAvx2);
+  for (const InstructionSet set : {InstructionSet::kAvx2, InstructionSet::kAvx512}) {
+    if (is_available(set)) sets.push_back(set);
+  }
   return sets;
 }
 

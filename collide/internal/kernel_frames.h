@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Kinematics of one configuration in double precision. Part of the kernels, see
+// mechanism_kernel_impl.h.
+//
+// Of an angle x with |x| <= 100 (MechanismCheck::kLargestVariable), k = x 2 / pi
+// rounded is at most 64, and x - k pi / 2 in two steps errs by less than 64 (2^-53 + 2^-106 ...) <
+// 2e-14; the remainder lies within pi / 4 + 1e-13. The sine's series up to r^11 errs by r^13 / 13!
+// < 7.0e-12, the cosine's up to r^12 by r^14 / 14! < 4e-13; a few roundings of numbers below one,
+// 1e-15. Together both err by less than 7.1e-12, the pair by less than kSineError = 2e-11.
+
+#include "collide/internal/kernel_search.h"
+
+namespace spherule::internal::SPHERULE_KERNEL {
+namespace {
+
+typedef float Float4 __attribute__((vector_size(16), may_alias));
+typedef double Double4 __attribute__((vector_size(32), may_alias));
+typedef std::int64_t Long4 __attribute__((vector_size(32), may_alias));
+
+// Adding 1.5 2^52 rounds to an integer only where double is not computed with more bits.
+static_assert(__FLT_EVAL_METHOD__ == 0);
+constexpr double kRound = 0x1.8p52;  // added, it leaves an integer in the last bits
+constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
+constexpr double kHalfPi = 0x1.921fb54442d18p+0;
+constexpr double kHalfPiRest = 0x1.1a62633145c07p-54;
+
+SPHERULE_INLINE Double4 load(const double* p) {
+  return *reinterpret_cast<const Double4*>(p);
+}
+
+SPHERULE_INLINE void sine_and_cosine(const double* angles, double* sines, double* cosines) {
+  Double4 x;
+  __builtin_memcpy(&x, angles, sizeof x);
+  const Double4 shifted = x * kTwoOverPi + kRound;
+  const Double4 k = shifted - kRound;
+  const Double4 r = (x - k * kHalfPi) - k * kHalfPiRest;
+  const Double4 r2 = r * r;
+  const Double4 sine =
+      r + r * r2 *
+              (-1.0 / 6 + r2 * (1.0 / 120 +
+                                r2 * (-1.0 / 5040 + r2 * (1.0 / 362880 + r2 * (-1.0 / 39916800)))));
+  const Double4 cosine =
+      1.0 - 0.5 * r2 +
+      r2 * r2 *
+          (1.0 / 24 +
+           r2 * (-1.0 / 720 + r2 * (1.0 / 40320 + r2 * (-1.0 / 3628800 + r2 * (1.0 / 479001600)))));
+  Long4 quarter;
+  __builtin_memcpy(&quarter, &shifted, sizeof quarter);
+  const Long4 odd = -(quarter & 1);
+  const Long4 sine_bits = reinterpret_cast<const Long4&>(sine);
+  const Long4 cosine_bits = reinterpret_cast<const Long4&>(cosine);
+  const Long4 s = ((sine_bits & ~odd) | (cosine_bits & odd)) ^ ((quarter & 2) << 62);
+  const Long4 c = ((cosine_bits & ~odd) | (sine_bits & odd)) ^ (((quarter + 1) & 2) << 62);
+  __builtin_memcpy(sines, &s, sizeof s);
+  __builtin_memcpy(cosines, &c, sizeof c);
+}
+
+// The poses of all frames. What does not depend on the parent is computed first: the chain from
+// frame to frame is what takes the time.
+SPHERULE_INLINE void place_frames(const KernelProblem& problem, const double* configuration,
+                                  const KernelScratch& scratch) {
+  for (std::int32_t i = 0; i < problem.variable_count; i += 4) {
+    sine_and_cosine(configuration + i, scratch.sines + i, scratch.cosines + i);
+  }
+  for (std::int32_t i = 0; i < problem.frame_count; ++i) {
+    const KernelFrame& frame = problem.frames[i];
+    const double position = configuration[frame.variable];
+    const double sine = frame.prismatic ? 0.0 : scratch.sines[frame.variable];
+    const double cosine = frame.prismatic ? 1.0 : scratch.cosines[frame.variable];
+    const Double4 f0 = load(frame.rotation[0]);
+    const Double4 f1 = load(frame.rotation[1]);
+    const Double4 f2 = load(frame.rotation[2]);
+    const Double4 g0 = cosine * f0 + sine * f1;
+    const Double4 g1 = cosine * f1 - sine * f0;
+    const double shift = frame.prismatic ? position : 0.0;
+    const double o[3] = {frame.origin[0] + shift * f2[0], frame.origin[1] + shift * f2[1],
+                         frame.origin[2] + shift * f2[2]};
+    auto* const result = reinterpret_cast<Double4*>(scratch.poses[i].columns);
+    if (frame.parent < 0) {
+      result[0] = g0;
+      result[1] = g1;
+      result[2] = f2;
+      result[3] = Double4{o[0], o[1], o[2], 0.0};
+      continue;
+    }
+    const auto* const parent =
+        reinterpret_cast<const Double4*>(scratch.poses[frame.parent].columns);
+    const Double4 p0 = parent[0];
+    const Double4 p1 = parent[1];
+    const Double4 p2 = parent[2];
+    result[0] = p0 * g0[0] + p1 * g0[1] + p2 * g0[2];
+    result[1] = p0 * g1[0] + p1 * g1[1] + p2 * g1[2];
+    result[2] = p0 * f2[0] + p1 * f2[1] + p2 * f2[2];
+    result[3] = p0 * o[0] + p1 * o[1] + p2 * o[2] + parent[3];
+  }
+}
+
+SPHERULE_INLINE Placement in_single_precision(const KernelPose& pose) {
+  Placement at;
+  for (int column = 0; column < 4; ++column) {
+    const Float4 rounded = __builtin_convertvector(load(pose.columns[column]), Float4);
+    __builtin_memcpy(at.columns[column], &rounded, sizeof rounded);
+  }
+  return at;
+}
+
+// The ball around all of every body.
+SPHERULE_INLINE void place_roots(const KernelProblem& problem, const KernelScratch& scratch) {
+  for (std::int32_t i = 0; i < problem.body_count; ++i) {
+    const KernelBody& body = problem.bodies[i];
+    const auto* const at = reinterpret_cast<const Double4*>(scratch.poses[body.frame].columns);
+    const Double4 center =
+        at[0] * body.center[0] + at[1] * body.center[1] + at[2] * body.center[2] + at[3];
+    scratch.roots[i] = {static_cast<float>(center[0]),
+                        static_cast<float>(center[1]),
+                        static_cast<float>(center[2]),
+                        body.radius,
+                        0,
+                        0};
+  }
+}
+
+}  // namespace
+}  // namespace spherule::internal::SPHERULE_KERNEL

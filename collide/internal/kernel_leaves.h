@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// All pairs of leaves of a grown body and an obstacle that are not apart: a breadth-first search
+// whose only branches are the ends of its queues, since what overlaps is a coin toss that a
+// processor cannot predict. Part of the kernels, see mechanism_kernel_impl.h.
+//
+// A slot names a ball: 8 times the node that holds it and its lane. Of a body, the node behind the
+// last holds the ball around all.
+
+#include "collide/internal/kernel_search.h"
+
+namespace spherule::internal::SPHERULE_KERNEL {
+namespace {
+
+// Moves the chosen lanes to the front and writes all eight.
+SPHERULE_INLINE void put_chosen(std::int32_t* to, Int8 lanes, unsigned chosen) {
+#if defined(__AVX512VL__)
+  const auto packed = reinterpret_cast<Int8>(
+      _mm256_maskz_compress_epi32(static_cast<__mmask8>(chosen), reinterpret_cast<__m256i>(lanes)));
+  __builtin_memcpy(to, &packed, sizeof packed);
+#else
+  for (; chosen != 0; chosen &= chosen - 1) *to++ = lanes[__builtin_ctz(chosen)];
+#endif
+}
+
+// What waits to be opened: a ball of one side, by its slot, and a node of the other.
+class Queue {
+ public:
+  explicit Queue(KernelQueue& memory) : slots_(memory.slots), nodes_(memory.nodes) {}
+
+  bool waits() const { return next_ < end_; }
+  bool is_full() const { return end_ > KernelQueue::kRoom; }
+  std::int32_t count() const { return end_; }
+  KernelLeaves leaves(std::int32_t i) const { return {slots_[i], nodes_[i]}; }
+  SPHERULE_INLINE std::int32_t slot() const { return slots_[next_]; }
+  SPHERULE_INLINE std::int32_t take() { return nodes_[next_++]; }
+  void start_over() { next_ = end_ = 0; }
+
+  SPHERULE_INLINE void add_nodes(std::int32_t slot, Int8 nodes, unsigned chosen) {
+    const Int8 slots = slot - Int8{};
+    __builtin_memcpy(slots_ + end_, &slots, sizeof slots);
+    put_chosen(nodes_ + end_, nodes, chosen);
+    end_ += __builtin_popcount(chosen);
+  }
+  SPHERULE_INLINE void add_slots(Int8 slots, std::int32_t node, unsigned chosen) {
+    const Int8 nodes = node - Int8{};
+    __builtin_memcpy(nodes_ + end_, &nodes, sizeof nodes);
+    put_chosen(slots_ + end_, slots, chosen);
+    end_ += __builtin_popcount(chosen);
+  }
+
+ private:
+  std::int32_t* slots_;
+  std::int32_t* nodes_;
+  std::int32_t next_ = 0;
+  std::int32_t end_ = 0;
+};
+
+class LeafSearch {
+ public:
+  LeafSearch(const KernelBody& body, const KernelObstacle& obstacle, const Placement& at,
+             const KernelQueues& memory)
+      : body_(body),
+        obstacle_(obstacle),
+        at_(at),
+        memory_(memory),
+        balls_(memory.waiting[0]),
+        leaves_(memory.waiting[1]),
+        nodes_(memory.waiting[2]),
+        ends_(memory.waiting[3]),
+        found_(memory.waiting[4]) {}
+
+  // False if there is no room for all.
+  bool run() {
+    ++*memory_.generation;
+    place(body_.node_count);
+    balls_.add_nodes(body_.node_count * PackedNode::kWidth, Int8{}, 1);
+    do {
+      while (balls_.waits() && !is_full()) open_for_ball();
+      balls_.start_over();
+      while (nodes_.waits() && !is_full()) open_for_node();
+      nodes_.start_over();
+      while (leaves_.waits() && !is_full()) open_for_leaf();
+      leaves_.start_over();
+      while (ends_.waits() && !is_full()) open_for_end();
+      ends_.start_over();
+      if (found_.is_full() || is_overfull_) return false;
+    } while (balls_.waits() || nodes_.waits() || leaves_.waits());
+    return true;
+  }
+
+  Queue& found() { return found_; }
+
+ private:
+  static constexpr Int8 kIota = {0, 1, 2, 3, 4, 5, 6, 7};
+
+  // An inner ball of the body and a node of the obstacle.
+  SPHERULE_INLINE void open_for_ball() {
+    const std::int32_t slot = balls_.slot();
+    const std::int32_t node = balls_.take();
+    const PackedNode& children = obstacle_.nodes[node];
+    const KernelBalls& from = memory_.placed[slot >> 3];
+    const int lane = slot & 7;
+    const float radius = from.radius[lane];
+    const unsigned hits =
+        overlaps(balls_of(children), from.x[lane], from.y[lane], from.z[lane], radius);
+    const unsigned leaves = leaves_of(children);
+    const unsigned big = mask_of(load(children.radius) >= kOpenBody * radius);
+    const std::int32_t body_node = body_.nodes[slot >> 3].child[lane];
+    const Int8 slots = node * PackedNode::kWidth + kIota;
+    balls_.add_nodes(slot, children_of(children), hits & ~leaves & big);
+    nodes_.add_slots(slots, body_node, hits & ~leaves & ~big);
+    ends_.add_slots(slots, body_node, hits & leaves);
+  }
+
+  // A leaf of the body and a node of the obstacle.
+  SPHERULE_INLINE void open_for_leaf() {
+    const std::int32_t slot = leaves_.slot();
+    const PackedNode& children = obstacle_.nodes[leaves_.take()];
+    const KernelBalls& from = memory_.placed[slot >> 3];
+    const int lane = slot & 7;
+    const unsigned hits =
+        overlaps(balls_of(children), from.x[lane], from.y[lane], from.z[lane], from.radius[lane]);
+    const unsigned leaves = leaves_of(children);
+    const std::int32_t sphere = ~body_.nodes[slot >> 3].child[lane];
+    leaves_.add_nodes(slot, children_of(children), hits & ~leaves);
+    found_.add_nodes(sphere, ~children_of(children), hits & leaves);
+  }
+
+  // An inner ball of the obstacle and a node of the body.
+  SPHERULE_INLINE void open_for_node() {
+    const std::int32_t slot = nodes_.slot();
+    const std::int32_t node = nodes_.take();
+    const PackedNode& from = obstacle_.nodes[slot >> 3];
+    const int lane = slot & 7;
+    const unsigned hits = overlaps(balls_of(place(node)), from.x[lane], from.y[lane], from.z[lane],
+                                   from.radius[lane]);
+    const unsigned leaves = leaves_of(body_.nodes[node]);
+    const Int8 slots = node * PackedNode::kWidth + kIota;
+    balls_.add_slots(slots, from.child[lane], hits & ~leaves);
+    leaves_.add_slots(slots, from.child[lane], hits & leaves);
+  }
+
+  // A leaf of the obstacle and a node of the body.
+  SPHERULE_INLINE void open_for_end() {
+    const std::int32_t slot = ends_.slot();
+    const std::int32_t node = ends_.take();
+    const PackedNode& from = obstacle_.nodes[slot >> 3];
+    const int lane = slot & 7;
+    const unsigned hits = overlaps(balls_of(place(node)), from.x[lane], from.y[lane], from.z[lane],
+                                   from.radius[lane]);
+    const PackedNode& children = body_.nodes[node];
+    const unsigned leaves = leaves_of(children);
+    ends_.add_nodes(slot, children_of(children), hits & ~leaves);
+    found_.add_slots(~children_of(children), ~from.child[lane], hits & leaves);
+  }
+
+  SPHERULE_INLINE static Int8 children_of(const PackedNode& node) {
+    return *reinterpret_cast<const Int8*>(node.child);
+  }
+  SPHERULE_INLINE static unsigned leaves_of(const PackedNode& node) {
+    return mask_of(children_of(node) < 0);
+  }
+
+  // The children of a node of the body where it is; computed once.
+  SPHERULE_INLINE const KernelBalls& place(std::int32_t node) {
+    KernelBalls& there = memory_.placed[node];
+    if (memory_.generations[node] != *memory_.generation) {
+      memory_.generations[node] = *memory_.generation;
+      hold(placed(body_.nodes[node], at_), there);
+    }
+    return there;
+  }
+
+  bool is_full() {
+    is_overfull_ = balls_.is_full() || nodes_.is_full() || leaves_.is_full() || ends_.is_full() ||
+                   found_.is_full();
+    return is_overfull_;
+  }
+
+  const KernelBody& body_;
+  const KernelObstacle& obstacle_;
+  const Placement& at_;
+  const KernelQueues& memory_;
+  Queue balls_;   // inner balls of the body, nodes of the obstacle
+  Queue leaves_;  // leaves of the body, nodes of the obstacle
+  Queue nodes_;   // inner balls of the obstacle, nodes of the body
+  Queue ends_;    // leaves of the obstacle, nodes of the body
+  Queue found_;   // leaves of both, by their spheres
+  bool is_overfull_ = false;
+};
+
+}  // namespace
+}  // namespace spherule::internal::SPHERULE_KERNEL

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/collide/robot/checked_scene.h"
+
+#include "collide/collide.h"
+#include "collide/robot/kinematics.h"
+#include "spheretree/build.h"
+#include "tests/collide/robot/robots.h"
+#include "tests/collide/trees.h"
+
+#include <algorithm>
+
+namespace spherule::test {
+
+std::shared_ptr<const SphereTree> random_tree(Random& random, double size) {
+  const int count = random.whole(1, 60);
+  std::vector<Sphere> spheres = random_spheres(random, count, size, 0.1 * size);
+  return std::make_shared<const SphereTree>(
+      build_tree(spheres, {.branching = random.whole(2, SphereTree::kMaxBranching)}));
+}
+
+RobotModel random_robot_with_trees(Random& random, double size) {
+  RobotModel robot = random_robot(random, random.whole(1, 8), random.whole(0, 1) == 1);
+  for (std::size_t link = 0; link < robot.links().size(); ++link) {
+    for (int i = random.whole(0, 2); i > 0; --i) {
+      robot.attach(robot.links()[link].name, random_tree(random, size));
+    }
+  }
+  return robot;
+}
+
+std::vector<PlacedTree> random_obstacles(Random& random) {
+  std::vector<PlacedTree> obstacles;
+  for (int k = random.whole(1, 3); k > 0; --k) {
+    obstacles.push_back({random_tree(random, 1.0), random.pose(2.0)});
+  }
+  return obstacles;
+}
+
+bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+            std::span<const double> configuration, const RobotCheckerOptions& options) {
+  std::vector<Pose> world_from_link;
+  forward_kinematics(robot, configuration, world_from_link, options.world_from_root);
+  for (std::size_t link = 0; link < robot.links().size(); ++link) {
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+      const bool is_untested =
+          std::any_of(options.untested.begin(), options.untested.end(), [&](const auto& pair) {
+            return pair.link == static_cast<int>(link) && pair.obstacle == i;
+          });
+      if (is_untested) continue;
+      for (const auto& tree : robot.links()[link].trees) {
+        if (collides(*tree, world_from_link[link], *obstacles[i].tree,
+                     obstacles[i].world_from_tree)) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace spherule::test

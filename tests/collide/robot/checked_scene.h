@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Random robots with spheres among random obstacles, and what a RobotChecker has to say of them.
+
+#include "collide/robot/robot_checker.h"
+#include "tests/collide/exact_scene.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace spherule::test {
+
+// Up to 60 spheres within `size`.
+std::shared_ptr<const SphereTree> random_tree(Random& random, double size);
+
+RobotModel random_robot_with_trees(Random& random, double size);
+
+// One to three obstacles.
+std::vector<PlacedTree> random_obstacles(Random& random);
+
+// By the exact queries.
+bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+            std::span<const double> configuration, const RobotCheckerOptions& options);
+
+}  // namespace spherule::test

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many configurations a call: the same answers as one by one, whatever the order.
+
+#include "collide/robot/kinematics.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "tests/collide/robot/checked_scene.h"
+#include "tests/collide/robot/robots.h"
+#include "tests/collide/trees.h"
+#include "tests/support/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+// Configurations one behind the other.
+struct Path {
+  std::vector<double> positions{};
+  std::size_t variables = 0;
+
+  std::size_t size() const { return variables == 0 ? 0 : positions.size() / variables; }
+  std::span<const double> operator[](std::size_t i) const {
+    return std::span(positions).subspan(i * variables, variables);
+  }
+  void add(const std::vector<double>& configuration) {
+    positions.insert(positions.end(), configuration.begin(), configuration.end());
+  }
+};
+
+// From configuration to configuration in steps of about `step`, with as much noise; a step of zero
+// stands for configurations that have nothing to do with each other.
+Path random_path(Random& random, const RobotModel& robot, std::size_t count, double step) {
+  Path path{.variables = static_cast<std::size_t>(robot.variable_count())};
+  std::vector<double> at = random_configuration(random, robot, 3.2);
+  std::vector<double> direction = random_configuration(random, robot, step);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (random.whole(0, 30) == 0) direction = random_configuration(random, robot, step);
+    if (step == 0.0) at = random_configuration(random, robot, 3.2);
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      at[k] += direction[k] + 0.1 * step * random.uniform(-1.0, 1.0);
+    }
+    path.add(at);
+  }
+  return path;
+}
+
+std::vector<std::uint8_t> verdicts(const RobotChecker& checker, const Path& path,
+                                   RobotChecker::Scratch& scratch) {
+  std::vector<std::uint8_t> result(path.size());
+  checker.collides(path.positions, scratch, result);
+  return result;
+}
+
+TEST(RobotBatch, AnswersAsTheExactQueriesDo) {
+  Random random(41);
+  int hits = 0;
+  int free = 0;
+  for (int i = 0; i < effort(400, 20); ++i) {
+    const RobotModel robot = random_robot_with_trees(random, 0.3);
+    if (robot.variable_count() == 0) continue;
+    const std::vector<PlacedTree> obstacles = random_obstacles(random);
+    RobotCheckerOptions options{.world_from_root = i % 2 == 0 ? Pose() : random.pose(3.0)};
+    std::vector<Path> paths;
+    for (const double step : {1e-3, 1e-2, 0.1, 0.0, 1e-4}) {
+      const auto count = static_cast<std::size_t>(random.whole(1, effort(90, 30)));
+      paths.push_back(random_path(random, robot, count, step));
+    }
+    std::vector<std::vector<std::uint8_t>> expected;
+    for (const Path& path : paths) {
+      expected.emplace_back();
+      for (std::size_t k = 0; k < path.size(); ++k) {
+        const bool hit = answer(robot, obstacles, path[k], options);
+        expected.back().push_back(hit ? 1 : 0);
+        (hit ? hits : free) += 1;
+      }
+    }
+    for (const InstructionSet set : instruction_sets()) {
+      options.instructions = set;
+      const RobotChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);  // one for all paths: what it remembers is no matter
+      for (std::size_t k = 0; k < paths.size(); ++k) {
+        ASSERT_EQ(verdicts(checker, paths[k], scratch), expected[k]) << i << ' ' << k;
+      }
+    }
+  }
+  EXPECT_GT(hits, effort(2000, 100));
+  EXPECT_GT(free, effort(2000, 100));
+}
+
+// A ball stands where one of the robot is in the middle of a path, at a distance that single
+// precision cannot tell from contact, or can only just, or that is about as long as a step.
+TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
+  Random random(42);
+  int hits = 0;
+  int free = 0;
+  for (int i = 0; i < effort(1500, 100); ++i) {
+    const RobotModel robot = random_robot_with_trees(random, 0.3);
+    const Pose root = i % 2 == 0 ? Pose() : random.pose(100.0);
+    const double step = std::pow(10.0, random.uniform(-9.0, -2.0));
+    const auto count = static_cast<std::size_t>(random.whole(1, 40));
+    const Path path = random_path(random, robot, count, step);
+    if (path.size() == 0) continue;
+    std::vector<Pose> world_from_link;
+    forward_kinematics(robot, path[random.bits() % path.size()], world_from_link, root);
+    std::vector<std::pair<std::size_t, Sphere>> moving;
+    for (std::size_t link = 1; link < robot.links().size(); ++link) {
+      for (const auto& tree : robot.links()[link].trees) {
+        moving.emplace_back(link, tree->spheres()[random.bits() % tree->spheres().size()]);
+      }
+    }
+    if (moving.empty()) continue;
+    const auto& [link, sphere] = moving[random.bits() % moving.size()];
+    const double gap =
+        (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-12.0, -2.0));
+    const Eigen::Vector3d center = world_from_link[link] * sphere.center +
+                                   (sphere.radius + 0.1 + gap) * random.point(1.0).normalized();
+    const std::vector<PlacedTree> obstacles = {{ball(center, 0.1), Pose()}};
+    RobotCheckerOptions options{.world_from_root = root};
+    std::vector<std::uint8_t> expected;
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      const bool hit = answer(robot, obstacles, path[k], options);
+      expected.push_back(hit ? 1 : 0);
+      (hit ? hits : free) += 1;
+    }
+    for (const InstructionSet set : instruction_sets()) {
+      options.instructions = set;
+      const RobotChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);
+      ASSERT_EQ(verdicts(checker, path, scratch), expected) << i << ' ' << gap << ' ' << step;
+    }
+  }
+  EXPECT_GT(hits, effort(2000, 100));
+  EXPECT_GT(free, effort(2000, 100));
+}
+
+// Many small spheres in the way of a search make it run out of room; a block with numbers far out
+// of range among others is answered as well.
+TEST(RobotBatch, AnswersWhereThereIsTooMuchToRemember) {
+  Random random(43);
+  RobotModel robot("base");
+  robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
+  robot.attach("arm", std::make_shared<const SphereTree>(
+                          build_tree(random_spheres(random, 3000, 0.5, 0.01))));
+  const std::vector<PlacedTree> obstacles = {
+      {std::make_shared<const SphereTree>(build_tree(random_spheres(random, 3000, 0.5, 1e-4))),
+       Pose::from_translation({0.9, 0.0, 0.0})}};
+  Path path{.variables = 1};
+  for (int i = 0; i < 100; ++i) path.add({0.001 * i + (i % 23 == 7 ? 628.3 : 0.0)});
+  std::vector<std::uint8_t> expected;
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    expected.push_back(answer(robot, obstacles, path[k], {}) ? 1 : 0);
+  }
+  for (const InstructionSet set : instruction_sets()) {
+    const RobotChecker checker(robot, obstacles, {.instructions = set});
+    RobotChecker::Scratch scratch(checker);
+    EXPECT_EQ(verdicts(checker, path, scratch), expected);
+  }
+}
+
+TEST(RobotBatch, RefusesBadInput) {
+  RobotModel robot("base");
+  robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
+  robot.attach("arm", ball({1, 0, 0}, 0.1));
+  const RobotChecker checker(robot, {{ball({0, 1, 0}, 0.1), Pose()}});
+  RobotChecker::Scratch scratch(checker);
+  std::vector<std::uint8_t> two(2);
+  EXPECT_THROW(checker.collides(std::vector<double>{0.0}, scratch, two), Error);
+  EXPECT_THROW(checker.collides(std::vector<double>{0.0, 0.0, 0.0}, scratch, two), Error);
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(checker.collides(std::vector<double>{0.0, bad}, scratch, two), Error) << bad;
+  }
+  checker.collides({}, scratch, {});
+  checker.collides(std::vector<double>{0.0, 1.5707963}, scratch, two);
+  EXPECT_EQ(two, (std::vector<std::uint8_t>{0, 1}));
+}
+
+}  // namespace
+}  // namespace spherule::test
