@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/edge.h"
 #include "collide/instruction_set.h"
 #include "spheretree/pose.h"
 #include "spheretree/sphere_tree.h"
@@ -99,6 +100,21 @@ class MechanismCheck {
     return collides(variables, scratch, ask, std::addressof(confirm));
   }
 
+  // Whether the mechanism is free all along the straight motion of its variables: at (1 - t) `from`
+  // + t `to` in exact arithmetic, for every t in [0, 1]. `confirm`, given a configuration on it and
+  // a MechanismContact there, says whether the two touch. Proof in mechanism_edge.cpp.
+  // is_in_range() must hold for both ends. Throws Error for a resolution that is not above zero.
+  // Allocates nothing once the scratch is warm.
+  template <class Confirm>
+  EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
+                        const EdgeRequest& request, Confirm confirm) const {
+    const AskAt ask = [](void* context, std::span<const double> at,
+                         const MechanismContact& contact) -> bool {
+      return (*static_cast<Confirm*>(context))(at, contact);
+    };
+    return check_edge(from, to, scratch, request, ask, std::addressof(confirm));
+  }
+
   // Configurations that are asked for side by side; answers are bits, the first configuration's is
   // the lowest.
   static constexpr std::size_t kBlock = 16;
@@ -125,8 +141,14 @@ class MechanismCheck {
   BlockAnswer collides(std::span<const double* const, kBlock> configurations, Scratch& scratch,
                        Ask ask, void* context) const;
 
+  using AskAt = bool (*)(void* context, std::span<const double> at,
+                         const MechanismContact& contact);
+  EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
+                        const EdgeRequest& request, AskAt ask, void* context) const;
+
   struct Parts;
   struct Translator;
+  class EdgeSearch;
   std::unique_ptr<const Parts> parts_;
 };
 

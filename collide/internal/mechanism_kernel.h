@@ -161,6 +161,9 @@ struct KernelBlockAnswer {
   unsigned refused;  // a number is not finite or out of range
 };
 
+// Of a pair whose body is grown.
+enum class KernelFinding { kApart, kNear, kTouch };
+
 struct Kernels {
   // True if a pair of spheres touches for sure or is confirmed to; false if none can.
   // `configuration` is filled up with finite numbers to a multiple of four.
@@ -171,6 +174,14 @@ struct Kernels {
                                    const double* const* configurations,
                                    const KernelScratch& scratch, ConfirmContact confirm,
                                    void* context);
+  // Puts the frames and the balls around the bodies where a configuration has them.
+  void (*place)(const KernelProblem& problem, const double* configuration,
+                const KernelScratch& scratch);
+  // What there is between the pair's sides with the body grown, as placed: nothing; two leaves
+  // that touch as they are, ungrown, for sure or confirmed; or neither. Ends at the first two
+  // leaves that are not apart.
+  KernelFinding (*look)(const KernelProblem& problem, KernelPair pair, float growth,
+                        const KernelScratch& scratch, ConfirmContact confirm, void* context);
 };
 
 const Kernels& portable_kernels();

@@ -18,6 +18,12 @@
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 
+void place(const KernelProblem& problem, const double* configuration,
+           const KernelScratch& scratch) {
+  place_frames(problem, configuration, scratch);
+  place_roots(problem, scratch);
+}
+
 SPHERULE_INLINE bool are_apart(const KernelTask& root, const KernelObstacle& obstacle) {
   const float dx = obstacle.center[0] - root.x;
   const float dy = obstacle.center[1] - root.y;
@@ -28,8 +34,7 @@ SPHERULE_INLINE bool are_apart(const KernelTask& root, const KernelObstacle& obs
 
 bool check(const KernelProblem& problem, const double* configuration, const KernelScratch& scratch,
            ConfirmContact confirm, void* context) {
-  place_frames(problem, configuration, scratch);
-  place_roots(problem, scratch);
+  place(problem, configuration, scratch);
   for (std::int32_t i = 0; i < problem.pair_count; ++i) {
     const KernelPair pair = problem.pairs[i];
     const KernelTask& root = scratch.roots[pair.body];
@@ -70,7 +75,47 @@ KernelBlockAnswer check_block(const KernelProblem& problem, const double* const*
   return {hits, refused};
 }
 
-constexpr Kernels kKernels = {&check, &check_block};
+// Ends a search for a grown body at the first leaves.
+class GrownContact {
+ public:
+  GrownContact(const Contact& contact, float growth) : contact_(contact), growth_(growth) {}
+
+  SPHERULE_INLINE bool operator()(std::int32_t body_sphere, std::int32_t obstacle_sphere,
+                                  float squared_distance, float limit) {
+    const float as_they_are = (limit - growth_) - limit * kRounding;
+    touch_ = as_they_are > 0.0F && squared_distance <= as_they_are * as_they_are &&
+             contact_(body_sphere, obstacle_sphere, squared_distance, as_they_are);
+    return true;
+  }
+
+  bool touch() const { return touch_; }
+
+ private:
+  // Far above what two sums and a difference of numbers below the limit err by.
+  static constexpr float kRounding = 0x1p-20F;
+
+  Contact contact_;
+  float growth_;
+  bool touch_ = false;
+};
+
+KernelFinding look(const KernelProblem& problem, KernelPair pair, float growth,
+                   const KernelScratch& scratch, ConfirmContact confirm, void* context) {
+  const KernelBody& body = problem.bodies[pair.body];
+  const KernelObstacle& obstacle = problem.obstacles[pair.obstacle];
+  KernelTask root = scratch.roots[pair.body];
+  root.radius += growth;
+  if (are_apart(root, obstacle)) return KernelFinding::kApart;
+  Placement at = in_single_precision(scratch.poses[body.frame]);
+  at.growth = growth;
+  GrownContact leaves(Contact(pair, 0, body.margin + obstacle.margin, confirm, context), growth);
+  if (!PairSearch<GrownContact>(body, obstacle, at, scratch.tasks, leaves).run(root)) {
+    return KernelFinding::kApart;
+  }
+  return leaves.touch() ? KernelFinding::kTouch : KernelFinding::kNear;
+}
+
+constexpr Kernels kKernels = {&check, &check_block, &place, &look};
 
 }  // namespace
 }  // namespace spherule::internal::SPHERULE_KERNEL

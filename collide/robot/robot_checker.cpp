@@ -198,6 +198,25 @@ void RobotChecker::collides(std::span<const double> configurations, Scratch& scr
   }
 }
 
+EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<const double> to,
+                                    Scratch& scratch, const EdgeRequest& request) const {
+  for (const std::span<const double> end : {from, to}) {
+    if (end.size() != static_cast<std::size_t>(robot_.variable_count()) ||
+        !MechanismCheck::is_in_range(end)) {
+      throw Error("edge",
+                  "an end has " + std::to_string(end.size()) + " positions, for a robot of " +
+                      std::to_string(robot_.variable_count()) + " variables, or one beyond " +
+                      std::to_string(MechanismCheck::kLargestVariable));
+    }
+  }
+  if (always_) return {.verdict = Verdict::kCollision, .contact_at = 0.0};
+  return check_->check_edge(from, to, scratch.memory_, request,
+                            [&](std::span<const double> at, const MechanismContact& contact) {
+                              bool is_placed = false;
+                              return touches(at, contact, is_placed, scratch);
+                            });
+}
+
 bool RobotChecker::collides_exactly(std::span<const double> configuration, Scratch& scratch) const {
   std::vector<Pose>& world_from_link = scratch.world_from_link_;
   forward_kinematics(robot_, configuration, world_from_link, world_from_root_);

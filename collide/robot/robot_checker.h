@@ -72,6 +72,14 @@ class RobotChecker {
   void collides(std::span<const double> configurations, Scratch& scratch,
                 std::span<std::uint8_t> verdicts) const;
 
+  // Whether the robot is free all along a straight motion in joint space, from one configuration to
+  // another: proved at every point of it (G6), for the exact motion as for the poses that
+  // forward_kinematics() computes for configurations on it. A contact that is found is one for
+  // which collides() answers true. Throws Error for configurations as above, a position beyond 100
+  // in magnitude, and a resolution that is not above zero.
+  EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
+                        const EdgeRequest& request = {}) const;
+
  private:
   struct Body {
     std::shared_ptr<const SphereTree> tree;

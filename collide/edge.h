@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/collide.h"
+
+#include <cstdint>
+#include <limits>
+
+namespace spherule {
+
+// How to check a straight motion in the space of a mechanism's variables.
+struct EdgeRequest {
+  // Parts of the motion in which no point of the mechanism moves further than this are not halved
+  // any more, in the unit of the trees: what passes closer than about half of it is not proved
+  // free.
+  double resolution = 1e-4;
+  // Look for the first contact; otherwise any will do, which is faster.
+  bool first = false;
+  // Give up after this many configurations, with the verdict kUnknown unless a contact was found.
+  std::uint64_t max_configurations = std::numeric_limits<std::uint64_t>::max();
+};
+
+struct EdgeResult {
+  // kFree: proved at every point of the motion (G6). kCollision: at `contact_at` the canonical test
+  // finds a contact. kUnknown: neither was found at the resolution, or within the budget; count it
+  // as a collision.
+  Verdict verdict = Verdict::kUnknown;
+  // Every point of the motion before this fraction is proved free; 1 for kFree (then its end is,
+  // too). Nothing is proved if it is 0.
+  double free_until = 0.0;
+  double contact_at = std::numeric_limits<double>::infinity();
+  std::uint64_t configurations = 0;  // looked at
+};
+
+}  // namespace spherule

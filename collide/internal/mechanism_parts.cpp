@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/internal/mechanism_parts.h"
+
+#include "collide/internal/relative_pose.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+using internal::kFloatRoundoff;
+using internal::PackedTree;
+
+// Error budget, v = 2^-24, u = 2^-53; n frames lie between the root and a body. No point of the
+// body, and no centre of a node of its tree, is further from the root than W: the lengths of the
+// chain, kLargestVariable for each shift, and how far the tree reaches in its frame.
+//   angles: the sine and cosine of a frame err by less than kSineError = 2e-11, which moves a point
+//     beyond the frame by at most 2e-11 W; over n frames 2e-11 n W.
+//   the chain in double: as in forward_kinematics, below 200 u W a frame, the frames' own rounded
+//     rotations included: 2.3e-14 n W.
+//   to single precision, for a centre c in the frame and R c + t: R and t rounded, sqrt(3) v |c| +
+//     v |t|; c rounded, v |c|; three products and three sums a row, 4 v (|c| + |t|) a row at most,
+//     over three rows 7 v (|c| + |t|). Together less than 10 v W. The ball around all is placed in
+//     double and then rounded: less.
+//   centres are moved to their frame in double: 40 u (|p| + |t|) for a point p of a tree and its
+//     pose's translation t. Let X bound that sum for all trees, and W for all bodies.
+//   the slack of the canonical test, 152 u of the scene, which is less than 4 X, and of the scene
+//   as
+//     the caller's poses have it, which is in pose_error.
+// So the balls of a body must be inflated by
+//     12 v W + 1e-10 (n + 1) W + 1e-12 X + pose_error,
+// and those of an obstacle by 1e-12 X. Where poses are computed in lanes, balls of bodies are grown
+// by lane_error(), kernel_lanes.h, beside it.
+constexpr double kPerLength = 12.0 * kFloatRoundoff;
+constexpr double kPerFrame = 5.0 * internal::kSineError;
+constexpr double kPerScene = 1e-12;
+
+constexpr int kLargestIndex = 1 << 20;  // of a variable: there is memory for all up to it
+
+[[noreturn]] void refuse(const std::string& what, std::size_t index, const std::string& why) {
+  throw Error("mechanism", what + " " + std::to_string(index) + ' ' + why);
+}
+
+void check_input(std::span<const MechanismFrame> frames, std::span<const MechanismBody> bodies,
+                 std::span<const MechanismObstacle> obstacles, std::span<const MechanismPair> pairs,
+                 double pose_error) {
+  const auto below = [](int index, std::size_t count) {
+    return index >= 0 && static_cast<std::size_t>(index) < count;
+  };
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].parent < -1 || frames[i].parent >= static_cast<int>(i)) {
+      refuse("frame", i, "does not come after its parent");
+    }
+    if (frames[i].variable < 0 || frames[i].variable > kLargestIndex) {
+      refuse("frame", i, "has no variable that could be");
+    }
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!below(bodies[i].frame, frames.size())) refuse("body", i, "is on no frame");
+    if (!bodies[i].tree) refuse("body", i, "has no tree");
+  }
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (!obstacles[i].tree) refuse("obstacle", i, "has no tree");
+  }
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!below(pairs[i].body, bodies.size()) || !below(pairs[i].obstacle, obstacles.size())) {
+      refuse("pair", i, "names what is not there");
+    }
+  }
+  if (!(pose_error >= 0.0 && pose_error <= kMaxCoordinate)) {
+    throw Error("pose error", "it is negative, not finite or too large");
+  }
+}
+
+internal::KernelFrame kernel_frame(const MechanismFrame& frame) {
+  internal::KernelFrame result = {};
+  const Eigen::Matrix3d rotation = frame.parent_from_frame.matrix();
+  const Eigen::Vector3d& origin = frame.parent_from_frame.translation();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) result.rotation[j][i] = rotation(i, j);
+    result.origin[i] = origin[i];
+  }
+  result.parent = frame.parent;
+  result.variable = frame.variable;
+  result.prismatic = frame.prismatic;
+  return result;
+}
+
+// What is below this is an axis at a right angle, and costs less as zero: far below the budget of
+// kernel_lanes.h, where entries are rounded by up to 6e-8.
+constexpr double kNegligible = 0x1p-40;
+
+internal::KernelLaneFrame lane_frame(const internal::KernelFrame& frame) {
+  internal::KernelLaneFrame result = {};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const double entry = frame.rotation[j][i];
+      result.rotation[j][i] = std::abs(entry) < kNegligible ? 0.0F : static_cast<float>(entry);
+    }
+    result.origin[i] = static_cast<float>(frame.origin[i]);
+  }
+  result.parent = frame.parent;
+  result.variable = frame.variable;
+  result.prismatic = frame.prismatic;
+  return result;
+}
+
+// Margins as packed_tree.h has them. `reach` is W, `links` the frames between root and body.
+internal::KernelBody kernel_body(const PackedTree& tree, int frame, double reach, double links) {
+  const auto& [center, radius] = tree.root();
+  return {tree.nodes(),
+          tree.leaves(),
+          tree.node_count(),
+          {center.x(), center.y(), center.z()},
+          {static_cast<float>(center.x()), static_cast<float>(center.y()),
+           static_cast<float>(center.z())},
+          static_cast<float>(radius),
+          frame,
+          internal::rounded_up_to_single(3.0 * tree.largest_growth()),
+          internal::rounded_up_to_single(internal::kLaneErrorPerFrame * links * reach)};
+}
+
+internal::KernelObstacle kernel_obstacle(const PackedTree& tree) {
+  const auto& [center, radius] = tree.root();
+  return {tree.nodes(),
+          tree.leaves(),
+          {static_cast<float>(center.x()), static_cast<float>(center.y()),
+           static_cast<float>(center.z())},
+          static_cast<float>(radius),
+          internal::rounded_up_to_single(3.0 * tree.largest_growth())};
+}
+
+// From the root to a frame: the largest distance of its origin, and how many frames it takes.
+struct Chain {
+  double length = 0.0;
+  double frames = 0.0;
+};
+
+std::vector<Chain> chains_of(std::span<const MechanismFrame> frames) {
+  std::vector<Chain> chains;
+  for (const MechanismFrame& frame : frames) {
+    Chain chain = frame.parent < 0 ? Chain() : chains[static_cast<std::size_t>(frame.parent)];
+    chain.length += frame.parent_from_frame.translation().norm() +
+                    (frame.prismatic ? MechanismCheck::kLargestVariable : 0.0);
+    chain.frames += 1.0;
+    chains.push_back(chain);
+  }
+  return chains;
+}
+
+// Tasks that wait at most: every step takes one and leaves at most 64, a node of which lies a level
+// deeper, so that at most 63 wait for every level of the two trees.
+std::int64_t task_bound(int body_depth, int obstacle_depth) {
+  return 63 * (std::int64_t{body_depth} + obstacle_depth + 1) + 1;
+}
+
+const internal::Kernels& kernels_for(InstructionSet set) {
+#if defined(SPHERULE_X86_KERNELS)
+  if (set == InstructionSet::kAvx512) return internal::avx512_kernels();
+  if (set == InstructionSet::kAvx2) return internal::avx2_kernels();
+#endif
+  return internal::portable_kernels();
+}
+
+}  // namespace
+
+MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
+                               std::span<const MechanismBody> bodies,
+                               std::span<const MechanismObstacle> obstacles,
+                               std::span<const MechanismPair> pairs, double pose_error,
+                               InstructionSet instructions) {
+  check_input(frames, bodies, obstacles, pairs, pose_error);
+  if (!is_available(instructions)) throw Error("instruction set", "this machine has not got it");
+  auto parts = std::make_unique<Parts>(internal::JoinedScene(bodies, obstacles, pairs));
+  const internal::JoinedScene& scene = parts->scene;
+  int variable_count = 0;
+  for (const MechanismFrame& frame : frames) {
+    parts->frames.push_back(kernel_frame(frame));
+    parts->lane_frames.push_back(lane_frame(parts->frames.back()));
+    variable_count = std::max(variable_count, frame.variable + 1);
+  }
+  const std::vector<Chain> chains = chains_of(frames);
+  std::vector<SphereTree> body_trees;
+  std::vector<SphereTree> obstacle_trees;
+  std::vector<double>& reach = parts->reach;  // W
+  double bound = 0.0;                         // X
+  for (const internal::JoinedSpheres& body : scene.bodies) {
+    body_trees.push_back(build_tree(body.spheres));
+    reach.push_back(chains[static_cast<std::size_t>(body.frame)].length +
+                    node_reach(body_trees.back()));
+    bound = std::max(bound, reach.back());
+  }
+  for (const internal::JoinedSpheres& obstacle : scene.obstacles) {
+    obstacle_trees.push_back(build_tree(obstacle.spheres));
+    bound = std::max(bound, node_reach(obstacle_trees.back()));
+  }
+  for (const MechanismPair& pair : pairs) {
+    const MechanismBody& body = bodies[static_cast<std::size_t>(pair.body)];
+    const MechanismObstacle& obstacle = obstacles[static_cast<std::size_t>(pair.obstacle)];
+    bound = std::max({bound, body.tree->reach() + body.frame_from_tree.translation().norm(),
+                      obstacle.tree->reach() + obstacle.root_from_tree.translation().norm()});
+  }
+  if (!(bound <= kMaxCoordinate)) throw Error("mechanism", "it or an obstacle reaches too far");
+  if (std::any_of(chains.begin(), chains.end(),
+                  [](const Chain& chain) { return chain.frames > internal::kLongestLaneChain; })) {
+    throw Error("mechanism", "too many frames stand on each other");
+  }
+  parts->trees.reserve(body_trees.size() + obstacle_trees.size());
+  int body_depth = 1;
+  int obstacle_depth = 1;
+  for (std::size_t i = 0; i < body_trees.size(); ++i) {
+    const int frame = scene.bodies[i].frame;
+    const double links = chains[static_cast<std::size_t>(frame)].frames;
+    parts->tilt.push_back(kPerFrame * (links + 1.0));
+    const PackedTree& tree = parts->trees.emplace_back(
+        body_trees[i], (kPerLength + parts->tilt[i]) * reach[i] + kPerScene * bound + pose_error);
+    body_depth = std::max(body_depth, tree.depth());
+    parts->bodies.push_back(kernel_body(tree, frame, reach[i], links));
+  }
+  for (const SphereTree& obstacle : obstacle_trees) {
+    const PackedTree& tree = parts->trees.emplace_back(obstacle, kPerScene * bound);
+    obstacle_depth = std::max(obstacle_depth, tree.depth());
+    parts->obstacles.push_back(kernel_obstacle(tree));
+  }
+  parts->task_count = task_bound(body_depth, obstacle_depth);
+  parts->kernels = &kernels_for(instructions);
+  parts->problem = {.frames = parts->frames.data(),
+                    .lane_frames = parts->lane_frames.data(),
+                    .frame_count = static_cast<std::int32_t>(parts->frames.size()),
+                    .variable_count = variable_count,
+                    .bodies = parts->bodies.data(),
+                    .body_count = static_cast<std::int32_t>(parts->bodies.size()),
+                    .obstacles = parts->obstacles.data(),
+                    .pairs = scene.pairs.data(),
+                    .pair_count = static_cast<std::int32_t>(scene.pairs.size())};
+  parts_ = std::move(parts);
+}
+
+}  // namespace spherule

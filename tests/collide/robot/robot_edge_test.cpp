@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Straight motions in joint space, against many configurations on them.
+
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "tests/collide/robot/checked_scene.h"
+#include "tests/collide/robot/robots.h"
+#include "tests/collide/trees.h"
+#include "tests/support/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+std::vector<double> between(const std::vector<double>& from, const std::vector<double>& to,
+                            double t) {
+  std::vector<double> at;
+  for (std::size_t i = 0; i < from.size(); ++i) at.push_back((1.0 - t) * from[i] + t * to[i]);
+  return at;
+}
+
+// What a result says has to be so at every one of `steps` configurations, and where it ends.
+void expect_true(const RobotChecker& checker, const std::vector<double>& from,
+                 const std::vector<double>& to, const EdgeResult& result, int steps) {
+  RobotChecker::Scratch scratch(checker);
+  const auto hits = [&](double t) { return checker.collides(between(from, to, t), scratch); };
+  if (result.verdict == Verdict::kFree) {
+    EXPECT_EQ(result.free_until, 1.0);
+    EXPECT_FALSE(hits(1.0));
+  }
+  for (int i = 0; i < steps && result.free_until > 0.0; ++i) {
+    const double t = result.free_until * (static_cast<double>(i) / steps);
+    ASSERT_FALSE(hits(t)) << t << " of " << result.free_until;
+  }
+  if (result.verdict == Verdict::kCollision) {
+    EXPECT_TRUE(hits(result.contact_at)) << result.contact_at;
+    EXPECT_LE(result.free_until, result.contact_at);
+  } else {
+    EXPECT_EQ(result.contact_at, std::numeric_limits<double>::infinity());
+  }
+}
+
+TEST(RobotEdge, WhatIsProvedFreeIsFree) {
+  Random random(51);
+  int free = 0;
+  int hits = 0;
+  int unknown = 0;
+  for (int i = 0; i < effort(1200, 60); ++i) {
+    const RobotModel robot = random_robot_with_trees(random, 0.2);
+    const std::vector<PlacedTree> obstacles = random_obstacles(random);
+    RobotCheckerOptions options{.world_from_root = i % 2 == 0 ? Pose() : random.pose(3.0)};
+    for (const InstructionSet set : instruction_sets()) {
+      options.instructions = set;
+      const RobotChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);
+      const double size = std::pow(10.0, random.uniform(-3.0, 1.0));
+      const std::vector<double> from = random_configuration(random, robot, 3.0);
+      std::vector<double> to = random_configuration(random, robot, size);
+      for (std::size_t k = 0; k < to.size(); ++k) to[k] += from[k];
+      const EdgeRequest request{.resolution = 1e-3, .first = i % 3 == 0};
+      const EdgeResult result = checker.check_edge(from, to, scratch, request);
+      expect_true(checker, from, to, result, effort(1000, 200));
+      if (HasFatalFailure()) return;
+      (result.verdict == Verdict::kFree        ? free
+       : result.verdict == Verdict::kCollision ? hits
+                                               : unknown) += 1;
+    }
+  }
+  EXPECT_GT(free, effort(100, 5));
+  EXPECT_GT(hits, effort(100, 5));
+  EXPECT_LT(unknown, (free + hits) / 20);
+}
+
+// A long arm with a small ball at its end.
+RobotModel long_arm() {
+  RobotModel robot("base");
+  robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
+  robot.attach("arm", ball({10, 0, 0}, 1e-3));
+  return robot;
+}
+
+TEST(RobotEdge, NothingIsPassedThrough) {
+  Random random(52);
+  const RobotModel robot = long_arm();
+  for (int i = 0; i < effort(500, 50); ++i) {
+    const double angle = random.uniform(-40.0, 40.0);
+    const double size = std::pow(10.0, random.uniform(-6.0, -2.0));
+    // Just in the way, or just beside it.
+    const double beside =
+        (1e-3 + size) * (random.whole(0, 1) == 0 ? random.uniform(0.0, 0.999) : 1.3);
+    const Eigen::Vector3d center(10.0 * std::cos(angle), 10.0 * std::sin(angle), beside);
+    const RobotChecker checker(robot, {{ball(center, size), Pose()}});
+    RobotChecker::Scratch scratch(checker);
+    const double before = random.uniform(0.1, 50.0);
+    const double after = random.uniform(0.1, 50.0);
+    const std::vector<double> from = {angle - before};
+    const std::vector<double> to = {angle + after};
+    const EdgeRequest request{.resolution = 1e-4, .first = i % 2 == 0};
+    const EdgeResult result = checker.check_edge(from, to, scratch, request);
+    const bool meets = beside < 1e-3 + size;
+    EXPECT_EQ(result.verdict == Verdict::kFree, !meets) << i << ' ' << size;
+    EXPECT_LE(result.free_until, meets ? before / (before + after) : 1.0);
+    expect_true(checker, from, to, result, 100);
+    if (meets && request.first) {
+      const double turns = std::floor(before / (2.0 * 3.14159265358979323846));
+      const double met = (before - turns * 2.0 * 3.14159265358979323846) / (before + after);
+      EXPECT_NEAR(result.free_until, met, 1e-3 / (before + after)) << "the first of many turns";
+    }
+  }
+}
+
+// A shift and a turn of bodies on bodies, at a wall of spheres with no gap.
+TEST(RobotEdge, AWallIsNotPassed) {
+  Random random(53);
+  std::vector<Sphere> wall;
+  for (int i = -20; i <= 20; ++i) {
+    for (int k = -20; k <= 20; ++k) wall.push_back({{1.0, 0.02 * i, 0.02 * k}, 0.015});
+  }
+  const std::vector<PlacedTree> obstacles = {
+      {std::make_shared<const SphereTree>(build_tree(wall)), Pose()}};
+  for (int i = 0; i < effort(200, 20); ++i) {
+    RobotModel robot("base");
+    robot.add_link("slide", "base",
+                   {.name = "slide", .type = JointType::kPrismatic, .axis = {1, 0, 0}});
+    robot.add_link("drill", "slide",
+                   {.name = "drill", .type = JointType::kRevolute, .axis = {1, 0, 0}});
+    const Eigen::Vector3d offset(0.0, random.uniform(0.0, 0.2), random.uniform(0.0, 0.2));
+    robot.attach("drill", ball(offset, 1e-3));
+    const RobotChecker checker(robot, obstacles);
+    RobotChecker::Scratch scratch(checker);
+    const std::vector<double> from = {random.uniform(-60.0, 0.9), random.uniform(-9.0, 9.0)};
+    const std::vector<double> to = {random.uniform(1.1, 60.0), random.uniform(-9.0, 9.0)};
+    const EdgeResult result = checker.check_edge(from, to, scratch, {.first = true});
+    EXPECT_NE(result.verdict, Verdict::kFree);
+    expect_true(checker, from, to, result, 300);
+    const double reached = (1.0 - result.free_until) * from[0] + result.free_until * to[0];
+    EXPECT_NEAR(reached, 0.99, 0.01) << "as far as the wall, and not further";
+  }
+}
+
+TEST(RobotEdge, PassesCloseAtAFineResolution) {
+  const RobotModel robot = long_arm();
+  // Beside the way of the arm's end, at a gap of 2e-4.
+  const RobotChecker checker(robot, {{ball({0, 10, 0.0022}, 1e-3), Pose()}});
+  RobotChecker::Scratch scratch(checker);
+  const auto verdict = [&](double resolution) {
+    return checker
+        .check_edge(std::vector<double>{0.0}, std::vector<double>{3.0}, scratch,
+                    {.resolution = resolution})
+        .verdict;
+  };
+  EXPECT_EQ(verdict(1e-2), Verdict::kUnknown);
+  EXPECT_EQ(verdict(1e-4), Verdict::kFree);
+}
+
+TEST(RobotEdge, TakesAnyContactUnlessAskedForTheFirst) {
+  const RobotModel robot = long_arm();
+  const RobotChecker checker(
+      robot, {{ball({10.0 * std::cos(0.5), 10.0 * std::sin(0.5), 0}, 0.01), Pose()},
+              {ball({10.0 * std::cos(1.5), 10.0 * std::sin(1.5), 0}, 0.01), Pose()}});
+  RobotChecker::Scratch scratch(checker);
+  const std::vector<double> from = {0.0};
+  const std::vector<double> to = {3.0};
+  const EdgeResult any = checker.check_edge(from, to, scratch);
+  EXPECT_EQ(any.verdict, Verdict::kCollision);
+  const EdgeResult first = checker.check_edge(from, to, scratch, {.first = true});
+  EXPECT_EQ(first.verdict, Verdict::kCollision);
+  EXPECT_NEAR(first.contact_at, 0.5 / 3.0, 1e-3);
+  EXPECT_NEAR(first.free_until, (0.5 - 0.0011) / 3.0, 1e-4);
+  EXPECT_LE(any.configurations, first.configurations);
+}
+
+TEST(RobotEdge, BudgetsAndEnds) {
+  const RobotModel robot = long_arm();
+  const RobotChecker checker(robot, {{ball({0, 10, 0.0022}, 1e-3), Pose()}});
+  RobotChecker::Scratch scratch(checker);
+  const std::vector<double> from = {0.0};
+  const std::vector<double> to = {3.0};
+  for (const std::uint64_t budget : {0U, 1U, 7U}) {
+    const EdgeResult result = checker.check_edge(from, to, scratch, {.max_configurations = budget});
+    EXPECT_EQ(result.verdict, Verdict::kUnknown);
+    EXPECT_LE(result.configurations, budget);
+    expect_true(checker, from, to, result, 100);
+  }
+  EXPECT_EQ(checker.check_edge(from, from, scratch).verdict, Verdict::kFree);
+  const RobotChecker touched(robot, {{ball({10, 0, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch other(touched);
+  const EdgeResult at_once = touched.check_edge(from, to, other, {.first = true});
+  EXPECT_EQ(at_once.verdict, Verdict::kCollision);
+  EXPECT_EQ(at_once.free_until, 0.0);
+  EXPECT_EQ(touched.check_edge(from, from, other).verdict, Verdict::kCollision);
+  const EdgeResult backwards = touched.check_edge(to, from, other, {.first = true});
+  EXPECT_EQ(backwards.verdict, Verdict::kCollision);
+  EXPECT_GT(backwards.free_until, 0.999);
+}
+
+TEST(RobotEdge, RefusesBadInput) {
+  const RobotChecker checker(long_arm(), {{ball({0, 10, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch scratch(checker);
+  const std::vector<double> good = {0.0};
+  for (const std::vector<double>& bad : {std::vector<double>{},
+                                         {0.0, 0.0},
+                                         {101.0},
+                                         {std::numeric_limits<double>::quiet_NaN()},
+                                         {std::numeric_limits<double>::infinity()}}) {
+    EXPECT_THROW(checker.check_edge(bad, good, scratch), Error);
+    EXPECT_THROW(checker.check_edge(good, bad, scratch), Error);
+  }
+  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(checker.check_edge(good, good, scratch, {.resolution = bad}), Error);
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test
