@@ -33,7 +33,15 @@ inline constexpr std::size_t kInlineStack = 2304;
 //                                      being the distance of the two balls, within gap_error();
 //   bool afford(opened, leaf_pairs)    before the children are tested: false ends the traversal;
 //                                      leaf_pairs() counts the pairs of leaves among them;
-//   bool leaves(pair)                  a pair of leaves that may touch: false ends the traversal.
+//   bool leaves(pair)                  a pair of leaves that may touch: false ends the traversal;
+//   double margin(pair)                only where the policy has one: every pair of leaves below
+//                                      `pair` whose gap is at most that much is visited as well
+//                                      (relative_pose.h says how exactly). May change on the way.
+
+template <class Policy>
+concept HasMargin = requires(const Policy& policy, NodePair pair) {
+  policy.margin(pair);
+};
 
 // Depth-first dual-tree traversal from the pair of roots, which the caller has tested. True if
 // nothing is left to visit, false if the policy ended it with pairs waiting.
@@ -61,7 +69,11 @@ bool traverse_with(NodePair* stack, [[maybe_unused]] std::size_t capacity, const
     if (!policy.afford(opened, leaf_pairs)) return false;
 
     internal::QueryBall padded = opened.ball;
-    padded.radius += node_pad;
+    if constexpr (HasMargin<Policy>) {
+      padded.radius += node_pad + policy.margin(pair) * kMarginUp;
+    } else {
+      padded.radius += node_pad;
+    }
     const internal::BallArrays& children = trees.balls(opened.side);
     std::uint32_t mask = internal::overlap_mask(children, opened.first, opened.count, padded);
     if constexpr (Policy::kWantsGaps) {
