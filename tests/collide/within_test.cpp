@@ -51,7 +51,7 @@ bool exactly_within(const PlacedBalls& balls, const Rational& clearance) {
 TEST(Within, IsExactToTheSlackOnPairsOfBalls) {
   Random random(1);
   int needed = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 800; ++i) {
     const double size = std::ldexp(1.0, random.whole(-20, 20));
     const std::vector<Sphere> one = random_spheres(random, 1, size, 0.5 * size);
     const std::vector<Sphere> other = random_spheres(random, 1, size, 0.5 * size);
