@@ -84,7 +84,7 @@ bool PairCache::collides(const Pose& world_from_a, const Pose& world_from_b) {
                              {}};
   const internal::Look look = internal::FreeTime(a_, b_, pose, UnitRate(), 0.0, 0.0,
                                                  kStepsAhead * step, kUsefulSteps * step, no_limits)
-                                  .run();
+                                  .run(std::nullopt);
   if (look.contact) witness_ = look.pair;
   now.clearance = look.free_time;
   before_ = now;

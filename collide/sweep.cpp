@@ -9,6 +9,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 // Proof of G6. At a look, t = m, the balls stand under the poses pose_at(m), no point farther than
 // E = pose_error(a) + pose_error(b) from the exact motions, counted together; likewise at any other
@@ -142,7 +143,8 @@ class Sweep {
     const RelativePose pose(a_, world_from_a, b_, world_from_b);
     internal::FreeTime query(a_, b_, pose, rate_, request_.clearance, reserve_, wanted, useful,
                              limits_);
-    const Look look = query.run();
+    const Look look = query.run(decisive_);
+    if (look.decisive) decisive_ = look.decisive;
     ++result_.looks;
     if (look.contact && t < result_.contact_at) {
       result_.contact_at = t;
@@ -163,6 +165,7 @@ class Sweep {
   // waits, and only those longer than kFinest are divided: 42 at most.
   std::array<Interval, 48> intervals_;
   std::size_t waiting_ = 0;
+  std::optional<NodePair> decisive_;  // of an earlier look
   SweepResult result_;
 };
 

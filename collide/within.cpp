@@ -23,6 +23,7 @@ class FindNear {
 
   bool afford(const OpenedPair&, const auto&) const noexcept { return true; }
   double margin(NodePair) const noexcept { return clearance_; }
+  bool nearest_first() const noexcept { return false; }
   bool leaves(NodePair pair) noexcept {
     found_ = pose_.touches(a_.ball(pair.index(0)), b_.ball(pair.index(1)), clearance_);
     return !found_;

@@ -5,7 +5,7 @@
 #include "collide/internal/deadline.h"
 #include "collide/internal/traversal.h"
 
-#include <algorithm>
+#include <optional>
 
 namespace spherule::internal {
 
@@ -30,8 +30,10 @@ struct Look {
   bool contact = false;   // the canonical test with the clearance accepts `pair`
   SpherePair pair;
   // Every pair of balls stays farther apart than the clearance for this long, whichever way time
-  // goes; at most what was asked for, 0 if nothing is known.
+  // goes: what was asked for, or a half, a quarter ... of it, or 0 if nothing is known.
   double free_time = 0.0;
+  // The pair of leaves that shortened the time last, worth a try in the next look.
+  std::optional<NodePair> decisive;
 };
 
 // Traversal policy: branch and bound, depth first, for the shortest time in which some pair of
@@ -41,8 +43,10 @@ struct Look {
 //   double free_time(center_a, center_b, gap)     for two leaves: in this time they do not use up
 //                                                 the gap; the bound above does by the time of
 //                                                 (1 + 96 u) times as much at the latest.
-// The time is the same whatever the trees between are, as it is the least of all leaves: a node is
-// pruned only if its leaves, with all rounding, have more time than the least one known.
+// The time asked for is halved until no leaf has less. So it is the same in whatever order leaves
+// are visited and whatever the trees above them are: a node is pruned only if all its leaves, with
+// all rounding, have at least the time known. Halves, because to narrow the time down to the exact
+// one takes up to twice as long: it means to search among all leaves of nearly the same.
 template <class Rate>
 class FreeTime {
  public:
@@ -64,10 +68,16 @@ class FreeTime {
     look_.free_time = wanted;
   }
 
-  Look run() {
-    if (!limits_.afford(1)) return {};
+  // A pair of leaves to `try_first`, if any, only saves work.
+  Look run(std::optional<NodePair> try_first) {
+    if (!limits_.afford(try_first ? 2 : 1)) return {};
     limits_.cost.leaf_tests += a_.is_leaf(0) && b_.is_leaf(0) ? 1u : 0u;
-    look_.complete = !pose_.may_touch(a_.ball(0), b_.ball(0), margin(NodePair(0, 0))) ||
+    if (try_first) {
+      ++limits_.cost.leaf_tests;
+      leaves(*try_first);
+    }
+    look_.complete = look_.contact ||
+                     !pose_.may_touch(a_.ball(0), b_.ball(0), margin(NodePair(0, 0))) ||
                      traverse(a_, b_, pose_, *this) || look_.contact;
     if (!look_.complete || look_.contact) look_.free_time = 0.0;
     return look_;
@@ -86,11 +96,14 @@ class FreeTime {
     return way * kWayUp + prune_;
   }
 
+  bool nearest_first() const { return look_.free_time > 0.0; }
+
   bool leaves(NodePair pair) {
     const Sphere a = a_.ball(pair.index(0));
     const Sphere b = b_.ball(pair.index(1));
     if (pose_.touches(a, b, clearance_)) {
       look_.contact = true;
+      look_.decisive = pair;
       look_.pair = {a_.sphere_index(pair.index(0)), b_.sphere_index(pair.index(1))};
       return false;
     }
@@ -98,8 +111,11 @@ class FreeTime {
     // The factor covers the roundings of the gap and of the difference.
     const double gap = pose_.gap(a, b) * kRelativeDown - taken_;
     const double time = gap > 0.0 ? rate_.free_time(a.center, b.center, gap * kRelativeDown) : 0.0;
-    look_.free_time = std::min(look_.free_time, time);
-    if (look_.free_time < useful_) look_.free_time = 0.0;
+    if (look_.free_time > time) look_.decisive = pair;
+    while (look_.free_time > time) {
+      look_.free_time *= 0.5;
+      if (look_.free_time < useful_) look_.free_time = 0.0;
+    }
     return true;
   }
 
