@@ -31,6 +31,22 @@ Pair random_turning(Random& random, double size) {
           Exact::turning(start, axis, angle, displacement, reference)};
 }
 
+// Where only the rotation errs.
+Pair random_turning_in_place(Random& random, double) {
+  const Pose start(random.quaternion(), Eigen::Vector3d::Zero());
+  const Eigen::Vector3d axis = random.point(1.0);
+  const double angle = std::ldexp(random.uniform(-1.0, 1.0), random.whole(-60, 20));
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  return {Motion::turning(start, axis, angle), Exact::turning(start, axis, angle, zero, zero)};
+}
+
+Pair random_between_in_place(Random& random, double) {
+  const Pose start(random.quaternion(), Eigen::Vector3d::Zero());
+  const Pose end(random.quaternion(), Eigen::Vector3d::Zero());
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  return {Motion::between(start, end), Exact::between(start, end, zero)};
+}
+
 Pair random_between(Random& random, double size) {
   const Pose start = random.pose(size);
   Pose end = random.pose(size);
@@ -74,6 +90,11 @@ TEST(Motion, PosesOfATurnAreWithinTheBound) {
 
 TEST(Motion, PosesBetweenTwoPosesAreWithinTheBound) {
   expect_bounded(random_between, 2, 0.02);
+}
+
+TEST(Motion, RotationsAreWithinTheBound) {
+  expect_bounded(random_turning_in_place, 4, 0.02);
+  expect_bounded(random_between_in_place, 5, 0.01);
 }
 
 TEST(Motion, MeetsTheGivenPosesExactly) {

@@ -150,6 +150,27 @@ TEST(Sweep, TouchingForAnInstantIsContact) {
   }
 }
 
+// Poses far from the origin are rounded by more than the balls overlap. They overlap all the way.
+TEST(Sweep, RoundingOfThePosesHidesNoContact) {
+  Random random(7);
+  int apart_by_rounding = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vector3d place(std::ldexp(random.whole(1, 1000), 12), 0.0, 0.0);
+    const Vector3d beside(2.0 - 0x1.8p-30, 0.0, 0.0);  // an overlap of 2^-31; the sum is exact
+    const Vector3d way = random.point(1e7);
+    const Vector3d axis = random.point(1.0);
+    const double angle = random.whole(0, 1) ? random.uniform(-3.0, 3.0) : 0.0;
+    const std::vector<Sphere> ball = {{Vector3d::Zero(), 1.0 - 0x1p-31}};
+    const Body a = turning_body(ball, Pose::from_translation(place), axis, angle, way);
+    const Body b = turning_body(ball, Pose::from_translation(place + beside), axis, -angle, way);
+    const SweepResult result = run(a, b);
+    ASSERT_NE(result.verdict, Verdict::kFree);
+    ASSERT_EQ(result.free_until, 0.0);
+    apart_by_rounding += !collides(a.tree, a.motion.pose_at(0.5), b.tree, b.motion.pose_at(0.5));
+  }
+  EXPECT_GT(apart_by_rounding, 20);
+}
+
 TEST(Sweep, BodiesThatMoveAlikeFarAwayNeedOneLook) {
   Random random(6);
   const std::vector<Sphere> spheres = random_spheres(random, 30, 1.0, 0.1);
