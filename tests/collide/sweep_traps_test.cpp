@@ -157,7 +157,7 @@ TEST(Sweep, RoundingOfThePosesHidesNoContact) {
   for (int i = 0; i < 300; ++i) {
     const Vector3d place(std::ldexp(random.whole(1, 1000), 12), 0.0, 0.0);
     const Vector3d beside(2.0 - 0x1.8p-30, 0.0, 0.0);  // an overlap of 2^-31; the sum is exact
-    const Vector3d way = random.point(1e7);
+    const Vector3d way = random.point(1e8);
     const Vector3d axis = random.point(1.0);
     const double angle = random.whole(0, 1) ? random.uniform(-3.0, 3.0) : 0.0;
     const std::vector<Sphere> ball = {{Vector3d::Zero(), 1.0 - 0x1p-31}};
