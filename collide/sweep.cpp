@@ -11,15 +11,16 @@
 #include <cmath>
 #include <optional>
 
-// Proof of G6. At a look, t = m, the balls stand under the poses pose_at(m), no point farther than
-// E = pose_error(a) + pose_error(b) from the exact motions, counted together; likewise at any other
-// t. The traversal finds a lower bound g of the gap of every pair of balls under exactly those
-// poses, and from
+// Proof of G6. At a look, t = m, the traversal finds a lower bound g of the gap of every pair of
+// balls under exactly the poses pose_at(m), and from
 //     g - clearance - 2 E - (largest slack of the canonical test at any t)
-// the time in which the pair cannot use that up (GapRate). Within this time of m, either way, the
-// pair's gap under the exact motion exceeds the clearance (one E, at m, and the way are charged),
-// and under pose_at(t) it exceeds the clearance by more than the slack (the other E), so that the
-// canonical test does not accept it there.
+// the time in which the pair cannot use that up. Here E = pose_error(a) + pose_error(b), and each
+// of these bounds the distance of a pose from the motion that is stored plus the distance of that
+// from the motion that was asked for. GapRate speaks of the stored motions. So from pose_at(m) to
+// the motions asked for, at any t within that time of m, the gap shrinks by no more than E and the
+// way: it stays above the clearance. From pose_at(m) to pose_at(t) it shrinks by no more than 2 E
+// and the way: it stays above the clearance by more than the slack, and the canonical test does not
+// accept the pair there.
 //
 // The intervals are proved closed and cover [0, 1]: a look at m proves [m - time, m + time], whose
 // ends are rounded inward, and what is left of the interval to either side of these ends, which are
