@@ -4,6 +4,7 @@
 #include "spheretree/pose.h"
 #include "spheretree/sphere_tree.h"
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -22,8 +23,10 @@ struct QueryCost {
 struct CollisionRequest {
   // Stop after this many pairs (1 finds whether there is a collision and one witness).
   std::size_t max_pairs = std::numeric_limits<std::size_t>::max();
-  // Give up after this many node tests, with the verdict kUnknown unless a pair was found.
+  // Give up after this many node tests or this time (looked up once in some hundred node tests),
+  // with the verdict kUnknown unless a pair was found.
   std::uint64_t max_node_tests = std::numeric_limits<std::uint64_t>::max();
+  std::chrono::nanoseconds max_time = std::chrono::nanoseconds::max();
 };
 
 // Indices of two overlapping spheres, into SphereTree::spheres() of a and of b.

@@ -2,6 +2,7 @@
 #include "collide/distance.h"
 
 #include "collide/internal/ball_leaves.h"
+#include "collide/internal/deadline.h"
 
 #include <algorithm>
 #include <queue>
@@ -23,11 +24,12 @@ class Search {
         b_(b),
         error_(pose.gap_error()),
         request_(request),
+        deadline_(request.max_time),
         trees_(a, b, pose),
         leaves_(a, b, pose) {}
 
   DistanceResult run(double root_gap) {
-    if (request_.max_node_tests == 0) return result_;
+    if (request_.max_node_tests == 0 || deadline_.passed(0)) return result_;
     result_.cost.node_tests = 1;
     if (trees_.is_leaf_pair(NodePair(0, 0))) {
       ++result_.cost.leaf_tests;
@@ -40,6 +42,7 @@ class Search {
       const OpenedPair opened = trees_.open(pair);
       const auto tests = static_cast<std::uint64_t>(opened.count);
       if (tests > request_.max_node_tests - result_.cost.node_tests) break;
+      if (deadline_.passed(result_.cost.node_tests)) break;
       queue_.pop();
       result_.cost.node_tests += tests;
       visit_children(pair, opened);
@@ -101,6 +104,7 @@ class Search {
   const SphereTree& b_;
   const double error_;
   const DistanceRequest& request_;
+  internal::Deadline deadline_;
   const TreePair trees_;
   const internal::BallLeaves leaves_;
   std::priority_queue<Waiting> queue_;

@@ -3,13 +3,17 @@
 
 #include "collide/collide.h"
 
+#include <chrono>
+
 namespace spherule {
 
 struct DistanceRequest {
   // Stop when upper - lower is at most this, or when lower exceeds `enough`.
   double tolerance = 0.0;
   double enough = std::numeric_limits<double>::infinity();
+  // Stop after this many node tests or this time (looked up once in some hundred node tests).
   std::uint64_t max_node_tests = std::numeric_limits<std::uint64_t>::max();
+  std::chrono::nanoseconds max_time = std::chrono::nanoseconds::max();
 };
 
 struct DistanceResult {

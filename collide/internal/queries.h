@@ -8,6 +8,7 @@
 //                                   (mesh_tree.h).
 
 #include "collide/collide.h"
+#include "collide/internal/deadline.h"
 #include "collide/internal/traversal.h"
 
 #include <algorithm>
@@ -42,11 +43,19 @@ class CollectPairs {
 
   CollectPairs(const LeafTest& test, const SphereTree& a, const SphereTree& b,
                const CollisionRequest& request, CollisionResult& result)
-      : test_(test), a_(a), b_(b), request_(request), result_(result) {}
+      : test_(test),
+        a_(a),
+        b_(b),
+        request_(request),
+        deadline_(request.max_time),
+        result_(result) {}
+
+  bool out_of_time() { return deadline_.passed(result_.cost.node_tests); }
 
   bool afford(const OpenedPair& opened, const auto& leaf_pairs) {
     const auto tests = static_cast<std::uint64_t>(opened.count);
     if (tests > request_.max_node_tests - result_.cost.node_tests) return false;
+    if (out_of_time()) return false;
     result_.cost.node_tests += tests;
     result_.cost.leaf_tests += leaf_pairs();
     return true;
@@ -74,6 +83,7 @@ class CollectPairs {
   const SphereTree& a_;
   const SphereTree& b_;
   const CollisionRequest& request_;
+  Deadline deadline_;
   CollisionResult& result_;
   bool found_ = false;
   double smallest_gap_ = std::numeric_limits<double>::infinity();
@@ -92,11 +102,11 @@ template <class LeafTest>
 CollisionResult all_pairs(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
                           const LeafTest& test, const CollisionRequest& request) {
   CollisionResult result;
-  if (request.max_node_tests == 0) return result;
+  CollectPairs<LeafTest> query(test, a, b, request, result);
+  if (request.max_node_tests == 0 || query.out_of_time()) return result;
   result.cost.node_tests = 1;
   result.cost.leaf_tests = a.is_leaf(0) && b.is_leaf(0) ? 1 : 0;
 
-  CollectPairs<LeafTest> query(test, a, b, request, result);
   if (pose.may_touch(a.ball(0), b.ball(0))) {
     result.complete = traverse(a, b, pose, query);
   } else {

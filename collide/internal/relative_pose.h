@@ -42,6 +42,16 @@
 //     less than kNodePad = 320 u T. Hence the set of reported pairs is exactly the set of pairs
 //     that touch canonically, whatever the trees between, and the same for every kernel.
 //
+// Clearance c >= 0. Both tests also answer whether balls come within c: the canonical test adds
+// c (1 + 8 u) to its pad, the node test c' (1 + 32 u) for a margin c'.
+//   - never missed: D <= ra + rb + c now asks for c (1 + 8 u)(1 - u)(1 - 2.5 u) >= c (1 + 1.5 u),
+//     beside what it asked for.
+//   - little extra: the gap is at most kSlack S + c (1 + 8 u)(1 + u)(1 + 2.5 u), hence at most
+//     kSlack S + c + 16 u c.
+//   - a node test with the margin c' keeps every pair of balls whose gap is at most kSlack S + c'
+//     (1 + 16 u): its limit takes 3 u of c' (1 + 32 u)(1 - u), the squared distance 1.5 u.
+//     So c' = c keeps all that the canonical test with the clearance c accepts.
+//
 // Underflow: each product may lose 2^-1075, and the squares of differences below 2^-511 vanish. The
 // absolute term kUnderflow = 2^-530 in every pad is far above the first (a few dozen products) and
 // gives s^2 >= 2^-1060, far above the few 2^-1075 lost in d2.
@@ -59,6 +69,7 @@ inline constexpr double kLeafPad = 76.0 * kUnitRoundoff;
 inline constexpr double kSlack = 152.0 * kUnitRoundoff;
 inline constexpr double kGapError = 148.0 * kUnitRoundoff;
 inline constexpr double kNodePad = 320.0 * kUnitRoundoff;
+inline constexpr double kMarginUp = 1.0 + 32.0 * kUnitRoundoff;
 
 // A change of frame x' = R x + t by rounded numbers, R in row order.
 struct FrameChange {
@@ -109,13 +120,22 @@ class RelativePose {
   double node_pad() const { return kNodePad * node_size_ + 8.0 * kUnderflow; }
   double gap_error() const { return kGapError * node_size_ + kUnderflow; }
   double slack() const { return kSlack * scene_size_ + 4.0 * kUnderflow; }
+  double slack(double clearance) const { return slack() + 16.0 * kUnitRoundoff * clearance; }
 
   // The canonical test: true if the closed balls (x, ra) of a and (y, rb) of b overlap or touch
   // under the exact poses; never true if their gap exceeds slack().
   bool touches(const Sphere& a, const Sphere& b) const { return within(a, b, leaf_pad()); }
 
+  // The same for balls that come within a clearance; never true beyond slack(clearance).
+  bool touches(const Sphere& a, const Sphere& b, double clearance) const {
+    return within(a, b, leaf_pad() + clearance * kRelativeUp);
+  }
+
   // Weaker: true for all pairs of balls that contain balls for which touches() is true.
   bool may_touch(const Sphere& a, const Sphere& b) const { return within(a, b, node_pad()); }
+  bool may_touch(const Sphere& a, const Sphere& b, double margin) const {
+    return within(a, b, node_pad() + margin * kMarginUp);
+  }
 
   // Distance of the centres minus the radii, within gap_error() of the exact one.
   double gap(const Sphere& a, const Sphere& b) const {

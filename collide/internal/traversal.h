@@ -33,7 +33,30 @@ inline constexpr std::size_t kInlineStack = 2304;
 //                                      being the distance of the two balls, within gap_error();
 //   bool afford(opened, leaf_pairs)    before the children are tested: false ends the traversal;
 //                                      leaf_pairs() counts the pairs of leaves among them;
-//   bool leaves(pair)                  a pair of leaves that may touch: false ends the traversal.
+//   bool leaves(pair)                  a pair of leaves that may touch: false ends the traversal;
+//   double margin(pair)                only where the policy has one: every pair of leaves below
+//                                      `pair` whose gap is at most that much is visited as well
+//                                      (relative_pose.h says how exactly). May change on the way;
+//   bool nearest_first()               beside margin(): whether the nearest child is visited first,
+//                                      which pays where what is found narrows the margin.
+
+template <class Policy>
+concept HasMargin = requires(const Policy& policy, NodePair pair) {
+  policy.margin(pair);
+};
+
+// The child of smallest gap among those of the mask, which is not 0.
+inline std::int32_t nearest_of(std::uint32_t mask, const internal::BallArrays& children,
+                               const OpenedPair& opened) {
+  double gaps[SphereTree::kMaxBranching];
+  internal::ball_gaps(children, opened.first, opened.count, opened.ball, gaps);
+  std::int32_t nearest = std::countr_zero(mask);
+  for (mask &= mask - 1; mask != 0; mask &= mask - 1) {
+    const std::int32_t i = std::countr_zero(mask);
+    if (gaps[i] < gaps[nearest]) nearest = i;
+  }
+  return nearest;
+}
 
 // Depth-first dual-tree traversal from the pair of roots, which the caller has tested. True if
 // nothing is left to visit, false if the policy ended it with pairs waiting.
@@ -61,7 +84,11 @@ bool traverse_with(NodePair* stack, [[maybe_unused]] std::size_t capacity, const
     if (!policy.afford(opened, leaf_pairs)) return false;
 
     internal::QueryBall padded = opened.ball;
-    padded.radius += node_pad;
+    if constexpr (HasMargin<Policy>) {
+      padded.radius += node_pad + policy.margin(pair) * kMarginUp;
+    } else {
+      padded.radius += node_pad;
+    }
     const internal::BallArrays& children = trees.balls(opened.side);
     std::uint32_t mask = internal::overlap_mask(children, opened.first, opened.count, padded);
     if constexpr (Policy::kWantsGaps) {
@@ -72,6 +99,18 @@ bool traverse_with(NodePair* stack, [[maybe_unused]] std::size_t capacity, const
       }
     }
     assert(top + static_cast<std::size_t>(std::popcount(mask)) <= capacity);
+    if constexpr (HasMargin<Policy>) {
+      if (std::popcount(mask) > 1 && policy.nearest_first()) {
+        // On top of the stack, so that it comes next; the others in their order.
+        const std::int32_t nearest = nearest_of(mask, children, opened);
+        mask &= ~(1u << nearest);
+        for (; mask != 0; mask &= mask - 1) {
+          stack[top++] = pair.with(opened.side, opened.first + std::countr_zero(mask));
+        }
+        stack[top++] = pair.with(opened.side, opened.first + nearest);
+        continue;
+      }
+    }
     for (; mask != 0; mask &= mask - 1) {
       stack[top++] = pair.with(opened.side, opened.first + std::countr_zero(mask));
     }

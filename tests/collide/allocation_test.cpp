@@ -6,6 +6,9 @@
 #include "collide/internal/traversal.h"
 #include "collide/mechanism_check.h"
 #include "collide/mesh_tree.h"
+#include "collide/pair_cache.h"
+#include "collide/sweep.h"
+#include "collide/within.h"
 #include "spheretree/build.h"
 #include "tests/collide/counting_new.h"
 #include "tests/collide/trees.h"
@@ -37,6 +40,30 @@ TEST(Allocation, CollidesTakesNoMemory) {
   EXPECT_GT(hits, 0);
   EXPECT_LT(hits, 100);
   EXPECT_GT(mesh_hits, 0);
+}
+
+TEST(Allocation, SweepsClearancesAndTheCacheTakeNoMemory) {
+  Random random(3);
+  const SphereTree a = build_tree(random_spheres(random, 500, 1.0, 0.02));
+  const SphereTree b = build_tree(random_spheres(random, 500, 1.0, 0.02));
+  std::vector<Pose> poses;
+  for (int i = 0; i < 200; ++i) poses.push_back(random.pose(4.0));
+  int free = 0;
+  int hits = 0;
+  int near = 0;
+  PairCache cache(a, b);
+  const int before = allocations;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const Motion motion = Motion::between(poses[i - 1], poses[i]);
+    free += sweep(a, motion, b, Motion::still(Pose())).verdict == Verdict::kFree;
+    near += within(a, poses[i], b, Pose(), 0.1);
+    hits += cache.collides(poses[i], Pose());
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(free, 0);
+  EXPECT_LT(free, 199);
+  EXPECT_GT(hits, 0);
+  EXPECT_GT(near, hits);
 }
 
 TEST(Allocation, AMechanismsCheckTakesNoMemory) {

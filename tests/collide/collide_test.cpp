@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace spherule::test {
@@ -184,6 +185,25 @@ TEST(Collide, SaysUnknownWhenTheBudgetRunsOut) {
     }
   }
   EXPECT_GT(unknown, 100);
+}
+
+TEST(Collide, SaysUnknownWhenThereIsNoTime) {
+  Random random(9);
+  for (int i = 0; i < 20; ++i) {
+    const Scene scene = random_scene(random, 100);
+    const CollisionResult none = scene.collide({.max_time = std::chrono::nanoseconds(0)});
+    ASSERT_EQ(none.verdict, Verdict::kUnknown);
+    ASSERT_FALSE(none.complete);
+    ASSERT_EQ(none.cost.node_tests, 0u);
+    // The shortest time is over at some look at the clock, and what was found until then is true.
+    const CollisionResult full = scene.collide();
+    const CollisionResult little = scene.collide({.max_time = std::chrono::nanoseconds(500)});
+    ASSERT_TRUE(std::includes(full.pairs.begin(), full.pairs.end(), little.pairs.begin(),
+                              little.pairs.end()));
+    ASSERT_TRUE(little.verdict == Verdict::kUnknown || little.verdict == full.verdict);
+    ASSERT_TRUE(!little.complete || little.pairs == full.pairs);
+    ASSERT_EQ(scene.collide({.max_time = std::chrono::hours(1)}).pairs, full.pairs);
+  }
 }
 
 TEST(Collide, WithoutRoomForAPairSaysOnlyWhether) {

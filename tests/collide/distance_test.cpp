@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace spherule::test {
@@ -111,6 +112,21 @@ TEST(Distance, IsStillBoundedWhenTheBudgetRunsOut) {
     }
   }
   EXPECT_GT(cut, 50);
+}
+
+TEST(Distance, IsStillBoundedWhenThereIsNoTime) {
+  Random random(5);
+  for (int i = 0; i < 20; ++i) {
+    const Scene scene = random_scene(random);
+    const Real exact = scene.exact_distance();
+    for (const int nanoseconds : {0, 300, 3000}) {
+      const DistanceResult result =
+          scene.distance({.max_time = std::chrono::nanoseconds(nanoseconds)});
+      ASSERT_LE(result.lower, exact);
+      ASSERT_GE(result.upper, exact);
+      ASSERT_TRUE(nanoseconds > 0 || result.cost.node_tests == 0);
+    }
+  }
 }
 
 TEST(Distance, AgreesWithCollides) {

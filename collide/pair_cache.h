@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/collide.h"
+
+#include <array>
+#include <optional>
+
+namespace spherule {
+
+// collides() for two sets that are asked about again and again under poses that change little. It
+// answers exactly as collides() does, always; the memory only saves work:
+//   - after a free answer it knows a clearance, proved where the bodies stood then. As long as they
+//     have moved against each other by less, no tree is looked at;
+//   - after a collision, the two spheres that met are tried first.
+// Not to be shared between threads. The trees must outlive it.
+class PairCache {
+ public:
+  PairCache(const SphereTree& a, const SphereTree& b);
+
+  bool collides(const Pose& world_from_a, const Pose& world_from_b);
+
+  // What has been asked, and how many of the answers came from memory.
+  struct Counts {
+    std::uint64_t queries = 0;
+    std::uint64_t free_from_memory = 0;
+    std::uint64_t collisions_from_memory = 0;
+  };
+  const Counts& counts() const { return counts_; }
+
+ private:
+  // One set seen from the other, where the trees were last searched.
+  struct Seen {
+    std::array<double, 12> other_from_mover;  // rotation in row order, then the translation
+    double scene_size;
+    double clearance;  // no two spheres came closer than this; 0 if nothing is known
+  };
+
+  double way_between(const Seen& before, const Seen& now) const;
+
+  const SphereTree& a_;
+  const SphereTree& b_;
+  const bool a_moves_;  // the set of smaller reach is the one seen from the other
+  const double reach_;  // its reach
+  std::optional<Seen> before_;
+  std::uint64_t queries_since_ = 0;  // since `before_`
+  std::optional<SpherePair> witness_;
+  Counts counts_;
+};
+
+}  // namespace spherule
