@@ -230,7 +230,8 @@ SphereTree build_tree(std::span<const Sphere> spheres, const BuildOptions& optio
   check_input(spheres, options);
   SphereTreeData data = lay_out(binary_tree(spheres), spheres, options.branching);
   fit_balls(data);
-  return internal::tree_of(std::move(data));
+  internal::check_root(data);
+  return SphereTree(std::move(data));
 }
 
 }  // namespace spherule

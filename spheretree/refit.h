@@ -12,7 +12,7 @@ namespace spherule {
 // around the balls of its children, as build_tree() makes it, unless none of these has changed:
 // then it stays. So spheres that have not moved give the same bytes, and a tree of build_tree()
 // gives balls that depend on its nodes and on `moved` alone, whatever refits lie between.
-// Deterministic (G7). O(n); where most have stayed, about what it takes to copy and check the tree.
+// Deterministic (G7). O(n). A tree that is moved in (std::move) is not copied.
 //
 // Every query is as right as on a new tree (G3), but may be slower: spheres that stand under one
 // node are supposed to be neighbours. Build anew when they are no longer, that is, when spheres
@@ -22,6 +22,6 @@ namespace spherule {
 //
 // Throws Error if the numbers of spheres differ, a number in `moved` is not usable, or the ball
 // around all of them would not be.
-SphereTree refit(const SphereTree& tree, std::span<const Sphere> moved);
+SphereTree refit(SphereTree tree, std::span<const Sphere> moved);
 
 }  // namespace spherule

@@ -8,7 +8,6 @@
 #include <bit>
 #include <cstdint>
 #include <string>
-#include <utility>
 
 namespace spherule::internal {
 
@@ -46,11 +45,10 @@ Sphere ball_around_children(const SphereTreeData& data, std::size_t node) {
   return enclosing_sphere(std::span<const Sphere>(children).first(count));
 }
 
-SphereTree tree_of(SphereTreeData data) {
+void check_root(const SphereTreeData& data) {
   if (!(data.radius[0] <= kMaxCoordinate)) {
     throw Error("sphere tree", "the ball around all spheres is too large");
   }
-  return SphereTree(std::move(data));
 }
 
 }  // namespace spherule::internal

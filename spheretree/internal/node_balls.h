@@ -23,7 +23,7 @@ void set_ball(SphereTreeData& data, std::size_t node, const Sphere& ball);
 // rounded up so that it encloses them in exact arithmetic.
 Sphere ball_around_children(const SphereTreeData& data, std::size_t node);
 
-// The tree that `data` describes. Throws Error if its root is too large to be usable.
-SphereTree tree_of(SphereTreeData data);
+// Throws Error if the ball of the root is too large to be usable.
+void check_root(const SphereTreeData& data);
 
 }  // namespace spherule::internal

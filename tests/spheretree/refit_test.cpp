@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/refit.h"
 
+#include "collide/collide.h"
 #include "spheretree/build.h"
 #include "spheretree/check.h"
 #include "spheretree/error.h"
@@ -14,6 +15,7 @@
 
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace spherule::test {
 namespace {
@@ -57,7 +59,6 @@ std::vector<Sphere> stirred(std::vector<Sphere> spheres, Random& random, double 
   return spheres;
 }
 
-// Every sphere of the set in every ball above it, in exact arithmetic: what queries rest on.
 void expect_good(const SphereTree& refitted, const SphereTree& tree,
                  const std::vector<Sphere>& moved) {
   EXPECT_TRUE(check(refitted).valid);
@@ -85,6 +86,18 @@ TEST(Refit, EveryFamilyStaysValidWhereverItsSpheresGo) {
         }
       }
     }
+  }
+}
+
+TEST(Refit, ATreeThatIsMovedInGivesTheSame) {
+  Random random(22);
+  for (const Family& family : sphere_families(200, 9)) {
+    SphereTree tree = build_tree(family.spheres);
+    const std::vector<Sphere> moved = stirred(family.spheres, random, 0.1, 2);
+    const SphereTree copied = refit(tree, moved);
+    expect_good(copied, tree, moved);
+    EXPECT_EQ(copied.reach(), SphereTree(copied.data()).reach()) << family.name;
+    EXPECT_TRUE(same_balls(refit(std::move(tree), moved), copied)) << family.name;
   }
 }
 
@@ -144,6 +157,33 @@ TEST(Refit, SignsOfZeroAreTakenOver) {
   const SphereTree refitted = refit(tree, moved);
   expect_good(refitted, tree, moved);
   EXPECT_TRUE(same_balls(refitted, build_tree(moved)));
+}
+
+// All pairs of a refitted tree, in their order, are those of a new one over the same spheres.
+TEST(Refit, QueriesFindThePairsThatANewTreeFinds) {
+  Random random(26);
+  std::size_t pairs = 0;
+  for (const Family& family : sphere_families(150, 8)) {
+    double extent = 0.0;
+    for (const Sphere& sphere : family.spheres) {
+      extent = std::max(extent, (sphere.center - family.spheres[0].center).norm());
+    }
+    const SphereTree tree = build_tree(family.spheres);
+    for (int i = 0; i < 5; ++i) {
+      const std::vector<Sphere> moved = stirred(family.spheres, random, 0.2, 1 + random.below(4));
+      const SphereTree refitted = refit(tree, moved);
+      const SphereTree built = build_tree(moved);
+      const Eigen::Quaterniond turn(random.unit(), random.unit(), random.unit(), 1.0);
+      const Pose pose_a(turn, extent * random.in_cube(0.5));
+      const Pose pose_b(turn.conjugate(), pose_a * moved[0].center - moved[1].center);
+      const CollisionResult found = collide(refitted, pose_a, tree, pose_b);
+      const CollisionResult expected = collide(built, pose_a, tree, pose_b);
+      EXPECT_EQ(found.verdict, expected.verdict) << family.name;
+      EXPECT_EQ(found.pairs, expected.pairs) << family.name;
+      pairs += found.pairs.size();
+    }
+  }
+  EXPECT_GT(pairs, 100000U);
 }
 
 // Where a motion keeps the splits, the refitted tree is the one that would be built: here all
