@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/build.h"
 
-#include "spheretree/enclosing_sphere.h"
 #include "spheretree/error.h"
+#include "spheretree/internal/node_balls.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <string>
 #include <utility>
@@ -205,24 +204,11 @@ SphereTreeData lay_out(const std::vector<BinaryNode>& nodes, std::span<const Sph
 void fit_balls(SphereTreeData& data) {
   const std::size_t count = data.child_count.size();
   for (auto* array : {&data.x, &data.y, &data.z, &data.radius}) array->resize(count);
-  std::array<Sphere, SphereTree::kMaxBranching> children;
   for (std::size_t node = count; node-- > 0;) {
-    const auto first = static_cast<std::size_t>(data.first_child[node]);
-    const auto child_count = static_cast<std::size_t>(data.child_count[node]);
-    Sphere ball;
-    if (child_count == 0) {
-      ball = data.spheres[first];
-    } else {
-      for (std::size_t i = 0; i < child_count; ++i) {
-        children[i] = {{data.x[first + i], data.y[first + i], data.z[first + i]},
-                       data.radius[first + i]};
-      }
-      ball = enclosing_sphere(std::span<const Sphere>(children).first(child_count));
-    }
-    data.x[node] = ball.center.x();
-    data.y[node] = ball.center.y();
-    data.z[node] = ball.center.z();
-    data.radius[node] = ball.radius;
+    internal::set_ball(data, node,
+                       data.child_count[node] == 0
+                           ? data.spheres[static_cast<std::size_t>(data.first_child[node])]
+                           : internal::ball_around_children(data, node));
   }
 }
 
@@ -235,12 +221,7 @@ void check_input(std::span<const Sphere> spheres, const BuildOptions& options) {
   if (spheres.size() > kMaxSpheres) {
     throw Error("sphere tree", std::to_string(spheres.size()) + " spheres are too many");
   }
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    if (!is_usable(spheres[i])) {
-      throw Error("sphere tree", "sphere " + std::to_string(i) +
-                                     " is not usable: not finite, too large or of negative radius");
-    }
-  }
+  internal::check_usable(spheres);
 }
 
 }  // namespace
@@ -249,9 +230,7 @@ SphereTree build_tree(std::span<const Sphere> spheres, const BuildOptions& optio
   check_input(spheres, options);
   SphereTreeData data = lay_out(binary_tree(spheres), spheres, options.branching);
   fit_balls(data);
-  if (!(data.radius[0] <= kMaxCoordinate)) {
-    throw Error("sphere tree", "the ball around all spheres is too large");
-  }
+  internal::check_root(data);
   return SphereTree(std::move(data));
 }
 

@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/check.h"
 
+#include "spheretree/internal/node_balls.h"
+
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <limits>
 #include <sstream>
 
 namespace spherule {
 namespace {
-
-// Equality of all bits: unlike ==, it tells -0.0 from 0.0.
-bool same_bits(const Sphere& a, const Sphere& b) {
-  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
-  return bits(a.center.x()) == bits(b.center.x()) && bits(a.center.y()) == bits(b.center.y()) &&
-         bits(a.center.z()) == bits(b.center.z()) && bits(a.radius) == bits(b.radius);
-}
 
 // One run of check(). Nothing about the data is taken for granted: each step reads only what the
 // steps before it have found in order.
@@ -52,9 +46,7 @@ class Checker {
 
   std::size_t node_count() const { return report_.node_count; }
 
-  Sphere ball(std::size_t node) const {
-    return {{data_.x[node], data_.y[node], data_.z[node]}, data_.radius[node]};
-  }
+  Sphere ball(std::size_t node) const { return internal::ball_of(data_, node); }
 
   bool check_sizes() {
     const std::size_t n = node_count();
@@ -127,7 +119,7 @@ class Checker {
       const auto sphere = static_cast<std::size_t>(index);
       if (seen[sphere]) problem("leaf ", node, ": sphere ", sphere, " has another leaf already");
       seen[sphere] = true;
-      if (!same_bits(ball(node), data_.spheres[sphere])) {
+      if (!internal::same_bits(ball(node), data_.spheres[sphere])) {
         problem("leaf ", node, ": its ball is not that of sphere ", sphere);
       }
     }

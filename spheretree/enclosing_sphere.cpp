@@ -31,22 +31,22 @@ constexpr int kMaxExchanges = 1000;
 // The basis has settled when no ball sticks out by more than this factor: rounding of `reach`.
 constexpr double kSettled = 1.0 + 8.0 * kUnitRoundoff;
 
-struct BallSet {
-  std::array<Sphere, kMaxBasis + 1> balls;
-  std::size_t size = 0;
+// Lengths below two to the power of this are as good as none beside kUnderflow. The powers of two
+// that the others are scaled by, and their inverses, are ordinary numbers.
+constexpr int kMinExponent = -1000;
 
-  void add(const Sphere& ball) { balls[size++] = ball; }
-  std::span<Sphere> span() { return {balls.data(), size}; }
-  std::span<const Sphere> span() const { return {balls.data(), size}; }
+struct Basis {
+  std::array<Sphere, kMaxBasis> balls;
+  std::size_t size = 0;
 };
 
 struct Solution {
-  BallSet basis;
+  Basis basis;
   Vector3d center = Vector3d::Zero();
-  double radius = std::numeric_limits<double>::infinity();
+  double radius = 0.0;
 };
 
-auto largest_ball(auto balls) {
+auto largest_ball(auto& balls) {
   return std::max_element(balls.begin(), balls.end(),
                           [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
 }
@@ -68,10 +68,11 @@ Reach reach(const Vector3d& center, std::span<const Sphere> balls) {
 
 // Solves rows[i] . x = right[i] for the x of least norm, by orthonormalising the rows (at most
 // three). Constructed once and used for several right-hand sides.
+template <std::size_t kRows>
 class MinimumNormSolver {
  public:
-  explicit MinimumNormSolver(std::span<const Vector3d> rows) : size_(rows.size()) {
-    for (std::size_t i = 0; i < size_; ++i) {
+  explicit MinimumNormSolver(const std::array<Vector3d, kRows>& rows) {
+    for (std::size_t i = 0; i < kRows; ++i) {
       Vector3d rest = rows[i];
       for (int pass = 0; pass < 2; ++pass) {  // the second pass removes the rounding of the first
         for (std::size_t j = 0; j < i; ++j) {
@@ -91,10 +92,10 @@ class MinimumNormSolver {
 
   bool regular() const { return regular_; }
 
-  Vector3d solve(const std::array<double, 3>& right) const {
+  Vector3d solve(const std::array<double, kRows>& right) const {
     Vector3d x = Vector3d::Zero();
-    std::array<double, 3> y{};
-    for (std::size_t i = 0; i < size_; ++i) {
+    std::array<double, kRows> y;
+    for (std::size_t i = 0; i < kRows; ++i) {
       double rest = right[i];
       for (std::size_t j = 0; j < i; ++j) rest -= lower_[i][j] * y[j];
       y[i] = rest / lower_[i][i];
@@ -108,56 +109,51 @@ class MinimumNormSolver {
   // the centre lies in the convex hull of affinely independent centres (Caratheodory).
   static constexpr double kDegenerate = 1e-14;
 
-  std::size_t size_;
   bool regular_ = true;
-  std::array<Vector3d, 3> axes_;
-  std::array<std::array<double, 3>, 3> lower_{};
+  std::array<Vector3d, kRows> axes_;
+  std::array<std::array<double, kRows>, kRows> lower_{};
 };
 
 // One Newton step for |center - c_i| + r_i = R over all balls, within the affine hull of their
 // centres. It restores digits that the squared equations lose for nearly nested balls.
-Vector3d refined(const Vector3d& center, std::span<const Sphere> balls) {
-  std::array<Vector3d, kMaxBasis> directions;
-  std::array<double, kMaxBasis> reaches{};
-  for (std::size_t i = 0; i < balls.size(); ++i) {
+template <std::size_t kSize>
+Vector3d refined(const Vector3d& center, const std::array<Sphere, kSize>& balls) {
+  std::array<Vector3d, kSize> directions;
+  std::array<double, kSize> reaches;
+  for (std::size_t i = 0; i < kSize; ++i) {
     const Vector3d offset = center - balls[i].center;
     const double length = offset.norm();
     if (!(length > 0.0)) return center;
     directions[i] = offset / length;
     reaches[i] = length + balls[i].radius;
   }
-  std::array<Vector3d, 3> rows;
-  std::array<double, 3> right{};
-  for (std::size_t i = 1; i < balls.size(); ++i) {
+  std::array<Vector3d, kSize - 1> rows;
+  std::array<double, kSize - 1> right;
+  for (std::size_t i = 1; i < kSize; ++i) {
     rows[i - 1] = directions[i] - directions[0];
     right[i - 1] = reaches[0] - reaches[i];
   }
-  const MinimumNormSolver solver(std::span<const Vector3d>(rows).first(balls.size() - 1));
+  const MinimumNormSolver<kSize - 1> solver(rows);
   return solver.regular() ? Vector3d(center + solver.solve(right)) : center;
 }
 
 // Calls `visit(center)` for each ball whose centre lies in the affine hull of the centres of
-// `balls` and that is touched by all of them from inside (at most two; none if degenerate).
+// `balls` and that is touched by all of them from inside (at most two; none if degenerate), and for
+// its refinement.
 //
 // With x = c - c_0, q_i = c_i - c_0, s_i = r_0 - r_i and rho = R - r_0 the conditions are
 // |x| = rho and q_i . x = (|q_i|^2 - s_i^2) / 2 - rho s_i; so x = a + rho b, and rho is a root of
 // (|b|^2 - 1) rho^2 + 2 a.b rho + |a|^2. All lengths are first scaled by a power of two.
-template <typename Visit>
-void tangent_centers(BallSet subset, const Visit& visit) {
-  if (subset.size == 1) {
-    visit(subset.balls[0].center);
-    return;
-  }
+template <std::size_t kSize, typename Visit>
+void tangent_centers(std::array<Sphere, kSize> balls, const Visit& visit) {
   // Measured from the largest ball: rho is least there, so that it keeps its digits when the other
   // balls stick out of this one by a hair only.
-  std::iter_swap(subset.balls.begin(), largest_ball(subset.span()));
-  const std::span<const Sphere> balls = subset.span();
+  std::iter_swap(balls.begin(), largest_ball(balls));
   const Sphere& origin = balls[0];
-  std::array<Vector3d, 3> q;
-  std::array<double, 3> s{};
+  std::array<Vector3d, kSize - 1> q;
+  std::array<double, kSize - 1> s;
   double largest = 0.0;
-  const std::size_t count = balls.size() - 1;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i + 1 < kSize; ++i) {
     q[i] = balls[i + 1].center - origin.center;
     s[i] = origin.radius - balls[i + 1].radius;
     largest = std::max({largest, q[i].cwiseAbs().maxCoeff(), std::abs(s[i])});
@@ -165,16 +161,19 @@ void tangent_centers(BallSet subset, const Visit& visit) {
   if (!(largest > 0.0)) return;
   int exponent = 0;
   std::frexp(largest, &exponent);
-  std::array<double, 3> constant{};
-  std::array<double, 3> linear{};
-  for (std::size_t i = 0; i < count; ++i) {
-    q[i] = q[i].unaryExpr([exponent](double v) { return std::ldexp(v, -exponent); });
-    s[i] = std::ldexp(s[i], -exponent);
+  exponent = std::max(exponent, kMinExponent);
+  const double unit = std::ldexp(1.0, exponent);
+  const double per_unit = std::ldexp(1.0, -exponent);
+  std::array<double, kSize - 1> constant;
+  std::array<double, kSize - 1> linear;
+  for (std::size_t i = 0; i + 1 < kSize; ++i) {
+    q[i] *= per_unit;
+    s[i] *= per_unit;
     const double length = q[i].norm();
     constant[i] = 0.5 * (length - s[i]) * (length + s[i]);
     linear[i] = -s[i];
   }
-  const MinimumNormSolver solver(std::span<const Vector3d>(q).first(count));
+  const MinimumNormSolver<kSize - 1> solver(q);
   if (!solver.regular()) return;
   const Vector3d a = solver.solve(constant);
   const Vector3d b = solver.solve(linear);
@@ -185,39 +184,87 @@ void tangent_centers(BallSet subset, const Visit& visit) {
   const double t = -(half + std::copysign(root, half));
   for (const double rho : {t / leading, a.squaredNorm() / t}) {
     if (!(rho >= 0.0) || !(rho <= kMaxCoordinate)) continue;
-    const Vector3d x = a + rho * b;
-    const Vector3d center =
-        origin.center + x.unaryExpr([exponent](double v) { return std::ldexp(v, exponent); });
+    const Vector3d center = origin.center + (a + rho * b) * unit;
     visit(center);
     visit(refined(center, balls));
   }
 }
 
-// The smallest enclosing ball of the balls of `basis` and of `added`, which sticks out of the ball
-// of `basis` and is therefore part of every new basis.
-Solution exchange(const BallSet& basis, const Sphere& added) {
-  BallSet all = basis;
-  all.add(added);
-  Solution best;
-  for (unsigned mask = 0; mask < (1U << basis.size); ++mask) {
-    if (std::popcount(mask) >= kMaxBasis) continue;
-    BallSet subset;
-    subset.add(added);
-    for (std::size_t i = 0; i < basis.size; ++i) {
-      if ((mask >> i & 1U) != 0U) subset.add(basis.balls[i]);
+// The search for the smallest enclosing ball of the balls of `basis` and of `added`, which sticks
+// out of the ball of `basis` and is therefore part of every new basis.
+class Exchange {
+ public:
+  Exchange(const Basis& basis, const Sphere& added) : basis_(basis), added_(added) {
+    consider(added.center);  // the subset 0
+    for (subset_ = 1; subset_ < (1U << basis.size); ++subset_) {
+      switch (std::popcount(subset_)) {
+        case 1:
+          consider_subset<2>();
+          break;
+        case 2:
+          consider_subset<3>();
+          break;
+        case 3:
+          consider_subset<4>();
+          break;
+        default:
+          break;  // five balls are no basis
+      }
     }
-    tangent_centers(subset, [&](const Vector3d& center) {
-      const double radius = reach(center, all.span()).radius;
-      if (radius < best.radius) best = {subset, center, radius};
-    });
   }
-  return best;
-}
+
+  Solution result() const {
+    Solution solution;
+    solution.center = best_center_;
+    solution.radius = best_radius_;
+    solution.basis.balls[solution.basis.size++] = added_;
+    for (std::size_t i = 0; i < basis_.size; ++i) {
+      if ((best_subset_ >> i & 1U) != 0U) {
+        solution.basis.balls[solution.basis.size++] = basis_.balls[i];
+      }
+    }
+    return solution;
+  }
+
+ private:
+  template <std::size_t kSize>
+  void consider_subset() {
+    std::array<Sphere, kSize> balls;
+    balls[0] = added_;
+    std::size_t size = 1;
+    for (std::size_t i = 0; i < basis_.size; ++i) {
+      if ((subset_ >> i & 1U) != 0U) balls[size++] = basis_.balls[i];
+    }
+    tangent_centers(balls, [this](const Vector3d& center) { consider(center); });
+  }
+
+  // Most centres lose to the best so far before all balls have been looked at.
+  void consider(const Vector3d& center) {
+    double radius = (added_.center - center).norm() + added_.radius;
+    for (std::size_t i = 0; i < basis_.size && radius < best_radius_; ++i) {
+      const Sphere& ball = basis_.balls[i];
+      radius = std::max(radius, (ball.center - center).norm() + ball.radius);
+    }
+    if (radius < best_radius_) {
+      best_subset_ = subset_;
+      best_center_ = center;
+      best_radius_ = radius;
+    }
+  }
+
+  const Basis& basis_;
+  const Sphere& added_;
+  unsigned subset_ = 0;  // of the basis, as bits: the one whose centres are being considered
+  unsigned best_subset_ = 0;
+  Vector3d best_center_ = Vector3d::Zero();
+  double best_radius_ = std::numeric_limits<double>::infinity();
+};
 
 Vector3d smallest_center(std::span<const Sphere> balls) {
   const auto largest = largest_ball(balls);
   Solution current;
-  current.basis.add(*largest);
+  current.basis.balls[0] = *largest;
+  current.basis.size = 1;
   current.center = largest->center;
   current.radius = largest->radius;
   Vector3d best = current.center;
@@ -229,7 +276,7 @@ Vector3d smallest_center(std::span<const Sphere> balls) {
       best_radius = out.radius;
     }
     if (out.radius <= current.radius * kSettled) break;
-    const Solution next = exchange(current.basis, balls[out.farthest]);
+    const Solution next = Exchange(current.basis, balls[out.farthest]).result();
     if (!(next.radius > current.radius)) break;
     current = next;
   }

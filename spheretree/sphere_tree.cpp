@@ -16,6 +16,11 @@ SphereTree::SphereTree(SphereTreeData data) : data_(std::move(data)) {
   if (!report.valid) throw Error("sphere tree", report.problems.front());
   depth_ = report.depth;
   branching_ = report.branching;
+  measure_reach();
+}
+
+void SphereTree::measure_reach() {
+  reach_ = 0.0;
   for (const Sphere& sphere : data_.spheres) {
     reach_ = std::max(reach_, add_up(norm_upper(sphere.center), sphere.radius));
   }

@@ -21,7 +21,8 @@ struct SphereTreeData {
 
 // Bounding sphere hierarchy over a set of spheres; immutable, so threads may share it freely.
 //
-// Invariants, verified by check() (spheretree/check.h) whenever a tree is made from data:
+// Invariants, verified by check() (spheretree/check.h) whenever a tree is made from data, and kept
+// by refit():
 //  1. there is at least one sphere, and all numbers are usable (finite, radii not negative);
 //  2. every node but the root (node 0) is the child of exactly one node, and the arrays are in
 //     breadth-first order: the children of the inner nodes, in the order of their parents, number
@@ -65,6 +66,10 @@ class SphereTree {
   const SphereTreeData& data() const { return data_; }
 
  private:
+  friend SphereTree refit(SphereTree tree, std::span<const Sphere> moved);
+
+  void measure_reach();
+
   SphereTreeData data_;
   int depth_ = 0;
   int branching_ = 0;

@@ -7,12 +7,16 @@
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/tree_oracle.h"
 #include "tests/support/effort.h"
+#include "tests/support/hash.h"
 
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
 
 namespace spherule::test {
 namespace {
@@ -98,6 +102,39 @@ TEST(BuildTree, IsDeterministic) {
   for (const Family& family : sphere_families(500, 42)) {
     EXPECT_TRUE(same_tree(build_tree(family.spheres), build_tree(family.spheres))) << family.name;
   }
+}
+
+// G7: the same bytes on every machine, and as long as nobody means to change the trees. All
+// families but one are made with + - * / sqrt alone.
+TEST(BuildTree, GivesGoldenBytes) {
+  constexpr std::uint64_t kGolden = 0xe5452b2333f043f9;
+  std::uint64_t hash = hash_of("");
+  const auto add = [&hash](const auto& numbers) {
+    const auto bytes = std::as_bytes(std::span(numbers));
+    hash = hash_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, hash);
+  };
+  for (const Family& family : sphere_families(2000, 12)) {
+    if (family.name.starts_with("scales")) continue;  // made with pow
+    const SphereTree tree = build_tree(family.spheres);
+    const SphereTreeData& data = tree.data();
+    for (const auto* numbers : {&data.x, &data.y, &data.z, &data.radius}) add(*numbers);
+    for (const auto* numbers : {&data.first_child, &data.child_count}) add(*numbers);
+  }
+  EXPECT_EQ(hash, kGolden) << "0x" << std::hex << hash;
+}
+
+// A shell has no volume to fill, as a cover of a thin part: mean splits stay even, so that 8-wide
+// nodes over a million spheres stay far shallower than the worst case.
+TEST(BuildTree, AMillionSpheresOnAShellStayShallow) {
+  constexpr auto kCount = static_cast<std::size_t>(effort(1000000, 100000));
+  Random random(13);
+  std::vector<Sphere> spheres;
+  const double radius = std::sqrt(12.5 / static_cast<double>(kCount));
+  for (std::size_t i = 0; i < kCount; ++i) spheres.push_back({random.direction(), radius});
+  const SphereTree tree = build_tree(spheres);
+  EXPECT_LE(tree.depth(), 9);
+  EXPECT_LE(tree.node_count(), kCount + kCount / 2);
+  EXPECT_LE(tree.ball(0).radius, 1.75);
 }
 
 // Where the spheres are spread out, each level must be a good deal tighter than the one above it:

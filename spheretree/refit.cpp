@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/refit.h"
+
+#include "spheretree/check.h"
+#include "spheretree/error.h"
+#include "spheretree/internal/node_balls.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+SphereTree refit(SphereTree tree, std::span<const Sphere> moved) {
+  SphereTreeData& data = tree.data_;
+  if (moved.size() != data.spheres.size()) {
+    throw Error("sphere tree", std::to_string(moved.size()) + " moved spheres for a tree over " +
+                                   std::to_string(data.spheres.size()));
+  }
+  internal::check_usable(moved);
+  data.spheres.assign(moved.begin(), moved.end());
+  std::vector<bool> changed(tree.node_count());
+  const auto set_ball = [&](std::size_t node, const Sphere& ball) {
+    changed[node] = !internal::same_bits(ball, tree.ball(node));
+    if (changed[node]) internal::set_ball(data, node, ball);
+  };
+  // From the last node to the first, so that the children come before the parent.
+  for (std::size_t node = tree.node_count(); node-- > 0;) {
+    if (tree.is_leaf(node)) {
+      set_ball(node, moved[static_cast<std::size_t>(tree.sphere_index(node))]);
+      continue;
+    }
+    const auto first = changed.begin() + tree.first_child(node);
+    if (std::any_of(first, first + tree.child_count(node), std::identity())) {
+      set_ball(node, internal::ball_around_children(data, node));
+    }
+  }
+  internal::check_root(data);
+  tree.measure_reach();
+  assert(check(tree).valid);
+  return tree;
+}
+
+}  // namespace spherule

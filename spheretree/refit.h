@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/sphere_tree.h"
+
+#include <span>
+
+namespace spherule {
+
+// The tree over `moved`, the spheres of `tree` after they have moved, grown or shrunk: as many, in
+// the same order. The nodes and their children stay; the ball of an inner node becomes the smallest
+// around the balls of its children, as build_tree() makes it, unless none of these has changed:
+// then it stays. So spheres that have not moved give the same bytes, and a tree of build_tree()
+// gives balls that depend on its nodes and on `moved` alone, whatever refits lie between.
+// Deterministic (G7). O(n) with a small constant, plus a smallest ball for each inner node above
+// something that has moved. A tree that is moved in (std::move) is not copied; it is lost if
+// refit() throws.
+//
+// Every query is as right as on a new tree (G3), but may be slower, because spheres under one node
+// are supposed to be neighbours. Build anew when they no longer are: when spheres have moved
+// against their neighbours by more than about their distance, or the set has been stretched or
+// twisted a good deal. The mean_growth that check() reports then exceeds that of the tree as built;
+// by a fifth, queries visit up to twice the nodes of a new tree, at double, five times as many. To
+// move all spheres as one, move the tree's Pose instead.
+//
+// Throws Error if the numbers of spheres differ, a number in `moved` is not usable, or the ball
+// around all of them would not be.
+SphereTree refit(SphereTree tree, std::span<const Sphere> moved);
+
+}  // namespace spherule
