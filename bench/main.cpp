@@ -63,6 +63,7 @@ WorkloadResult run(Workload workload, const Arguments& arguments) {
   auto measurements = measure(methods, workload.program, options);
   WorkloadResult result =
       evaluate(workload, std::move(fits), methods, std::move(measurements), touching);
+  result.edges = measure_edges(workload);
   print_table(result);
   return result;
 }

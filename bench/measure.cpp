@@ -1,37 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/measure.h"
 
+#include "bench/clock.h"
+#include "bench/scenes/program.h"
+
 #include <algorithm>
-#include <chrono>
 
 namespace spherule {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double nanoseconds(Clock::duration duration) {
-  return std::chrono::duration<double, std::nano>(duration).count();
-}
-
-double quantile(std::vector<double>& sorted, double share) {
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
-}
-
-// What two readings of the clock with nothing between them say.
-double clock_cost() {
-  std::vector<double> readings(10001);
-  for (double& reading : readings) {
-    const auto start = Clock::now();
-    reading = nanoseconds(Clock::now() - start);
-  }
-  std::sort(readings.begin(), readings.end());
-  return quantile(readings, 0.5);
-}
+constexpr std::uint64_t kShuffleSeed = 1;
 
 std::vector<JointPositions> every(const std::vector<JointPositions>& program, std::size_t stride) {
   std::vector<JointPositions> sample;
   for (std::size_t i = 0; i < program.size(); i += stride) sample.push_back(program[i]);
   return sample;
+}
+
+double time_per_query(Checker& checker, const std::vector<JointPositions>& timed,
+                      std::vector<std::uint8_t>& verdicts) {
+  const auto start = Clock::now();
+  checker.check(timed, {verdicts.data(), timed.size()});
+  return nanoseconds(Clock::now() - start) / static_cast<double>(timed.size());
+}
+
+double median(std::vector<double>& rounds) {
+  std::sort(rounds.begin(), rounds.end());
+  return rounds[rounds.size() / 2];
 }
 
 void time_single_queries(Checker& checker, const std::vector<JointPositions>& sample, double cost,
@@ -58,8 +53,10 @@ std::vector<Measurement> measure(const std::vector<Method>& methods,
                                  const MeasureOptions& options) {
   const auto sample = every(program, options.stride);
   const auto slow_sample = every(program, options.slow_stride);
+  const auto shuffled_sample = shuffled(sample, kShuffleSeed);
   std::vector<Measurement> results(methods.size());
   std::vector<std::vector<double>> rounds(methods.size());
+  std::vector<std::vector<double>> shuffled_rounds(methods.size());
   for (std::size_t m = 0; m < methods.size(); ++m) {
     results[m].verdicts.resize(program.size());
     methods[m].checker->check(program, results[m].verdicts);  // and warms caches up
@@ -68,17 +65,16 @@ std::vector<Measurement> measure(const std::vector<Method>& methods,
   for (int round = 0; round < options.rounds; ++round) {
     for (std::size_t m = 0; m < methods.size(); ++m) {
       const auto& timed = methods[m].slow ? slow_sample : sample;
-      const auto start = Clock::now();
-      methods[m].checker->check(timed, {verdicts.data(), timed.size()});
-      const double elapsed = nanoseconds(Clock::now() - start);
-      rounds[m].push_back(elapsed / static_cast<double>(timed.size()));
+      rounds[m].push_back(time_per_query(*methods[m].checker, timed, verdicts));
+      if (methods[m].slow) continue;
+      shuffled_rounds[m].push_back(time_per_query(*methods[m].checker, shuffled_sample, verdicts));
     }
   }
   const double cost = clock_cost();
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const auto& timed = methods[m].slow ? slow_sample : sample;
-    std::sort(rounds[m].begin(), rounds[m].end());
-    results[m].ns_per_query = rounds[m][rounds[m].size() / 2];
+    results[m].ns_per_query = median(rounds[m]);
+    if (!methods[m].slow) results[m].shuffled_ns_per_query = median(shuffled_rounds[m]);
     results[m].timed_queries = timed.size();
     time_single_queries(*methods[m].checker, timed, cost, results[m]);
   }

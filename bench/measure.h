@@ -29,8 +29,9 @@ struct MeasureOptions {
 };
 
 struct Measurement {
-  double ns_per_query = 0.0;  // median over the rounds
-  double p50_ns = 0.0;        // over single queries, the clock's own cost taken off
+  double ns_per_query = 0.0;           // median over the rounds
+  double shuffled_ns_per_query = 0.0;  // the same in random order; 0 for slow methods
+  double p50_ns = 0.0;                 // over single queries, the clock's own cost taken off
   double p99_ns = 0.0;
   std::array<double, 101> percentiles_ns{};
   std::size_t timed_queries = 0;
@@ -38,7 +39,8 @@ struct Measurement {
 };
 
 // Times the methods in alternating rounds, so that a slow moment of the machine meets all of them,
-// then single queries, and collects all verdicts.
+// in path order and, but for slow ones, in a random order, then single queries, and collects all
+// verdicts.
 std::vector<Measurement> measure(const std::vector<Method>& methods,
                                  const std::vector<JointPositions>& program,
                                  const MeasureOptions& options);

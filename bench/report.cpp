@@ -32,6 +32,7 @@ Json to_json(const WorkloadResult& result, const MethodResult& method) {
   const Measurement& m = method.measurement;
   Json json{{"name", method.name},
             {"ns_per_query", m.ns_per_query},
+            {"shuffled_ns_per_query", m.shuffled_ns_per_query},
             {"p50_ns", m.p50_ns},
             {"p99_ns", m.p99_ns},
             {"collisions", method.collisions},
@@ -65,6 +66,11 @@ Json to_json(const WorkloadResult& result) {
   for (const MethodResult& method : result.methods) {
     json["methods"].push_back(to_json(result, method));
   }
+  const EdgeMeasurement& edges = result.edges;
+  json["edges"] = {{"free", edges.free},           {"collision", edges.collision},
+                   {"unknown", edges.unknown},     {"unknown_but_free", edges.unknown_but_free},
+                   {"median_ns", edges.median_ns}, {"p95_ns", edges.p95_ns},
+                   {"p99_ns", edges.p99_ns}};
   return json;
 }
 
@@ -106,7 +112,8 @@ WorkloadResult evaluate(const Workload& workload, std::vector<FitRecord> fits,
                         .oracle_collisions = 0,
                         .oracle_by_body = {},
                         .fits = std::move(fits),
-                        .methods = {}};
+                        .methods = {},
+                        .edges = {}};
   for (const std::uint32_t bits : touching_bodies) result.oracle_collisions += bits != 0 ? 1 : 0;
   for (std::size_t body = 0; body < workload.bodies.size(); ++body) {
     const auto count = std::count_if(touching_bodies.begin(), touching_bodies.end(),
@@ -160,17 +167,26 @@ void print_table(const WorkloadResult& result) {
     std::printf("%-12s %9zu %8zu %8.1f %8.1f %9.2f\n", fit.part.c_str(), fit.triangles, fit.spheres,
                 1e3 * fit.max_error, 1e3 * fit.min_external_diameter, fit.seconds);
   }
-  std::printf("\n%-20s %11s %10s %10s %8s %8s %7s %7s %8s %8s\n", "method", "ns/query", "p50",
-              "p99", "x obbrss", "x fastest", "hits", "missed", "extra", "extra %");
+  std::printf("\n%-20s %11s %11s %10s %10s %8s %8s %7s %7s %8s %8s\n", "method", "ns/query",
+              "shuffled", "p50", "p99", "x obbrss", "x fastest", "hits", "missed", "extra",
+              "extra %");
   for (const MethodResult& method : result.methods) {
     const Measurement& m = method.measurement;
-    std::printf("%-20s %11.1f %10.0f %10.0f %8.2f %8.2f %7zu %7zu %8zu %8.1f\n",
-                method.name.c_str(), m.ns_per_query, m.p50_ns, m.p99_ns,
+    std::printf("%-20s %11.1f %11.1f %10.0f %10.0f %8.2f %8.2f %7zu %7zu %8zu %8.1f\n",
+                method.name.c_str(), m.ns_per_query, m.shuffled_ns_per_query, m.p50_ns, m.p99_ns,
                 time_of(result, kUsualFcl) / m.ns_per_query,
                 time_of(result, kFastestFcl) / m.ns_per_query, method.collisions, method.missed,
                 method.extra, percent_of_oracle(result, method.extra));
     if (method.name == kFastestFcl) std::printf("  (%s)\n", method.setting.c_str());
   }
+  const EdgeMeasurement& edges = result.edges;
+  const double single = time_of(result, "spherule-single");
+  std::printf(
+      "\nmoves between them: %zu proved free, %zu in collision, %zu unknown (%zu of them free at "
+      "10,000 steps)\n  ns: median %.0f, p95 %.0f, p99 %.0f; in single checks: %.1f, %.1f, %.1f\n",
+      edges.free, edges.collision, edges.unknown, edges.unknown_but_free, edges.median_ns,
+      edges.p95_ns, edges.p99_ns, edges.median_ns / single, edges.p95_ns / single,
+      edges.p99_ns / single);
   std::fflush(stdout);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "bench/edges.h"
 #include "bench/fit_parts.h"
 #include "bench/measure.h"
 #include "bench/workload.h"
@@ -30,6 +31,7 @@ struct WorkloadResult {
   std::vector<std::pair<std::string, std::size_t>> oracle_by_body;
   std::vector<FitRecord> fits;
   std::vector<MethodResult> methods;
+  EdgeMeasurement edges = {};
 };
 
 // Compares with the oracle and picks fcl-mesh-fastest.
