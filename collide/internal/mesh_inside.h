@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/mesh_tree.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace spherule::internal {
+
+// The inside of a mesh and its connected parts. Triangles are connected where they share a vertex
+// position. A component is closed if every directed edge, by positions, is met by as many in the
+// other direction. The inside is where the winding number of the closed components is not zero;
+// open components, and those whose triangles are not turned consistently, have none.
+class MeshInside {
+ public:
+  explicit MeshInside(const TriangleMesh& mesh);
+
+  // One vertex of every component.
+  std::span<const Eigen::Vector3d> component_points() const { return points_; }
+  bool has_inside() const { return has_inside_; }
+  bool is_closed() const { return is_closed_; }
+
+  // Whether a point is inside; `tree` is of the same mesh. The point may be off by `error`: never
+  // false if the exact one is inside; true also if it cannot be told apart from a point of the
+  // surface.
+  //
+  // The winding number is the sum of the signed crossings of a ray with the triangles. Each
+  // crossing is decided with the error of the point counted, so that the sum is that of the ray
+  // from the exact point; a ray that passes an edge too near is given up for another one.
+  bool contains(const MeshTree& tree, const Eigen::Vector3d& point, double error) const;
+
+ private:
+  std::vector<char> is_solid_;  // of each triangle: whether its component is closed
+  std::vector<Eigen::Vector3d> points_;
+  bool has_inside_ = false;
+  bool is_closed_ = true;
+};
+
+}  // namespace spherule::internal

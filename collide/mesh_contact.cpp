@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/mesh_contact.h"
+
+#include "collide/internal/ball_leaves.h"
+#include "collide/internal/cover_proof.h"
+#include "collide/internal/listed_triangles.h"
+#include "collide/internal/mesh_inside.h"
+#include "collide/internal/traversal.h"
+#include "spheretree/error.h"
+
+#include <utility>
+
+namespace spherule {
+namespace {
+
+std::shared_ptr<const SphereTree> not_null(std::shared_ptr<const SphereTree> cover) {
+  if (!cover) throw Error("cover", "there is none");
+  return cover;
+}
+
+// Policy of the traversal: ends at the first two spheres whose triangles touch.
+class FindTriangles {
+ public:
+  static constexpr bool kWantsGaps = false;
+
+  FindTriangles(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
+                const internal::ListedTriangles& triangles)
+      : a_(a), b_(b), balls_(a, b, pose), triangles_(triangles) {}
+
+  bool afford(const OpenedPair&, const auto&) const noexcept { return true; }
+  bool leaves(NodePair pair) noexcept {
+    if (!balls_.touches(pair)) return true;
+    spheres_touch_ = true;
+    found_ = triangles_.touch(a_.sphere_index(pair.index(0)), b_.sphere_index(pair.index(1)));
+    return !found_;
+  }
+  bool found() const { return found_; }
+  bool spheres_touch() const { return spheres_touch_; }
+
+ private:
+  const SphereTree& a_;
+  const SphereTree& b_;
+  internal::BallLeaves balls_;
+  const internal::ListedTriangles& triangles_;
+  bool spheres_touch_ = false;
+  bool found_ = false;
+};
+
+}  // namespace
+
+CoveredMesh::CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereTree> cover)
+    : cover_(not_null(std::move(cover))),
+      mesh_(mesh),
+      inside_(std::make_shared<const internal::MeshInside>(mesh)) {
+  internal::Lists lists = internal::triangles_meeting(mesh_, cover_->spheres());
+  internal::prove_cover(mesh_, cover_->spheres(), lists);
+  first_ = std::move(lists.first);
+  triangles_ = std::move(lists.values);
+}
+
+bool CoveredMesh::is_closed() const {
+  return inside_->is_closed();
+}
+
+bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
+              const Pose& world_from_b) noexcept {
+  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  if (!pose.may_touch(a.cover().ball(0), b.cover().ball(0))) return false;
+  const internal::ListedTriangles triangles(a, world_from_a, b, world_from_b, pose);
+  FindTriangles query(a.cover(), b.cover(), pose, triangles);
+  traverse(a.cover(), b.cover(), pose, query);
+  return query.found() || (query.spheres_touch() && triangles.contained());
+}
+
+bool triangles_touch(const CoveredMesh& a, std::int32_t sphere_a, const Pose& world_from_a,
+                     const CoveredMesh& b, std::int32_t sphere_b,
+                     const Pose& world_from_b) noexcept {
+  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  return internal::ListedTriangles(a, world_from_a, b, world_from_b, pose)
+      .touch(sphere_a, sphere_b);
+}
+
+bool contains_component(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
+                        const Pose& world_from_b) noexcept {
+  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  return internal::ListedTriangles(a, world_from_a, b, world_from_b, pose).contained();
+}
+
+}  // namespace spherule
