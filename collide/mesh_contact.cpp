@@ -5,6 +5,7 @@
 #include "collide/internal/cover_proof.h"
 #include "collide/internal/listed_triangles.h"
 #include "collide/internal/mesh_inside.h"
+#include "collide/internal/patch_trees.h"
 #include "collide/internal/traversal.h"
 #include "spheretree/error.h"
 
@@ -54,6 +55,7 @@ CoveredMesh::CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereT
       inside_(std::make_shared<const internal::MeshInside>(mesh)) {
   internal::Lists lists = internal::triangles_meeting(mesh_, cover_->spheres());
   internal::prove_cover(mesh_, cover_->spheres(), lists);
+  patches_ = std::make_shared<const internal::PatchTrees>(mesh_, cover_->spheres(), lists);
   first_ = std::move(lists.first);
   triangles_ = std::move(lists.values);
 }

@@ -18,7 +18,8 @@ namespace spherule {
 
 namespace internal {
 class MeshInside;
-}
+class PatchTrees;
+}  // namespace internal
 
 // A mesh and spheres that cover it, with the triangles that meet each sphere. Immutable; threads
 // may share it. The mesh is judged as stored, as by MeshTree.
@@ -45,7 +46,10 @@ class CoveredMesh {
   }
   // Whether all components have an inside.
   bool is_closed() const;
+
+  // For queries.
   const internal::MeshInside& inside() const { return *inside_; }
+  const internal::PatchTrees& patches() const { return *patches_; }
 
  private:
   std::shared_ptr<const SphereTree> cover_;
@@ -53,6 +57,7 @@ class CoveredMesh {
   std::vector<std::int32_t> first_;  // of each sphere in triangles_, and the end
   std::vector<std::int32_t> triangles_;
   std::shared_ptr<const internal::MeshInside> inside_;
+  std::shared_ptr<const internal::PatchTrees> patches_;
 };
 
 // Whether two meshes have a point in common, of their triangles or of their insides.

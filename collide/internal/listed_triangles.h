@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/internal/patch_trees.h"
 #include "collide/internal/relative_pose.h"
 #include "collide/internal/triangle_pair.h"
 #include "collide/mesh_contact.h"
@@ -8,18 +9,18 @@
 namespace spherule::internal {
 
 // Two placed meshes: contact of the triangles under two of their spheres, and containment. Refers
-// to its arguments. Swapping the meshes changes no answer.
+// to its arguments.
 //
-// Frames. Corners are compared in the world's axes about the point half way between the origins of
+// Corners. They are compared in the world's axes about the point half way between the origins of
 // the two frames: x = Ra x' + d / 2 and y = Rb y' - d / 2, so that X - Y is the offset of
 // relative_pose.h. The products err by 65.2 u |x'| and 65.2 u |y'|, the rounding of d by u |d|, the
 // two sums by u (|x'| + |y'| + |d|): 66.2 u (|x'| + |y'|) + 2 u |d| < 68 u S. Every corner lies in
 // a ball of its cover, so that |x'| + |y'| + |d| <= S. That is what triangle_contact() asks for,
 // with pad = leaf_pad().
 //
-// Filters. Images of centres and points in the other mesh's frame err by less than 136 u S; a
-// common point of two triangles lies in both balls, so a triangle that is farther from the other
-// ball's image than its radius and 144 u S is not concerned. Rounding of the sums is in the rest.
+// Images of points in the other mesh's frame err by less than 136 u S. So do the balls and
+// triangles that keep off boxes and triangles before; sums of lengths up to S, and projections in
+// units of the axis, add less than 24 u S. kImagePad = 160 u S covers both.
 class ListedTriangles {
  public:
   ListedTriangles(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
@@ -33,27 +34,27 @@ class ListedTriangles {
   bool contained() const;
 
  private:
-  static constexpr std::size_t kBlock = 32;
-  struct Block {
-    std::array<Triangle, kBlock> triangles;
-    std::size_t count = 0;
-  };
-  // One of the two meshes, with the way to the frame of the corners.
+  static constexpr double kImagePad = 160.0 * kUnitRoundoff;
+
+  // One of the two meshes, with the ways to the frame of the corners and from the other mesh's.
   struct Side {
+    // In the frame of the corners.
+    Triangle placed(std::int32_t triangle) const;
+    Eigen::Vector3d image_of(const Eigen::Vector3d& point_of_other) const;
+    Sphere ball(std::int32_t sphere) const {
+      return mesh.cover().spheres()[static_cast<std::size_t>(sphere)];
+    }
+
     const CoveredMesh& mesh;
+    const PatchTrees& patches;
     const Eigen::Matrix3d& rotation;
     Eigen::Vector3d shift;
     FrameChange from_other;
-
-    Triangle placed(const Triangle& triangle) const;
-    Eigen::Vector3d image_of(const Eigen::Vector3d& point_of_other) const;
   };
 
-  // Fills `block` with those of the `listed` that come near the ball, in the side's frame, from
-  // `next` on, which it moves on.
-  void collect(const Side& side, std::span<const std::int32_t> listed, const Sphere& ball,
-               std::size_t& next, Block& block) const;
-  bool touch(const Block& a, const Block& b) const;
+  // Both with the larger patch first, whose tree is searched for each triangle of the other.
+  bool touch(const Side& large, std::int32_t large_sphere, const Side& small,
+             std::int32_t small_sphere) const;
   bool holds_a_component(const Side& side, const CoveredMesh& other) const;
 
   Side a_;

@@ -4,8 +4,12 @@
 #include "spheretree/point_triangle.h"
 #include "spheretree/rounding.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace spherule::internal {
 namespace {
