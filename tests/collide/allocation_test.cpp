@@ -5,6 +5,7 @@
 #include "collide/collide.h"
 #include "collide/internal/traversal.h"
 #include "collide/mechanism_check.h"
+#include "collide/mesh_contact.h"
 #include "collide/mesh_tree.h"
 #include "spheretree/build.h"
 #include "tests/collide/counting_new.h"
@@ -14,6 +15,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace spherule::test {
@@ -37,6 +39,28 @@ TEST(Allocation, CollidesTakesNoMemory) {
   EXPECT_GT(hits, 0);
   EXPECT_LT(hits, 100);
   EXPECT_GT(mesh_hits, 0);
+}
+
+TEST(Allocation, ConfirmationTakesNoMemory) {
+  const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  TriangleMesh small = mesh;
+  for (Eigen::Vector3d& v : small.vertices) v *= 0.05;
+  const auto ball = [](double radius) {
+    const Sphere sphere{Eigen::Vector3d::Zero(), radius};
+    return std::make_shared<const SphereTree>(build_tree(std::span(&sphere, 1)));
+  };
+  const CoveredMesh a(mesh, ball(1.1));
+  const CoveredMesh b(small, ball(0.1));
+  Random random(3);
+  int hits = 0;
+  std::vector<Pose> poses;
+  for (int i = 0; i < 1000; ++i) poses.push_back(random.pose(1.2));
+  const int before = allocations;
+  for (const Pose& pose : poses) hits += collides(a, Pose(), b, pose);
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(hits, 0);
+  EXPECT_LT(hits, 1000);
 }
 
 TEST(Allocation, AMechanismsCheckTakesNoMemory) {
