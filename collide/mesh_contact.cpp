@@ -53,11 +53,15 @@ CoveredMesh::CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereT
     : cover_(not_null(std::move(cover))),
       mesh_(mesh),
       inside_(std::make_shared<const internal::MeshInside>(mesh)) {
-  internal::Lists lists = internal::triangles_meeting(mesh_, cover_->spheres());
-  internal::prove_cover(mesh_, cover_->spheres(), lists);
-  patches_ = std::make_shared<const internal::PatchTrees>(mesh_, cover_->spheres(), lists);
-  first_ = std::move(lists.first);
-  triangles_ = std::move(lists.values);
+  const std::size_t spheres = cover_->spheres().size();
+  const std::vector<internal::Patch> patches = internal::share_out(mesh_, cover_->spheres());
+  patches_ = std::make_shared<const internal::PatchTrees>(patches, spheres);
+  first_.assign(spheres + 1, 0);
+  for (const internal::Patch& patch : patches) {
+    ++first_[static_cast<std::size_t>(patch.ball) + 1];
+    triangles_.push_back(patch.triangle);
+  }
+  for (std::size_t i = 0; i < spheres; ++i) first_[i + 1] += first_[i];
 }
 
 bool CoveredMesh::is_closed() const {

@@ -21,8 +21,8 @@ class MeshInside;
 class PatchTrees;
 }  // namespace internal
 
-// A mesh and spheres that cover it, with the triangles that meet each sphere. Immutable; threads
-// may share it. The mesh is judged as stored, as by MeshTree.
+// A mesh and spheres that cover it, with the triangles shared out among the spheres. Immutable;
+// threads may share it. The mesh is judged as stored, as by MeshTree.
 //
 // Inside. A mesh without a boundary (every directed edge, by positions, is met by as many in the
 // other direction) has an inside: the points of winding number other than zero. Each connected
@@ -38,7 +38,8 @@ class CoveredMesh {
 
   const SphereTree& cover() const { return *cover_; }
   const MeshTree& mesh() const { return mesh_; }
-  // Those that meet a sphere of cover().spheres(), sorted; a few may miss it by rounding.
+  // Those that a sphere of cover().spheres() stands for, at least in part, sorted. Every point of
+  // a triangle lies in a sphere under which the triangle is listed.
   std::span<const std::int32_t> triangles_under(std::int32_t sphere) const {
     const auto i = static_cast<std::size_t>(sphere);
     const auto first = static_cast<std::size_t>(first_[i]);
@@ -63,9 +64,9 @@ class CoveredMesh {
 // Whether two meshes have a point in common, of their triangles or of their insides.
 //
 // Never false if they have one in exact arithmetic under exactly the given poses. Proof: let a
-// triangle s of a and a triangle t of b share the point p. p lies in a sphere of a's cover and in
-// one of b's; these two touch, so the traversal meets the pair; s meets the first and is listed
-// under it, t under the second, and so the two are tested. If no triangles touch, each component
+// triangle s of a and a triangle t of b share the point p. p lies in a sphere under which s is
+// listed and in one under which t is; these two touch, so the traversal meets the pair, and s and t
+// are tested. If no triangles touch, each component
 // lies wholly inside the other mesh or wholly outside, one point tells which, and if it is inside,
 // it is in spheres of both.
 // If it is true, the exact gap is at most collision_slack() of the covers but for a rest, which

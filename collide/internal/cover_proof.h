@@ -4,31 +4,28 @@
 #include "collide/mesh_tree.h"
 #include "spheretree/sphere.h"
 
+#include <Eigen/Geometry>
+
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace spherule::internal {
 
-// Lists of whole numbers, one after the other.
-struct Lists {
-  std::vector<std::int32_t> first;  // list i is values[first[i]] .. values[first[i + 1] - 1]
-  std::vector<std::int32_t> values;
-
-  std::span<const std::int32_t> of(std::size_t i) const {
-    return std::span(values).subspan(static_cast<std::size_t>(first[i]),
-                                     static_cast<std::size_t>(first[i + 1] - first[i]));
-  }
+// The part of a triangle that a ball stands for: it lies within the ball and within the box, in
+// exact arithmetic.
+struct Patch {
+  std::int32_t ball;
+  std::int32_t triangle;
+  Eigen::AlignedBox3d box;
 };
 
-// For every ball the triangles that meet it, sorted. Some may be listed that miss it by rounding.
-// Throws Error if there are more than 2^31 - 1 in all.
-Lists triangles_meeting(const MeshTree& mesh, std::span<const Sphere> balls);
-
-// Throws Error unless the balls are proved to cover every triangle of the mesh; `triangles` is what
-// triangles_meeting() returns for them. Triangles are halved until each piece lies in one ball,
-// with outward rounding; the proof is given up, and the triangle named, after so many pieces that
-// only a gap, or balls that meet in a point without any overlap, can be the cause.
-void prove_cover(const MeshTree& mesh, std::span<const Sphere> balls, const Lists& triangles);
+// Shares every triangle of the mesh out among balls that contain it, by one patch for a ball and a
+// triangle at most, sorted by ball and triangle: every point of the triangle is in a patch. Each
+// triangle is halved until every piece lies in one ball, with outward rounding, and goes to the
+// smallest such ball. Throws Error, naming a triangle, if the balls do not cover it; also where the
+// proof takes so many pieces that only a gap can be the cause, or balls that meet in a point
+// without any overlap; and if there are more than 2^30 patches.
+std::vector<Patch> share_out(const MeshTree& mesh, std::span<const Sphere> balls);
 
 }  // namespace spherule::internal

@@ -2,8 +2,6 @@
 #pragma once
 
 #include "collide/internal/cover_proof.h"
-#include "collide/mesh_tree.h"
-#include "spheretree/sphere.h"
 
 #include <array>
 #include <cassert>
@@ -21,17 +19,17 @@ struct PatchNode {
   std::int32_t child;  // of two, the second follows; or ~i for triangle i
 };
 
-// What a mesh is within each of the balls of its cover: a binary tree of boxes over the triangles
-// that meet the ball, each cut off at the ball's box. Every box encloses, in exact arithmetic, what
-// is below it of triangles and ball.
+// For each ball of a cover a binary tree of boxes over its patches. Every box encloses the patches
+// below it in exact arithmetic.
 class PatchTrees {
  public:
-  PatchTrees(const MeshTree& mesh, std::span<const Sphere> balls, const Lists& triangles);
+  // The patches sorted by ball, as share_out() returns them.
+  PatchTrees(std::span<const Patch> patches, std::size_t balls);
 
   // Edges on the longest way from a root: halving fewer than 2^31 triangles ends after so many.
   static constexpr std::size_t kMaxDepth = 31;
 
-  // Calls visit(triangle) for those below a ball's root that no box above them keeps off,
+  // Calls visit(triangle) for the ball's patches that no box above them keeps off,
   // reject(box) being true for a box that does; until `visit` returns true, which is then the
   // answer.
   template <class Reject, class Visit>

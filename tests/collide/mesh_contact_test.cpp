@@ -273,20 +273,28 @@ TEST(MeshContact, AnOpenMeshHasNoInside) {
   EXPECT_TRUE(collides(flapped, Pose(), inner, Pose()));
 }
 
-TEST(MeshContact, ListsWhatMeetsASphere) {
+TEST(MeshContact, EveryPointIsInASphereThatListsItsTriangle) {
   Random random(7);
   const TriangleMesh mesh = random_mesh(random, 40, 0.5);
-  const CoveredMesh covered = surface_covered(mesh, 1);
-  for (std::size_t i = 0; i < covered.cover().spheres().size(); ++i) {
-    const Sphere& ball = covered.cover().spheres()[i];
-    const auto listed = covered.triangles_under(static_cast<std::int32_t>(i));
-    ASSERT_TRUE(std::is_sorted(listed.begin(), listed.end()));
-    for (std::size_t j = 0; j < mesh.triangles.size(); ++j) {
-      const Real square = squared_distance_to_triangle(exact<Real>(ball.center),
-                                                       placed<Real>(Pose(), corners_of(mesh, j)));
-      const bool meets = square <= Real(ball.radius) * Real(ball.radius);
-      ASSERT_EQ(std::binary_search(listed.begin(), listed.end(), static_cast<std::int32_t>(j)),
-                meets);
+  std::vector<Sphere> balls = surface_balls(mesh, 1);
+  const std::vector<Sphere> finer = surface_balls(mesh, 3);
+  balls.insert(balls.end(), finer.begin(), finer.end() - 500);
+  const CoveredMesh covered(mesh, tree_of(balls));
+  for (std::int32_t triangle = 0; triangle < 40; ++triangle) {
+    const auto [a, b, c] = corners_of(mesh, static_cast<std::size_t>(triangle));
+    for (int k = 0; k < 200; ++k) {
+      const double v = random.whole(0, 4) / 4.0 * random.uniform(0.0, 1.0);
+      const double w = (1.0 - v) * random.whole(0, 4) / 4.0;
+      const Vector<Real> p = exact<Real>(a + v * (b - a) + w * (c - a));
+      bool found = false;
+      for (std::size_t i = 0; i < balls.size() && !found; ++i) {
+        const auto listed = covered.triangles_under(static_cast<std::int32_t>(i));
+        ASSERT_TRUE(std::is_sorted(listed.begin(), listed.end()));
+        const Real limit = balls[i].radius * (1.0 + 1e-14);  // p is rounded
+        found = std::binary_search(listed.begin(), listed.end(), triangle) &&
+                squared_distance(p, exact<Real>(balls[i].center)) <= limit * limit;
+      }
+      ASSERT_TRUE(found);
     }
   }
 }
