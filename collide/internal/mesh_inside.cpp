@@ -91,16 +91,6 @@ std::vector<char> closed_components(const std::vector<std::array<int, 3>>& trian
   return closed;
 }
 
-// Lengths in (0, 1]; directions in which no drawing has edges.
-const std::array<Vector3d, 8> kDirections = {{{0.2876543, 0.5310987, 0.7912345},
-                                              {-0.6123457, 0.3987654, 0.6789012},
-                                              {0.8345679, -0.4210987, 0.3487651},
-                                              {0.1234567, 0.9387654, -0.3012345},
-                                              {-0.4567891, -0.7654321, 0.4456789},
-                                              {0.5678913, -0.2345671, -0.7823456},
-                                              {-0.9012347, 0.1765432, -0.3876543},
-                                              {-0.2109876, -0.6543213, -0.7198765}}};
-
 // The winding number, if this ray can tell.
 std::optional<int> crossings(const MeshTree& mesh, const std::vector<char>& counts,
                              const Ray& ray) {
@@ -157,7 +147,7 @@ bool MeshInside::contains(const MeshTree& tree, const Vector3d& point, double er
   if (!has_inside_) return false;
   const Sphere around = tree.tree().ball(0);
   if (distance_lower(around.center, point) > add_up(around.radius, error)) return false;
-  for (const Vector3d& direction : kDirections) {
+  for (const Vector3d& direction : kRayDirections) {
     const std::optional<int> winding = crossings(tree, is_solid_, Ray(point, error, direction));
     if (winding) return *winding != 0;
   }

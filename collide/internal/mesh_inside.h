@@ -4,11 +4,23 @@
 #include "collide/mesh_tree.h"
 #include "spheretree/triangle_mesh.h"
 
-#include <cstddef>
+#include <array>
 #include <span>
 #include <vector>
 
 namespace spherule::internal {
+
+// Of the rays that are tried in turn: directions in which no drawing has edges, of lengths in (0,
+// 1].
+inline const std::array<Eigen::Vector3d, 8> kRayDirections = {
+    {{0.2876543, 0.5310987, 0.7912345},
+     {-0.6123457, 0.3987654, 0.6789012},
+     {0.8345679, -0.4210987, 0.3487651},
+     {0.1234567, 0.9387654, -0.3012345},
+     {-0.4567891, -0.7654321, 0.4456789},
+     {0.5678913, -0.2345671, -0.7823456},
+     {-0.9012347, 0.1765432, -0.3876543},
+     {-0.2109876, -0.6543213, -0.7198765}}};
 
 // The inside of a mesh and its connected parts. Triangles are connected where they share a vertex
 // position. A component is closed if every directed edge, by positions, is met by as many in the
