@@ -88,7 +88,7 @@ TEST(Ray, KeepsTheBallsItMeets) {
   Random random(2);
   int met = 0, missed = 0;
   for (int i = 0; i < 4000; ++i) {
-    const Vector3d direction = kRayDirections[static_cast<std::size_t>(random.whole(0, 7))];
+    const Vector3d direction = Vector3d::Unit(random.whole(0, 2));
     const Vector3d point = random.point(1.0);
     // A ball that the ray touches, up to rounding, from within or without, or starts behind.
     const double along = random.uniform(-0.5, 1.0);
