@@ -41,7 +41,7 @@ enum class TriangleContact {
 // a normal, edges by a cross product, coplanar ones by the normals of their edges in the plane, and
 // any by the direction from a corner to the nearest point of the other triangle. That direction is
 // off by some u L / gap, so where nothing else separates (corner against corner of needles, say)
-// the doubt reaches to about sqrt(u) L; elsewhere it is a few pads wide.
+// the doubt may reach to about sqrt(u) L; elsewhere it is about a pad wide.
 TriangleContact triangle_contact(const Triangle& a, const Triangle& b, double pad,
                                  double scene_size);
 
