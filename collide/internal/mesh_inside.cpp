@@ -39,7 +39,7 @@ std::vector<std::array<int, 3>> corners_by_position(const TriangleMesh& mesh) {
   return result;
 }
 
-// Of every vertex: the one that stands for its component.
+// Which vertex stands for the component of a vertex.
 class Components {
  public:
   explicit Components(std::size_t count) : up_(count) { std::iota(up_.begin(), up_.end(), 0); }
@@ -64,7 +64,8 @@ struct Edge {
   int turn;       // +1 from low to high, -1 back
 };
 
-// The triangles split the edges among them in both directions evenly.
+// Of every vertex that stands for a component: 1 if the triangles pass each edge as often in both
+// directions.
 std::vector<char> closed_components(const std::vector<std::array<int, 3>>& triangles,
                                     Components& components, std::size_t vertices) {
   std::vector<Edge> edges;
