@@ -68,11 +68,12 @@ class CoveredMesh {
 // in a sphere under which s is listed and in one under which t is; these two touch, so the
 // traversal meets the pair, and s and t are tested. If no triangles touch, each component lies
 // wholly inside the other mesh or wholly outside; one point tells which, and if it is inside, it is
-// in spheres of both, so that two of them touch. If it is true, the exact gap is some units in the
-// last place of the scene: in our tests at most collision_slack() of the covers, and 1e-9 of the
-// scene between needles; internal/triangle_pair.h says why. Equal for every tree over the same
-// spheres, and for swapped arguments but where the gap is below that. Neither throws nor allocates,
-// with the exception that collides() of sphere trees has.
+// in spheres of both, so that two of them touch.
+// If it is true, the exact gap is some units in the last place of the scene: in our tests at most
+// collision_slack() of the covers, and 1e-9 of the scene between needles; internal/triangle_pair.h
+// says why. Equal for every tree over the same spheres, and for swapped arguments but where the gap
+// is below that.
+// Neither throws nor allocates, with the exception that collides() of sphere trees has.
 bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
               const Pose& world_from_b) noexcept;
 
