@@ -9,6 +9,7 @@
 #include "collide/internal/traversal.h"
 #include "spheretree/error.h"
 
+#include <optional>
 #include <utility>
 
 namespace spherule {
@@ -24,26 +25,34 @@ class FindTriangles {
  public:
   static constexpr bool kWantsGaps = false;
 
-  FindTriangles(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
-                const internal::ListedTriangles& triangles)
-      : a_(a), b_(b), balls_(a, b, pose), triangles_(triangles) {}
+  FindTriangles(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
+                const Pose& world_from_b, const RelativePose& pose)
+      : a_(a),
+        b_(b),
+        world_from_a_(world_from_a),
+        world_from_b_(world_from_b),
+        pose_(pose),
+        balls_(a.cover(), b.cover(), pose) {}
 
   bool afford(const OpenedPair&, const auto&) const noexcept { return true; }
   bool leaves(NodePair pair) noexcept {
     if (!balls_.touches(pair)) return true;
-    spheres_touch_ = true;
-    found_ = triangles_.touch(a_.sphere_index(pair.index(0)), b_.sphere_index(pair.index(1)));
+    if (!triangles_) triangles_.emplace(a_, world_from_a_, b_, world_from_b_, pose_);
+    found_ = triangles_->touch(a_.cover().sphere_index(pair.index(0)),
+                               b_.cover().sphere_index(pair.index(1)));
     return !found_;
   }
-  bool found() const { return found_; }
-  bool spheres_touch() const { return spheres_touch_; }
+  // After the traversal.
+  bool found() const { return found_ || (triangles_ && triangles_->contained()); }
 
  private:
-  const SphereTree& a_;
-  const SphereTree& b_;
+  const CoveredMesh& a_;
+  const CoveredMesh& b_;
+  const Pose& world_from_a_;
+  const Pose& world_from_b_;
+  const RelativePose& pose_;
   internal::BallLeaves balls_;
-  const internal::ListedTriangles& triangles_;
-  bool spheres_touch_ = false;
+  std::optional<internal::ListedTriangles> triangles_;  // once two spheres touch
   bool found_ = false;
 };
 
@@ -72,10 +81,9 @@ bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh&
               const Pose& world_from_b) noexcept {
   const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
   if (!pose.may_touch(a.cover().ball(0), b.cover().ball(0))) return false;
-  const internal::ListedTriangles triangles(a, world_from_a, b, world_from_b, pose);
-  FindTriangles query(a.cover(), b.cover(), pose, triangles);
+  FindTriangles query(a, world_from_a, b, world_from_b, pose);
   traverse(a.cover(), b.cover(), pose, query);
-  return query.found() || (query.spheres_touch() && triangles.contained());
+  return query.found();
 }
 
 bool triangles_touch(const CoveredMesh& a, std::int32_t sphere_a, const Pose& world_from_a,
