@@ -5,6 +5,7 @@
 #include "collide/collide.h"
 #include "collide/internal/traversal.h"
 #include "collide/mechanism_check.h"
+#include "collide/mesh_contact.h"
 #include "collide/mesh_tree.h"
 #include "collide/pair_cache.h"
 #include "collide/sweep.h"
@@ -17,6 +18,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace spherule::test {
@@ -66,6 +68,28 @@ TEST(Allocation, SweepsClearancesAndTheCacheTakeNoMemory) {
   EXPECT_GT(near, hits);
 }
 
+TEST(Allocation, ConfirmationTakesNoMemory) {
+  const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  TriangleMesh small = mesh;
+  for (Eigen::Vector3d& v : small.vertices) v *= 0.05;
+  const auto ball = [](double radius) {
+    const Sphere sphere{Eigen::Vector3d::Zero(), radius};
+    return std::make_shared<const SphereTree>(build_tree(std::span(&sphere, 1)));
+  };
+  const CoveredMesh a(mesh, ball(1.1));
+  const CoveredMesh b(small, ball(0.1));
+  Random random(3);
+  int hits = 0;
+  std::vector<Pose> poses;
+  for (int i = 0; i < 1000; ++i) poses.push_back(random.pose(1.2));
+  const int before = allocations;
+  for (const Pose& pose : poses) hits += collides(a, Pose(), b, pose);
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(hits, 0);
+  EXPECT_LT(hits, 1000);
+}
+
 TEST(Allocation, AMechanismsCheckTakesNoMemory) {
   Random random(2);
   const auto tree = [&] {
@@ -84,10 +108,17 @@ TEST(Allocation, AMechanismsCheckTakesNoMemory) {
     ++asked;
     return false;
   };
-  const int before = allocations;
+  int before = 0;
   for (int i = 0; i < 1000; ++i) {
     const std::array<double, 2> variables = {random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)};
     hits += check.collides(variables, scratch, confirm) ? 1 : 0;
+    std::array<const double*, MechanismCheck::kBlock> block;
+    block.fill(variables.data());
+    check.collides(block, scratch, [](int, const MechanismContact&) { return false; });
+    const std::array<double, 2> to = {variables[0] + 0.01, variables[1]};
+    check.check_edge(variables, to, scratch, {},
+                     [](std::span<const double>, const MechanismContact&) { return false; });
+    if (i == 0) before = allocations;  // an edge warms the scratch up
   }
   EXPECT_EQ(allocations, before);
   EXPECT_GT(hits, 0);

@@ -6,6 +6,7 @@
 #include "collide/internal/relative_pose.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
+#include "tests/collide/exact_triangles.h"
 #include "tests/collide/trees.h"
 
 #include <gtest/gtest.h>
@@ -16,53 +17,11 @@
 namespace spherule::test {
 namespace {
 
-using Triangle = std::array<Vector<Real>, 3>;
-
-Vector<Real> difference(const Vector<Real>& a, const Vector<Real>& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Real dot(const Vector<Real>& a, const Vector<Real>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Real segment_distance(const Vector<Real>& p, const Vector<Real>& a, const Vector<Real>& b) {
-  const Vector<Real> ab = difference(b, a);
-  const Real length = dot(ab, ab);
-  Real t = length > 0 ? Real(dot(difference(p, a), ab) / length) : Real(0);
-  t = t < 0 ? Real(0) : t > 1 ? Real(1) : t;
-  return sqrt(squared_distance(p, {a[0] + t * ab[0], a[1] + t * ab[1], a[2] + t * ab[2]}));
-}
-
-// The foot on the plane where it lies inside the triangle, else the nearest edge.
-Real triangle_distance(const Vector<Real>& p, const Triangle& triangle) {
-  const Vector<Real> ab = difference(triangle[1], triangle[0]);
-  const Vector<Real> ac = difference(triangle[2], triangle[0]);
-  const Vector<Real> ap = difference(p, triangle[0]);
-  const Real bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac);
-  const Real determinant = bb * cc - bc * bc;
-  if (determinant > 0) {
-    const Real v = (cc * dot(ap, ab) - bc * dot(ap, ac)) / determinant;
-    const Real w = (bb * dot(ap, ac) - bc * dot(ap, ab)) / determinant;
-    if (v >= 0 && w >= 0 && v + w <= 1) {
-      return sqrt(squared_distance(
-          ap, {v * ab[0] + w * ac[0], v * ab[1] + w * ac[1], v * ab[2] + w * ac[2]}));
-    }
-  }
-  Real least = segment_distance(p, triangle[0], triangle[1]);
-  for (const Real& edge : {segment_distance(p, triangle[1], triangle[2]),
-                           segment_distance(p, triangle[2], triangle[0])}) {
-    if (edge < least) least = edge;
-  }
-  return least;
-}
-
 Real exact_distance(const Sphere& ball, const Pose& world_from_a,
                     const std::array<Eigen::Vector3d, 3>& corners, const Pose& world_from_b) {
-  Triangle triangle;
-  for (std::size_t i = 0; i < 3; ++i) {
-    triangle[i] = transform(world_from_b, exact<Real>(corners[i]));
-  }
-  return triangle_distance(transform(world_from_a, exact<Real>(ball.center)), triangle);
+  const Real square = squared_distance_to_triangle(
+      transform(world_from_a, exact<Real>(ball.center)), placed<Real>(world_from_b, corners));
+  return sqrt(square);
 }
 
 // Random triangles, or needles where `thin` is small.

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/internal/patch_trees.h"
+#include "collide/internal/relative_pose.h"
+#include "collide/internal/triangle_pair.h"
+#include "collide/mesh_contact.h"
+
+namespace spherule::internal {
+
+// Two placed meshes: contact of the triangles under two of their spheres, and containment. Refers
+// to its arguments.
+//
+// Corners. They are compared in the world's axes about the point half way between the origins of
+// the two frames: x = Ra x' + d / 2 and y = Rb y' - d / 2, so that X - Y is the offset of
+// relative_pose.h. The products err by 65.2 u |x'| and 65.2 u |y'|, the rounding of d by u |d|, the
+// two sums by u (|x'| + |y'| + |d|): 66.2 u (|x'| + |y'|) + 2 u |d| < 68 u S. Every corner lies in
+// a ball of its cover, so that |x'| + |y'| + |d| <= S. That is what triangle_contact() asks for,
+// with pad = leaf_pad().
+//
+// Images of points in the other mesh's frame err by less than 136 u S. So do the balls and
+// triangles that keep off boxes and triangles before; sums of lengths up to S, and projections in
+// units of the axis, add less than 24 u S. kImagePad = 160 u S covers both.
+class ListedTriangles {
+ public:
+  ListedTriangles(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
+                  const Pose& world_from_b, const RelativePose& pose);
+
+  // False only if no triangle under the one sphere has a point in common, within both balls, with
+  // a triangle under the other.
+  bool touch(std::int32_t sphere_a, std::int32_t sphere_b) const;
+
+  // False only if no component of one mesh lies inside the other; the surfaces must not touch.
+  bool contained() const;
+
+ private:
+  static constexpr double kImagePad = 160.0 * kUnitRoundoff;
+
+  // One of the two meshes, with the ways to the frame of the corners and from the other mesh's.
+  struct Side {
+    // In the frame of the corners.
+    Triangle placed(std::int32_t triangle) const;
+    Eigen::Vector3d image_of(const Eigen::Vector3d& point_of_other) const;
+    Sphere ball(std::int32_t sphere) const {
+      return mesh.cover().spheres()[static_cast<std::size_t>(sphere)];
+    }
+
+    const CoveredMesh& mesh;
+    const PatchTrees& patches;
+    const Eigen::Matrix3d& rotation;
+    Eigen::Vector3d shift;
+    FrameChange from_other;
+  };
+
+  // Both with the larger patch first, whose tree is searched for each triangle of the other.
+  bool touch(const Side& large, std::int32_t large_sphere, const Side& small,
+             std::int32_t small_sphere) const;
+  bool holds_a_component(const Side& side, const CoveredMesh& other) const;
+
+  Side a_;
+  Side b_;
+  double scene_size_;
+  double corner_pad_;
+  double image_pad_;
+};
+
+}  // namespace spherule::internal

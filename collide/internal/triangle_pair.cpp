@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/internal/triangle_pair.h"
+
+#include "spheretree/point_triangle.h"
+#include "spheretree/rounding.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kOverlap = 400.0 * kUnitRoundoff;
+// Of the square of an axis. Far above the 2^-1075 that a product may lose to underflow.
+constexpr double kShortestAxis = 0x1p-600;
+
+// Distance of the projections on `axis`, in units of its length; negative where they overlap.
+double gap_along(const Vector3d& axis, const Triangle& a, const Triangle& b) {
+  const double a0 = axis.dot(a[0]), a1 = axis.dot(a[1]), a2 = axis.dot(a[2]);
+  const double b0 = axis.dot(b[0]), b1 = axis.dot(b[1]), b2 = axis.dot(b[2]);
+  const double low_a = std::min(std::min(a0, a1), a2), high_a = std::max(std::max(a0, a1), a2);
+  const double low_b = std::min(std::min(b0, b1), b2), high_b = std::max(std::max(b0, b1), b2);
+  return std::max(low_a - high_b, low_b - high_a);
+}
+
+bool separates(const Vector3d& axis, double gap, double pad) {
+  const double square = axis.squaredNorm();
+  return gap > 0.0 && square >= kShortestAxis && gap * gap > square * (pad * pad);
+}
+
+std::array<Vector3d, 3> edges_of(const Triangle& t) {
+  return {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+}
+
+double longest(const std::array<Vector3d, 3>& edges) {
+  return std::sqrt(
+      std::max({edges[0].squaredNorm(), edges[1].squaredNorm(), edges[2].squaredNorm()}));
+}
+
+// By the axes that are needed only where the generic ones leave a doubt.
+bool specially_apart(const Triangle& a, const Triangle& b, double pad) {
+  const auto apart_along = [&](const Vector3d& axis) {
+    return separates(axis, gap_along(axis, a, b), pad);
+  };
+  for (const auto& [one, other] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+    const std::array<Vector3d, 3> edges = edges_of(*one);
+    const Vector3d normal = edges[0].cross(edges[1]);
+    for (const Vector3d& edge : edges) {
+      if (apart_along(normal.cross(edge))) return true;
+    }
+    for (const Vector3d& corner : *one) {
+      const auto& [p, q, r] = *other;
+      if (apart_along(corner - point_triangle_distance(corner, p, q, r).closest)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+TriangleContact triangle_contact(const Triangle& a, const Triangle& b, double pad,
+                                 double scene_size) {
+  double widest = -std::numeric_limits<double>::infinity();
+  const auto apart_along = [&](const Vector3d& axis) {
+    const double gap = gap_along(axis, a, b);
+    widest = std::max(widest, gap);
+    return separates(axis, gap, pad);
+  };
+  const std::array<Vector3d, 3> edges_a = edges_of(a);
+  if (apart_along(edges_a[0].cross(edges_a[1]))) return TriangleContact::kApart;
+  const std::array<Vector3d, 3> edges_b = edges_of(b);
+  if (apart_along(edges_b[0].cross(edges_b[1]))) return TriangleContact::kApart;
+  for (const Vector3d& edge_a : edges_a) {
+    for (const Vector3d& edge_b : edges_b) {
+      if (apart_along(edge_a.cross(edge_b))) return TriangleContact::kApart;
+    }
+  }
+  const double length = std::max(longest(edges_a), longest(edges_b));
+  if (widest < -(kOverlap * scene_size * scene_size * length + kUnderflow)) {
+    return TriangleContact::kTouch;
+  }
+  return specially_apart(a, b, pad) ? TriangleContact::kApart : TriangleContact::kDoubt;
+}
+
+}  // namespace spherule::internal

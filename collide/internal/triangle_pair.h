@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+
+namespace spherule::internal {
+
+using Triangle = std::array<Eigen::Vector3d, 3>;
+
+enum class TriangleContact {
+  kApart,  // proved: no point in common
+  kTouch,  // proved: a point in common
+  kDoubt,  // neither
+};
+
+// Contact of two placed triangles, which may be degenerate (needles, segments, points), both in one
+// frame. Swapping them does not change the answer.
+//
+// The triangles that are judged are the exact ones. With corners X of one and Y of the other, x and
+// y as given here, u = 2^-53 and S = scene_size, the caller sees to it that
+//     |(X - Y) - (x - y)| <= 68 u S,   |X - Y| <= S,   |x| + |y| <= S (1 + 100 u),
+// and that pad >= 76 u S + 2^-530.
+//
+// Apart. A separating axis n is any three numbers, however they were found. The computed gap of the
+// projections errs by 3 u |n| S for the dot products, u |n| S for the difference and 68 u |n| S for
+// the corners: 72 u |n| S. It is compared with |n| pad; what is left of the pad covers the 4 u of
+// that comparison. Axes so short that their squares might underflow prove nothing.
+//
+// Touching. Two triangles in planes that are not parallel have a point in common if they overlap
+// along both normals and the nine cross products of their edges: the normals of the faces of their
+// Minkowski difference are among these. Overlap along a normal, which sees its own triangle as one
+// point, excludes parallel planes. Here the exact axes N count. Edges err by 2 * 68 u S + u L <=
+// 138 u S, where L <= S is the longest; so |n - N| <= 138 u S (2 L) + 4 u L^2 + ... <= 282 u S L,
+// and the projections on N differ from those computed by that times |X - Y| <= S and 72 u |n| S
+// with |n| <= L^2 <= L S more: 354 u S^2 L. kOverlap = 400 leaves the rest. A zero axis never
+// overlaps by more than that, so degenerate triangles are at most in doubt.
+//
+// Doubt. Triangles that are apart by clearly more than the pad are found apart by an axis: faces by
+// a normal, edges by a cross product, coplanar ones by the normals of their edges in the plane, and
+// any by the direction from a corner to the nearest point of the other triangle. That direction is
+// off by some u L / gap, so where nothing else separates (corner against corner of needles, say)
+// the doubt may reach to about sqrt(u) L; elsewhere it is about a pad wide.
+TriangleContact triangle_contact(const Triangle& a, const Triangle& b, double pad,
+                                 double scene_size);
+
+}  // namespace spherule::internal

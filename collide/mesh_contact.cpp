@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/mesh_contact.h"
+
+#include "collide/internal/ball_leaves.h"
+#include "collide/internal/cover_proof.h"
+#include "collide/internal/listed_triangles.h"
+#include "collide/internal/mesh_inside.h"
+#include "collide/internal/patch_trees.h"
+#include "collide/internal/traversal.h"
+#include "spheretree/error.h"
+
+#include <optional>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+std::shared_ptr<const SphereTree> not_null(std::shared_ptr<const SphereTree> cover) {
+  if (!cover) throw Error("cover", "there is none");
+  return cover;
+}
+
+// Policy of the traversal: ends at the first two spheres whose triangles touch.
+class FindTriangles {
+ public:
+  static constexpr bool kWantsGaps = false;
+
+  FindTriangles(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
+                const Pose& world_from_b, const RelativePose& pose)
+      : a_(a),
+        b_(b),
+        world_from_a_(world_from_a),
+        world_from_b_(world_from_b),
+        pose_(pose),
+        balls_(a.cover(), b.cover(), pose) {}
+
+  bool afford(const OpenedPair&, const auto&) const noexcept { return true; }
+  bool leaves(NodePair pair) noexcept {
+    if (!balls_.touches(pair)) return true;
+    if (!triangles_) triangles_.emplace(a_, world_from_a_, b_, world_from_b_, pose_);
+    found_ = triangles_->touch(a_.cover().sphere_index(pair.index(0)),
+                               b_.cover().sphere_index(pair.index(1)));
+    return !found_;
+  }
+  // After the traversal.
+  bool found() const { return found_ || (triangles_ && triangles_->contained()); }
+
+ private:
+  const CoveredMesh& a_;
+  const CoveredMesh& b_;
+  const Pose& world_from_a_;
+  const Pose& world_from_b_;
+  const RelativePose& pose_;
+  internal::BallLeaves balls_;
+  std::optional<internal::ListedTriangles> triangles_;  // once two spheres touch
+  bool found_ = false;
+};
+
+}  // namespace
+
+CoveredMesh::CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereTree> cover)
+    : cover_(not_null(std::move(cover))),
+      mesh_(mesh),
+      inside_(std::make_shared<const internal::MeshInside>(mesh)) {
+  const std::size_t spheres = cover_->spheres().size();
+  const std::vector<internal::Patch> patches = internal::share_out(mesh_, cover_->spheres());
+  patches_ = std::make_shared<const internal::PatchTrees>(patches, spheres);
+  first_.assign(spheres + 1, 0);
+  for (const internal::Patch& patch : patches) {
+    ++first_[static_cast<std::size_t>(patch.ball) + 1];
+    triangles_.push_back(patch.triangle);
+  }
+  for (std::size_t i = 0; i < spheres; ++i) first_[i + 1] += first_[i];
+}
+
+bool CoveredMesh::is_closed() const {
+  return inside_->is_closed();
+}
+
+bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
+              const Pose& world_from_b) noexcept {
+  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  if (!pose.may_touch(a.cover().ball(0), b.cover().ball(0))) return false;
+  FindTriangles query(a, world_from_a, b, world_from_b, pose);
+  traverse(a.cover(), b.cover(), pose, query);
+  return query.found();
+}
+
+bool triangles_touch(const CoveredMesh& a, std::int32_t sphere_a, const Pose& world_from_a,
+                     const CoveredMesh& b, std::int32_t sphere_b,
+                     const Pose& world_from_b) noexcept {
+  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  return internal::ListedTriangles(a, world_from_a, b, world_from_b, pose)
+      .touch(sphere_a, sphere_b);
+}
+
+bool contains_component(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
+                        const Pose& world_from_b) noexcept {
+  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  return internal::ListedTriangles(a, world_from_a, b, world_from_b, pose).contained();
+}
+
+}  // namespace spherule

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Confirmation on the triangles: sphere trees find where two meshes may touch, their triangles
+// decide. What the spheres call free stays free; what they call a collision becomes as exact as the
+// meshes.
+
+#include "collide/collide.h"
+#include "collide/mesh_tree.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+namespace internal {
+class MeshInside;
+class PatchTrees;
+}  // namespace internal
+
+// A mesh and spheres that cover it, with the triangles shared out among the spheres. Immutable;
+// threads may share it. The mesh is judged as stored, as by MeshTree.
+//
+// Inside. A mesh without a boundary (every directed edge, by positions, is met by as many in the
+// other direction) has an inside: the points of winding number other than zero. Each connected
+// component is judged by itself: one that is open, or whose triangles are not turned consistently,
+// has no inside. What lies within such a one without touching it is free.
+class CoveredMesh {
+ public:
+  // Proves that the spheres cover every triangle, and throws Error, naming one, where that fails.
+  // For containment they have to cover the inside as well, as covers of the simplifier do; that is
+  // not checked: where they leave a hollow, a body in that hollow is free.
+  // Throws Error too for a mesh that validate() refuses and if `cover` is missing.
+  CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereTree> cover);
+
+  const SphereTree& cover() const { return *cover_; }
+  const MeshTree& mesh() const { return mesh_; }
+  // Those that a sphere of cover().spheres() stands for, at least in part, sorted. Every point of
+  // a triangle lies in a sphere under which the triangle is listed.
+  std::span<const std::int32_t> triangles_under(std::int32_t sphere) const {
+    const auto i = static_cast<std::size_t>(sphere);
+    const auto first = static_cast<std::size_t>(first_[i]);
+    return std::span(triangles_).subspan(first, static_cast<std::size_t>(first_[i + 1]) - first);
+  }
+  // Whether all components have an inside.
+  bool is_closed() const;
+
+  // For queries.
+  const internal::MeshInside& inside() const { return *inside_; }
+  const internal::PatchTrees& patches() const { return *patches_; }
+
+ private:
+  std::shared_ptr<const SphereTree> cover_;
+  MeshTree mesh_;
+  std::vector<std::int32_t> first_;  // of each sphere in triangles_, and the end
+  std::vector<std::int32_t> triangles_;
+  std::shared_ptr<const internal::MeshInside> inside_;
+  std::shared_ptr<const internal::PatchTrees> patches_;
+};
+
+// Whether two meshes have a point in common, of their triangles or of their insides.
+//
+// Never false if they have one in exact arithmetic under exactly the given poses, and the spheres
+// cover the insides. Proof: let a triangle s of a and a triangle t of b share the point p. p lies
+// in a sphere under which s is listed and in one under which t is; these two touch, so the
+// traversal meets the pair, and s and t are tested. If no triangles touch, each component lies
+// wholly inside the other mesh or wholly outside; one point tells which, and if it is inside, it is
+// in spheres of both, so that two of them touch.
+// If it is true, the exact gap is some units in the last place of the scene: in our tests at most
+// collision_slack() of the covers, and 1e-9 of the scene between needles; internal/triangle_pair.h
+// says why. Equal for every tree over the same spheres, and for swapped arguments but where the gap
+// is below that.
+// Neither throws nor allocates, with the exception that collides() of sphere trees has.
+bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
+              const Pose& world_from_b) noexcept;
+
+// The two parts of that answer, for other ways to find the spheres that touch: call the first for
+// every pair of spheres that touch until it is true, and the second if it never was.
+//
+// False only if no triangle under the one sphere touches, within both spheres, one under the other.
+bool triangles_touch(const CoveredMesh& a, std::int32_t sphere_a, const Pose& world_from_a,
+                     const CoveredMesh& b, std::int32_t sphere_b,
+                     const Pose& world_from_b) noexcept;
+// Whether a component of one mesh lies inside the other, given that no triangles touch.
+bool contains_component(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
+                        const Pose& world_from_b) noexcept;
+
+}  // namespace spherule
