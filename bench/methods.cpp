@@ -47,6 +47,8 @@ std::vector<Method> make_methods(const Workload& workload) {
                      make_tree_checker(workload, TreeMode::kSingle), spheres, false});
   methods.push_back({"spherule-batch", "sphere trees, many configurations a call",
                      make_tree_checker(workload, TreeMode::kBatch), spheres, false});
+  methods.push_back({"spherule-confirmed", "the first, contacts confirmed on the triangles",
+                     make_tree_checker(workload, TreeMode::kConfirmed), spheres, false});
   if (best_instruction_set() == InstructionSet::kAvx512) {
     methods.push_back({"spherule-batch-avx2", "the same without AVX-512",
                        make_tree_checker(workload, TreeMode::kBatch, InstructionSet::kAvx2),

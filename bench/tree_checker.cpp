@@ -43,15 +43,22 @@ class BatchTreeChecker : public Checker {
 
 }  // namespace
 
-RobotChecker make_robot_checker(const Workload& workload, InstructionSet instructions) {
+RobotChecker make_robot_checker(const Workload& workload, InstructionSet instructions,
+                                bool confirmed) {
   RobotModel robot = workload.robot;
   RobotCheckerOptions options{.instructions = instructions};
+  const auto add_mesh = [&](const Part& part) {
+    if (!confirmed) return;
+    options.meshes.push_back(std::make_shared<const CoveredMesh>(part.mesh, part.tree));
+  };
   std::vector<PlacedTree> obstacles;
   for (const Obstacle& obstacle : workload.obstacles) {
     obstacles.push_back({obstacle.part.tree, obstacle.world_from_part});
+    add_mesh(obstacle.part);
   }
   for (const Body& body : workload.bodies) {
     robot.attach(robot.links()[static_cast<std::size_t>(body.link)].name, body.part.tree);
+    add_mesh(body.part);
     for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
       if (!is_tested(body, workload.obstacles[i])) options.untested.push_back({body.link, i});
     }
@@ -61,7 +68,7 @@ RobotChecker make_robot_checker(const Workload& workload, InstructionSet instruc
 
 std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mode,
                                            InstructionSet instructions) {
-  RobotChecker checker = make_robot_checker(workload, instructions);
+  RobotChecker checker = make_robot_checker(workload, instructions, mode == TreeMode::kConfirmed);
   if (mode == TreeMode::kBatch) return std::make_unique<BatchTreeChecker>(std::move(checker));
   return std::make_unique<SingleTreeChecker>(std::move(checker));
 }

@@ -8,13 +8,15 @@
 
 namespace spherule {
 
-// The workload's robot with its sphere trees, among its obstacles.
+// The workload's robot with its sphere trees, among its obstacles; contacts confirmed on the
+// triangles if asked for.
 RobotChecker make_robot_checker(const Workload& workload,
-                                InstructionSet instructions = best_instruction_set());
+                                InstructionSet instructions = best_instruction_set(),
+                                bool confirmed = false);
 
-enum class TreeMode { kSingle, kBatch };
+enum class TreeMode { kSingle, kBatch, kConfirmed };
 
-// It, as an engine: one configuration a call, or all.
+// It, as an engine: one configuration a call, all, or one with confirmation.
 std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mode,
                                            InstructionSet instructions = best_instruction_set());
 

@@ -62,10 +62,12 @@ class MechanismCheck {
   // Pairs are tested in their order, as far as bodies are not searched together. Throws Error for
   // indices out of range, a missing tree, a mechanism or obstacle that reaches beyond
   // kMaxCoordinate (joined with those that it is searched with, too), a pose_error that is no
-  // length, or instructions that this machine has not got.
+  // length, or instructions that this machine has not got. With `asks_always` no contact counts as
+  // sure.
   MechanismCheck(std::span<const MechanismFrame> frames, std::span<const MechanismBody> bodies,
                  std::span<const MechanismObstacle> obstacles, std::span<const MechanismPair> pairs,
-                 double pose_error, InstructionSet instructions = best_instruction_set());
+                 double pose_error, InstructionSet instructions = best_instruction_set(),
+                 bool asks_always = false);
   ~MechanismCheck();
   MechanismCheck(MechanismCheck&&) noexcept;
   MechanismCheck& operator=(MechanismCheck&&) noexcept;

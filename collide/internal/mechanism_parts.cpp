@@ -176,7 +176,7 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
                                std::span<const MechanismBody> bodies,
                                std::span<const MechanismObstacle> obstacles,
                                std::span<const MechanismPair> pairs, double pose_error,
-                               InstructionSet instructions) {
+                               InstructionSet instructions, bool asks_always) {
   check_input(frames, bodies, obstacles, pairs, pose_error);
   if (!is_available(instructions)) throw Error("instruction set", "this machine has not got it");
   auto parts = std::make_unique<Parts>(internal::JoinedScene(bodies, obstacles, pairs));
@@ -224,6 +224,7 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
         body_trees[i], (kPerLength + parts->tilt[i]) * reach[i] + kPerScene * bound + pose_error);
     body_depth = std::max(body_depth, tree.depth());
     parts->bodies.push_back(kernel_body(tree, frame, reach[i], links));
+    if (asks_always) parts->bodies.back().margin = std::numeric_limits<float>::infinity();
   }
   for (const SphereTree& obstacle : obstacle_trees) {
     const PackedTree& tree = parts->trees.emplace_back(obstacle, kPerScene * bound);

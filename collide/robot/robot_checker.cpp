@@ -87,11 +87,14 @@ bool is_untested(std::span<const UntestedPair> untested, std::size_t link, std::
 }
 
 void check_input(const RobotModel& robot, std::span<const PlacedTree> obstacles,
-                 std::span<const UntestedPair> untested) {
+                 const RobotCheckerOptions& options) {
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     if (!obstacles[i].tree) throw Error("obstacle " + std::to_string(i), "it has no tree");
   }
-  for (const UntestedPair& pair : untested) {
+  for (const auto& mesh : options.meshes) {
+    if (!mesh) throw Error("robot checker", "a mesh is missing");
+  }
+  for (const UntestedPair& pair : options.untested) {
     if (pair.link < 0 || static_cast<std::size_t>(pair.link) >= robot.links().size() ||
         pair.obstacle >= obstacles.size()) {
       throw Error("untested pair", "link " + std::to_string(pair.link) + " or obstacle " +
@@ -106,27 +109,31 @@ RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
                            const RobotCheckerOptions& options)
     : robot_(std::move(robot)),
       obstacles_(std::move(obstacles)),
-      world_from_root_(options.world_from_root) {
-  check_input(robot_, obstacles_, options.untested);
+      world_from_root_(options.world_from_root),
+      meshes_(options.meshes) {
+  check_input(robot_, obstacles_, options);
   const Frames frames(robot_);
   std::vector<Pose> standing;
   forward_kinematics(robot_, std::vector<double>(static_cast<std::size_t>(robot_.variable_count())),
                      standing, world_from_root_);
+  for (const PlacedTree& obstacle : obstacles_) {
+    obstacle_meshes_.push_back(mesh_of(*obstacle.tree));
+  }
   std::vector<MechanismBody> bodies;
   for (std::size_t link = robot_.links().size(); link-- > 0;) {
     for (const auto& tree : robot_.links()[link].trees) {
+      const Body body{tree, link, mesh_of(*tree)};
       const bool moves = frames.frame_of_link[link] >= 0;
       for (std::size_t i = 0; i < obstacles_.size(); ++i) {
         if (is_untested(options.untested, link, i)) continue;
         if (moves) {
           pairs_.push_back({static_cast<int>(bodies_.size()), static_cast<int>(i)});
         } else {
-          always_ = always_ || spherule::collides(*tree, standing[link], *obstacles_[i].tree,
-                                                  obstacles_[i].world_from_tree);
+          always_ = always_ || body_collides(body, standing[link], i);
         }
       }
       if (!moves) continue;
-      bodies_.push_back({tree, link});
+      bodies_.push_back(body);
       bodies.push_back({frames.frame_of_link[link], frames.frame_from_link[link], tree});
     }
   }
@@ -136,7 +143,14 @@ RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
     placed.push_back({root_from_world * obstacle.world_from_tree, obstacle.tree});
   }
   check_.emplace(frames.frames, bodies, placed, pairs_,
-                 pose_error(robot_, obstacles_, world_from_root_), options.instructions);
+                 pose_error(robot_, obstacles_, world_from_root_), options.instructions,
+                 !meshes_.empty());
+}
+
+const CoveredMesh* RobotChecker::mesh_of(const SphereTree& tree) const {
+  const auto found = std::find_if(meshes_.begin(), meshes_.end(),
+                                  [&](const auto& mesh) { return &mesh->cover() == &tree; });
+  return found == meshes_.end() ? nullptr : found->get();
 }
 
 bool RobotChecker::collides(std::span<const double> configuration, Scratch& scratch) const {
@@ -145,22 +159,75 @@ bool RobotChecker::collides(std::span<const double> configuration, Scratch& scra
   if (!is_usual) return collides_exactly(configuration, scratch);
   if (always_) return true;
   bool is_placed = false;
-  return check_->collides(configuration, scratch.memory_, [&](const MechanismContact& contact) {
+  scratch.unconfirmed_.clear();
+  const auto confirm = [&](const MechanismContact& contact) {
     return touches(configuration, contact, is_placed, scratch);
-  });
+  };
+  return check_->collides(configuration, scratch.memory_, confirm) || contains_component(scratch);
 }
 
-// The canonical test; `is_placed` says whether the scratch holds the configuration's poses.
+// Whether the robot touches an obstacle at the contact, or where it last did: a robot that touches
+// often did so a moment ago, by the same triangles. `is_placed` says whether the scratch holds the
+// configuration's poses.
 bool RobotChecker::touches(std::span<const double> configuration, const MechanismContact& contact,
                            bool& is_placed, Scratch& scratch) const {
   if (!is_placed) {
     forward_kinematics(robot_, configuration, scratch.world_from_link_, world_from_root_);
     is_placed = true;
+    if (scratch.last_ && find(*scratch.last_, scratch) == Finding::kTouch) return true;
   }
+  const Finding finding = find(contact, scratch);
+  if (finding == Finding::kTouch && !meshes_.empty()) scratch.last_ = contact;
+  if (finding == Finding::kSpheres) {
+    const auto is_same = [&](const MechanismPair& pair) {
+      return pair.body == contact.pair.body && pair.obstacle == contact.pair.obstacle;
+    };
+    if (std::none_of(scratch.unconfirmed_.begin(), scratch.unconfirmed_.end(), is_same)) {
+      scratch.unconfirmed_.push_back(contact.pair);
+    }
+  }
+  return finding == Finding::kTouch;
+}
+
+// The canonical test, and the one of the triangles.
+RobotChecker::Finding RobotChecker::find(const MechanismContact& contact,
+                                         const Scratch& scratch) const {
   const Body& body = bodies_[static_cast<std::size_t>(contact.pair.body)];
-  const PlacedTree& obstacle = obstacles_[static_cast<std::size_t>(contact.pair.obstacle)];
-  return spheres_touch(*body.tree, contact.body_sphere, scratch.world_from_link_[body.link],
-                       *obstacle.tree, contact.obstacle_sphere, obstacle.world_from_tree);
+  const auto index = static_cast<std::size_t>(contact.pair.obstacle);
+  const PlacedTree& obstacle = obstacles_[index];
+  const Pose& world_from_body = scratch.world_from_link_[body.link];
+  if (!spheres_touch(*body.tree, contact.body_sphere, world_from_body, *obstacle.tree,
+                     contact.obstacle_sphere, obstacle.world_from_tree)) {
+    return Finding::kApart;
+  }
+  const CoveredMesh* const mesh = obstacle_meshes_[index];
+  if (body.mesh == nullptr || mesh == nullptr) return Finding::kTouch;
+  return triangles_touch(*body.mesh, contact.body_sphere, world_from_body, *mesh,
+                         contact.obstacle_sphere, obstacle.world_from_tree)
+             ? Finding::kTouch
+             : Finding::kSpheres;
+}
+
+// Where no triangles touch but spheres do, under the poses that the scratch holds.
+bool RobotChecker::contains_component(Scratch& scratch) const {
+  return std::any_of(
+      scratch.unconfirmed_.begin(), scratch.unconfirmed_.end(), [&](const MechanismPair& pair) {
+        const Body& body = bodies_[static_cast<std::size_t>(pair.body)];
+        const auto obstacle = static_cast<std::size_t>(pair.obstacle);
+        return spherule::contains_component(*body.mesh, scratch.world_from_link_[body.link],
+                                            *obstacle_meshes_[obstacle],
+                                            obstacles_[obstacle].world_from_tree);
+      });
+}
+
+bool RobotChecker::body_collides(const Body& body, const Pose& world_from_link,
+                                 std::size_t obstacle) const {
+  const PlacedTree& other = obstacles_[obstacle];
+  const CoveredMesh* const mesh = obstacle_meshes_[obstacle];
+  if (body.mesh == nullptr || mesh == nullptr) {
+    return spherule::collides(*body.tree, world_from_link, *other.tree, other.world_from_tree);
+  }
+  return spherule::collides(*body.mesh, world_from_link, *mesh, other.world_from_tree);
 }
 
 void RobotChecker::collides(std::span<const double> configurations, Scratch& scratch,
@@ -183,16 +250,24 @@ void RobotChecker::collides(std::span<const double> configurations, Scratch& scr
       block[i] = configuration(std::min(first + i, last)).data();
     }
     int placed = -1;
+    std::uint32_t unconfirmed = 0;
     const MechanismCheck::BlockAnswer answer =
         check_->collides(block, scratch.memory_, [&](int index, const MechanismContact& contact) {
           bool is_placed = std::exchange(placed, index) == index;
-          return touches({block[static_cast<std::size_t>(index)], variables}, contact, is_placed,
-                         scratch);
+          scratch.unconfirmed_.clear();
+          const bool touch = touches({block[static_cast<std::size_t>(index)], variables}, contact,
+                                     is_placed, scratch);
+          if (!scratch.unconfirmed_.empty()) unconfirmed |= 1U << index;
+          return touch;
         });
     for (std::size_t i = first; i <= last; ++i) {
-      const bool is_usual = (answer.out_of_range >> (i - first) & 1U) == 0;
-      const bool hit = is_usual ? always_ || (answer.collides >> (i - first) & 1U) != 0
-                                : collides_exactly(configuration(i), scratch);
+      const auto says = [&](std::uint32_t bits) { return (bits >> (i - first) & 1U) != 0; };
+      bool hit = always_ || says(answer.collides);
+      if (says(answer.out_of_range)) {
+        hit = collides_exactly(configuration(i), scratch);
+      } else if (!hit && says(unconfirmed)) {
+        hit = collides(configuration(i), scratch);
+      }
       verdicts[i] = hit ? 1 : 0;
     }
   }
@@ -222,9 +297,8 @@ bool RobotChecker::collides_exactly(std::span<const double> configuration, Scrat
   forward_kinematics(robot_, configuration, world_from_link, world_from_root_);
   return always_ || std::any_of(pairs_.begin(), pairs_.end(), [&](const MechanismPair& pair) {
            const Body& body = bodies_[static_cast<std::size_t>(pair.body)];
-           const PlacedTree& obstacle = obstacles_[static_cast<std::size_t>(pair.obstacle)];
-           return spherule::collides(*body.tree, world_from_link[body.link], *obstacle.tree,
-                                     obstacle.world_from_tree);
+           return body_collides(body, world_from_link[body.link],
+                                static_cast<std::size_t>(pair.obstacle));
          });
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collide/mechanism_check.h"
+#include "collide/mesh_contact.h"
 #include "collide/robot/robot_model.h"
 #include "spheretree/pose.h"
 
@@ -28,6 +29,10 @@ struct PlacedTree {
 
 struct RobotCheckerOptions {
   Pose world_from_root{};
+  // Confirmation on the triangles (opt-in): contacts of two trees that are both the cover() of one
+  // of these count only if their meshes touch (mesh_contact.h). Free stays certain; false alarms
+  // vanish.
+  std::vector<std::shared_ptr<const CoveredMesh>> meshes{};
   std::vector<UntestedPair> untested{};
   InstructionSet instructions = best_instruction_set();
 };
@@ -36,10 +41,10 @@ struct RobotCheckerOptions {
 // asked for many configurations.
 //
 // The answer is exactly the one of collides() for each link's trees and each obstacle, under the
-// poses that forward_kinematics() computes; so G4 and G5 hold with respect to these poses, and no
-// instruction set changes an answer. Links of the robot against each other are no matter of this
-// class. It keeps the robot and the trees alive; immutable, threads may share it, each with a
-// scratch of its own.
+// poses that forward_kinematics() computes, or of collides() of covered meshes where these are
+// given; so G4 and G5 hold with respect to these poses, and no instruction set changes an answer.
+// Links of the robot against each other are no matter of this class. It keeps the robot and the
+// trees alive; immutable, threads may share it, each with a scratch of its own.
 class RobotChecker {
  public:
   // Throws Error for a missing tree, an index out of range, a robot or obstacle that reaches beyond
@@ -58,6 +63,8 @@ class RobotChecker {
     friend class RobotChecker;
     MechanismCheck::Scratch memory_;
     std::vector<Pose> world_from_link_;
+    std::vector<MechanismPair> unconfirmed_;  // spheres touch, but no triangles do
+    std::optional<MechanismContact> last_;    // confirmed on triangles
   };
 
   // Throws Error for a configuration of the wrong size or with a number that is not finite.
@@ -84,16 +91,24 @@ class RobotChecker {
   struct Body {
     std::shared_ptr<const SphereTree> tree;
     std::size_t link;
+    const CoveredMesh* mesh;
   };
 
+  enum class Finding { kApart, kSpheres, kTouch };
+  Finding find(const MechanismContact& contact, const Scratch& scratch) const;
   bool touches(std::span<const double> configuration, const MechanismContact& contact,
                bool& is_placed, Scratch& scratch) const;
+  bool contains_component(Scratch& scratch) const;
+  const CoveredMesh* mesh_of(const SphereTree& tree) const;
+  bool body_collides(const Body& body, const Pose& world_from_link, std::size_t obstacle) const;
   // What robot_collides() says of the pairs that are tested.
   bool collides_exactly(std::span<const double> configuration, Scratch& scratch) const;
 
   RobotModel robot_;
   std::vector<PlacedTree> obstacles_;
   Pose world_from_root_;
+  std::vector<std::shared_ptr<const CoveredMesh>> meshes_;
+  std::vector<const CoveredMesh*> obstacle_meshes_;
   std::vector<Body> bodies_;  // that variables move, the last link first
   std::vector<MechanismPair> pairs_;
   bool always_ = false;  // a link that stands with the root touches

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A robot whose contacts are confirmed on triangles: the answers of collides() of covered meshes.
+
+#include "collide/robot/kinematics.h"
+#include "collide/robot/robot_checker.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "tests/collide/robot/robots.h"
+#include "tests/collide/trees.h"
+#include "tests/support/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+// A closed tetrahedron, covered by one ball a corner's cell and many more than it needs.
+std::shared_ptr<const CoveredMesh> tetrahedron(Random& random, double size) {
+  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  for (Eigen::Vector3d& v : mesh.vertices) v = size * (v - Eigen::Vector3d(0.25, 0.25, 0.25));
+  std::vector<Sphere> spheres = {{Eigen::Vector3d::Zero(), 0.9 * size}};
+  for (int i = 0; i < 20; ++i) {
+    spheres.push_back({random.point(0.5 * size), random.uniform(0.0, 0.3 * size)});
+  }
+  return std::make_shared<const CoveredMesh>(
+      mesh, std::make_shared<const SphereTree>(build_tree(spheres)));
+}
+
+std::shared_ptr<const SphereTree> cover_of(const std::shared_ptr<const CoveredMesh>& mesh) {
+  return {mesh, &mesh->cover()};
+}
+
+TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
+  Random random(61);
+  int hits = 0;
+  int removed = 0;
+  int free = 0;
+  for (int i = 0; i < effort(60, 8); ++i) {
+    RobotModel robot = random_robot(random, random.whole(1, 6), i % 2 == 1);
+    RobotCheckerOptions options{.world_from_root = random.pose(1.0)};
+    std::vector<std::pair<std::size_t, std::shared_ptr<const CoveredMesh>>> bodies;
+    for (std::size_t link = 0; link < robot.links().size(); ++link) {
+      const auto mesh = tetrahedron(random, random.uniform(0.05, 0.4));
+      robot.attach(robot.links()[link].name, cover_of(mesh));
+      options.meshes.push_back(mesh);
+      bodies.emplace_back(link, mesh);
+    }
+    std::vector<PlacedTree> obstacles;
+    std::vector<std::shared_ptr<const CoveredMesh>> obstacle_meshes;
+    for (int k = 0; k < 3; ++k) {
+      const auto mesh = tetrahedron(random, random.uniform(0.05, 1.5));
+      obstacles.push_back({cover_of(mesh), random.pose(1.5)});
+      options.meshes.push_back(mesh);
+      obstacle_meshes.push_back(mesh);
+    }
+    std::vector<double> path;
+    std::vector<std::uint8_t> expected;
+    for (int k = 0; k < 60; ++k) {
+      const std::vector<double> at = random_configuration(random, robot, k % 20 == 0 ? 300.0 : 3.2);
+      path.insert(path.end(), at.begin(), at.end());
+      std::vector<Pose> poses;
+      forward_kinematics(robot, at, poses, options.world_from_root);
+      bool spheres = false;
+      bool hit = false;
+      for (const auto& [link, mesh] : bodies) {
+        for (std::size_t o = 0; o < obstacles.size(); ++o) {
+          spheres = spheres || collides(mesh->cover(), poses[link], *obstacles[o].tree,
+                                        obstacles[o].world_from_tree);
+          hit = hit ||
+                collides(*mesh, poses[link], *obstacle_meshes[o], obstacles[o].world_from_tree);
+        }
+      }
+      expected.push_back(hit ? 1 : 0);
+      (hit ? hits : spheres ? removed : free) += 1;
+    }
+    const auto variables = static_cast<std::size_t>(robot.variable_count());
+    for (const InstructionSet set : instruction_sets()) {
+      options.instructions = set;
+      const RobotChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);
+      std::vector<std::uint8_t> verdicts(expected.size());
+      checker.collides(path, scratch, verdicts);
+      EXPECT_EQ(verdicts, expected) << i;
+      for (std::size_t k = 0; k < expected.size(); ++k) {
+        const bool hit =
+            checker.collides(std::span(path).subspan(k * variables, variables), scratch);
+        ASSERT_EQ(hit, expected[k] != 0) << i << ' ' << k;
+      }
+    }
+  }
+  EXPECT_GT(hits, effort(300, 20));
+  EXPECT_GT(removed, effort(300, 20));
+  EXPECT_GT(free, effort(50, 5));
+}
+
+// A small body inside a large one touches none of its triangles.
+TEST(RobotMesh, WhatLiesInsideCollides) {
+  Random random(62);
+  RobotModel robot("base");
+  robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
+  const auto inner = tetrahedron(random, 0.02);
+  const auto outer = tetrahedron(random, 2.0);
+  robot.attach("arm", cover_of(inner));
+  const std::vector<PlacedTree> obstacles = {{cover_of(outer), Pose()}};
+  const RobotChecker checker(robot, obstacles, {.meshes = {inner, outer}});
+  RobotChecker::Scratch scratch(checker);
+  const std::vector<double> path = {0.0, 0.5, 1.0};
+  EXPECT_TRUE(checker.collides(std::span(path).first(1), scratch));
+  std::vector<std::uint8_t> verdicts(3);
+  checker.collides(path, scratch, verdicts);
+  EXPECT_EQ(verdicts, (std::vector<std::uint8_t>{1, 1, 1}));
+}
+
+TEST(RobotMesh, RefusesAMissingMesh) {
+  RobotModel robot("base");
+  EXPECT_THROW(RobotChecker(robot, {}, {.meshes = {nullptr}}), Error);
+}
+
+}  // namespace
+}  // namespace spherule::test
