@@ -96,10 +96,18 @@ class MechanismCheck {
   // name. Allocates nothing.
   template <class Confirm>
   bool collides(std::span<const double> variables, Scratch& scratch, Confirm confirm) const {
+    return within(variables, 0.0, scratch, confirm);
+  }
+
+  // The same of spheres that come within `clearance` of each other: `confirm` says whether two do.
+  // Throws Error as require_clearance() does.
+  template <class Confirm>
+  bool within(std::span<const double> variables, double clearance, Scratch& scratch,
+              Confirm confirm) const {
     const Ask ask = [](void* context, int, const MechanismContact& contact) -> bool {
       return (*static_cast<Confirm*>(context))(contact);
     };
-    return collides(variables, scratch, ask, std::addressof(confirm));
+    return within(variables, clearance, scratch, ask, std::addressof(confirm));
   }
 
   // Whether the mechanism is free all along the straight motion of its variables: at (1 - t) `from`
@@ -139,7 +147,8 @@ class MechanismCheck {
 
  private:
   using Ask = bool (*)(void* context, int index, const MechanismContact& contact);
-  bool collides(std::span<const double> variables, Scratch& scratch, Ask ask, void* context) const;
+  bool within(std::span<const double> variables, double clearance, Scratch& scratch, Ask ask,
+              void* context) const;
   BlockAnswer collides(std::span<const double* const, kBlock> configurations, Scratch& scratch,
                        Ask ask, void* context) const;
 

@@ -189,7 +189,7 @@ class MechanismCheck::EdgeSearch {
       const double at = std::min(part.begin + halves * half, 1.0);
       if (at >= result_.contact_at) break;
       set(at);
-      if (parts_.kernels->check(parts_.problem, memory_.variables.data(), memory_.view,
+      if (parts_.kernels->check(parts_.problem, memory_.variables.data(), 0.0F, 0.0F, memory_.view,
                                 &Translator::confirm, &translator_)) {
         result_.contact_at = at;
       }

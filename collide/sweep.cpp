@@ -3,6 +3,7 @@
 
 #include "collide/internal/free_time.h"
 #include "collide/internal/gap_rate.h"
+#include "collide/within.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -174,9 +175,7 @@ class Sweep {
 
 SweepResult sweep(const SphereTree& a, const Motion& motion_a, const SphereTree& b,
                   const Motion& motion_b, const SweepRequest& request) {
-  if (!(request.clearance >= 0.0 && request.clearance <= kMaxCoordinate)) {
-    throw Error("sweep", "the clearance is not a number from 0 to 1e15");
-  }
+  require_clearance(request.clearance);
   if (!(request.resolution >= kFinest && request.resolution <= 1.0)) {
     throw Error("sweep", "the resolution is not a number from 2^-40 to 1");
   }

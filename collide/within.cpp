@@ -7,12 +7,6 @@
 namespace spherule {
 namespace {
 
-void check_clearance(double clearance) {
-  if (!(clearance >= 0.0 && clearance <= kMaxCoordinate)) {
-    throw Error("within", "the clearance is not a number from 0 to 1e15");
-  }
-}
-
 // Ends at the first pair that comes within the clearance.
 class FindNear {
  public:
@@ -40,9 +34,15 @@ class FindNear {
 
 }  // namespace
 
+void require_clearance(double clearance) {
+  if (!(clearance >= 0.0 && clearance <= kMaxCoordinate)) {
+    throw Error("clearance", "it is not a number from 0 to 1e15");
+  }
+}
+
 bool within(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
             const Pose& world_from_b, double clearance) {
-  check_clearance(clearance);
+  require_clearance(clearance);
   const RelativePose pose(a, world_from_a, b, world_from_b);
   if (!pose.may_touch(a.ball(0), b.ball(0), clearance)) return false;
   FindNear query(a, b, pose, clearance);
@@ -53,7 +53,7 @@ bool within(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
 bool spheres_within(const SphereTree& a, std::int32_t sphere_a, const Pose& world_from_a,
                     const SphereTree& b, std::int32_t sphere_b, const Pose& world_from_b,
                     double clearance) {
-  check_clearance(clearance);
+  require_clearance(clearance);
   return RelativePose(a, world_from_a, b, world_from_b)
       .touches(a.spheres()[static_cast<std::size_t>(sphere_a)],
                b.spheres()[static_cast<std::size_t>(sphere_b)], clearance);
@@ -61,7 +61,7 @@ bool spheres_within(const SphereTree& a, std::int32_t sphere_a, const Pose& worl
 
 double within_slack(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                     const Pose& world_from_b, double clearance) {
-  check_clearance(clearance);
+  require_clearance(clearance);
   return RelativePose(a, world_from_a, b, world_from_b).slack(clearance);
 }
 

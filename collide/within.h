@@ -5,13 +5,16 @@
 
 namespace spherule {
 
+// Throws Error for a number that is no clearance: negative, not a number, or beyond 1e15.
+void require_clearance(double clearance);
+
 // Whether two sets of balls, rigidly placed, come within a clearance (at least 0) of each other:
 // collides() for sets that keep a margin, and the same for a clearance of 0.
 //
 // Never false if the exact gap is at most the clearance, under exactly the given poses; never true
 // if it exceeds the clearance by more than within_slack(). One canonical test of two spheres
 // decides, so the answer depends neither on the trees nor on the order of the arguments. Allocates
-// as collides() does. Throws Error for a clearance that is negative, not a number, or beyond 1e15.
+// as collides() does. Throws Error as require_clearance() does.
 bool within(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
             const Pose& world_from_b, double clearance);
 

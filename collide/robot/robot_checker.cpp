@@ -3,6 +3,7 @@
 
 #include "collide/collide.h"
 #include "collide/robot/kinematics.h"
+#include "collide/within.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -129,6 +130,7 @@ RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
         if (moves) {
           pairs_.push_back({static_cast<int>(bodies_.size()), static_cast<int>(i)});
         } else {
+          standing_.push_back({body, standing[link], i});
           always_ = always_ || body_collides(body, standing[link], i);
         }
       }
@@ -164,6 +166,41 @@ bool RobotChecker::collides(std::span<const double> configuration, Scratch& scra
     return touches(configuration, contact, is_placed, scratch);
   };
   return check_->collides(configuration, scratch.memory_, confirm) || contains_component(scratch);
+}
+
+bool RobotChecker::within(std::span<const double> configuration, double clearance,
+                          Scratch& scratch) const {
+  require_clearance(clearance);
+  const auto is_near = [&](const Body& body, const Pose& world_from_link, std::size_t obstacle) {
+    return spherule::within(*body.tree, world_from_link, *obstacles_[obstacle].tree,
+                            obstacles_[obstacle].world_from_tree, clearance);
+  };
+  const bool stands_near =
+      std::any_of(standing_.begin(), standing_.end(), [&](const Standing& pair) {
+        return is_near(pair.body, pair.world_from_link, pair.obstacle);
+      });
+  std::vector<Pose>& world_from_link = scratch.world_from_link_;
+  if (configuration.size() != static_cast<std::size_t>(robot_.variable_count()) ||
+      !MechanismCheck::is_in_range(configuration)) {
+    forward_kinematics(robot_, configuration, world_from_link, world_from_root_);
+    return stands_near || std::any_of(pairs_.begin(), pairs_.end(), [&](const MechanismPair& pair) {
+             const Body& body = bodies_[static_cast<std::size_t>(pair.body)];
+             return is_near(body, world_from_link[body.link],
+                            static_cast<std::size_t>(pair.obstacle));
+           });
+  }
+  bool is_placed = false;
+  const auto confirm = [&](const MechanismContact& contact) {
+    if (!std::exchange(is_placed, true)) {
+      forward_kinematics(robot_, configuration, world_from_link, world_from_root_);
+    }
+    const Body& body = bodies_[static_cast<std::size_t>(contact.pair.body)];
+    const PlacedTree& obstacle = obstacles_[static_cast<std::size_t>(contact.pair.obstacle)];
+    return spheres_within(*body.tree, contact.body_sphere, world_from_link[body.link],
+                          *obstacle.tree, contact.obstacle_sphere, obstacle.world_from_tree,
+                          clearance);
+  };
+  return check_->within(configuration, clearance, scratch.memory_, confirm) || stands_near;
 }
 
 // Whether the robot touches an obstacle at the contact, or where it last did: a robot that touches

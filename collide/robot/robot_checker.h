@@ -72,10 +72,15 @@ class RobotChecker {
   // slowly; where such a one leads out of all bounds, forward_kinematics() throws.
   bool collides(std::span<const double> configuration, Scratch& scratch) const;
 
-  // The same for many configurations, which lie one behind the other: verdicts[i] is 1 if the i-th
-  // collides, otherwise 0. Several times faster where neighbours differ little, as on a path.
-  // Throws Error if there are not variable_count() numbers for every verdict, or one is not finite;
-  // then the verdicts mean nothing.
+  // Whether any link's spheres come within `clearance` (metres) of an obstacle's: exactly what
+  // within() answers for the pairs that are tested, under the same poses; no meshes are asked.
+  // Throws Error, too, as require_clearance() does.
+  bool within(std::span<const double> configuration, double clearance, Scratch& scratch) const;
+
+  // What collides() says of many configurations, which lie one behind the other: verdicts[i] is 1
+  // if the i-th collides, otherwise 0. Several times faster where neighbours differ little, as on a
+  // path. Throws Error if there are not variable_count() numbers for every verdict, or one is not
+  // finite; then the verdicts mean nothing.
   void collides(std::span<const double> configurations, Scratch& scratch,
                 std::span<std::uint8_t> verdicts) const;
 
@@ -111,7 +116,13 @@ class RobotChecker {
   std::vector<const CoveredMesh*> obstacle_meshes_;
   std::vector<Body> bodies_;  // that variables move, the last link first
   std::vector<MechanismPair> pairs_;
-  bool always_ = false;  // a link that stands with the root touches
+  struct Standing {
+    Body body;
+    Pose world_from_link;
+    std::size_t obstacle;
+  };
+  std::vector<Standing> standing_;  // pairs that no variable moves
+  bool always_ = false;             // a link that stands with the root touches
   std::optional<MechanismCheck> check_;
 };
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/robot_checker.h"
 
+#include "collide/distance.h"
 #include "collide/robot/kinematics.h"
+#include "collide/within.h"
 #include "spheretree/error.h"
 #include "tests/collide/robot/checked_scene.h"
 #include "tests/collide/robot/robots.h"
@@ -60,6 +62,60 @@ TEST(RobotChecker, AnswersAsTheExactQueriesDo) {
   }
   EXPECT_GT(hits, effort(500, 50));
   EXPECT_GT(free, effort(500, 50));
+}
+
+TEST(RobotChecker, ClearancesAreThoseOfTheExactQueries) {
+  Random random(24);
+  int near = 0;
+  int far = 0;
+  for (int i = 0; i < effort(300, 25); ++i) {
+    const RobotModel robot = random_robot_with_trees(random, 0.3);
+    const std::vector<PlacedTree> obstacles = random_obstacles(random);
+    RobotCheckerOptions options{.world_from_root = random.pose(3.0)};
+    for (int k = 0; k < 10; ++k) {
+      const std::vector<double> configuration =
+          random_configuration(random, robot, k == 0 ? 300.0 : 3.2);
+      std::vector<Pose> poses;
+      forward_kinematics(robot, configuration, poses, options.world_from_root);
+      double lower = std::numeric_limits<double>::infinity();
+      for (std::size_t link = 0; link < robot.links().size(); ++link) {
+        for (const auto& tree : robot.links()[link].trees) {
+          for (const PlacedTree& other : obstacles) {
+            lower = std::min(
+                lower, distance(*tree, poses[link], *other.tree, other.world_from_tree).lower);
+          }
+        }
+      }
+      // Anywhere, or as near the gap as single precision cannot tell, or can just.
+      double clearance = random.uniform(0.0, 1.0);
+      if (k % 2 == 0 && lower < 1e3) {
+        const double off = std::pow(10.0, random.uniform(-16.0, -4.0));
+        clearance = std::max(0.0, lower + (k % 4 == 0 ? off : -off));
+      }
+      bool expected = false;
+      for (std::size_t link = 0; link < robot.links().size(); ++link) {
+        for (const auto& tree : robot.links()[link].trees) {
+          for (const PlacedTree& other : obstacles) {
+            expected = expected ||
+                       within(*tree, poses[link], *other.tree, other.world_from_tree, clearance);
+          }
+        }
+      }
+      for (const InstructionSet set : instruction_sets()) {
+        options.instructions = set;
+        const RobotChecker checker(robot, obstacles, options);
+        RobotChecker::Scratch scratch(checker);
+        ASSERT_EQ(checker.within(configuration, clearance, scratch), expected)
+            << i << ' ' << k << ' ' << lower << ' ' << clearance;
+        for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+          EXPECT_THROW(checker.within(configuration, bad, scratch), Error);
+        }
+      }
+      (expected ? near : far) += 1;
+    }
+  }
+  EXPECT_GT(near, effort(300, 20));
+  EXPECT_GT(far, effort(300, 20));
 }
 
 // A sphere of the robot is met by one that stands at a distance which single precision cannot tell
