@@ -85,7 +85,7 @@ class LeafSearch {
       leaves_.start_over();
       while (ends_.waits() && !is_full()) open_for_end();
       ends_.start_over();
-      if (found_.is_full() || is_overfull_) return false;
+      if (is_full()) return false;
     } while (balls_.waits() || nodes_.waits() || leaves_.waits());
     return true;
   }
@@ -173,9 +173,10 @@ class LeafSearch {
     return there;
   }
 
+  // For good: what waited in a queue that is full is lost when it starts over.
   bool is_full() {
-    is_overfull_ = balls_.is_full() || nodes_.is_full() || leaves_.is_full() || ends_.is_full() ||
-                   found_.is_full();
+    is_overfull_ = is_overfull_ || balls_.is_full() || nodes_.is_full() || leaves_.is_full() ||
+                   ends_.is_full() || found_.is_full();
     return is_overfull_;
   }
 

@@ -163,6 +163,38 @@ TEST(RobotBatch, AnswersWhereThereIsTooMuchToRemember) {
   }
 }
 
+// A ball inside a shell of small spheres overlaps every inner ball of the shell's tree, but only
+// one sphere: more waits to be searched than there is room for, and nothing of it may be forgotten.
+TEST(RobotBatch, NothingThatWaitsIsForgotten) {
+  std::vector<Sphere> shell;
+  constexpr int kCount = 5000;
+  for (int i = 0; i < kCount; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / kCount;
+    const double turn = 2.399963229728653 * i;
+    const double r = std::sqrt(1.0 - z * z);
+    shell.push_back({{r * std::cos(turn), r * std::sin(turn), z}, 1e-3});
+  }
+  RobotModel robot("base");
+  robot.add_link("slide", "base", {.name = "slide", .type = JointType::kPrismatic});
+  robot.attach("slide", std::make_shared<const SphereTree>(build_tree(
+                            std::vector<Sphere>{{{0, 0, 0}, 0.95}, {{2, 0, 0}, 0.01}})));
+  shell.push_back({{0, 5, 0}, 3.9});  // only the ball around all of the body overlaps it
+  Path path{.variables = 1};
+  for (int i = 0; i < 32; ++i) path.add({1e-4 * i});
+  for (int at = 0; at < kCount; at += effort(97, 997)) {
+    std::vector<Sphere> spheres = shell;
+    if (at > 0) spheres[static_cast<std::size_t>(at)].radius = 0.06;
+    const std::vector<PlacedTree> obstacles = {
+        {std::make_shared<const SphereTree>(build_tree(spheres)), Pose()}};
+    for (const InstructionSet set : instruction_sets()) {
+      const RobotChecker checker(robot, obstacles, {.instructions = set});
+      RobotChecker::Scratch scratch(checker);
+      const std::vector<std::uint8_t> expected(path.size(), at > 0 ? 1 : 0);
+      EXPECT_EQ(verdicts(checker, path, scratch), expected) << at;
+    }
+  }
+}
+
 TEST(RobotBatch, RefusesBadInput) {
   RobotModel robot("base");
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
