@@ -39,13 +39,14 @@ namespace {
 constexpr double kMiddleError = 1e-13;
 constexpr double kRelative = 1e-6;
 
-// More halvings than a fraction in double has bits cannot be.
+// No part is halved more often than this: then it is shorter than what double tells apart near one.
 constexpr std::size_t kDeepest = 64;
 
 // A part of the motion, and the pairs that may touch in it: those from `first_pair` on in the list.
 struct Part {
   double begin;
   double end;
+  std::size_t depth;  // halvings
   std::size_t first_pair;
   std::size_t end_pair;
 };
@@ -68,8 +69,8 @@ class MechanismCheck::EdgeSearch {
     for (std::size_t i = 0; i < variables_; ++i) {
       memory_.changes[i] = std::abs(to_[i] - from_[i]) * (1.0 + kRelative);
     }
-    // A list for each level at most, of as many pairs as there are.
-    memory_.open_pairs.resize(parts_.scene.pairs.size() * (kDeepest + 1));
+    // A list of as many pairs as there are for each depth, and one for what the deepest leaves.
+    memory_.open_pairs.resize(parts_.scene.pairs.size() * (kDeepest + 2));
   }
 
   EdgeResult run() {
@@ -77,9 +78,9 @@ class MechanismCheck::EdgeSearch {
     for (std::size_t i = 0; i < pairs; ++i) {
       memory_.open_pairs[i] = static_cast<std::int32_t>(i);
     }
-    std::array<Part, kDeepest + 2> waiting;
+    std::array<Part, kDeepest + 2> waiting;  // one for each depth, and two of the deepest
     std::size_t top = 0;
-    waiting[top++] = {0.0, 1.0, 0, pairs};
+    waiting[top++] = {0.0, 1.0, 0, 0, pairs};
     while (top > 0) {
       const Part part = waiting[--top];
       if (part.begin >= result_.contact_at) break;  // only what is before a contact matters
@@ -91,11 +92,11 @@ class MechanismCheck::EdgeSearch {
       }
       const double middle = middle_of(part);
       if (result_.contact_at <= middle && !request_.first) break;
-      const bool is_last = look.growth <= 0.5 * request_.resolution || top + 2 > kDeepest ||
+      const bool is_last = look.growth <= 0.5 * request_.resolution || part.depth == kDeepest ||
                            !(part.begin < middle && middle < part.end);
       if (is_last) return unresolved(part);
-      waiting[top++] = {middle, part.end, part.end_pair, look.end_pair};
-      waiting[top++] = {part.begin, middle, part.end_pair, look.end_pair};
+      waiting[top++] = {middle, part.end, part.depth + 1, part.end_pair, look.end_pair};
+      waiting[top++] = {part.begin, middle, part.depth + 1, part.end_pair, look.end_pair};
     }
     result_.verdict = result_.contact_at <= 1.0 ? Verdict::kCollision : Verdict::kFree;
     return result_;

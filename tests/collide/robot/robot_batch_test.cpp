@@ -176,8 +176,8 @@ TEST(RobotBatch, NothingThatWaitsIsForgotten) {
   }
   RobotModel robot("base");
   robot.add_link("slide", "base", {.name = "slide", .type = JointType::kPrismatic});
-  robot.attach("slide", std::make_shared<const SphereTree>(build_tree(
-                            std::vector<Sphere>{{{0, 0, 0}, 0.95}, {{2, 0, 0}, 0.01}})));
+  robot.attach("slide", std::make_shared<const SphereTree>(
+                            build_tree(std::vector<Sphere>{{{0, 0, 0}, 0.95}, {{2, 0, 0}, 0.01}})));
   shell.push_back({{0, 5, 0}, 3.9});  // only the ball around all of the body overlaps it
   Path path{.variables = 1};
   for (int i = 0; i < 32; ++i) path.add({1e-4 * i});

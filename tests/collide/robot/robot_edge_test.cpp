@@ -158,6 +158,25 @@ TEST(RobotEdge, PassesCloseAtAFineResolution) {
   EXPECT_EQ(verdict(1e-4), Verdict::kFree);
 }
 
+// Halved as often as can be, near the start and then ever closer to a contact.
+TEST(RobotEdge, EndsAtAnyResolution) {
+  const RobotModel robot = long_arm();
+  for (const double angle : {0.5, 1e-9, 1e-15, 3.0}) {
+    const Eigen::Vector3d center(10.0 * std::cos(angle + 2e-4), 10.0 * std::sin(angle + 2e-4), 0.0);
+    const RobotChecker checker(robot, {{ball(center, 1e-3), Pose()}});
+    RobotChecker::Scratch scratch(checker);
+    for (const double resolution : {1e-12, 1e-300, std::numeric_limits<double>::denorm_min()}) {
+      const std::vector<double> from = {0.0};
+      const std::vector<double> to = {3.0};
+      const EdgeResult result =
+          checker.check_edge(from, to, scratch, {.resolution = resolution, .first = true});
+      EXPECT_NE(result.verdict, Verdict::kFree);
+      EXPECT_NEAR(result.free_until * 3.0, angle, 1e-6);
+      EXPECT_LE(result.free_until * 3.0, angle + 1e-9);
+    }
+  }
+}
+
 TEST(RobotEdge, TakesAnyContactUnlessAskedForTheFirst) {
   const RobotModel robot = long_arm();
   const RobotChecker checker(
