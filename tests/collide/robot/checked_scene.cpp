@@ -36,6 +36,19 @@ std::vector<PlacedTree> random_obstacles(Random& random) {
   return obstacles;
 }
 
+std::optional<Sphere> random_sphere_of(Random& random, const RobotModel& robot,
+                                       std::span<const Pose> world_from_link) {
+  std::vector<Sphere> spheres;
+  for (std::size_t link = 1; link < robot.links().size(); ++link) {
+    for (const auto& tree : robot.links()[link].trees) {
+      const Sphere& one = tree->spheres()[random.bits() % tree->spheres().size()];
+      spheres.push_back({world_from_link[link] * one.center, one.radius});
+    }
+  }
+  if (spheres.empty()) return std::nullopt;
+  return spheres[random.bits() % spheres.size()];
+}
+
 bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
             std::span<const double> configuration, const RobotCheckerOptions& options) {
   std::vector<Pose> world_from_link;

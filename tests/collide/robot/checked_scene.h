@@ -7,6 +7,7 @@
 #include "tests/collide/exact_scene.h"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,10 @@ RobotModel random_robot_with_trees(Random& random, double size);
 
 // One to three obstacles.
 std::vector<PlacedTree> random_obstacles(Random& random);
+
+// One of the spheres that are not on the first link, in the world; none if there are none.
+std::optional<Sphere> random_sphere_of(Random& random, const RobotModel& robot,
+                                       std::span<const Pose> world_from_link);
 
 // By the exact queries.
 bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,

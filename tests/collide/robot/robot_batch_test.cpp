@@ -108,18 +108,12 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
     if (path.size() == 0) continue;
     std::vector<Pose> world_from_link;
     forward_kinematics(robot, path[random.bits() % path.size()], world_from_link, root);
-    std::vector<std::pair<std::size_t, Sphere>> moving;
-    for (std::size_t link = 1; link < robot.links().size(); ++link) {
-      for (const auto& tree : robot.links()[link].trees) {
-        moving.emplace_back(link, tree->spheres()[random.bits() % tree->spheres().size()]);
-      }
-    }
-    if (moving.empty()) continue;
-    const auto& [link, sphere] = moving[random.bits() % moving.size()];
+    const std::optional<Sphere> sphere = random_sphere_of(random, robot, world_from_link);
+    if (!sphere) continue;
     const double gap =
         (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-12.0, -2.0));
-    const Eigen::Vector3d center = world_from_link[link] * sphere.center +
-                                   (sphere.radius + 0.1 + gap) * random.point(1.0).normalized();
+    const Eigen::Vector3d center =
+        sphere->center + (sphere->radius + 0.1 + gap) * random.point(1.0).normalized();
     const std::vector<PlacedTree> obstacles = {{ball(center, 0.1), Pose()}};
     RobotCheckerOptions options{.world_from_root = root};
     std::vector<std::uint8_t> expected;

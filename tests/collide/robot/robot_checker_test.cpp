@@ -130,21 +130,15 @@ TEST(RobotChecker, AnswersAsTheExactQueriesDoAtContact) {
     const std::vector<double> configuration = random_configuration(random, robot, 3.2);
     std::vector<Pose> world_from_link;
     forward_kinematics(robot, configuration, world_from_link, root);
-    std::vector<std::pair<std::size_t, Sphere>> moving;
-    for (std::size_t link = 1; link < robot.links().size(); ++link) {
-      for (const auto& tree : robot.links()[link].trees) {
-        moving.emplace_back(link, tree->spheres()[random.bits() % tree->spheres().size()]);
-      }
-    }
-    if (moving.empty()) continue;
-    const auto& [link, sphere] = moving[random.bits() % moving.size()];
+    const std::optional<Sphere> sphere = random_sphere_of(random, robot, world_from_link);
+    if (!sphere) continue;
     const double gap =
         (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-17.0, -3.0));
     const Sphere other{random.point(1.0), random.uniform(0.0, 0.2)};
     const Eigen::Vector3d direction = random.point(1.0).normalized();
     const Pose turned(random.quaternion(), Eigen::Vector3d::Zero());
     const Eigen::Vector3d center =
-        world_from_link[link] * sphere.center + (sphere.radius + other.radius + gap) * direction;
+        sphere->center + (sphere->radius + other.radius + gap) * direction;
     const std::vector<PlacedTree> obstacles = {
         {ball(other.center, other.radius),
          Pose(turned.rotation(), center - turned * other.center)}};
