@@ -80,8 +80,10 @@ Eigen::Quaterniond SceneRandom::rotation() {
 
 double SceneRandom::small_gap() {
   static constexpr std::array<double, 5> kGaps{0.0, 1e-12, 1e-9, 1e-6, 1e-4};
-  const int kind = whole(0, 5);
-  const double gap = kind < 5 ? kGaps[static_cast<std::size_t>(kind)] : 2e-3 * unit();
+  const int kind = whole(0, 6);
+  const double gap = kind < 5    ? kGaps[static_cast<std::size_t>(kind)]
+                     : kind == 5 ? 2e-3 * unit()
+                                 : magnitude(1e-17, 1e-3);
   return chance(0.5) ? -gap : gap;
 }
 

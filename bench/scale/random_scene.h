@@ -34,7 +34,7 @@ class SceneRandom {
   // Unit or of any length; now and then no turn at all.
   Eigen::Quaterniond rotation();
 
-  // 0, +-1e-12, +-1e-9, +-1e-6, +-1e-4, or anything up to 2e-3.
+  // 0, +-1e-12, +-1e-9, +-1e-6, +-1e-4, anything up to 2e-3, or of any order of magnitude.
   double small_gap();
 
  private:

@@ -12,7 +12,7 @@ namespace spherule {
 namespace {
 
 constexpr std::size_t kConfigurations = 256;  // of a scene
-constexpr double kNear = 0.45;                // of these, some find no obstacle in their way
+constexpr double kNear = 0.6;                 // of these, some find no obstacle in their way
 
 struct NamedInstructions {
   InstructionSet set;

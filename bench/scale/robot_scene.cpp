@@ -15,7 +15,19 @@ namespace {
 
 constexpr double kSize = 0.4;
 
-RobotModel make_robot(SceneRandom& random, const Eigen::Vector3d& direction) {
+std::vector<PlacedTree> make_obstacles(SceneRandom& random) {
+  std::vector<PlacedTree> obstacles;
+  for (int i = random.whole(1, 3); i > 0; --i) {
+    const int count = random.chance(0.95) ? random.whole(1, 12) : random.whole(100, 300);
+    obstacles.push_back({std::make_shared<const SphereTree>(random_tree(random, count, kSize)),
+                         Pose(random.rotation(), random.in_cube(2.0 * kSize))});
+  }
+  return obstacles;
+}
+
+// Its first joint leads it past `aim`.
+RobotModel make_robot(SceneRandom& random, const Eigen::Vector3d& aim,
+                      const Eigen::Vector3d& direction) {
   RobotModel robot("link_0");
   const int joints = random.whole(1, 5);
   for (int i = 0; i < joints; ++i) {
@@ -23,6 +35,7 @@ RobotModel make_robot(SceneRandom& random, const Eigen::Vector3d& direction) {
     joint.name = "joint_" + std::to_string(i);
     joint.type = JointType::kPrismatic;
     joint.axis = direction;
+    joint.parent_from_joint = Pose::from_translation(aim);
     if (i > 0) {
       joint.type = random.chance(0.2) ? JointType::kPrismatic : JointType::kRevolute;
       joint.axis = random.direction();
@@ -44,12 +57,13 @@ RobotModel make_robot(SceneRandom& random, const Eigen::Vector3d& direction) {
 }  // namespace
 
 RobotScene::RobotScene(SceneRandom& random)
-    : direction_(random.direction()), robot_(make_robot(random, direction_)) {
-  for (int i = random.whole(1, 3); i > 0; --i) {
-    const int count = random.chance(0.95) ? random.whole(1, 12) : random.whole(100, 300);
-    obstacles_.push_back({std::make_shared<const SphereTree>(random_tree(random, count, kSize)),
-                          Pose(random.rotation(), random.in_cube(2.0 * kSize))});
-    add_placed(obstacles_.back().tree->spheres(), obstacles_.back().world_from_tree, standing_);
+    : obstacles_(make_obstacles(random)),
+      direction_(random.direction()),
+      robot_(make_robot(random,
+                        obstacles_[0].world_from_tree * obstacles_[0].tree->spheres()[0].center,
+                        direction_)) {
+  for (const PlacedTree& obstacle : obstacles_) {
+    add_placed(obstacle.tree->spheres(), obstacle.world_from_tree, standing_);
   }
 }
 

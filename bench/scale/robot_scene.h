@@ -37,9 +37,9 @@ class RobotScene {
   template <class Use>
   bool any_pair(std::span<const double> configuration, Use use);
 
-  Eigen::Vector3d direction_;
-  RobotModel robot_;
   std::vector<PlacedTree> obstacles_;
+  Eigen::Vector3d direction_;  // of the first joint
+  RobotModel robot_;
   std::vector<Sphere> standing_, movers_;
   std::vector<Pose> world_from_link_;
   ExactOracle oracle_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scale/cases.h"
 #include "bench/scale/exact_oracle.h"
-#include "bench/scale/motion_track.h"
+#include "bench/scale/motion_oracle.h"
 #include "bench/scale/random_scene.h"
 #include "collide/sweep.h"
 #include "collide/within.h"
@@ -75,6 +75,14 @@ Course fast_course(SceneRandom& random, double size) {
   return course;
 }
 
+// Now and then across `motion`, so that bodies which move that way only graze each other.
+Vector3d grazing(SceneRandom& random, const Vector3d& motion) {
+  const Vector3d direction = random.direction();
+  const Vector3d across = direction.cross(motion);
+  const bool is_usable = across.norm() > 1e-3 * motion.norm();
+  return is_usable && random.chance(0.7) ? across.normalized() : direction;
+}
+
 // Small spheres beside each other.
 SphereTree thin_wall(SceneRandom& random) {
   const double radius = random.magnitude(1e-5, 1e-3);
@@ -85,84 +93,6 @@ SphereTree thin_wall(SceneRandom& random) {
   }
   return build_tree(wall);
 }
-
-// Two moving bodies by the oracle.
-class BruteForce {
- public:
-  BruteForce(const MotionTrack<long double>& a, const MotionTrack<long double>& b)
-      : exact_a_(a), exact_b_(b), a_(a), b_(b) {}
-
-  enum class Contact { kNo, kYes, kInDoubt };
-
-  // Whether the exact gap at t is at most the clearance.
-  Contact at(double t, double clearance) {
-    if (!may_touch(a_, b_, near_, t, clearance)) return Contact::kNo;
-    return touch(t, clearance);
-  }
-
-  // Where the balls are, in double.
-  void place(double t, const SphereTree& a, const SphereTree& b, std::vector<Sphere>& placed_a,
-             std::vector<Sphere>& placed_b) {
-    near_.place(a_, b_, t);
-    for (std::size_t i = 0; i < a_.size(); ++i) {
-      placed_a.push_back(
-          {Vector3d(near_.a[i][0], near_.a[i][1], near_.a[i][2]), a.spheres()[i].radius});
-    }
-    for (std::size_t j = 0; j < b_.size(); ++j) {
-      placed_b.push_back(
-          {Vector3d(near_.b[j][0], near_.b[j][1], near_.b[j][2]), b.spheres()[j].radius});
-    }
-  }
-
- private:
-  template <class Number>
-  struct Centers {
-    std::vector<std::array<Number, 3>> a, b;
-    void place(const MotionTrack<Number>& track_a, const MotionTrack<Number>& track_b, double t) {
-      track_a.place(t, a);
-      track_b.place(t, b);
-    }
-    Number squared(std::size_t i, std::size_t j) const {
-      const Number x = a[i][0] - b[j][0], y = a[i][1] - b[j][1], z = a[i][2] - b[j][2];
-      return x * x + y * y + z * z;
-    }
-  };
-
-  static bool may_touch(const MotionTrack<double>& a, const MotionTrack<double>& b,
-                        Centers<double>& centers, double t, double clearance) {
-    centers.place(a, b, t);
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      for (std::size_t j = 0; j < b.size(); ++j) {
-        const double limit =
-            (a.radius(i) + b.radius(j) + clearance) * (1 + 1e-15) + a.error(i) + b.error(j);
-        if (centers.squared(i, j) <= limit * limit) return true;
-      }
-    }
-    return false;
-  }
-
-  Contact touch(double t, double clearance) {
-    exact_.place(exact_a_, exact_b_, t);
-    Contact contact = Contact::kNo;
-    for (std::size_t i = 0; i < exact_a_.size(); ++i) {
-      for (std::size_t j = 0; j < exact_b_.size(); ++j) {
-        const long double limit =
-            static_cast<long double>(exact_a_.radius(i)) + exact_b_.radius(j) + clearance;
-        const long double error =
-            exact_a_.error(i) + exact_b_.error(j) + 1e-18L * static_cast<long double>(clearance);
-        const long double gap = std::sqrt(exact_.squared(i, j)) - limit;
-        if (gap <= -error) return Contact::kYes;
-        if (gap <= error) contact = Contact::kInDoubt;
-      }
-    }
-    return contact;
-  }
-
-  const MotionTrack<long double>&exact_a_, &exact_b_;
-  const MotionTrack<double> a_, b_;
-  Centers<double> near_;
-  Centers<long double> exact_;
-};
 
 class SweepCheck {
  public:
@@ -202,13 +132,13 @@ class SweepCheck {
       bool is_near = false;
       {
         const auto track_a = course_a.track(a.spheres()), track_b = course_b.track(b.spheres());
-        BruteForce there(track_a, track_b);
+        MotionOracle there(track_a, track_b);
         std::vector<Sphere> movers, standing;
-        there.place(meeting, a, b, movers, standing);
+        there.place(meeting, movers, standing);
         // On to a sphere of b first.
         const Vector3d aim = standing.front().center - movers.front().center;
         for (Sphere& mover : movers) mover.center += aim;
-        const Vector3d direction = random.direction();
+        const Vector3d direction = grazing(random, course_a.displacement - course_b.displacement);
         const auto way = random.chance(is_wall ? 1.0 : 0.8)
                              ? way_to_gap(standing, movers, direction, wanted)
                              : std::nullopt;
@@ -247,12 +177,12 @@ class SweepCheck {
 
     const auto track_a = a.course.track(a.tree.spheres());
     const auto track_b = b.course.track(b.tree.spheres());
-    BruteForce brute(track_a, track_b);
+    MotionOracle oracle(track_a, track_b);
     bool touches = false, missed = false;
     const auto look = [&](double t) {
-      const auto contact = brute.at(t, request.clearance);
-      tally.in_doubt += contact == BruteForce::Contact::kInDoubt && is_called_free(t) ? 1 : 0;
-      if (contact != BruteForce::Contact::kYes) return;
+      const auto contact = oracle.at(t, request.clearance);
+      tally.in_doubt += contact == MotionOracle::Contact::kInDoubt && is_called_free(t) ? 1 : 0;
+      if (contact != MotionOracle::Contact::kYes) return;
       touches = true;
       if (is_called_free(t) && !missed) {
         missed = true;
