@@ -80,7 +80,8 @@ class PoseCheck {
 
   void ask(const ScenePair& scene, const PosePair& poses, bool is_near, PairCache& cache,
            SceneRandom& random) {
-    const auto& [to_a, to_b] = poses;
+    const Pose& to_a = poses.world_from_a;
+    const Pose& to_b = poses.world_from_b;
     const PlacedSet a{scene.a().spheres(), to_a}, b{scene.b().spheres(), to_b};
     const bool truth = oracle_.within(a, b, 0.0);
     const double slack = collision_slack(scene.a(), to_a, scene.b(), to_b);
@@ -88,8 +89,10 @@ class PoseCheck {
     judge(collides_, a, b, verdict_of(said), truth, is_near, 0.0, slack);
 
     ask_cache(scene, poses, is_near, cache);
-    if (random.chance(0.3))
+    if (random.chance(0.2)) {
       ask_cache(scene, {to_a, nudged(to_b, random, scene.size())}, false, cache);
+    }
+    if (random.chance(0.2)) approach(scene, random, cache);
 
     const int kind = random.whole(0, 7);
     if (kind == 0) {
@@ -111,9 +114,22 @@ class PoseCheck {
     }
   }
 
+  // From a clearance that the cache knows, straight on to contact or close to it.
+  void approach(const ScenePair& scene, SceneRandom& random, PairCache& cache) {
+    const double gap = random.magnitude(1e-9, 1.0) * scene.size();
+    const auto start = scene.at_gap(random, gap);
+    if (!start) return;
+    ask_cache(scene, *start, false, cache);
+    const Pose& to_b = start->world_from_b;
+    const double way = gap - random.small_gap();
+    const Pose end(to_b.rotation(), to_b.translation() - way * start->way);
+    ask_cache(scene, {start->world_from_a, end}, true, cache);
+  }
+
   // The cache has to answer as collides() does.
   void ask_cache(const ScenePair& scene, const PosePair& poses, bool is_near, PairCache& cache) {
-    const auto& [to_a, to_b] = poses;
+    const Pose& to_a = poses.world_from_a;
+    const Pose& to_b = poses.world_from_b;
     const PlacedSet a{scene.a().spheres(), to_a}, b{scene.b().spheres(), to_b};
     const bool said = cache.collides(to_a, to_b);
     judge(cached_, a, b, verdict_of(said), oracle_.within(a, b, 0.0), is_near, 0.0,
@@ -127,7 +143,8 @@ class PoseCheck {
   void ask_within(const ScenePair& scene, SceneRandom& random) {
     const double clearance = random.chance(0.1) ? 0.0 : random.magnitude(1e-12, 1.0) * scene.size();
     const auto [poses, is_near] = make_poses(scene, random, clearance);
-    const auto& [to_a, to_b] = poses;
+    const Pose& to_a = poses.world_from_a;
+    const Pose& to_b = poses.world_from_b;
     const PlacedSet a{scene.a().spheres(), to_a}, b{scene.b().spheres(), to_b};
     const bool truth = oracle_.within(a, b, clearance);
     const bool said = within(scene.a(), to_a, scene.b(), to_b, clearance);
@@ -181,7 +198,8 @@ void check_distances(std::uint64_t distances, std::uint64_t seed, ScaleReport& r
     const ScenePair scene(random);
     for (int i = 0; i < kPosesOfAScene; ++i) {
       const auto [poses, is_near] = make_poses(scene, random, 0.0);
-      const auto& [to_a, to_b] = poses;
+      const Pose& to_a = poses.world_from_a;
+      const Pose& to_b = poses.world_from_b;
       const DistanceResult result =
           distance(scene.a(), to_a, scene.b(), to_b, random_request(random, scene.size()));
       const PlacedSet a{scene.a().spheres(), to_a}, b{scene.b().spheres(), to_b};

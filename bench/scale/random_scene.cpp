@@ -205,7 +205,7 @@ std::optional<PosePair> ScenePair::at_gap(SceneRandom& random, double gap) const
   add_placed(b_.spheres(), Pose(turn, start), movers);
   const auto way = way_to_gap(standing, movers, direction, gap);
   if (!way) return std::nullopt;
-  return PosePair{world_from_a, Pose(turn, start + *way * direction)};
+  return PosePair{world_from_a, Pose(turn, start + *way * direction), direction};
 }
 
 }  // namespace spherule

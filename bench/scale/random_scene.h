@@ -63,6 +63,8 @@ std::optional<double> way_to_gap(std::span<const Sphere> standing, std::span<con
 struct PosePair {
   Pose world_from_a;
   Pose world_from_b;
+  // Unit; the way that at_gap() took b. Back along it the two come closer first.
+  Eigen::Vector3d way = Eigen::Vector3d::UnitX();
 };
 
 // Two trees and where to put them.
