@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -116,36 +117,25 @@ class SweepCheck {
     for (int i = 0; i < 8; ++i) {
       Course course_a = is_wall ? fast_course(random, 0.05) : random_course(random, size);
       Course course_b = random_course(random, size);
-      if (is_wall) course_b.displacement.setZero();
-      if (is_wall) course_b.is_between = false;
-      if (is_wall) course_b.angle = 0.0;
+      if (is_wall) {
+        course_b.is_between = false;
+        course_b.angle = 0.0;
+        course_b.displacement.setZero();
+      }
       SweepRequest request;
       request.resolution = random.chance(0.8) ? 1e-4 : random.magnitude(1e-9, 0.1);
       if (!is_wall && random.chance(0.2)) request.clearance = random.magnitude(1e-6, 0.1) * size;
-      if (random.chance(0.1))
+      if (random.chance(0.1)) {
         request.max_node_tests = static_cast<std::uint64_t>(random.whole(0, 500));
+      }
 
-      // Shifts a so that at `meeting` the least gap is what is wanted.
       const double meeting = random.chance(0.1) ? random.whole(0, 1) : random.unit();
       const double wanted =
           is_wall ? -b.spheres()[0].radius * random.unit() : request.clearance + random.small_gap();
-      bool is_near = false;
-      {
-        const auto track_a = course_a.track(a.spheres()), track_b = course_b.track(b.spheres());
-        MotionOracle there(track_a, track_b);
-        std::vector<Sphere> movers, standing;
-        there.place(meeting, movers, standing);
-        // On to a sphere of b first.
-        const Vector3d aim = standing.front().center - movers.front().center;
-        for (Sphere& mover : movers) mover.center += aim;
-        const Vector3d direction = grazing(random, course_a.displacement - course_b.displacement);
-        const auto way = random.chance(is_wall ? 1.0 : 0.8)
-                             ? way_to_gap(standing, movers, direction, wanted)
-                             : std::nullopt;
-        is_near = way.has_value();
-        course_a = course_a.shifted(is_near ? Vector3d(aim + *way * direction)
-                                            : Vector3d(size * random.direction()));
-      }
+      const auto way =
+          way_to_meet({a, course_a}, {b, course_b}, meeting, wanted, is_wall ? 1.0 : 0.8, random);
+      const bool is_near = way.has_value();
+      course_a = course_a.shifted(is_near ? *way : Vector3d(size * random.direction()));
       judge({a, course_a}, {b, course_b}, request, meeting, is_near,
             is_wall                 ? walls_
             : request.clearance > 0 ? clearances_
@@ -159,6 +149,24 @@ class SweepCheck {
     const SphereTree& tree;
     const Course& course;
   };
+
+  // By how much a has to be shifted for the least gap to be `wanted` at the instant `meeting`;
+  // nothing if it passes, and in all but a `share` of the cases.
+  static std::optional<Vector3d> way_to_meet(const Body& a, const Body& b, double meeting,
+                                             double wanted, double share, SceneRandom& random) {
+    const auto track_a = a.course.track(a.tree.spheres());
+    const auto track_b = b.course.track(b.tree.spheres());
+    std::vector<Sphere> movers, standing;
+    MotionOracle(track_a, track_b).place(meeting, movers, standing);
+    // On to a sphere of b first.
+    const Vector3d aim = standing.front().center - movers.front().center;
+    for (Sphere& mover : movers) mover.center += aim;
+    const Vector3d direction = grazing(random, a.course.displacement - b.course.displacement);
+    if (!random.chance(share)) return std::nullopt;
+    const auto way = way_to_gap(standing, movers, direction, wanted);
+    if (!way) return std::nullopt;
+    return aim + *way * direction;
+  }
 
   void judge(const Body& a, const Body& b, const SweepRequest& request, double meeting,
              bool is_near, Tally& tally, SceneRandom& random) {
