@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/scale/cases.h"
+#include "bench/scale/robot_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+constexpr int kEdgesOfAScene = 16;
+constexpr int kSteps = 200;
+constexpr int kManySteps = 10000;
+constexpr std::uint64_t kManyStepsEvery = 1000;
+
+struct Edge {
+  std::vector<double> from, to;
+  double meeting = 0.0;  // where it is near contact, if it is
+  bool is_near = false;
+};
+
+Edge make_edge(RobotScene& scene, SceneRandom& random) {
+  Edge edge;
+  std::vector<double> there = scene.anywhere(random);
+  const std::vector<double> before = there;
+  edge.is_near = random.chance(0.7) && scene.bring_to_gap(there, random.small_gap());
+  if (!edge.is_near) there = before;
+  edge.meeting = random.chance(0.1) ? random.whole(0, 1) : random.unit();
+  const double length = random.magnitude(1e-3, 2.0);
+  for (const double position : there) {
+    const double change = random.chance(0.2) ? 0.0 : length * random.between(-1.0, 1.0);
+    edge.from.push_back(position - edge.meeting * change);
+    edge.to.push_back(edge.from.back() + change);
+  }
+  return edge;
+}
+
+class EdgeCheck {
+ public:
+  explicit EdgeCheck(ScaleReport& report) : report_(report), tally_(report.add("robot, edge")) {}
+
+  std::uint64_t edges() const { return tally_.cases; }
+
+  void run(SceneRandom& random) {
+    RobotScene scene(random);
+    const RobotChecker checker(scene.robot(), scene.obstacles());
+    RobotChecker::Scratch scratch(checker);
+    for (int i = 0; i < kEdgesOfAScene; ++i) {
+      const Edge edge = make_edge(scene, random);
+      if (!MechanismCheck::is_in_range(edge.from) || !MechanismCheck::is_in_range(edge.to)) {
+        continue;
+      }
+      EdgeRequest request{.first = random.chance(0.5)};
+      if (random.chance(0.2)) request.resolution = random.magnitude(1e-6, 0.1);
+      if (random.chance(0.1)) {
+        request.max_configurations = static_cast<std::uint64_t>(random.whole(0, 20));
+      }
+      judge(scene, edge, checker.check_edge(edge.from, edge.to, scratch, request));
+    }
+  }
+
+ private:
+  void judge(RobotScene& scene, const Edge& edge, const EdgeResult& result) {
+    tally_.count(result.verdict, edge.is_near);
+    const auto is_called_free = [&](double t) {
+      return result.verdict == Verdict::kFree || t < result.free_until;
+    };
+    std::vector<double> at(edge.from.size());
+    const auto go_to = [&](double t) {
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        at[i] = (1.0 - t) * edge.from[i] + t * edge.to[i];
+      }
+    };
+    bool touches = false, missed = false;
+    const auto look = [&](double t) {
+      go_to(t);
+      if (!scene.touches(at)) return;
+      touches = true;
+      if (is_called_free(t) && !missed) {
+        missed = true;
+        ++tally_.missed;
+        report_.failure(tally_, "contact at case " + std::to_string(tally_.cases) +
+                                    ", t = " + std::to_string(t));
+      }
+    };
+    const int steps = tally_.cases % kManyStepsEvery == 0 ? kManySteps : kSteps;
+    for (int i = 0; i <= steps && !touches; ++i) look(static_cast<double>(i) / steps);
+    look(edge.meeting);
+    for (int i = 3; i < 40; i += 6) {
+      look(std::min(1.0, edge.meeting + std::ldexp(1.0, -i)));
+      look(std::max(0.0, edge.meeting - std::ldexp(1.0, -i)));
+    }
+    look(std::max(0.0, std::nextafter(result.free_until, 0.0)));
+    if (result.verdict == Verdict::kCollision) check_contact(scene, at, result, go_to);
+    if (result.verdict != Verdict::kFree && !touches) ++tally_.extra;
+  }
+
+  // The contact that was reported is one within the slack.
+  template <class GoTo>
+  void check_contact(RobotScene& scene, const std::vector<double>& at, const EdgeResult& result,
+                     GoTo go_to) {
+    go_to(result.contact_at);
+    const long double gap = scene.gap(at).lower;
+    const double slack = scene.slack(at);
+    tally_.worst_slack = std::max(tally_.worst_slack, static_cast<double>(gap / slack));
+    if (gap > slack) {
+      ++tally_.beyond;
+      report_.failure(tally_, "no contact at case " + std::to_string(tally_.cases));
+    }
+  }
+
+  ScaleReport& report_;
+  Tally& tally_;
+};
+
+}  // namespace
+
+void check_edges(std::uint64_t motions, std::uint64_t seed, ScaleReport& report) {
+  SceneRandom random(seed);
+  EdgeCheck check(report);
+  while (check.edges() < motions) {
+    check.run(random);
+    report.progress("edges", check.edges(), motions);
+  }
+}
+
+}  // namespace spherule

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/scale/exact_oracle.h"
+#include "bench/scale/random_scene.h"
+#include "collide/robot/robot_checker.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// A random robot among obstacles. Its first joint shifts all of it, so that it can be brought to
+// any gap.
+class RobotScene {
+ public:
+  explicit RobotScene(SceneRandom& random);
+
+  const RobotModel& robot() const { return robot_; }
+  const std::vector<PlacedTree>& obstacles() const { return obstacles_; }
+
+  std::vector<double> anywhere(SceneRandom& random) const;
+  // Sets the first joint so that the least gap is `gap`, but for rounding; false if the robot
+  // passes the obstacles at these positions of the others.
+  bool bring_to_gap(std::vector<double>& configuration, double gap);
+
+  // Whether a link touches an obstacle, in exact arithmetic, under the poses of
+  // forward_kinematics(), for which the answers are promised.
+  bool touches(std::span<const double> configuration);
+  // The least gap there, and (for collisions) the largest slack of a pair.
+  GapBounds gap(std::span<const double> configuration);
+  double slack(std::span<const double> configuration);
+
+ private:
+  // Calls use(tree, pose, obstacle) for every pair, until it returns true.
+  template <class Use>
+  bool any_pair(std::span<const double> configuration, Use use);
+
+  std::vector<PlacedTree> obstacles_;
+  Eigen::Vector3d direction_;  // of the first joint
+  RobotModel robot_;
+  std::vector<Sphere> standing_, movers_;
+  std::vector<Pose> world_from_link_;
+  ExactOracle oracle_;
+};
+
+}  // namespace spherule
