@@ -16,7 +16,7 @@ struct EdgeRequest {
   double resolution = 1e-4;
   // Look for the first contact; otherwise any will do, which is faster.
   bool first = false;
-  // Give up after this many configurations, with the verdict kUnknown unless a contact was found.
+  // Look at no more configurations than this, with the verdict kUnknown unless a contact was found.
   std::uint64_t max_configurations = std::numeric_limits<std::uint64_t>::max();
 };
 

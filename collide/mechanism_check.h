@@ -52,11 +52,11 @@ struct MechanismContact {
 // test before an exact one. For each configuration it finds either that no two spheres of a pair
 // touch, or that some do, for sure; where rounding leaves a doubt it asks.
 //
-// Proof in mechanism_check.cpp. Exactness is meant with respect to any poses of the bodies that are
-// within `pose_error` of those of the exact mechanism: the largest distance of a point of the body,
-// in the unit of the trees.
-// Bodies on one frame, and obstacles, that are tested against the same are searched as one tree.
-// Immutable; threads may share it, each with a scratch of its own.
+// Proof in internal/mechanism_parts.cpp. Exactness is meant with respect to any poses of the bodies
+// that are within `pose_error` of those of the exact mechanism: the largest distance of a point of
+// the body, in the unit of the trees. Bodies on one frame, and obstacles, that are tested against
+// the same are searched as one tree. Immutable; threads may share it, each with a scratch of its
+// own.
 class MechanismCheck {
  public:
   // Pairs are tested in their order, as far as bodies are not searched together. Throws Error for
@@ -111,16 +111,17 @@ class MechanismCheck {
   }
 
   // Whether the mechanism is free all along the straight motion of its variables: at (1 - t) `from`
-  // + t `to` in exact arithmetic, for every t in [0, 1]. `confirm`, given a configuration on it and
-  // a MechanismContact there, says whether the two touch. Proof in mechanism_edge.cpp.
+  // + t `to` in exact arithmetic, for every t in [0, 1]. `confirm`, given the number of a
+  // configuration on it (a new one each time it changes), the configuration and a MechanismContact
+  // there, says whether the two touch. Proof in mechanism_edge.cpp.
   // is_in_range() must hold for both ends. Throws Error for a resolution that is not above zero.
   // Allocates nothing once the scratch is warm.
   template <class Confirm>
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
                         const EdgeRequest& request, Confirm confirm) const {
-    const AskAt ask = [](void* context, std::span<const double> at,
+    const AskAt ask = [](void* context, std::uint64_t number, std::span<const double> at,
                          const MechanismContact& contact) -> bool {
-      return (*static_cast<Confirm*>(context))(at, contact);
+      return (*static_cast<Confirm*>(context))(number, at, contact);
     };
     return check_edge(from, to, scratch, request, ask, std::addressof(confirm));
   }
@@ -152,7 +153,7 @@ class MechanismCheck {
   BlockAnswer collides(std::span<const double* const, kBlock> configurations, Scratch& scratch,
                        Ask ask, void* context) const;
 
-  using AskAt = bool (*)(void* context, std::span<const double> at,
+  using AskAt = bool (*)(void* context, std::uint64_t number, std::span<const double> at,
                          const MechanismContact& contact);
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
                         const EdgeRequest& request, AskAt ask, void* context) const;

@@ -84,7 +84,7 @@ class MechanismCheck::EdgeSearch {
     while (top > 0) {
       const Part part = waiting[--top];
       if (part.begin >= result_.contact_at) break;  // only what is before a contact matters
-      if (result_.configurations >= request_.max_configurations) return result_;
+      if (is_spent()) return concluded(Verdict::kUnknown);
       const Look look = look_at(part);
       if (look.end_pair == part.end_pair) {
         result_.free_until = part.end;
@@ -98,8 +98,7 @@ class MechanismCheck::EdgeSearch {
       waiting[top++] = {middle, part.end, part.depth + 1, part.end_pair, look.end_pair};
       waiting[top++] = {part.begin, middle, part.depth + 1, part.end_pair, look.end_pair};
     }
-    result_.verdict = result_.contact_at <= 1.0 ? Verdict::kCollision : Verdict::kFree;
-    return result_;
+    return concluded(Verdict::kFree);
   }
 
  private:
@@ -188,22 +187,28 @@ class MechanismCheck::EdgeSearch {
     const double half = 0.5 * (part.end - part.begin);
     for (const double halves : {0.0, 1.0, 2.0, 4.0, 8.0}) {
       const double at = std::min(part.begin + halves * half, 1.0);
-      if (at >= result_.contact_at) break;
+      if (at >= result_.contact_at || is_spent()) break;
       set(at);
       if (parts_.kernels->check(parts_.problem, memory_.variables.data(), 0.0F, 0.0F, memory_.view,
                                 &Translator::confirm, &translator_)) {
         result_.contact_at = at;
       }
     }
-    result_.verdict = result_.contact_at <= 1.0 ? Verdict::kCollision : Verdict::kUnknown;
+    return concluded(Verdict::kUnknown);
+  }
+
+  bool is_spent() const { return result_.configurations >= request_.max_configurations; }
+
+  EdgeResult concluded(Verdict unless_in_contact) {
+    result_.verdict = result_.contact_at <= 1.0 ? Verdict::kCollision : unless_in_contact;
     return result_;
   }
 
   // For the configuration that was set last.
   static bool ask_at(void* search, int, const MechanismContact& contact) {
     const auto& self = *static_cast<const EdgeSearch*>(search);
-    return self.ask_(self.context_, std::span(self.memory_.variables).first(self.variables_),
-                     contact);
+    return self.ask_(self.context_, self.result_.configurations,
+                     std::span(self.memory_.variables).first(self.variables_), contact);
   }
 
   const Parts& parts_;

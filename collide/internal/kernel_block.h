@@ -108,9 +108,9 @@ class BlockPair {
     }
     memory_.ambition = kModest;
     for (std::int32_t i = 0; i < found && live != 0; ++i) {
-      const unsigned hits = touching(search.found().leaves(i), live);
+      const unsigned hits = touching(search.found().pair(i), live);
       if (hits == 0) continue;
-      memory_.contact = search.found().leaves(i);
+      memory_.contact = search.found().pair(i);
       hits_ |= hits;
       live &= ~hits;
     }

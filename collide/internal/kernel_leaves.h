@@ -32,7 +32,7 @@ class Queue {
   bool waits() const { return next_ < end_; }
   bool is_full() const { return end_ > KernelQueue::kRoom; }
   std::int32_t count() const { return end_; }
-  KernelLeaves leaves(std::int32_t i) const { return {slots_[i], nodes_[i]}; }
+  KernelLeaves pair(std::int32_t i) const { return {slots_[i], nodes_[i]}; }
   SPHERULE_INLINE std::int32_t slot() const { return slots_[next_]; }
   SPHERULE_INLINE std::int32_t take() { return nodes_[next_++]; }
   void start_over() { next_ = end_ = 0; }
@@ -65,28 +65,28 @@ class LeafSearch {
         obstacle_(obstacle),
         at_(at),
         memory_(memory),
-        balls_(memory.waiting[0]),
-        leaves_(memory.waiting[1]),
-        nodes_(memory.waiting[2]),
-        ends_(memory.waiting[3]),
+        body_balls_(memory.waiting[0]),
+        body_leaves_(memory.waiting[1]),
+        obstacle_balls_(memory.waiting[2]),
+        obstacle_leaves_(memory.waiting[3]),
         found_(memory.waiting[4]) {}
 
   // False if there is no room for all.
   bool run() {
     ++*memory_.generation;
     place(body_.node_count);
-    balls_.add_nodes(body_.node_count * PackedNode::kWidth, Int8{}, 1);
+    body_balls_.add_nodes(body_.node_count * PackedNode::kWidth, Int8{}, 1);
     do {
-      while (balls_.waits() && !is_full()) open_for_ball();
-      balls_.start_over();
-      while (nodes_.waits() && !is_full()) open_for_node();
-      nodes_.start_over();
-      while (leaves_.waits() && !is_full()) open_for_leaf();
-      leaves_.start_over();
-      while (ends_.waits() && !is_full()) open_for_end();
-      ends_.start_over();
+      while (body_balls_.waits() && !is_full()) open_for_body_ball();
+      body_balls_.start_over();
+      while (obstacle_balls_.waits() && !is_full()) open_for_obstacle_ball();
+      obstacle_balls_.start_over();
+      while (body_leaves_.waits() && !is_full()) open_for_body_leaf();
+      body_leaves_.start_over();
+      while (obstacle_leaves_.waits() && !is_full()) open_for_obstacle_leaf();
+      obstacle_leaves_.start_over();
       if (is_full()) return false;
-    } while (balls_.waits() || nodes_.waits() || leaves_.waits());
+    } while (body_balls_.waits() || obstacle_balls_.waits() || body_leaves_.waits());
     return true;
   }
 
@@ -96,9 +96,9 @@ class LeafSearch {
   static constexpr Int8 kIota = {0, 1, 2, 3, 4, 5, 6, 7};
 
   // An inner ball of the body and a node of the obstacle.
-  SPHERULE_INLINE void open_for_ball() {
-    const std::int32_t slot = balls_.slot();
-    const std::int32_t node = balls_.take();
+  SPHERULE_INLINE void open_for_body_ball() {
+    const std::int32_t slot = body_balls_.slot();
+    const std::int32_t node = body_balls_.take();
     const PackedNode& children = obstacle_.nodes[node];
     const KernelBalls& from = memory_.placed[slot >> 3];
     const int lane = slot & 7;
@@ -109,50 +109,50 @@ class LeafSearch {
     const unsigned big = mask_of(load(children.radius) >= kOpenBody * radius);
     const std::int32_t body_node = body_.nodes[slot >> 3].child[lane];
     const Int8 slots = node * PackedNode::kWidth + kIota;
-    balls_.add_nodes(slot, children_of(children), hits & ~leaves & big);
-    nodes_.add_slots(slots, body_node, hits & ~leaves & ~big);
-    ends_.add_slots(slots, body_node, hits & leaves);
+    body_balls_.add_nodes(slot, children_of(children), hits & ~leaves & big);
+    obstacle_balls_.add_slots(slots, body_node, hits & ~leaves & ~big);
+    obstacle_leaves_.add_slots(slots, body_node, hits & leaves);
   }
 
   // A leaf of the body and a node of the obstacle.
-  SPHERULE_INLINE void open_for_leaf() {
-    const std::int32_t slot = leaves_.slot();
-    const PackedNode& children = obstacle_.nodes[leaves_.take()];
+  SPHERULE_INLINE void open_for_body_leaf() {
+    const std::int32_t slot = body_leaves_.slot();
+    const PackedNode& children = obstacle_.nodes[body_leaves_.take()];
     const KernelBalls& from = memory_.placed[slot >> 3];
     const int lane = slot & 7;
     const unsigned hits =
         overlaps(balls_of(children), from.x[lane], from.y[lane], from.z[lane], from.radius[lane]);
     const unsigned leaves = leaves_of(children);
     const std::int32_t sphere = ~body_.nodes[slot >> 3].child[lane];
-    leaves_.add_nodes(slot, children_of(children), hits & ~leaves);
+    body_leaves_.add_nodes(slot, children_of(children), hits & ~leaves);
     found_.add_nodes(sphere, ~children_of(children), hits & leaves);
   }
 
   // An inner ball of the obstacle and a node of the body.
-  SPHERULE_INLINE void open_for_node() {
-    const std::int32_t slot = nodes_.slot();
-    const std::int32_t node = nodes_.take();
+  SPHERULE_INLINE void open_for_obstacle_ball() {
+    const std::int32_t slot = obstacle_balls_.slot();
+    const std::int32_t node = obstacle_balls_.take();
     const PackedNode& from = obstacle_.nodes[slot >> 3];
     const int lane = slot & 7;
     const unsigned hits = overlaps(balls_of(place(node)), from.x[lane], from.y[lane], from.z[lane],
                                    from.radius[lane]);
     const unsigned leaves = leaves_of(body_.nodes[node]);
     const Int8 slots = node * PackedNode::kWidth + kIota;
-    balls_.add_slots(slots, from.child[lane], hits & ~leaves);
-    leaves_.add_slots(slots, from.child[lane], hits & leaves);
+    body_balls_.add_slots(slots, from.child[lane], hits & ~leaves);
+    body_leaves_.add_slots(slots, from.child[lane], hits & leaves);
   }
 
   // A leaf of the obstacle and a node of the body.
-  SPHERULE_INLINE void open_for_end() {
-    const std::int32_t slot = ends_.slot();
-    const std::int32_t node = ends_.take();
+  SPHERULE_INLINE void open_for_obstacle_leaf() {
+    const std::int32_t slot = obstacle_leaves_.slot();
+    const std::int32_t node = obstacle_leaves_.take();
     const PackedNode& from = obstacle_.nodes[slot >> 3];
     const int lane = slot & 7;
     const unsigned hits = overlaps(balls_of(place(node)), from.x[lane], from.y[lane], from.z[lane],
                                    from.radius[lane]);
     const PackedNode& children = body_.nodes[node];
     const unsigned leaves = leaves_of(children);
-    ends_.add_nodes(slot, children_of(children), hits & ~leaves);
+    obstacle_leaves_.add_nodes(slot, children_of(children), hits & ~leaves);
     found_.add_slots(~children_of(children), ~from.child[lane], hits & leaves);
   }
 
@@ -175,8 +175,8 @@ class LeafSearch {
 
   // For good: what waited in a queue that is full is lost when it starts over.
   bool is_full() {
-    is_overfull_ = is_overfull_ || balls_.is_full() || nodes_.is_full() || leaves_.is_full() ||
-                   ends_.is_full() || found_.is_full();
+    is_overfull_ = is_overfull_ || body_balls_.is_full() || obstacle_balls_.is_full() ||
+                   body_leaves_.is_full() || obstacle_leaves_.is_full() || found_.is_full();
     return is_overfull_;
   }
 
@@ -184,11 +184,12 @@ class LeafSearch {
   const KernelObstacle& obstacle_;
   const Placement& at_;
   const KernelQueues& memory_;
-  Queue balls_;   // inner balls of the body, nodes of the obstacle
-  Queue leaves_;  // leaves of the body, nodes of the obstacle
-  Queue nodes_;   // inner balls of the obstacle, nodes of the body
-  Queue ends_;    // leaves of the obstacle, nodes of the body
-  Queue found_;   // leaves of both, by their spheres
+  // What waits, by the ball; it waits for a node of the other side.
+  Queue body_balls_;  // inner ones
+  Queue body_leaves_;
+  Queue obstacle_balls_;  // inner ones
+  Queue obstacle_leaves_;
+  Queue found_;  // leaves of both, by their spheres
   bool is_overfull_ = false;
 };
 

@@ -33,12 +33,11 @@ using internal::PackedTree;
 //   centres are moved to their frame in double: 40 u (|p| + |t|) for a point p of a tree and its
 //     pose's translation t. Let X bound that sum for all trees, and W for all bodies.
 //   the slack of the canonical test, 152 u of the scene, which is less than 4 X, and of the scene
-//   as
-//     the caller's poses have it, which is in pose_error.
+//     as the caller's poses have it, which is in pose_error.
 // So the balls of a body must be inflated by
 //     12 v W + 1e-10 (n + 1) W + 1e-12 X + pose_error,
 // and those of an obstacle by 1e-12 X. Where poses are computed in lanes, balls of bodies are grown
-// by lane_error(), kernel_lanes.h, beside it.
+// by KernelBody::lane_error beside it, see kernel_lanes.h.
 constexpr double kPerLength = 12.0 * kFloatRoundoff;
 constexpr double kPerFrame = 5.0 * internal::kSineError;
 constexpr double kPerScene = 1e-12;

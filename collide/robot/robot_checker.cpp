@@ -321,12 +321,16 @@ EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<cons
                       std::to_string(MechanismCheck::kLargestVariable));
     }
   }
+  std::uint64_t placed = 0;  // configurations are numbered from one
+  scratch.unconfirmed_.clear();
+  const EdgeResult result = check_->check_edge(
+      from, to, scratch.memory_, request,
+      [&](std::uint64_t number, std::span<const double> at, const MechanismContact& contact) {
+        bool is_placed = std::exchange(placed, number) == number;
+        return touches(at, contact, is_placed, scratch);
+      });
   if (always_) return {.verdict = Verdict::kCollision, .contact_at = 0.0};
-  return check_->check_edge(from, to, scratch.memory_, request,
-                            [&](std::span<const double> at, const MechanismContact& contact) {
-                              bool is_placed = false;
-                              return touches(at, contact, is_placed, scratch);
-                            });
+  return result;
 }
 
 bool RobotChecker::collides_exactly(std::span<const double> configuration, Scratch& scratch) const {

@@ -116,8 +116,9 @@ TEST(Allocation, AMechanismsCheckTakesNoMemory) {
     block.fill(variables.data());
     check.collides(block, scratch, [](int, const MechanismContact&) { return false; });
     const std::array<double, 2> to = {variables[0] + 0.01, variables[1]};
-    check.check_edge(variables, to, scratch, {},
-                     [](std::span<const double>, const MechanismContact&) { return false; });
+    check.check_edge(
+        variables, to, scratch, {},
+        [](std::uint64_t, std::span<const double>, const MechanismContact&) { return false; });
     if (i == 0) before = allocations;  // an edge warms the scratch up
   }
   EXPECT_EQ(allocations, before);

@@ -89,8 +89,8 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDo) {
       }
     }
   }
-  EXPECT_GT(hits, effort(2000, 100));
-  EXPECT_GT(free, effort(2000, 100));
+  EXPECT_GT(hits, effort(2000, 40));
+  EXPECT_GT(free, effort(2000, 40));
 }
 
 // A ball stands where one of the robot is in the middle of a path, at a distance that single
@@ -129,8 +129,8 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
       ASSERT_EQ(verdicts(checker, path, scratch), expected) << i << ' ' << gap << ' ' << step;
     }
   }
-  EXPECT_GT(hits, effort(2000, 100));
-  EXPECT_GT(free, effort(2000, 100));
+  EXPECT_GT(hits, effort(2000, 40));
+  EXPECT_GT(free, effort(2000, 40));
 }
 
 // Many small spheres in the way of a search make it run out of room; a block with numbers far out

@@ -206,6 +206,19 @@ TEST(RobotEdge, BudgetsAndEnds) {
     EXPECT_LE(result.configurations, budget);
     expect_true(checker, from, to, result, 100);
   }
+  // A contact that was found counts, however short the budget for what lies before it.
+  const RobotChecker met(robot, {{ball({0, 10, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch third(met);
+  const EdgeRequest all{.resolution = 1e-9, .first = true};
+  const std::uint64_t needed = met.check_edge(from, to, third, all).configurations;
+  for (std::uint64_t budget = 0; budget < needed; ++budget) {
+    EdgeRequest request = all;
+    request.max_configurations = budget;
+    const EdgeResult result = met.check_edge(from, to, third, request);
+    EXPECT_LE(result.configurations, budget);
+    EXPECT_EQ(result.verdict == Verdict::kCollision, result.contact_at <= 1.0);
+    expect_true(met, from, to, result, 10);
+  }
   EXPECT_EQ(checker.check_edge(from, from, scratch).verdict, Verdict::kFree);
   const RobotChecker touched(robot, {{ball({10, 0, 0}, 1e-3), Pose()}});
   RobotChecker::Scratch other(touched);
@@ -222,6 +235,11 @@ TEST(RobotEdge, RefusesBadInput) {
   const RobotChecker checker(long_arm(), {{ball({0, 10, 0}, 1e-3), Pose()}});
   RobotChecker::Scratch scratch(checker);
   const std::vector<double> good = {0.0};
+  RobotModel touching = long_arm();
+  touching.attach("base", ball({0, 10, 0}, 1e-3));
+  const RobotChecker standing(touching, {{ball({0, 10, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch other(standing);
+  EXPECT_EQ(standing.check_edge(good, good, other).verdict, Verdict::kCollision);
   for (const std::vector<double>& bad : {std::vector<double>{},
                                          {0.0, 0.0},
                                          {101.0},
@@ -232,6 +250,7 @@ TEST(RobotEdge, RefusesBadInput) {
   }
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THROW(checker.check_edge(good, good, scratch, {.resolution = bad}), Error);
+    EXPECT_THROW(standing.check_edge(good, good, other, {.resolution = bad}), Error);
   }
 }
 
