@@ -87,8 +87,9 @@ class RobotChecker {
   // Whether the robot is free all along a straight motion in joint space, from one configuration to
   // another: proved at every point of it (G6), for the exact motion as for the poses that
   // forward_kinematics() computes for configurations on it. A contact that is found is one for
-  // which collides() answers true. Throws Error for configurations as above, a position beyond 100
-  // in magnitude, and a resolution that is not above zero.
+  // which collides() answers true; where meshes are given, a body inside another that touches none
+  // of its triangles is not looked for: such a motion is kUnknown. Throws Error for configurations
+  // as above, a position beyond 100 in magnitude, and a resolution that is not above zero.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
                         const EdgeRequest& request = {}) const;
 
@@ -97,6 +98,12 @@ class RobotChecker {
     std::shared_ptr<const SphereTree> tree;
     std::size_t link;
     const CoveredMesh* mesh;
+  };
+
+  struct Standing {
+    Body body;
+    Pose world_from_link;
+    std::size_t obstacle;
   };
 
   enum class Finding { kApart, kSpheres, kTouch };
@@ -116,11 +123,6 @@ class RobotChecker {
   std::vector<const CoveredMesh*> obstacle_meshes_;
   std::vector<Body> bodies_;  // that variables move, the last link first
   std::vector<MechanismPair> pairs_;
-  struct Standing {
-    Body body;
-    Pose world_from_link;
-    std::size_t obstacle;
-  };
   std::vector<Standing> standing_;  // pairs that no variable moves
   bool always_ = false;             // a link that stands with the root touches
   std::optional<MechanismCheck> check_;
