@@ -221,7 +221,7 @@ void check_input(std::span<const Sphere> spheres, const BuildOptions& options) {
   if (spheres.size() > kMaxSpheres) {
     throw Error("sphere tree", std::to_string(spheres.size()) + " spheres are too many");
   }
-  internal::check_usable(spheres);
+  internal::require_usable(spheres);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ SphereTree refit(SphereTree tree, std::span<const Sphere> moved) {
     throw Error("sphere tree", std::to_string(moved.size()) + " moved spheres for a tree over " +
                                    std::to_string(data.spheres.size()));
   }
-  internal::check_usable(moved);
+  internal::require_usable(moved);
   data.spheres.assign(moved.begin(), moved.end());
   std::vector<bool> changed(tree.node_count());
   const auto set_ball = [&](std::size_t node, const Sphere& ball) {

@@ -11,7 +11,7 @@
 
 namespace spherule::internal {
 
-void check_usable(std::span<const Sphere> spheres) {
+void require_usable(std::span<const Sphere> spheres) {
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     if (!is_usable(spheres[i])) {
       throw Error("sphere tree", "sphere " + std::to_string(i) +

@@ -11,7 +11,7 @@
 namespace spherule::internal {
 
 // Throws Error if a number in `spheres` is not usable.
-void check_usable(std::span<const Sphere> spheres);
+void require_usable(std::span<const Sphere> spheres);
 
 // Equality of all bits: unlike ==, it tells -0.0 from 0.0.
 bool same_bits(const Sphere& a, const Sphere& b);
