@@ -20,6 +20,9 @@ struct EdgeRequest {
   std::uint64_t max_configurations = std::numeric_limits<std::uint64_t>::max();
 };
 
+// Throws Error for a resolution that is not above zero.
+void require_resolution(double resolution);
+
 struct EdgeResult {
   // kFree: proved at every point of the motion (G6). kCollision: at `contact_at` the canonical test
   // finds a contact. kUnknown: neither was found at the resolution, or within the budget; count it

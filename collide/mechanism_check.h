@@ -114,7 +114,7 @@ class MechanismCheck {
   // + t `to` in exact arithmetic, for every t in [0, 1]. `confirm`, given the number of a
   // configuration on it (a new one each time it changes), the configuration and a MechanismContact
   // there, says whether the two touch. Proof in mechanism_edge.cpp.
-  // is_in_range() must hold for both ends. Throws Error for a resolution that is not above zero.
+  // is_in_range() must hold for both ends. Throws Error as require_resolution() does.
   // Allocates nothing once the scratch is warm.
   template <class Confirm>
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,

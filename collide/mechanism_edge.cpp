@@ -223,12 +223,16 @@ class MechanismCheck::EdgeSearch {
   EdgeResult result_;
 };
 
+void require_resolution(double resolution) {
+  if (!(resolution > 0.0)) throw Error("resolution", "it is not above zero");
+}
+
 EdgeResult MechanismCheck::check_edge(std::span<const double> from, std::span<const double> to,
                                       Scratch& scratch, const EdgeRequest& request, AskAt ask,
                                       void* context) const {
   assert(is_in_range(from) && is_in_range(to));
   assert(scratch.memory_->owner == parts_.get());
-  if (!(request.resolution > 0.0)) throw Error("resolution", "it is not above zero");
+  require_resolution(request.resolution);
   return EdgeSearch(*parts_, from, to, *scratch.memory_, request, ask, context).run();
 }
 

@@ -96,9 +96,7 @@ class BlockPair {
 
   // Settles the lanes from one search; false if there is not room enough for it.
   bool search_all(const KernelReference& from, float growth, unsigned live) {
-    Placement at;
-    __builtin_memcpy(at.columns, from.columns, sizeof at.columns);
-    at.growth = growth;
+    const Placement at = placement(from, growth);
     LeafSearch search(body_, obstacle_, at, scratch_.queues);
     if (!search.run()) return false;
     const std::int32_t found = search.found().count();
@@ -132,6 +130,13 @@ class BlockPair {
     memory_.pose = pose;
     memory_.growth = growth;
     if (memory_.ambition < kMostAmbition) memory_.ambition *= 2.0F;
+  }
+
+  SPHERULE_INLINE static Placement placement(const KernelReference& from, float growth) {
+    Placement at;
+    __builtin_memcpy(at.columns, from.columns, sizeof at.columns);
+    at.growth = growth;
+    return at;
   }
 
   // A lane's place of the body.
@@ -171,9 +176,7 @@ class BlockPair {
 
   template <class Leaves>
   bool search(const KernelReference& from, float growth, Leaves& leaves) const {
-    Placement at;
-    __builtin_memcpy(at.columns, from.columns, sizeof at.columns);
-    at.growth = growth;
+    const Placement at = placement(from, growth);
     PairSearch<Leaves> pair(body_, obstacle_, at, scratch_.tasks, leaves);
     return pair.run({from.center[0], from.center[1], from.center[2], body_.radius + growth, 0, 0});
   }

@@ -103,8 +103,7 @@ class LeafSearch {
     const KernelBalls& from = memory_.placed[slot >> 3];
     const int lane = slot & 7;
     const float radius = from.radius[lane];
-    const unsigned hits =
-        overlaps(balls_of(children), from.x[lane], from.y[lane], from.z[lane], radius);
+    const unsigned hits = overlapping(children, from, lane);
     const unsigned leaves = leaves_of(children);
     const unsigned big = mask_of(load(children.radius) >= kOpenBody * radius);
     const std::int32_t body_node = body_.nodes[slot >> 3].child[lane];
@@ -120,8 +119,7 @@ class LeafSearch {
     const PackedNode& children = obstacle_.nodes[body_leaves_.take()];
     const KernelBalls& from = memory_.placed[slot >> 3];
     const int lane = slot & 7;
-    const unsigned hits =
-        overlaps(balls_of(children), from.x[lane], from.y[lane], from.z[lane], from.radius[lane]);
+    const unsigned hits = overlapping(children, from, lane);
     const unsigned leaves = leaves_of(children);
     const std::int32_t sphere = ~body_.nodes[slot >> 3].child[lane];
     body_leaves_.add_nodes(slot, children_of(children), hits & ~leaves);
@@ -134,8 +132,7 @@ class LeafSearch {
     const std::int32_t node = obstacle_balls_.take();
     const PackedNode& from = obstacle_.nodes[slot >> 3];
     const int lane = slot & 7;
-    const unsigned hits = overlaps(balls_of(place(node)), from.x[lane], from.y[lane], from.z[lane],
-                                   from.radius[lane]);
+    const unsigned hits = overlapping(place(node), from, lane);
     const unsigned leaves = leaves_of(body_.nodes[node]);
     const Int8 slots = node * PackedNode::kWidth + kIota;
     body_balls_.add_slots(slots, from.child[lane], hits & ~leaves);
@@ -148,12 +145,19 @@ class LeafSearch {
     const std::int32_t node = obstacle_leaves_.take();
     const PackedNode& from = obstacle_.nodes[slot >> 3];
     const int lane = slot & 7;
-    const unsigned hits = overlaps(balls_of(place(node)), from.x[lane], from.y[lane], from.z[lane],
-                                   from.radius[lane]);
+    const unsigned hits = overlapping(place(node), from, lane);
     const PackedNode& children = body_.nodes[node];
     const unsigned leaves = leaves_of(children);
     obstacle_leaves_.add_nodes(slot, children_of(children), hits & ~leaves);
     found_.add_slots(~children_of(children), ~from.child[lane], hits & leaves);
+  }
+
+  // The children that overlap the ball in a lane of `from`.
+  template <class Children, class Lanes>
+  SPHERULE_INLINE static unsigned overlapping(const Children& children, const Lanes& from,
+                                              int lane) {
+    return overlaps(balls_of(children), from.x[lane], from.y[lane], from.z[lane],
+                    from.radius[lane]);
   }
 
   SPHERULE_INLINE static Int8 children_of(const PackedNode& node) {

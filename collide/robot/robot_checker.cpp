@@ -155,10 +155,14 @@ const CoveredMesh* RobotChecker::mesh_of(const SphereTree& tree) const {
   return found == meshes_.end() ? nullptr : found->get();
 }
 
+// Whether the fast check can be asked.
+bool RobotChecker::is_usual(std::span<const double> configuration) const {
+  return configuration.size() == static_cast<std::size_t>(robot_.variable_count()) &&
+         MechanismCheck::is_in_range(configuration);
+}
+
 bool RobotChecker::collides(std::span<const double> configuration, Scratch& scratch) const {
-  const bool is_usual = configuration.size() == static_cast<std::size_t>(robot_.variable_count()) &&
-                        MechanismCheck::is_in_range(configuration);
-  if (!is_usual) return collides_exactly(configuration, scratch);
+  if (!is_usual(configuration)) return collides_exactly(configuration, scratch);
   if (always_) return true;
   bool is_placed = false;
   scratch.unconfirmed_.clear();
@@ -180,8 +184,7 @@ bool RobotChecker::within(std::span<const double> configuration, double clearanc
         return is_near(pair.body, pair.world_from_link, pair.obstacle);
       });
   std::vector<Pose>& world_from_link = scratch.world_from_link_;
-  if (configuration.size() != static_cast<std::size_t>(robot_.variable_count()) ||
-      !MechanismCheck::is_in_range(configuration)) {
+  if (!is_usual(configuration)) {
     forward_kinematics(robot_, configuration, world_from_link, world_from_root_);
     return stands_near || std::any_of(pairs_.begin(), pairs_.end(), [&](const MechanismPair& pair) {
              const Body& body = bodies_[static_cast<std::size_t>(pair.body)];
@@ -313,24 +316,23 @@ void RobotChecker::collides(std::span<const double> configurations, Scratch& scr
 EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<const double> to,
                                     Scratch& scratch, const EdgeRequest& request) const {
   for (const std::span<const double> end : {from, to}) {
-    if (end.size() != static_cast<std::size_t>(robot_.variable_count()) ||
-        !MechanismCheck::is_in_range(end)) {
+    if (!is_usual(end)) {
       throw Error("edge",
                   "an end has " + std::to_string(end.size()) + " positions, for a robot of " +
                       std::to_string(robot_.variable_count()) + " variables, or one beyond " +
                       std::to_string(MechanismCheck::kLargestVariable));
     }
   }
+  require_resolution(request.resolution);
+  if (always_) return {.verdict = Verdict::kCollision, .contact_at = 0.0};
   std::uint64_t placed = 0;  // configurations are numbered from one
   scratch.unconfirmed_.clear();
-  const EdgeResult result = check_->check_edge(
+  return check_->check_edge(
       from, to, scratch.memory_, request,
       [&](std::uint64_t number, std::span<const double> at, const MechanismContact& contact) {
         bool is_placed = std::exchange(placed, number) == number;
         return touches(at, contact, is_placed, scratch);
       });
-  if (always_) return {.verdict = Verdict::kCollision, .contact_at = 0.0};
-  return result;
 }
 
 bool RobotChecker::collides_exactly(std::span<const double> configuration, Scratch& scratch) const {

@@ -110,6 +110,7 @@ class RobotChecker {
   Finding find(const MechanismContact& contact, const Scratch& scratch) const;
   bool touches(std::span<const double> configuration, const MechanismContact& contact,
                bool& is_placed, Scratch& scratch) const;
+  bool is_usual(std::span<const double> configuration) const;
   bool contains_component(Scratch& scratch) const;
   const CoveredMesh* mesh_of(const SphereTree& tree) const;
   bool body_collides(const Body& body, const Pose& world_from_link, std::size_t obstacle) const;

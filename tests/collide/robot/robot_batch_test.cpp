@@ -11,7 +11,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -57,10 +59,31 @@ std::vector<std::uint8_t> verdicts(const RobotChecker& checker, const Path& path
   return result;
 }
 
+// The same by the exact queries.
+std::vector<std::uint8_t> answers(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+                                  const Path& path, const RobotCheckerOptions& options) {
+  std::vector<std::uint8_t> result;
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    result.push_back(answer(robot, obstacles, path[k], options) ? 1 : 0);
+  }
+  return result;
+}
+
+// How many of the verdicts so far say collision and free.
+struct Count {
+  std::ptrdiff_t hits = 0;
+  std::ptrdiff_t free = 0;
+
+  void add(const std::vector<std::uint8_t>& verdicts) {
+    const std::ptrdiff_t ones = std::count(verdicts.begin(), verdicts.end(), 1);
+    hits += ones;
+    free += static_cast<std::ptrdiff_t>(verdicts.size()) - ones;
+  }
+};
+
 TEST(RobotBatch, AnswersAsTheExactQueriesDo) {
   Random random(41);
-  int hits = 0;
-  int free = 0;
+  Count count;
   for (int i = 0; i < effort(400, 20); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
     if (robot.variable_count() == 0) continue;
@@ -68,17 +91,13 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDo) {
     RobotCheckerOptions options{.world_from_root = i % 2 == 0 ? Pose() : random.pose(3.0)};
     std::vector<Path> paths;
     for (const double step : {1e-3, 1e-2, 0.1, 0.0, 1e-4}) {
-      const auto count = static_cast<std::size_t>(random.whole(1, effort(90, 30)));
-      paths.push_back(random_path(random, robot, count, step));
+      const auto length = static_cast<std::size_t>(random.whole(1, effort(90, 30)));
+      paths.push_back(random_path(random, robot, length, step));
     }
     std::vector<std::vector<std::uint8_t>> expected;
     for (const Path& path : paths) {
-      expected.emplace_back();
-      for (std::size_t k = 0; k < path.size(); ++k) {
-        const bool hit = answer(robot, obstacles, path[k], options);
-        expected.back().push_back(hit ? 1 : 0);
-        (hit ? hits : free) += 1;
-      }
+      expected.push_back(answers(robot, obstacles, path, options));
+      count.add(expected.back());
     }
     for (const InstructionSet set : instruction_sets()) {
       options.instructions = set;
@@ -89,22 +108,21 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDo) {
       }
     }
   }
-  EXPECT_GT(hits, effort(2000, 40));
-  EXPECT_GT(free, effort(2000, 40));
+  EXPECT_GT(count.hits, effort(2000, 40));
+  EXPECT_GT(count.free, effort(2000, 40));
 }
 
 // A ball stands where one of the robot is in the middle of a path, at a distance that single
 // precision cannot tell from contact, or can only just, or that is about as long as a step.
 TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
   Random random(42);
-  int hits = 0;
-  int free = 0;
+  Count count;
   for (int i = 0; i < effort(1500, 100); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
     const Pose root = i % 2 == 0 ? Pose() : random.pose(100.0);
     const double step = std::pow(10.0, random.uniform(-9.0, -2.0));
-    const auto count = static_cast<std::size_t>(random.whole(1, 40));
-    const Path path = random_path(random, robot, count, step);
+    const auto length = static_cast<std::size_t>(random.whole(1, 40));
+    const Path path = random_path(random, robot, length, step);
     if (path.size() == 0) continue;
     std::vector<Pose> world_from_link;
     forward_kinematics(robot, path[random.bits() % path.size()], world_from_link, root);
@@ -116,12 +134,8 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
         sphere->center + (sphere->radius + 0.1 + gap) * random.point(1.0).normalized();
     const std::vector<PlacedTree> obstacles = {{ball(center, 0.1), Pose()}};
     RobotCheckerOptions options{.world_from_root = root};
-    std::vector<std::uint8_t> expected;
-    for (std::size_t k = 0; k < path.size(); ++k) {
-      const bool hit = answer(robot, obstacles, path[k], options);
-      expected.push_back(hit ? 1 : 0);
-      (hit ? hits : free) += 1;
-    }
+    const std::vector<std::uint8_t> expected = answers(robot, obstacles, path, options);
+    count.add(expected);
     for (const InstructionSet set : instruction_sets()) {
       options.instructions = set;
       const RobotChecker checker(robot, obstacles, options);
@@ -129,8 +143,8 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
       ASSERT_EQ(verdicts(checker, path, scratch), expected) << i << ' ' << gap << ' ' << step;
     }
   }
-  EXPECT_GT(hits, effort(2000, 40));
-  EXPECT_GT(free, effort(2000, 40));
+  EXPECT_GT(count.hits, effort(2000, 40));
+  EXPECT_GT(count.free, effort(2000, 40));
 }
 
 // Many small spheres in the way of a search make it run out of room; a block with numbers far out
@@ -146,10 +160,7 @@ TEST(RobotBatch, AnswersWhereThereIsTooMuchToRemember) {
        Pose::from_translation({0.9, 0.0, 0.0})}};
   Path path{.variables = 1};
   for (int i = 0; i < 100; ++i) path.add({0.001 * i + (i % 23 == 7 ? 628.3 : 0.0)});
-  std::vector<std::uint8_t> expected;
-  for (std::size_t k = 0; k < path.size(); ++k) {
-    expected.push_back(answer(robot, obstacles, path[k], {}) ? 1 : 0);
-  }
+  const std::vector<std::uint8_t> expected = answers(robot, obstacles, path, {});
   for (const InstructionSet set : instruction_sets()) {
     const RobotChecker checker(robot, obstacles, {.instructions = set});
     RobotChecker::Scratch scratch(checker);
