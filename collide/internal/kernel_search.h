@@ -19,8 +19,8 @@ typedef float Float8 __attribute__((vector_size(32), may_alias));
 typedef std::int32_t Int8 __attribute__((vector_size(32), may_alias));
 
 // The obstacle is opened until its ball is smaller than this part of the body's: opening the body
-// costs a change of frame. Measured on the workload of bench/, from 0.35 to 2.
-constexpr float kOpenBody = 0.5F;
+// costs a change of frame. Measured on the workload of bench/, from 0.35 to 1.
+constexpr float kOpenBody = 0.7F;
 
 SPHERULE_INLINE Float8 load(const float* p) {
   return *reinterpret_cast<const Float8*>(p);
