@@ -78,10 +78,9 @@ bool MechanismCheck::within(std::span<const double> variables, double clearance,
   require_clearance(clearance);
   Translator translator{parts_->scene, ask, context};
   Scratch::Memory& memory = *scratch.memory_;
-  std::copy_n(variables.begin(), parts_->problem.variable_count, memory.variables.begin());
   const float growth =
       clearance == 0.0 ? 0.0F : internal::rounded_up_to_single(clearance * kGrowth);
-  return parts_->kernels->check(parts_->problem, memory.variables.data(), growth, kDoubt * growth,
+  return parts_->kernels->check(parts_->problem, variables.data(), growth, kDoubt * growth,
                                 memory.view, &Translator::confirm, &translator);
 }
 

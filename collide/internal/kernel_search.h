@@ -100,7 +100,9 @@ class PairSearch {
     tasks_[0] = root;
     top_ = 1;
     while (top_ > 0) {
-      const KernelTask task = tasks_[--top_];
+      const KernelTask& next = tasks_[--top_];
+      // One number at a time: as a whole it would go through memory once more.
+      const KernelTask task = {next.x, next.y, next.z, next.radius, next.body, next.obstacle};
       if (task.obstacle >= 0 ? open_obstacle(task) : open_body(task)) return true;
     }
     return false;
