@@ -137,7 +137,7 @@ TEST(SpherePeers, MissNothingAndAddNoMoreThanTheirPads) {
   std::size_t hits = 0;
   std::size_t frees = 0;
   std::size_t near = 0;
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < 1000; ++i) {
     const double gaps[] = {0.0,   -1e-9, 1e-9, -1e-7, 1e-7, -1e-6, 1e-6,
                            -1e-5, 1e-5,  1e-4, -1e-4, 1e-3, 0.1,   0.5};
     JointPositions configuration;
@@ -159,8 +159,8 @@ TEST(SpherePeers, MissNothingAndAddNoMoreThanTheirPads) {
       }
     }
   }
-  EXPECT_GT(hits, 150u);
-  EXPECT_GT(frees, 80u);
+  EXPECT_GT(hits, 300u);
+  EXPECT_GT(frees, 100u);
   EXPECT_GT(near, 100u);
 }
 

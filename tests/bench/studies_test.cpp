@@ -32,7 +32,7 @@ std::vector<Sphere> rough_cover(const TriangleMesh& mesh, std::size_t triangles)
         box.extend(mesh.vertices[static_cast<std::size_t>(mesh.triangles[i][k])]);
       }
     }
-    balls.push_back({box.center(), 0.5 * box.diagonal().norm() * (1.0 + 1e-12)});
+    balls.push_back({box.center(), 0.5 * box.diagonal().norm() * (1.0 + 1e-6)});
   }
   return balls;
 }
