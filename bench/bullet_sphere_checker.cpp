@@ -3,7 +3,7 @@
 
 #include "bench/scene_reach.h"
 
-#include <btBulletCollisionCommon.h>
+#include <bullet/btBulletCollisionCommon.h>
 #include <cmath>
 #include <cstddef>
 #include <memory>
