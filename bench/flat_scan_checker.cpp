@@ -22,8 +22,8 @@ struct alignas(64) Line {
 class Floats {
  public:
   explicit Floats(std::size_t count) : lines_((count + 15) / 16) {}
-  float* data() { return lines_.front().numbers; }
-  const float* data() const { return lines_.front().numbers; }
+  float* data() { return reinterpret_cast<float*>(lines_.data()); }
+  const float* data() const { return reinterpret_cast<const float*>(lines_.data()); }
 
  private:
   std::vector<Line> lines_;
@@ -112,6 +112,9 @@ class FlatScanChecker : public Checker {
  public:
   FlatScanChecker(const Workload& workload, FlatScan scan, InstructionSet instructions)
       : check_(kernel_for(instructions)), pad_(single_precision_pad(scene_reach(workload))) {
+    if (workload.obstacles.size() > flat_scan::kMaxObstacles) {
+      throw Error(workload.name, "the flat scan takes up to 32 obstacles");
+    }
     std::vector<Pose> from_frame;
     for (const Link& link : workload.robot.links()) {
       from_frame.push_back(link_from_frame(workload.robot, link));

@@ -20,7 +20,8 @@ enum class FlatScan {
   kBallsInFront,
 };
 
-// Throws Error for a robot with more than 8 variables or a joint that shifts.
+// Throws Error for a robot with more than 8 variables or a joint that shifts, for more than 32
+// obstacles, and for instructions that this machine has not got.
 std::unique_ptr<Checker> make_flat_scan_checker(
     const Workload& workload, FlatScan scan, InstructionSet instructions = best_instruction_set());
 

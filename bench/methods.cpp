@@ -45,14 +45,14 @@ std::vector<Method> make_methods(const Workload& workload) {
 #if defined(SPHERULE_BENCH_BULLET)
   methods.push_back({"bullet-pair-test", "compounds of spheres, contactPairTest for each pair",
                      make_bullet_sphere_checker(workload, BulletQuery::kContactPairTest), spheres,
-                     true});
+                     false});
   methods.push_back({"bullet-trees", "their dynamic AABB trees walked to the first contact",
-                     make_bullet_sphere_checker(workload, BulletQuery::kTrees), spheres, true});
+                     make_bullet_sphere_checker(workload, BulletQuery::kTrees), spheres, false});
 #endif
   methods.push_back({"brute-force-spheres", "all pairs, single precision, widest vectors",
                      make_flat_scan_checker(workload, FlatScan::kAllPairs), spheres, true});
   methods.push_back({"flat-scan-spheres", "the same behind a ball around each body",
-                     make_flat_scan_checker(workload, FlatScan::kBallsInFront), spheres, true});
+                     make_flat_scan_checker(workload, FlatScan::kBallsInFront), spheres, false});
   methods.push_back({"spherule-single", "sphere trees, one configuration a call",
                      make_tree_checker(workload, TreeMode::kSingle), spheres, false});
   methods.push_back({"spherule-batch", "sphere trees, many configurations a call",

@@ -11,6 +11,7 @@ namespace spherule::flat_scan {
 // Arrays of balls are filled up with copies of the last ball to a multiple of this.
 inline constexpr std::int32_t kPadding = 16;
 inline constexpr std::int32_t kMaxVariables = 8;
+inline constexpr std::uint32_t kMaxObstacles = 32;
 
 struct Balls {
   const float* x;

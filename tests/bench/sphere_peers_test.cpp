@@ -192,6 +192,11 @@ TEST(SpherePeers, RefuseWhatTheyCannotMove) {
   scene.robot.add_link("slide", "root", {.name = "joint", .type = JointType::kPrismatic});
   scene.bodies.push_back({part_of("ball", {{{0.0, 0.0, 0.0}, 0.1}}), 1});
   EXPECT_THROW(make_flat_scan_checker(scene, FlatScan::kAllPairs), Error);
+  scene.robot = make_robot();
+  scene.obstacles.assign(32, {part_of("ball", {{{0.0, 0.0, 9.0}, 0.1}}), Pose()});
+  EXPECT_NO_THROW(make_flat_scan_checker(scene, FlatScan::kAllPairs));
+  scene.obstacles.push_back(scene.obstacles.front());
+  EXPECT_THROW(make_flat_scan_checker(scene, FlatScan::kAllPairs), Error);
 }
 
 }  // namespace
