@@ -14,7 +14,7 @@
 namespace spherule {
 
 struct StudyOptions {
-  int rounds = 5;          // alternating; medians are taken
+  int rounds = 5;          // alternating
   std::size_t stride = 1;  // of the program
 };
 

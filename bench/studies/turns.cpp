@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
+#include <numeric>
 
 namespace spherule {
 namespace {
@@ -12,19 +14,14 @@ namespace {
 // Long against the clock and the change of caches, short against a time slice of the machine.
 constexpr std::size_t kRun = 1024;
 
-double median(std::vector<double>& values) {
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
-}
-
 }  // namespace
 
 std::vector<double> time_in_turns(std::span<const std::unique_ptr<Checker>> checkers,
                                   std::span<const JointPositions> configurations, int rounds) {
   const std::size_t runs = (configurations.size() + kRun - 1) / kRun;
-  // By checker and run, over the rounds.
-  std::vector<std::vector<std::vector<double>>> times(checkers.size(),
-                                                      std::vector<std::vector<double>>(runs));
+  // By checker and run: the least so far.
+  std::vector<std::vector<double>> least(
+      checkers.size(), std::vector<double>(runs, std::numeric_limits<double>::infinity()));
   std::vector<std::uint8_t> verdicts(kRun);
   for (int round = -1; round < rounds; ++round) {
     for (std::size_t run = 0; run < runs; ++run) {
@@ -34,14 +31,14 @@ std::vector<double> time_in_turns(std::span<const std::unique_ptr<Checker>> chec
       for (std::size_t i = 0; i < checkers.size(); ++i) {
         const auto start = Clock::now();
         checkers[i]->check(asked, {verdicts.data(), asked.size()});
-        if (round >= 0) times[i][run].push_back(nanoseconds(Clock::now() - start));
+        const double time = nanoseconds(Clock::now() - start);
+        if (round >= 0) least[i][run] = std::min(least[i][run], time);
       }
     }
   }
   std::vector<double> result;
-  for (auto& of_checker : times) {
-    double sum = 0.0;
-    for (auto& of_run : of_checker) sum += median(of_run);
+  for (const auto& of_checker : least) {
+    const double sum = std::accumulate(of_checker.begin(), of_checker.end(), 0.0);
     result.push_back(sum / static_cast<double>(configurations.size()));
   }
   return result;

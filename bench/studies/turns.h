@@ -10,8 +10,8 @@
 namespace spherule {
 
 // Nanoseconds a configuration of each checker. They take turns at short runs of the configurations,
-// in several rounds; of each run the median over the rounds counts, so that what else the machine
-// does in between hardly shows. One more round goes first, untimed.
+// in several rounds; of each run the least time counts, since what else the machine does can only
+// add. One more round goes first, untimed.
 std::vector<double> time_in_turns(std::span<const std::unique_ptr<Checker>> checkers,
                                   std::span<const JointPositions> configurations, int rounds);
 
