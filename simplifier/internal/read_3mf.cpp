@@ -118,7 +118,7 @@ class ModelReader : public XmlHandler {
 
   std::string_view required(const XmlAttributes& attributes, std::string_view name) const {
     const std::optional<std::string_view> value = attributes.find(name);
-    if (!value) in_.fail("there is no attribute " + quoted(name));
+    if (!value) in_.fail("there is no attribute " + in_quotes(name));
     return *value;
   }
 
@@ -130,7 +130,7 @@ class ModelReader : public XmlHandler {
     if (path_[0] != "model") in_.fail("not a 3MF model");
     const std::string_view extensions = attributes.find("requiredextensions").value_or("");
     if (!extensions.empty()) {
-      in_.fail("it requires extensions, which are not supported: " + quoted(extensions));
+      in_.fail("it requires extensions, which are not supported: " + in_quotes(extensions));
     }
   }
 
@@ -193,7 +193,7 @@ class ModelReader : public XmlHandler {
     if (!in_object && !in_mesh) return;
     if (name.starts_with(kTriangleSets)) return;
     if (std::ranges::find(kKnown, path_.back()) == std::end(kKnown)) {
-      in_.fail("a shape that is not supported: " + quoted(path_.back()));
+      in_.fail("a shape that is not supported: " + in_quotes(path_.back()));
     }
   }
 

@@ -46,7 +46,7 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& subject) {
         corners.push_back(read_corner(in, t, mesh.vertices.size()));
       }
     } else if (word == "surf" || word == "curv" || word == "call") {
-      in.fail(quoted(word) + " is not supported; only polygons are");
+      in.fail(in_quotes(word) + " is not supported; only polygons are");
     }
     in.skip_line();
   }

@@ -49,7 +49,7 @@ NumberType parse_type(const TextScanner& in, std::string_view word) {
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     if (word == kNames[i][0] || word == kNames[i][1]) return static_cast<NumberType>(i);
   }
-  in.fail(quoted(word) + " is not a type of number");
+  in.fail(in_quotes(word) + " is not a type of number");
 }
 
 Property parse_property(TextScanner& in) {
@@ -78,14 +78,14 @@ Header parse_header(TextScanner& in, std::string_view bytes) {
       } else if (format == "binary_big_endian") {
         header.encoding = Encoding::kBigEndian;
       } else if (format != "ascii") {
-        in.fail(quoted(format) + " is not a PLY format");
+        in.fail(in_quotes(format) + " is not a PLY format");
       }
     } else if (word == "element") {
       const std::string name(in.token_on_line());
       const std::int64_t count = in.integer(in.token_on_line());
       // Each item takes at least a byte.
       if (count < 0 || static_cast<std::uint64_t>(count) > bytes.size()) {
-        in.fail("the file cannot hold " + std::to_string(count) + " items of " + quoted(name));
+        in.fail("the file cannot hold " + std::to_string(count) + " items of " + in_quotes(name));
       }
       header.elements.push_back({name, static_cast<std::size_t>(count), {}});
     } else if (word == "property") {
@@ -224,7 +224,7 @@ void read_faces(Numbers& numbers, const Element& element,
     return p.list_size_type && (p.name == "vertex_indices" || p.name == "vertex_index");
   };
   if (std::none_of(element.properties.begin(), element.properties.end(), is_corners)) {
-    numbers.fail(quoted(element.name) + " lacks the list vertex_indices");
+    numbers.fail(in_quotes(element.name) + " lacks the list vertex_indices");
   }
   std::vector<std::int64_t> corners;
   for (std::size_t i = 0; i < element.count; ++i) {

@@ -62,7 +62,7 @@ void expect(TextScanner& in, std::string_view word) {
   const std::string_view token = in.token();
   if (token.empty()) in.fail("the file is cut short");
   if (!is_word(token, word)) {
-    in.fail(quoted(word) + " expected, found " + quoted(token));
+    in.fail(in_quotes(word) + " expected, found " + in_quotes(token));
   }
 }
 

@@ -20,7 +20,7 @@ bool is_space(char c) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "'";
   result.append(text.substr(0, 40));
   result.append("'");
@@ -78,7 +78,7 @@ double TextScanner::number(std::string_view token) const {
   double value = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (end != digits.data() + digits.size() || error == std::errc::invalid_argument) {
-    fail(quoted(token) + " is not a number");
+    fail(in_quotes(token) + " is not a number");
   }
   // Out of range is reported for numbers that are too large and for numbers next to zero.
   if (error == std::errc::result_out_of_range) {
@@ -86,9 +86,9 @@ double TextScanner::number(std::string_view token) const {
     if (exponent != std::string_view::npos && digits.substr(exponent + 1).starts_with('-')) {
       return 0.0;
     }
-    fail(quoted(token) + " is too large");
+    fail(in_quotes(token) + " is too large");
   }
-  if (!std::isfinite(value)) fail(quoted(token) + " is not a finite number");
+  if (!std::isfinite(value)) fail(in_quotes(token) + " is not a finite number");
   return value;
 }
 
@@ -101,7 +101,7 @@ std::int64_t TextScanner::integer(std::string_view token) const {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
   if (end != token.data() + token.size() || error != std::errc()) {
-    fail(quoted(token) + " is not a whole number");
+    fail(in_quotes(token) + " is not a whole number");
   }
   return value;
 }

@@ -9,7 +9,7 @@
 namespace spherule::internal {
 
 // The text between quotation marks for a message, at most its first 40 characters.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 // Splits the text of a mesh file into tokens at white space. Every fault is an Error that names the
 // file and the line. Does not depend on the locale.

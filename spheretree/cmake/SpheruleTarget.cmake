@@ -2,18 +2,25 @@
 # What every target of the project shares: the include roots, the warnings, the floating-point
 # model, and how a library is installed.
 include(GNUInstallDirs)
+if(SPHERULE_PRECOMPILE)
+  include(SpherulePrecompiled)
+endif()
 
 # Users write <spherule/spheretree/sphere.h>. In the build tree this link leads there; installed, the
 # headers stand under include/spherule/.
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/spherule SYMBOLIC)
 
-# Applies the project's compile settings to TARGET. The guarantees rest on `-ffp-contract=off` in our
-# own sources (see spheretree/rounding.h); inline code in headers is valid with and without contraction.
-function(spherule_compile_settings target)
+# Applies the project's compile settings to TARGET, a `library`, `program` or `test` (KIND). The
+# guarantees rest on `-ffp-contract=off` in our own sources (see spheretree/rounding.h); inline code in
+# headers is valid with and without contraction.
+function(spherule_compile_settings target kind)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -ffp-contract=off
                          $<$<BOOL:${SPHERULE_STRICT}>:-Werror>)
+  if(SPHERULE_PRECOMPILE)
+    spherule_precompile(${target} ${kind})
+  endif()
 endfunction()
 
 # Declares the library spherule::NAME from HEADERS (public), SOURCES (everything else) and LINKS
@@ -34,7 +41,7 @@ function(spherule_library name)
   target_include_directories(${target} INTERFACE $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PUBLIC ${ARG_LINKS})
-  spherule_compile_settings(${target})
+  spherule_compile_settings(${target} library)
 
   # One export per component, so that a user of one does not load the dependencies of another. The
   # components this one links are recorded for the package configuration (SpheruleInstall.cmake).

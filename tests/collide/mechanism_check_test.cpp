@@ -3,6 +3,7 @@
 
 #include "spheretree/build.h"
 #include "spheretree/error.h"
+#include "tests/collide/exact_scene.h"
 #include "tests/collide/trees.h"
 
 #include <gtest/gtest.h>

@@ -5,6 +5,7 @@
 
 #include "collide/internal/ray.h"
 #include "tests/collide/exact_triangles.h"
+#include "tests/collide/random.h"
 
 #include <gtest/gtest.h>
 

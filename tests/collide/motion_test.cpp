@@ -5,6 +5,8 @@
 
 #include "spheretree/error.h"
 #include "tests/collide/exact_motion.h"
+#include "tests/collide/exact_scene.h"
+#include "tests/collide/random.h"
 
 #include <gtest/gtest.h>
 

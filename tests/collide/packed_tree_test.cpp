@@ -2,6 +2,7 @@
 #include "collide/internal/packed_tree.h"
 
 #include "spheretree/build.h"
+#include "tests/collide/exact_scene.h"
 #include "tests/collide/trees.h"
 
 #include <gtest/gtest.h>

@@ -3,6 +3,7 @@
 
 #include "collide/sweep.h"
 #include "tests/collide/swept_bodies.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -129,7 +130,7 @@ TEST(Sweep, StartsOrEndsInContact) {
 
 TEST(Sweep, TouchingForAnInstantIsContact) {
   Random random(5);
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < effort(400, 60); ++i) {
     // A ball passes another whose surface it touches at exactly one instant; the numbers are exact.
     const double when = random.uniform(0.0, 1.0);
     const double speed = std::ldexp(1.0, random.whole(-10, 10));
@@ -138,7 +139,7 @@ TEST(Sweep, TouchingForAnInstantIsContact) {
     const Body passing = turning_body({{Vector3d::Zero(), 1.0}}, start, random.point(1.0),
                                       random.uniform(-9.0, 9.0), way);
     const Body still = still_body({{Vector3d::Zero(), 1.0}});
-    for (const double resolution : {1.0, 1e-3, 1e-6, i < 5 ? 0x1p-40 : 1e-7}) {
+    for (const double resolution : {1.0, 1e-3, 1e-6, i < effort(5, 1) ? 0x1p-40 : 1e-7}) {
       const SweepResult result = run(passing, still, {.resolution = resolution});
       ASSERT_NE(result.verdict, Verdict::kFree);
       ASSERT_LE(result.free_until, when);

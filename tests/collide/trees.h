@@ -3,7 +3,7 @@
 
 #include "collide/instruction_set.h"
 #include "spheretree/sphere_tree.h"
-#include "tests/collide/exact_scene.h"
+#include "tests/collide/random.h"
 
 #include <memory>
 #include <vector>

@@ -6,6 +6,8 @@
 #include "collide/internal/relative_pose.h"
 #include "spheretree/rounding.h"
 #include "tests/collide/exact_triangles.h"
+#include "tests/collide/random.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -93,49 +95,49 @@ Triangle brought(const Triangle& t, const Vector3d& from, const Vector3d& to, Ra
 }
 
 TEST(TrianglePair, RandomOnesAreDecidedForSure) {
-  const Tally tally = judge(3000, 1, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(3000, 750), 1, [](Random& random) -> Scene {
     return {random_triangle(random), random_triangle(random)};
   });
-  EXPECT_GT(tally.apart, 1000);
-  EXPECT_GT(tally.touching, 300);
+  EXPECT_GT(tally.apart, effort(1000, 200));
+  EXPECT_GT(tally.touching, effort(300, 60));
   EXPECT_EQ(tally.doubtful, 0);
 }
 
 TEST(TrianglePair, CornerAgainstFace) {
-  const Tally tally = judge(3000, 2, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(3000, 750), 2, [](Random& random) -> Scene {
     const Triangle a = random_triangle(random), b = random_triangle(random);
     return {a, brought(b, b[0], point_of(a, random), random)};
   });
-  EXPECT_GT(tally.apart, 100);
-  EXPECT_GT(tally.touching, 300);
-  EXPECT_GT(tally.doubtful, 100);
+  EXPECT_GT(tally.apart, effort(100, 20));
+  EXPECT_GT(tally.touching, effort(300, 60));
+  EXPECT_GT(tally.doubtful, effort(100, 20));
   EXPECT_LT(tally.widest_doubt, kSlack);
 }
 
 TEST(TrianglePair, EdgeAgainstEdge) {
-  const Tally tally = judge(3000, 3, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(3000, 750), 3, [](Random& random) -> Scene {
     const Triangle a = random_triangle(random), b = random_triangle(random);
     return {a, brought(b, point_of_edge(b, random), point_of_edge(a, random), random)};
   });
-  EXPECT_GT(tally.apart, 100);
-  EXPECT_GT(tally.touching, 300);
-  EXPECT_GT(tally.doubtful, 100);
+  EXPECT_GT(tally.apart, effort(100, 20));
+  EXPECT_GT(tally.touching, effort(300, 60));
+  EXPECT_GT(tally.doubtful, effort(100, 20));
   EXPECT_LT(tally.widest_doubt, kSlack);
 }
 
 TEST(TrianglePair, CornerAgainstCornerOrEdge) {
-  const Tally tally = judge(3000, 4, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(3000, 750), 4, [](Random& random) -> Scene {
     const Triangle a = random_triangle(random), b = random_triangle(random);
     const Vector3d to = random.whole(0, 1) == 0 ? a[2] : point_of_edge(a, random);
     return {a, brought(b, b[0], to, random)};
   });
-  EXPECT_GT(tally.apart, 500);
-  EXPECT_GT(tally.doubtful, 100);
+  EXPECT_GT(tally.apart, effort(500, 100));
+  EXPECT_GT(tally.doubtful, effort(100, 20));
   EXPECT_LT(tally.widest_doubt, kSlack);
 }
 
 TEST(TrianglePair, InOnePlane) {
-  const Tally tally = judge(2000, 5, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(2000, 500), 5, [](Random& random) -> Scene {
     // On a grid, so that corners and edges often coincide; each along the axes' plane in turn.
     const int axis = random.whole(0, 2);
     const auto triangle = [&] {
@@ -150,14 +152,14 @@ TEST(TrianglePair, InOnePlane) {
     if (random.whole(0, 1) == 0) shift[random.whole(0, 2)] = offset(random);
     return {triangle(), moved(triangle(), shift)};
   });
-  EXPECT_GT(tally.apart, 500);
-  EXPECT_GT(tally.doubtful, 500);
+  EXPECT_GT(tally.apart, effort(500, 100));
+  EXPECT_GT(tally.doubtful, effort(500, 100));
   EXPECT_LT(tally.widest_doubt, kSlack);
 }
 
 TEST(TrianglePair, NeedlesSegmentsAndPoints) {
   for (const double width : {1e-6, 1e-9, 1e-13, 0.0}) {
-    const Tally tally = judge(1000, 6, [width](Random& random) -> Scene {
+    const Tally tally = judge(effort(1000, 250), 6, [width](Random& random) -> Scene {
       const Triangle a = random.whole(0, 1) == 0 ? needle(random, width) : random_triangle(random);
       Triangle b = needle(random, width);
       if (random.whole(0, 4) == 0) b = {b[0], b[0], b[random.whole(0, 1)]};
@@ -165,27 +167,27 @@ TEST(TrianglePair, NeedlesSegmentsAndPoints) {
       const Vector3d to = random.whole(0, 1) == 0 ? a[1] : point_of(a, random);
       return {a, brought(b, from, to, random)};
     });
-    EXPECT_GT(tally.apart, 200) << width;
-    EXPECT_GT(tally.doubtful, 50) << width;
+    EXPECT_GT(tally.apart, effort(200, 40)) << width;
+    EXPECT_GT(tally.doubtful, effort(50, 10)) << width;
     EXPECT_LT(tally.widest_doubt, 1e-9) << width;
   }
 }
 
 TEST(TrianglePair, SmallFarFromTheOrigin) {
-  const Tally tally = judge(2000, 7, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(2000, 500), 7, [](Random& random) -> Scene {
     const Vector3d far = random.point(1e6);
     const Triangle a = moved(random_triangle(random), far), b = random_triangle(random);
     return {a, brought(b, b[0], point_of(a, random), random)};
   });
-  EXPECT_GT(tally.apart, 50);
-  EXPECT_GT(tally.doubtful, 500);
+  EXPECT_GT(tally.apart, effort(50, 10));
+  EXPECT_GT(tally.doubtful, effort(500, 100));
   EXPECT_LT(tally.widest_doubt, kSlack);
 }
 
 // Far smaller than the scene, and so small that squares of areas underflow.
 TEST(TrianglePair, TinyOnesAreNotTakenForApart) {
   for (const double size : {1e-6, 1e-30, 1e-90, 1e-150, 1e-300}) {
-    judge(60, 8, [size](Random& random) -> Scene {
+    judge(effort(60, 20), 8, [size](Random& random) -> Scene {
       Scene scene{random_triangle(random), random_triangle(random)};
       for (Vector3d& corner : scene.a) corner *= size;
       for (Vector3d& corner : scene.b) corner *= random.whole(0, 1) == 0 ? 1.0 : size;

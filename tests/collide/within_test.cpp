@@ -6,7 +6,9 @@
 #include "collide/distance.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
+#include "tests/collide/exact_scene.h"
 #include "tests/collide/trees.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -51,7 +53,7 @@ bool exactly_within(const PlacedBalls& balls, const Rational& clearance) {
 TEST(Within, IsExactToTheSlackOnPairsOfBalls) {
   Random random(1);
   int needed = 0;
-  for (int i = 0; i < 800; ++i) {
+  for (int i = 0; i < effort(800, 200); ++i) {
     const double size = std::ldexp(1.0, random.whole(-20, 20));
     const std::vector<Sphere> one = random_spheres(random, 1, size, 0.5 * size);
     const std::vector<Sphere> other = random_spheres(random, 1, size, 0.5 * size);
@@ -80,7 +82,7 @@ TEST(Within, IsExactToTheSlackOnPairsOfBalls) {
       }
     }
   }
-  EXPECT_GT(needed, 100);
+  EXPECT_GT(needed, effort(100, 25));
 }
 
 TEST(Within, IsWhatTheTestOfSomePairSays) {

@@ -97,7 +97,8 @@ void expect_sound(const FittedModel& a, const FittedModel& b, std::size_t count,
 
 using Names = std::vector<std::pair<std::string, std::string>>;
 
-// Each list is a test case of its own, so that they run side by side; together 28 pairs.
+// Each list is a test case of its own, so that they run side by side; together 28 pairs. Under
+// sanitizers the first of each: nearly all their time goes into the fits.
 const std::vector<Names> kShapePairs = {
     {{"cube", "cube"}, {"cube", "sphere"}, {"sphere", "cylinder"}, {"cube", "cone"}},
     {{"slab", "cube"}, {"slab", "cone"}, {"slab", "pipe"}, {"slab", "slab"}},
@@ -113,7 +114,7 @@ TEST_P(ShapeTruth, NothingMissedAndExtrasAreNear) {
   std::size_t pairs = 0;
   for (const Names& names : kShapePairs) pairs += names.size();
   std::uint64_t seed = 1000 * GetParam();
-  for (const auto& [a, b] : kShapePairs[GetParam()]) {
+  for (const auto& [a, b] : test::effort(kShapePairs[GetParam()], 1)) {
     expect_sound(test::shape_model(a), test::shape_model(b), total_poses() / pairs + 1, ++seed);
   }
 }

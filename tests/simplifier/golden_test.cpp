@@ -4,6 +4,7 @@
 // so in CHANGELOG.md: spheres fitted before will differ from spheres fitted after.
 #include "spheretree/internal/crc64.h"
 #include "tests/simplifier/fitting.h"
+#include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +53,7 @@ std::vector<Golden> goldens() {
 }
 
 TEST(Golden, ExternalSpheresAndTheSpheresOfBothMethods) {
-  for (const Golden& golden : goldens()) {
+  for (const Golden& golden : effort(goldens(), 2)) {
     SCOPED_TRACE(golden.name);
     CoverOptions options;
     options.method = CoverMethod::kPaper;

@@ -102,7 +102,7 @@ TEST(Levels, AreFewerAndCloserThanPlainClustering) {
 
 TEST(Levels, AreEqualInEveryRunOnAnyNumberOfThreads) {
   const Simplification first = fitted_levels(l_bracket());
-  for (const int threads : {1, 2}) {
+  for (const int threads : effort(std::vector{1, 2}, 1)) {
     const Simplification again = fitted_levels(l_bracket(), CoverMethod::kCover, 0.0, threads);
     for (std::size_t k = 0; k < first.levels.size(); ++k) {
       EXPECT_EQ(first.levels[k].balls.spheres, again.levels[k].balls.spheres);

@@ -66,7 +66,7 @@ void expect_true_balls(const TriangleMesh& mesh, const ExternalSpheres& external
 TEST(ZoneReach, ASlotIsOpenInTheZoneAndClosedOutsideOfIt) {
   // The zone holds the near third of the slot and the mouth before it.
   const std::vector<Zone> zones = {box_zone({-5, -5, -1}, {7, 25, 3}, kNarrow)};
-  for (const double shift : {0.0, 0.13, 0.31}) {
+  for (const double shift : effort(std::vector{0.13, 0.0, 0.31}, 1)) {
     const TriangleMesh mesh =
         joined(two_plates(1.9), box_mesh({0, 0, -2.0 - shift}, {0.1, 0.1, -1.0}));
     const ExternalSpheres external = placed(mesh, zones);
@@ -117,7 +117,7 @@ TEST(ZoneReach, TheSlackHoldsInZonesAndAcrossTheirBorders) {
     const double slack = placed(cube_mesh(), {}, step).closing_slack;
     // The grid of the zone: the same share of d, down to the next halving.
     const double zone_slack = slack / std::exp2(std::ceil(std::log2(kWide / kNarrow)));
-    for (const double shift : {0.0, 0.19}) {
+    for (const double shift : effort(std::vector{0.19, 0.0}, 1)) {
       const auto shifted = [&](const TriangleMesh& mesh) {
         return joined(mesh, box_mesh({0, 0, -2.0 - shift}, {0.1, 0.1, -1.0}));
       };

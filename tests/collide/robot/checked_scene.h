@@ -4,7 +4,7 @@
 // Random robots with spheres among random obstacles, and what a RobotChecker has to say of them.
 
 #include "collide/robot/robot_checker.h"
-#include "tests/collide/exact_scene.h"
+#include "tests/collide/random.h"
 
 #include <memory>
 #include <optional>

@@ -6,6 +6,7 @@
 #include "collide/robot/robot_collision.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
+#include "tests/collide/exact_scene.h"
 #include "tests/collide/robot/robots.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collide/robot/robot_model.h"
-#include "tests/collide/exact_scene.h"
+#include "tests/collide/random.h"
 
 #include <vector>
 

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Headers of others that most sources include, compiled once (option SPHERULE_PRECOMPILE). They hide
+# a missing include, so they are for a build that only has to run (the preset `sanitize`); the strict
+# build goes without them. GCC lets sources share such a header only where they have the same code
+# model and the same macros that it looks at, hence one for each KIND: library, program, test.
+
+function(spherule_declare_precompiled kind)
+  set(headers <algorithm> <array> <cmath> <cstddef> <cstdint> <filesystem> <functional> <limits>
+              <map> <memory> <optional> <set> <span> <sstream> <string> <string_view> <utility>
+              <vector> <Eigen/Core> <Eigen/Geometry>)
+  set(links Eigen3::Eigen)
+  if(kind STREQUAL program)
+    find_package(CLI11 REQUIRED)
+    find_package(nlohmann_json REQUIRED)
+    list(APPEND headers <CLI/CLI.hpp> <nlohmann/json.hpp>)
+    list(APPEND links CLI11::CLI11 nlohmann_json::nlohmann_json)
+  elseif(kind STREQUAL test)
+    find_package(Boost REQUIRED)
+    find_package(GTest REQUIRED)
+    find_package(nlohmann_json REQUIRED)
+    list(APPEND headers <boost/multiprecision/cpp_bin_float.hpp> <boost/multiprecision/cpp_int.hpp>
+                        <gtest/gtest.h> <nlohmann/json.hpp>)
+    list(APPEND links Boost::headers GTest::gtest nlohmann_json::nlohmann_json)
+  endif()
+  set(source ${PROJECT_BINARY_DIR}/precompiled/${kind}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "")
+  set(target spherule_precompiled_${kind})
+  add_library(${target} OBJECT ${source})
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  target_compile_options(${target} PRIVATE -ffp-contract=off)
+  target_link_libraries(${target} PRIVATE ${links})
+  target_precompile_headers(${target} PRIVATE ${headers})
+  if(kind STREQUAL library)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
+endfunction()
+
+# Lets the sources of TARGET use the precompiled headers of KIND.
+function(spherule_precompile target kind)
+  if(NOT TARGET spherule_precompiled_${kind})
+    spherule_declare_precompiled(${kind})
+  endif()
+  target_precompile_headers(${target} REUSE_FROM spherule_precompiled_${kind})
+  if(kind STREQUAL test)
+    # What Boost::headers defines, so that tests without it have the same macros.
+    target_compile_definitions(${target} PRIVATE BOOST_ALL_NO_LIB)
+  endif()
+endfunction()
