@@ -34,7 +34,6 @@ struct MeshMechanismCheck::Parts {
   internal::MeshProblem problem{};
   const internal::Kernels* kernels = nullptr;
   const internal::MeshKernels* mesh_kernels = nullptr;
-  std::int64_t task_count = 1;
 };
 
 struct MeshMechanismCheck::Scratch::Memory {
@@ -44,7 +43,7 @@ struct MeshMechanismCheck::Scratch::Memory {
   std::vector<double> cosines;
   std::vector<internal::KernelPose> poses;
   std::vector<internal::KernelTask> roots;
-  std::vector<internal::MeshTask> tasks;
+  internal::MeshTasks tasks;
   internal::KernelScratch view = {};
 };
 
@@ -218,11 +217,8 @@ MeshMechanismCheck::MeshMechanismCheck(std::span<const MechanismFrame> frames,
   const double inflation = kPerLength * (farthest + around) +
                            kPerFrame * (most_links + 1.0) * farthest + kPerScene * bound +
                            pose_error;
-  int mesh_depth = 1;
-  int tree_depth = 1;
   for (const MechanismMesh& body : bodies) {
     const auto& mesh = parts->meshes.emplace_back(moved(*body.mesh, body.frame_from_mesh));
-    mesh_depth = std::max(mesh_depth, mesh->depth());
     parts->bodies.push_back({mesh->view(), body.frame});
     const Sphere root = body.mesh->tree().ball(0);
     const Eigen::Vector3d center = body.frame_from_mesh * root.center;
@@ -236,7 +232,6 @@ MeshMechanismCheck::MeshMechanismCheck(std::span<const MechanismFrame> frames,
   }
   for (const SphereTree& tree : trees) {
     const internal::PackedTree& packed = parts->trees.emplace_back(tree, inflation);
-    tree_depth = std::max(tree_depth, packed.depth());
     parts->obstacles.push_back(
         {packed.nodes(), internal::rounded_up_to_single(3.0 * packed.largest_growth())});
   }
@@ -248,7 +243,6 @@ MeshMechanismCheck::MeshMechanismCheck(std::span<const MechanismFrame> frames,
   parts->joined = std::move(scene.obstacles);
   parts->kernels = &kernels_for(instructions);
   parts->mesh_kernels = &internal::mesh_kernels_for(instructions);
-  parts->task_count = internal::mesh_task_bound(tree_depth, mesh_depth);
   parts->kinematics = {.frames = parts->frames.data(),
                        .lane_frames = nullptr,
                        .frame_count = static_cast<std::int32_t>(parts->frames.size()),
@@ -275,7 +269,6 @@ MeshMechanismCheck::Scratch::Scratch(const MeshMechanismCheck& check)
   memory_->cosines.resize(variables);
   memory_->poses.resize(parts.frames.size());
   memory_->roots.resize(parts.balls.size());
-  memory_->tasks.resize(static_cast<std::size_t>(parts.task_count));
   memory_->view.sines = memory_->sines.data();
   memory_->view.cosines = memory_->cosines.data();
   memory_->view.poses = memory_->poses.data();
@@ -297,7 +290,7 @@ bool MeshMechanismCheck::collides(std::span<const double> variables, Scratch& sc
   parts.kernels->place(parts.kinematics, memory.variables.data(), memory.view);
   Translator translator{parts, ask, context};
   return parts.mesh_kernels->check(parts.problem, memory.poses.data(), memory.roots.data(),
-                                   memory.tasks.data(), &Translator::confirm, &translator);
+                                   memory.tasks, &Translator::confirm, &translator);
 }
 
 }  // namespace spherule

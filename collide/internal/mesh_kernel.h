@@ -53,6 +53,17 @@ struct MeshTask {
   std::int32_t mesh;
 };
 
+// What waits. Every step takes one and leaves at most eight, a node of which lies a level deeper,
+// so that at most seven wait for every level of the two trees.
+struct MeshTasks {
+  static constexpr int kRoom = 1024;
+  // Levels of both trees together that there is room for: the 99 of a tree of build_tree with as
+  // many spheres as it takes, and more than a mesh can have.
+  static constexpr int kLevels = (kRoom - 1) / 7 - 1;
+
+  MeshTask waiting[kRoom];
+};
+
 // A sphere tree as it is (spheretree/sphere_tree.h), with at most eight children a node; the way to
 // the mesh's frame; and by how much its balls are grown there.
 struct MeshBalls {
@@ -66,6 +77,7 @@ struct MeshBalls {
   double rotation[9];  // by rows
   double translation[3];
   float growth;
+  MeshTask root;  // the ball around all, there and grown
 };
 
 // Meshes that move with frames against spheres that stand still, in the root's frame.
@@ -91,21 +103,14 @@ using ConfirmTriangle = bool (*)(void* context, KernelPair pair, std::int32_t sp
                                  std::int32_t triangle);
 
 // True if a sphere meets a triangle for sure, a corner being inside by `margin` at least, or is
-// confirmed to; false if none does. `tasks` has room for mesh_task_bound().
+// confirmed to; false if none does.
 struct MeshKernels {
-  // `tasks` holds the first.
-  bool (*meets)(const MeshView& mesh, const MeshBalls& balls, float margin, MeshTask* tasks,
+  bool (*meets)(const MeshView& mesh, const MeshBalls& balls, float margin, MeshTasks& tasks,
                 ConfirmTriangle confirm, void* context);
   // Frames and balls around the bodies as Kernels::place leaves them, in the order of the bodies.
   bool (*check)(const MeshProblem& problem, const KernelPose* poses, const KernelTask* roots,
-                MeshTask* tasks, ConfirmTriangle confirm, void* context);
+                MeshTasks& tasks, ConfirmTriangle confirm, void* context);
 };
-
-// Tasks that wait at most: every step takes one and leaves at most eight, a node of which lies a
-// level deeper, so that at most seven wait for every level of the two trees.
-constexpr std::int64_t mesh_task_bound(int sphere_depth, int mesh_depth) {
-  return 7 * (std::int64_t{sphere_depth} + mesh_depth + 1) + 1;
-}
 
 const MeshKernels& portable_mesh_kernels();
 #if defined(SPHERULE_X86_KERNELS)

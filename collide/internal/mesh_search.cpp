@@ -9,10 +9,6 @@
 namespace spherule::internal {
 namespace {
 
-// Kept in the frame of the function, 18 KiB that are not touched before they are needed: enough for
-// any tree of build_tree with a million spheres, whose depth is at most 69, over 2^32 triangles.
-constexpr std::int64_t kTasks = 768;
-
 // Of T (relative_pose.h), which bounds what S bounds in mesh_kernel_impl.h: a placed centre errs by
 // 136 u T and one rounding to single; 25 v T for the tests; 2 v r for the radius and 8 v r for the
 // factor; and c = 6 v T. What is found apart is so by more than c then, and the canonical test
@@ -50,7 +46,7 @@ bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& wo
   const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
   if (!pose.may_touch(a.ball(0), b.tree().ball(0))) return false;
   const PackedMesh& mesh = b.packed();
-  if (a.branching() > MeshNode::kWidth || mesh_task_bound(a.depth(), mesh.depth()) > kTasks) {
+  if (a.branching() > MeshNode::kWidth || a.depth() + mesh.depth() > MeshTasks::kLevels) {
     return any_pair(a, b.tree(), pose, TriangleLeaves(a, b, pose));
   }
   const SphereTreeData& data = a.data();
@@ -65,17 +61,18 @@ bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& wo
                      .node_count = static_cast<std::int32_t>(a.node_count()),
                      .rotation = {},
                      .translation = {},
-                     .growth = growth};
+                     .growth = growth,
+                     .root = {}};
   std::copy_n(to_mesh.r, 9, balls.rotation);
   std::copy_n(to_mesh.t, 3, balls.translation);
   const Eigen::Vector3d c = a.ball(0).center;
-  MeshTask tasks[kTasks];
-  tasks[0] = {static_cast<float>(to_mesh.x(c.x(), c.y(), c.z())),
-              static_cast<float>(to_mesh.y(c.x(), c.y(), c.z())),
-              static_cast<float>(to_mesh.z(c.x(), c.y(), c.z())),
-              static_cast<float>(a.ball(0).radius) + growth,
-              a.is_leaf(0) ? ~a.sphere_index(0) : 0,
-              0};
+  balls.root = {static_cast<float>(to_mesh.x(c.x(), c.y(), c.z())),
+                static_cast<float>(to_mesh.y(c.x(), c.y(), c.z())),
+                static_cast<float>(to_mesh.z(c.x(), c.y(), c.z())),
+                static_cast<float>(a.ball(0).radius) + growth,
+                a.is_leaf(0) ? ~a.sphere_index(0) : 0,
+                0};
+  MeshTasks tasks;  // 24 KiB that are not touched before they are needed
   Question question{a, b, pose};
   return kernels.meets(mesh.view(), balls, 3.0F * growth, tasks, &Question::confirm, &question);
 }
