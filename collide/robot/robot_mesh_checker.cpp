@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/robot_mesh_checker.h"
 
+#include "collide/robot/internal/moving_frames.h"
 #include "collide/robot/kinematics.h"
-#include "collide/robot/moving_frames.h"
 #include "spheretree/error.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/robot/moving_frames.h"
+#include "collide/robot/internal/moving_frames.h"
 
 #include "collide/robot/kinematics.h"
 #include "spheretree/error.h"
