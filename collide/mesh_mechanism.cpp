@@ -232,6 +232,9 @@ MeshMechanismCheck::MeshMechanismCheck(std::span<const MechanismFrame> frames,
   }
   for (const SphereTree& tree : trees) {
     const internal::PackedTree& packed = parts->trees.emplace_back(tree, inflation);
+    assert(std::all_of(parts->meshes.begin(), parts->meshes.end(), [&](const auto& mesh) {
+      return packed.depth() + mesh->depth() <= internal::MeshTasks::kLevels;
+    }));
     parts->obstacles.push_back(
         {packed.nodes(), internal::rounded_up_to_single(3.0 * packed.largest_growth())});
   }
