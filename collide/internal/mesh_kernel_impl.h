@@ -124,9 +124,6 @@ class TreeSide {
     to.present = (1U << count) - 1U;
   }
 
-  // Any: to find out which costs as much as to place them.
-  SPHERULE_INLINE static unsigned near_mesh(std::int32_t /*node*/) { return 0xffU; }
-
  private:
   const MeshBalls& balls_;
 };
@@ -134,9 +131,8 @@ class TreeSide {
 // A packed tree there.
 class PackedSide {
  public:
-  // `pose` is the one of the mesh, `root` the ball around it there. The way back is the transpose.
-  PackedSide(const PackedNode* nodes, const KernelPose& pose, const KernelTask& root)
-      : nodes_(nodes), root_(root) {
+  // `pose` is the one of the mesh; the way back is its transpose.
+  PackedSide(const PackedNode* nodes, const KernelPose& pose) : nodes_(nodes) {
     const auto& [x, y, z, t] = pose.columns;
     for (int i = 0; i < 3; ++i) {
       at_.columns[i][0] = static_cast<float>(x[i]);
@@ -154,14 +150,8 @@ class PackedSide {
     to.present = 0xffU;
   }
 
-  // The balls below a node that are not apart from the ball around the mesh.
-  SPHERULE_INLINE unsigned near_mesh(std::int32_t node) const {
-    return overlaps(balls_of(nodes_[node]), root_.x, root_.y, root_.z, root_.radius);
-  }
-
  private:
   const PackedNode* nodes_;
-  const KernelTask& root_;
   Placement at_;
 };
 
@@ -231,10 +221,6 @@ class MeshSearch {
 
   // Those of the chosen balls below a node that are not apart from a box.
   SPHERULE_INLINE bool open_ball(const MeshTask& task, const MeshBox& box, unsigned chosen) {
-    if (task.mesh == 0) {
-      chosen &= spheres_.near_mesh(task.sphere);
-      if (chosen == 0) return false;
-    }
     MeshChildren children;
     spheres_.place(task.sphere, children);
     const KernelBalls& balls = children.balls;
@@ -327,17 +313,31 @@ bool meets(const MeshView& mesh, const MeshBalls& balls, float margin, MeshTasks
   return MeshSearch<TreeSide>(mesh, spheres, margin, tasks, ask).run(balls.root);
 }
 
+// The children of the root of a tree below which something is not apart from a ball: two levels
+// are asked before anything is placed, which is what ends most searches.
+SPHERULE_INLINE unsigned near_root(const PackedNode* nodes, const KernelTask& ball) {
+  const auto near = [&](std::int32_t node) {
+    return overlaps(balls_of(nodes[node]), ball.x, ball.y, ball.z, ball.radius);
+  };
+  unsigned result = near(0);
+  for (unsigned rest = result; rest != 0; rest &= rest - 1) {
+    const unsigned lane = rest & -rest;
+    const std::int32_t child = nodes[0].child[__builtin_ctz(rest)];
+    if (child >= 0 && near(child) == 0) result &= ~lane;
+  }
+  return result;
+}
+
 bool check(const MeshProblem& problem, const KernelPose* poses, const KernelTask* roots,
            MeshTasks& tasks, ConfirmTriangle confirm, void* context) {
   for (std::int32_t i = 0; i < problem.pair_count; ++i) {
     const KernelPair pair = problem.pairs[i];
     const KernelTask& root = roots[pair.body];
     const MeshObstacle& obstacle = problem.obstacles[pair.obstacle];
-    const unsigned near =
-        overlaps(balls_of(obstacle.nodes[0]), root.x, root.y, root.z, root.radius);
+    const unsigned near = near_root(obstacle.nodes, root);
     if (near == 0) continue;
     const MeshBody& body = problem.bodies[pair.body];
-    const PackedSide spheres(obstacle.nodes, poses[body.frame], root);
+    const PackedSide spheres(obstacle.nodes, poses[body.frame]);
     const AskTriangle ask = {confirm, context, pair};
     if (MeshSearch<PackedSide>(body.mesh, spheres, obstacle.margin, tasks, ask)
             .run_below_root(near)) {
