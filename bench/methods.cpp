@@ -27,6 +27,11 @@ std::vector<Method> make_methods(const Workload& workload) {
       sum(workload, [](const Part& part) { return part.mesh.triangles.size(); });
   const std::size_t spheres =
       sum(workload, [](const Part& part) { return part.tree->spheres().size(); });
+  std::size_t triangles_and_spheres = 0;
+  for (const Body& body : workload.bodies) triangles_and_spheres += body.part.mesh.triangles.size();
+  for (const Obstacle& obstacle : workload.obstacles) {
+    triangles_and_spheres += obstacle.part.tree->spheres().size();
+  }
   std::vector<Method> methods;
   using Setting = FclMeshSetting;
   const auto is_plain = [](const Setting& setting) {
@@ -59,6 +64,8 @@ std::vector<Method> make_methods(const Workload& workload) {
                      make_tree_checker(workload, TreeMode::kBatch), spheres, false});
   methods.push_back({"spherule-confirmed", "the first, contacts confirmed on the triangles",
                      make_tree_checker(workload, TreeMode::kConfirmed), spheres, false});
+  methods.push_back({"spherule-mesh", "meshes of robot and torch, spheres of the rest",
+                     make_tree_checker(workload, TreeMode::kMeshes), triangles_and_spheres, false});
   if (best_instruction_set() == InstructionSet::kAvx512) {
     methods.push_back({"spherule-batch-avx2", "the same without AVX-512",
                        make_tree_checker(workload, TreeMode::kBatch, InstructionSet::kAvx2),

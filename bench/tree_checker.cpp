@@ -2,6 +2,7 @@
 #include "bench/tree_checker.h"
 
 #include "collide/collide.h"
+#include "collide/robot/robot_mesh_checker.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -11,9 +12,10 @@
 namespace spherule {
 namespace {
 
+template <class AnyChecker>
 class SingleTreeChecker : public Checker {
  public:
-  explicit SingleTreeChecker(RobotChecker checker)
+  explicit SingleTreeChecker(AnyChecker checker)
       : checker_(std::move(checker)), scratch_(checker_) {}
 
   void check(std::span<const JointPositions> configurations,
@@ -24,8 +26,8 @@ class SingleTreeChecker : public Checker {
   }
 
  private:
-  RobotChecker checker_;
-  RobotChecker::Scratch scratch_;
+  AnyChecker checker_;
+  typename AnyChecker::Scratch scratch_;
 };
 
 class BatchTreeChecker : public Checker {
@@ -75,6 +77,22 @@ class PairTreeChecker : public SingleChecker {
   std::vector<Pair> pairs_;
 };
 
+RobotMeshChecker make_mesh_checker(const Workload& workload, InstructionSet instructions) {
+  RobotMeshCheckerOptions options{.instructions = instructions};
+  std::vector<PlacedTree> obstacles;
+  for (const Obstacle& obstacle : workload.obstacles) {
+    obstacles.push_back({obstacle.part.tree, obstacle.world_from_part});
+  }
+  std::vector<LinkMesh> meshes;
+  for (const Body& body : workload.bodies) {
+    meshes.push_back({body.link, std::make_shared<const MeshTree>(body.part.mesh)});
+    for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
+      if (!is_tested(body, workload.obstacles[i])) options.untested.push_back({body.link, i});
+    }
+  }
+  return RobotMeshChecker(workload.robot, std::move(meshes), std::move(obstacles), options);
+}
+
 }  // namespace
 
 RobotChecker make_robot_checker(const Workload& workload, InstructionSet instructions,
@@ -103,9 +121,13 @@ RobotChecker make_robot_checker(const Workload& workload, InstructionSet instruc
 std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mode,
                                            InstructionSet instructions) {
   if (mode == TreeMode::kPairs) return std::make_unique<PairTreeChecker>(workload);
+  if (mode == TreeMode::kMeshes) {
+    return std::make_unique<SingleTreeChecker<RobotMeshChecker>>(
+        make_mesh_checker(workload, instructions));
+  }
   RobotChecker checker = make_robot_checker(workload, instructions, mode == TreeMode::kConfirmed);
   if (mode == TreeMode::kBatch) return std::make_unique<BatchTreeChecker>(std::move(checker));
-  return std::make_unique<SingleTreeChecker>(std::move(checker));
+  return std::make_unique<SingleTreeChecker<RobotChecker>>(std::move(checker));
 }
 
 }  // namespace spherule

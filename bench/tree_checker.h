@@ -14,10 +14,11 @@ RobotChecker make_robot_checker(const Workload& workload,
                                 InstructionSet instructions = best_instruction_set(),
                                 bool confirmed = false);
 
-enum class TreeMode { kSingle, kBatch, kConfirmed, kPairs };
+enum class TreeMode { kSingle, kBatch, kConfirmed, kPairs, kMeshes };
 
-// It, as an engine: one configuration a call, all, or one with confirmation; or, without the robot
-// layer's check, forward_kinematics() and collides() for each body and obstacle.
+// It, as an engine: one configuration a call, all, or one with confirmation. Or, without it,
+// forward_kinematics() and collides() for each body and obstacle; or the robot and its torch as
+// meshes (RobotMeshChecker) among the sphere trees of the obstacles.
 std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mode,
                                            InstructionSet instructions = best_instruction_set());
 

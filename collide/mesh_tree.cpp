@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/mesh_tree.h"
 
+#include "collide/internal/mesh_search.h"
+#include "collide/internal/packed_mesh.h"
 #include "collide/internal/queries.h"
 #include "collide/internal/triangle_leaves.h"
 #include "spheretree/build.h"
@@ -32,18 +34,27 @@ SphereTree tree_of(const std::vector<Triangle>& triangles) {
 }  // namespace
 
 MeshTree::MeshTree(const TriangleMesh& mesh)
-    : triangles_(triangles_of(mesh)), tree_(tree_of(triangles_)) {}
+    : triangles_(triangles_of(mesh)),
+      tree_(tree_of(triangles_)),
+      packed_(
+          std::make_shared<const internal::PackedMesh>(triangles_, tree_.spheres(), triangles_)) {}
 
 bool collides(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
               const Pose& world_from_b) noexcept {
-  const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
-  return internal::any_pair(a, b.tree(), pose, internal::TriangleLeaves(a, b, pose));
+  static const internal::MeshKernels& kKernels = internal::mesh_kernels_for(best_instruction_set());
+  return internal::collides_by(kKernels, a, world_from_a, b, world_from_b);
 }
 
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
                         const Pose& world_from_b, const CollisionRequest& request) {
   const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
   return internal::all_pairs(a, b.tree(), pose, internal::TriangleLeaves(a, b, pose), request);
+}
+
+bool meets_triangle(const SphereTree& a, std::int32_t sphere, const Pose& world_from_a,
+                    const MeshTree& b, std::int32_t triangle, const Pose& world_from_b) noexcept {
+  const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
+  return internal::TriangleLeaves(a, b, pose).touches(sphere, triangle);
 }
 
 }  // namespace spherule

@@ -5,9 +5,15 @@
 #include "spheretree/triangle_mesh.h"
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace spherule {
+
+namespace internal {
+class PackedMesh;
+}  // namespace internal
 
 // A sphere tree whose leaves are triangles: every leaf ball encloses one triangle. Immutable. The
 // mesh is judged as stored: its vertex_error, the distance to the file's mesh, is not added to it.
@@ -21,9 +27,13 @@ class MeshTree {
     return triangles_[static_cast<std::size_t>(index)];
   }
 
+  // For queries.
+  const internal::PackedMesh& packed() const { return *packed_; }
+
  private:
   std::vector<std::array<Eigen::Vector3d, 3>> triangles_;
   SphereTree tree_;  // sphere i is the ball of triangle i
+  std::shared_ptr<const internal::PackedMesh> packed_;
 };
 
 // Whether a set of balls and the surface of a mesh meet, by the same traversal with another leaf
@@ -37,5 +47,9 @@ bool collides(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
               const Pose& world_from_b) noexcept;
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
                         const Pose& world_from_b, const CollisionRequest& request = {});
+
+// The test that both rest on, for one sphere and one triangle.
+bool meets_triangle(const SphereTree& a, std::int32_t sphere, const Pose& world_from_a,
+                    const MeshTree& b, std::int32_t triangle, const Pose& world_from_b) noexcept;
 
 }  // namespace spherule

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// For x86 processors with AVX2 and fused multiply-add; compiled for these.
+#include "collide/internal/mesh_kernel.h"
+
+#include <cstddef>
+
+#define SPHERULE_KERNEL mesh_avx2
+#include "collide/internal/mesh_kernel_impl.h"
+
+namespace spherule::internal {
+
+const MeshKernels& avx2_mesh_kernels() {
+  return mesh_avx2::kMeshKernels;
+}
+
+}  // namespace spherule::internal

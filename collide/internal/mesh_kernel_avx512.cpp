@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// For x86 processors with AVX-512 (F, DQ, BW, VL); compiled for these.
+#include "collide/internal/mesh_kernel.h"
+
+#include <cstddef>
+
+#define SPHERULE_KERNEL mesh_avx512
+#include "collide/internal/mesh_kernel_impl.h"
+
+namespace spherule::internal {
+
+const MeshKernels& avx512_mesh_kernels() {
+  return mesh_avx512::kMeshKernels;
+}
+
+}  // namespace spherule::internal

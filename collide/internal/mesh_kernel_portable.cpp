@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// For any machine; on x86 with SSE2, which all of its 64-bit processors have.
+#include "collide/internal/mesh_kernel.h"
+
+#include <cstddef>
+
+#define SPHERULE_KERNEL mesh_portable
+#include "collide/internal/mesh_kernel_impl.h"
+
+namespace spherule::internal {
+
+const MeshKernels& portable_mesh_kernels() {
+  return mesh_portable::kMeshKernels;
+}
+
+}  // namespace spherule::internal

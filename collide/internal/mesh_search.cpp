@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/internal/mesh_search.h"
+
+#include "collide/internal/packed_mesh.h"
+#include "collide/internal/packed_tree.h"
+#include "collide/internal/queries.h"
+#include "collide/internal/triangle_leaves.h"
+
+namespace spherule::internal {
+namespace {
+
+// Of T (relative_pose.h), which bounds what S bounds in mesh_kernel_impl.h: a placed centre errs by
+// 136 u T and one rounding to single; 25 v T for the tests; 2 v r for the radius and 8 v r for the
+// factor; and c = 6 v T. What is found apart is so by more than c then, and the canonical test
+// finds it apart, too: where the mesh's lanes are numbers, because of ball_triangle.h, which asks
+// for 2 v S and a distance of 4 v S; where not, because the leaf's ball is what is apart. 48 v T
+// covers it, and the absolute term what underflows (packed_tree.h).
+constexpr double kGrowth = 48.0 * kFloatRoundoff;
+constexpr double kAbsolute = 0x1p-60;
+static_assert(MeshNode::kWidth == 8);
+
+struct Question {
+  const SphereTree& a;
+  const MeshTree& b;
+  const RelativePose& pose;
+
+  static bool confirm(void* context, KernelPair /*pair*/, std::int32_t sphere,
+                      std::int32_t triangle) {
+    const Question& in = *static_cast<const Question*>(context);
+    return TriangleLeaves(in.a, in.b, in.pose).touches(sphere, triangle);
+  }
+};
+
+}  // namespace
+
+const MeshKernels& mesh_kernels_for([[maybe_unused]] InstructionSet set) {
+#if defined(SPHERULE_X86_KERNELS)
+  if (set == InstructionSet::kAvx512) return avx512_mesh_kernels();
+  if (set == InstructionSet::kAvx2) return avx2_mesh_kernels();
+#endif
+  return portable_mesh_kernels();
+}
+
+bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& world_from_a,
+                 const MeshTree& b, const Pose& world_from_b) noexcept {
+  const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
+  if (!pose.may_touch(a.ball(0), b.tree().ball(0))) return false;
+  const PackedMesh& mesh = b.packed();
+  if (a.branching() > MeshNode::kWidth || a.depth() + mesh.depth() > MeshTasks::kLevels) {
+    return any_pair(a, b.tree(), pose, TriangleLeaves(a, b, pose));
+  }
+  const SphereTreeData& data = a.data();
+  const FrameChange to_mesh = pose.b_from_a();
+  const float growth = rounded_up_to_single(kGrowth * pose.node_size() + kAbsolute);
+  MeshBalls balls = {.x = data.x.data(),
+                     .y = data.y.data(),
+                     .z = data.z.data(),
+                     .radius = data.radius.data(),
+                     .first_child = data.first_child.data(),
+                     .child_count = data.child_count.data(),
+                     .node_count = static_cast<std::int32_t>(a.node_count()),
+                     .rotation = {},
+                     .translation = {},
+                     .growth = growth,
+                     .root = {}};
+  std::copy_n(to_mesh.r, 9, balls.rotation);
+  std::copy_n(to_mesh.t, 3, balls.translation);
+  const Eigen::Vector3d c = a.ball(0).center;
+  balls.root = {static_cast<float>(to_mesh.x(c.x(), c.y(), c.z())),
+                static_cast<float>(to_mesh.y(c.x(), c.y(), c.z())),
+                static_cast<float>(to_mesh.z(c.x(), c.y(), c.z())),
+                static_cast<float>(a.ball(0).radius) + growth,
+                a.is_leaf(0) ? ~a.sphere_index(0) : 0,
+                0};
+  MeshTasks tasks;  // 24 KiB that are not touched before they are needed
+  Question question{a, b, pose};
+  return kernels.meets(mesh.view(), balls, 3.0F * growth, tasks, &Question::confirm, &question);
+}
+
+}  // namespace spherule::internal

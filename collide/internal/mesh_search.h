@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/instruction_set.h"
+#include "collide/internal/mesh_kernel.h"
+#include "collide/mesh_tree.h"
+
+namespace spherule::internal {
+
+const MeshKernels& mesh_kernels_for(InstructionSet set);
+
+// collides() with the kernel of an instruction set, which this machine must have.
+bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& world_from_a,
+                 const MeshTree& b, const Pose& world_from_b) noexcept;
+
+}  // namespace spherule::internal

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/mesh_mechanism.h"
+
+#include "collide/internal/joined_scene.h"
+#include "collide/internal/mechanism_kernel.h"
+#include "collide/internal/mesh_search.h"
+#include "collide/internal/packed_mesh.h"
+#include "collide/internal/packed_tree.h"
+#include "collide/internal/relative_pose.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+
+struct MeshMechanismCheck::Parts {
+  std::vector<internal::KernelFrame> frames{};
+  std::vector<internal::KernelBody> balls{};  // around the bodies, to be placed
+  internal::KernelProblem kinematics{};
+  std::vector<std::shared_ptr<const internal::PackedMesh>> meshes{};
+  std::vector<internal::MeshBody> bodies{};
+  std::vector<internal::JoinedSpheres> joined{};
+  std::vector<internal::PackedTree> trees{};
+  std::vector<internal::MeshObstacle> obstacles{};
+  std::vector<internal::KernelPair> pairs{};
+  internal::MeshProblem problem{};
+  const internal::Kernels* kernels = nullptr;
+  const internal::MeshKernels* mesh_kernels = nullptr;
+};
+
+struct MeshMechanismCheck::Scratch::Memory {
+  const Parts* owner = nullptr;
+  std::vector<double> variables;
+  std::vector<double> sines;
+  std::vector<double> cosines;
+  std::vector<internal::KernelPose> poses;
+  std::vector<internal::KernelTask> roots;
+  internal::MeshTasks tasks;
+  internal::KernelScratch view = {};
+};
+
+struct MeshMechanismCheck::Translator {
+  const Parts& parts;
+  Ask ask;
+  void* context;
+
+  static bool confirm(void* translator, internal::KernelPair pair, std::int32_t sphere,
+                      std::int32_t triangle) {
+    const Translator& in = *static_cast<const Translator*>(translator);
+    const internal::SphereOrigin& origin = in.parts.joined[static_cast<std::size_t>(pair.obstacle)]
+                                               .origins[static_cast<std::size_t>(sphere)];
+    return in.ask(in.context, {{pair.body, origin.part}, origin.sphere, triangle});
+  }
+};
+
+namespace {
+
+using Triangle = internal::PackedMesh::Triangle;
+
+// Error budget, in the words of internal/mechanism_parts.cpp: v = 2^-24, n frames between the root
+// and a body, W how far any point of it can be from the root, X the lengths that changes of frame
+// in double involve. Let C bound the distance of every sphere from the root, and B = W + C. Seen
+// from a body, no centre is further than B.
+//   the chain in double: 1e-10 (n + 1) W covers it and the sines, 1e-12 X the changes of frame.
+//   a centre c in the body's frame, R^T c - R^T t: rotation and R^T t rounded to single, sqrt(3) v
+//     |c| + v |t|; three products and three sums a row, 7 v (|c| + |t|): less than 10 v B.
+//   the tests of internal/mesh_kernel_impl.h: 25 v B.
+//   what is found apart must be so for the test in double: by 2 v S, and 160 u S, where S is the
+//     scene of mesh_tree.h, at most 4 B; as in internal/mesh_search.cpp. 9 v B covers it.
+constexpr double kPerLength = 48.0 * internal::kFloatRoundoff;
+constexpr double kPerFrame = 5.0 * internal::kSineError;
+constexpr double kPerScene = 1e-12;
+
+constexpr int kLargestIndex = 1 << 20;  // of a variable: there is memory for all up to it
+
+[[noreturn]] void refuse(const std::string& what, std::size_t index, const std::string& why) {
+  throw Error("mechanism of meshes", what + " " + std::to_string(index) + ' ' + why);
+}
+
+void check_input(std::span<const MechanismFrame> frames, std::span<const MechanismMesh> bodies,
+                 std::span<const MechanismObstacle> obstacles, std::span<const MechanismPair> pairs,
+                 double pose_error, InstructionSet instructions) {
+  const auto below = [](int index, std::size_t count) {
+    return index >= 0 && static_cast<std::size_t>(index) < count;
+  };
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].parent < -1 || frames[i].parent >= static_cast<int>(i)) {
+      refuse("frame", i, "does not come after its parent");
+    }
+    if (frames[i].variable < 0 || frames[i].variable > kLargestIndex) {
+      refuse("frame", i, "has no variable that could be");
+    }
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!below(bodies[i].frame, frames.size())) refuse("body", i, "is on no frame");
+    if (!bodies[i].mesh) refuse("body", i, "has no mesh");
+  }
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (!obstacles[i].tree) refuse("obstacle", i, "has no tree");
+  }
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!below(pairs[i].body, bodies.size()) || !below(pairs[i].obstacle, obstacles.size())) {
+      refuse("pair", i, "names what is not there");
+    }
+  }
+  if (!(pose_error >= 0.0 && pose_error <= kMaxCoordinate)) {
+    throw Error("pose error", "it is negative, not finite or too large");
+  }
+  if (!is_available(instructions)) throw Error("instruction set", "this machine has not got it");
+}
+
+const internal::Kernels& kernels_for([[maybe_unused]] InstructionSet set) {
+#if defined(SPHERULE_X86_KERNELS)
+  if (set == InstructionSet::kAvx512) return internal::avx512_kernels();
+  if (set == InstructionSet::kAvx2) return internal::avx2_kernels();
+#endif
+  return internal::portable_kernels();
+}
+
+internal::KernelFrame kernel_frame(const MechanismFrame& frame) {
+  internal::KernelFrame result = {};
+  const Eigen::Matrix3d rotation = frame.parent_from_frame.matrix();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) result.rotation[j][i] = rotation(i, j);
+    result.origin[i] = frame.parent_from_frame.translation()[i];
+  }
+  result.parent = frame.parent;
+  result.variable = frame.variable;
+  result.prismatic = frame.prismatic;
+  return result;
+}
+
+// Obstacles that are tested against the same bodies, as one.
+internal::JoinedScene joined_obstacles(std::span<const MechanismMesh> bodies,
+                                       std::span<const MechanismObstacle> obstacles,
+                                       std::span<const MechanismPair> pairs) {
+  // Bodies stand in for themselves only: each on a frame of its own, so that none are joined.
+  const Sphere point{Eigen::Vector3d::Zero(), 0.0};
+  const auto tree = std::make_shared<const SphereTree>(build_tree(std::span(&point, 1)));
+  std::vector<MechanismBody> apart;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    apart.push_back({static_cast<int>(i), Pose(), tree});
+  }
+  return internal::JoinedScene(apart, obstacles, pairs);
+}
+
+std::shared_ptr<const internal::PackedMesh> moved(const MeshTree& mesh,
+                                                  const Pose& frame_from_mesh) {
+  std::vector<Triangle> judged;
+  std::vector<Triangle> triangles;
+  std::vector<Sphere> balls;
+  for (const Sphere& ball : mesh.tree().spheres()) {
+    const Triangle& triangle = mesh.triangle(static_cast<std::int32_t>(balls.size()));
+    judged.push_back(triangle);
+    triangles.push_back({frame_from_mesh * triangle[0], frame_from_mesh * triangle[1],
+                         frame_from_mesh * triangle[2]});
+    balls.push_back({frame_from_mesh * ball.center, ball.radius});
+  }
+  return std::make_shared<const internal::PackedMesh>(triangles, balls, judged);
+}
+
+}  // namespace
+
+MeshMechanismCheck::~MeshMechanismCheck() = default;
+MeshMechanismCheck::MeshMechanismCheck(MeshMechanismCheck&&) noexcept = default;
+MeshMechanismCheck& MeshMechanismCheck::operator=(MeshMechanismCheck&&) noexcept = default;
+
+MeshMechanismCheck::MeshMechanismCheck(std::span<const MechanismFrame> frames,
+                                       std::span<const MechanismMesh> bodies,
+                                       std::span<const MechanismObstacle> obstacles,
+                                       std::span<const MechanismPair> pairs, double pose_error,
+                                       InstructionSet instructions) {
+  check_input(frames, bodies, obstacles, pairs, pose_error, instructions);
+  internal::JoinedScene scene = joined_obstacles(bodies, obstacles, pairs);
+  auto parts = std::make_unique<Parts>();
+  std::vector<double> lengths;  // of the chains
+  std::vector<double> links;
+  int variable_count = 0;
+  for (const MechanismFrame& frame : frames) {
+    const auto parent = static_cast<std::size_t>(frame.parent);
+    lengths.push_back((frame.parent < 0 ? 0.0 : lengths[parent]) +
+                      frame.parent_from_frame.translation().norm() +
+                      (frame.prismatic ? MechanismCheck::kLargestVariable : 0.0));
+    links.push_back((frame.parent < 0 ? 0.0 : links[parent]) + 1.0);
+    parts->frames.push_back(kernel_frame(frame));
+    variable_count = std::max(variable_count, frame.variable + 1);
+  }
+  double farthest = 0.0;  // W of all bodies
+  double most_links = 0.0;
+  for (const MechanismMesh& body : bodies) {
+    const auto frame = static_cast<std::size_t>(body.frame);
+    farthest = std::max(farthest, lengths[frame] + body.frame_from_mesh.translation().norm() +
+                                      node_reach(body.mesh->tree()));
+    most_links = std::max(most_links, links[frame]);
+  }
+  double bound = farthest;  // X
+  for (const MechanismObstacle& obstacle : obstacles) {
+    bound = std::max(bound, obstacle.tree->reach() + obstacle.root_from_tree.translation().norm());
+  }
+  std::vector<SphereTree> trees;
+  double around = 0.0;  // C
+  for (const internal::JoinedSpheres& obstacle : scene.obstacles) {
+    trees.push_back(build_tree(obstacle.spheres));
+    around = std::max(around, node_reach(trees.back()));
+  }
+  if (!(farthest + around + bound <= kMaxCoordinate)) {
+    throw Error("mechanism of meshes", "it or an obstacle reaches too far");
+  }
+  const double inflation = kPerLength * (farthest + around) +
+                           kPerFrame * (most_links + 1.0) * farthest + kPerScene * bound +
+                           pose_error;
+  for (const MechanismMesh& body : bodies) {
+    const auto& mesh = parts->meshes.emplace_back(moved(*body.mesh, body.frame_from_mesh));
+    parts->bodies.push_back({mesh->view(), body.frame});
+    const Sphere root = body.mesh->tree().ball(0);
+    const Eigen::Vector3d center = body.frame_from_mesh * root.center;
+    internal::KernelBody ball = {};
+    std::copy_n(center.data(), 3, ball.center);
+    // What single precision rounds is in the inflation and in this factor (packed_tree.h).
+    ball.radius =
+        internal::rounded_up_to_single(root.radius * (1.0 + 16.0 * internal::kFloatRoundoff));
+    ball.frame = body.frame;
+    parts->balls.push_back(ball);
+  }
+  for (const SphereTree& tree : trees) {
+    const internal::PackedTree& packed = parts->trees.emplace_back(tree, inflation);
+    assert(std::all_of(parts->meshes.begin(), parts->meshes.end(), [&](const auto& mesh) {
+      return packed.depth() + mesh->depth() <= internal::MeshTasks::kLevels;
+    }));
+    parts->obstacles.push_back(
+        {packed.nodes(), internal::rounded_up_to_single(3.0 * packed.largest_growth())});
+  }
+  for (const internal::KernelPair& pair : scene.pairs) {
+    // Bodies have been joined with nothing, but stand in another order.
+    const auto joined = static_cast<std::size_t>(pair.body);
+    parts->pairs.push_back({scene.bodies[joined].origins[0].part, pair.obstacle});
+  }
+  parts->joined = std::move(scene.obstacles);
+  parts->kernels = &kernels_for(instructions);
+  parts->mesh_kernels = &internal::mesh_kernels_for(instructions);
+  parts->kinematics = {.frames = parts->frames.data(),
+                       .lane_frames = nullptr,
+                       .frame_count = static_cast<std::int32_t>(parts->frames.size()),
+                       .variable_count = variable_count,
+                       .bodies = parts->balls.data(),
+                       .body_count = static_cast<std::int32_t>(parts->balls.size()),
+                       .obstacles = nullptr,
+                       .pairs = nullptr,
+                       .pair_count = 0};
+  parts->problem = {.bodies = parts->bodies.data(),
+                    .obstacles = parts->obstacles.data(),
+                    .pairs = parts->pairs.data(),
+                    .pair_count = static_cast<std::int32_t>(parts->pairs.size())};
+  parts_ = std::move(parts);
+}
+
+MeshMechanismCheck::Scratch::Scratch(const MeshMechanismCheck& check)
+    : memory_(std::make_unique<Memory>()) {
+  const Parts& parts = *check.parts_;
+  const auto variables = static_cast<std::size_t>((parts.kinematics.variable_count + 3) / 4 * 4);
+  memory_->owner = &parts;
+  memory_->variables.resize(variables);
+  memory_->sines.resize(variables);
+  memory_->cosines.resize(variables);
+  memory_->poses.resize(parts.frames.size());
+  memory_->roots.resize(parts.balls.size());
+  memory_->view.sines = memory_->sines.data();
+  memory_->view.cosines = memory_->cosines.data();
+  memory_->view.poses = memory_->poses.data();
+  memory_->view.roots = memory_->roots.data();
+}
+
+MeshMechanismCheck::Scratch::~Scratch() = default;
+MeshMechanismCheck::Scratch::Scratch(Scratch&&) noexcept = default;
+MeshMechanismCheck::Scratch& MeshMechanismCheck::Scratch::operator=(Scratch&&) noexcept = default;
+
+bool MeshMechanismCheck::collides(std::span<const double> variables, Scratch& scratch, Ask ask,
+                                  void* context) const {
+  const Parts& parts = *parts_;
+  assert(MechanismCheck::is_in_range(variables));
+  assert(variables.size() >= static_cast<std::size_t>(parts.kinematics.variable_count));
+  assert(scratch.memory_->owner == parts_.get());
+  Scratch::Memory& memory = *scratch.memory_;
+  std::copy_n(variables.begin(), parts.kinematics.variable_count, memory.variables.begin());
+  parts.kernels->place(parts.kinematics, memory.variables.data(), memory.view);
+  Translator translator{parts, ask, context};
+  return parts.mesh_kernels->check(parts.problem, memory.poses.data(), memory.roots.data(),
+                                   memory.tasks, &Translator::confirm, &translator);
+}
+
+}  // namespace spherule

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/robot_mesh_checker.h"
+
+#include "collide/robot/internal/moving_frames.h"
+#include "collide/robot/kinematics.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+void check_input(const RobotModel& robot, std::span<const LinkMesh> meshes,
+                 std::span<const PlacedTree> obstacles, std::span<const UntestedPair> untested) {
+  const auto is_link = [&](int link) {
+    return link >= 0 && static_cast<std::size_t>(link) < robot.links().size();
+  };
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const std::string name = "mesh " + std::to_string(i);
+    if (!meshes[i].mesh) throw Error(name, "it is missing");
+    if (!is_link(meshes[i].link)) throw Error(name, "it is on no link");
+  }
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (!obstacles[i].tree) throw Error("obstacle " + std::to_string(i), "it has no tree");
+  }
+  for (const UntestedPair& pair : untested) {
+    if (!is_link(pair.link) || pair.obstacle >= obstacles.size()) {
+      throw Error("untested pair", "link " + std::to_string(pair.link) + " or obstacle " +
+                                       std::to_string(pair.obstacle) + " is not there");
+    }
+  }
+}
+
+}  // namespace
+
+RobotMeshChecker::RobotMeshChecker(RobotModel robot, std::vector<LinkMesh> meshes,
+                                   std::vector<PlacedTree> obstacles,
+                                   const RobotMeshCheckerOptions& options)
+    : robot_(std::move(robot)),
+      meshes_(std::move(meshes)),
+      obstacles_(std::move(obstacles)),
+      world_from_root_(options.world_from_root) {
+  check_input(robot_, meshes_, obstacles_, options.untested);
+  const MovingFrames frames(robot_);
+  std::vector<Pose> standing;
+  forward_kinematics(robot_, std::vector<double>(static_cast<std::size_t>(robot_.variable_count())),
+                     standing, world_from_root_);
+  std::vector<MechanismMesh> bodies;
+  std::vector<MechanismPair> pairs;
+  double reach = 0.0;
+  double scene = 0.0;
+  for (std::size_t i = 0; i < meshes_.size(); ++i) {
+    const auto link = static_cast<std::size_t>(meshes_[i].link);
+    const bool moves = frames.frame_of_link[link] >= 0;
+    reach = std::max(reach, meshes_[i].mesh->tree().reach());
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+      if (std::any_of(options.untested.begin(), options.untested.end(), [&](const auto& pair) {
+            return static_cast<std::size_t>(pair.link) == link && pair.obstacle == k;
+          })) {
+        continue;
+      }
+      pairs_.push_back({i, k});
+      if (moves) {
+        pairs.push_back({static_cast<int>(bodies.size()), static_cast<int>(k)});
+      } else {
+        always_ = always_ || meets(pairs_.back(), standing);
+      }
+    }
+    if (!moves) continue;
+    moving_.push_back(i);
+    bodies.push_back({frames.frame_of_link[link], frames.frame_from_link[link], meshes_[i].mesh});
+  }
+  std::vector<MechanismObstacle> placed;
+  const Pose root_from_world = world_from_root_.inverse();
+  for (const PlacedTree& obstacle : obstacles_) {
+    placed.push_back({root_from_world * obstacle.world_from_tree, obstacle.tree});
+    scene = std::max(scene, obstacle.tree->reach() + obstacle.world_from_tree.translation().norm());
+  }
+  check_.emplace(frames.frames, bodies, placed, pairs,
+                 moving_pose_error(robot_, reach, scene, world_from_root_.translation().norm()),
+                 options.instructions);
+}
+
+bool RobotMeshChecker::meets(const Pair& pair, const std::vector<Pose>& world_from_link) const {
+  const LinkMesh& mesh = meshes_[pair.mesh];
+  const PlacedTree& obstacle = obstacles_[pair.obstacle];
+  return spherule::collides(*obstacle.tree, obstacle.world_from_tree, *mesh.mesh,
+                            world_from_link[static_cast<std::size_t>(mesh.link)]);
+}
+
+bool RobotMeshChecker::collides(std::span<const double> configuration, Scratch& scratch) const {
+  const bool is_usual = configuration.size() == static_cast<std::size_t>(robot_.variable_count()) &&
+                        MechanismCheck::is_in_range(configuration);
+  std::vector<Pose>& placed = scratch.world_from_link_;
+  if (!is_usual) {
+    forward_kinematics(robot_, configuration, placed, world_from_root_);
+    return std::any_of(pairs_.begin(), pairs_.end(),
+                       [&](const Pair& pair) { return meets(pair, placed); });
+  }
+  if (always_) return true;
+  bool is_placed = false;
+  return check_->collides(configuration, scratch.memory_, [&](const MeshContactInDoubt& contact) {
+    if (!is_placed) forward_kinematics(robot_, configuration, placed, world_from_root_);
+    is_placed = true;
+    const LinkMesh& mesh = meshes_[moving_[static_cast<std::size_t>(contact.pair.body)]];
+    const PlacedTree& obstacle = obstacles_[static_cast<std::size_t>(contact.pair.obstacle)];
+    return meets_triangle(*obstacle.tree, contact.sphere, obstacle.world_from_tree, *mesh.mesh,
+                          contact.triangle, placed[static_cast<std::size_t>(mesh.link)]);
+  });
+}
+
+}  // namespace spherule

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/mesh_mechanism.h"
+#include "collide/robot/robot_checker.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// A mesh in the frame of a link, in metres.
+struct LinkMesh {
+  int link = 0;
+  std::shared_ptr<const MeshTree> mesh;
+};
+
+struct RobotMeshCheckerOptions {
+  Pose world_from_root{};
+  std::vector<UntestedPair> untested{};
+  InstructionSet instructions = best_instruction_set();
+};
+
+// Does any mesh of a robot meet an obstacle that is made of spheres? For robots and tools that are
+// not simplified among simplified obstacles. The trees of the robot's links are not looked at.
+//
+// The answer is exactly the one of collides() (mesh_tree.h) for each mesh and obstacle, under the
+// poses that forward_kinematics() computes, and no instruction set changes it. A sphere wholly
+// inside a mesh does not meet it. Links against each other are no matter of this class. Immutable,
+// threads may share it, each with a scratch of its own.
+class RobotMeshChecker {
+ public:
+  // Meshes are tested in their order. Throws Error for a missing mesh or tree, an index out of
+  // range, a robot or obstacle that reaches beyond kMaxCoordinate, and instructions that this
+  // machine has not got.
+  RobotMeshChecker(RobotModel robot, std::vector<LinkMesh> meshes,
+                   std::vector<PlacedTree> obstacles, const RobotMeshCheckerOptions& options = {});
+
+  // What a query writes to: made for one checker, which must outlive its use. No query allocates
+  // once its scratch is warm.
+  class Scratch {
+   public:
+    explicit Scratch(const RobotMeshChecker& checker) : memory_(*checker.check_) {}
+
+   private:
+    friend class RobotMeshChecker;
+    MeshMechanismCheck::Scratch memory_;
+    std::vector<Pose> world_from_link_;
+  };
+
+  // Throws Error for a configuration of the wrong size or with a number that is not finite.
+  // Configurations with a position beyond 100 (radians or metres) are answered as exactly, but
+  // slowly; where such a one leads out of all bounds, forward_kinematics() throws.
+  bool collides(std::span<const double> configuration, Scratch& scratch) const;
+
+ private:
+  struct Pair {
+    std::size_t mesh;
+    std::size_t obstacle;
+  };
+
+  bool meets(const Pair& pair, const std::vector<Pose>& world_from_link) const;
+
+  RobotModel robot_;
+  std::vector<LinkMesh> meshes_;
+  std::vector<PlacedTree> obstacles_;
+  Pose world_from_root_;
+  std::vector<Pair> pairs_;          // that are tested
+  std::vector<std::size_t> moving_;  // the meshes that variables move
+  bool always_ = false;              // a mesh that stands with the root meets an obstacle
+  std::optional<MeshMechanismCheck> check_;
+};
+
+}  // namespace spherule

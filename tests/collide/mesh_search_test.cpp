@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Spheres against triangles on every instruction set, judged in 100 digits and by the test in
+// double for all pairs.
+
+#include "collide/internal/mesh_search.h"
+
+#include "collide/internal/ball_triangle.h"
+#include "collide/internal/packed_mesh.h"
+#include "collide/internal/relative_pose.h"
+#include "collide/mesh_mechanism.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "tests/collide/exact_triangles.h"
+#include "tests/collide/trees.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace spherule::test {
+namespace {
+
+using Triangle = std::array<Eigen::Vector3d, 3>;
+
+Real exact_distance(const Eigen::Vector3d& p, const Pose& world_from_a, const Triangle& corners,
+                    const Pose& world_from_b) {
+  return sqrt(squared_distance_to_triangle(transform(world_from_a, exact<Real>(p)),
+                                           placed<Real>(world_from_b, corners)));
+}
+
+// A point of the triangle: a corner, a point of an edge, or one inside.
+Eigen::Vector3d point_of(Random& random, const Triangle& t) {
+  const double u = random.uniform(0.0, 1.0);
+  switch (random.whole(0, 2)) {
+    case 0:
+      return t[0];
+    case 1:
+      return t[1] + u * (t[2] - t[1]);
+    default:
+      return t[0] + random.uniform(0.0, 1.0 - u) * (t[1] - t[0]) + u * (t[2] - t[0]);
+  }
+}
+
+// Ordinary triangles, needles, segments and points.
+Triangle random_triangle(Random& random, double size) {
+  static constexpr double kThin[] = {1.0, 1.0, 1e-3, 1e-6, 1e-7, 1e-8, 1e-12, 0.0};
+  const double thin = kThin[random.whole(0, 7)];
+  const Eigen::Vector3d a = random.point(size);
+  const Eigen::Vector3d edge =
+      random.whole(0, 9) == 0 ? Eigen::Vector3d::Zero() : random.point(size).eval();
+  return {a, a + edge, a + random.uniform(0.0, 1.0) * edge + random.point(size * thin)};
+}
+
+// Relative gaps at which contact is asked for.
+double random_gap(Random& random) {
+  static constexpr double kGaps[] = {0.0, 1e-16, 1e-15, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3, 0.1};
+  return (random.whole(0, 1) == 0 ? -1.0 : 1.0) * kGaps[random.whole(0, 9)];
+}
+
+TriangleMesh mesh_of(const std::vector<Triangle>& triangles) {
+  TriangleMesh mesh;
+  for (const Triangle& t : triangles) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), t.begin(), t.end());
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+  }
+  return mesh;
+}
+
+// What all pairs say.
+bool any_pair_meets(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
+                    const Pose& world_from_b) {
+  const auto spheres = static_cast<std::int32_t>(a.spheres().size());
+  const auto triangles = static_cast<std::int32_t>(b.tree().spheres().size());
+  for (std::int32_t i = 0; i < spheres; ++i) {
+    for (std::int32_t j = 0; j < triangles; ++j) {
+      if (meets_triangle(a, i, world_from_a, b, j, world_from_b)) return true;
+    }
+  }
+  return false;
+}
+
+TEST(MeshSearch, MissesNoContactWithOneTriangleOnAnyInstructionSet) {
+  Random random(11);
+  int touching = 0;
+  int near = 0;
+  int free = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const double size = std::pow(10.0, random.whole(-6, 6));
+    const Triangle triangle = random_triangle(random, size);
+    const MeshTree mesh(mesh_of({triangle}));
+    const Pose world_from_a = random.pose(size);
+    const Pose world_from_b = random.pose(size * std::pow(10.0, random.whole(-3, 1)));
+    // From a point of the triangle outwards, seen from the ball's frame.
+    const Eigen::Vector3d direction = random.point(1.0).normalized();
+    const double length = size * std::pow(10.0, random.whole(-9, 1));
+    const Eigen::Vector3d center =
+        world_from_a.inverse() * (world_from_b * (point_of(random, triangle) + length * direction));
+    Sphere ball{center, 0.0};
+    const Real distance = exact_distance(center, world_from_a, triangle, world_from_b);
+    if (random.whole(0, 9) != 0) {
+      ball.radius = std::max(0.0, distance.convert_to<double>() * (1.0 + random_gap(random)));
+    }
+    const SphereTree tree = build_tree(std::span(&ball, 1));
+    const Real gap = distance - ball.radius;
+    const bool expected = meets_triangle(tree, 0, world_from_a, mesh, 0, world_from_b);
+    ASSERT_TRUE(expected || gap > 0) << "missed by " << gap;
+    for (const InstructionSet set : instruction_sets()) {
+      ASSERT_EQ(internal::collides_by(internal::mesh_kernels_for(set), tree, world_from_a, mesh,
+                                      world_from_b),
+                expected)
+          << "case " << i << ", gap " << gap;
+    }
+    touching += gap <= 0;
+    free += !expected;
+    near += gap > 0 && gap < 1e-6 * size;
+  }
+  EXPECT_GT(touching, 1500);
+  EXPECT_GT(free, 1000);
+  EXPECT_GT(near, 500);
+}
+
+// The promise that filters in single precision rely on.
+TEST(MeshSearch, TheAxesFindApartWhatIsClearlyApart) {
+  Random random(12);
+  int judged = 0;
+  int needed = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Triangle t = random_triangle(random, 1.0);
+    const Eigen::Vector3d p =
+        point_of(random, t) + std::pow(10.0, random.whole(-7, 1)) * random.point(1.0);
+    double size = 0.0;
+    for (const Eigen::Vector3d& corner : t) size = std::max(size, p.norm() + corner.norm());
+    const Real distance = exact_distance(p, Pose(), t, Pose());
+    const double d = distance.convert_to<double>();
+    ASSERT_FALSE(internal::are_apart(p, t, d * (1.0 + 1e-15) + 8.0 * 0x1p-53 * size)) << i;
+    const std::array<Eigen::Vector3d, 3> edges = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+    const double longest = std::max({edges[0].norm(), edges[1].norm(), edges[2].norm()});
+    const double height = edges[0].cross(edges[1]).norm() / longest;
+    const double reach = d - 0x1p-23 * size * (1.0 + 1e-9);
+    if (!(d >= 0x1p-22 * size && reach >= 0.0 && height >= 0x1.01p-24 * longest)) continue;
+    ASSERT_TRUE(internal::are_apart(p, t, reach)) << i;
+    ++judged;
+    needed += height < 1e-5 * longest;
+  }
+  EXPECT_GT(judged, 8000);
+  EXPECT_GT(needed, 500);
+}
+
+TEST(MeshSearch, AnswersAsAllPairsDo) {
+  Random random(13);
+  int hits = 0;
+  for (int i = 0; i < 600; ++i) {
+    const double size = std::pow(10.0, random.whole(-3, 3));
+    std::vector<Triangle> triangles;
+    const int count = random.whole(1, 80);
+    for (int k = 0; k < count; ++k) {
+      Triangle t = random_triangle(random, 0.2 * size);
+      const Eigen::Vector3d shift = random.point(size);
+      for (Eigen::Vector3d& corner : t) corner += shift;
+      triangles.push_back(t);
+    }
+    const MeshTree b(mesh_of(triangles));
+    const int branching = i % 10 == 0 ? 16 : 8;
+    std::vector<Sphere> spheres = random_spheres(random, random.whole(1, 60), 1.0, 0.15);
+    for (Sphere& s : spheres) s = {size * s.center, i % 7 == 0 ? 0.0 : size * s.radius};
+    const Pose world_from_a = random.pose(size);
+    const Pose world_from_b(random.quaternion(),
+                            world_from_a.translation() + random.point(1.8 * size));
+    // The pose of a or b moves until they nearly touch: one ball is given the exact distance.
+    Real nearest = 1e300;
+    Sphere& changed = spheres.front();
+    for (const Triangle& t : triangles) {
+      nearest = std::min(nearest, exact_distance(changed.center, world_from_a, t, world_from_b));
+    }
+    changed.radius = nearest.convert_to<double>() * (1.0 + random_gap(random));
+    const SphereTree a = build_tree(spheres, {.branching = branching});
+    const bool expected = any_pair_meets(a, world_from_a, b, world_from_b);
+    ASSERT_EQ(collides(a, world_from_a, b, world_from_b), expected);
+    for (const InstructionSet set : instruction_sets()) {
+      ASSERT_EQ(
+          internal::collides_by(internal::mesh_kernels_for(set), a, world_from_a, b, world_from_b),
+          expected)
+          << "case " << i;
+    }
+    hits += expected;
+  }
+  EXPECT_GT(hits, 100);
+  EXPECT_LT(hits, 580);
+}
+
+TEST(MeshSearch, TheBoxesHoldEveryTriangleOnce) {
+  Random random(14);
+  for (const int count : {1, 7, 8, 9, 64, 65, 700}) {
+    std::vector<Triangle> triangles;
+    for (int k = 0; k < count; ++k) triangles.push_back(random_triangle(random, 1.0));
+    const MeshTree tree(mesh_of(triangles));
+    const internal::MeshView view = tree.packed().view();
+    std::set<std::int32_t> seen;
+    const auto holds = [](const float* low, const float* high, std::size_t stride,
+                          const Eigen::Vector3d& p) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double x = p[static_cast<Eigen::Index>(k)];
+        if (static_cast<double>(low[k * stride]) > x || static_cast<double>(high[k * stride]) < x) {
+          return false;
+        }
+      }
+      return true;
+    };
+    // Every corner below a node, as the boxes on the way down have to hold them.
+    const auto visit = [&](const auto& self, std::int32_t at) -> std::vector<Eigen::Vector3d> {
+      std::vector<Eigen::Vector3d> below;
+      if (at < 0) {
+        const internal::MeshBlock& block = view.blocks[~at];
+        for (int lane = 0; lane < internal::MeshBlock::kWidth; ++lane) {
+          if (block.corner[0][0][lane] > 1e18F) continue;
+          EXPECT_TRUE(seen.insert(block.triangle[lane]).second);
+          for (const Eigen::Vector3d& corner : tree.triangle(block.triangle[lane])) {
+            EXPECT_TRUE(holds(block.around.low, block.around.high, 1, corner));
+            below.push_back(corner);
+          }
+        }
+        return below;
+      }
+      const internal::MeshNode& node = view.nodes[at];
+      for (std::size_t lane = 0; lane < internal::MeshNode::kWidth; ++lane) {
+        if (node.low[0][lane] > 1e18F) continue;
+        for (const Eigen::Vector3d& corner : self(self, node.child[lane])) {
+          EXPECT_TRUE(holds(&node.low[0][lane], &node.high[0][lane], 8, corner));
+          EXPECT_TRUE(holds(node.around.low, node.around.high, 1, corner));
+          below.push_back(corner);
+        }
+      }
+      return below;
+    };
+    EXPECT_EQ(visit(visit, 0).size(), 3 * triangles.size());
+    EXPECT_EQ(seen.size(), triangles.size());
+  }
+}
+
+TEST(MeshMechanism, AnswersAsThePairsDoOnEveryInstructionSet) {
+  Random random(15);
+  int hits = 0;
+  int asked = 0;
+  int checked = 0;
+  for (int i = 0; i < 60; ++i) {
+    // One frame that turns about z, and one that is shifted along its own.
+    const std::vector<MechanismFrame> frames = {
+        {.parent_from_frame = random.pose(1.0)},
+        {.parent = 0, .parent_from_frame = random.pose(0.5), .variable = 1, .prismatic = true}};
+    std::vector<MechanismMesh> bodies;
+    for (const int frame : {1, 0, 1}) {
+      std::vector<Triangle> triangles;
+      for (int k = 0; k < 40; ++k) triangles.push_back(random_triangle(random, 0.3));
+      bodies.push_back(
+          {frame, random.pose(0.3), std::make_shared<const MeshTree>(mesh_of(triangles))});
+    }
+    std::vector<MechanismObstacle> obstacles;
+    for (int k = 0; k < 2; ++k) {
+      obstacles.push_back({random.pose(1.5), std::make_shared<const SphereTree>(build_tree(
+                                                 random_spheres(random, 40, 0.5, 0.1)))});
+    }
+    const std::vector<MechanismPair> pairs = {{0, 1}, {0, 0}, {1, 1}, {2, 0}};
+    for (const InstructionSet set : instruction_sets()) {
+      const MeshMechanismCheck check(frames, bodies, obstacles, pairs, 1e-9, set);
+      MeshMechanismCheck::Scratch scratch(check);
+      Random variables(static_cast<std::uint64_t>(i));
+      for (int k = 0; k < 20; ++k) {
+        const double angle = variables.uniform(-3.0, 3.0);
+        const std::array<double, 2> q = {angle, variables.uniform(-1.0, 1.0)};
+        const Pose turned(Eigen::Quaterniond(std::cos(0.5 * angle), 0, 0, std::sin(0.5 * angle)),
+                          Eigen::Vector3d::Zero());
+        const Pose first = frames[0].parent_from_frame * turned;
+        const std::array<Pose, 2> root_from_frame = {
+            first, first * frames[1].parent_from_frame * Pose::from_translation({0.0, 0.0, q[1]})};
+        const auto pose_of = [&](int body) {
+          const MechanismMesh& mesh = bodies[static_cast<std::size_t>(body)];
+          return root_from_frame[static_cast<std::size_t>(mesh.frame)] * mesh.frame_from_mesh;
+        };
+        const bool expected = std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+          const MechanismObstacle& obstacle = obstacles[static_cast<std::size_t>(pair.obstacle)];
+          return any_pair_meets(*obstacle.tree, obstacle.root_from_tree,
+                                *bodies[static_cast<std::size_t>(pair.body)].mesh,
+                                pose_of(pair.body));
+        });
+        const bool hit = check.collides(q, scratch, [&](const MeshContactInDoubt& contact) {
+          ++asked;
+          const MechanismObstacle& obstacle =
+              obstacles[static_cast<std::size_t>(contact.pair.obstacle)];
+          EXPECT_TRUE(std::any_of(pairs.begin(), pairs.end(), [&](const MechanismPair& pair) {
+            return pair.body == contact.pair.body && pair.obstacle == contact.pair.obstacle;
+          }));
+          return meets_triangle(*obstacle.tree, contact.sphere, obstacle.root_from_tree,
+                                *bodies[static_cast<std::size_t>(contact.pair.body)].mesh,
+                                contact.triangle, pose_of(contact.pair.body));
+        });
+        ASSERT_EQ(hit, expected) << i << ' ' << k;
+        hits += hit;
+        ++checked;
+      }
+    }
+  }
+  EXPECT_GT(hits, checked / 5);
+  EXPECT_LT(hits, checked * 4 / 5);
+  EXPECT_GT(asked, 50);
+}
+
+TEST(MeshMechanism, RefusesWhatItCannotUse) {
+  const auto mesh = std::make_shared<const MeshTree>(
+      mesh_of({{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}}));
+  const std::vector<MechanismFrame> frames(1);
+  const std::vector<MechanismObstacle> obstacles = {{Pose(), ball({0, 0, 0}, 1.0)}};
+  const auto make = [&](const MechanismMesh& body, const MechanismPair& pair, double error) {
+    MeshMechanismCheck(frames, std::span(&body, 1), obstacles, std::span(&pair, 1), error);
+  };
+  EXPECT_NO_THROW(make({0, Pose(), mesh}, {0, 0}, 0.0));
+  EXPECT_THROW(make({0, Pose(), nullptr}, {0, 0}, 0.0), Error);
+  EXPECT_THROW(make({1, Pose(), mesh}, {0, 0}, 0.0), Error);
+  EXPECT_THROW(make({0, Pose(), mesh}, {0, 1}, 0.0), Error);
+  EXPECT_THROW(make({0, Pose(), mesh}, {0, 0}, -1.0), Error);
+  EXPECT_THROW(make({0, Pose::from_translation({1e15, 0, 0}), mesh}, {0, 0}, 0.0), Error);
+}
+
+}  // namespace
+}  // namespace spherule::test
