@@ -73,6 +73,8 @@ class RobotChecker {
     std::optional<Touch> last_;
   };
 
+  // Fastest where each configuration is near the one before: the scratch then knows how far the
+  // robot was from everything, or how deep in it.
   // Throws Error for a configuration of the wrong size or with a number that is not finite.
   // Configurations with a position beyond 100 (radians or metres) are answered as exactly, but
   // slowly; where such a one leads out of all bounds, forward_kinematics() throws.

@@ -152,7 +152,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
       RobotChecker::Scratch fresh(checker);
       const bool expected = checker.collides(at, fresh);
       ASSERT_EQ(checker.collides(at, remembers), expected) << i << ' ' << k;
-      const std::vector<double> elsewhere = random_configuration(random, robot, 3.2);
+      const std::vector<double> elsewhere = near_home();
       std::uint8_t verdict = 0;
       switch (random.whole(0, 40)) {
         case 0:
