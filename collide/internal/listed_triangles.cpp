@@ -11,6 +11,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace spherule::internal {
 namespace {
@@ -57,6 +58,23 @@ Vector3d normal_of(const Triangle& t) {
   return (t[1] - t[0]).cross(t[2] - t[1]);
 }
 
+// The box of the mask whose centre is nearest to that of another, by the sum of its distances along
+// the axes.
+int nearest_of(unsigned mask, const PatchNode& node, const PatchBox& box) {
+  int nearest = std::countr_zero(mask);
+  float least = std::numeric_limits<float>::infinity();
+  for (; mask != 0; mask &= mask - 1) {
+    const int lane = std::countr_zero(mask);
+    float distance = 0.0F;
+    for (int k = 0; k < 3; ++k) distance += std::abs(node.center[k][lane] - box.center[k]);
+    if (distance < least) {
+      least = distance;
+      nearest = lane;
+    }
+  }
+  return nearest;
+}
+
 float size_of(const PatchBox& box) {
   return std::max(std::max(box.half[0], box.half[1]), box.half[2]);
 }
@@ -87,8 +105,13 @@ class ListedTriangles::BoxSearch {
       const Task task = tasks_[--top_];
       const PatchNode& node = of_.sides_[task.side].patches.node(task.node);
       bool is_seen = false;
-      for (unsigned mask = overlaps(node, task.box); mask != 0; mask &= mask - 1) {
-        const int lane = std::countr_zero(mask);
+      unsigned mask = overlaps(node, task.box);
+      // The nearest comes last, and so is opened first.
+      const int nearest = mask == 0 ? 0 : nearest_of(mask, node, task.box);
+      while (mask != 0) {
+        const unsigned others = mask & ~(1U << nearest);
+        const int lane = others != 0 ? std::countr_zero(others) : nearest;
+        mask &= ~(1U << lane);
         const std::int32_t child = node.child[lane];
         if (child < 0 && task.other < 0) {
           if (!is_seen) see(task);

@@ -246,17 +246,21 @@ RobotChecker::Finding RobotChecker::find(const MechanismContact& contact, Scratc
                          contact.obstacle_sphere, obstacle.world_from_tree);
   if (!triangles) return Finding::kSpheres;
   scratch.last_ = {contact, *triangles};
-  remember(*scratch.last_, depth_of(*scratch.last_, scratch), scratch);
+  if (check_->is_following(scratch.memory_)) {
+    remember(*scratch.last_, depth_of(*scratch.last_, scratch), scratch);
+  }
   return Finding::kTouch;
 }
 
 // A robot that touches often did so a moment ago, by the same triangles or by others near to them.
 // What is not proved by the former alone is left to the test of the spheres.
 bool RobotChecker::touches_still(const Touch& touch, Scratch& scratch) const {
-  const double depth = depth_of(touch, scratch);
-  if (depth > 0.0) {
-    remember(touch, depth, scratch);
-    return true;
+  if (check_->is_following(scratch.memory_)) {
+    const double depth = depth_of(touch, scratch);
+    if (depth > 0.0) {
+      remember(touch, depth, scratch);
+      return true;
+    }
   }
   return find(touch.contact, scratch) == Finding::kTouch;
 }
@@ -271,7 +275,7 @@ double RobotChecker::depth_of(const Touch& touch, const Scratch& scratch) const 
 // The poses of forward_kinematics() are within pose_error_ of those of the exact mechanism, now and
 // wherever the memory is asked for; as much again covers the ball's.
 void RobotChecker::remember(const Touch& touch, double depth, Scratch& scratch) const {
-  if (depth <= 3.0 * pose_error_ || !check_->is_following(scratch.memory_)) return;
+  if (depth <= 3.0 * pose_error_) return;
   const Body& body = bodies_[static_cast<std::size_t>(touch.contact.pair.body)];
   const auto& [p, q, r] = body.mesh->mesh().triangle(touch.triangles.a);
   const Eigen::Vector3d center = (p + q + r) / 3.0;
