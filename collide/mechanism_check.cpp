@@ -53,6 +53,7 @@ MechanismCheck::Scratch::Scratch(const MechanismCheck& check)
                    .queues = {memory_->queues.data(), memory_->placed.data(),
                               memory_->generations.data(), &memory_->generation},
                    .memories = memory_->memories.data()};
+  memory_->motion.emplace(parts.problem, parts.reach, parts.tilt);
 }
 
 MechanismCheck::Scratch::~Scratch() = default;
@@ -78,10 +79,23 @@ bool MechanismCheck::within(std::span<const double> variables, double clearance,
   require_clearance(clearance);
   Translator translator{parts_->scene, ask, context};
   Scratch::Memory& memory = *scratch.memory_;
-  const float growth =
-      clearance == 0.0 ? 0.0F : internal::rounded_up_to_single(clearance * kGrowth);
+  if (clearance == 0.0) {
+    return memory.motion->collides(*parts_->kernels, parts_->problem, variables.data(), memory.view,
+                                   &Translator::confirm, &translator);
+  }
+  const float growth = internal::rounded_up_to_single(clearance * kGrowth);
   return parts_->kernels->check(parts_->problem, variables.data(), growth, kDoubt * growth,
                                 memory.view, &Translator::confirm, &translator);
+}
+
+bool MechanismCheck::is_following(const Scratch& scratch) const {
+  return scratch.memory_->motion->is_following();
+}
+
+void MechanismCheck::remember_contact(int frame, const Sphere& ball, double depth,
+                                      Scratch& scratch) const {
+  assert(scratch.memory_->owner == parts_.get());
+  scratch.memory_->motion->remember_contact(frame, ball, depth, scratch.memory_->view);
 }
 
 MechanismCheck::BlockAnswer MechanismCheck::collides(

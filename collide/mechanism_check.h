@@ -99,6 +99,14 @@ class MechanismCheck {
     return within(variables, 0.0, scratch, confirm);
   }
 
+  // For `confirm` of collides() to say that a ball (in the coordinates of a frame) touches an
+  // obstacle, and would wherever none of its points has moved by more than `depth` from where the
+  // exact mechanism has it. That is remembered, where it is worth while, for configurations near
+  // this one; it changes no answer.
+  void remember_contact(int frame, const Sphere& ball, double depth, Scratch& scratch) const;
+  // Whether it is worth while: the last configurations were near each other.
+  bool is_following(const Scratch& scratch) const;
+
   // The same of spheres that come within `clearance` of each other: `confirm` says whether two do.
   // Throws Error as require_clearance() does.
   template <class Confirm>

@@ -38,8 +38,10 @@ class FindTriangles {
   bool leaves(NodePair pair) noexcept {
     if (!balls_.touches(pair)) return true;
     if (!triangles_) triangles_.emplace(a_, world_from_a_, b_, world_from_b_, pose_);
-    found_ = triangles_->touch(a_.cover().sphere_index(pair.index(0)),
-                               b_.cover().sphere_index(pair.index(1)));
+    found_ = triangles_
+                 ->touching(a_.cover().sphere_index(pair.index(0)),
+                            b_.cover().sphere_index(pair.index(1)))
+                 .has_value();
     return !found_;
   }
   // After the traversal.
@@ -64,7 +66,7 @@ CoveredMesh::CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereT
       inside_(std::make_shared<const internal::MeshInside>(mesh)) {
   const std::size_t spheres = cover_->spheres().size();
   const std::vector<internal::Patch> patches = internal::share_out(mesh_, cover_->spheres());
-  patches_ = std::make_shared<const internal::PatchTrees>(patches, spheres);
+  patches_ = std::make_shared<const internal::PatchTrees>(patches, cover_->spheres());
   first_.assign(spheres + 1, 0);
   for (const internal::Patch& patch : patches) {
     ++first_[static_cast<std::size_t>(patch.ball) + 1];
@@ -86,12 +88,19 @@ bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh&
   return query.found();
 }
 
-bool triangles_touch(const CoveredMesh& a, std::int32_t sphere_a, const Pose& world_from_a,
-                     const CoveredMesh& b, std::int32_t sphere_b,
-                     const Pose& world_from_b) noexcept {
+std::optional<TrianglePair> touching_triangles(const CoveredMesh& a, std::int32_t sphere_a,
+                                               const Pose& world_from_a, const CoveredMesh& b,
+                                               std::int32_t sphere_b,
+                                               const Pose& world_from_b) noexcept {
   const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
   return internal::ListedTriangles(a, world_from_a, b, world_from_b, pose)
-      .touch(sphere_a, sphere_b);
+      .touching(sphere_a, sphere_b);
+}
+
+double contact_depth(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
+                     const Pose& world_from_b, const TrianglePair& triangles) noexcept {
+  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  return internal::ListedTriangles(a, world_from_a, b, world_from_b, pose).depth(triangles);
 }
 
 bool contains_component(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,

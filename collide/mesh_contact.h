@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -61,6 +62,12 @@ class CoveredMesh {
   std::shared_ptr<const internal::PatchTrees> patches_;
 };
 
+// A triangle of each of two meshes.
+struct TrianglePair {
+  std::int32_t a = 0;
+  std::int32_t b = 0;
+};
+
 // Whether two meshes have a point in common, of their triangles or of their insides.
 //
 // Never false if they have one in exact arithmetic under exactly the given poses, and the spheres
@@ -80,10 +87,21 @@ bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh&
 // The two parts of that answer, for other ways to find the spheres that touch: call the first for
 // every pair of spheres that touch until it is true, and the second if it never was.
 //
-// False only if no triangle under the one sphere touches, within both spheres, one under the other.
-bool triangles_touch(const CoveredMesh& a, std::int32_t sphere_a, const Pose& world_from_a,
-                     const CoveredMesh& b, std::int32_t sphere_b,
-                     const Pose& world_from_b) noexcept;
+// Two triangles that touch, up to rounding. None only if no triangle under the one sphere touches,
+// within both spheres, one under the other.
+std::optional<TrianglePair> touching_triangles(const CoveredMesh& a, std::int32_t sphere_a,
+                                               const Pose& world_from_a, const CoveredMesh& b,
+                                               std::int32_t sphere_b,
+                                               const Pose& world_from_b) noexcept;
+inline bool triangles_touch(const CoveredMesh& a, std::int32_t sphere_a, const Pose& world_from_a,
+                            const CoveredMesh& b, std::int32_t sphere_b,
+                            const Pose& world_from_b) noexcept {
+  return touching_triangles(a, sphere_a, world_from_a, b, sphere_b, world_from_b).has_value();
+}
+// How deep two triangles are in each other: if it is above zero they have a point in common, and
+// keep one wherever one of them goes, none of its points by more than that from where it is.
+double contact_depth(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
+                     const Pose& world_from_b, const TrianglePair& triangles) noexcept;
 // Whether a component of one mesh lies inside the other, given that no triangles touch.
 bool contains_component(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
                         const Pose& world_from_b) noexcept;

@@ -6,6 +6,9 @@
 #include "collide/internal/triangle_pair.h"
 #include "collide/mesh_contact.h"
 
+#include <cstdint>
+#include <optional>
+
 namespace spherule::internal {
 
 // Two placed meshes: contact of the triangles under two of their spheres, and containment. Refers
@@ -18,23 +21,33 @@ namespace spherule::internal {
 // a ball of its cover, so that |x'| + |y'| + |d| <= S. That is what triangle_contact() asks for,
 // with pad = leaf_pad().
 //
-// Images of points in the other mesh's frame err by less than 136 u S. So do the balls and
-// triangles that keep off boxes and triangles before; sums of lengths up to S, and projections in
-// units of the axis, add less than 24 u S. kImagePad = 160 u S covers both.
+// Images of points in the other mesh's frame err by less than 136 u S, and differences from the
+// centre of a ball there by 2 u S more: kImagePad = 160 u S covers both.
+//
+// Boxes. They are compared in single precision, v = 2^-24, as seen from the centres of the two
+// balls, of radii r and r': a box's image has the centre R c + t, t being the difference of the two
+// balls' centres, and the half widths |R| h. Boxes enclose parts of balls, so |c| and h are at most
+// a little more than the radius. Let Z = r + r' + |t|_1. R and t rounded, three products and sums,
+// the difference of the centres and the sum of the half widths err by less than 16 v Z a row.
+// kBoxPad = 64 v Z; the absolute term covers underflow.
 class ListedTriangles {
  public:
   ListedTriangles(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
                   const Pose& world_from_b, const RelativePose& pose);
 
-  // False only if no triangle under the one sphere has a point in common, within both balls, with
-  // a triangle under the other.
-  bool touch(std::int32_t sphere_a, std::int32_t sphere_b) const;
+  // Two triangles that touch or, at least, are not proved to be apart: under spheres that were
+  // asked for, or, if there are none, none under these have a point in common within both balls.
+  std::optional<TrianglePair> touching(std::int32_t sphere_a, std::int32_t sphere_b) const;
+
+  // As triangle_depth() says.
+  double depth(const TrianglePair& pair) const;
 
   // False only if no component of one mesh lies inside the other; the surfaces must not touch.
   bool contained() const;
 
  private:
   static constexpr double kImagePad = 160.0 * kUnitRoundoff;
+  static constexpr double kBoxPad = 0x1p-18;
 
   // One of the two meshes, with the ways to the frame of the corners and from the other mesh's.
   struct Side {
@@ -52,13 +65,10 @@ class ListedTriangles {
     FrameChange from_other;
   };
 
-  // Both with the larger patch first, whose tree is searched for each triangle of the other.
-  bool touch(const Side& large, std::int32_t large_sphere, const Side& small,
-             std::int32_t small_sphere) const;
+  class BoxSearch;
   bool holds_a_component(const Side& side, const CoveredMesh& other) const;
 
-  Side a_;
-  Side b_;
+  Side sides_[2];
   double scene_size_;
   double corner_pad_;
   double image_pad_;

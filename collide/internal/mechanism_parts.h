@@ -5,11 +5,13 @@
 
 #include "collide/internal/joined_scene.h"
 #include "collide/internal/mechanism_kernel.h"
+#include "collide/internal/motion_memory.h"
 #include "collide/internal/packed_tree.h"
 #include "collide/mechanism_check.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -52,6 +54,7 @@ struct MechanismCheck::Scratch::Memory {
   std::vector<double> changes;  // of an edge: by how much each variable changes
   std::vector<std::int32_t> open_pairs;
   internal::KernelScratch view = {};
+  std::optional<internal::MotionMemory> motion;
 };
 
 // Asks for the spheres of joined sets as the caller knows them.

@@ -2,6 +2,7 @@
 #include "collide/internal/mesh_inside.h"
 
 #include "collide/internal/ray.h"
+#include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <array>
@@ -131,7 +132,10 @@ MeshInside::MeshInside(const TriangleMesh& mesh) {
     components.join(t[1], t[2]);
   }
   const std::vector<char> closed = closed_components(triangles, components, mesh.vertices.size());
-  std::vector<char> seen(mesh.vertices.size(), 0);
+  Eigen::AlignedBox3d around;
+  for (const Vector3d& vertex : mesh.vertices) around.extend(vertex);
+  const Vector3d middle = around.center();
+  std::vector<int> point_of(mesh.vertices.size(), -1);
   is_solid_.reserve(triangles.size());
   for (const std::array<int, 3>& t : triangles) {
     const auto component = static_cast<std::size_t>(components.find(t[0]));
@@ -139,15 +143,26 @@ MeshInside::MeshInside(const TriangleMesh& mesh) {
     is_solid_.push_back(solid ? 1 : 0);
     has_inside_ = has_inside_ || solid;
     is_closed_ = is_closed_ && solid;
-    if (seen[component] == 0) points_.push_back(mesh.vertices[static_cast<std::size_t>(t[0])]);
-    seen[component] = 1;
+    if (point_of[component] < 0) {
+      point_of[component] = static_cast<int>(points_.size());
+      points_.push_back(mesh.vertices[static_cast<std::size_t>(t[0])]);
+    }
+    Vector3d& point = points_[static_cast<std::size_t>(point_of[component])];
+    for (const int corner : t) {
+      const Vector3d& vertex = mesh.vertices[static_cast<std::size_t>(corner)];
+      if ((vertex - middle).squaredNorm() > (point - middle).squaredNorm()) point = vertex;
+      if (solid) box_.extend(vertex);
+    }
   }
 }
 
 bool MeshInside::contains(const MeshTree& tree, const Vector3d& point, double error) const {
   if (!has_inside_) return false;
-  const Sphere around = tree.tree().ball(0);
-  if (distance_lower(around.center, point) > add_up(around.radius, error)) return false;
+  for (int k = 0; k < 3; ++k) {
+    if (point[k] < sub_down(box_.min()[k], error) || point[k] > add_up(box_.max()[k], error)) {
+      return false;
+    }
+  }
   for (const Vector3d& direction : kRayDirections) {
     const std::optional<int> winding = crossings(tree, is_solid_, Ray(point, error, direction));
     if (winding) return *winding != 0;

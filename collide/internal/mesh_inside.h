@@ -4,6 +4,8 @@
 #include "collide/mesh_tree.h"
 #include "spheretree/triangle_mesh.h"
 
+#include <Eigen/Geometry>
+
 #include <array>
 #include <span>
 #include <vector>
@@ -30,7 +32,8 @@ class MeshInside {
  public:
   explicit MeshInside(const TriangleMesh& mesh);
 
-  // One vertex of every component.
+  // One vertex of every component: the farthest from the middle of the mesh, as most often it is
+  // far from what the mesh touches.
   std::span<const Eigen::Vector3d> component_points() const { return points_; }
   bool has_inside() const { return has_inside_; }
   bool is_closed() const { return is_closed_; }
@@ -46,6 +49,7 @@ class MeshInside {
 
  private:
   std::vector<char> is_solid_;  // of each triangle: whether its component is closed
+  Eigen::AlignedBox3d box_;     // of these
   std::vector<Eigen::Vector3d> points_;
   bool has_inside_ = false;
   bool is_closed_ = true;

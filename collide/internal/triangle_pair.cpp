@@ -20,15 +20,6 @@ constexpr double kOverlap = 400.0 * kUnitRoundoff;
 // Of the square of an axis. Far above the 2^-1075 that a product may lose to underflow.
 constexpr double kShortestAxis = 0x1p-600;
 
-// Distance of the projections on `axis`, in units of its length; negative where they overlap.
-double gap_along(const Vector3d& axis, const Triangle& a, const Triangle& b) {
-  const double a0 = axis.dot(a[0]), a1 = axis.dot(a[1]), a2 = axis.dot(a[2]);
-  const double b0 = axis.dot(b[0]), b1 = axis.dot(b[1]), b2 = axis.dot(b[2]);
-  const double low_a = std::min(std::min(a0, a1), a2), high_a = std::max(std::max(a0, a1), a2);
-  const double low_b = std::min(std::min(b0, b1), b2), high_b = std::max(std::max(b0, b1), b2);
-  return std::max(low_a - high_b, low_b - high_a);
-}
-
 bool separates(const Vector3d& axis, double gap, double pad) {
   const double square = axis.squaredNorm();
   return gap > 0.0 && square >= kShortestAxis && gap * gap > square * (pad * pad);
@@ -41,6 +32,26 @@ std::array<Vector3d, 3> edges_of(const Triangle& t) {
 double longest(const std::array<Vector3d, 3>& edges) {
   return std::sqrt(
       std::max({edges[0].squaredNorm(), edges[1].squaredNorm(), edges[2].squaredNorm()}));
+}
+
+// Calls visit(axis) for the normals and the cross products of edges, until it returns true, which
+// is then the answer.
+template <class Visit>
+bool any_axis(const std::array<Vector3d, 3>& edges_a, const std::array<Vector3d, 3>& edges_b,
+              const Visit& visit) {
+  if (visit(edges_a[0].cross(edges_a[1]))) return true;
+  if (visit(edges_b[0].cross(edges_b[1]))) return true;
+  for (const Vector3d& edge_a : edges_a) {
+    for (const Vector3d& edge_b : edges_b) {
+      if (visit(edge_a.cross(edge_b))) return true;
+    }
+  }
+  return false;
+}
+
+// By how much the triangles must overlap along an axis, in units of its length.
+double least_overlap(double length, double scene_size) {
+  return kOverlap * scene_size * scene_size * length + kUnderflow;
 }
 
 // By the axes that are needed only where the generic ones leave a doubt.
@@ -73,19 +84,25 @@ TriangleContact triangle_contact(const Triangle& a, const Triangle& b, double pa
     return separates(axis, gap, pad);
   };
   const std::array<Vector3d, 3> edges_a = edges_of(a);
-  if (apart_along(edges_a[0].cross(edges_a[1]))) return TriangleContact::kApart;
   const std::array<Vector3d, 3> edges_b = edges_of(b);
-  if (apart_along(edges_b[0].cross(edges_b[1]))) return TriangleContact::kApart;
-  for (const Vector3d& edge_a : edges_a) {
-    for (const Vector3d& edge_b : edges_b) {
-      if (apart_along(edge_a.cross(edge_b))) return TriangleContact::kApart;
-    }
-  }
+  if (any_axis(edges_a, edges_b, apart_along)) return TriangleContact::kApart;
   const double length = std::max(longest(edges_a), longest(edges_b));
-  if (widest < -(kOverlap * scene_size * scene_size * length + kUnderflow)) {
-    return TriangleContact::kTouch;
-  }
+  if (widest < -least_overlap(length, scene_size)) return TriangleContact::kTouch;
   return specially_apart(a, b, pad) ? TriangleContact::kApart : TriangleContact::kDoubt;
+}
+
+double triangle_depth(const Triangle& a, const Triangle& b, double scene_size) {
+  const std::array<Vector3d, 3> edges_a = edges_of(a);
+  const std::array<Vector3d, 3> edges_b = edges_of(b);
+  const double length = std::max(longest(edges_a), longest(edges_b));
+  const double least = least_overlap(length, scene_size);
+  double depth = std::numeric_limits<double>::infinity();
+  any_axis(edges_a, edges_b, [&](const Vector3d& axis) {
+    const double size = axis.norm() * kRelativeUp + kOverlap * scene_size * length + kUnderflow;
+    depth = std::min(depth, (-gap_along(axis, a, b) - least) / size);
+    return depth <= 0.0;
+  });
+  return depth / kRelativeUp;
 }
 
 }  // namespace spherule::internal

@@ -3,11 +3,21 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 
 namespace spherule::internal {
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
+
+// Distance of the projections on `axis`, in units of its length; negative where they overlap.
+inline double gap_along(const Eigen::Vector3d& axis, const Triangle& a, const Triangle& b) {
+  const double a0 = axis.dot(a[0]), a1 = axis.dot(a[1]), a2 = axis.dot(a[2]);
+  const double b0 = axis.dot(b[0]), b1 = axis.dot(b[1]), b2 = axis.dot(b[2]);
+  const double low_a = std::min(std::min(a0, a1), a2), high_a = std::max(std::max(a0, a1), a2);
+  const double low_b = std::min(std::min(b0, b1), b2), high_b = std::max(std::max(b0, b1), b2);
+  return std::max(low_a - high_b, low_b - high_a);
+}
 
 enum class TriangleContact {
   kApart,  // proved: no point in common
@@ -37,6 +47,11 @@ enum class TriangleContact {
 // with |n| <= L^2 <= L S more: 354 u S^2 L. kOverlap = 400 leaves the rest. A zero axis never
 // overlaps by more than that, so degenerate triangles are at most in doubt.
 //
+// How deep. Where they overlap along all of these axes by more than a depth times the axis' length,
+// a ball of that radius about the origin lies in the difference: a triangle that moves, rigidly or
+// not, none of its points by more than the depth, cannot be parted from the other by any plane.
+// |N| <= |n| + 282 u S L.
+//
 // Doubt. Triangles that are apart by clearly more than the pad are found apart by an axis: faces by
 // a normal, edges by a cross product, coplanar ones by the normals of their edges in the plane, and
 // any by the direction from a corner to the nearest point of the other triangle. That direction is
@@ -44,5 +59,8 @@ enum class TriangleContact {
 // the doubt may reach to about sqrt(u) L; elsewhere it is about a pad wide.
 TriangleContact triangle_contact(const Triangle& a, const Triangle& b, double pad,
                                  double scene_size);
+
+// A depth as above; not above zero if the triangles are not proved to touch.
+double triangle_depth(const Triangle& a, const Triangle& b, double scene_size);
 
 }  // namespace spherule::internal

@@ -123,7 +123,8 @@ RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
   std::vector<MechanismBody> bodies;
   for (std::size_t link = robot_.links().size(); link-- > 0;) {
     for (const auto& tree : robot_.links()[link].trees) {
-      const Body body{tree, link, mesh_of(*tree)};
+      const Body body{tree, link, mesh_of(*tree), frames.frame_of_link[link],
+                      frames.frame_from_link[link]};
       const bool moves = frames.frame_of_link[link] >= 0;
       for (std::size_t i = 0; i < obstacles_.size(); ++i) {
         if (is_untested(options.untested, link, i)) continue;
@@ -144,8 +145,8 @@ RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
   for (const PlacedTree& obstacle : obstacles_) {
     placed.push_back({root_from_world * obstacle.world_from_tree, obstacle.tree});
   }
-  check_.emplace(frames.frames, bodies, placed, pairs_,
-                 pose_error(robot_, obstacles_, world_from_root_), options.instructions,
+  pose_error_ = pose_error(robot_, obstacles_, world_from_root_);
+  check_.emplace(frames.frames, bodies, placed, pairs_, pose_error_, options.instructions,
                  !meshes_.empty());
 }
 
@@ -214,10 +215,9 @@ bool RobotChecker::touches(std::span<const double> configuration, const Mechanis
   if (!is_placed) {
     forward_kinematics(robot_, configuration, scratch.world_from_link_, world_from_root_);
     is_placed = true;
-    if (scratch.last_ && find(*scratch.last_, scratch) == Finding::kTouch) return true;
+    if (scratch.last_ && touches_still(*scratch.last_, scratch)) return true;
   }
   const Finding finding = find(contact, scratch);
-  if (finding == Finding::kTouch && !meshes_.empty()) scratch.last_ = contact;
   if (finding == Finding::kSpheres) {
     const auto is_same = [&](const MechanismPair& pair) {
       return pair.body == contact.pair.body && pair.obstacle == contact.pair.obstacle;
@@ -230,8 +230,7 @@ bool RobotChecker::touches(std::span<const double> configuration, const Mechanis
 }
 
 // The canonical test, and the one of the triangles.
-RobotChecker::Finding RobotChecker::find(const MechanismContact& contact,
-                                         const Scratch& scratch) const {
+RobotChecker::Finding RobotChecker::find(const MechanismContact& contact, Scratch& scratch) const {
   const Body& body = bodies_[static_cast<std::size_t>(contact.pair.body)];
   const auto index = static_cast<std::size_t>(contact.pair.obstacle);
   const PlacedTree& obstacle = obstacles_[index];
@@ -242,10 +241,48 @@ RobotChecker::Finding RobotChecker::find(const MechanismContact& contact,
   }
   const CoveredMesh* const mesh = obstacle_meshes_[index];
   if (body.mesh == nullptr || mesh == nullptr) return Finding::kTouch;
-  return triangles_touch(*body.mesh, contact.body_sphere, world_from_body, *mesh,
-                         contact.obstacle_sphere, obstacle.world_from_tree)
-             ? Finding::kTouch
-             : Finding::kSpheres;
+  const std::optional<TrianglePair> triangles =
+      touching_triangles(*body.mesh, contact.body_sphere, world_from_body, *mesh,
+                         contact.obstacle_sphere, obstacle.world_from_tree);
+  if (!triangles) return Finding::kSpheres;
+  scratch.last_ = {contact, *triangles};
+  if (check_->is_following(scratch.memory_)) {
+    remember(*scratch.last_, depth_of(*scratch.last_, scratch), scratch);
+  }
+  return Finding::kTouch;
+}
+
+// A robot that touches often did so a moment ago, by the same triangles or by others near to them.
+// What is not proved by the former alone is left to the test of the spheres.
+bool RobotChecker::touches_still(const Touch& touch, Scratch& scratch) const {
+  if (check_->is_following(scratch.memory_)) {
+    const double depth = depth_of(touch, scratch);
+    if (depth > 0.0) {
+      remember(touch, depth, scratch);
+      return true;
+    }
+  }
+  return find(touch.contact, scratch) == Finding::kTouch;
+}
+
+double RobotChecker::depth_of(const Touch& touch, const Scratch& scratch) const {
+  const Body& body = bodies_[static_cast<std::size_t>(touch.contact.pair.body)];
+  const auto obstacle = static_cast<std::size_t>(touch.contact.pair.obstacle);
+  return contact_depth(*body.mesh, scratch.world_from_link_[body.link], *obstacle_meshes_[obstacle],
+                       obstacles_[obstacle].world_from_tree, touch.triangles);
+}
+
+// The poses of forward_kinematics() are within pose_error_ of those of the exact mechanism, now and
+// wherever the memory is asked for; as much again covers the ball's.
+void RobotChecker::remember(const Touch& touch, double depth, Scratch& scratch) const {
+  if (depth <= 3.0 * pose_error_) return;
+  const Body& body = bodies_[static_cast<std::size_t>(touch.contact.pair.body)];
+  const auto& [p, q, r] = body.mesh->mesh().triangle(touch.triangles.a);
+  const Eigen::Vector3d center = (p + q + r) / 3.0;
+  const double radius =
+      std::max({distance_upper(center, p), distance_upper(center, q), distance_upper(center, r)});
+  check_->remember_contact(body.frame, {body.frame_from_link * center, radius},
+                           depth - 3.0 * pose_error_, scratch.memory_);
 }
 
 // Where no triangles touch but spheres do, under the poses that the scratch holds.

@@ -53,6 +53,12 @@ class RobotChecker {
   RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
                const RobotCheckerOptions& options = {});
 
+  // A contact that was confirmed on triangles: of the body's mesh and the obstacle's.
+  struct Touch {
+    MechanismContact contact;
+    TrianglePair triangles;
+  };
+
   // What a query writes to: made for one checker, which must outlive its use. No query allocates
   // once its scratch is warm.
   class Scratch {
@@ -64,9 +70,11 @@ class RobotChecker {
     MechanismCheck::Scratch memory_;
     std::vector<Pose> world_from_link_;
     std::vector<MechanismPair> unconfirmed_;  // spheres touch, but no triangles do
-    std::optional<MechanismContact> last_;    // confirmed on triangles
+    std::optional<Touch> last_;
   };
 
+  // Fastest where each configuration is near the one before: the scratch then knows how far the
+  // robot was from everything, or how deep in it.
   // Throws Error for a configuration of the wrong size or with a number that is not finite.
   // Configurations with a position beyond 100 (radians or metres) are answered as exactly, but
   // slowly; where such a one leads out of all bounds, forward_kinematics() throws.
@@ -98,6 +106,8 @@ class RobotChecker {
     std::shared_ptr<const SphereTree> tree;
     std::size_t link;
     const CoveredMesh* mesh;
+    int frame = -1;  // of the check; -1: it stands with the root
+    Pose frame_from_link{};
   };
 
   struct Standing {
@@ -107,7 +117,10 @@ class RobotChecker {
   };
 
   enum class Finding { kApart, kSpheres, kTouch };
-  Finding find(const MechanismContact& contact, const Scratch& scratch) const;
+  Finding find(const MechanismContact& contact, Scratch& scratch) const;
+  bool touches_still(const Touch& touch, Scratch& scratch) const;
+  double depth_of(const Touch& touch, const Scratch& scratch) const;
+  void remember(const Touch& touch, double depth, Scratch& scratch) const;
   bool touches(std::span<const double> configuration, const MechanismContact& contact,
                bool& is_placed, Scratch& scratch) const;
   bool is_usual(std::span<const double> configuration) const;
@@ -125,7 +138,8 @@ class RobotChecker {
   std::vector<Body> bodies_;  // that variables move, the last link first
   std::vector<MechanismPair> pairs_;
   std::vector<Standing> standing_;  // pairs that no variable moves
-  bool always_ = false;             // a link that stands with the root touches
+  double pose_error_ = 0.0;
+  bool always_ = false;  // a link that stands with the root touches
   std::optional<MechanismCheck> check_;
 };
 

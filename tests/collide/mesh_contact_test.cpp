@@ -102,6 +102,26 @@ TriangleMesh random_mesh(Random& random, int triangles, double width) {
   return mesh;
 }
 
+// Whether any two triangles touch, exactly; only those are looked at that are not clearly apart.
+bool touch_exactly(const TriangleMesh& a, const Pose& world_from_a, const TriangleMesh& b,
+                   const Pose& world_from_b) {
+  const auto ball = [](const TriangleMesh& mesh, std::size_t i, const Pose& pose) -> Sphere {
+    const Sphere around = enclosing_sphere(corners_of(mesh, i));
+    return {pose * around.center, around.radius};
+  };
+  for (std::size_t i = 0; i < a.triangles.size(); ++i) {
+    const Sphere of_a = ball(a, i, world_from_a);
+    for (std::size_t j = 0; j < b.triangles.size(); ++j) {
+      const Sphere of_b = ball(b, j, world_from_b);
+      if ((of_a.center - of_b.center).norm() > of_a.radius + of_b.radius + 1e-9) continue;
+      if (exact_gap(corners_of(a, i), world_from_a, corners_of(b, j), world_from_b) == 0.0) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 double mesh_gap(const TriangleMesh& a, const Pose& world_from_a, const TriangleMesh& b,
                 const Pose& world_from_b) {
   double least = std::numeric_limits<double>::infinity();
@@ -167,6 +187,38 @@ TEST(MeshContact, IsNeverMissedOfNeedles) {
 }
 TEST(MeshContact, IsNeverMissedOfDegenerateTriangles) {
   compare_near_contact(1.0, 0.0, 1e-9, 20, 4);
+}
+
+// Many triangles under few spheres, so that trees of boxes have several levels.
+TEST(MeshContact, IsNeverMissedAmongManyTriangles) {
+  Random random(8);
+  int hits = 0, alarms = 0;
+  for (int i = 0; i < 60; ++i) {
+    TriangleMesh meshes[2];
+    std::vector<Sphere> balls[2];
+    for (int k = 0; k < 2; ++k) {
+      for (int t = 0; t < 90; ++t) {
+        const Vector3d p = random.point(1.0);
+        const int first = static_cast<int>(meshes[k].vertices.size());
+        for (const double size : {0.0, 0.15, 0.15}) {
+          meshes[k].vertices.push_back(p + size * random.point(1.0));
+        }
+        meshes[k].triangles.emplace_back(first, first + 1, first + 2);
+      }
+      balls[k] = {{Vector3d(-0.4, 0, 0), 1.9}, {Vector3d(0.4, 0, 0), 1.9}};
+    }
+    const CoveredMesh a(meshes[0], tree_of(balls[0])), b(meshes[1], tree_of(balls[1]));
+    const Pose world_from_a = random.pose(1.0), turned(random.quaternion(), Vector3d::Zero());
+    const Pose world_from_b(turned.rotation(),
+                            world_from_a.translation() + 1.9 * random.point(1.0));
+    const bool hit = collides(a, world_from_a, b, world_from_b);
+    ASSERT_EQ(hit, touch_exactly(meshes[0], world_from_a, meshes[1], world_from_b)) << i;
+    ASSERT_EQ(hit, collides(b, world_from_b, a, world_from_a)) << i;
+    hits += hit;
+    alarms += !hit && collides(a.cover(), world_from_a, b.cover(), world_from_b);
+  }
+  EXPECT_GT(hits, 10);
+  EXPECT_GT(alarms, 10);
 }
 
 // The answer from its parts, by trying all pairs of spheres.

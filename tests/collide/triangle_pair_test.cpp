@@ -196,5 +196,39 @@ TEST(TrianglePair, TinyOnesAreNotTakenForApart) {
   }
 }
 
+// A triangle that is moved by as much as its depth, in any direction, still touches; by a bit more,
+// in the direction of the least overlap, it does not always.
+TEST(TrianglePair, KeepsTouchingUpToItsDepth) {
+  Random random(11);
+  int deep = 0, tight = 0;
+  for (int i = 0; i < 800; ++i) {
+    const Triangle a = random.whole(0, 2) == 0 ? needle(random, 0.1) : random_triangle(random);
+    Triangle b = random_triangle(random);
+    if (random.whole(0, 1) == 0) b = brought(b, point_of(b, random), point_of(a, random), random);
+    const double size = reach(a) + reach(b);
+    const double pad = 76.0 * kUnitRoundoff * size + kUnderflow;
+    const double depth = internal::triangle_depth(a, b, size);
+    EXPECT_EQ(depth > 0.0, triangle_contact(a, b, pad, size) == TriangleContact::kTouch);
+    if (!(depth > 0.0)) continue;
+    ++deep;
+    bool parted = false;
+    for (int k = 0; k < 8; ++k) {
+      // Each corner by itself: a rigid motion is one case of it.
+      Triangle near = a, away = a;
+      const Vector3d same = random.point(1.0).normalized();
+      for (Vector3d& corner : near) {
+        const Vector3d way = k % 2 == 0 ? same : random.point(1.0).normalized();
+        corner += (1.0 - 1e-9) * depth * way;
+      }
+      for (Vector3d& corner : away) corner += 1.5 * depth * same;
+      EXPECT_EQ(exact_gap(near, Pose(), b, Pose()), 0.0) << i;
+      parted = parted || exact_gap(away, Pose(), b, Pose()) > 0.0;
+    }
+    tight += parted;
+  }
+  EXPECT_GT(deep, 100);
+  EXPECT_GT(tight, 50);
+}
+
 }  // namespace
 }  // namespace spherule::test

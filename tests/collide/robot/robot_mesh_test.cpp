@@ -11,7 +11,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace spherule::test {
@@ -95,6 +97,84 @@ TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
   EXPECT_GT(hits, effort(300, 20));
   EXPECT_GT(removed, effort(300, 20));
   EXPECT_GT(free, effort(50, 5));
+}
+
+// Along paths, with steps of any size, stops and jumps, what is remembered changes no answer:
+// neither of those before, nor of a block or a motion that was asked for in between.
+TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
+  Random random(63);
+  int hits = 0;
+  int free = 0;
+  int changes = 0;
+  for (int i = 0; i < effort(60, 10); ++i) {
+    RobotModel robot = random_robot(random, random.whole(1, 6), i % 2 == 1);
+    RobotCheckerOptions options{.world_from_root = random.pose(1.0)};
+    const bool confirmed = i % 4 != 3;
+    std::vector<std::shared_ptr<const CoveredMesh>> meshes;
+    // What stands with the root would touch always or never.
+    for (const Joint& joint : std::vector<Joint>(robot.joints())) {
+      const Link& link = robot.links()[static_cast<std::size_t>(joint.child_link)];
+      meshes.push_back(tetrahedron(random, random.uniform(0.05, 0.4)));
+      robot.attach(std::string(link.name), cover_of(meshes.back()));
+    }
+    std::vector<PlacedTree> obstacles;
+    // Obstacles stand where links come to, and the paths begin there.
+    const std::vector<double> home = random_configuration(random, robot, 3.2);
+    std::vector<Pose> links;
+    forward_kinematics(robot, home, links, options.world_from_root);
+    for (int k = 0; k < 2; ++k) {
+      meshes.push_back(tetrahedron(random, random.uniform(0.05, 0.4)));
+      const auto link =
+          static_cast<std::size_t>(random.whole(1, static_cast<int>(robot.links().size()) - 1));
+      obstacles.push_back(
+          {cover_of(meshes.back()),
+           Pose(random.quaternion(), links[link].translation() + random.point(0.5))});
+    }
+    const auto near_home = [&] {
+      std::vector<double> result = random_configuration(random, robot, 0.3);
+      for (std::size_t v = 0; v < result.size(); ++v) result[v] += home[v];
+      return result;
+    };
+    if (confirmed) options.meshes = meshes;
+    const RobotChecker checker(robot, obstacles, options);
+    RobotChecker::Scratch remembers(checker);
+    std::vector<double> at = near_home();
+    std::vector<double> heading = random_configuration(random, robot, 1.0);
+    double step = 1e-2;
+    bool before = false;
+    for (int k = 0; k < 1500; ++k) {
+      if (random.whole(0, 60) == 0) heading = random_configuration(random, robot, 1.0);
+      if (random.whole(0, 90) == 0) step = std::pow(10.0, random.uniform(-6.0, -1.3));
+      if (random.whole(0, 150) == 0) at = near_home();
+      if (random.whole(0, 20) != 0) {
+        for (std::size_t v = 0; v < at.size(); ++v) at[v] += step * heading[v];
+      }
+      RobotChecker::Scratch fresh(checker);
+      const bool expected = checker.collides(at, fresh);
+      ASSERT_EQ(checker.collides(at, remembers), expected) << i << ' ' << k;
+      const std::vector<double> elsewhere = near_home();
+      std::uint8_t verdict = 0;
+      switch (random.whole(0, 40)) {
+        case 0:
+          checker.collides(elsewhere, remembers, std::span(&verdict, 1));
+          break;
+        case 1:
+          checker.check_edge(elsewhere, at, remembers, {.resolution = 0.05});
+          break;
+        case 2:
+          checker.within(at, random.uniform(0.0, 0.1), remembers);
+          break;
+        default:
+          break;
+      }
+      (expected ? hits : free) += 1;
+      changes += k > 0 && before != expected;
+      before = expected;
+    }
+  }
+  EXPECT_GT(hits, effort(3000, 300));
+  EXPECT_GT(free, effort(3000, 300));
+  EXPECT_GT(changes, effort(100, 10));
 }
 
 // A small body inside a large one touches none of its triangles.
