@@ -8,6 +8,7 @@
 #include "bench/real_models.h"
 #include "bench/report.h"
 #include "bench/scene_files.h"
+#include "bench/studies/study.h"
 #include "spheretree/error.h"
 
 #include <cstdio>
@@ -43,6 +44,16 @@ Arguments parse(int count, char** values) {
   return arguments;
 }
 
+const Part& part_named(const std::string& name, const Workload& workload) {
+  for (const Body& body : workload.bodies) {
+    if (body.part.name == name) return body.part;
+  }
+  for (const Obstacle& obstacle : workload.obstacles) {
+    if (obstacle.part.name == name) return obstacle.part;
+  }
+  throw Error(workload.name, "has no part " + name);
+}
+
 WorkloadResult run(Workload workload, const Arguments& arguments) {
   std::printf("%s: fitting\n", workload.name.c_str());
   std::fflush(stdout);
@@ -64,6 +75,11 @@ WorkloadResult run(Workload workload, const Arguments& arguments) {
   WorkloadResult result =
       evaluate(workload, std::move(fits), methods, std::move(measurements), touching);
   result.edges = measure_edges(workload);
+  const StudyOptions studies{.rounds = options.rounds, .stride = options.stride};
+  result.studies.sizes = study_sizes(workload, touching, studies);
+  result.studies.small_environments = study_small_environments(workload, studies);
+  result.studies.distances =
+      study_distances(part_named("torch", workload), part_named("workpiece", workload), studies);
   print_table(result);
   return result;
 }
@@ -80,6 +96,11 @@ int bench(const Arguments& arguments) {
     for (const MethodResult& method : result.methods) {
       if (method.name.starts_with("spherule") && method.missed > 0) {
         throw Error(result.name, method.name + " missed collisions");
+      }
+    }
+    for (const SizeRow& row : result.studies.sizes) {
+      if (row.missed > 0) {
+        throw Error(result.name, std::to_string(row.spheres) + " spheres missed collisions");
       }
     }
   }

@@ -5,6 +5,7 @@
 #include "bench/scenes/program.h"
 
 #include <algorithm>
+#include <span>
 
 namespace spherule {
 namespace {
@@ -17,17 +18,41 @@ std::vector<JointPositions> every(const std::vector<JointPositions>& program, st
   return sample;
 }
 
-double time_per_query(Checker& checker, const std::vector<JointPositions>& timed,
-                      std::vector<std::uint8_t>& verdicts) {
-  const auto start = Clock::now();
-  checker.check(timed, {verdicts.data(), timed.size()});
-  return nanoseconds(Clock::now() - start) / static_cast<double>(timed.size());
-}
+// Parts of a round that are timed by themselves: short against a time slice of the machine, long
+// against the clock.
+constexpr std::size_t kRun = 256;
+constexpr std::size_t kSlowRun = 8;
 
-double median(std::vector<double>& rounds) {
-  std::sort(rounds.begin(), rounds.end());
-  return rounds[rounds.size() / 2];
-}
+// One method's times of each run, over the rounds. Of each run the median counts: another task's
+// slice of time falls on some runs of a round, on others in the next.
+class Rounds {
+ public:
+  Rounds(const std::vector<JointPositions>& timed, std::size_t run)
+      : timed_(timed), run_(run), times_((timed.size() + run - 1) / run) {}
+
+  void add(Checker& checker, std::vector<std::uint8_t>& verdicts) {
+    for (std::size_t i = 0; i < times_.size(); ++i) {
+      const auto asked = timed_.subspan(i * run_, std::min(run_, timed_.size() - i * run_));
+      const auto start = Clock::now();
+      checker.check(asked, {verdicts.data(), asked.size()});
+      times_[i].push_back(nanoseconds(Clock::now() - start));
+    }
+  }
+
+  double time_per_query() {
+    double sum = 0.0;
+    for (std::vector<double>& times : times_) {
+      std::sort(times.begin(), times.end());
+      sum += times[times.size() / 2];
+    }
+    return sum / static_cast<double>(timed_.size());
+  }
+
+ private:
+  std::span<const JointPositions> timed_;
+  std::size_t run_;
+  std::vector<std::vector<double>> times_;
+};
 
 void time_single_queries(Checker& checker, const std::vector<JointPositions>& sample, double cost,
                          Measurement& result) {
@@ -55,26 +80,27 @@ std::vector<Measurement> measure(const std::vector<Method>& methods,
   const auto slow_sample = every(program, options.slow_stride);
   const auto shuffled_sample = shuffled(sample, kShuffleSeed);
   std::vector<Measurement> results(methods.size());
-  std::vector<std::vector<double>> rounds(methods.size());
-  std::vector<std::vector<double>> shuffled_rounds(methods.size());
+  std::vector<Rounds> rounds;
+  std::vector<Rounds> shuffled_rounds;
   for (std::size_t m = 0; m < methods.size(); ++m) {
+    const std::size_t run = methods[m].slow ? kSlowRun : kRun;
+    rounds.emplace_back(methods[m].slow ? slow_sample : sample, run);
+    shuffled_rounds.emplace_back(shuffled_sample, run);
     results[m].verdicts.resize(program.size());
     methods[m].checker->check(program, results[m].verdicts);  // and warms caches up
   }
-  std::vector<std::uint8_t> verdicts(sample.size() + slow_sample.size());
+  std::vector<std::uint8_t> verdicts(kRun);
   for (int round = 0; round < options.rounds; ++round) {
     for (std::size_t m = 0; m < methods.size(); ++m) {
-      const auto& timed = methods[m].slow ? slow_sample : sample;
-      rounds[m].push_back(time_per_query(*methods[m].checker, timed, verdicts));
-      if (methods[m].slow) continue;
-      shuffled_rounds[m].push_back(time_per_query(*methods[m].checker, shuffled_sample, verdicts));
+      rounds[m].add(*methods[m].checker, verdicts);
+      if (!methods[m].slow) shuffled_rounds[m].add(*methods[m].checker, verdicts);
     }
   }
   const double cost = clock_cost();
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const auto& timed = methods[m].slow ? slow_sample : sample;
-    results[m].ns_per_query = median(rounds[m]);
-    if (!methods[m].slow) results[m].shuffled_ns_per_query = median(shuffled_rounds[m]);
+    results[m].ns_per_query = rounds[m].time_per_query();
+    if (!methods[m].slow) results[m].shuffled_ns_per_query = shuffled_rounds[m].time_per_query();
     results[m].timed_queries = timed.size();
     time_single_queries(*methods[m].checker, timed, cost, results[m]);
   }

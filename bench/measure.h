@@ -29,7 +29,7 @@ struct MeasureOptions {
 };
 
 struct Measurement {
-  double ns_per_query = 0.0;           // median over the rounds
+  double ns_per_query = 0.0;           // medians over the rounds
   double shuffled_ns_per_query = 0.0;  // the same in random order; 0 for slow methods
   double p50_ns = 0.0;                 // over single queries, the clock's own cost taken off
   double p99_ns = 0.0;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/methods.h"
 
-#include "bench/brute_force_checker.h"
+#include "bench/bullet_sphere_checker.h"
 #include "bench/fcl_mesh_checker.h"
 #include "bench/fcl_sphere_checker.h"
+#include "bench/flat_scan_checker.h"
 #include "bench/tree_checker.h"
 
 #include <utility>
@@ -41,8 +42,17 @@ std::vector<Method> make_methods(const Workload& workload) {
   }
   methods.push_back({"fcl-spheres", "Sphere shapes, manager against manager",
                      make_fcl_sphere_checker(workload), spheres, true});
-  methods.push_back({"brute-force-spheres", "all pairs, float", make_brute_force_checker(workload),
-                     spheres, true});
+#if defined(SPHERULE_BENCH_BULLET)
+  methods.push_back({"bullet-pair-test", "compounds of spheres, contactPairTest for each pair",
+                     make_bullet_sphere_checker(workload, BulletQuery::kContactPairTest), spheres,
+                     false});
+  methods.push_back({"bullet-trees", "their dynamic AABB trees walked to the first contact",
+                     make_bullet_sphere_checker(workload, BulletQuery::kTrees), spheres, false});
+#endif
+  methods.push_back({"brute-force-spheres", "all pairs, single precision, widest vectors",
+                     make_flat_scan_checker(workload, FlatScan::kAllPairs), spheres, true});
+  methods.push_back({"flat-scan-spheres", "the same behind a ball around each body",
+                     make_flat_scan_checker(workload, FlatScan::kBallsInFront), spheres, false});
   methods.push_back({"spherule-single", "sphere trees, one configuration a call",
                      make_tree_checker(workload, TreeMode::kSingle), spheres, false});
   methods.push_back({"spherule-batch", "sphere trees, many configurations a call",

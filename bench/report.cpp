@@ -2,6 +2,7 @@
 #include "bench/report.h"
 
 #include "bench/methods.h"
+#include "bench/studies/report.h"
 #include "spheretree/atomic_file.h"
 
 #include <nlohmann/json.hpp>
@@ -71,6 +72,7 @@ Json to_json(const WorkloadResult& result) {
                    {"unknown", edges.unknown},     {"unknown_but_free", edges.unknown_but_free},
                    {"median_ns", edges.median_ns}, {"p95_ns", edges.p95_ns},
                    {"p99_ns", edges.p99_ns}};
+  json["studies"] = to_json(result.studies);
   return json;
 }
 
@@ -113,7 +115,8 @@ WorkloadResult evaluate(const Workload& workload, std::vector<FitRecord> fits,
                         .oracle_by_body = {},
                         .fits = std::move(fits),
                         .methods = {},
-                        .edges = {}};
+                        .edges = {},
+                        .studies = {}};
   for (const std::uint32_t bits : touching_bodies) result.oracle_collisions += bits != 0 ? 1 : 0;
   for (std::size_t body = 0; body < workload.bodies.size(); ++body) {
     const auto count = std::count_if(touching_bodies.begin(), touching_bodies.end(),
@@ -187,7 +190,7 @@ void print_table(const WorkloadResult& result) {
       edges.free, edges.collision, edges.unknown, edges.unknown_but_free, edges.median_ns,
       edges.p95_ns, edges.p99_ns, edges.median_ns / single, edges.p95_ns / single,
       edges.p99_ns / single);
-  std::fflush(stdout);
+  print_tables(result.studies);
 }
 
 void write_results(const std::vector<WorkloadResult>& results,
@@ -196,6 +199,7 @@ void write_results(const std::vector<WorkloadResult>& results,
   for (const WorkloadResult& result : results) {
     json["workloads"].push_back(to_json(result));
     write_plot_data(result, folder);
+    write_plot_data(result.studies, result.name, folder);
   }
   write_file_atomically(folder / "results.json", json.dump(1) + "\n");
 }

@@ -4,6 +4,7 @@
 #include "bench/edges.h"
 #include "bench/fit_parts.h"
 #include "bench/measure.h"
+#include "bench/studies/study.h"
 #include "bench/workload.h"
 
 #include <cstdint>
@@ -32,6 +33,7 @@ struct WorkloadResult {
   std::vector<FitRecord> fits;
   std::vector<MethodResult> methods;
   EdgeMeasurement edges = {};
+  Studies studies = {};
 };
 
 // Compares with the oracle and picks fcl-mesh-fastest.
@@ -41,8 +43,8 @@ WorkloadResult evaluate(const Workload& workload, std::vector<FitRecord> fits,
 
 void print_table(const WorkloadResult& result);
 
-// results.json, and for the plots a file a workload of ratios, percentiles and spheres. Throws
-// Error.
+// results.json, and for the plots a file a workload of ratios, percentiles and spheres, and those
+// of the studies. Throws Error.
 void write_results(const std::vector<WorkloadResult>& results, const std::filesystem::path& folder);
 
 }  // namespace spherule

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/tree_checker.h"
 
+#include "collide/collide.h"
+
+#include <algorithm>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -41,6 +45,36 @@ class BatchTreeChecker : public Checker {
   RobotChecker::Scratch scratch_;
 };
 
+class PairTreeChecker : public SingleChecker {
+ public:
+  explicit PairTreeChecker(const Workload& workload) : SingleChecker(workload.robot) {
+    for (const Body& body : workload.bodies) {
+      for (const Obstacle& obstacle : workload.obstacles) {
+        if (!is_tested(body, obstacle)) continue;
+        pairs_.push_back({body.part.tree, static_cast<std::size_t>(body.link), obstacle.part.tree,
+                          obstacle.world_from_part});
+      }
+    }
+  }
+
+ protected:
+  bool collides(std::span<const Pose> world_from_link) override {
+    return std::any_of(pairs_.begin(), pairs_.end(), [&](const Pair& pair) {
+      return spherule::collides(*pair.body, world_from_link[pair.link], *pair.obstacle,
+                                pair.world_from_obstacle);
+    });
+  }
+
+ private:
+  struct Pair {
+    std::shared_ptr<const SphereTree> body;
+    std::size_t link;
+    std::shared_ptr<const SphereTree> obstacle;
+    Pose world_from_obstacle;
+  };
+  std::vector<Pair> pairs_;
+};
+
 }  // namespace
 
 RobotChecker make_robot_checker(const Workload& workload, InstructionSet instructions,
@@ -68,6 +102,7 @@ RobotChecker make_robot_checker(const Workload& workload, InstructionSet instruc
 
 std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mode,
                                            InstructionSet instructions) {
+  if (mode == TreeMode::kPairs) return std::make_unique<PairTreeChecker>(workload);
   RobotChecker checker = make_robot_checker(workload, instructions, mode == TreeMode::kConfirmed);
   if (mode == TreeMode::kBatch) return std::make_unique<BatchTreeChecker>(std::move(checker));
   return std::make_unique<SingleTreeChecker>(std::move(checker));

@@ -14,9 +14,10 @@ RobotChecker make_robot_checker(const Workload& workload,
                                 InstructionSet instructions = best_instruction_set(),
                                 bool confirmed = false);
 
-enum class TreeMode { kSingle, kBatch, kConfirmed };
+enum class TreeMode { kSingle, kBatch, kConfirmed, kPairs };
 
-// It, as an engine: one configuration a call, all, or one with confirmation.
+// It, as an engine: one configuration a call, all, or one with confirmation; or, without the robot
+// layer's check, forward_kinematics() and collides() for each body and obstacle.
 std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mode,
                                            InstructionSet instructions = best_instruction_set());
 

@@ -79,13 +79,12 @@ bool MechanismCheck::within(std::span<const double> variables, double clearance,
   require_clearance(clearance);
   Translator translator{parts_->scene, ask, context};
   Scratch::Memory& memory = *scratch.memory_;
-  std::copy_n(variables.begin(), parts_->problem.variable_count, memory.variables.begin());
   if (clearance == 0.0) {
-    return memory.motion->collides(*parts_->kernels, parts_->problem, memory.variables.data(),
-                                   memory.view, &Translator::confirm, &translator);
+    return memory.motion->collides(*parts_->kernels, parts_->problem, variables.data(), memory.view,
+                                   &Translator::confirm, &translator);
   }
   const float growth = internal::rounded_up_to_single(clearance * kGrowth);
-  return parts_->kernels->check(parts_->problem, memory.variables.data(), growth, kDoubt * growth,
+  return parts_->kernels->check(parts_->problem, variables.data(), growth, kDoubt * growth,
                                 memory.view, &Translator::confirm, &translator);
 }
 

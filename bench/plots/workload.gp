@@ -19,12 +19,14 @@ set logscale y
 set style fill solid 0.85 noborder
 set boxwidth 0.6
 set xtics rotate by -20
+set rmargin 9
 stats data('ratios') using 2 nooutput name 'ratio'
 set yrange [(ratio_min < 1 ? ratio_min / 3 : 0.3):ratio_max * 3]
 plot data('ratios') using 0:2:xtic(1) with boxes lc rgb '#2a6f97' notitle, \
      '' using 0:($2 * 1.25):(sprintf($2 < 0.1 ? '%.2g' : '%.1f', $2)) with labels notitle
 unset logscale
 unset yrange
+set rmargin -1
 set xtics norotate
 
 # How are the times of single checks distributed?

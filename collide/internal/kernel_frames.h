@@ -30,22 +30,30 @@ SPHERULE_INLINE Double4 load(const double* p) {
   return *reinterpret_cast<const Double4*>(p);
 }
 
-SPHERULE_INLINE void sine_and_cosine(const double* angles, double* sines, double* cosines) {
-  Double4 x;
-  __builtin_memcpy(&x, angles, sizeof x);
+// The first `count` of four numbers at p, the others zero.
+SPHERULE_INLINE Double4 load_some(const double* p, std::int32_t count) {
+  if (count >= 4) {
+    Double4 x;
+    __builtin_memcpy(&x, p, sizeof x);
+    return x;
+  }
+  return Double4{p[0], count > 1 ? p[1] : 0.0, count > 2 ? p[2] : 0.0, 0.0};
+}
+
+// The series are summed in pairs of terms: a chain of terms would have to wait for each.
+SPHERULE_INLINE void sine_and_cosine(Double4 x, double* sines, double* cosines) {
   const Double4 shifted = x * kTwoOverPi + kRound;
   const Double4 k = shifted - kRound;
   const Double4 r = (x - k * kHalfPi) - k * kHalfPiRest;
   const Double4 r2 = r * r;
+  const Double4 r4 = r2 * r2;
   const Double4 sine =
-      r + r * r2 *
-              (-1.0 / 6 + r2 * (1.0 / 120 +
-                                r2 * (-1.0 / 5040 + r2 * (1.0 / 362880 + r2 * (-1.0 / 39916800)))));
+      r + (r * r2) * ((r2 * (1.0 / 120) - 1.0 / 6) +
+                      r4 * ((r2 * (1.0 / 362880) - 1.0 / 5040) + r4 * (-1.0 / 39916800)));
   const Double4 cosine =
-      1.0 - 0.5 * r2 +
-      r2 * r2 *
-          (1.0 / 24 +
-           r2 * (-1.0 / 720 + r2 * (1.0 / 40320 + r2 * (-1.0 / 3628800 + r2 * (1.0 / 479001600)))));
+      (1.0 - 0.5 * r2) +
+      r4 * ((r2 * (-1.0 / 720) + 1.0 / 24) +
+            r4 * ((r2 * (-1.0 / 3628800) + 1.0 / 40320) + r4 * (1.0 / 479001600)));
   Long4 quarter;
   __builtin_memcpy(&quarter, &shifted, sizeof quarter);
   const Long4 odd = -(quarter & 1);
@@ -57,43 +65,70 @@ SPHERULE_INLINE void sine_and_cosine(const double* angles, double* sines, double
   __builtin_memcpy(cosines, &c, sizeof c);
 }
 
+// Where a variable has its frame in the parent's. To memory, from where one number at a time is
+// read again for all lanes: to spread lanes of a vector takes longer.
+SPHERULE_INLINE void place_in_parent(const KernelFrame& frame, double position, double sine,
+                                     double cosine, KernelPose& pose) {
+  const Double4 f0 = load(frame.rotation[0]);
+  const Double4 f1 = load(frame.rotation[1]);
+  const Double4 f2 = load(frame.rotation[2]);
+  const Double4 origin = load(frame.origin);
+  auto* const result = reinterpret_cast<Double4*>(pose.columns);
+  result[2] = f2;
+  if (frame.prismatic) {
+    result[0] = f0;
+    result[1] = f1;
+    result[3] = origin + position * f2;
+  } else {
+    result[0] = cosine * f0 + sine * f1;
+    result[1] = cosine * f1 - sine * f0;
+    result[3] = origin;
+  }
+}
+
 // The poses of all frames. What does not depend on the parent is computed first: the chain from
 // frame to frame is what takes the time.
 SPHERULE_INLINE void place_frames(const KernelProblem& problem, const double* configuration,
                                   const KernelScratch& scratch) {
   for (std::int32_t i = 0; i < problem.variable_count; i += 4) {
-    sine_and_cosine(configuration + i, scratch.sines + i, scratch.cosines + i);
+    sine_and_cosine(load_some(configuration + i, problem.variable_count - i), scratch.sines + i,
+                    scratch.cosines + i);
   }
   for (std::int32_t i = 0; i < problem.frame_count; ++i) {
     const KernelFrame& frame = problem.frames[i];
-    const double position = configuration[frame.variable];
-    const double sine = frame.prismatic ? 0.0 : scratch.sines[frame.variable];
-    const double cosine = frame.prismatic ? 1.0 : scratch.cosines[frame.variable];
-    const Double4 f0 = load(frame.rotation[0]);
-    const Double4 f1 = load(frame.rotation[1]);
-    const Double4 f2 = load(frame.rotation[2]);
-    const Double4 g0 = cosine * f0 + sine * f1;
-    const Double4 g1 = cosine * f1 - sine * f0;
-    const double shift = frame.prismatic ? position : 0.0;
-    const double o[3] = {frame.origin[0] + shift * f2[0], frame.origin[1] + shift * f2[1],
-                         frame.origin[2] + shift * f2[2]};
-    auto* const result = reinterpret_cast<Double4*>(scratch.poses[i].columns);
-    if (frame.parent < 0) {
-      result[0] = g0;
-      result[1] = g1;
-      result[2] = f2;
-      result[3] = Double4{o[0], o[1], o[2], 0.0};
+    place_in_parent(frame, configuration[frame.variable], scratch.sines[frame.variable],
+                    scratch.cosines[frame.variable], scratch.poses[i]);
+  }
+  Double4 p0 = {};
+  Double4 p1 = {};
+  Double4 p2 = {};
+  Double4 p3 = {};
+  for (std::int32_t i = 0; i < problem.frame_count; ++i) {
+    const std::int32_t parent = problem.frames[i].parent;
+    double(*const at)[4] = scratch.poses[i].columns;
+    auto* const result = reinterpret_cast<Double4*>(at);
+    if (parent < 0) {
+      p0 = result[0];
+      p1 = result[1];
+      p2 = result[2];
+      p3 = result[3];
       continue;
     }
-    const auto* const parent =
-        reinterpret_cast<const Double4*>(scratch.poses[frame.parent].columns);
-    const Double4 p0 = parent[0];
-    const Double4 p1 = parent[1];
-    const Double4 p2 = parent[2];
-    result[0] = p0 * g0[0] + p1 * g0[1] + p2 * g0[2];
-    result[1] = p0 * g1[0] + p1 * g1[1] + p2 * g1[2];
-    result[2] = p0 * f2[0] + p1 * f2[1] + p2 * f2[2];
-    result[3] = p0 * o[0] + p1 * o[1] + p2 * o[2] + parent[3];
+    if (parent != i - 1) {
+      const auto* const from = reinterpret_cast<const Double4*>(scratch.poses[parent].columns);
+      p0 = from[0];
+      p1 = from[1];
+      p2 = from[2];
+      p3 = from[3];
+    }
+    const Double4 r0 = p0 * at[0][0] + p1 * at[0][1] + p2 * at[0][2];
+    const Double4 r1 = p0 * at[1][0] + p1 * at[1][1] + p2 * at[1][2];
+    const Double4 r2 = p0 * at[2][0] + p1 * at[2][1] + p2 * at[2][2];
+    const Double4 r3 = p3 + p0 * at[3][0] + p1 * at[3][1] + p2 * at[3][2];
+    result[0] = p0 = r0;
+    result[1] = p1 = r1;
+    result[2] = p2 = r2;
+    result[3] = p3 = r3;
   }
 }
 
@@ -113,12 +148,12 @@ SPHERULE_INLINE void place_roots(const KernelProblem& problem, const KernelScrat
     const auto* const at = reinterpret_cast<const Double4*>(scratch.poses[body.frame].columns);
     const Double4 center =
         at[0] * body.center[0] + at[1] * body.center[1] + at[2] * body.center[2] + at[3];
-    scratch.roots[i] = {static_cast<float>(center[0]),
-                        static_cast<float>(center[1]),
-                        static_cast<float>(center[2]),
-                        body.radius,
-                        0,
-                        0};
+    Float4 ball = __builtin_convertvector(center, Float4);
+    ball[3] = body.radius;
+    KernelTask& root = scratch.roots[i];
+    __builtin_memcpy(&root.x, &ball, sizeof ball);
+    root.body = 0;
+    root.obstacle = 0;
   }
 }
 

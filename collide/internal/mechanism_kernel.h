@@ -13,8 +13,8 @@ namespace spherule::internal {
 // A frame that a variable moves: `rotation` and `origin` lead from the parent to it at zero, then
 // it turns about its z axis (or is shifted along it) by the variable.
 struct alignas(32) KernelFrame {
-  double rotation[3][4];  // columns; the fourth number is zero
-  double origin[3];
+  double rotation[3][4];  // columns; the fourth number of each is zero
+  double origin[4];
   std::int32_t parent;  // an earlier frame, or -1 for the root
   std::int32_t variable;
   bool prismatic;
@@ -166,8 +166,7 @@ enum class KernelFinding { kApart, kNear, kTouch };
 
 struct Kernels {
   // True if a pair of spheres, those of bodies grown, touches for sure or is confirmed to; false if
-  // none can. What is sure takes `doubt` more than the margins. `configuration` is filled up with
-  // finite numbers to a multiple of four.
+  // none can. What is sure takes `doubt` more than the margins.
   bool (*check)(const KernelProblem& problem, const double* configuration, float growth,
                 float doubt, const KernelScratch& scratch, ConfirmContact confirm, void* context);
   // The same for kLanes configurations.

@@ -38,7 +38,7 @@ struct MechanismCheck::Parts {
 
 struct MechanismCheck::Scratch::Memory {
   const Parts* owner = nullptr;
-  std::vector<double> variables;
+  std::vector<double> variables;  // of a configuration on an edge
   std::vector<double> sines;
   std::vector<double> cosines;
   std::vector<internal::KernelPose> poses;

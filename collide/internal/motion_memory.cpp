@@ -30,7 +30,7 @@ constexpr double kLongestWay = 1024.0;
 // As a body that is grown by g' is apart: MechanismCheck::within() says why.
 constexpr double kGrowthDown = 1.0 - 0x1p-18;
 
-double length(const double (&v)[3]) {
+double length(const double* v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 

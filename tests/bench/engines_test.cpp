@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/brute_force_checker.h"
 #include "bench/fcl_mesh_checker.h"
 #include "bench/fcl_sphere_checker.h"
 #include "bench/oracle.h"
@@ -70,7 +69,7 @@ TEST(Engines, SphereEnginesAgreeAndMissNothing) {
   const auto sample = every(cell, 601);
   const auto touching = Oracle(cell).touching_bodies(sample);
   const auto by_tree = verdicts(*make_tree_checker(cell, TreeMode::kSingle), sample);
-  EXPECT_EQ(by_tree, verdicts(*make_brute_force_checker(cell), sample));
+  EXPECT_EQ(by_tree, verdicts(*make_tree_checker(cell, TreeMode::kPairs), sample));
   EXPECT_EQ(by_tree, verdicts(*make_fcl_sphere_checker(cell), sample));
   for (std::size_t i = 0; i < sample.size(); ++i) {
     if (touching[i] != 0) {

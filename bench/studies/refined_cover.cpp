@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/studies/refined_cover.h"
+
+#include "spheretree/error.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <queue>
+#include <string>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+
+// Far above what the corners of halved triangles and the radii lose to rounding.
+constexpr double kUp = 1.0 + 1e-9;
+constexpr int kMostHalvings = 40;
+// Pieces for each new ball: enough for groups that are well shaped.
+constexpr double kPiecesPerBall = 3.0;
+
+struct Piece {
+  std::array<Vector3d, 3> corners;
+
+  Vector3d center() const { return (corners[0] + corners[1] + corners[2]) / 3.0; }
+  double longest_edge() const {
+    return std::max({(corners[0] - corners[1]).norm(), (corners[1] - corners[2]).norm(),
+                     (corners[2] - corners[0]).norm()});
+  }
+  // A ball is convex: it holds the piece if it holds its corners.
+  double reach_from(const Vector3d& point) const {
+    return std::max(
+        {(corners[0] - point).norm(), (corners[1] - point).norm(), (corners[2] - point).norm()});
+  }
+};
+
+// Cuts the triangles at the middle of their longest edges into pieces that a ball holds and whose
+// edges are not longer than `longest`, and gives each to the ball in which it lies deepest.
+class Cutter {
+ public:
+  Cutter(std::span<const Sphere> cover, double longest)
+      : cover_(cover), longest_(longest), pieces_(cover.size()) {}
+
+  void cut(const Piece& triangle, const std::string& name) {
+    std::vector<std::size_t> all(cover_.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    cut(triangle, all, 0, name);
+  }
+
+  std::vector<std::vector<Piece>> take() { return std::move(pieces_); }
+
+ private:
+  void cut(const Piece& piece, const std::vector<std::size_t>& among, int halvings,
+           const std::string& name) {
+    const Vector3d center = piece.center();
+    const double around = piece.reach_from(center) * kUp;
+    std::vector<std::size_t> near;
+    std::size_t deepest = cover_.size();
+    double depth = 0.0;
+    for (const std::size_t i : among) {
+      const Sphere& ball = cover_[i];
+      if ((ball.center - center).norm() > ball.radius + around) continue;
+      near.push_back(i);
+      const double here = ball.radius - piece.reach_from(ball.center) * kUp;
+      if (here < 0.0 || (deepest < cover_.size() && here <= depth)) continue;
+      deepest = i;
+      depth = here;
+    }
+    if (deepest < cover_.size() && piece.longest_edge() <= longest_) {
+      pieces_[deepest].push_back(piece);
+      return;
+    }
+    if (halvings == kMostHalvings) throw Error(name, "a triangle is not covered");
+    std::array<Piece, 2> halves{piece, piece};
+    halve(piece, halves);
+    for (const Piece& half : halves) cut(half, near, halvings + 1, name);
+  }
+
+  static void halve(const Piece& piece, std::array<Piece, 2>& halves) {
+    const auto& c = piece.corners;
+    std::size_t from = 0;
+    for (std::size_t i = 1; i < 3; ++i) {
+      if ((c[(i + 1) % 3] - c[i]).norm() > (c[(from + 1) % 3] - c[from]).norm()) from = i;
+    }
+    const Vector3d middle = 0.5 * (c[from] + c[(from + 1) % 3]);
+    halves[0].corners[(from + 1) % 3] = middle;
+    halves[1].corners[from] = middle;
+  }
+
+  std::span<const Sphere> cover_;
+  double longest_;
+  std::vector<std::vector<Piece>> pieces_;  // of each ball
+};
+
+double reach_from(std::span<const Piece> pieces, const Vector3d& point) {
+  double reach = 0.0;
+  for (const Piece& piece : pieces) reach = std::max(reach, piece.reach_from(point));
+  return reach * kUp;
+}
+
+// A ball around the pieces within `outer`: its centre is moved from the middle of their box towards
+// the centre of `outer`, as little as that takes. Distance and radius are convex along that way,
+// and at its end, where the ball is concentric, it is inside, so that halving finds the least.
+Sphere ball_around(std::span<const Piece> pieces, const Sphere& outer) {
+  Eigen::AlignedBox3d box;
+  for (const Piece& piece : pieces) {
+    for (const Vector3d& corner : piece.corners) box.extend(corner);
+  }
+  const Vector3d middle = box.center();
+  const auto at = [&](double t) {
+    Sphere ball;
+    ball.center = middle + t * (outer.center - middle);
+    ball.radius = reach_from(pieces, ball.center);
+    return ball;
+  };
+  Sphere best = at(0.0);
+  if (certainly_encloses(outer, best)) return best;
+  best = {outer.center, reach_from(pieces, outer.center)};
+  double outside = 0.0;
+  double inside = 1.0;
+  for (int i = 0; i < 12; ++i) {
+    const double t = 0.5 * (outside + inside);
+    const Sphere ball = at(t);
+    const bool is_inside = certainly_encloses(outer, ball);
+    (is_inside ? inside : outside) = t;
+    if (is_inside) best = ball;
+  }
+  return best;
+}
+
+struct Group {
+  Sphere ball;
+  Sphere outer;
+  std::span<Piece> pieces;
+
+  // The largest first; equal ones by where they are, so that the order is the same everywhere.
+  bool operator<(const Group& other) const {
+    if (ball.radius != other.ball.radius) return ball.radius < other.ball.radius;
+    return std::lexicographical_compare(ball.center.begin(), ball.center.end(),
+                                        other.ball.center.begin(), other.ball.center.end());
+  }
+};
+
+// At the median of the piece's centres along their longest extent.
+std::array<Group, 2> split(const Group& group) {
+  Eigen::AlignedBox3d box;
+  for (const Piece& piece : group.pieces) box.extend(piece.center());
+  Eigen::Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const auto half = static_cast<std::ptrdiff_t>(group.pieces.size() / 2);
+  std::nth_element(
+      group.pieces.begin(), group.pieces.begin() + half, group.pieces.end(),
+      [axis](const Piece& a, const Piece& b) { return a.center()[axis] < b.center()[axis]; });
+  const auto first = group.pieces.first(static_cast<std::size_t>(half));
+  const auto rest = group.pieces.subspan(static_cast<std::size_t>(half));
+  return {Group{ball_around(first, group.outer), group.outer, first},
+          Group{ball_around(rest, group.outer), group.outer, rest}};
+}
+
+double area(const TriangleMesh& mesh) {
+  double sum = 0.0;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const Vector3d& a = mesh.vertices[static_cast<std::size_t>(t[0])];
+    const Vector3d& b = mesh.vertices[static_cast<std::size_t>(t[1])];
+    const Vector3d& c = mesh.vertices[static_cast<std::size_t>(t[2])];
+    sum += 0.5 * (b - a).cross(c - a).norm();
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<Sphere> refine_cover(const TriangleMesh& mesh, std::span<const Sphere> cover,
+                                 std::size_t count, double slack) {
+  // Of right-angled pieces with two edges of length e, 2 / e^2 fill a unit of area.
+  const double pieces = kPiecesPerBall * static_cast<double>(count);
+  Cutter cutter(cover, std::sqrt(2.0) * std::sqrt(2.0 * area(mesh) / pieces));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Eigen::Vector3i& t = mesh.triangles[i];
+    Piece triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle.corners[k] = mesh.vertices[static_cast<std::size_t>(t[static_cast<int>(k)])];
+    }
+    cutter.cut(triangle, "triangle " + std::to_string(i));
+  }
+  std::vector<std::vector<Piece>> held = cutter.take();
+  std::priority_queue<Group> groups;
+  for (std::size_t i = 0; i < cover.size(); ++i) {
+    if (held[i].empty()) continue;
+    const Sphere outer{cover[i].center, cover[i].radius + slack};
+    groups.push({ball_around(held[i], outer), outer, held[i]});
+  }
+  std::vector<Sphere> balls;
+  while (!groups.empty()) {
+    const Group largest = groups.top();
+    groups.pop();
+    if (largest.pieces.size() < 2 || balls.size() + groups.size() + 1 >= count) {
+      balls.push_back(largest.ball);
+      continue;
+    }
+    for (const Group& half : split(largest)) groups.push(half);
+  }
+  return balls;
+}
+
+}  // namespace spherule
