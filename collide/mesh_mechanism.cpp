@@ -2,6 +2,7 @@
 #include "collide/mesh_mechanism.h"
 
 #include "collide/internal/joined_scene.h"
+#include "collide/internal/mechanism_input.h"
 #include "collide/internal/mechanism_kernel.h"
 #include "collide/internal/mesh_search.h"
 #include "collide/internal/packed_mesh.h"
@@ -38,7 +39,6 @@ struct MeshMechanismCheck::Parts {
 
 struct MeshMechanismCheck::Scratch::Memory {
   const Parts* owner = nullptr;
-  std::vector<double> variables;
   std::vector<double> sines;
   std::vector<double> cosines;
   std::vector<internal::KernelPose> poses;
@@ -79,63 +79,16 @@ constexpr double kPerLength = 48.0 * internal::kFloatRoundoff;
 constexpr double kPerFrame = 5.0 * internal::kSineError;
 constexpr double kPerScene = 1e-12;
 
-constexpr int kLargestIndex = 1 << 20;  // of a variable: there is memory for all up to it
-
-[[noreturn]] void refuse(const std::string& what, std::size_t index, const std::string& why) {
-  throw Error("mechanism of meshes", what + " " + std::to_string(index) + ' ' + why);
-}
-
 void check_input(std::span<const MechanismFrame> frames, std::span<const MechanismMesh> bodies,
                  std::span<const MechanismObstacle> obstacles, std::span<const MechanismPair> pairs,
-                 double pose_error, InstructionSet instructions) {
-  const auto below = [](int index, std::size_t count) {
-    return index >= 0 && static_cast<std::size_t>(index) < count;
-  };
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].parent < -1 || frames[i].parent >= static_cast<int>(i)) {
-      refuse("frame", i, "does not come after its parent");
-    }
-    if (frames[i].variable < 0 || frames[i].variable > kLargestIndex) {
-      refuse("frame", i, "has no variable that could be");
-    }
-  }
+                 double pose_error) {
+  internal::check_frames(frames);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!below(bodies[i].frame, frames.size())) refuse("body", i, "is on no frame");
-    if (!bodies[i].mesh) refuse("body", i, "has no mesh");
+    internal::check_body(i, bodies[i].frame, frames.size(), bodies[i].mesh != nullptr);
   }
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    if (!obstacles[i].tree) refuse("obstacle", i, "has no tree");
-  }
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (!below(pairs[i].body, bodies.size()) || !below(pairs[i].obstacle, obstacles.size())) {
-      refuse("pair", i, "names what is not there");
-    }
-  }
-  if (!(pose_error >= 0.0 && pose_error <= kMaxCoordinate)) {
-    throw Error("pose error", "it is negative, not finite or too large");
-  }
-  if (!is_available(instructions)) throw Error("instruction set", "this machine has not got it");
-}
-
-const internal::Kernels& kernels_for([[maybe_unused]] InstructionSet set) {
-#if defined(SPHERULE_X86_KERNELS)
-  if (set == InstructionSet::kAvx512) return internal::avx512_kernels();
-  if (set == InstructionSet::kAvx2) return internal::avx2_kernels();
-#endif
-  return internal::portable_kernels();
-}
-
-internal::KernelFrame kernel_frame(const MechanismFrame& frame) {
-  internal::KernelFrame result = {};
-  const Eigen::Matrix3d rotation = frame.parent_from_frame.matrix();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) result.rotation[j][i] = rotation(i, j);
-    result.origin[i] = frame.parent_from_frame.translation()[i];
-  }
-  result.parent = frame.parent;
-  result.variable = frame.variable;
-  result.prismatic = frame.prismatic;
-  return result;
+  internal::check_obstacles(obstacles);
+  internal::check_pairs(pairs, bodies.size(), obstacles.size());
+  internal::check_pose_error(pose_error);
 }
 
 // Obstacles that are tested against the same bodies, as one.
@@ -178,28 +131,21 @@ MeshMechanismCheck::MeshMechanismCheck(std::span<const MechanismFrame> frames,
                                        std::span<const MechanismObstacle> obstacles,
                                        std::span<const MechanismPair> pairs, double pose_error,
                                        InstructionSet instructions) {
-  check_input(frames, bodies, obstacles, pairs, pose_error, instructions);
+  check_input(frames, bodies, obstacles, pairs, pose_error);
+  const internal::Kernels& kernels = internal::kernels_for(instructions);
   internal::JoinedScene scene = joined_obstacles(bodies, obstacles, pairs);
   auto parts = std::make_unique<Parts>();
-  std::vector<double> lengths;  // of the chains
-  std::vector<double> links;
-  int variable_count = 0;
   for (const MechanismFrame& frame : frames) {
-    const auto parent = static_cast<std::size_t>(frame.parent);
-    lengths.push_back((frame.parent < 0 ? 0.0 : lengths[parent]) +
-                      frame.parent_from_frame.translation().norm() +
-                      (frame.prismatic ? MechanismCheck::kLargestVariable : 0.0));
-    links.push_back((frame.parent < 0 ? 0.0 : links[parent]) + 1.0);
-    parts->frames.push_back(kernel_frame(frame));
-    variable_count = std::max(variable_count, frame.variable + 1);
+    parts->frames.push_back(internal::kernel_frame(frame));
   }
+  const std::vector<internal::Chain> chains = internal::chains_of(frames);
   double farthest = 0.0;  // W of all bodies
   double most_links = 0.0;
   for (const MechanismMesh& body : bodies) {
-    const auto frame = static_cast<std::size_t>(body.frame);
-    farthest = std::max(farthest, lengths[frame] + body.frame_from_mesh.translation().norm() +
+    const internal::Chain& chain = chains[static_cast<std::size_t>(body.frame)];
+    farthest = std::max(farthest, chain.length + body.frame_from_mesh.translation().norm() +
                                       node_reach(body.mesh->tree()));
-    most_links = std::max(most_links, links[frame]);
+    most_links = std::max(most_links, chain.frames);
   }
   double bound = farthest;  // X
   for (const MechanismObstacle& obstacle : obstacles) {
@@ -212,7 +158,7 @@ MeshMechanismCheck::MeshMechanismCheck(std::span<const MechanismFrame> frames,
     around = std::max(around, node_reach(trees.back()));
   }
   if (!(farthest + around + bound <= kMaxCoordinate)) {
-    throw Error("mechanism of meshes", "it or an obstacle reaches too far");
+    throw Error("mechanism", "it or an obstacle reaches too far");
   }
   const double inflation = kPerLength * (farthest + around) +
                            kPerFrame * (most_links + 1.0) * farthest + kPerScene * bound +
@@ -244,12 +190,12 @@ MeshMechanismCheck::MeshMechanismCheck(std::span<const MechanismFrame> frames,
     parts->pairs.push_back({scene.bodies[joined].origins[0].part, pair.obstacle});
   }
   parts->joined = std::move(scene.obstacles);
-  parts->kernels = &kernels_for(instructions);
+  parts->kernels = &kernels;
   parts->mesh_kernels = &internal::mesh_kernels_for(instructions);
   parts->kinematics = {.frames = parts->frames.data(),
                        .lane_frames = nullptr,
                        .frame_count = static_cast<std::int32_t>(parts->frames.size()),
-                       .variable_count = variable_count,
+                       .variable_count = internal::variable_count(frames),
                        .bodies = parts->balls.data(),
                        .body_count = static_cast<std::int32_t>(parts->balls.size()),
                        .obstacles = nullptr,
@@ -267,7 +213,6 @@ MeshMechanismCheck::Scratch::Scratch(const MeshMechanismCheck& check)
   const Parts& parts = *check.parts_;
   const auto variables = static_cast<std::size_t>((parts.kinematics.variable_count + 3) / 4 * 4);
   memory_->owner = &parts;
-  memory_->variables.resize(variables);
   memory_->sines.resize(variables);
   memory_->cosines.resize(variables);
   memory_->poses.resize(parts.frames.size());
@@ -289,8 +234,7 @@ bool MeshMechanismCheck::collides(std::span<const double> variables, Scratch& sc
   assert(variables.size() >= static_cast<std::size_t>(parts.kinematics.variable_count));
   assert(scratch.memory_->owner == parts_.get());
   Scratch::Memory& memory = *scratch.memory_;
-  std::copy_n(variables.begin(), parts.kinematics.variable_count, memory.variables.begin());
-  parts.kernels->place(parts.kinematics, memory.variables.data(), memory.view);
+  parts.kernels->place(parts.kinematics, variables.data(), memory.view);
   Translator translator{parts, ask, context};
   return parts.mesh_kernels->check(parts.problem, memory.poses.data(), memory.roots.data(),
                                    memory.tasks, &Translator::confirm, &translator);

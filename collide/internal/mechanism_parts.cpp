@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/mechanism_parts.h"
 
+#include "collide/internal/mechanism_input.h"
 #include "collide/internal/relative_pose.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
@@ -42,55 +43,16 @@ constexpr double kPerLength = 12.0 * kFloatRoundoff;
 constexpr double kPerFrame = 5.0 * internal::kSineError;
 constexpr double kPerScene = 1e-12;
 
-constexpr int kLargestIndex = 1 << 20;  // of a variable: there is memory for all up to it
-
-[[noreturn]] void refuse(const std::string& what, std::size_t index, const std::string& why) {
-  throw Error("mechanism", what + " " + std::to_string(index) + ' ' + why);
-}
-
 void check_input(std::span<const MechanismFrame> frames, std::span<const MechanismBody> bodies,
                  std::span<const MechanismObstacle> obstacles, std::span<const MechanismPair> pairs,
                  double pose_error) {
-  const auto below = [](int index, std::size_t count) {
-    return index >= 0 && static_cast<std::size_t>(index) < count;
-  };
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].parent < -1 || frames[i].parent >= static_cast<int>(i)) {
-      refuse("frame", i, "does not come after its parent");
-    }
-    if (frames[i].variable < 0 || frames[i].variable > kLargestIndex) {
-      refuse("frame", i, "has no variable that could be");
-    }
-  }
+  internal::check_frames(frames);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!below(bodies[i].frame, frames.size())) refuse("body", i, "is on no frame");
-    if (!bodies[i].tree) refuse("body", i, "has no tree");
+    internal::check_body(i, bodies[i].frame, frames.size(), bodies[i].tree != nullptr);
   }
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    if (!obstacles[i].tree) refuse("obstacle", i, "has no tree");
-  }
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (!below(pairs[i].body, bodies.size()) || !below(pairs[i].obstacle, obstacles.size())) {
-      refuse("pair", i, "names what is not there");
-    }
-  }
-  if (!(pose_error >= 0.0 && pose_error <= kMaxCoordinate)) {
-    throw Error("pose error", "it is negative, not finite or too large");
-  }
-}
-
-internal::KernelFrame kernel_frame(const MechanismFrame& frame) {
-  internal::KernelFrame result = {};
-  const Eigen::Matrix3d rotation = frame.parent_from_frame.matrix();
-  const Eigen::Vector3d& origin = frame.parent_from_frame.translation();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) result.rotation[j][i] = rotation(i, j);
-    result.origin[i] = origin[i];
-  }
-  result.parent = frame.parent;
-  result.variable = frame.variable;
-  result.prismatic = frame.prismatic;
-  return result;
+  internal::check_obstacles(obstacles);
+  internal::check_pairs(pairs, bodies.size(), obstacles.size());
+  internal::check_pose_error(pose_error);
 }
 
 // What is below this is an axis at a right angle, and costs less as zero: far below the budget of
@@ -137,36 +99,10 @@ internal::KernelObstacle kernel_obstacle(const PackedTree& tree) {
           internal::rounded_up_to_single(3.0 * tree.largest_growth())};
 }
 
-// From the root to a frame: the largest distance of its origin, and how many frames it takes.
-struct Chain {
-  double length = 0.0;
-  double frames = 0.0;
-};
-
-std::vector<Chain> chains_of(std::span<const MechanismFrame> frames) {
-  std::vector<Chain> chains;
-  for (const MechanismFrame& frame : frames) {
-    Chain chain = frame.parent < 0 ? Chain() : chains[static_cast<std::size_t>(frame.parent)];
-    chain.length += frame.parent_from_frame.translation().norm() +
-                    (frame.prismatic ? MechanismCheck::kLargestVariable : 0.0);
-    chain.frames += 1.0;
-    chains.push_back(chain);
-  }
-  return chains;
-}
-
 // Tasks that wait at most: every step takes one and leaves at most 64, a node of which lies a level
 // deeper, so that at most 63 wait for every level of the two trees.
 std::int64_t task_bound(int body_depth, int obstacle_depth) {
   return 63 * (std::int64_t{body_depth} + obstacle_depth + 1) + 1;
-}
-
-const internal::Kernels& kernels_for(InstructionSet set) {
-#if defined(SPHERULE_X86_KERNELS)
-  if (set == InstructionSet::kAvx512) return internal::avx512_kernels();
-  if (set == InstructionSet::kAvx2) return internal::avx2_kernels();
-#endif
-  return internal::portable_kernels();
 }
 
 }  // namespace
@@ -177,16 +113,14 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
                                std::span<const MechanismPair> pairs, double pose_error,
                                InstructionSet instructions, bool asks_always) {
   check_input(frames, bodies, obstacles, pairs, pose_error);
-  if (!is_available(instructions)) throw Error("instruction set", "this machine has not got it");
+  const internal::Kernels& kernels = internal::kernels_for(instructions);
   auto parts = std::make_unique<Parts>(internal::JoinedScene(bodies, obstacles, pairs));
   const internal::JoinedScene& scene = parts->scene;
-  int variable_count = 0;
   for (const MechanismFrame& frame : frames) {
-    parts->frames.push_back(kernel_frame(frame));
+    parts->frames.push_back(internal::kernel_frame(frame));
     parts->lane_frames.push_back(lane_frame(parts->frames.back()));
-    variable_count = std::max(variable_count, frame.variable + 1);
   }
-  const std::vector<Chain> chains = chains_of(frames);
+  const std::vector<internal::Chain> chains = internal::chains_of(frames);
   std::vector<SphereTree> body_trees;
   std::vector<SphereTree> obstacle_trees;
   std::vector<double>& reach = parts->reach;  // W
@@ -208,8 +142,9 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
                       obstacle.tree->reach() + obstacle.root_from_tree.translation().norm()});
   }
   if (!(bound <= kMaxCoordinate)) throw Error("mechanism", "it or an obstacle reaches too far");
-  if (std::any_of(chains.begin(), chains.end(),
-                  [](const Chain& chain) { return chain.frames > internal::kLongestLaneChain; })) {
+  if (std::any_of(chains.begin(), chains.end(), [](const internal::Chain& chain) {
+        return chain.frames > internal::kLongestLaneChain;
+      })) {
     throw Error("mechanism", "too many frames stand on each other");
   }
   parts->trees.reserve(body_trees.size() + obstacle_trees.size());
@@ -231,11 +166,11 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
     parts->obstacles.push_back(kernel_obstacle(tree));
   }
   parts->task_count = task_bound(body_depth, obstacle_depth);
-  parts->kernels = &kernels_for(instructions);
+  parts->kernels = &kernels;
   parts->problem = {.frames = parts->frames.data(),
                     .lane_frames = parts->lane_frames.data(),
                     .frame_count = static_cast<std::int32_t>(parts->frames.size()),
-                    .variable_count = variable_count,
+                    .variable_count = internal::variable_count(frames),
                     .bodies = parts->bodies.data(),
                     .body_count = static_cast<std::int32_t>(parts->bodies.size()),
                     .obstacles = parts->obstacles.data(),

@@ -2,6 +2,7 @@
 #include "collide/robot/robot_checker.h"
 
 #include "collide/collide.h"
+#include "collide/robot/internal/moving_frames.h"
 #include "collide/robot/kinematics.h"
 #include "collide/within.h"
 #include "spheretree/error.h"
@@ -15,70 +16,18 @@
 namespace spherule {
 namespace {
 
-// A rotation that takes the z axis to another unit vector, to a few units in the last place: where
-// that points backwards, after a half turn, since between opposite vectors there is none to tell.
-Eigen::Quaterniond turn_from_z_to(const Eigen::Vector3d& axis) {
-  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-  if (axis.z() >= 0.0) return Eigen::Quaterniond::FromTwoVectors(z, axis);
-  return Eigen::Quaterniond::FromTwoVectors(-z, axis) * Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0);
-}
-
-// The moving frames of a robot: one for each joint that a variable moves, its z axis turned into
-// the joint's axis, and where every link stands in the frame that carries it.
-struct Frames {
-  std::vector<MechanismFrame> frames;
-  std::vector<int> frame_of_link;  // -1: it stands with the root
-  std::vector<Pose> frame_from_link;
-
-  explicit Frames(const RobotModel& robot)
-      : frame_of_link(robot.links().size(), -1), frame_from_link(robot.links().size()) {
-    for (std::size_t link = 1; link < robot.links().size(); ++link) {
-      const Joint& joint =
-          robot.joints()[static_cast<std::size_t>(robot.links()[link].parent_joint)];
-      const auto parent = static_cast<std::size_t>(joint.parent_link);
-      const Pose frame_from_joint = frame_from_link[parent] * joint.parent_from_joint;
-      if (joint.type == JointType::kFixed) {
-        frame_of_link[link] = frame_of_link[parent];
-        frame_from_link[link] = frame_from_joint;
-        continue;
-      }
-      const Pose joint_from_frame(turn_from_z_to(joint.axis), Eigen::Vector3d::Zero());
-      frame_of_link[link] = static_cast<int>(frames.size());
-      frame_from_link[link] = joint_from_frame.inverse();
-      frames.push_back({.parent = frame_of_link[parent],
-                        .parent_from_frame = frame_from_joint * joint_from_frame,
-                        .variable = joint.variable,
-                        .prismatic = joint.type == JointType::kPrismatic});
-    }
-  }
-};
-
-// How far a point of a link may be from where the canonical poses take it, as seen from the moving
-// frames: the error of forward_kinematics(); that of the frames' own poses, of which a link has at
-// most four compositions a joint with 80 u of the lengths involved each, and a turn of the axis, of
-// less than 40 u; and the slack of the canonical test, 152 u of the scene. All are bounded for the
-// whole robot and scene at once. Throws Error if these are too large to be computed with.
+// Bounds for the whole robot and scene at once.
 double pose_error(const RobotModel& robot, std::span<const PlacedTree> obstacles,
                   const Pose& world_from_root) {
   double reach = 0.0;
-  double length = 0.0;
+  double scene = 0.0;
   for (const Link& link : robot.links()) {
     for (const auto& tree : link.trees) reach = std::max(reach, tree->reach());
   }
-  for (const Joint& joint : robot.joints()) {
-    length += joint.parent_from_joint.translation().norm() +
-              (joint.type == JointType::kPrismatic ? MechanismCheck::kLargestVariable : 0.0);
-  }
-  const double root = world_from_root.translation().norm();
-  double scene = reach + length + root;
   for (const PlacedTree& obstacle : obstacles) {
-    scene = std::max(scene,
-                     obstacle.tree->reach() + obstacle.world_from_tree.translation().norm() + root);
+    scene = std::max(scene, obstacle.tree->reach() + obstacle.world_from_tree.translation().norm());
   }
-  if (!(scene <= kMaxCoordinate)) throw Error("robot", "it or an obstacle reaches too far");
-  const double joints = static_cast<double>(robot.joints().size());
-  return kinematics_error_bound(robot, reach, root) +
-         360.0 * kUnitRoundoff * (joints + 2.0) * scene;
+  return moving_pose_error(robot, reach, scene, world_from_root.translation().norm());
 }
 
 bool is_untested(std::span<const UntestedPair> untested, std::size_t link, std::size_t obstacle) {
@@ -113,7 +62,7 @@ RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
       world_from_root_(options.world_from_root),
       meshes_(options.meshes) {
   check_input(robot_, obstacles_, options);
-  const Frames frames(robot_);
+  const MovingFrames frames(robot_);
   std::vector<Pose> standing;
   forward_kinematics(robot_, std::vector<double>(static_cast<std::size_t>(robot_.variable_count())),
                      standing, world_from_root_);

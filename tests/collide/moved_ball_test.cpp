@@ -4,6 +4,7 @@
 #include "collide/internal/moved_ball.h"
 
 #include "tests/collide/exact_scene.h"
+#include "tests/collide/random.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

@@ -5,6 +5,7 @@
 
 #include "spheretree/rounding.h"
 #include "tests/collide/exact_scene.h"
+#include "tests/collide/random.h"
 
 #include <gtest/gtest.h>
 
