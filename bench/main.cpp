@@ -98,6 +98,11 @@ int bench(const Arguments& arguments) {
         throw Error(result.name, method.name + " missed collisions");
       }
     }
+    for (const SmallRow& row : result.studies.small_environments) {
+      if (row.missed > 0) {
+        throw Error(result.name, std::to_string(row.obstacles) + " obstacles: collisions missed");
+      }
+    }
     for (const SizeRow& row : result.studies.sizes) {
       if (row.missed > 0) {
         throw Error(result.name, std::to_string(row.spheres) + " spheres missed collisions");

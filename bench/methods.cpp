@@ -67,7 +67,7 @@ std::vector<Method> make_methods(const Workload& workload) {
   methods.push_back({"spherule-mesh", "meshes of robot and torch, spheres of the rest",
                      make_tree_checker(workload, TreeMode::kMeshes), triangles_and_spheres, false});
   if (best_instruction_set() == InstructionSet::kAvx512) {
-    methods.push_back({"spherule-batch-avx2", "the same without AVX-512",
+    methods.push_back({"spherule-batch-avx2", "many configurations a call, without AVX-512",
                        make_tree_checker(workload, TreeMode::kBatch, InstructionSet::kAvx2),
                        spheres, false});
   }

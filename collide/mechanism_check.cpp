@@ -3,6 +3,7 @@
 
 #include "collide/internal/mechanism_parts.h"
 #include "collide/within.h"
+#include "collide/internal/single_precision.h"
 
 #include <algorithm>
 #include <cassert>

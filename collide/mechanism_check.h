@@ -4,6 +4,7 @@
 #include "collide/edge.h"
 #include "collide/instruction_set.h"
 #include "spheretree/pose.h"
+#include "spheretree/sphere.h"
 #include "spheretree/sphere_tree.h"
 
 #include <cstdint>
@@ -93,21 +94,15 @@ class MechanismCheck {
 
   // True if two spheres of a pair touch for sure or `confirm`, given a MechanismContact, says so of
   // two that may; false if none do. is_in_range() must hold, for as many variables as the frames
-  // name. Allocates nothing.
+  // name. The scratch remembers contacts and clearances from one configuration to the next, which
+  // changes no answer: near the last ones it may answer without asking. Allocates nothing.
   template <class Confirm>
   bool collides(std::span<const double> variables, Scratch& scratch, Confirm confirm) const {
     return within(variables, 0.0, scratch, confirm);
   }
 
-  // For `confirm` of collides() to say that a ball (in the coordinates of a frame) touches an
-  // obstacle, and would wherever none of its points has moved by more than `depth` from where the
-  // exact mechanism has it. That is remembered, where it is worth while, for configurations near
-  // this one; it changes no answer.
-  void remember_contact(int frame, const Sphere& ball, double depth, Scratch& scratch) const;
-  // Whether it is worth while: the last configurations were near each other.
-  bool is_following(const Scratch& scratch) const;
-
   // The same of spheres that come within `clearance` of each other: `confirm` says whether two do.
+  // A clearance of zero is collides().
   // Throws Error as require_clearance() does.
   template <class Confirm>
   bool within(std::span<const double> variables, double clearance, Scratch& scratch,
@@ -117,6 +112,14 @@ class MechanismCheck {
     };
     return within(variables, clearance, scratch, ask, std::addressof(confirm));
   }
+
+  // For `confirm` of collides() to say that a ball (in the coordinates of a frame) touches an
+  // obstacle, and would wherever none of its points has moved by more than `depth` from where the
+  // exact mechanism has it. That is remembered, where it is worth while, for configurations near
+  // this one; it changes no answer.
+  void remember_contact(int frame, const Sphere& ball, double depth, Scratch& scratch) const;
+  // Whether it is worth while: the last configurations were near each other.
+  bool is_following(const Scratch& scratch) const;
 
   // Whether the mechanism is free all along the straight motion of its variables: at (1 - t) `from`
   // + t `to` in exact arithmetic, for every t in [0, 1]. `confirm`, given the number of a

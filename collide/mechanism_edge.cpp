@@ -26,6 +26,7 @@
 #include "collide/internal/mechanism_parts.h"
 #include "collide/mechanism_check.h"
 #include "spheretree/error.h"
+#include "collide/internal/single_precision.h"
 
 #include <algorithm>
 #include <array>

@@ -7,16 +7,14 @@
 #include "collide/internal/mesh_search.h"
 #include "collide/internal/packed_mesh.h"
 #include "collide/internal/packed_tree.h"
+#include "collide/internal/single_precision.h"
 #include "collide/internal/relative_pose.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
 #include <cstddef>
-#include <string>
 #include <utility>
 #include <vector>
 

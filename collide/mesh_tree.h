@@ -36,8 +36,8 @@ class MeshTree {
   std::shared_ptr<const internal::PackedMesh> packed_;
 };
 
-// Whether a set of balls and the surface of a mesh meet, by the same traversal with another leaf
-// test, with triangles in the place of the second set's balls: G4 as for collides(). G5 up
+// Whether a set of balls and the surface of a mesh meet, triangles in the place of the second set's
+// balls: what meets_triangle() says of all pairs. G4 as for collides(). G5 up
 // to the width of the interval in which point_triangle_distance() leaves the distance: with R the
 // distance from the ball's centre to the triangle's farthest corner, some 64 u R where the centre
 // is not near the triangle; nearer it is wider, in our tests at most 1e-6 R, for needles 1e-4 R.

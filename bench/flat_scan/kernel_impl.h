@@ -77,7 +77,7 @@ inline bool are_apart(const Ball& a, const Ball& b) {
 }
 
 // Sine and cosine of all positions: reduced by multiples of pi / 2 (in two parts; positions are at
-// most some turns), then series whose first neglected terms are below 1e-13 for |r| <= pi / 4.
+// most some turns), then series whose first neglected terms are below 4e-13 for |r| <= pi / 4.
 // Plain loops of a fixed length, which become vectors.
 inline void sines_and_cosines(const double* angles, double* sines, double* cosines) {
   constexpr double kRound = 0x1.8p52;  // adding it rounds to an integer

@@ -1,28 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/ball_triangle.h"
 
+#include "collide/internal/separating_axis.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cstddef>
 
 namespace spherule::internal {
-namespace {
 
 using Eigen::Vector3d;
 
-// Of the square of an axis. Far above the 2^-1075 that a product may lose to underflow.
-constexpr double kShortestAxis = 0x1p-600;
-
-}  // namespace
-
 bool are_apart(const Vector3d& p, const std::array<Vector3d, 3>& triangle, double reach) {
   const Vector3d a = triangle[0] - p, b = triangle[1] - p, c = triangle[2] - p;
-  const double reach_squared = reach * reach;
-  const auto separates = [&](const Vector3d& axis, double along) {
-    const double square = axis.squaredNorm();
-    return along > 0.0 && square >= kShortestAxis && along * along > square * reach_squared;
-  };
   const auto nearest = [&](const Vector3d& axis) {
     return std::min({axis.dot(a), axis.dot(b), axis.dot(c)});
   };
@@ -30,7 +21,7 @@ bool are_apart(const Vector3d& p, const std::array<Vector3d, 3>& triangle, doubl
   const Vector3d normal = ab.cross(triangle[2] - triangle[0]);
   const double low = nearest(normal);
   const double high = std::max({normal.dot(a), normal.dot(b), normal.dot(c)});
-  if (separates(normal, std::max(low, -high))) return true;
+  if (separates(normal, std::max(low, -high), reach)) return true;
 
   const std::array<Vector3d, 3> corners = {a, b, c};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -38,9 +29,9 @@ bool are_apart(const Vector3d& p, const std::array<Vector3d, 3>& triangle, doubl
     const double square = edge.squaredNorm();
     if (square > 0.0) {
       const Vector3d foot = corners[i] - (corners[i].dot(edge) / square) * edge;
-      if (separates(foot, nearest(foot))) return true;
+      if (separates(foot, nearest(foot), reach)) return true;
     }
-    if (separates(corners[i], nearest(corners[i]))) return true;
+    if (separates(corners[i], nearest(corners[i]), reach)) return true;
   }
   return false;
 }

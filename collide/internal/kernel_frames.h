@@ -151,7 +151,8 @@ SPHERULE_INLINE void place_roots(const KernelProblem& problem, const KernelScrat
     Float4 ball = __builtin_convertvector(center, Float4);
     ball[3] = body.radius;
     KernelTask& root = scratch.roots[i];
-    __builtin_memcpy(&root.x, &ball, sizeof ball);
+    static_assert(__builtin_offsetof(KernelTask, radius) == 12);
+    __builtin_memcpy(&root, &ball, sizeof ball);
     root.body = 0;
     root.obstacle = 0;
   }

@@ -2,7 +2,8 @@
 #include "collide/internal/listed_triangles.h"
 
 #include "collide/internal/mesh_inside.h"
-#include "collide/internal/packed_tree.h"
+#include "collide/internal/separating_axis.h"
+#include "collide/internal/single_precision.h"
 
 #include <Eigen/Geometry>
 
@@ -161,7 +162,7 @@ class ListedTriangles::BoxSearch {
     return apart_along(seen_normal_, t) || apart_along(normal_of(t), t);
   }
   bool apart_along(const Vector3d& axis, const Triangle& t) const {
-    return gap_along(axis, t, seen_) > axis.lpNorm<1>() * of_.image_pad_;
+    return separates(axis, gap_along(axis, t, seen_), of_.image_pad_);
   }
 
   bool touch(const TrianglePair& pair) const {

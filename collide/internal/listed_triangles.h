@@ -22,7 +22,8 @@ namespace spherule::internal {
 // with pad = leaf_pad().
 //
 // Images of points in the other mesh's frame err by less than 136 u S, and differences from the
-// centre of a ball there by 2 u S more: kImagePad = 160 u S covers both.
+// centre of a ball there by 2 u S more; projections on an axis by 3 u S for the product and u S for
+// their difference, in units of its length: kImagePad = 160 u S covers all.
 //
 // Boxes. They are compared in single precision, v = 2^-24, as seen from the centres of the two
 // balls, of radii r and r': a box's image has the centre R c + t, t being the difference of the two

@@ -2,6 +2,7 @@
 #include "collide/internal/mechanism_input.h"
 
 #include "spheretree/error.h"
+#include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <string>

@@ -3,6 +3,7 @@
 
 #include "collide/internal/mechanism_input.h"
 #include "collide/internal/relative_pose.h"
+#include "collide/internal/single_precision.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <string>
 #include <utility>
 
 namespace spherule {

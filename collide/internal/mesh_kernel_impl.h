@@ -16,8 +16,7 @@
 //     lengths are stretched by 8 v, which are at most 8 v S of r, s^2 + u^2 is at most
 //     (r + c + f + 24 v S)^2 up to 5 v.
 //   corners: w = V - p errs by v S for V and v |w| for the difference, its products with the
-//   corners
-//     by 3 v |w| S, the comparison of squares by 5 v: less than 11 v S.
+//     corners by 3 v |w| S, the comparison of squares by 5 v: less than 11 v S.
 // Beyond its range a number becomes infinite or none; no comparison then finds anything apart.
 //
 // A corner within r' - margin of p, which rounds by less than 5 v of r' and of the corner's 2 v S,

@@ -2,9 +2,11 @@
 #include "collide/internal/mesh_search.h"
 
 #include "collide/internal/packed_mesh.h"
-#include "collide/internal/packed_tree.h"
 #include "collide/internal/queries.h"
+#include "collide/internal/single_precision.h"
 #include "collide/internal/triangle_leaves.h"
+
+#include <algorithm>
 
 namespace spherule::internal {
 namespace {

@@ -21,8 +21,8 @@ constexpr double kMore = 1.25;
 constexpr float kLess = 0.5F;
 constexpr int kLooks = 2;
 
-// The way is a sum of up to 2^20 steps, and starts anew beyond 2^10 near steps: every addition errs
-// by less than 2^-42 near steps, which kStepRest covers. So do the sums that it is compared with.
+// The way starts anew beyond 2^10 near steps: every addition errs by less than 2^-42 near steps,
+// which kStepRest, a part of every step, covers. So do the sums that it is compared with.
 constexpr double kStepUp = 1.0 + 1e-9;
 constexpr double kStepRest = 0x1p-38;
 constexpr double kLongestWay = 1024.0;
@@ -100,7 +100,7 @@ bool MotionMemory::follow(const double* configuration) {
   const bool was_near = was_near_;
   was_near_ = step <= near_step_;
   is_following_ = was_near_ && was_near;
-  way_ += step;
+  way_ = knows_ ? way_ + step : 0.0;
   queries_ += 1.0;
   if (knows_ && (!is_following_ || way_ > kLongestWay * near_step_)) forget();
   return is_following_;

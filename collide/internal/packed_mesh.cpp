@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/packed_mesh.h"
 
-#include "collide/internal/packed_tree.h"
+#include "collide/internal/single_precision.h"
 
 #include <Eigen/Geometry>
 
@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace spherule::internal {
 namespace {
@@ -31,12 +32,7 @@ float rounded_down(double x) {
   return -rounded_up_to_single(-x);
 }
 
-// Not inlined, as in packed_tree.cpp: g++ 12 leaves out the way to single precision and back.
-[[gnu::noinline]] double in_single_precision(double x) {
-  return static_cast<double>(static_cast<float>(x));
-}
-
-Vector3d in_single_precision(const Vector3d& x) {
+Vector3d each_in_single_precision(const Vector3d& x) {
   return {in_single_precision(x.x()), in_single_precision(x.y()), in_single_precision(x.z())};
 }
 
@@ -72,7 +68,7 @@ Sides sides_of(const Triangle& t, double bound) {
   Sides result;
   const Edges edges = edges_of(t);
   const Vector3d normal = edges[0].cross(edges[1]).normalized();
-  result.normal = in_single_precision(normal);
+  result.normal = each_in_single_precision(normal);
   const auto along_normal = [&](int i) {
     return result.normal.dot(t[static_cast<std::size_t>(i)]);
   };
@@ -81,7 +77,7 @@ Sides sides_of(const Triangle& t, double bound) {
   bool hold = nearly_unit(result.normal) && std::max(high - result.offset, result.offset - low) <=
                                                 4.0 * kFloatRoundoff * kSure * bound;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vector3d side = in_single_precision(edges[i].cross(normal).normalized());
+    const Vector3d side = each_in_single_precision(edges[i].cross(normal).normalized());
     result.side[i] = side;
     const double most = std::max({side.dot(t[0]), side.dot(t[1]), side.dot(t[2])});
     // The dot products err by less than 4 u of the bound.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/packed_tree.h"
 
+#include "collide/internal/single_precision.h"
 #include "spheretree/enclosing_sphere.h"
 #include "spheretree/rounding.h"
 
@@ -19,12 +20,6 @@ constexpr float kNowhere = 3e18F;
 constexpr double kAbsolute = 0x1p-60;
 // Around more spheres than these, the ball of the tree is good enough.
 constexpr std::size_t kManySpheres = 4096;
-
-// Not inlined: where g++ 12 vectorises the way to single precision and back (at -O2, two numbers at
-// once), it leaves it out. PackedTree.EveryBallHasRoomForTheInflatedSpheresBelow shows it.
-[[gnu::noinline]] double in_single_precision(double x) {
-  return static_cast<double>(static_cast<float>(x));
-}
 
 Sphere packed(const Sphere& ball, double inflation) {
   const Eigen::Vector3d center(in_single_precision(ball.center.x()),
@@ -85,12 +80,6 @@ void set_lane(PackedNode& node, int lane, const Sphere& ball, std::int32_t child
 }
 
 }  // namespace
-
-float rounded_up_to_single(double x) {
-  const double nearest = in_single_precision(x);
-  const auto result = static_cast<float>(nearest);
-  return nearest >= x ? result : std::nextafter(result, std::numeric_limits<float>::infinity());
-}
 
 PackedTree::PackedTree(const SphereTree& tree, double inflation) {
   assert(tree.branching() <= PackedNode::kWidth);

@@ -9,12 +9,6 @@
 
 namespace spherule::internal {
 
-// The unit roundoff of single precision.
-inline constexpr double kFloatRoundoff = 0x1p-24;
-
-// A number in single precision, not below the one given.
-float rounded_up_to_single(double x);
-
 // A sphere tree for filters in single precision: a test that finds two of its balls apart proves
 // that no spheres below them touch.
 //

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/patch_trees.h"
 
-#include "collide/internal/packed_tree.h"
+#include "collide/internal/single_precision.h"
 #include "spheretree/rounding.h"
 
 #include <Eigen/Geometry>
@@ -27,10 +27,9 @@ PatchBox seen_from(const Vector3d& origin, const Box& box) {
   for (int k = 0; k < 3; ++k) {
     const double low = sub_down(box.min()[k], origin[k]);
     const double high = sub_up(box.max()[k], origin[k]);
-    const auto center = static_cast<float>(low + (high - low) / 2.0);
-    const auto exact = static_cast<double>(center);
-    const double half = std::max(0.0, std::max(sub_up(high, exact), sub_up(exact, low)));
-    result.center[k] = center;
+    const double center = in_single_precision(low + (high - low) / 2.0);
+    const double half = std::max(0.0, std::max(sub_up(high, center), sub_up(center, low)));
+    result.center[k] = static_cast<float>(center);
     result.half[k] = rounded_up_to_single(half);
   }
   return result;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/triangle_pair.h"
 
+#include "collide/internal/separating_axis.h"
 #include "spheretree/point_triangle.h"
 #include "spheretree/rounding.h"
 
@@ -17,13 +18,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kOverlap = 400.0 * kUnitRoundoff;
-// Of the square of an axis. Far above the 2^-1075 that a product may lose to underflow.
-constexpr double kShortestAxis = 0x1p-600;
-
-bool separates(const Vector3d& axis, double gap, double pad) {
-  const double square = axis.squaredNorm();
-  return gap > 0.0 && square >= kShortestAxis && gap * gap > square * (pad * pad);
-}
 
 std::array<Vector3d, 3> edges_of(const Triangle& t) {
   return {t[1] - t[0], t[2] - t[1], t[0] - t[2]};

@@ -27,7 +27,7 @@ double pose_error(const RobotModel& robot, std::span<const PlacedTree> obstacles
   for (const PlacedTree& obstacle : obstacles) {
     scene = std::max(scene, obstacle.tree->reach() + obstacle.world_from_tree.translation().norm());
   }
-  return moving_pose_error(robot, reach, scene, world_from_root.translation().norm());
+  return internal::moving_pose_error(robot, reach, scene, world_from_root.translation().norm());
 }
 
 bool is_untested(std::span<const UntestedPair> untested, std::size_t link, std::size_t obstacle) {
@@ -62,7 +62,7 @@ RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
       world_from_root_(options.world_from_root),
       meshes_(options.meshes) {
   check_input(robot_, obstacles_, options);
-  const MovingFrames frames(robot_);
+  const internal::MovingFrames frames(robot_);
   std::vector<Pose> standing;
   forward_kinematics(robot_, std::vector<double>(static_cast<std::size_t>(robot_.variable_count())),
                      standing, world_from_root_);

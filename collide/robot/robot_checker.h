@@ -53,12 +53,14 @@ class RobotChecker {
   RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
                const RobotCheckerOptions& options = {});
 
+ private:
   // A contact that was confirmed on triangles: of the body's mesh and the obstacle's.
   struct Touch {
     MechanismContact contact;
     TrianglePair triangles;
   };
 
+ public:
   // What a query writes to: made for one checker, which must outlive its use. No query allocates
   // once its scratch is warm.
   class Scratch {

@@ -6,7 +6,6 @@
 #include "spheretree/error.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -45,7 +44,7 @@ RobotMeshChecker::RobotMeshChecker(RobotModel robot, std::vector<LinkMesh> meshe
       obstacles_(std::move(obstacles)),
       world_from_root_(options.world_from_root) {
   check_input(robot_, meshes_, obstacles_, options.untested);
-  const MovingFrames frames(robot_);
+  const internal::MovingFrames frames(robot_);
   std::vector<Pose> standing;
   forward_kinematics(robot_, std::vector<double>(static_cast<std::size_t>(robot_.variable_count())),
                      standing, world_from_root_);
@@ -80,9 +79,10 @@ RobotMeshChecker::RobotMeshChecker(RobotModel robot, std::vector<LinkMesh> meshe
     placed.push_back({root_from_world * obstacle.world_from_tree, obstacle.tree});
     scene = std::max(scene, obstacle.tree->reach() + obstacle.world_from_tree.translation().norm());
   }
-  check_.emplace(frames.frames, bodies, placed, pairs,
-                 moving_pose_error(robot_, reach, scene, world_from_root_.translation().norm()),
-                 options.instructions);
+  check_.emplace(
+      frames.frames, bodies, placed, pairs,
+      internal::moving_pose_error(robot_, reach, scene, world_from_root_.translation().norm()),
+      options.instructions);
 }
 
 bool RobotMeshChecker::meets(const Pair& pair, const std::vector<Pose>& world_from_link) const {

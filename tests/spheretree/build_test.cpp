@@ -23,7 +23,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The bound that the comment of build_tree gives: mean splits down to 2 log2 n + 8, then medians.
+// The bound that the comment of build_tree gives: the cheapest splits down to 2 log2 n + 8, then
+// medians.
 int largest_depth(std::size_t count) {
   const int log2 = static_cast<int>(std::bit_width(count - 1));  // rounded up
   return 2 * log2 + 8 + 1 + log2;
@@ -79,7 +80,7 @@ TEST(BuildTree, TheRootOfFewSpheresIsTheirSmallestBall) {
 }
 
 // A million spheres that no split can tell apart, or that lie on a line, or whose clusters shrink
-// geometrically so that the mean splits off one at a time: neither deep recursion nor quadratic
+// geometrically so that splits take off one at a time: neither deep recursion nor quadratic
 // time (which would not end within the test's time limit).
 TEST(BuildTree, AMillionDegenerateSpheres) {
   constexpr auto kCount = static_cast<std::size_t>(effort(1000000, 200000));

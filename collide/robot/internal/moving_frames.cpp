@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace spherule {
+namespace spherule::internal {
 namespace {
 
 // A rotation that takes the z axis to another unit vector, to a few units in the last place: where
@@ -60,4 +60,4 @@ double moving_pose_error(const RobotModel& robot, double reach, double scene,
          360.0 * kUnitRoundoff * (joints + 2.0) * all;
 }
 
-}  // namespace spherule
+}  // namespace spherule::internal

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace spherule {
+namespace spherule::internal {
 
 // The moving frames of a robot: one for each joint that a variable moves, its z axis turned into
 // the joint's axis, and where every link stands in the frame that carries it.
@@ -24,4 +24,4 @@ struct MovingFrames {
 // Throws Error if these are too large to be computed with.
 double moving_pose_error(const RobotModel& robot, double reach, double scene, double root_distance);
 
-}  // namespace spherule
+}  // namespace spherule::internal
