@@ -26,7 +26,7 @@ namespace spherule::test {
 namespace {
 
 TEST(Allocation, CollidesTakesNoMemory) {
-  Random random(1);
+  SceneRandom random(1);
   const SphereTree a = build_tree(random_spheres(random, 2000, 1.0, 0.02));
   const SphereTree b = build_tree(random_spheres(random, 2000, 1.0, 0.02), {.branching = 16});
   const MeshTree mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}});
@@ -46,7 +46,7 @@ TEST(Allocation, CollidesTakesNoMemory) {
 }
 
 TEST(Allocation, SweepsClearancesAndTheCacheTakeNoMemory) {
-  Random random(3);
+  SceneRandom random(3);
   const SphereTree a = build_tree(random_spheres(random, 500, 1.0, 0.02));
   const SphereTree b = build_tree(random_spheres(random, 500, 1.0, 0.02));
   std::vector<Pose> poses;
@@ -80,7 +80,7 @@ TEST(Allocation, ConfirmationTakesNoMemory) {
   };
   const CoveredMesh a(mesh, ball(1.1));
   const CoveredMesh b(small, ball(0.1));
-  Random random(3);
+  SceneRandom random(3);
   int hits = 0;
   std::vector<Pose> poses;
   for (int i = 0; i < 1000; ++i) poses.push_back(random.pose(1.2));
@@ -92,7 +92,7 @@ TEST(Allocation, ConfirmationTakesNoMemory) {
 }
 
 TEST(Allocation, AMechanismsCheckTakesNoMemory) {
-  Random random(2);
+  SceneRandom random(2);
   const auto tree = [&] {
     return std::make_shared<const SphereTree>(build_tree(random_spheres(random, 500, 1.0, 0.02)));
   };
@@ -129,7 +129,7 @@ TEST(Allocation, AMechanismsCheckTakesNoMemory) {
 }
 
 TEST(Allocation, AMechanismOfMeshesTakesNoMemory) {
-  Random random(4);
+  SceneRandom random(4);
   const auto mesh = std::make_shared<const MeshTree>(
       TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}});
   const std::vector<MechanismFrame> frames = {{.parent_from_frame = random.pose(0.1)}};

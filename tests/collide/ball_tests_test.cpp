@@ -4,7 +4,7 @@
 #include "collide/internal/ball_tests.h"
 
 #include "tests/collide/exact_scene.h"
-#include "tests/collide/random.h"
+#include "tests/collide/scene_random.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace spherule::test {
 namespace {
 
 TEST(OverlapMask, IsThePortableOneForEveryCountNearTheLimit) {
-  Random random(1);
+  SceneRandom random(1);
   int overlapping = 0;
   int apart = 0;
   int equal = 0;

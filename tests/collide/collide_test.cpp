@@ -46,7 +46,7 @@ struct Scene {
   }
 };
 
-Scene random_scene(Random& random, int largest_count) {
+Scene random_scene(SceneRandom& random, int largest_count) {
   const double size = std::ldexp(1.0, random.whole(-20, 20));
   const auto tree = [&] {
     const int count = random.whole(1, largest_count);
@@ -60,7 +60,7 @@ Scene random_scene(Random& random, int largest_count) {
 }
 
 TEST(Collide, FindsExactlyTheTouchingPairsOfAllPairs) {
-  Random random(1);
+  SceneRandom random(1);
   int free = 0;
   int colliding = 0;
   std::size_t pairs = 0;
@@ -83,7 +83,7 @@ TEST(Collide, FindsExactlyTheTouchingPairsOfAllPairs) {
 }
 
 TEST(Collide, AgreesWithExactArithmeticOnEveryPair) {
-  Random random(2);
+  SceneRandom random(2);
   int touching = 0;
   for (int i = 0; i < 40; ++i) {
     const Scene scene = random_scene(random, 30);
@@ -104,7 +104,7 @@ TEST(Collide, AgreesWithExactArithmeticOnEveryPair) {
 }
 
 TEST(Collide, DoesNotDependOnTheShapeOfTheTree) {
-  Random random(3);
+  SceneRandom random(3);
   for (int i = 0; i < 50; ++i) {
     const std::vector<Sphere> spheres_a = random_spheres(random, 200, 1.0, 0.1);
     const std::vector<Sphere> spheres_b = random_spheres(random, 200, 1.0, 0.1);
@@ -122,7 +122,7 @@ TEST(Collide, DoesNotDependOnTheShapeOfTheTree) {
 }
 
 TEST(Collide, SwappedArgumentsSwapThePairs) {
-  Random random(4);
+  SceneRandom random(4);
   for (int i = 0; i < 50; ++i) {
     const Scene scene = random_scene(random, 60);
     std::vector<SpherePair> swapped =
@@ -134,7 +134,7 @@ TEST(Collide, SwappedArgumentsSwapThePairs) {
 }
 
 TEST(Collide, GivesTheSameAnswerAndCostTwice) {
-  Random random(5);
+  SceneRandom random(5);
   const Scene scene = random_scene(random, 150);
   const CollisionResult first = scene.collide({.max_pairs = 7});
   const CollisionResult second = scene.collide({.max_pairs = 7});
@@ -144,7 +144,7 @@ TEST(Collide, GivesTheSameAnswerAndCostTwice) {
 }
 
 TEST(Collide, StopsAtTheLimitOfPairs) {
-  Random random(6);
+  SceneRandom random(6);
   int limited = 0;
   for (int i = 0; i < 100; ++i) {
     const Scene scene = random_scene(random, 100);
@@ -162,7 +162,7 @@ TEST(Collide, StopsAtTheLimitOfPairs) {
 }
 
 TEST(Collide, SaysUnknownWhenTheBudgetRunsOut) {
-  Random random(7);
+  SceneRandom random(7);
   int unknown = 0;
   for (int i = 0; i < 100; ++i) {
     const Scene scene = random_scene(random, 100);
@@ -189,7 +189,7 @@ TEST(Collide, SaysUnknownWhenTheBudgetRunsOut) {
 }
 
 TEST(Collide, SaysUnknownWhenThereIsNoTime) {
-  Random random(9);
+  SceneRandom random(9);
   for (int i = 0; i < 20; ++i) {
     const Scene scene = random_scene(random, 100);
     const CollisionResult none = scene.collide({.max_time = std::chrono::nanoseconds(0)});
@@ -215,7 +215,7 @@ TEST(Collide, WithoutRoomForAPairSaysOnlyWhether) {
 }
 
 TEST(Collide, BoundsTheDistanceFromBelow) {
-  Random random(8);
+  SceneRandom random(8);
   int positive = 0;
   for (int i = 0; i < 60; ++i) {
     const Scene scene = random_scene(random, 20);

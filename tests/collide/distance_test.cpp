@@ -40,7 +40,7 @@ struct Scene {
   double error() const { return RelativePose(a, world_from_a, b, world_from_b).gap_error(); }
 };
 
-Scene random_scene(Random& random) {
+Scene random_scene(SceneRandom& random) {
   const double size = std::ldexp(1.0, random.whole(-30, 30));
   const auto tree = [&] {
     return build_tree(random_spheres(random, random.whole(1, 25), size, 0.2 * size),
@@ -52,7 +52,7 @@ Scene random_scene(Random& random) {
 }
 
 TEST(Distance, BoundsEncloseTheExactDistanceTightly) {
-  Random random(1);
+  SceneRandom random(1);
   int apart = 0;
   int overlapping = 0;
   for (int i = 0; i < 120; ++i) {
@@ -77,7 +77,7 @@ TEST(Distance, BoundsEncloseTheExactDistanceTightly) {
 }
 
 TEST(Distance, StopsWhenItKnowsEnough) {
-  Random random(2);
+  SceneRandom random(2);
   int early = 0;
   for (int i = 0; i < 60; ++i) {
     const Scene scene = random_scene(random);
@@ -98,7 +98,7 @@ TEST(Distance, StopsWhenItKnowsEnough) {
 }
 
 TEST(Distance, IsStillBoundedWhenTheBudgetRunsOut) {
-  Random random(3);
+  SceneRandom random(3);
   int cut = 0;
   for (int i = 0; i < 40; ++i) {
     const Scene scene = random_scene(random);
@@ -116,7 +116,7 @@ TEST(Distance, IsStillBoundedWhenTheBudgetRunsOut) {
 }
 
 TEST(Distance, IsStillBoundedWhenThereIsNoTime) {
-  Random random(5);
+  SceneRandom random(5);
   for (int i = 0; i < 20; ++i) {
     const Scene scene = random_scene(random);
     const Real exact = scene.exact_distance();
@@ -131,7 +131,7 @@ TEST(Distance, IsStillBoundedWhenThereIsNoTime) {
 }
 
 TEST(Distance, AgreesWithCollides) {
-  Random random(4);
+  SceneRandom random(4);
   for (int i = 0; i < 300; ++i) {
     const Scene scene = random_scene(random);
     const DistanceResult result = scene.distance();

@@ -3,7 +3,7 @@
 
 // Oracle of the tests in this folder, which shares no code with the library: poses and balls in
 // rational numbers, and in floating-point numbers of 100 digits where a root is needed. These are
-// slow to compile; exact_pose.h and random.h go without them.
+// slow to compile; exact_pose.h and scene_random.h go without them.
 
 #include "spheretree/sphere.h"
 #include "tests/collide/exact_pose.h"

@@ -26,7 +26,7 @@ void add(const CollisionResult& result, std::ostream& text) {
 }
 
 // Numbers are drawn in separate statements wherever the order of evaluation is not fixed.
-Pose random_pose(Random& random, double size) {
+Pose random_pose(SceneRandom& random, double size) {
   const Eigen::Quaterniond rotation = random.quaternion();
   return Pose(rotation, random.point(size));
 }
@@ -37,7 +37,7 @@ double distance_of(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
 }
 
 // Random balls, every second of which touches a point of the other set, up to the test's pad.
-std::vector<Sphere> balls_near(Random& random, const Pose& world_from_balls,
+std::vector<Sphere> balls_near(SceneRandom& random, const Pose& world_from_balls,
                                const Pose& world_from_points,
                                const std::vector<Eigen::Vector3d>& points) {
   std::vector<Sphere> balls = random_spheres(random, 20, 1.0, 0.1);
@@ -51,7 +51,7 @@ std::vector<Sphere> balls_near(Random& random, const Pose& world_from_balls,
   return balls;
 }
 
-std::vector<Eigen::Vector3d> random_points(Random& random, int count) {
+std::vector<Eigen::Vector3d> random_points(SceneRandom& random, int count) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < count; ++i) points.push_back(random.point(1.0));
   return points;
@@ -59,7 +59,7 @@ std::vector<Eigen::Vector3d> random_points(Random& random, int count) {
 
 TEST(Golden, PairsOfBalls) {
   constexpr std::uint64_t kGolden = 0x44f945caf442076e;
-  Random random(1);
+  SceneRandom random(1);
   std::ostringstream text;
   for (int i = 0; i < kScenes; ++i) {
     const std::vector<Eigen::Vector3d> points = random_points(random, 20);
@@ -76,7 +76,7 @@ TEST(Golden, PairsOfBalls) {
 
 TEST(Golden, PairsOfBallsAndTriangles) {
   constexpr std::uint64_t kGolden = 0xeba7c128466af6d5;
-  Random random(2);
+  SceneRandom random(2);
   std::ostringstream text;
   for (int i = 0; i < kScenes; ++i) {
     TriangleMesh mesh;

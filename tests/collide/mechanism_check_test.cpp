@@ -45,7 +45,7 @@ Finding find(double angle, double gap, InstructionSet set) {
 
 // The margins are thin: micrometres for an arm of a metre, at every angle that is in range.
 TEST(MechanismCheck, AsksOnlyWhereSinglePrecisionCannotTell) {
-  Random random(31);
+  SceneRandom random(31);
   std::vector<double> angles = {0.0, 100.0, -100.0};
   for (int i = -63; i <= 63; ++i) angles.push_back(i * 0.78539816339744831);
   for (int i = 0; i < 300; ++i) angles.push_back(random.uniform(-100.0, 100.0));
@@ -63,7 +63,7 @@ TEST(MechanismCheck, AsksOnlyWhereSinglePrecisionCannotTell) {
 // A tree far from its own frame that the pose leads back: moving its centres costs more than what
 // is left of their offsets lets think.
 TEST(MechanismCheck, OffsetsThatCancelAreMindedInTheMargins) {
-  Random random(32);
+  SceneRandom random(32);
   const std::vector<MechanismPair> pairs(1);
   for (int i = 0; i < 3000; ++i) {
     const Eigen::Vector3d far = std::pow(10.0, random.uniform(8.0, 12.0)) * random.point(1.0);
@@ -89,7 +89,7 @@ TEST(MechanismCheck, OffsetsThatCancelAreMindedInTheMargins) {
 // Poses are computed in single precision where configurations are checked side by side: over a long
 // chain their error is many times what it is for one configuration.
 TEST(MechanismCheck, ABlockNeverFindsApartWhatTouches) {
-  Random random(33);
+  SceneRandom random(33);
   for (int i = 0; i < 50; ++i) {
     std::vector<MechanismFrame> frames;
     std::array<double, 1000> variables;

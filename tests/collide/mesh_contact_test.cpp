@@ -90,7 +90,7 @@ CoveredMesh solid_covered(const TriangleMesh& mesh, const Vector3d& half, int ce
   return {mesh, tree_of(balls)};
 }
 
-TriangleMesh random_mesh(Random& random, int triangles, double width) {
+TriangleMesh random_mesh(SceneRandom& random, int triangles, double width) {
   TriangleMesh mesh;
   for (int i = 0; i < triangles; ++i) {
     const Vector3d a = random.point(1.0), edge = random.point(1.0);
@@ -138,7 +138,7 @@ double mesh_gap(const TriangleMesh& a, const Pose& world_from_a, const TriangleM
 // extra is apart by no more than the slack of the spheres and a rest.
 void compare_near_contact(double world, double width, double rest, int least_extra,
                           std::uint64_t seed) {
-  Random random(seed);
+  SceneRandom random(seed);
   int touching = 0, free = 0, extra = 0;
   for (int i = 0; i < 500; ++i) {
     const TriangleMesh a = random_mesh(random, random.whole(1, 2), width);
@@ -191,7 +191,7 @@ TEST(MeshContact, IsNeverMissedOfDegenerateTriangles) {
 
 // Many triangles under few spheres, so that trees of boxes have several levels.
 TEST(MeshContact, IsNeverMissedAmongManyTriangles) {
-  Random random(8);
+  SceneRandom random(8);
   int hits = 0, alarms = 0;
   for (int i = 0; i < 60; ++i) {
     TriangleMesh meshes[2];
@@ -236,7 +236,7 @@ bool collides_by_parts(const CoveredMesh& a, const Pose& world_from_a, const Cov
 }
 
 TEST(MeshContact, IsTheSumOfItsParts) {
-  Random random(5);
+  SceneRandom random(5);
   const Vector3d half(0.5, 0.4, 0.3);
   const CoveredMesh box = solid_covered(box_mesh(half), half, 4);
   int hits = 0, alarms = 0;
@@ -254,7 +254,7 @@ TEST(MeshContact, IsTheSumOfItsParts) {
 }
 
 TEST(MeshContact, ABodyInsideAnotherCollides) {
-  Random random(6);
+  SceneRandom random(6);
   const Vector3d large = Vector3d::Constant(1.0), small = Vector3d::Constant(0.2);
   const CoveredMesh outer = solid_covered(box_mesh(large), large, 3);
   const CoveredMesh inner = surface_covered(box_mesh(small), 0);
@@ -329,7 +329,7 @@ TEST(MeshContact, AnOpenMeshHasNoInside) {
 }
 
 TEST(MeshContact, EveryPointIsInASphereThatListsItsTriangle) {
-  Random random(7);
+  SceneRandom random(7);
   const TriangleMesh mesh = random_mesh(random, 40, 0.5);
   std::vector<Sphere> balls = surface_balls(mesh, 1);
   const std::vector<Sphere> finer = surface_balls(mesh, 3);

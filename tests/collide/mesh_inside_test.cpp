@@ -5,7 +5,7 @@
 
 #include "collide/internal/ray.h"
 #include "tests/collide/exact_triangles.h"
-#include "tests/collide/random.h"
+#include "tests/collide/scene_random.h"
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ std::optional<int> exact_crossing(const Vector<Rational>& point, const Vector3d&
 }
 
 TEST(Ray, DecidesForEveryPointWithinTheError) {
-  Random random(1);
+  SceneRandom random(1);
   int through = 0, by = 0, doubtful = 0;
   for (int i = 0; i < 6000; ++i) {
     Triangle t = {random.point(1.0), random.point(1.0), random.point(1.0)};
@@ -86,7 +86,7 @@ TEST(Ray, DecidesForEveryPointWithinTheError) {
 }
 
 TEST(Ray, KeepsTheBallsItMeets) {
-  Random random(2);
+  SceneRandom random(2);
   int met = 0, missed = 0;
   for (int i = 0; i < 4000; ++i) {
     const Vector3d direction = Vector3d::Unit(random.whole(0, 2));

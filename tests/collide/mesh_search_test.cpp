@@ -32,7 +32,7 @@ Real exact_distance(const Eigen::Vector3d& p, const Pose& world_from_a, const Tr
 }
 
 // A point of the triangle: a corner, a point of an edge, or one inside.
-Eigen::Vector3d point_of(Random& random, const Triangle& t) {
+Eigen::Vector3d point_of(SceneRandom& random, const Triangle& t) {
   const double u = random.uniform(0.0, 1.0);
   switch (random.whole(0, 2)) {
     case 0:
@@ -45,7 +45,7 @@ Eigen::Vector3d point_of(Random& random, const Triangle& t) {
 }
 
 // Ordinary triangles, needles, segments and points.
-Triangle random_triangle(Random& random, double size) {
+Triangle random_triangle(SceneRandom& random, double size) {
   static constexpr double kThin[] = {1.0, 1.0, 1e-3, 1e-6, 1e-7, 1e-8, 1e-12, 0.0};
   const double thin = kThin[random.whole(0, 7)];
   const Eigen::Vector3d a = random.point(size);
@@ -55,7 +55,7 @@ Triangle random_triangle(Random& random, double size) {
 }
 
 // Relative gaps at which contact is asked for.
-double random_gap(Random& random) {
+double random_gap(SceneRandom& random) {
   static constexpr double kGaps[] = {0.0, 1e-16, 1e-15, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3, 0.1};
   return (random.whole(0, 1) == 0 ? -1.0 : 1.0) * kGaps[random.whole(0, 9)];
 }
@@ -84,7 +84,7 @@ bool any_pair_meets(const SphereTree& a, const Pose& world_from_a, const MeshTre
 }
 
 TEST(MeshSearch, MissesNoContactWithOneTriangleOnAnyInstructionSet) {
-  Random random(11);
+  SceneRandom random(11);
   int touching = 0;
   int near = 0;
   int free = 0;
@@ -125,7 +125,7 @@ TEST(MeshSearch, MissesNoContactWithOneTriangleOnAnyInstructionSet) {
 
 // The promise that filters in single precision rely on.
 TEST(MeshSearch, TheAxesFindApartWhatIsClearlyApart) {
-  Random random(12);
+  SceneRandom random(12);
   int judged = 0;
   int needed = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -151,7 +151,7 @@ TEST(MeshSearch, TheAxesFindApartWhatIsClearlyApart) {
 }
 
 TEST(MeshSearch, AnswersAsAllPairsDo) {
-  Random random(13);
+  SceneRandom random(13);
   int hits = 0;
   for (int i = 0; i < 600; ++i) {
     const double size = std::pow(10.0, random.whole(-3, 3));
@@ -193,7 +193,7 @@ TEST(MeshSearch, AnswersAsAllPairsDo) {
 }
 
 TEST(MeshSearch, TheBoxesHoldEveryTriangleOnce) {
-  Random random(14);
+  SceneRandom random(14);
   for (const int count : {1, 7, 8, 9, 64, 65, 700}) {
     std::vector<Triangle> triangles;
     for (int k = 0; k < count; ++k) triangles.push_back(random_triangle(random, 1.0));
@@ -242,7 +242,7 @@ TEST(MeshSearch, TheBoxesHoldEveryTriangleOnce) {
 }
 
 TEST(MeshMechanism, AnswersAsThePairsDoOnEveryInstructionSet) {
-  Random random(15);
+  SceneRandom random(15);
   int hits = 0;
   int asked = 0;
   int checked = 0;
@@ -267,7 +267,7 @@ TEST(MeshMechanism, AnswersAsThePairsDoOnEveryInstructionSet) {
     for (const InstructionSet set : instruction_sets()) {
       const MeshMechanismCheck check(frames, bodies, obstacles, pairs, 1e-9, set);
       MeshMechanismCheck::Scratch scratch(check);
-      Random variables(static_cast<std::uint64_t>(i));
+      SceneRandom variables(static_cast<std::uint64_t>(i));
       for (int k = 0; k < 20; ++k) {
         const double angle = variables.uniform(-3.0, 3.0);
         const std::array<double, 2> q = {angle, variables.uniform(-1.0, 1.0)};

@@ -25,7 +25,7 @@ Real exact_distance(const Sphere& ball, const Pose& world_from_a,
 }
 
 // Random triangles, or needles where `thin` is small.
-TriangleMesh random_mesh(Random& random, int count, double size, double thin) {
+TriangleMesh random_mesh(SceneRandom& random, int count, double size, double thin) {
   TriangleMesh mesh;
   for (int i = 0; i < count; ++i) {
     const int first = 3 * i;
@@ -43,7 +43,7 @@ SphereTree tree_of(const Sphere& sphere) {
 }
 
 void compare_near_contact(double thin, double largest_excess, int least_extra) {
-  Random random(1);
+  SceneRandom random(1);
   int touching = 0;
   int extra = 0;
   for (int i = 0; i < 1500; ++i) {
@@ -85,7 +85,7 @@ TEST(MeshTree, ContactWithADegenerateTriangleIsNeverMissed) {
 }
 
 TEST(MeshTree, FindsThePairsOfAllPairs) {
-  Random random(2);
+  SceneRandom random(2);
   int hits = 0;
   for (int i = 0; i < 20; ++i) {
     const SphereTree a = build_tree(random_spheres(random, 30, 1.0, 0.2));

@@ -6,7 +6,7 @@
 #include "spheretree/error.h"
 #include "tests/collide/exact_motion.h"
 #include "tests/collide/exact_scene.h"
-#include "tests/collide/random.h"
+#include "tests/collide/scene_random.h"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ struct Pair {
   Exact exact;
 };
 
-Pair random_turning(Random& random, double size) {
+Pair random_turning(SceneRandom& random, double size) {
   const Pose start = random.pose(size);
   const Eigen::Vector3d axis = random.point(1.0) * std::ldexp(1.0, random.whole(-600, 600));
   const double angle = std::ldexp(random.uniform(-1.0, 1.0), random.whole(-60, 20));
@@ -34,7 +34,7 @@ Pair random_turning(Random& random, double size) {
 }
 
 // Where only the rotation errs.
-Pair random_turning_in_place(Random& random, double) {
+Pair random_turning_in_place(SceneRandom& random, double) {
   const Pose start(random.quaternion(), Eigen::Vector3d::Zero());
   const Eigen::Vector3d axis = random.point(1.0);
   const double angle = std::ldexp(random.uniform(-1.0, 1.0), random.whole(-60, 20));
@@ -42,14 +42,14 @@ Pair random_turning_in_place(Random& random, double) {
   return {Motion::turning(start, axis, angle), Exact::turning(start, axis, angle, zero, zero)};
 }
 
-Pair random_between_in_place(Random& random, double) {
+Pair random_between_in_place(SceneRandom& random, double) {
   const Pose start(random.quaternion(), Eigen::Vector3d::Zero());
   const Pose end(random.quaternion(), Eigen::Vector3d::Zero());
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   return {Motion::between(start, end), Exact::between(start, end, zero)};
 }
 
-Pair random_between(Random& random, double size) {
+Pair random_between(SceneRandom& random, double size) {
   const Pose start = random.pose(size);
   Pose end = random.pose(size);
   if (random.whole(0, 1)) {
@@ -70,7 +70,7 @@ Real error_at(const Pair& pair, double t, const Eigen::Vector3d& p) {
 
 template <class Make>
 void expect_bounded(Make make, std::uint64_t seed, double tightest) {
-  Random random(seed);
+  SceneRandom random(seed);
   Real largest = 0;
   for (int i = 0; i < 1500; ++i) {
     const double size = std::ldexp(1.0, random.whole(-30, 30));
@@ -100,7 +100,7 @@ TEST(Motion, RotationsAreWithinTheBound) {
 }
 
 TEST(Motion, MeetsTheGivenPosesExactly) {
-  Random random(3);
+  SceneRandom random(3);
   for (int i = 0; i < 100; ++i) {
     const Pose start = random.pose(1.0);
     const Pose end = random.pose(1.0);

@@ -74,7 +74,7 @@ class Inspection {
 };
 
 TEST(PackedTree, EveryBallHasRoomForTheInflatedSpheresBelow) {
-  Random random(11);
+  SceneRandom random(11);
   for (const double size : {1e-6, 1.0, 1e6}) {
     for (const int count : {1, 2, 9, 300}) {
       for (const int branching : {2, 8}) {

@@ -16,7 +16,7 @@ namespace {
 // A body that wanders through a box about another one, by steps of all sizes.
 class Walk {
  public:
-  Walk(Random& random, double size, double step) : random_(random), size_(size), step_(step) {}
+  Walk(SceneRandom& random, double size, double step) : random_(random), size_(size), step_(step) {}
 
   Pose next() {
     const double step = step_ * std::ldexp(1.0, random_.whole(-4, 0));
@@ -28,7 +28,7 @@ class Walk {
   }
 
  private:
-  Random& random_;
+  SceneRandom& random_;
   double size_;
   double step_;
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
@@ -36,7 +36,7 @@ class Walk {
 };
 
 TEST(PairCache, AnswersAsCollidesDoes) {
-  Random random(1);
+  SceneRandom random(1);
   std::uint64_t free = 0;
   std::uint64_t hits = 0;
   std::uint64_t queries = 0;
@@ -73,7 +73,7 @@ TEST(PairCache, AnswersAsCollidesDoes) {
 // Towards contact by steps that shrink with the gap, so that the memory is asked at its limit.
 TEST(PairCache, IsNotFooledNextToContact) {
   const SphereTree ball = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
-  Random random(2);
+  SceneRandom random(2);
   for (int i = 0; i < 300; ++i) {
     const Eigen::Vector3d direction = random.point(1.0).normalized();
     PairCache cache(ball, ball);

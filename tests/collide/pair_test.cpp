@@ -5,7 +5,7 @@
 #include "collide/internal/relative_pose.h"
 #include "spheretree/build.h"
 #include "tests/collide/exact_scene.h"
-#include "tests/collide/random.h"
+#include "tests/collide/scene_random.h"
 
 #include <gtest/gtest.h>
 
@@ -77,7 +77,7 @@ class NearContact : public testing::TestWithParam<Scene> {};
 
 TEST_P(NearContact, IsNeverMissedAndExtraOnlyWithinTheSlack) {
   const Scene& scene = GetParam();
-  Random random(7);
+  SceneRandom random(7);
   Tally tally;
   for (int i = 0; i < 4000; ++i) {
     PlacedBalls balls;
@@ -160,7 +160,7 @@ TEST(Slack, IsAboutTheRoundingOfTheSceneAndNotOfTheWorld) {
 
 // The constants of the budget against what rounding really does, so that a wrong proof shows.
 TEST(ErrorBudget, CoversTheImagesOfBothFrames) {
-  Random random(11);
+  SceneRandom random(11);
   double worst = 0.0;
   for (int i = 0; i < 3000; ++i) {
     const double size = std::ldexp(1.0, random.whole(-20, 20));

@@ -5,7 +5,7 @@
 
 #include "spheretree/rounding.h"
 #include "tests/collide/exact_scene.h"
-#include "tests/collide/random.h"
+#include "tests/collide/scene_random.h"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ void check_below(const PatchTrees& trees, std::int32_t index, const Vector3d& or
 }
 
 TEST(PatchTrees, BoxesEncloseWhatIsBelowThem) {
-  Random random(81);
+  SceneRandom random(81);
   for (const int count : {1, 2, 7, 8, 9, 64, 65, 700}) {
     const Vector3d origin = random.point(count % 2 == 0 ? 1.0 : 1e5);
     std::vector<Patch> patches;
@@ -80,7 +80,7 @@ TEST(PatchTrees, BoxesEncloseWhatIsBelowThem) {
 }
 
 TEST(PatchTrees, EveryMachineFindsTheSameOverlaps) {
-  Random random(82);
+  SceneRandom random(82);
   int overlapping = 0;
   for (int i = 0; i < 20000; ++i) {
     PatchNode node = {};

@@ -33,7 +33,7 @@ std::vector<SpherePair> pairs_without_pruning(const SphereTree& a, const SphereT
 constexpr int kBalls = 24;
 
 TEST(SamePairs, OfBallsForEveryTree) {
-  Random random(2);
+  SceneRandom random(2);
   std::size_t pairs = 0;
   for (int i = 0; i < 400; ++i) {
     const std::vector<Sphere> first = random_spheres(random, kBalls, 10.0, 0.1);
@@ -70,7 +70,7 @@ TEST(SamePairs, OfBallsForEveryTree) {
 constexpr int kTriangles = kBalls;
 
 // Triangles far apart from each other; needles where `thin` is small.
-TriangleMesh scattered_triangles(Random& random, double thin) {
+TriangleMesh scattered_triangles(SceneRandom& random, double thin) {
   TriangleMesh mesh;
   for (int i = 0; i < kTriangles; ++i) {
     const Eigen::Vector3d a = random.point(10.0);
@@ -85,7 +85,8 @@ TriangleMesh scattered_triangles(Random& random, double thin) {
 // A ball beyond the first corner of every triangle, seen from the middle of the leaf's ball, so
 // that the gaps to the triangle and to the leaf's ball are the same. Gaps of 1e-16 to 1e-9, of both
 // signs.
-std::vector<Sphere> balls_at_corners(Random& random, const MeshTree& mesh, const Pose& a_from_b) {
+std::vector<Sphere> balls_at_corners(SceneRandom& random, const MeshTree& mesh,
+                                     const Pose& a_from_b) {
   std::vector<Sphere> balls;
   for (int i = 0; i < kTriangles; ++i) {
     const Sphere leaf = mesh.tree().spheres()[static_cast<std::size_t>(i)];
@@ -101,7 +102,7 @@ std::vector<Sphere> balls_at_corners(Random& random, const MeshTree& mesh, const
 }
 
 void compare_trees(double thin) {
-  Random random(3);
+  SceneRandom random(3);
   std::size_t pairs = 0;
   for (int i = 0; i < 100; ++i) {
     const MeshTree mesh(scattered_triangles(random, thin));

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector3d;
 
 TEST(Sweep, IsTrueAtThousandsOfInstants) {
-  Random random(1);
+  SceneRandom random(1);
   int counts[3] = {};
   int proved_near = 0;
   for (int i = 0; i < effort(400, 100); ++i) {
@@ -47,7 +47,7 @@ TEST(Sweep, IsTrueAtThousandsOfInstants) {
 
 // Motions that are shifted to pass at a chosen gap, on either side of nothing.
 TEST(Sweep, IsTrueNextToContact) {
-  Random random(2);
+  SceneRandom random(2);
   int free = 0;
   int not_free = 0;
   for (int i = 0; i < effort(120, 30); ++i) {
@@ -99,7 +99,7 @@ TEST(Sweep, IsTrueNextToContact) {
 }
 
 TEST(Sweep, KeepsAClearance) {
-  Random random(7);
+  SceneRandom random(7);
   int free = 0;
   int contacts = 0;
   for (int i = 0; i < 200; ++i) {
@@ -117,7 +117,7 @@ TEST(Sweep, KeepsAClearance) {
 }
 
 TEST(Sweep, DoesNotDependOnTheShapeOfTheTrees) {
-  Random random(8);
+  SceneRandom random(8);
   for (int i = 0; i < 60; ++i) {
     const std::vector<Sphere> spheres = random_spheres(random, 100, 1.0, 0.08);
     const Pose start = random.pose(1.0);
@@ -134,7 +134,7 @@ TEST(Sweep, DoesNotDependOnTheShapeOfTheTrees) {
 }
 
 TEST(Sweep, LimitsLeaveItUnknownAndTrue) {
-  Random random(9);
+  SceneRandom random(9);
   int unknown = 0;
   for (int i = 0; i < 60; ++i) {
     const Body a = random_body(random, 1.0);

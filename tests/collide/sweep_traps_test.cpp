@@ -22,7 +22,7 @@ TEST(Sweep, NothingTunnelsThroughAThinWall) {
   for (int y = -8; y <= 8; ++y) {
     for (int z = -8; z <= 8; ++z) wall.push_back({{0.0, 1e-3 * y, 1e-3 * z}, 7.2e-4});
   }
-  Random random(3);
+  SceneRandom random(3);
   for (int i = 0; i < 300; ++i) {
     // Through a point of the wall, very fast, at any time, turning or not.
     const Vector3d target(0.0, random.uniform(-7e-3, 7e-3), random.uniform(-7e-3, 7e-3));
@@ -54,7 +54,7 @@ std::vector<Sphere> rod() {
 }
 
 TEST(Sweep, ARodThatTurnsManyTimes) {
-  Random random(4);
+  SceneRandom random(4);
   for (int i = 0; i < 100; ++i) {
     const double rho = random.uniform(0.1, 1.0);
     const double at = random.uniform(0.3, 2.0 * kPi - 0.3);
@@ -129,7 +129,7 @@ TEST(Sweep, StartsOrEndsInContact) {
 }
 
 TEST(Sweep, TouchingForAnInstantIsContact) {
-  Random random(5);
+  SceneRandom random(5);
   for (int i = 0; i < effort(400, 60); ++i) {
     // A ball passes another whose surface it touches at exactly one instant; the numbers are exact.
     const double when = random.uniform(0.0, 1.0);
@@ -153,7 +153,7 @@ TEST(Sweep, TouchingForAnInstantIsContact) {
 
 // Poses far from the origin are rounded by more than the balls overlap. They overlap all the way.
 TEST(Sweep, RoundingOfThePosesHidesNoContact) {
-  Random random(7);
+  SceneRandom random(7);
   int apart_by_rounding = 0;
   for (int i = 0; i < 300; ++i) {
     const Vector3d place(std::ldexp(random.whole(1, 1000), 12), 0.0, 0.0);
@@ -173,7 +173,7 @@ TEST(Sweep, RoundingOfThePosesHidesNoContact) {
 }
 
 TEST(Sweep, BodiesThatMoveAlikeFarAwayNeedOneLook) {
-  Random random(6);
+  SceneRandom random(6);
   const std::vector<Sphere> spheres = random_spheres(random, 30, 1.0, 0.1);
   for (const double far : {0.0, 1e3, 1e6, 1e9}) {
     const Vector3d place = Vector3d(far, -0.5 * far, 0.25 * far);

@@ -114,7 +114,7 @@ void expect_same(const SweepResult& one, const SweepResult& other) {
   EXPECT_EQ(one.looks, other.looks);
 }
 
-Body random_body(Random& random, double size) {
+Body random_body(SceneRandom& random, double size) {
   const int count = random.whole(1, 12);
   const std::vector<Sphere> spheres = random_spheres(random, count, size, 0.3 * size);
   const Pose start = random.pose(1.5 * size);

@@ -5,7 +5,8 @@
 
 namespace spherule::test {
 
-std::vector<Sphere> random_spheres(Random& random, int count, double size, double largest_radius) {
+std::vector<Sphere> random_spheres(SceneRandom& random, int count, double size,
+                                   double largest_radius) {
   std::vector<Sphere> spheres;
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3d center = random.point(size);

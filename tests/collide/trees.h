@@ -3,7 +3,7 @@
 
 #include "collide/instruction_set.h"
 #include "spheretree/sphere_tree.h"
-#include "tests/collide/random.h"
+#include "tests/collide/scene_random.h"
 
 #include <memory>
 #include <vector>
@@ -11,7 +11,8 @@
 namespace spherule::test {
 
 // `count` spheres with centres in a cube of half side `size`.
-std::vector<Sphere> random_spheres(Random& random, int count, double size, double largest_radius);
+std::vector<Sphere> random_spheres(SceneRandom& random, int count, double size,
+                                   double largest_radius);
 
 // A tree as deep as can be: every inner node has `branching` - 1 leaves and, but for the last, one
 // inner node, which is its last child (or its first). All its balls meet near the origin, so that a

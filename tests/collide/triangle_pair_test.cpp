@@ -6,7 +6,7 @@
 #include "collide/internal/relative_pose.h"
 #include "spheretree/rounding.h"
 #include "tests/collide/exact_triangles.h"
-#include "tests/collide/random.h"
+#include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -38,8 +38,8 @@ struct Tally {
 };
 
 // Judges every scene in both orders.
-Tally judge(int count, std::uint64_t seed, const std::function<Scene(Random&)>& make) {
-  Random random(seed);
+Tally judge(int count, std::uint64_t seed, const std::function<Scene(SceneRandom&)>& make) {
+  SceneRandom random(seed);
   Tally tally;
   for (int i = 0; i < count; ++i) {
     const Scene scene = make(random);
@@ -65,23 +65,23 @@ Tally judge(int count, std::uint64_t seed, const std::function<Scene(Random&)>& 
   return tally;
 }
 
-Triangle random_triangle(Random& random) {
+Triangle random_triangle(SceneRandom& random) {
   return {random.point(1.0), random.point(1.0), random.point(1.0)};
 }
 // Its third corner lies near the first edge, or on it up to rounding.
-Triangle needle(Random& random, double width) {
+Triangle needle(SceneRandom& random, double width) {
   const Vector3d a = random.point(1.0), edge = random.point(1.0);
   return {a, a + edge, a + random.uniform(0.0, 1.0) * edge + width * random.point(1.0)};
 }
-Vector3d point_of(const Triangle& t, Random& random) {
+Vector3d point_of(const Triangle& t, SceneRandom& random) {
   const double v = random.uniform(0.0, 1.0), w = random.uniform(0.0, 1.0 - v);
   return t[0] + v * (t[1] - t[0]) + w * (t[2] - t[0]);
 }
-Vector3d point_of_edge(const Triangle& t, Random& random) {
+Vector3d point_of_edge(const Triangle& t, SceneRandom& random) {
   return t[0] + random.uniform(0.0, 1.0) * (t[1] - t[0]);
 }
 // Zero, some units in the last place, or a small distance, on either side.
-double offset(Random& random) {
+double offset(SceneRandom& random) {
   constexpr double kOffsets[] = {0.0, 0x1p-53, 0x1p-51, 1e-13, 1e-11, 1e-9, 1e-6, 1e-3};
   return kOffsets[random.whole(0, 7)] * (random.whole(0, 1) == 0 ? -1.0 : 1.0);
 }
@@ -90,12 +90,12 @@ Triangle moved(Triangle t, const Vector3d& by) {
   return t;
 }
 // So that `from`, a point of t, comes to `to` but for a small distance.
-Triangle brought(const Triangle& t, const Vector3d& from, const Vector3d& to, Random& random) {
+Triangle brought(const Triangle& t, const Vector3d& from, const Vector3d& to, SceneRandom& random) {
   return moved(t, to - from + offset(random) * random.point(1.0).normalized());
 }
 
 TEST(TrianglePair, RandomOnesAreDecidedForSure) {
-  const Tally tally = judge(effort(3000, 750), 1, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(3000, 750), 1, [](SceneRandom& random) -> Scene {
     return {random_triangle(random), random_triangle(random)};
   });
   EXPECT_GT(tally.apart, effort(1000, 200));
@@ -104,7 +104,7 @@ TEST(TrianglePair, RandomOnesAreDecidedForSure) {
 }
 
 TEST(TrianglePair, CornerAgainstFace) {
-  const Tally tally = judge(effort(3000, 750), 2, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(3000, 750), 2, [](SceneRandom& random) -> Scene {
     const Triangle a = random_triangle(random), b = random_triangle(random);
     return {a, brought(b, b[0], point_of(a, random), random)};
   });
@@ -115,7 +115,7 @@ TEST(TrianglePair, CornerAgainstFace) {
 }
 
 TEST(TrianglePair, EdgeAgainstEdge) {
-  const Tally tally = judge(effort(3000, 750), 3, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(3000, 750), 3, [](SceneRandom& random) -> Scene {
     const Triangle a = random_triangle(random), b = random_triangle(random);
     return {a, brought(b, point_of_edge(b, random), point_of_edge(a, random), random)};
   });
@@ -126,7 +126,7 @@ TEST(TrianglePair, EdgeAgainstEdge) {
 }
 
 TEST(TrianglePair, CornerAgainstCornerOrEdge) {
-  const Tally tally = judge(effort(3000, 750), 4, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(3000, 750), 4, [](SceneRandom& random) -> Scene {
     const Triangle a = random_triangle(random), b = random_triangle(random);
     const Vector3d to = random.whole(0, 1) == 0 ? a[2] : point_of_edge(a, random);
     return {a, brought(b, b[0], to, random)};
@@ -137,7 +137,7 @@ TEST(TrianglePair, CornerAgainstCornerOrEdge) {
 }
 
 TEST(TrianglePair, InOnePlane) {
-  const Tally tally = judge(effort(2000, 500), 5, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(2000, 500), 5, [](SceneRandom& random) -> Scene {
     // On a grid, so that corners and edges often coincide; each along the axes' plane in turn.
     const int axis = random.whole(0, 2);
     const auto triangle = [&] {
@@ -159,7 +159,7 @@ TEST(TrianglePair, InOnePlane) {
 
 TEST(TrianglePair, NeedlesSegmentsAndPoints) {
   for (const double width : {1e-6, 1e-9, 1e-13, 0.0}) {
-    const Tally tally = judge(effort(1000, 250), 6, [width](Random& random) -> Scene {
+    const Tally tally = judge(effort(1000, 250), 6, [width](SceneRandom& random) -> Scene {
       const Triangle a = random.whole(0, 1) == 0 ? needle(random, width) : random_triangle(random);
       Triangle b = needle(random, width);
       if (random.whole(0, 4) == 0) b = {b[0], b[0], b[random.whole(0, 1)]};
@@ -174,7 +174,7 @@ TEST(TrianglePair, NeedlesSegmentsAndPoints) {
 }
 
 TEST(TrianglePair, SmallFarFromTheOrigin) {
-  const Tally tally = judge(effort(2000, 500), 7, [](Random& random) -> Scene {
+  const Tally tally = judge(effort(2000, 500), 7, [](SceneRandom& random) -> Scene {
     const Vector3d far = random.point(1e6);
     const Triangle a = moved(random_triangle(random), far), b = random_triangle(random);
     return {a, brought(b, b[0], point_of(a, random), random)};
@@ -187,7 +187,7 @@ TEST(TrianglePair, SmallFarFromTheOrigin) {
 // Far smaller than the scene, and so small that squares of areas underflow.
 TEST(TrianglePair, TinyOnesAreNotTakenForApart) {
   for (const double size : {1e-6, 1e-30, 1e-90, 1e-150, 1e-300}) {
-    judge(effort(60, 20), 8, [size](Random& random) -> Scene {
+    judge(effort(60, 20), 8, [size](SceneRandom& random) -> Scene {
       Scene scene{random_triangle(random), random_triangle(random)};
       for (Vector3d& corner : scene.a) corner *= size;
       for (Vector3d& corner : scene.b) corner *= random.whole(0, 1) == 0 ? 1.0 : size;
@@ -199,7 +199,7 @@ TEST(TrianglePair, TinyOnesAreNotTakenForApart) {
 // A triangle that is moved by as much as its depth, in any direction, still touches; by a bit more,
 // in the direction of the least overlap, it does not always.
 TEST(TrianglePair, KeepsTouchingUpToItsDepth) {
-  Random random(11);
+  SceneRandom random(11);
   int deep = 0, tight = 0;
   for (int i = 0; i < 800; ++i) {
     const Triangle a = random.whole(0, 2) == 0 ? needle(random, 0.1) : random_triangle(random);

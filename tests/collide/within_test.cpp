@@ -33,7 +33,7 @@ struct Scene {
   }
 };
 
-Scene random_scene(Random& random, int largest_count) {
+Scene random_scene(SceneRandom& random, int largest_count) {
   const double size = std::ldexp(1.0, random.whole(-20, 20));
   const auto tree = [&] {
     return build_tree(random_spheres(random, random.whole(1, largest_count), size, 0.1 * size),
@@ -51,7 +51,7 @@ bool exactly_within(const PlacedBalls& balls, const Rational& clearance) {
 }
 
 TEST(Within, IsExactToTheSlackOnPairsOfBalls) {
-  Random random(1);
+  SceneRandom random(1);
   int needed = 0;
   for (int i = 0; i < effort(800, 200); ++i) {
     const double size = std::ldexp(1.0, random.whole(-20, 20));
@@ -86,7 +86,7 @@ TEST(Within, IsExactToTheSlackOnPairsOfBalls) {
 }
 
 TEST(Within, IsWhatTheTestOfSomePairSays) {
-  Random random(2);
+  SceneRandom random(2);
   int counts[2] = {};
   for (int i = 0; i < 300; ++i) {
     const Scene scene = random_scene(random, 120);

@@ -11,14 +11,14 @@
 
 namespace spherule::test {
 
-std::shared_ptr<const SphereTree> random_tree(Random& random, double size) {
+std::shared_ptr<const SphereTree> random_tree(SceneRandom& random, double size) {
   const int count = random.whole(1, 60);
   std::vector<Sphere> spheres = random_spheres(random, count, size, 0.1 * size);
   return std::make_shared<const SphereTree>(
       build_tree(spheres, {.branching = random.whole(2, SphereTree::kMaxBranching)}));
 }
 
-RobotModel random_robot_with_trees(Random& random, double size) {
+RobotModel random_robot_with_trees(SceneRandom& random, double size) {
   RobotModel robot = random_robot(random, random.whole(1, 8), random.whole(0, 1) == 1);
   for (std::size_t link = 0; link < robot.links().size(); ++link) {
     for (int i = random.whole(0, 2); i > 0; --i) {
@@ -28,7 +28,7 @@ RobotModel random_robot_with_trees(Random& random, double size) {
   return robot;
 }
 
-std::vector<PlacedTree> random_obstacles(Random& random) {
+std::vector<PlacedTree> random_obstacles(SceneRandom& random) {
   std::vector<PlacedTree> obstacles;
   for (int k = random.whole(1, 3); k > 0; --k) {
     obstacles.push_back({random_tree(random, 1.0), random.pose(2.0)});
@@ -36,7 +36,7 @@ std::vector<PlacedTree> random_obstacles(Random& random) {
   return obstacles;
 }
 
-std::optional<Sphere> random_sphere_of(Random& random, const RobotModel& robot,
+std::optional<Sphere> random_sphere_of(SceneRandom& random, const RobotModel& robot,
                                        std::span<const Pose> world_from_link) {
   std::vector<Sphere> spheres;
   for (std::size_t link = 1; link < robot.links().size(); ++link) {

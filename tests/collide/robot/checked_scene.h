@@ -4,7 +4,7 @@
 // Random robots with spheres among random obstacles, and what a RobotChecker has to say of them.
 
 #include "collide/robot/robot_checker.h"
-#include "tests/collide/random.h"
+#include "tests/collide/scene_random.h"
 
 #include <memory>
 #include <optional>
@@ -14,15 +14,15 @@
 namespace spherule::test {
 
 // Up to 60 spheres within `size`.
-std::shared_ptr<const SphereTree> random_tree(Random& random, double size);
+std::shared_ptr<const SphereTree> random_tree(SceneRandom& random, double size);
 
-RobotModel random_robot_with_trees(Random& random, double size);
+RobotModel random_robot_with_trees(SceneRandom& random, double size);
 
 // One to three obstacles.
-std::vector<PlacedTree> random_obstacles(Random& random);
+std::vector<PlacedTree> random_obstacles(SceneRandom& random);
 
 // One of the spheres that are not on the first link, in the world; none if there are none.
-std::optional<Sphere> random_sphere_of(Random& random, const RobotModel& robot,
+std::optional<Sphere> random_sphere_of(SceneRandom& random, const RobotModel& robot,
                                        std::span<const Pose> world_from_link);
 
 // By the exact queries.

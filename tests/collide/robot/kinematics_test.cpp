@@ -54,7 +54,7 @@ KDL::Tree kdl_tree(const RobotModel& robot) {
 }
 
 void compare_with_kdl(bool branching) {
-  Random random(1);
+  SceneRandom random(1);
   for (int i = 0; i < 100; ++i) {
     const RobotModel robot = random_robot(random, random.whole(1, 12), branching);
     if (robot.variable_count() == 0) continue;  // KDL asks for a position even then
@@ -148,7 +148,7 @@ ExactPose compose(const ExactPose& a, const ExactPose& b) {
 }
 
 TEST(Kinematics, ErrorBoundCoversTheErrorAndIsNotIdle) {
-  Random random(2);
+  SceneRandom random(2);
   double worst = 0.0;
   for (int i = 0; i < 60; ++i) {
     const RobotModel robot = random_robot(random, random.whole(1, 10), i % 2 == 0);
@@ -178,7 +178,7 @@ TEST(Kinematics, ErrorBoundCoversTheErrorAndIsNotIdle) {
 }
 
 TEST(Kinematics, PutsTheRootWhereItIsTold) {
-  Random random(3);
+  SceneRandom random(3);
   const RobotModel robot = random_robot(random, 3, false);
   const Pose root = random.pose(1.0);
   const Pose first = poses_of(robot, random_configuration(random, robot, 1.0), root)[0];
@@ -187,7 +187,7 @@ TEST(Kinematics, PutsTheRootWhereItIsTold) {
 }
 
 TEST(Kinematics, RefusesABadConfiguration) {
-  Random random(4);
+  SceneRandom random(4);
   RobotModel robot;
   robot.add_link("arm", "base_link", {.name = "hinge", .type = JointType::kRevolute});
   std::vector<Pose> poses;
@@ -203,7 +203,7 @@ TEST(Kinematics, RefusesABadConfiguration) {
 }
 
 TEST(RobotCollides, IsTheCollisionOfAnyTreeOnAnyLink) {
-  Random random(5);
+  SceneRandom random(5);
   int hits = 0;
   for (int i = 0; i < 60; ++i) {
     RobotModel robot = random_robot(random, 5, true);

@@ -37,7 +37,7 @@ struct Path {
 
 // From configuration to configuration in steps of about `step`, with as much noise; a step of zero
 // stands for configurations that have nothing to do with each other.
-Path random_path(Random& random, const RobotModel& robot, std::size_t count, double step) {
+Path random_path(SceneRandom& random, const RobotModel& robot, std::size_t count, double step) {
   Path path{.variables = static_cast<std::size_t>(robot.variable_count())};
   std::vector<double> at = random_configuration(random, robot, 3.2);
   std::vector<double> direction = random_configuration(random, robot, step);
@@ -82,7 +82,7 @@ struct Count {
 };
 
 TEST(RobotBatch, AnswersAsTheExactQueriesDo) {
-  Random random(41);
+  SceneRandom random(41);
   Count count;
   for (int i = 0; i < effort(400, 20); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
@@ -115,7 +115,7 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDo) {
 // A ball stands where one of the robot is in the middle of a path, at a distance that single
 // precision cannot tell from contact, or can only just, or that is about as long as a step.
 TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
-  Random random(42);
+  SceneRandom random(42);
   Count count;
   for (int i = 0; i < effort(1500, 100); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
@@ -150,7 +150,7 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
 // Many small spheres in the way of a search make it run out of room; a block with numbers far out
 // of range among others is answered as well.
 TEST(RobotBatch, AnswersWhereThereIsTooMuchToRemember) {
-  Random random(43);
+  SceneRandom random(43);
   RobotModel robot("base");
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
   robot.attach("arm", std::make_shared<const SphereTree>(

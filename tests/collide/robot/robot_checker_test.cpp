@@ -36,7 +36,7 @@ bool expect_answer(const RobotModel& robot, const std::vector<PlacedTree>& obsta
 }
 
 TEST(RobotChecker, AnswersAsTheExactQueriesDo) {
-  Random random(21);
+  SceneRandom random(21);
   int hits = 0;
   int free = 0;
   for (int i = 0; i < effort(150, 15); ++i) {
@@ -65,7 +65,7 @@ TEST(RobotChecker, AnswersAsTheExactQueriesDo) {
 }
 
 TEST(RobotChecker, ClearancesAreThoseOfTheExactQueries) {
-  Random random(24);
+  SceneRandom random(24);
   int near = 0;
   int far = 0;
   for (int i = 0; i < effort(300, 25); ++i) {
@@ -121,7 +121,7 @@ TEST(RobotChecker, ClearancesAreThoseOfTheExactQueries) {
 // A sphere of the robot is met by one that stands at a distance which single precision cannot tell
 // from contact, or can only just.
 TEST(RobotChecker, AnswersAsTheExactQueriesDoAtContact) {
-  Random random(22);
+  SceneRandom random(22);
   int hits = 0;
   int free = 0;
   for (int i = 0; i < effort(3000, 300); ++i) {
@@ -153,7 +153,7 @@ TEST(RobotChecker, AnswersAsTheExactQueriesDoAtContact) {
 
 // Axes that point nearly backwards, and trees far from their frames, whose offsets cancel.
 TEST(RobotChecker, AnswersAsTheExactQueriesDoForOddFrames) {
-  Random random(23);
+  SceneRandom random(23);
   int hits = 0;
   for (int i = 0; i < effort(4000, 300); ++i) {
     RobotModel robot("base");

@@ -46,7 +46,7 @@ void expect_true(const RobotChecker& checker, const std::vector<double>& from,
 }
 
 TEST(RobotEdge, WhatIsProvedFreeIsFree) {
-  Random random(51);
+  SceneRandom random(51);
   int free = 0;
   int hits = 0;
   int unknown = 0;
@@ -85,7 +85,7 @@ RobotModel long_arm() {
 }
 
 TEST(RobotEdge, NothingIsPassedThrough) {
-  Random random(52);
+  SceneRandom random(52);
   const RobotModel robot = long_arm();
   for (int i = 0; i < effort(500, 50); ++i) {
     const double angle = random.uniform(-40.0, 40.0);
@@ -116,7 +116,7 @@ TEST(RobotEdge, NothingIsPassedThrough) {
 
 // A shift and a turn of bodies on bodies, at a wall of spheres with no gap.
 TEST(RobotEdge, AWallIsNotPassed) {
-  Random random(53);
+  SceneRandom random(53);
   std::vector<Sphere> wall;
   for (int i = -20; i <= 20; ++i) {
     for (int k = -20; k <= 20; ++k) wall.push_back({{1.0, 0.02 * i, 0.02 * k}, 0.015});

@@ -20,7 +20,7 @@
 namespace spherule::test {
 namespace {
 
-std::shared_ptr<const MeshTree> random_mesh(Random& random, double size) {
+std::shared_ptr<const MeshTree> random_mesh(SceneRandom& random, double size) {
   TriangleMesh mesh;
   const int count = random.whole(1, 40);
   for (int i = 0; i < count; ++i) {
@@ -32,7 +32,7 @@ std::shared_ptr<const MeshTree> random_mesh(Random& random, double size) {
   return std::make_shared<const MeshTree>(mesh);
 }
 
-std::vector<PlacedTree> random_obstacles(Random& random) {
+std::vector<PlacedTree> random_obstacles(SceneRandom& random) {
   std::vector<PlacedTree> obstacles;
   for (int k = random.whole(1, 3); k > 0; --k) {
     obstacles.push_back({std::make_shared<const SphereTree>(
@@ -43,7 +43,7 @@ std::vector<PlacedTree> random_obstacles(Random& random) {
 }
 
 TEST(RobotMeshChecker, AnswersAsThePairsDoOnEveryInstructionSet) {
-  Random random(71);
+  SceneRandom random(71);
   int hits = 0;
   int free = 0;
   for (int i = 0; i < 60; ++i) {
@@ -93,7 +93,7 @@ TEST(RobotMeshChecker, AnswersAsThePairsDoOnEveryInstructionSet) {
 }
 
 TEST(RobotMeshChecker, RefusesWhatItCannotUse) {
-  Random random(72);
+  SceneRandom random(72);
   const RobotModel robot = random_robot(random, 2, false);
   const auto mesh = random_mesh(random, 0.2);
   const std::vector<PlacedTree> obstacles = random_obstacles(random);

@@ -20,7 +20,7 @@ namespace spherule::test {
 namespace {
 
 // A closed tetrahedron, covered by one ball a corner's cell and many more than it needs.
-std::shared_ptr<const CoveredMesh> tetrahedron(Random& random, double size) {
+std::shared_ptr<const CoveredMesh> tetrahedron(SceneRandom& random, double size) {
   TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                     {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
   for (Eigen::Vector3d& v : mesh.vertices) v = size * (v - Eigen::Vector3d(0.25, 0.25, 0.25));
@@ -37,7 +37,7 @@ std::shared_ptr<const SphereTree> cover_of(const std::shared_ptr<const CoveredMe
 }
 
 TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
-  Random random(61);
+  SceneRandom random(61);
   int hits = 0;
   int removed = 0;
   int free = 0;
@@ -102,7 +102,7 @@ TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
 // Along paths, with steps of any size, stops and jumps, what is remembered changes no answer:
 // neither of those before, nor of a block or a motion that was asked for in between.
 TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
-  Random random(63);
+  SceneRandom random(63);
   int hits = 0;
   int free = 0;
   int changes = 0;
@@ -179,7 +179,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
 
 // A small body inside a large one touches none of its triangles.
 TEST(RobotMesh, WhatLiesInsideCollides) {
-  Random random(62);
+  SceneRandom random(62);
   RobotModel robot("base");
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
   const auto inner = tetrahedron(random, 0.02);

@@ -5,7 +5,7 @@
 
 namespace spherule::test {
 
-RobotModel random_robot(Random& random, int joints, bool branching) {
+RobotModel random_robot(SceneRandom& random, int joints, bool branching) {
   RobotModel robot("link_0");
   for (int i = 0; i < joints; ++i) {
     const int parent = branching ? random.whole(0, i) : i;
@@ -21,7 +21,8 @@ RobotModel random_robot(Random& random, int joints, bool branching) {
   return robot;
 }
 
-std::vector<double> random_configuration(Random& random, const RobotModel& robot, double largest) {
+std::vector<double> random_configuration(SceneRandom& random, const RobotModel& robot,
+                                         double largest) {
   std::vector<double> configuration;
   for (int i = 0; i < robot.variable_count(); ++i) {
     configuration.push_back(random.uniform(-largest, largest));

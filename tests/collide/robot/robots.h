@@ -2,16 +2,17 @@
 #pragma once
 
 #include "collide/robot/robot_model.h"
-#include "tests/collide/random.h"
+#include "tests/collide/scene_random.h"
 
 #include <vector>
 
 namespace spherule::test {
 
 // A mechanism of `joints` random joints: a serial chain, or a tree where `branching`.
-RobotModel random_robot(Random& random, int joints, bool branching);
+RobotModel random_robot(SceneRandom& random, int joints, bool branching);
 
 // Positions of all its variables within +-`largest`.
-std::vector<double> random_configuration(Random& random, const RobotModel& robot, double largest);
+std::vector<double> random_configuration(SceneRandom& random, const RobotModel& robot,
+                                         double largest);
 
 }  // namespace spherule::test

@@ -10,9 +10,9 @@
 namespace spherule::test {
 
 // Numbers from a seeded engine, the same with every standard library.
-class Random {
+class SceneRandom {
  public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  explicit SceneRandom(std::uint64_t seed) : engine_(seed) {}
 
   std::uint64_t bits() { return engine_(); }
   double uniform(double low, double high) {
