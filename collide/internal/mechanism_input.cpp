@@ -85,6 +85,9 @@ std::vector<Chain> chains_of(std::span<const MechanismFrame> frames) {
     chain.length += frame.parent_from_frame.translation().norm() +
                     (frame.prismatic ? MechanismCheck::kLargestVariable : 0.0);
     chain.frames += 1.0;
+    if (chain.frames > kLongestLaneChain) {
+      throw Error("mechanism", "too many frames stand on each other");
+    }
     chains.push_back(chain);
   }
   return chains;

@@ -31,7 +31,7 @@ struct Chain {
   double frames = 0.0;
 };
 
-// Of every frame.
+// Of every frame; throws Error for one of more than kLongestLaneChain frames.
 std::vector<Chain> chains_of(std::span<const MechanismFrame> frames);
 
 // Throws Error for instructions that this machine has not got.

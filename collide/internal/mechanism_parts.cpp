@@ -142,11 +142,6 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
                       obstacle.tree->reach() + obstacle.root_from_tree.translation().norm()});
   }
   if (!(bound <= kMaxCoordinate)) throw Error("mechanism", "it or an obstacle reaches too far");
-  if (std::any_of(chains.begin(), chains.end(), [](const internal::Chain& chain) {
-        return chain.frames > internal::kLongestLaneChain;
-      })) {
-    throw Error("mechanism", "too many frames stand on each other");
-  }
   parts->trees.reserve(body_trees.size() + obstacle_trees.size());
   int body_depth = 1;
   int obstacle_depth = 1;
