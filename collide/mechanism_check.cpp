@@ -2,8 +2,8 @@
 #include "collide/mechanism_check.h"
 
 #include "collide/internal/mechanism_parts.h"
-#include "collide/within.h"
 #include "collide/internal/single_precision.h"
+#include "collide/within.h"
 
 #include <algorithm>
 #include <cassert>

@@ -24,9 +24,9 @@
 // the axis and 1e-14 of it for rounding. The sums err by far less than kRelative.
 
 #include "collide/internal/mechanism_parts.h"
+#include "collide/internal/single_precision.h"
 #include "collide/mechanism_check.h"
 #include "spheretree/error.h"
-#include "collide/internal/single_precision.h"
 
 #include <algorithm>
 #include <array>

@@ -7,8 +7,8 @@
 #include "collide/internal/mesh_search.h"
 #include "collide/internal/packed_mesh.h"
 #include "collide/internal/packed_tree.h"
-#include "collide/internal/single_precision.h"
 #include "collide/internal/relative_pose.h"
+#include "collide/internal/single_precision.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 
