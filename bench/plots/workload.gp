@@ -19,7 +19,7 @@ set logscale y
 set style fill solid 0.85 noborder
 set boxwidth 0.6
 set xtics rotate by -20
-set rmargin 9
+set rmargin 14
 stats data('ratios') using 2 nooutput name 'ratio'
 set yrange [(ratio_min < 1 ? ratio_min / 3 : 0.3):ratio_max * 3]
 plot data('ratios') using 0:2:xtic(1) with boxes lc rgb '#2a6f97' notitle, \
