@@ -61,7 +61,7 @@ struct MeshMechanismCheck::Translator {
 
 namespace {
 
-using Triangle = internal::PackedMesh::Triangle;
+using Triangle = internal::Triangle;
 
 // Error budget, in the words of internal/mechanism_parts.cpp: v = 2^-24, n frames between the root
 // and a body, W how far any point of it can be from the root, X the lengths that changes of frame

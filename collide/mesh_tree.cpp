@@ -11,7 +11,7 @@
 namespace spherule {
 namespace {
 
-using Triangle = std::array<Eigen::Vector3d, 3>;
+using Triangle = internal::Triangle;
 
 std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   validate(mesh, "mesh");

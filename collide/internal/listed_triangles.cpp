@@ -92,7 +92,7 @@ class ListedTriangles::BoxSearch {
       const Side& side = of.sides_[i];
       roots_[i] = &side.patches.root(i == 0 ? sphere_a : sphere_b);
       from_other_[i] =
-          box_change(side.from_other, side.image_of(balls[1 - i].center) - balls[i].center,
+          box_change(side.from_other, side.from_other(balls[1 - i].center) - balls[i].center,
                      of.image_pad_, radii, kBoxPad);
     }
   }
@@ -153,7 +153,7 @@ class ListedTriangles::BoxSearch {
   void see(const Task& task) {
     const Side& side = of_.sides_[task.side];
     const Triangle& corners = of_.sides_[1 - task.side].mesh.mesh().triangle(~task.other);
-    for (std::size_t k = 0; k < 3; ++k) seen_[k] = side.image_of(corners[k]);
+    for (std::size_t k = 0; k < 3; ++k) seen_[k] = side.from_other(corners[k]);
     seen_normal_ = normal_of(seen_);
   }
 
@@ -198,11 +198,6 @@ Triangle ListedTriangles::Side::placed(std::int32_t triangle) const {
   return result;
 }
 
-Vector3d ListedTriangles::Side::image_of(const Vector3d& p) const {
-  return {from_other.x(p.x(), p.y(), p.z()), from_other.y(p.x(), p.y(), p.z()),
-          from_other.z(p.x(), p.y(), p.z())};
-}
-
 std::optional<TrianglePair> ListedTriangles::touching(std::int32_t sphere_a,
                                                       std::int32_t sphere_b) const {
   return BoxSearch(*this, sphere_a, sphere_b).run();
@@ -217,7 +212,7 @@ bool ListedTriangles::holds_a_component(const Side& side, const CoveredMesh& oth
   if (!inside.has_inside()) return false;
   const std::span<const Vector3d> points = other.inside().component_points();
   return std::any_of(points.begin(), points.end(), [&](const Vector3d& point) {
-    return inside.contains(side.mesh.mesh(), side.image_of(point), image_pad_);
+    return inside.contains(side.mesh.mesh(), side.from_other(point), image_pad_);
   });
 }
 

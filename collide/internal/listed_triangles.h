@@ -54,7 +54,6 @@ class ListedTriangles {
   struct Side {
     // In the frame of the corners.
     Triangle placed(std::int32_t triangle) const;
-    Eigen::Vector3d image_of(const Eigen::Vector3d& point_of_other) const;
     Sphere ball(std::int32_t sphere) const {
       return mesh.cover().spheres()[static_cast<std::size_t>(sphere)];
     }

@@ -67,13 +67,11 @@ bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& wo
                      .root = {}};
   std::copy_n(to_mesh.r, 9, balls.rotation);
   std::copy_n(to_mesh.t, 3, balls.translation);
-  const Eigen::Vector3d c = a.ball(0).center;
-  balls.root = {static_cast<float>(to_mesh.x(c.x(), c.y(), c.z())),
-                static_cast<float>(to_mesh.y(c.x(), c.y(), c.z())),
-                static_cast<float>(to_mesh.z(c.x(), c.y(), c.z())),
-                static_cast<float>(a.ball(0).radius) + growth,
-                a.is_leaf(0) ? ~a.sphere_index(0) : 0,
-                0};
+  const Eigen::Vector3d center = to_mesh(a.ball(0).center);
+  balls.root = {
+      static_cast<float>(center.x()),        static_cast<float>(center.y()),
+      static_cast<float>(center.z()),        static_cast<float>(a.ball(0).radius) + growth,
+      a.is_leaf(0) ? ~a.sphere_index(0) : 0, 0};
   MeshTasks tasks;  // 24 KiB that are not touched before they are needed
   Question question{a, b, pose};
   return kernels.meets(mesh.view(), balls, 3.0F * growth, tasks, &Question::confirm, &question);

@@ -17,7 +17,6 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 using Eigen::Vector3d;
-using Triangle = PackedMesh::Triangle;
 
 constexpr int kWidth = MeshNode::kWidth;
 static_assert(kWidth == MeshBlock::kWidth);
@@ -49,14 +48,8 @@ bool nearly_unit(const Vector3d& x) {
   return x.squaredNorm() <= 1.0 + 8.0 * kFloatRoundoff * kSure;
 }
 
-using Edges = std::array<Vector3d, 3>;
-
-Edges edges_of(const Triangle& t) {
-  return {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
-}
-
 bool is_high(const Triangle& t) {
-  const Edges edges = edges_of(t);
+  const std::array<Vector3d, 3> edges = edges_of(t);
   const double longest =
       std::max({edges[0].squaredNorm(), edges[1].squaredNorm(), edges[2].squaredNorm()});
   // The longest edge times the height on it.
@@ -66,7 +59,7 @@ bool is_high(const Triangle& t) {
 
 Sides sides_of(const Triangle& t, double bound) {
   Sides result;
-  const Edges edges = edges_of(t);
+  const std::array<Vector3d, 3> edges = edges_of(t);
   const Vector3d normal = edges[0].cross(edges[1]).normalized();
   result.normal = each_in_single_precision(normal);
   const auto along_normal = [&](int i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collide/internal/mesh_kernel.h"
+#include "collide/internal/triangle_pair.h"
 #include "spheretree/sphere.h"
 
 #include <Eigen/Core>
@@ -29,8 +30,6 @@ namespace spherule::internal {
 // lanes of not-a-numbers instead, which nothing finds apart; boxes hold their balls.
 class PackedMesh {
  public:
-  using Triangle = std::array<Eigen::Vector3d, 3>;
-
   // Below this a triangle is as good as a segment, see ball_triangle.h.
   static constexpr double kLowest = 0x1p-24;
 

@@ -79,6 +79,9 @@ struct FrameChange {
   double x(double px, double py, double pz) const { return row(0, px, py, pz); }
   double y(double px, double py, double pz) const { return row(1, px, py, pz); }
   double z(double px, double py, double pz) const { return row(2, px, py, pz); }
+  Eigen::Vector3d operator()(const Eigen::Vector3d& p) const {
+    return {x(p.x(), p.y(), p.z()), y(p.x(), p.y(), p.z()), z(p.x(), p.y(), p.z())};
+  }
 
  private:
   double row(int i, double px, double py, double pz) const {

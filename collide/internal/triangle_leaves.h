@@ -44,7 +44,7 @@ class TriangleLeaves {
   bool touches(std::int32_t sphere, std::int32_t triangle) const {
     const Sphere& ball = a_.spheres()[static_cast<std::size_t>(sphere)];
     return pose_.touches(ball, b_.tree().spheres()[static_cast<std::size_t>(triangle)]) &&
-           !are_apart(image(ball), b_.triangle(triangle), ball.radius + axis_pad_) &&
+           !are_apart(b_from_a_(ball.center), b_.triangle(triangle), ball.radius + axis_pad_) &&
            lower(ball, triangle) <= ball.radius + pad_;
   }
   double gap(NodePair pair) const {
@@ -54,15 +54,10 @@ class TriangleLeaves {
   }
 
  private:
-  Eigen::Vector3d image(const Sphere& ball) const {
-    const Eigen::Vector3d& c = ball.center;
-    return {b_from_a_.x(c.x(), c.y(), c.z()), b_from_a_.y(c.x(), c.y(), c.z()),
-            b_from_a_.z(c.x(), c.y(), c.z())};
-  }
-
   double lower(const Sphere& ball, std::int32_t triangle) const {
     const std::array<Eigen::Vector3d, 3>& corners = b_.triangle(triangle);
-    return point_triangle_distance(image(ball), corners[0], corners[1], corners[2]).lower;
+    return point_triangle_distance(b_from_a_(ball.center), corners[0], corners[1], corners[2])
+        .lower;
   }
 
   const SphereTree& a_;

@@ -19,10 +19,6 @@ using Eigen::Vector3d;
 
 constexpr double kOverlap = 400.0 * kUnitRoundoff;
 
-std::array<Vector3d, 3> edges_of(const Triangle& t) {
-  return {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
-}
-
 double longest(const std::array<Vector3d, 3>& edges) {
   return std::sqrt(
       std::max({edges[0].squaredNorm(), edges[1].squaredNorm(), edges[2].squaredNorm()}));

@@ -10,6 +10,10 @@ namespace spherule::internal {
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
+inline std::array<Eigen::Vector3d, 3> edges_of(const Triangle& t) {
+  return {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+}
+
 // Distance of the projections on `axis`, in units of its length; negative where they overlap.
 inline double gap_along(const Eigen::Vector3d& axis, const Triangle& a, const Triangle& b) {
   const double a0 = axis.dot(a[0]), a1 = axis.dot(a[1]), a2 = axis.dot(a[2]);

@@ -3,6 +3,7 @@
 
 #include "collide/collide.h"
 #include "collide/robot/internal/moving_frames.h"
+#include "collide/robot/internal/tested_pairs.h"
 #include "collide/robot/kinematics.h"
 #include "collide/within.h"
 #include "spheretree/error.h"
@@ -30,27 +31,13 @@ double pose_error(const RobotModel& robot, std::span<const PlacedTree> obstacles
   return internal::moving_pose_error(robot, reach, scene, world_from_root.translation().norm());
 }
 
-bool is_untested(std::span<const UntestedPair> untested, std::size_t link, std::size_t obstacle) {
-  return std::any_of(untested.begin(), untested.end(), [&](const UntestedPair& pair) {
-    return static_cast<std::size_t>(pair.link) == link && pair.obstacle == obstacle;
-  });
-}
-
 void check_input(const RobotModel& robot, std::span<const PlacedTree> obstacles,
                  const RobotCheckerOptions& options) {
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    if (!obstacles[i].tree) throw Error("obstacle " + std::to_string(i), "it has no tree");
-  }
+  internal::check_obstacles(obstacles);
   for (const auto& mesh : options.meshes) {
     if (!mesh) throw Error("robot checker", "a mesh is missing");
   }
-  for (const UntestedPair& pair : options.untested) {
-    if (pair.link < 0 || static_cast<std::size_t>(pair.link) >= robot.links().size() ||
-        pair.obstacle >= obstacles.size()) {
-      throw Error("untested pair", "link " + std::to_string(pair.link) + " or obstacle " +
-                                       std::to_string(pair.obstacle) + " is not there");
-    }
-  }
+  internal::check_untested(options.untested, robot, obstacles.size());
 }
 
 }  // namespace
@@ -76,7 +63,7 @@ RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
                       frames.frame_from_link[link]};
       const bool moves = frames.frame_of_link[link] >= 0;
       for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-        if (is_untested(options.untested, link, i)) continue;
+        if (internal::is_untested(options.untested, link, i)) continue;
         if (moves) {
           pairs_.push_back({static_cast<int>(bodies_.size()), static_cast<int>(i)});
         } else {

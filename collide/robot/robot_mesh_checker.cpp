@@ -2,6 +2,7 @@
 #include "collide/robot/robot_mesh_checker.h"
 
 #include "collide/robot/internal/moving_frames.h"
+#include "collide/robot/internal/tested_pairs.h"
 #include "collide/robot/kinematics.h"
 #include "spheretree/error.h"
 
@@ -15,23 +16,15 @@ namespace {
 
 void check_input(const RobotModel& robot, std::span<const LinkMesh> meshes,
                  std::span<const PlacedTree> obstacles, std::span<const UntestedPair> untested) {
-  const auto is_link = [&](int link) {
-    return link >= 0 && static_cast<std::size_t>(link) < robot.links().size();
-  };
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const std::string name = "mesh " + std::to_string(i);
     if (!meshes[i].mesh) throw Error(name, "it is missing");
-    if (!is_link(meshes[i].link)) throw Error(name, "it is on no link");
-  }
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    if (!obstacles[i].tree) throw Error("obstacle " + std::to_string(i), "it has no tree");
-  }
-  for (const UntestedPair& pair : untested) {
-    if (!is_link(pair.link) || pair.obstacle >= obstacles.size()) {
-      throw Error("untested pair", "link " + std::to_string(pair.link) + " or obstacle " +
-                                       std::to_string(pair.obstacle) + " is not there");
+    if (meshes[i].link < 0 || static_cast<std::size_t>(meshes[i].link) >= robot.links().size()) {
+      throw Error(name, "it is on no link");
     }
   }
+  internal::check_obstacles(obstacles);
+  internal::check_untested(untested, robot, obstacles.size());
 }
 
 }  // namespace
@@ -57,11 +50,7 @@ RobotMeshChecker::RobotMeshChecker(RobotModel robot, std::vector<LinkMesh> meshe
     const bool moves = frames.frame_of_link[link] >= 0;
     reach = std::max(reach, meshes_[i].mesh->tree().reach());
     for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-      if (std::any_of(options.untested.begin(), options.untested.end(), [&](const auto& pair) {
-            return static_cast<std::size_t>(pair.link) == link && pair.obstacle == k;
-          })) {
-        continue;
-      }
+      if (internal::is_untested(options.untested, link, k)) continue;
       pairs_.push_back({i, k});
       if (moves) {
         pairs.push_back({static_cast<int>(bodies.size()), static_cast<int>(k)});
