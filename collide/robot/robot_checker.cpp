@@ -57,9 +57,15 @@ RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
   }
   std::vector<MechanismBody> bodies;
   for (std::size_t link = robot_.links().size(); link-- > 0;) {
-    for (const auto& tree : robot_.links()[link].trees) {
-      const Body body{tree, link, mesh_of(*tree), frames.frame_of_link[link],
-                      frames.frame_from_link[link]};
+    const auto& trees = robot_.links()[link].trees;
+    for (std::size_t index = 0; index < trees.size(); ++index) {
+      const auto& tree = trees[index];
+      const Body body{.tree = tree,
+                      .link = link,
+                      .tree_index = index,
+                      .mesh = mesh_of(*tree),
+                      .frame = frames.frame_of_link[link],
+                      .frame_from_link = frames.frame_from_link[link]};
       const bool moves = frames.frame_of_link[link] >= 0;
       for (std::size_t i = 0; i < obstacles_.size(); ++i) {
         if (internal::is_untested(options.untested, link, i)) continue;

@@ -3,6 +3,7 @@
 
 #include "collide/mechanism_check.h"
 #include "collide/mesh_contact.h"
+#include "collide/robot/robot_contact.h"
 #include "collide/robot/robot_model.h"
 #include "spheretree/pose.h"
 
@@ -61,8 +62,10 @@ class RobotChecker {
   };
 
  public:
-  // What a query writes to: made for one checker, which must outlive its use. No query allocates
-  // once its scratch is warm. Those of several threads share no cache line.
+  const RobotModel& robot() const { return robot_; }
+
+  // What a query writes to: made for one checker, which must outlive its use. Unless it says so, no
+  // query allocates once its scratch is warm. Those of several threads share no cache line.
   class alignas(64) Scratch {
    public:
     explicit Scratch(const RobotChecker& checker) : memory_(*checker.check_) {}
@@ -81,6 +84,14 @@ class RobotChecker {
   // Configurations with a position beyond 100 (radians or metres) are answered as exactly, but
   // slowly; where such a one leads out of all bounds, forward_kinematics() throws.
   bool collides(std::span<const double> configuration, Scratch& scratch) const;
+
+  // What touches what: a contact for each link and each obstacle that touch, of the link's trees
+  // the one whose contact overlaps deepest; links from the last to the first, because the tool at
+  // the end usually touches, for each the obstacles in their order. Empty exactly if collides()
+  // says no, unless the request asks for none. Found anew for each configuration: what the scratch
+  // remembers changes nothing. Allocates. Throws Error as collides() does.
+  std::vector<RobotContact> explain(std::span<const double> configuration, Scratch& scratch,
+                                    const ExplainRequest& request = {}) const;
 
   // Whether any link's spheres come within `clearance` (metres) of an obstacle's: exactly what
   // within() answers for the pairs that are tested, under the same poses; no meshes are asked.
@@ -121,6 +132,7 @@ class RobotChecker {
   struct Body {
     std::shared_ptr<const SphereTree> tree;
     std::size_t link;
+    std::size_t tree_index;  // among the link's
     const CoveredMesh* mesh;
     int frame = -1;  // of the check; -1: it stands with the root
     Pose frame_from_link{};
@@ -131,6 +143,14 @@ class RobotChecker {
     Pose world_from_link;
     std::size_t obstacle;
   };
+
+  // A body and an obstacle that are tested against each other, moved or standing.
+  struct TestedBody {
+    const Body* body;
+    std::size_t obstacle;
+  };
+  std::vector<TestedBody> tested_bodies() const;
+  std::optional<Contact> contact_of(const TestedBody& tested, const Pose& world_from_link) const;
 
   enum class Finding { kApart, kSpheres, kTouch };
   Finding find(const MechanismContact& contact, Scratch& scratch) const;
