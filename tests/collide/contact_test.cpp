@@ -175,7 +175,7 @@ TEST(Contact, OfMeshesIsTheDeepestThatTrianglesConfirm) {
   EXPECT_GT(triangles, effort(60, 10));
   EXPECT_GT(inside, effort(5, 0));
   EXPECT_GT(removed, effort(20, 3));
-  EXPECT_GT(not_deepest, effort(1, -1));
+  EXPECT_GE(not_deepest, effort(1, 0));
 }
 
 }  // namespace
