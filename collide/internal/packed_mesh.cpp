@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/packed_mesh.h"
 
+#include "collide/internal/box_order.h"
 #include "collide/internal/single_precision.h"
 
 #include <Eigen/Geometry>
@@ -10,7 +11,6 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 namespace spherule::internal {
 namespace {
@@ -134,20 +134,14 @@ class Builder {
   const Box& box(std::int32_t triangle) const { return boxes_[static_cast<std::size_t>(triangle)]; }
 
   Box box_of(Part part) const {
-    Box result;
-    for (const std::int32_t i : part) result.extend(box(i));
-    return result;
+    return box_around(part, [this](std::int32_t triangle) -> const Box& { return box(triangle); });
   }
 
   // In two along the longest axis, the first a multiple of the width so that blocks are full.
   std::array<Part, 2> halves(Part part) const {
-    Eigen::Index axis = 0;
-    box_of(part).sizes().maxCoeff(&axis);
-    std::sort(part.begin(), part.end(), [&](std::int32_t a, std::int32_t b) {
-      const double of_a = box(a).min()[axis] + box(a).max()[axis];
-      const double of_b = box(b).min()[axis] + box(b).max()[axis];
-      return std::pair(of_a, a) < std::pair(of_b, b);
-    });
+    sort_along_longest_side(
+        part, [this](std::int32_t triangle) -> const Box& { return box(triangle); },
+        [](std::int32_t triangle) { return triangle; });
     const std::size_t blocks = (part.size() + kWidth - 1) / kWidth;
     const std::size_t first = (blocks + 1) / 2 * kWidth;
     return {part.first(first), part.subspan(first)};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/patch_trees.h"
 
+#include "collide/internal/box_order.h"
 #include "collide/internal/single_precision.h"
 #include "spheretree/rounding.h"
 
@@ -16,10 +17,8 @@ namespace {
 using Box = Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-Box box_around(std::span<const Patch> patches) {
-  Box box = patches[0].box;
-  for (const Patch& piece : patches) box.extend(piece.box);
-  return box;
+const Box& box_of(const Patch& patch) {
+  return patch.box;
 }
 
 PatchBox seen_from(const Vector3d& origin, const Box& box) {
@@ -37,13 +36,7 @@ PatchBox seen_from(const Vector3d& origin, const Box& box) {
 
 // Halves the patches across the longest side of their box.
 std::pair<std::span<Patch>, std::span<Patch>> halves(std::span<Patch> patches) {
-  Eigen::Index axis = 0;
-  box_around(patches).sizes().maxCoeff(&axis);
-  std::sort(patches.begin(), patches.end(), [axis](const Patch& a, const Patch& b) {
-    const double of_a = a.box.min()[axis] + a.box.max()[axis];
-    const double of_b = b.box.min()[axis] + b.box.max()[axis];
-    return std::pair(of_a, a.triangle) < std::pair(of_b, b.triangle);
-  });
+  sort_along_longest_side(patches, box_of, [](const Patch& patch) { return patch.triangle; });
   const std::size_t middle = (patches.size() + 1) / 2;
   return {patches.first(middle), patches.subspan(middle)};
 }
@@ -77,7 +70,7 @@ std::int32_t build(std::span<Patch> patches, const Vector3d& origin,
     std::fill_n(box.half, 3, -std::numeric_limits<float>::infinity());
     std::int32_t child = -1;
     if (i < parts.size()) {
-      box = seen_from(origin, box_around(parts[i]));
+      box = seen_from(origin, box_around(parts[i], box_of));
       child = parts[i].size() == 1 ? ~parts[i][0].triangle : build(parts[i], origin, nodes);
     }
     PatchNode& node = nodes[at];
@@ -102,7 +95,8 @@ PatchTrees::PatchTrees(std::span<const Patch> patches, std::span<const Sphere> b
     of_ball.assign(patches.begin(), patches.begin() + static_cast<std::ptrdiff_t>(count));
     patches = patches.subspan(count);
     const Vector3d& origin = balls[ball].center;
-    roots_[ball] = {seen_from(origin, box_around(of_ball)), build(of_ball, origin, nodes_)};
+    roots_[ball] = {seen_from(origin, box_around(std::span(of_ball), box_of)),
+                    build(of_ball, origin, nodes_)};
   }
 }
 

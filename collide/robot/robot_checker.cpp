@@ -10,7 +10,6 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <utility>
 
@@ -58,9 +57,15 @@ RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
   }
   std::vector<MechanismBody> bodies;
   for (std::size_t link = robot_.links().size(); link-- > 0;) {
-    for (const auto& tree : robot_.links()[link].trees) {
-      const Body body{tree, link, mesh_of(*tree), frames.frame_of_link[link],
-                      frames.frame_from_link[link]};
+    const auto& trees = robot_.links()[link].trees;
+    for (std::size_t index = 0; index < trees.size(); ++index) {
+      const auto& tree = trees[index];
+      const Body body{.tree = tree,
+                      .link = link,
+                      .tree_index = index,
+                      .mesh = mesh_of(*tree),
+                      .frame = frames.frame_of_link[link],
+                      .frame_from_link = frames.frame_from_link[link]};
       const bool moves = frames.frame_of_link[link] >= 0;
       for (std::size_t i = 0; i < obstacles_.size(); ++i) {
         if (internal::is_untested(options.untested, link, i)) continue;
@@ -241,49 +246,6 @@ bool RobotChecker::body_collides(const Body& body, const Pose& world_from_link,
     return spherule::collides(*body.tree, world_from_link, *other.tree, other.world_from_tree);
   }
   return spherule::collides(*body.mesh, world_from_link, *mesh, other.world_from_tree);
-}
-
-void RobotChecker::collides(std::span<const double> configurations, Scratch& scratch,
-                            std::span<std::uint8_t> verdicts) const {
-  constexpr std::size_t kBlock = MechanismCheck::kBlock;
-  const auto variables = static_cast<std::size_t>(robot_.variable_count());
-  if (configurations.size() != verdicts.size() * variables) {
-    throw Error("configurations", std::to_string(configurations.size()) + " numbers for " +
-                                      std::to_string(verdicts.size()) +
-                                      " verdicts on a robot with " + std::to_string(variables) +
-                                      " variables");
-  }
-  const auto configuration = [&](std::size_t i) {
-    return configurations.subspan(i * variables, variables);
-  };
-  for (std::size_t first = 0; first < verdicts.size(); first += kBlock) {
-    const std::size_t last = std::min(first + kBlock, verdicts.size()) - 1;
-    std::array<const double*, kBlock> block;  // filled up with the last one
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      block[i] = configuration(std::min(first + i, last)).data();
-    }
-    int placed = -1;
-    std::uint32_t unconfirmed = 0;
-    const MechanismCheck::BlockAnswer answer =
-        check_->collides(block, scratch.memory_, [&](int index, const MechanismContact& contact) {
-          bool is_placed = std::exchange(placed, index) == index;
-          scratch.unconfirmed_.clear();
-          const bool touch = touches({block[static_cast<std::size_t>(index)], variables}, contact,
-                                     is_placed, scratch);
-          if (!scratch.unconfirmed_.empty()) unconfirmed |= 1U << index;
-          return touch;
-        });
-    for (std::size_t i = first; i <= last; ++i) {
-      const auto says = [&](std::uint32_t bits) { return (bits >> (i - first) & 1U) != 0; };
-      bool hit = always_ || says(answer.collides);
-      if (says(answer.out_of_range)) {
-        hit = collides_exactly(configuration(i), scratch);
-      } else if (!hit && says(unconfirmed)) {
-        hit = collides(configuration(i), scratch);
-      }
-      verdicts[i] = hit ? 1 : 0;
-    }
-  }
 }
 
 EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<const double> to,

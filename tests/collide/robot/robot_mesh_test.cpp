@@ -3,9 +3,9 @@
 
 #include "collide/robot/kinematics.h"
 #include "collide/robot/robot_checker.h"
-#include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "tests/collide/robot/robots.h"
+#include "tests/collide/tetrahedra.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"
 
@@ -19,23 +19,6 @@
 namespace spherule::test {
 namespace {
 
-// A closed tetrahedron, covered by one ball a corner's cell and many more than it needs.
-std::shared_ptr<const CoveredMesh> tetrahedron(SceneRandom& random, double size) {
-  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
-  for (Eigen::Vector3d& v : mesh.vertices) v = size * (v - Eigen::Vector3d(0.25, 0.25, 0.25));
-  std::vector<Sphere> spheres = {{Eigen::Vector3d::Zero(), 0.9 * size}};
-  for (int i = 0; i < 20; ++i) {
-    spheres.push_back({random.point(0.5 * size), random.uniform(0.0, 0.3 * size)});
-  }
-  return std::make_shared<const CoveredMesh>(
-      mesh, std::make_shared<const SphereTree>(build_tree(spheres)));
-}
-
-std::shared_ptr<const SphereTree> cover_of(const std::shared_ptr<const CoveredMesh>& mesh) {
-  return {mesh, &mesh->cover()};
-}
-
 TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
   SceneRandom random(61);
   int hits = 0;
@@ -46,7 +29,7 @@ TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
     RobotCheckerOptions options{.world_from_root = random.pose(1.0)};
     std::vector<std::pair<std::size_t, std::shared_ptr<const CoveredMesh>>> bodies;
     for (std::size_t link = 0; link < robot.links().size(); ++link) {
-      const auto mesh = tetrahedron(random, random.uniform(0.05, 0.4));
+      const auto mesh = covered_tetrahedron(random, random.uniform(0.05, 0.4));
       robot.attach(robot.links()[link].name, cover_of(mesh));
       options.meshes.push_back(mesh);
       bodies.emplace_back(link, mesh);
@@ -54,7 +37,7 @@ TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
     std::vector<PlacedTree> obstacles;
     std::vector<std::shared_ptr<const CoveredMesh>> obstacle_meshes;
     for (int k = 0; k < 3; ++k) {
-      const auto mesh = tetrahedron(random, random.uniform(0.05, 1.5));
+      const auto mesh = covered_tetrahedron(random, random.uniform(0.05, 1.5));
       obstacles.push_back({cover_of(mesh), random.pose(1.5)});
       options.meshes.push_back(mesh);
       obstacle_meshes.push_back(mesh);
@@ -114,7 +97,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
     // What stands with the root would touch always or never.
     for (const Joint& joint : std::vector<Joint>(robot.joints())) {
       const Link& link = robot.links()[static_cast<std::size_t>(joint.child_link)];
-      meshes.push_back(tetrahedron(random, random.uniform(0.05, 0.4)));
+      meshes.push_back(covered_tetrahedron(random, random.uniform(0.05, 0.4)));
       robot.attach(std::string(link.name), cover_of(meshes.back()));
     }
     std::vector<PlacedTree> obstacles;
@@ -123,7 +106,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
     std::vector<Pose> links;
     forward_kinematics(robot, home, links, options.world_from_root);
     for (int k = 0; k < 2; ++k) {
-      meshes.push_back(tetrahedron(random, random.uniform(0.05, 0.4)));
+      meshes.push_back(covered_tetrahedron(random, random.uniform(0.05, 0.4)));
       const auto link =
           static_cast<std::size_t>(random.whole(1, static_cast<int>(robot.links().size()) - 1));
       obstacles.push_back(
@@ -182,8 +165,8 @@ TEST(RobotMesh, WhatLiesInsideCollides) {
   SceneRandom random(62);
   RobotModel robot("base");
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
-  const auto inner = tetrahedron(random, 0.02);
-  const auto outer = tetrahedron(random, 2.0);
+  const auto inner = covered_tetrahedron(random, 0.02);
+  const auto outer = covered_tetrahedron(random, 2.0);
   robot.attach("arm", cover_of(inner));
   const std::vector<PlacedTree> obstacles = {{cover_of(outer), Pose()}};
   const RobotChecker checker(robot, obstacles, {.meshes = {inner, outer}});

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What does a configuration of a batch cost, over how many threads? The weld program of the work
+// cell, in its order and in a random one, of which the first so many configurations are asked for.
+// The spheres are those around the triangles, cut small: more than fitted ones, and there at once.
+// Counters: time a configuration (of the clock on the wall), the share that collides, spheres.
+
+#include "bench/scenes/program.h"
+#include "bench/tree_checker.h"
+#include "bench/workload.h"
+#include "spheretree/build.h"
+#include "spheretree/enclosing_sphere.h"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+// Around the triangles, halved across their longest edge until no ball is larger than `radius`.
+std::shared_ptr<const SphereTree> balls_around(const TriangleMesh& mesh, double radius) {
+  using Corners = std::array<Eigen::Vector3d, 3>;
+  std::vector<Corners> open;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+    open.push_back({corner(0), corner(1), corner(2)});
+  }
+  std::vector<Sphere> balls;
+  while (!open.empty()) {
+    Corners corners = open.back();
+    open.pop_back();
+    const Sphere ball = enclosing_sphere(corners);
+    if (ball.radius <= radius) {
+      balls.push_back({ball.center, ball.radius * (1.0 + 1e-9)});  // for the rounding of the cuts
+      continue;
+    }
+    const auto length = [&](std::size_t k) { return (corners[(k + 1) % 3] - corners[k]).norm(); };
+    std::size_t longest = 0;
+    for (const std::size_t k : {1, 2}) longest = length(k) > length(longest) ? k : longest;
+    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(longest),
+                corners.end());
+    const Eigen::Vector3d middle = 0.5 * (corners[0] + corners[1]);
+    open.push_back({corners[0], middle, corners[2]});
+    open.push_back({middle, corners[1], corners[2]});
+  }
+  return std::make_shared<const SphereTree>(build_tree(balls));
+}
+
+constexpr double kLeastRadius = 5e-3;
+
+struct Cell {
+  Cell() : workload(make_paper_cell()), jumps(shuffled(workload.program, 1)) {
+    const auto cover = [&](Part& part) {
+      part.tree = balls_around(part.mesh, std::max(part.max_error, kLeastRadius));
+      spheres += part.tree->spheres().size();
+    };
+    for (Body& body : workload.bodies) cover(body.part);
+    for (Obstacle& obstacle : workload.obstacles) cover(obstacle.part);
+  }
+
+  Workload workload;
+  std::vector<JointPositions> jumps;
+  std::size_t spheres = 0;
+};
+
+const Cell& cell() {
+  static const Cell kCell;
+  return kCell;
+}
+
+void run(benchmark::State& state, const RobotChecker& checker,
+         const std::vector<JointPositions>& program) {
+  const auto count = static_cast<std::size_t>(state.range(0));
+  std::vector<RobotChecker::Scratch> scratches;
+  for (int i = 0; i < state.range(1); ++i) scratches.emplace_back(checker);
+  std::vector<std::uint8_t> verdicts(count);
+  const std::span<const double> configurations(program.front().data(), count * kJoints);
+  for (auto _ : state) {
+    checker.collides(configurations, scratches, verdicts);
+    benchmark::DoNotOptimize(verdicts.data());
+    benchmark::ClobberMemory();
+  }
+  using benchmark::Counter;
+  state.counters["each"] =
+      Counter(static_cast<double>(count), Counter::kIsIterationInvariantRate | Counter::kInvert);
+  state.counters["colliding"] =
+      static_cast<double>(std::count(verdicts.begin(), verdicts.end(), 1)) /
+      static_cast<double>(count);
+  state.counters["spheres"] = static_cast<double>(cell().spheres);
+}
+
+void BM_AlongThePath(benchmark::State& state) {
+  run(state, make_robot_checker(cell().workload), cell().workload.program);
+}
+void BM_InRandomOrder(benchmark::State& state) {
+  run(state, make_robot_checker(cell().workload), cell().jumps);
+}
+// Contacts confirmed on the triangles.
+void BM_ConfirmedAlongThePath(benchmark::State& state) {
+  run(state, make_robot_checker(cell().workload, best_instruction_set(), true),
+      cell().workload.program);
+}
+
+// Configurations; threads.
+void sizes(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgsProduct({{256, 1024, static_cast<std::int64_t>(kProgramSize)}, {1, 2}})
+      ->UseRealTime()
+      ->Unit(benchmark::kMicrosecond);
+}
+BENCHMARK(BM_AlongThePath)->Apply(sizes);
+BENCHMARK(BM_InRandomOrder)->Apply(sizes);
+BENCHMARK(BM_ConfirmedAlongThePath)->Apply(sizes);
+
+}  // namespace
+}  // namespace spherule

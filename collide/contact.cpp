@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/contact.h"
+
+#include "collide/internal/ball_leaves.h"
+#include "collide/internal/listed_triangles.h"
+#include "collide/internal/tree_pair.h"
+
+#include <algorithm>
+#include <queue>
+#include <tuple>
+
+namespace spherule {
+namespace {
+
+// Two spheres and the distance of their surfaces, as the canonical test computes it.
+struct Touching {
+  SpherePair spheres;
+  double gap = 0.0;
+};
+
+// The pairs of spheres that touch, deepest first and of equal ones the first by index: best-first
+// search over the node pairs of TreePair. Two nodes wait under a bound of what the gaps of leaves
+// below them are computed to be: their own gap errs by gap_error(), that of leaves by less.
+class DeepestFirst {
+ public:
+  DeepestFirst(const SphereTree& a, const SphereTree& b, const RelativePose& pose)
+      : a_(a), b_(b), pose_(pose), trees_(a, b, pose), leaves_(a, b, pose) {
+    wait(NodePair(0, 0), pose.gap(a.ball(0), b.ball(0)));
+  }
+
+  std::optional<Touching> next() {
+    while (!queue_.empty()) {
+      const Waiting first = queue_.top();
+      queue_.pop();
+      if (first.is_leaf) return Touching{{first.a, first.b}, first.gap};
+      open(NodePair(first.a, first.b));
+    }
+    return std::nullopt;
+  }
+
+ private:
+  // Two spheres or two nodes.
+  struct Waiting {
+    double gap;
+    bool is_leaf;
+    std::int32_t a, b;
+    // The queue serves its greatest element: nodes before spheres, since those of an equal gap may
+    // be below them.
+    bool operator<(const Waiting& other) const {
+      return std::tie(gap, is_leaf, a, b) > std::tie(other.gap, other.is_leaf, other.a, other.b);
+    }
+  };
+
+  void open(NodePair pair) {
+    const OpenedPair opened = trees_.open(pair);
+    double gaps[SphereTree::kMaxBranching];
+    internal::ball_gaps(trees_.balls(opened.side), opened.first, opened.count, opened.ball, gaps);
+    for (std::int32_t i = 0; i < opened.count; ++i) {
+      wait(pair.with(opened.side, opened.first + i), gaps[i]);
+    }
+  }
+
+  // `gap` is only looked at for pairs that are not leaves. None that touch are above the node pad.
+  void wait(NodePair pair, double gap) {
+    if (trees_.is_leaf_pair(pair)) {
+      if (!leaves_.touches(pair)) return;
+      queue_.push({leaves_.gap(pair), true, a_.sphere_index(pair.index(0)),
+                   b_.sphere_index(pair.index(1))});
+    } else if (gap <= pose_.node_pad()) {
+      queue_.push({gap - 2.0 * pose_.gap_error(), false, pair.node(0), pair.node(1)});
+    }
+  }
+
+  const SphereTree& a_;
+  const SphereTree& b_;
+  const RelativePose& pose_;
+  const TreePair trees_;
+  const internal::BallLeaves leaves_;
+  std::priority_queue<Waiting> queue_;
+};
+
+Eigen::Vector3d middle_of_overlap(const Sphere& a, const Pose& world_from_a, const Sphere& b,
+                                  const Pose& world_from_b) {
+  const Eigen::Vector3d from = world_from_a * a.center;
+  const Eigen::Vector3d way = world_from_b * b.center - from;
+  const double distance = way.norm();
+  if (!(distance > 0.0)) return from;
+  // Where on the way the two spheres begin and end.
+  const double begin = std::max(-a.radius, distance - b.radius);
+  const double end = std::min(a.radius, distance + b.radius);
+  return from + (0.5 * (begin + end) / distance) * way;
+}
+
+// The gap of two spheres errs by less than leaf_pad() = 76 u S: the offset of the centres, 67.2 u S
+// (relative_pose.h), half the relative error of its square and the root, 2.5 u S, the sum of the
+// radii and the difference, 2 u S; the subtraction below, u S. A pair that touches has a computed
+// gap of at most 80 u S, hence an overlap of at least -157 u S.
+Contact contact_of(ContactKind kind, const Touching& touching, const SphereTree& a,
+                   const Pose& world_from_a, const SphereTree& b, const Pose& world_from_b,
+                   const RelativePose& pose) {
+  const auto sphere = [](const SphereTree& tree, std::int32_t index) {
+    return tree.spheres()[static_cast<std::size_t>(index)];
+  };
+  return {.kind = kind,
+          .spheres = touching.spheres,
+          .overlap_depth = -touching.gap - pose.leaf_pad(),
+          .world_point = middle_of_overlap(sphere(a, touching.spheres.a), world_from_a,
+                                           sphere(b, touching.spheres.b), world_from_b),
+          .triangles = std::nullopt};
+}
+
+}  // namespace
+
+std::optional<Contact> deepest_contact(const SphereTree& a, const Pose& world_from_a,
+                                       const SphereTree& b, const Pose& world_from_b) {
+  const RelativePose pose(a, world_from_a, b, world_from_b);
+  const std::optional<Touching> deepest = DeepestFirst(a, b, pose).next();
+  if (!deepest) return std::nullopt;
+  return contact_of(ContactKind::kSpheres, *deepest, a, world_from_a, b, world_from_b, pose);
+}
+
+std::optional<Contact> deepest_contact(const CoveredMesh& a, const Pose& world_from_a,
+                                       const CoveredMesh& b, const Pose& world_from_b) {
+  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  DeepestFirst search(a.cover(), b.cover(), pose);
+  const std::optional<Touching> deepest = search.next();
+  if (!deepest) return std::nullopt;
+  const auto contact = [&](ContactKind kind, const Touching& touching) {
+    return contact_of(kind, touching, a.cover(), world_from_a, b.cover(), world_from_b, pose);
+  };
+  const internal::ListedTriangles triangles(a, world_from_a, b, world_from_b, pose);
+  for (std::optional<Touching> touching = deepest; touching; touching = search.next()) {
+    const std::optional<TrianglePair> found =
+        triangles.touching(touching->spheres.a, touching->spheres.b);
+    if (!found) continue;
+    Contact result = contact(ContactKind::kTriangles, *touching);
+    result.triangles = found;
+    return result;
+  }
+  if (!triangles.contained()) return std::nullopt;
+  return contact(ContactKind::kInside, *deepest);
+}
+
+}  // namespace spherule

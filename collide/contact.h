@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Where two placed bodies touch, and how deep: for people and planners that want to know more than
+// that they do.
+
+#include "collide/collide.h"
+#include "collide/mesh_contact.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace spherule {
+
+// What shows that two bodies touch.
+enum class ContactKind {
+  kSpheres,    // the spheres of both; no meshes were asked
+  kTriangles,  // triangles under these spheres
+  kInside,     // no triangles touch, but a component of one mesh lies inside the other
+};
+
+struct Contact {
+  ContactKind kind = ContactKind::kSpheres;
+  // Indices of two spheres that touch into SphereTree::spheres() of a and of b.
+  SpherePair spheres;
+  // At least this is missing for these two spheres to part, in exact arithmetic under exactly the
+  // given poses: the sum of the radii less the distance of the centres, rounded downward. In the
+  // unit of the trees. Nothing is said of how deep the meshes are in each other, nor of how far the
+  // bodies have to be moved. Never below -2 collision_slack(); below zero where rounding alone may
+  // have made them touch.
+  double overlap_depth = 0.0;
+  // In the middle of what the two spheres share of the line through their centres, up to rounding.
+  Eigen::Vector3d world_point = Eigen::Vector3d::Zero();
+  // For kTriangles, as touching_triangles() says.
+  std::optional<TrianglePair> triangles;
+};
+
+// The contact of two sets of balls: of all pairs of spheres that touch, the one that overlaps
+// deepest up to rounding; none exactly if collides() is false. Equal for every tree over the same
+// spheres. Allocates; costs several times as much as collides().
+std::optional<Contact> deepest_contact(const SphereTree& a, const Pose& world_from_a,
+                                       const SphereTree& b, const Pose& world_from_b);
+
+// The same for two covered meshes: none exactly if their collides() is false. Where triangles
+// touch, of all pairs of spheres for which touching_triangles() finds some; otherwise, where one
+// lies inside the other, of all pairs of spheres that touch.
+std::optional<Contact> deepest_contact(const CoveredMesh& a, const Pose& world_from_a,
+                                       const CoveredMesh& b, const Pose& world_from_b);
+
+}  // namespace spherule

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/mesh_contact.h"
+#include "tests/collide/scene_random.h"
+
+#include <memory>
+
+namespace spherule::test {
+
+// A closed tetrahedron, covered by one ball a corner's cell and many more than it needs.
+std::shared_ptr<const CoveredMesh> covered_tetrahedron(SceneRandom& random, double size);
+
+// Its spheres, which keep it alive.
+std::shared_ptr<const SphereTree> cover_of(const std::shared_ptr<const CoveredMesh>& mesh);
+
+}  // namespace spherule::test
