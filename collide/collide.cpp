@@ -2,6 +2,7 @@
 #include "collide/collide.h"
 
 #include "collide/internal/ball_leaves.h"
+#include "collide/internal/box_gap.h"
 #include "collide/internal/queries.h"
 
 namespace spherule {
@@ -9,7 +10,8 @@ namespace spherule {
 bool collides(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
               const Pose& world_from_b) noexcept {
   const RelativePose pose(a, world_from_a, b, world_from_b);
-  return internal::any_pair(a, b, pose, internal::BallLeaves(a, b, pose));
+  return internal::roots_may_touch(a, b, pose) &&
+         internal::any_pair(a, b, pose, internal::BallLeaves(a, b, pose));
 }
 
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,

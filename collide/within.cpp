@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/within.h"
 
+#include "collide/internal/box_gap.h"
 #include "collide/internal/traversal.h"
 #include "spheretree/error.h"
 
@@ -44,7 +45,7 @@ bool within(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
             const Pose& world_from_b, double clearance) {
   require_clearance(clearance);
   const RelativePose pose(a, world_from_a, b, world_from_b);
-  if (!pose.may_touch(a.ball(0), b.ball(0), clearance)) return false;
+  if (!internal::roots_may_touch(a, b, pose, clearance)) return false;
   FindNear query(a, b, pose, clearance);
   traverse(a, b, pose, query);
   return query.found();
