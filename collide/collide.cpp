@@ -6,12 +6,12 @@
 #include "collide/internal/queries.h"
 
 namespace spherule {
-
 bool collides(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
               const Pose& world_from_b) noexcept {
+  if (internal::far_apart(a, world_from_a, b, world_from_b)) return false;
   const RelativePose pose(a, world_from_a, b, world_from_b);
-  return internal::roots_may_touch(a, b, pose) &&
-         internal::any_pair(a, b, pose, internal::BallLeaves(a, b, pose));
+  if (internal::boxes_apart(a, b, pose)) return false;
+  return internal::any_pair(a, b, pose, internal::BallLeaves(a, b, pose));
 }
 
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,

@@ -82,8 +82,9 @@ bool CoveredMesh::is_closed() const {
 
 bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
               const Pose& world_from_b) noexcept {
+  if (internal::far_apart(a.cover(), world_from_a, b.cover(), world_from_b)) return false;
   const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
-  if (!internal::roots_may_touch(a.cover(), b.cover(), pose)) return false;
+  if (internal::boxes_apart(a.cover(), b.cover(), pose)) return false;
   FindTriangles query(a, world_from_a, b, world_from_b, pose);
   traverse(a.cover(), b.cover(), pose, query);
   return query.found();

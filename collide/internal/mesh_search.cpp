@@ -46,8 +46,9 @@ const MeshKernels& mesh_kernels_for([[maybe_unused]] InstructionSet set) {
 
 bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& world_from_a,
                  const MeshTree& b, const Pose& world_from_b) noexcept {
+  if (far_apart(a, world_from_a, b.tree(), world_from_b)) return false;
   const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
-  if (!roots_may_touch(a, b.tree(), pose)) return false;
+  if (boxes_apart(a, b.tree(), pose)) return false;
   const PackedMesh& mesh = b.packed();
   if (a.branching() > MeshNode::kWidth || a.depth() + mesh.depth() > MeshTasks::kLevels) {
     return any_pair(a, b.tree(), pose, TriangleLeaves(a, b, pose));

@@ -90,7 +90,6 @@ class CollectPairs {
   double smallest_gap_ = std::numeric_limits<double>::infinity();
 };
 
-// The roots have been tested by roots_may_touch().
 template <class LeafTest>
 bool any_pair(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
               const LeafTest& test) noexcept {
@@ -108,7 +107,7 @@ CollisionResult all_pairs(const SphereTree& a, const SphereTree& b, const Relati
   result.cost.node_tests = 1;
   result.cost.leaf_tests = a.is_leaf(0) && b.is_leaf(0) ? 1 : 0;
 
-  if (roots_may_touch(a, b, pose)) {
+  if (pose.may_touch(a.ball(0), b.ball(0)) && !boxes_apart(a, b, pose)) {
     result.complete = traverse(a, b, pose, query);
   } else {
     query.pruned(std::max(pose.gap(a.ball(0), b.ball(0)), box_gap(a, b, pose)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The first look at two trees, where the boxes around them meet or nearly so: against exact gaps,
-// and verdicts against the canonical test of all pairs.
+// The looks at two trees before a search, where ball and box or two boxes meet or nearly so:
+// against exact gaps, and verdicts against the canonical test of all pairs.
 
 #include "collide/internal/box_gap.h"
 
@@ -132,6 +132,7 @@ TEST(BoxGap, IsNeverAboveTheExactGap) {
 TEST(BoxGap, ChangesNoVerdict) {
   SceneRandom random(2);
   int touching = 0;
+  int far_apart = 0;
   int apart_by_boxes = 0;
   for (int i = 0; i < effort(20000, 2000); ++i) {
     const bool close = random.whole(0, 1) == 0;
@@ -143,16 +144,18 @@ TEST(BoxGap, ChangesNoVerdict) {
     const CollisionResult found = collide(scene.a, scene.world_from_a, scene.b, scene.world_from_b);
     ASSERT_EQ(found.verdict, truth ? Verdict::kCollision : Verdict::kFree) << i;
     touching += truth;
-    apart_by_boxes += pose.may_touch(scene.a.ball(0), scene.b.ball(0)) &&
-                      !internal::roots_may_touch(scene.a, scene.b, pose);
+    far_apart += internal::far_apart(scene.a, scene.world_from_a, scene.b, scene.world_from_b);
+    apart_by_boxes += internal::boxes_apart(scene.a, scene.b, pose);
   }
   EXPECT_GT(touching, effort(3000, 300));
+  EXPECT_GT(far_apart, effort(500, 50));
   EXPECT_GT(apart_by_boxes, effort(2000, 200));
 }
 
 TEST(BoxGap, ChangesNoVerdictWithAClearance) {
   SceneRandom random(3);
   int counts[2] = {};
+  int far_apart = 0;
   int apart_by_boxes = 0;
   for (int i = 0; i < effort(4000, 400); ++i) {
     const Scene scene = facing(random, std::ldexp(1.0, random.whole(0, 52)));
@@ -165,12 +168,14 @@ TEST(BoxGap, ChangesNoVerdictWithAClearance) {
       ASSERT_EQ(within(scene.a, scene.world_from_a, scene.b, scene.world_from_b, clearance), truth)
           << i << ' ' << step;
       ++counts[truth];
-      apart_by_boxes += pose.may_touch(scene.a.ball(0), scene.b.ball(0), clearance) &&
-                        !internal::roots_may_touch(scene.a, scene.b, pose, clearance);
+      far_apart +=
+          internal::far_apart(scene.a, scene.world_from_a, scene.b, scene.world_from_b, clearance);
+      apart_by_boxes += internal::boxes_apart(scene.a, scene.b, pose, clearance);
     }
   }
   EXPECT_GT(counts[0], effort(4000, 400));
   EXPECT_GT(counts[1], effort(4000, 400));
+  EXPECT_GT(far_apart, effort(500, 50));
   EXPECT_GT(apart_by_boxes, effort(1000, 100));
 }
 
