@@ -6,6 +6,7 @@
 #include "collide/internal/queries.h"
 
 namespace spherule {
+
 bool collides(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
               const Pose& world_from_b) noexcept {
   if (internal::far_apart(a, world_from_a, b, world_from_b)) return false;
