@@ -2,6 +2,7 @@
 #include "collide/mesh_contact.h"
 
 #include "collide/internal/ball_leaves.h"
+#include "collide/internal/box_gap.h"
 #include "collide/internal/cover_proof.h"
 #include "collide/internal/listed_triangles.h"
 #include "collide/internal/mesh_inside.h"
@@ -81,8 +82,9 @@ bool CoveredMesh::is_closed() const {
 
 bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
               const Pose& world_from_b) noexcept {
+  if (internal::far_apart(a.cover(), world_from_a, b.cover(), world_from_b)) return false;
   const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
-  if (!pose.may_touch(a.cover().ball(0), b.cover().ball(0))) return false;
+  if (internal::boxes_apart(a.cover(), b.cover(), pose)) return false;
   FindTriangles query(a, world_from_a, b, world_from_b, pose);
   traverse(a.cover(), b.cover(), pose, query);
   return query.found();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/within.h"
 
+#include "collide/internal/box_gap.h"
 #include "collide/internal/traversal.h"
 #include "spheretree/error.h"
 
@@ -43,8 +44,9 @@ void require_clearance(double clearance) {
 bool within(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
             const Pose& world_from_b, double clearance) {
   require_clearance(clearance);
+  if (internal::far_apart(a, world_from_a, b, world_from_b, clearance)) return false;
   const RelativePose pose(a, world_from_a, b, world_from_b);
-  if (!pose.may_touch(a.ball(0), b.ball(0), clearance)) return false;
+  if (internal::boxes_apart(a, b, pose, clearance)) return false;
   FindNear query(a, b, pose, clearance);
   traverse(a, b, pose, query);
   return query.found();

@@ -39,7 +39,7 @@ SphereTree refit(SphereTree tree, std::span<const Sphere> moved) {
     }
   }
   internal::check_root(data);
-  tree.measure_reach();
+  tree.measure();
   assert(check(tree).valid);
   return tree;
 }

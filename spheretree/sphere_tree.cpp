@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <utility>
 
 namespace spherule {
@@ -16,13 +17,25 @@ SphereTree::SphereTree(SphereTreeData data) : data_(std::move(data)) {
   if (!report.valid) throw Error("sphere tree", report.problems.front());
   depth_ = report.depth;
   branching_ = report.branching;
-  measure_reach();
+  measure();
 }
 
-void SphereTree::measure_reach() {
+void SphereTree::measure() {
   reach_ = 0.0;
+  // Rounding keeps the order, so the least of the rounded numbers is the least one, rounded.
+  Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Array3d high = -low;
   for (const Sphere& sphere : data_.spheres) {
     reach_ = std::max(reach_, add_up(norm_upper(sphere.center), sphere.radius));
+    low = low.min(sphere.center.array() - sphere.radius);
+    high = high.max(sphere.center.array() + sphere.radius);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const double least = next_down(low[i]);
+    const double most = next_up(high[i]);
+    const double center = 0.5 * (least + most);
+    box_.center[i] = center;
+    box_.half_size[i] = std::max(sub_up(center, least), sub_up(most, center));
   }
 }
 

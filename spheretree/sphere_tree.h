@@ -19,6 +19,12 @@ struct SphereTreeData {
   std::vector<Sphere> spheres;            // the spheres the tree stands for, in the caller's order
 };
 
+// The points p of a frame with |p - center| <= half_size in each coordinate.
+struct Box {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Vector3d half_size = Eigen::Vector3d::Zero();
+};
+
 // Bounding sphere hierarchy over a set of spheres; immutable, so threads may share it freely.
 //
 // Invariants, verified by check() (spheretree/check.h) whenever a tree is made from data, and kept
@@ -57,6 +63,9 @@ class SphereTree {
   // Upper bound of the distance from the origin of the frame to any point of the spheres. The same
   // for every tree over the same spheres, so that what depends on it does not depend on the tree.
   double reach() const { return reach_; }
+  // A box along the axes of the frame that holds every sphere in exact arithmetic, the smallest up
+  // to rounding. Of the spheres alone, as reach() is.
+  const Box& box() const { return box_; }
 
   // The balls that stand at distance `level` from the root, and the leaves above them: a set of
   // balls whose union contains all spheres. level 0 is the root, level depth() the spheres
@@ -68,12 +77,13 @@ class SphereTree {
  private:
   friend SphereTree refit(SphereTree tree, std::span<const Sphere> moved);
 
-  void measure_reach();
+  void measure();  // what is of the spheres alone
 
   SphereTreeData data_;
   int depth_ = 0;
   int branching_ = 0;
   double reach_ = 0.0;
+  Box box_;
 };
 
 }  // namespace spherule

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/mesh_search.h"
 
+#include "collide/internal/box_gap.h"
 #include "collide/internal/packed_mesh.h"
 #include "collide/internal/queries.h"
 #include "collide/internal/single_precision.h"
@@ -45,8 +46,9 @@ const MeshKernels& mesh_kernels_for([[maybe_unused]] InstructionSet set) {
 
 bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& world_from_a,
                  const MeshTree& b, const Pose& world_from_b) noexcept {
+  if (far_apart(a, world_from_a, b.tree(), world_from_b)) return false;
   const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
-  if (!pose.may_touch(a.ball(0), b.tree().ball(0))) return false;
+  if (boxes_apart(a, b.tree(), pose)) return false;
   const PackedMesh& mesh = b.packed();
   if (a.branching() > MeshNode::kWidth || a.depth() + mesh.depth() > MeshTasks::kLevels) {
     return any_pair(a, b.tree(), pose, TriangleLeaves(a, b, pose));

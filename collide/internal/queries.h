@@ -8,6 +8,7 @@
 //                                   (mesh_tree.h).
 
 #include "collide/collide.h"
+#include "collide/internal/box_gap.h"
 #include "collide/internal/deadline.h"
 #include "collide/internal/traversal.h"
 
@@ -92,7 +93,6 @@ class CollectPairs {
 template <class LeafTest>
 bool any_pair(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
               const LeafTest& test) noexcept {
-  if (!pose.may_touch(a.ball(0), b.ball(0))) return false;
   FindAny<LeafTest> query(test);
   traverse(a, b, pose, query);
   return query.found();
@@ -107,10 +107,10 @@ CollisionResult all_pairs(const SphereTree& a, const SphereTree& b, const Relati
   result.cost.node_tests = 1;
   result.cost.leaf_tests = a.is_leaf(0) && b.is_leaf(0) ? 1 : 0;
 
-  if (pose.may_touch(a.ball(0), b.ball(0))) {
+  if (pose.may_touch(a.ball(0), b.ball(0)) && !boxes_apart(a, b, pose)) {
     result.complete = traverse(a, b, pose, query);
   } else {
-    query.pruned(pose.gap(a.ball(0), b.ball(0)));
+    query.pruned(std::max(pose.gap(a.ball(0), b.ball(0)), box_gap(a, b, pose)));
     result.complete = true;
   }
   std::sort(result.pairs.begin(), result.pairs.end());

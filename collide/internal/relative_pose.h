@@ -149,6 +149,15 @@ class RelativePose {
   FrameChange a_from_b() const {
     return change(world_from_b_.matrix(), world_from_a_.matrix(), -1);
   }
+  // The same to the last bit, where the other is at hand: its products come in the same order.
+  FrameChange a_from_b(const FrameChange& b_from_a) const {
+    FrameChange result;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) result.r[3 * i + j] = b_from_a.r[3 * j + i];
+      result.t[i] = turned_back(world_from_a_.matrix(), i, -1);
+    }
+    return result;
+  }
 
  private:
   static double row(const Eigen::Matrix3d& m, int i, const Eigen::Vector3d& x) {
@@ -176,9 +185,13 @@ class RelativePose {
       for (int j = 0; j < 3; ++j) {
         result.r[3 * i + j] = to(0, i) * from(0, j) + to(1, i) * from(1, j) + to(2, i) * from(2, j);
       }
-      result.t[i] = sign * (to(0, i) * dx_ + to(1, i) * dy_ + to(2, i) * dz_);
+      result.t[i] = turned_back(to, i, sign);
     }
     return result;
+  }
+
+  double turned_back(const Eigen::Matrix3d& to, int i, double sign) const {
+    return sign * (to(0, i) * dx_ + to(1, i) * dy_ + to(2, i) * dz_);
   }
 
   const Pose& world_from_a_;

@@ -51,7 +51,7 @@ struct OpenedPair {
 class TreePair {
  public:
   TreePair(const SphereTree& a, const SphereTree& b, const RelativePose& pose)
-      : sides_{Side(a, pose.a_from_b()), Side(b, pose.b_from_a())} {}
+      : TreePair(a, b, pose, pose.b_from_a()) {}
 
   const internal::BallArrays& balls(int side) const { return sides_[side].balls; }
   bool is_leaf(int side, std::int32_t node) const { return sides_[side].child_count[node] == 0; }
@@ -96,6 +96,10 @@ class TreePair {
     const std::int32_t* child_count;
     FrameChange from_other;
   };
+
+  TreePair(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
+           const FrameChange& b_from_a)
+      : sides_{Side(a, pose.a_from_b(b_from_a)), Side(b, b_from_a)} {}
 
   Side sides_[2];
 };

@@ -156,7 +156,8 @@ TEST(Allocation, CollidesAnswersWithoutMemoryForTheStack) {
   const SphereTree a = caterpillar(1100, 2, false);
   const SphereTree b = caterpillar(1300, 2, true);
   ASSERT_GT(traversal_stack_bound(a, b), kInlineStack);
-  const Pose inside = Pose::from_translation({2.5, 0.0, 0.0});
+  // The leaves are apart, the boxes around them are not.
+  const Pose inside = Pose::from_translation({1.3, 1.3, 1.3});
   const int before = allocations;
   exhausted = true;
   const bool hit = collides(a, Pose(), b, Pose());

@@ -63,6 +63,31 @@ TEST(BuildTree, EveryFamilyGivesAValidTree) {
   }
 }
 
+// In rational numbers; tight to some units in the last place of the numbers it is made from.
+TEST(BuildTree, TheBoxHoldsTheSpheresTightly) {
+  for (const std::size_t count : {1, 2, 7, 300}) {
+    for (const Family& family : sphere_families(count, count + 3)) {
+      SCOPED_TRACE(family.name);
+      const SphereTree tree = build_tree(family.spheres);
+      const Rational slack = Rational(tree.reach()) * Rational(0x1p-50) + Rational(0x1p-1070);
+      for (int axis = 0; axis < 3; ++axis) {
+        const Rational center = tree.box().center[axis];
+        const Rational half = tree.box().half_size[axis];
+        const Rational farthest[2] = {center - half + 2 * slack, center + half - 2 * slack};
+        bool reached[2] = {};
+        for (const Sphere& sphere : family.spheres) {
+          const Rational low = Rational(sphere.center[axis]) - Rational(sphere.radius);
+          const Rational high = Rational(sphere.center[axis]) + Rational(sphere.radius);
+          ASSERT_TRUE(center - half <= low && high <= center + half);
+          reached[0] = reached[0] || low <= farthest[0];
+          reached[1] = reached[1] || high >= farthest[1];
+        }
+        ASSERT_TRUE(reached[0] && reached[1]);
+      }
+    }
+  }
+}
+
 TEST(BuildTree, OneSphereIsALeaf) {
   const SphereTree tree = build_tree(std::vector<Sphere>{{{1, 2, 3}, 0.5}});
   EXPECT_EQ(tree.node_count(), 1U);

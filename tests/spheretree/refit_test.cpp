@@ -96,7 +96,10 @@ TEST(Refit, ATreeThatIsMovedInGivesTheSame) {
     const std::vector<Sphere> moved = stirred(family.spheres, random, 0.1, 2);
     const SphereTree copied = refit(tree, moved);
     expect_good(copied, tree, moved);
-    EXPECT_EQ(copied.reach(), SphereTree(copied.data()).reach()) << family.name;
+    const SphereTree anew(copied.data());
+    EXPECT_EQ(copied.reach(), anew.reach()) << family.name;
+    EXPECT_EQ(copied.box().center, anew.box().center) << family.name;
+    EXPECT_EQ(copied.box().half_size, anew.box().half_size) << family.name;
     EXPECT_TRUE(same_balls(refit(std::move(tree), moved), copied)) << family.name;
   }
 }
