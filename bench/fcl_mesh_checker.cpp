@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/fcl_mesh_checker.h"
 
+#include "bench/fcl_float.h"
 #include "bench/fcl_models.h"
-
-#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
-#include <fcl/narrowphase/collision.h>
 
 #include <memory>
 #include <utility>

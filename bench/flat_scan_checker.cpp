@@ -3,6 +3,7 @@
 
 #include "bench/flat_scan/kernel.h"
 #include "bench/scene_reach.h"
+#include "bench/scenes/turn_between.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -75,8 +76,7 @@ Pose link_from_frame(const RobotModel& robot, const Link& link) {
   if (joint.type == JointType::kPrismatic || robot.variable_count() > flat_scan::kMaxVariables) {
     throw Error(joint.name, "the flat scan takes up to 8 joints that turn");
   }
-  return Pose(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis),
-              Eigen::Vector3d::Zero());
+  return Pose(turn_between(Eigen::Vector3d::UnitZ(), joint.axis), Eigen::Vector3d::Zero());
 }
 
 flat_scan::Frame frame_of(const RobotModel& robot, const Link& link,

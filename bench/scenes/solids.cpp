@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scenes/solids.h"
 
+#include "bench/scenes/turn_between.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -158,7 +159,7 @@ TriangleMesh tube_along(std::span<const Vector3d> path, std::span<const double> 
   for (std::size_t i = 0; i < points; ++i) {
     // Carried along by the smallest rotation between neighbours, so that the tube does not twist.
     const Vector3d next = direction(i);
-    side = Eigen::Quaterniond::FromTwoVectors(tangent, next) * side;
+    side = turn_between(tangent, next) * side;
     tangent = next;
     const Vector3d across = tangent.cross(side);
     for (int s = 0; s < sides; ++s) {

@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Headers of others that most sources include, compiled once (option SPHERULE_PRECOMPILE). They hide
-# a missing include, so they are for a build that only has to run (the preset `sanitize`); the strict
-# build goes without them. GCC lets sources share such a header only where they have the same code
-# model and the same macros that it looks at, hence one for each KIND: library, program, test.
+# Headers of others that most sources include, compiled once, and the sources of a program or a test
+# joined to few (option SPHERULE_PRECOMPILE). Both hide a missing include, so they are for a build that
+# only has to run (the preset `sanitize`); the strict build goes without them. GCC lets sources share
+# such a header only where they have the same code model and the same macros that it looks at, hence
+# one for each KIND: library, program, test. What defines objects in each source stays out (CLI11).
 
 function(spherule_declare_precompiled kind)
   set(headers <algorithm> <array> <cmath> <cstddef> <cstdint> <filesystem> <functional> <limits>
               <map> <memory> <optional> <set> <span> <sstream> <string> <string_view> <utility>
               <vector> <Eigen/Core> <Eigen/Geometry>)
   set(links Eigen3::Eigen)
-  if(kind STREQUAL program)
-    find_package(CLI11 REQUIRED)
-    find_package(nlohmann_json REQUIRED)
-    list(APPEND headers <CLI/CLI.hpp> <nlohmann/json.hpp>)
-    list(APPEND links CLI11::CLI11 nlohmann_json::nlohmann_json)
-  elseif(kind STREQUAL test)
+  if(kind STREQUAL test)
     find_package(Boost REQUIRED)
     find_package(GTest REQUIRED)
     find_package(nlohmann_json REQUIRED)
@@ -35,12 +31,17 @@ function(spherule_declare_precompiled kind)
   endif()
 endfunction()
 
-# Lets the sources of TARGET use the precompiled headers of KIND.
+# Lets the sources of TARGET use the precompiled headers of KIND. Those of programs and tests are also
+# joined: they share the code of templates. Sources of a target that have local names in common are
+# kept apart (SKIP_UNITY_BUILD_INCLUSION).
 function(spherule_precompile target kind)
   if(NOT TARGET spherule_precompiled_${kind})
     spherule_declare_precompiled(${kind})
   endif()
   target_precompile_headers(${target} REUSE_FROM spherule_precompiled_${kind})
+  if(NOT kind STREQUAL library)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON)
+  endif()
   if(kind STREQUAL test)
     # What Boost::headers defines, so that tests without it have the same macros.
     target_compile_definitions(${target} PRIVATE BOOST_ALL_NO_LIB)

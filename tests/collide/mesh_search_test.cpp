@@ -12,6 +12,7 @@
 #include "spheretree/error.h"
 #include "tests/collide/exact_triangles.h"
 #include "tests/collide/trees.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -153,7 +154,7 @@ TEST(MeshSearch, TheAxesFindApartWhatIsClearlyApart) {
 TEST(MeshSearch, AnswersAsAllPairsDo) {
   SceneRandom random(13);
   int hits = 0;
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < effort(600, 150); ++i) {
     const double size = std::pow(10.0, random.whole(-3, 3));
     std::vector<Triangle> triangles;
     const int count = random.whole(1, 80);
@@ -188,7 +189,7 @@ TEST(MeshSearch, AnswersAsAllPairsDo) {
     }
     hits += expected;
   }
-  EXPECT_GT(hits, 100);
+  EXPECT_GT(hits, effort(100, 25));
   EXPECT_LT(hits, 580);
 }
 
@@ -246,7 +247,7 @@ TEST(MeshMechanism, AnswersAsThePairsDoOnEveryInstructionSet) {
   int hits = 0;
   int asked = 0;
   int checked = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < effort(60, 12); ++i) {
     // One frame that turns about z, and one that is shifted along its own.
     const std::vector<MechanismFrame> frames = {
         {.parent_from_frame = random.pose(1.0)},
@@ -305,7 +306,7 @@ TEST(MeshMechanism, AnswersAsThePairsDoOnEveryInstructionSet) {
   }
   EXPECT_GT(hits, checked / 5);
   EXPECT_LT(hits, checked * 4 / 5);
-  EXPECT_GT(asked, 50);
+  EXPECT_GT(asked, effort(50, 10));
 }
 
 TEST(MeshMechanism, RefusesWhatItCannotUse) {

@@ -6,6 +6,7 @@
 #include "spheretree/build.h"
 #include "tests/collide/exact_scene.h"
 #include "tests/collide/scene_random.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -79,7 +80,7 @@ TEST_P(NearContact, IsNeverMissedAndExtraOnlyWithinTheSlack) {
   const Scene& scene = GetParam();
   SceneRandom random(7);
   Tally tally;
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < effort(4000, 1000); ++i) {
     PlacedBalls balls;
     const Eigen::Vector3d center = random.point(scene.away);
     balls.a.center = random.point(scene.size);
@@ -90,10 +91,10 @@ TEST_P(NearContact, IsNeverMissedAndExtraOnlyWithinTheSlack) {
     judge(balls, tally);
     if (HasFatalFailure()) return;
   }
-  EXPECT_GT(tally.pairs, 3000);
+  EXPECT_GT(tally.pairs, effort(3000, 750));
   EXPECT_GT(tally.overlapping, tally.pairs / 3);
-  EXPECT_GT(tally.pad_needed, 50);
-  EXPECT_GT(tally.extra, 100);
+  EXPECT_GT(tally.pad_needed, effort(50, 12));
+  EXPECT_GT(tally.extra, effort(100, 25));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -187,7 +187,7 @@ TEST(TrianglePair, SmallFarFromTheOrigin) {
 // Far smaller than the scene, and so small that squares of areas underflow.
 TEST(TrianglePair, TinyOnesAreNotTakenForApart) {
   for (const double size : {1e-6, 1e-30, 1e-90, 1e-150, 1e-300}) {
-    judge(effort(60, 20), 8, [size](SceneRandom& random) -> Scene {
+    judge(effort(60, 8), 8, [size](SceneRandom& random) -> Scene {
       Scene scene{random_triangle(random), random_triangle(random)};
       for (Vector3d& corner : scene.a) corner *= size;
       for (Vector3d& corner : scene.b) corner *= random.whole(0, 1) == 0 ? 1.0 : size;
@@ -201,7 +201,7 @@ TEST(TrianglePair, TinyOnesAreNotTakenForApart) {
 TEST(TrianglePair, KeepsTouchingUpToItsDepth) {
   SceneRandom random(11);
   int deep = 0, tight = 0;
-  for (int i = 0; i < 800; ++i) {
+  for (int i = 0; i < effort(800, 100); ++i) {
     const Triangle a = random.whole(0, 2) == 0 ? needle(random, 0.1) : random_triangle(random);
     Triangle b = random_triangle(random);
     if (random.whole(0, 1) == 0) b = brought(b, point_of(b, random), point_of(a, random), random);
@@ -226,8 +226,8 @@ TEST(TrianglePair, KeepsTouchingUpToItsDepth) {
     }
     tight += parted;
   }
-  EXPECT_GT(deep, 100);
-  EXPECT_GT(tight, 50);
+  EXPECT_GT(deep, effort(100, 12));
+  EXPECT_GT(tight, effort(50, 6));
 }
 
 }  // namespace
