@@ -59,7 +59,9 @@ Workload make_cell(std::string name, std::span<const TriangleMesh> links, const 
                              .max_error = kTableError,
                              .min_external_diameter = kExternal},
                             world_from_table()});
-  cell.program = make_program(flange_from_wire);
+  Program program = make_program(flange_from_wire);
+  cell.program = std::move(program.configurations);
+  cell.is_critical = std::move(program.is_critical);
   return cell;
 }
 

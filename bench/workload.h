@@ -41,6 +41,7 @@ struct Workload {
   std::vector<Body> bodies = {};
   std::vector<Obstacle> obstacles = {};
   std::vector<JointPositions> program = {};
+  std::vector<std::uint8_t> is_critical = {};  // of the program, see scenes/program.h
 };
 
 // The base does not move: whether it touches the table that it is bolted beside is no question of

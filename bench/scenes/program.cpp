@@ -46,7 +46,7 @@ class ProgramWriter {
  public:
   explicit ProgramWriter(const Pose& flange_from_wire)
       : robot_(make_robot()), wire_from_flange_(flange_from_wire.inverse()) {
-    program_.push_back(on_joint_grid(kHome));
+    add(on_joint_grid(kHome));
   }
 
   JointPositions solve(const WireTarget& target, const JointPositions& start) const {
@@ -58,26 +58,34 @@ class ProgramWriter {
 
   // Straight in joint space, `steps` configurations with the end, without the start.
   void move_to(const JointPositions& end, std::size_t steps) {
-    const JointPositions start = program_.back();
+    const JointPositions start = last();
     for (std::size_t i = 1; i <= steps; ++i) {
       const double share = static_cast<double>(i) / static_cast<double>(steps);
       JointPositions between;
       for (std::size_t j = 0; j < between.size(); ++j) {
         between[j] = start[j] + share * (end[j] - start[j]);
       }
-      program_.push_back(on_joint_grid(between));
+      add(on_joint_grid(between));
     }
   }
 
-  void follow(const WireTarget& target) { program_.push_back(solve(target, program_.back())); }
+  void follow(const WireTarget& target, bool is_critical = false) {
+    add(solve(target, last()), is_critical);
+  }
 
-  std::size_t size() const { return program_.size(); }
-  std::vector<JointPositions> take() { return std::move(program_); }
+  std::size_t size() const { return program_.configurations.size(); }
+  Program take() { return std::move(program_); }
 
  private:
+  const JointPositions& last() const { return program_.configurations.back(); }
+  void add(const JointPositions& configuration, bool is_critical = false) {
+    program_.configurations.push_back(configuration);
+    program_.is_critical.push_back(is_critical ? 1 : 0);
+  }
+
   RobotModel robot_;
   Pose wire_from_flange_;
-  std::vector<JointPositions> program_;
+  Program program_;
 };
 
 // Along the wire between the seam's first or last target and the clear height above it.
@@ -91,7 +99,7 @@ void weld(ProgramWriter& writer, const std::vector<WireTarget>& targets) {
   for (std::size_t i = kDescent; i > 0; --i) {
     writer.follow(backed_off(targets.front(), static_cast<double>(i) / kDescent));
   }
-  for (const WireTarget& target : targets) writer.follow(target);
+  for (const WireTarget& target : targets) writer.follow(target, true);
   for (std::size_t i = 1; i <= kDescent; ++i) {
     writer.follow(backed_off(targets.back(), static_cast<double>(i) / kDescent));
   }
@@ -108,7 +116,7 @@ Pose world_from_workpiece() {
               {kTableDistance, 0.0, kTableHeight + kWorkpieceHeight});
 }
 
-std::vector<JointPositions> make_program(const Pose& flange_from_wire) {
+Program make_program(const Pose& flange_from_wire) {
   ProgramWriter writer(flange_from_wire);
   const auto passes = make_weld_passes(kWeld);
   for (std::size_t pass = 0; pass < passes.size(); ++pass) {

@@ -16,6 +16,12 @@ inline constexpr std::size_t kProgramSize = 15178;  // collision checks of the p
 Pose world_from_table();
 Pose world_from_workpiece();
 
+struct Program {
+  std::vector<JointPositions> configurations;
+  // 1 for those in which the wire is at the metal, on a pass: the paper's critical section.
+  std::vector<std::uint8_t> is_critical;
+};
+
 // The weld program of the work cell, in the order in which the robot runs it: from home over the
 // workpiece, down to a seam, along it a few millimetres off with weave and tilt, up and home again,
 // for passes over the joint's seams, along the pipes and around their rims. In places the wire is
@@ -23,7 +29,7 @@ Pose world_from_workpiece();
 // the fixture post by a move that does not mind the post, so that forearm and wrist hit it.
 // Continuous, within the joint limits, the same numbers on every machine (see on_joint_grid()).
 // Throws Error if a target is out of reach.
-std::vector<JointPositions> make_program(const Pose& flange_from_wire);
+Program make_program(const Pose& flange_from_wire);
 
 // The same configurations in an order without coherence (seeded, the same on every machine).
 std::vector<JointPositions> shuffled(std::vector<JointPositions> program, std::uint64_t seed);

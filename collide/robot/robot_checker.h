@@ -117,7 +117,7 @@ class RobotChecker {
   // To start and end a thread takes 40 to 75 us on a small cloud machine, a configuration of an
   // easy cell 41 ns: for as many as this the second thread saves what it costs; more, or slower
   // ones, gain.
-  static constexpr std::size_t kFewestShared = 2048;
+  static constexpr std::size_t kFewestShared = 4096;
 
   // Whether the robot is free all along a straight motion in joint space, from one configuration to
   // another: proved at every point of it (G6), for the exact motion as for the poses that

@@ -4,6 +4,7 @@
 #include "bench/oracle.h"
 #include "bench/scenes/inverse_kinematics.h"
 #include "bench/scenes/torch.h"
+#include "bench/scenes/workpiece.h"
 #include "collide/robot/kinematics.h"
 
 #include <gtest/gtest.h>
@@ -30,15 +31,16 @@ std::uint64_t hash(const std::vector<JointPositions>& program) {
 }
 
 TEST(Program, IsTheSameEverywhere) {
-  const auto program = make_program(flange_from_wire());
+  const auto [program, is_critical] = make_program(flange_from_wire());
   ASSERT_EQ(program.size(), kProgramSize);
+  ASSERT_EQ(is_critical.size(), kProgramSize);
   for (const JointPositions& positions : program) EXPECT_EQ(on_joint_grid(positions), positions);
   EXPECT_EQ(hash(program), 0xc9a7e55f6321b085U);
 }
 
 TEST(Program, IsContinuousAndKeepsTheLimits) {
   const RobotModel robot = make_robot();
-  const auto program = make_program(flange_from_wire());
+  const auto program = make_program(flange_from_wire()).configurations;
   for (std::size_t i = 0; i < program.size(); ++i) {
     for (std::size_t joint = 0; joint < program[i].size(); ++joint) {
       EXPECT_GE(program[i][joint], robot.joints()[joint].lower);
@@ -50,8 +52,35 @@ TEST(Program, IsContinuousAndKeepsTheLimits) {
   }
 }
 
+// There the end of the wire is within the standoff, the weave and the room at a crotch of the
+// metal.
+TEST(Program, TheWireIsAtTheMetalInTheCriticalSection) {
+  const RobotModel robot = make_robot();
+  const auto [program, is_critical] = make_program(flange_from_wire());
+  const Pose piece_from_world = world_from_workpiece().inverse();
+  std::vector<Pose> world_from_link;
+  std::size_t critical = 0;
+  for (std::size_t i = 0; i < program.size(); ++i) {
+    if (is_critical[i] == 0) continue;
+    ++critical;
+    forward_kinematics(robot, program[i], world_from_link);
+    const Eigen::Vector3d wire =
+        piece_from_world *
+        (world_from_link.back() * link6_from_flange() * flange_from_wire()).translation();
+    double gap = 1.0;  // from the nearest pipe's outer surface
+    for (int pipe = 0; pipe < 3; ++pipe) {
+      const Eigen::Vector3d axis = pipe_axis(pipe);
+      const double along = std::clamp(wire.dot(axis), 0.0, kPipeLength);
+      gap = std::min(gap, (wire - along * axis).norm() - kPipeRadius);
+    }
+    EXPECT_LT(gap, 0.03) << i;
+  }
+  EXPECT_GT(critical, kProgramSize / 2);
+  EXPECT_LT(critical, kProgramSize);
+}
+
 TEST(Program, ShufflingKeepsTheConfigurations) {
-  const auto program = make_program(flange_from_wire());
+  const auto program = make_program(flange_from_wire()).configurations;
   auto mixed = shuffled(program, 7);
   EXPECT_NE(mixed, program);
   EXPECT_EQ(mixed, shuffled(program, 7));

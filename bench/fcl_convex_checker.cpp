@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/fcl_convex_checker.h"
+
+#include "bench/fcl_models.h"
+#include "bench/scenes/mesh_facts.h"
+#include "spheretree/error.h"
+
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <fcl/narrowphase/collision.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+using Model = FclModel<fcl::OBBRSS<double>>;
+using Box = Eigen::AlignedBox3d;
+
+std::shared_ptr<fcl::Convex<double>> convex(const TriangleMesh& part) {
+  auto vertices =
+      std::make_shared<std::vector<fcl::Vector3d>>(part.vertices.begin(), part.vertices.end());
+  auto faces = std::make_shared<std::vector<int>>();  // each with its number of corners in front
+  for (const Eigen::Vector3i& triangle : part.triangles) {
+    faces->push_back(3);
+    faces->insert(faces->end(), triangle.data(), triangle.data() + 3);
+  }
+  return std::make_shared<fcl::Convex<double>>(
+      std::move(vertices), static_cast<int>(part.triangles.size()), std::move(faces));
+}
+
+class MeshesAndConvexParts : public SingleChecker {
+ public:
+  MeshesAndConvexParts(const Workload& workload, std::size_t obstacle,
+                       const std::vector<TriangleMesh>& parts)
+      : SingleChecker(workload.robot) {
+    for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
+      const Obstacle& standing = workload.obstacles[i];
+      const auto pose = fcl_pose<double>(standing.world_from_part);
+      if (i != obstacle) {
+        const Model model(standing.part.mesh);
+        standing_.push_back({model.geometry, pose, model.world_box(pose), i});
+        continue;
+      }
+      for (const TriangleMesh& part : parts) {
+        TriangleMesh placed = part;
+        for (Eigen::Vector3d& vertex : placed.vertices) vertex = pose * vertex;
+        standing_.push_back({convex(part), pose, bounding_box(placed), i});
+      }
+    }
+    for (const Body& body : workload.bodies) {
+      bodies_.push_back({Model(body.part.mesh), static_cast<std::size_t>(body.link), {}});
+      for (std::size_t i = 0; i < standing_.size(); ++i) {
+        if (is_tested(body, workload.obstacles[standing_[i].obstacle])) {
+          bodies_.back().against.push_back(i);
+        }
+      }
+    }
+  }
+
+ protected:
+  bool collides(std::span<const Pose> world_from_link) override {
+    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Moving& body) {
+      const auto pose = fcl_pose<double>(world_from_link[body.link]);
+      const Box box = body.model.world_box(pose);
+      return std::any_of(body.against.begin(), body.against.end(), [&](std::size_t i) {
+        const Standing& other = standing_[i];
+        if (!box.intersects(other.box)) return false;
+        const fcl::CollisionRequest<double> request;  // one contact, not kept
+        fcl::CollisionResult<double> result;
+        return fcl::collide(body.model.geometry.get(), pose, other.geometry.get(), other.pose,
+                            request, result) > 0;
+      });
+    });
+  }
+
+ private:
+  struct Standing {
+    std::shared_ptr<const fcl::CollisionGeometry<double>> geometry;
+    fcl::Transform3<double> pose;
+    Box box;
+    std::size_t obstacle;
+  };
+  struct Moving {
+    Model model;
+    std::size_t link;
+    std::vector<std::size_t> against;
+  };
+  std::vector<Standing> standing_;
+  std::vector<Moving> bodies_;
+};
+
+}  // namespace
+
+std::unique_ptr<Checker> make_fcl_convex_checker(const Workload& workload, std::size_t obstacle,
+                                                 const std::vector<TriangleMesh>& parts) {
+  if (parts.empty()) throw Error(workload.name, "no convex parts");
+  return std::make_unique<MeshesAndConvexParts>(workload, obstacle, parts);
+}
+
+}  // namespace spherule

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/cover.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// The paper's hollow pipe, in metres: a bore of 40 mm (figure 3) in a wall of 5.9 mm, which makes
+// the bore 145 % of the metal's volume (figure 8). Its length is not known.
+TriangleMesh make_paper_pipe();
+inline constexpr double kPaperBore = 0.040;
+
+struct Figure3Row {
+  double min_external_diameter = 0.0;
+  double reachable = 0.0;  // share of the box that is not covered, by placement
+  double random = 0.0;
+};
+// The pipe's box as D grows from a third to more than the bore.
+std::vector<Figure3Row> figure_3();
+
+// Figures 6 to 8: the pipe as balls are added, for one method.
+struct FitCourse {
+  std::string method;
+  std::vector<CoverHistoryEntry> history;
+};
+// Stage 1 with D = 100 mm, then the paper's loop to E = 1 mm.
+FitCourse bounding_course();
+
+}  // namespace spherule

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The table and the figures of the paper, made again. See bench/README.md.
+#include "bench/fit_parts.h"
+#include "bench/paper/report.h"
+#include "spheretree/error.h"
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+
+namespace spherule {
+namespace {
+
+std::filesystem::path parse(int count, char** values) {
+  std::filesystem::path out = "bench/out";
+  for (int i = 1; i < count; ++i) {
+    const std::string option = values[i];
+    if (option != "--out" || i + 1 == count) {
+      throw Error(option, "unknown option, or its value is lacking (see bench/run --help)");
+    }
+    out = values[++i];
+  }
+  return out;
+}
+
+void say(const char* what) {
+  std::printf("paper: %s\n", what);
+  std::fflush(stdout);
+}
+
+int run(const std::filesystem::path& out) {
+  std::filesystem::create_directories(out);
+  PaperResults results;
+  say("figure 3");
+  results.figure_3 = figure_3();
+  say("figures 6 to 8");
+  results.courses.push_back(bounding_course());
+  say("holes, thin plates, a cube");
+  results.claims = study_claims();
+  print_claims(results.claims);
+  say("fitting the work cell");
+  Workload workload = make_paper_cell();
+  fit_parts(workload, [](const FitRecord& fit) {
+    std::printf("  %s: %zu spheres, %.1f s\n", fit.part.c_str(), fit.spheres, fit.seconds);
+    std::fflush(stdout);
+  });
+  say("table I");
+  results.table1 = make_table1(workload, make_representations(workload), {});
+  print_table1(results.table1);
+  write_paper(results, out);
+  for (const Table1Row& row : results.table1) {
+    if (row.is_conservative && row.whole.missed > 0) {
+      throw Error(row.method, std::to_string(row.whole.missed) + " collisions missed");
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace spherule
+
+int main(int count, char** values) {
+  try {
+    return spherule::run(spherule::parse(count, values));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "spherule_paper: %s\n", error.what());
+    return 1;
+  }
+}

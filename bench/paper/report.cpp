@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/paper/report.h"
+
+#include "spheretree/atomic_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sstream>
+#include <string>
+
+namespace spherule {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const Table1Cells& cells) {
+  return {{"queries", cells.queries}, {"collisions", cells.collisions}, {"missed", cells.missed},
+          {"extra", cells.extra},     {"seconds", cells.seconds},       {"ratio", cells.ratio}};
+}
+
+Json to_json(const Table1Row& row) {
+  Json json = {{"method", row.method}, {"complexity", row.complexity}};
+  json.update(to_json(row.whole));
+  json["conservative"] = row.is_conservative;
+  json["critical_section"] = to_json(row.critical);
+  if (row.paper) {
+    json["paper"] = {{"complexity", row.paper->complexity},
+                     {"collisions", row.paper->collisions},
+                     {"seconds", row.paper->seconds}};
+  }
+  return json;
+}
+
+// One number of each step, before and after inflation, by method.
+Json figure(const std::vector<FitCourse>& courses, double CoverHistoryEntry::*before,
+            double CoverHistoryEntry::*after) {
+  Json json = Json::object();
+  for (const FitCourse& course : courses) {
+    Json steps = Json::array();
+    for (const CoverHistoryEntry& entry : course.history) {
+      steps.push_back({{"spheres", entry.sphere_count},
+                       {"before_inflation", entry.*before},
+                       {"after_inflation", entry.*after}});
+    }
+    json[course.method] = std::move(steps);
+  }
+  return json;
+}
+
+Json to_json(const ClaimRow& row) {
+  return {{"shape", row.shape},
+          {"holes", row.holes},
+          {"triangles", row.triangles},
+          {"max_error", row.max_error},
+          {"min_external_diameter", row.min_external_diameter},
+          {"spheres_with_stage1", row.with_stage1},
+          {"spheres_without_stage1", row.without_stage1}};
+}
+
+Json to_json(const std::vector<Figure3Row>& rows) {
+  Json json = Json::array();
+  for (const Figure3Row& row : rows) {
+    json.push_back({{"min_external_diameter", row.min_external_diameter},
+                    {"uncovered_reachable", row.reachable},
+                    {"uncovered_random", row.random}});
+  }
+  return json;
+}
+
+std::string table1_csv(const std::vector<Table1Row>& rows) {
+  std::ostringstream text;
+  text << "method,complexity,section,queries,collisions,missed,extra,seconds,ratio\n";
+  for (const Table1Row& row : rows) {
+    for (const bool is_critical : {false, true}) {
+      const Table1Cells& cells = is_critical ? row.critical : row.whole;
+      text << row.method << ',' << row.complexity << ',' << (is_critical ? "critical" : "whole")
+           << ',' << cells.queries << ',' << cells.collisions << ',' << cells.missed << ','
+           << cells.extra << ',' << cells.seconds << ',' << cells.ratio << '\n';
+    }
+  }
+  return text.str();
+}
+
+// Blocks for gnuplot, one a method.
+std::string courses_data(const std::vector<FitCourse>& courses) {
+  std::ostringstream text;
+  for (const FitCourse& course : courses) {
+    text << '"' << course.method << "\"\n";
+    for (const CoverHistoryEntry& entry : course.history) {
+      text << entry.sphere_count << ' ' << 1e3 * entry.surface_error_before << ' '
+           << 1e3 * entry.surface_error_after << ' ' << 100.0 * entry.coverage_before << ' '
+           << 100.0 * entry.coverage_after << ' ' << 100.0 * entry.excess_before << ' '
+           << 100.0 * entry.excess_after << '\n';
+    }
+    text << "\n\n";
+  }
+  return text.str();
+}
+
+std::string figure_3_data(const std::vector<Figure3Row>& rows) {
+  std::ostringstream text;
+  for (const Figure3Row& row : rows) {
+    text << 1e3 * row.min_external_diameter << ' ' << 100.0 * row.reachable << ' '
+         << 100.0 * row.random << '\n';
+  }
+  return text.str();
+}
+
+}  // namespace
+
+void write_paper(const PaperResults& results, const std::filesystem::path& folder) {
+  Json table = Json::array();
+  for (const Table1Row& row : results.table1) table.push_back(to_json(row));
+  Json claims = Json::array();
+  for (const ClaimRow& row : results.claims) claims.push_back(to_json(row));
+  using Entry = CoverHistoryEntry;
+  const Json json = {
+      {"table1", std::move(table)},
+      {"figures",
+       {{"3", to_json(results.figure_3)},
+        {"6", figure(results.courses, &Entry::surface_error_before, &Entry::surface_error_after)},
+        {"7", figure(results.courses, &Entry::coverage_before, &Entry::coverage_after)},
+        {"8", figure(results.courses, &Entry::excess_before, &Entry::excess_after)}}},
+      {"claims", std::move(claims)}};
+  write_file_atomically(folder / "paper.json", json.dump(1) + "\n");
+  write_file_atomically(folder / "paper-table1.csv", table1_csv(results.table1));
+  write_file_atomically(folder / "paper-figure3.dat", figure_3_data(results.figure_3));
+  write_file_atomically(folder / "paper-courses.dat", courses_data(results.courses));
+}
+
+}  // namespace spherule

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/paper/table1.h"
+
+#include "bench/fcl_mesh_checker.h"
+#include "bench/oracle.h"
+#include "bench/tree_checker.h"
+#include "simplifier/simplify.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+Part& workpiece(Workload& workload) {
+  const auto found =
+      std::find_if(workload.obstacles.begin(), workload.obstacles.end(),
+                   [](const Obstacle& obstacle) { return obstacle.part.name == "workpiece"; });
+  if (found == workload.obstacles.end()) throw Error(workload.name, "has no workpiece");
+  return found->part;
+}
+
+std::string spheres(std::size_t count) {
+  return std::to_string(count) + " spheres";
+}
+
+// Robot and torch as meshes, the workpiece as these spheres.
+std::unique_ptr<Checker> meshes_against(Workload workload, std::vector<Sphere> balls) {
+  workpiece(workload).tree = std::make_shared<const SphereTree>(build_tree(balls));
+  return make_tree_checker(workload, TreeMode::kMeshes);
+}
+
+std::vector<Sphere> by_papers_loop(const Part& part) {
+  const Simplification result =
+      simplify(part.mesh, {.max_error = part.max_error,
+                           .min_external_diameter = part.min_external_diameter,
+                           .method = CoverMethod::kPaper,
+                           .external = ExternalPlacement::kRandom});
+  const std::string broken = broken_promises(result);
+  if (!result.certificate.covered) throw Error(part.name, broken);
+  return result.cover.spheres;
+}
+
+// Of the chosen queries.
+Table1Cells cells(const std::vector<std::uint8_t>& verdicts, const std::vector<std::uint8_t>& truth,
+                  double ns_per_query) {
+  Table1Cells result{.queries = truth.size()};
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    result.collisions += verdicts[i];
+    result.missed += truth[i] > verdicts[i] ? 1 : 0;
+    result.extra += truth[i] < verdicts[i] ? 1 : 0;
+  }
+  result.seconds = 1e-9 * ns_per_query * static_cast<double>(truth.size());
+  return result;
+}
+
+}  // namespace
+
+std::vector<Representation> make_representations(const Workload& workload) {
+  Workload copy = workload;
+  const Part part = workpiece(copy);
+  std::vector<Representation> rows;
+  rows.push_back({"original", std::to_string(part.mesh.triangles.size()) + " triangles", true,
+                  make_fcl_mesh_checker(workload, {}), PaperRow{"1942 triangles", 2032, 1798.0}});
+  const std::vector<Sphere> papers = by_papers_loop(part);
+  rows.push_back({"bounding-paper", spheres(papers.size()), true, meshes_against(workload, papers),
+                  PaperRow{"283 spheres", 2222, 102.0}});
+  rows.push_back({"bounding-cover", spheres(part.tree->spheres().size()), true,
+                  make_tree_checker(workload, TreeMode::kMeshes)});
+  std::size_t all = 0;
+  for (const Body& body : workload.bodies) all += body.part.tree->spheres().size();
+  for (const Obstacle& obstacle : workload.obstacles) all += obstacle.part.tree->spheres().size();
+  rows.push_back({"all-simplified", spheres(all), true,
+                  make_tree_checker(workload, TreeMode::kSingle), PaperRow{"-", 2289, 7.0}});
+  return rows;
+}
+
+std::vector<Table1Row> make_table1(const Workload& workload,
+                                   std::vector<Representation> representations,
+                                   const MeasureOptions& options) {
+  const auto touching = Oracle(workload).touching_bodies(workload.program);
+  std::vector<std::uint8_t> truth;
+  for (const std::uint32_t bodies : touching) truth.push_back(bodies != 0 ? 1 : 0);
+  std::vector<JointPositions> critical;
+  std::vector<std::uint8_t> critical_truth;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (workload.is_critical[i] == 0) continue;
+    critical.push_back(workload.program[i]);
+    critical_truth.push_back(truth[i]);
+  }
+  std::vector<Table1Row> rows;
+  std::vector<Method> methods;
+  for (Representation& of : representations) {
+    rows.push_back({of.method, of.complexity, of.is_conservative, {}, {}, of.paper});
+    methods.push_back({of.method, of.complexity, std::move(of.checker), 0, false});
+  }
+  const std::vector<Measurement> whole = measure(methods, workload.program, options);
+  const std::vector<Measurement> of_critical = measure(methods, critical, options);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].whole = cells(whole[i].verdicts, truth, whole[i].ns_per_query);
+    rows[i].critical = cells(of_critical[i].verdicts, critical_truth, of_critical[i].ns_per_query);
+    rows[i].whole.ratio = rows.front().whole.seconds / rows[i].whole.seconds;
+    rows[i].critical.ratio = rows.front().critical.seconds / rows[i].critical.seconds;
+  }
+  return rows;
+}
+
+void print_table1(const std::vector<Table1Row>& rows) {
+  std::printf("\nTable I (in brackets: the critical section; at the right: the paper's row)\n");
+  std::printf("%-16s %-16s %16s %14s %14s %20s %18s | %-16s %6s %8s %6s\n", "method", "complexity",
+              "collisions", "missed", "extra", "ms", "ratio", "paper", "coll.", "s", "ratio");
+  for (const Table1Row& row : rows) {
+    std::printf("%-16s %-16s %7zu (%6zu) %5zu (%5zu) %5zu (%5zu) %9.3f (%8.3f) %8.1f (%6.1f) |",
+                row.method.c_str(), row.complexity.c_str(), row.whole.collisions,
+                row.critical.collisions, row.whole.missed, row.critical.missed, row.whole.extra,
+                row.critical.extra, 1e3 * row.whole.seconds, 1e3 * row.critical.seconds,
+                row.whole.ratio, row.critical.ratio);
+    if (row.paper) {
+      std::printf(" %-16s %6zu %8.0f %6.1f", row.paper->complexity.c_str(), row.paper->collisions,
+                  row.paper->seconds, rows.front().paper->seconds / row.paper->seconds);
+    }
+    std::printf("\n");
+  }
+}
+
+}  // namespace spherule
