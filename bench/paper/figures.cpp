@@ -4,6 +4,8 @@
 #include "bench/paper/space_share.h"
 #include "bench/scenes/shapes.h"
 
+#include <utility>
+
 namespace spherule {
 namespace {
 
@@ -40,7 +42,8 @@ FitCourse bounding_course() {
   const ExternalSpheres external =
       place_external_spheres(pipe, {.min_external_diameter = kExternal, .max_error = kError});
   const CoverOptions options{.method = CoverMethod::kPaper, .max_error = kError, .history = true};
-  return {"bounding", cover(pipe, external, options).history};
+  SphereCover result = cover(pipe, external, options);
+  return {"bounding", std::move(result.history), std::move(result.spheres)};
 }
 
 }  // namespace spherule

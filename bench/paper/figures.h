@@ -26,6 +26,7 @@ std::vector<Figure3Row> figure_3();
 struct FitCourse {
   std::string method;
   std::vector<CoverHistoryEntry> history;
+  std::vector<Sphere> spheres;  // of the end, after inflation
 };
 // Stage 1 with D = 100 mm, then the paper's loop to E = 1 mm.
 FitCourse bounding_course();

@@ -45,6 +45,7 @@ int run(const std::filesystem::path& out) {
     std::printf("  %s: %zu spheres, %.1f s\n", fit.part.c_str(), fit.spheres, fit.seconds);
     std::fflush(stdout);
   });
+  write_pictures(workload, results.courses, out);
   say("table I");
   results.table1 = make_table1(workload, make_representations(workload), {});
   print_table1(results.table1);

@@ -85,6 +85,7 @@ std::string table1_csv(const std::vector<Table1Row>& rows) {
 std::string courses_data(const std::vector<FitCourse>& courses) {
   std::ostringstream text;
   for (const FitCourse& course : courses) {
+    if (&course != &courses.front()) text << "\n\n";
     text << '"' << course.method << "\"\n";
     for (const CoverHistoryEntry& entry : course.history) {
       text << entry.sphere_count << ' ' << 1e3 * entry.surface_error_before << ' '
@@ -92,7 +93,6 @@ std::string courses_data(const std::vector<FitCourse>& courses) {
            << 100.0 * entry.coverage_after << ' ' << 100.0 * entry.excess_before << ' '
            << 100.0 * entry.excess_after << '\n';
     }
-    text << "\n\n";
   }
   return text.str();
 }

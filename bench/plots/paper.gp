@@ -34,9 +34,7 @@ set ylabel 'mm'
 set logscale y
 set yrange [0.1:*]
 plot for [i = 0:courses_blocks - 1] data('courses') index i using 1:2 with lines lw 2 \
-       lc rgb word(colors, i + 1) title columnheader(1).', before inflation', \
-     for [i = 0:courses_blocks - 1] data('courses') index i using 1:($3 > 0 ? $3 : 1/0) \
-       with lines lw 2 dt 2 lc rgb word(colors, i + 1) title columnheader(1).', after inflation'
+       lc rgb word(colors, i + 1) title columnheader(1).', before inflation (after it: none)'
 unset logscale
 set yrange [0:105]
 

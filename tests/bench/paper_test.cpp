@@ -4,10 +4,12 @@
 #include "bench/fcl_convex_checker.h"
 #include "bench/fcl_mesh_checker.h"
 #include "bench/paper/figures.h"
+#include "bench/paper/picture.h"
 #include "bench/paper/space_share.h"
 #include "bench/paper/table1.h"
 #include "bench/scenes/mesh_facts.h"
 #include "bench/scenes/shapes.h"
+#include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 
 #include <gtest/gtest.h>
@@ -15,8 +17,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <numbers>
+#include <string>
+#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -103,6 +108,28 @@ TEST(FclConvexChecker, AnswersAsMeshesOfTheSameParts) {
   EXPECT_LT(hits, sample.size() - 10);
   EXPECT_LT(within, hits);
   EXPECT_THROW(make_fcl_convex_checker(cell, 0, {}), Error);
+}
+
+TEST(Picture, ShowsEveryTriangleWithAnAreaAndEveryBall) {
+  TriangleMesh mesh = make_cube(1.0);
+  mesh.triangles.emplace_back(0, 0, 1);
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("spherule-picture-" + std::to_string(::getpid()) + ".pov");
+  write_picture({{{1, 0, 0}, mesh, {}}, {{0, 0, 1}, {}, {{{0, 0, 1}, 0.5}, {{0, 0, 2}, 0.25}}}},
+                {1, 1, 1}, path);
+  const std::string text = read_file(path);
+  std::filesystem::remove(path);
+  const auto count = [&](const std::string& word) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+      ++found;
+    }
+    return found;
+  };
+  EXPECT_EQ(count("triangle {"), 12U);
+  EXPECT_EQ(count("sphere {"), 2U);
+  EXPECT_EQ(count("sphere { <0,0,2>, 0.25"), 1U);
+  EXPECT_THROW(write_picture({}, {1, 1, 1}, path), Error);
 }
 
 // Says the same of every configuration.
