@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace spherule {
+
+// Which cells of space a method takes.
+enum class Filling {
+  kSolid,   // those that the surface meets and those inside
+  kSurface  // those that the surface meets
+};
+
+}  // namespace spherule

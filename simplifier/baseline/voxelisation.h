@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/baseline/filling.h"
+#include "spheretree/sphere.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace spherule {
+
+// The ball that stands for a voxel.
+enum class VoxelBall {
+  kCircumscribed,  // around the cube, of diameter sqrt(3) times the step: contains it
+  kInscribed       // of the cube's width, as the paper has it: leaves its corners out
+};
+
+struct VoxelisationOptions {
+  // Edge of a voxel, in the unit of the mesh; or 0, and max_error says how large it may be.
+  double step = 0.0;
+  // E: the step is a thousandth below E / sqrt(3), so that no point of a circumscribed ball is
+  // further than E from its voxel's part of M or, where that is inside, from |M|.
+  double max_error = 0.0;
+  VoxelBall ball = VoxelBall::kCircumscribed;
+  Filling filling = Filling::kSolid;
+  // t: voxels that M grown by this much meets count as the surface's; vertex_error is added.
+  double padding = 0.0;
+};
+
+struct Voxelisation {
+  std::vector<Sphere> spheres;  // one a voxel, along the Morton curve
+  double step = 0.0;            // edge of the voxels
+  std::size_t surface = 0;      // voxels that the surface may meet
+  std::size_t inside = 0;       // the others
+};
+
+// Conservative with circumscribed balls (with Filling::kSurface: of the surface M only); with
+// inscribed ones not. A grid of cubes, so placed that the mesh stands in its middle, with a ball
+// for every cube that M meets (supercover; by separating axes with outward rounding, so that a cube
+// that M misses by less than the rounding may count, too) and for every cube inside: what cannot be
+// reached from outside of the grid from cube to cube through faces, without a cube that M meets.
+// So pockets whose way in is hardly wider than a cube are filled.
+// The paper, sections III ("If part of the original mesh lies within a grid section, a voxel is
+// placed into that grid position otherwise it is left empty") and IV.B ("voxelised using a 5 mm
+// grid of 5 mm diameter spheres").
+// Throws Error for a mesh that validate() refuses, for options out of range, and for a step that
+// makes too many cells or spheres (2^26), with the numbers.
+Voxelisation voxelise(const TriangleMesh& mesh, const VoxelisationOptions& options);
+
+}  // namespace spherule

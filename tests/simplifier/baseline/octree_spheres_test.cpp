@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/baseline/octree_spheres.h"
+
+#include "simplifier/certificate.h"
+#include "simplifier/mesh_distance.h"
+#include "spheretree/check.h"
+#include "spheretree/error.h"
+#include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+
+double diagonal_of(const TriangleMesh& mesh) {
+  return MeshDistance(mesh).box().diagonal().norm();
+}
+
+// The tree's parents enclose their children, by long double; its leaves are balls around cubes.
+void expect_layered(const SphereTree& tree) {
+  EXPECT_TRUE(check(tree).valid);
+  for (std::size_t node = 0; node < tree.node_count(); ++node) {
+    if (tree.is_leaf(node)) continue;
+    const Sphere parent = tree.ball(node);
+    for (std::int32_t k = 0; k < tree.child_count(node); ++k) {
+      const Sphere child = tree.ball(static_cast<std::size_t>(tree.first_child(node) + k));
+      ASSERT_LE(judged_distance(parent.center, child.center) + static_cast<Real>(child.radius),
+                static_cast<Real>(parent.radius));
+      // The method's own ball around the cube, not one made for the children.
+      ASSERT_NEAR(child.radius, parent.radius / 2.0, 1e-4 * child.radius);
+    }
+  }
+}
+
+void expect_covered(const TriangleMesh& mesh, std::span<const Sphere> balls, Random& random) {
+  const MeshDistance distance(mesh);
+  std::vector<Vector3d> points =
+      points_on_surface(mesh, static_cast<std::size_t>(effort(2000, 200)), random);
+  for (int i = 0; i < effort(1000, 100); ++i) {
+    const Vector3d p = random.in_box(distance.box());
+    if (std::abs(distance.winding_number(p)) > 0.5) points.push_back(p);
+  }
+  EXPECT_EQ(judge_cover(points, balls).uncovered, 0U);
+}
+
+TEST(OctreeSpheres, CoverAndProtrudeByTheErrorAtMost) {
+  Random random(11);
+  for (const NamedMesh& named : zoo_to_fit()) {
+    for (const double offset : {0.0, 1e6}) {
+      SCOPED_TRACE(named.name + " at " + std::to_string(offset));
+      Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+      motion.translate(Vector3d(offset, -offset / 3.0, 0.0));
+      const TriangleMesh mesh = moved(named.mesh, motion);
+      const double max_error = 0.04 * diagonal_of(mesh);
+      const OctreeSpheres result = octree_spheres(mesh, {.max_error = max_error});
+      expect_layered(result.tree);
+      expect_covered(mesh, result.tree.spheres(), random);
+      const Certificate certificate =
+          certify(mesh, result.tree.spheres(), {.resolution = 1.0 / 1024.0});
+      EXPECT_EQ(certificate.surface_depth.upper, 0.0);
+      EXPECT_EQ(certificate.uncovered_depth.lower, 0.0);
+      EXPECT_LE(certificate.protrusion_over_mesh->lower, max_error);
+    }
+  }
+}
+
+TEST(OctreeSpheres, ProtrusionIsProvedOnAWholePart) {
+  const OctreeSpheres result = octree_spheres(l_bracket(), {.max_error = 0.05});
+  const Certificate certificate =
+      certify(l_bracket(), result.tree.spheres(), {.protrusion_tolerance = 1e-3});
+  EXPECT_LE(certificate.protrusion_over_mesh->upper, 0.05 * 1.03);
+  EXPECT_GT(certificate.protrusion_over_mesh->lower, 0.02);
+}
+
+TEST(OctreeSpheres, ADepthGivesCubesOfOneSizeOnTheSurface) {
+  Random random(12);
+  for (const int depth : {1, 3, 5}) {
+    SCOPED_TRACE(depth);
+    const OctreeSpheres solid = octree_spheres(l_bracket(), {.depth = depth});
+    EXPECT_EQ(solid.tree.depth(), depth);
+    expect_layered(solid.tree);
+    expect_covered(l_bracket(), solid.tree.spheres(), random);
+    const OctreeSpheres surface =
+        octree_spheres(l_bracket(), {.depth = depth, .filling = Filling::kSurface});
+    expect_layered(surface.tree);
+    const double radius = surface.tree.spheres().front().radius;
+    EXPECT_NEAR(radius, std::sqrt(0.75) * surface.step, 1e-9);
+    for (const Sphere& ball : surface.tree.spheres()) EXPECT_EQ(ball.radius, radius);
+    EXPECT_EQ(
+        judge_cover(points_on_surface(l_bracket(), 2000, random), surface.tree.spheres()).uncovered,
+        0U);
+    EXPECT_LE(surface.tree.spheres().size(), solid.tree.spheres().size());
+  }
+}
+
+// Large cubes stay whole where they may: far fewer balls than cubes of the smallest size.
+TEST(OctreeSpheres, KeepsLargeCubesInside) {
+  const OctreeSpheres result = octree_spheres(icosphere(3), {.max_error = 0.1});
+  const auto [least, most] =
+      std::minmax_element(result.tree.spheres().begin(), result.tree.spheres().end(),
+                          [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
+  EXPECT_GE(most->radius, 3.9 * least->radius);
+}
+
+TEST(OctreeSpheres, FillsSealedHollows) {
+  const TriangleMesh shells = nested_shells(2);
+  const OctreeSpheres result = octree_spheres(shells, {.max_error = 0.1});
+  const Vector3d middle = MeshDistance(shells).box().center();
+  EXPECT_LE(gap_to_balls(middle, result.tree.spheres()), 0.0L);
+  const OctreeSpheres surface =
+      octree_spheres(shells, {.max_error = 0.1, .filling = Filling::kSurface});
+  EXPECT_GT(gap_to_balls(middle, surface.tree.spheres()), 0.0L);
+}
+
+TEST(OctreeSpheres, Refuses) {
+  EXPECT_THROW(octree_spheres(cube_mesh(), {}), Error);
+  EXPECT_THROW(octree_spheres(cube_mesh(), {.depth = -1}), Error);
+  EXPECT_THROW(octree_spheres(cube_mesh(), {.depth = 21}), Error);
+  EXPECT_THROW(octree_spheres(cube_mesh(), {.depth = 3, .max_error = 0.1}), Error);
+  EXPECT_THROW(octree_spheres(cube_mesh(), {.depth = 15}), Error);
+  EXPECT_THROW(octree_spheres(cube_mesh(), {.max_error = 1e-4}), Error);
+  EXPECT_THROW(octree_spheres(cube_mesh(), {.max_error = 0.1, .padding = -0.1}), Error);
+  EXPECT_THROW(octree_spheres({}, {.max_error = 0.1}), Error);
+  TriangleMesh point;
+  point.vertices = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+  point.triangles = {{0, 1, 2}};
+  EXPECT_THROW(octree_spheres(point, {.depth = 2}), Error);
+  EXPECT_EQ(octree_spheres(point, {.max_error = 0.1}).tree.spheres().size(), 1U);
+}
+
+}  // namespace
+}  // namespace spherule::test

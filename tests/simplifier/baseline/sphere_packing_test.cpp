@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/baseline/sphere_packing.h"
+
+#include "simplifier/certificate.h"
+#include "simplifier/mesh_distance.h"
+#include "simplifier/simplify.h"
+#include "spheretree/error.h"
+#include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(PackSpheres, StaysInsideAndCoversWhenInflated) {
+  Random random(21);
+  for (const NamedMesh& named : zoo_to_fit()) {
+    SCOPED_TRACE(named.name);
+    const MeshDistance distance(named.mesh);
+    const double max_error = 0.05 * distance.box().diagonal().norm();
+    const SpherePacking packing = pack_spheres(named.mesh, {.max_error = max_error});
+    ASSERT_FALSE(packing.spheres.empty());
+    ASSERT_EQ(packing.inflated.size(), packing.spheres.size());
+    EXPECT_LE(packing.error, max_error);
+    for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+      EXPECT_EQ(packing.inflated[i].center, packing.spheres[i].center);
+      EXPECT_NEAR(packing.inflated[i].radius, packing.spheres[i].radius + packing.error,
+                  1e-12 * max_error);
+    }
+    const ProtrusionJudgement raw =
+        judge_protrusion(packing.spheres, named.mesh, packing.solid, 1e-6 * max_error, 10, random);
+    EXPECT_EQ(raw.beyond, 0U) << raw.example.transpose();
+    std::vector<Vector3d> points =
+        points_of_solid(packing.solid, static_cast<std::size_t>(effort(2000, 200)), random);
+    EXPECT_EQ(judge_cover(points, packing.inflated).uncovered, 0U);
+    EXPECT_LE(judge_cover(points, packing.spheres).depth, static_cast<Real>(max_error));
+    points = points_on_surface(named.mesh, static_cast<std::size_t>(effort(2000, 200)), random);
+    EXPECT_EQ(judge_cover(points, packing.inflated).uncovered, 0U);
+  }
+}
+
+TEST(PackSpheres, PacksTheWallOfAPipeAndNotItsBore) {
+  const TriangleMesh mesh = pipe(20.0, 14.0, 60.0, 40);
+  const SpherePacking packing = pack_spheres(mesh, {.max_error = 2.0});
+  const MeshDistance distance(mesh);
+  for (const Sphere& ball : packing.spheres) {
+    EXPECT_GT(std::hypot(ball.center.x(), ball.center.y()), 14.0 - 1.0);
+    EXPECT_LE(ball.radius, 3.5);
+  }
+  const Certificate certificate = certify(mesh, packing.inflated, {.external = &packing.solid});
+  EXPECT_TRUE(certificate.covered);
+  EXPECT_LE(*certificate.protrusion_over_simplified_max, 2.0);
+  // The paper's figure 2: what the simplification closes, it need not follow.
+  const Simplification simplified = simplify(
+      mesh, {.max_error = 2.0, .min_external_diameter = 40.0, .method = CoverMethod::kPaper});
+  EXPECT_LT(simplified.cover.spheres.size(), packing.spheres.size());
+}
+
+TEST(PackSpheres, HistoryTellsErrorAgainstCount) {
+  const SpherePacking packing =
+      pack_spheres(pipe(20.0, 14.0, 60.0, 40), {.max_error = 2.0, .history = true});
+  ASSERT_GE(packing.history.size(), 10U);
+  EXPECT_EQ(packing.history.back().sphere_count, packing.spheres.size());
+  for (std::size_t i = 1; i < packing.history.size(); ++i) {
+    EXPECT_GT(packing.history[i].sphere_count, packing.history[i - 1].sphere_count);
+    EXPECT_GE(packing.history[i].coverage_before, packing.history[i - 1].coverage_before);
+    EXPECT_LE(packing.history[i].surface_error_before, packing.history[i - 1].surface_error_before);
+  }
+  EXPECT_LE(packing.history.back().max_error_upper, 2.0);
+  EXPECT_LT(packing.history.back().coverage_before, 1.0);
+  EXPECT_EQ(packing.history.back().coverage_after, 1.0);
+}
+
+TEST(PackSpheres, IsTheSameOnAnyNumberOfThreads) {
+  const SpherePacking one = pack_spheres(l_bracket(), {.max_error = 0.05, .threads = 1});
+  const SpherePacking two = pack_spheres(l_bracket(), {.max_error = 0.05, .threads = 2});
+  EXPECT_EQ(one.spheres, two.spheres);
+  EXPECT_EQ(one.error, two.error);
+}
+
+TEST(PackSpheres, Refuses) {
+  EXPECT_THROW(pack_spheres(cube_mesh(), {}), Error);
+  EXPECT_THROW(pack_spheres(cube_mesh(), {.max_error = -1.0}), Error);
+  EXPECT_THROW(pack_spheres(cube_mesh(), {.max_error = 0.1, .seed_diameter = -1.0}), Error);
+  EXPECT_THROW(pack_spheres(cube_mesh(), {.max_error = 0.1, .closed_below = -1.0}), Error);
+  EXPECT_THROW(pack_spheres(cube_mesh(), {.max_error = 0.1, .padding = -1.0}), Error);
+  EXPECT_THROW(pack_spheres({}, {.max_error = 0.1}), Error);
+}
+
+}  // namespace
+}  // namespace spherule::test
