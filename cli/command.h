@@ -21,5 +21,6 @@ void add_tree(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_collide(CLI::App& app, int& exit_code);
 void add_view(CLI::App& app, int& exit_code);
+void add_baseline(CLI::App& app, int& exit_code);
 
 }  // namespace spherule

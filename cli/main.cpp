@@ -38,6 +38,9 @@ int run(int argc, char** argv) {
   add_info(app, exit_code);
   add_collide(app, exit_code);
   add_view(app, exit_code);
+#ifdef SPHERULE_HAS_BASELINES
+  add_baseline(app, exit_code);
+#endif
   app.footer("Exit codes: 0 done; 1 a leak (fit, audit) or a collision (collide); 2 bad input.");
   try {
     app.parse(argc, argv);

@@ -1,49 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/table1.h"
 
-#include "bench/fcl_mesh_checker.h"
 #include "bench/oracle.h"
-#include "bench/tree_checker.h"
-#include "simplifier/simplify.h"
-#include "spheretree/build.h"
-#include "spheretree/error.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <utility>
 
 namespace spherule {
 namespace {
-
-Part& workpiece(Workload& workload) {
-  const auto found =
-      std::find_if(workload.obstacles.begin(), workload.obstacles.end(),
-                   [](const Obstacle& obstacle) { return obstacle.part.name == "workpiece"; });
-  if (found == workload.obstacles.end()) throw Error(workload.name, "has no workpiece");
-  return found->part;
-}
-
-std::string spheres(std::size_t count) {
-  return std::to_string(count) + " spheres";
-}
-
-// Robot and torch as meshes, the workpiece as these spheres.
-std::unique_ptr<Checker> meshes_against(Workload workload, std::vector<Sphere> balls) {
-  workpiece(workload).tree = std::make_shared<const SphereTree>(build_tree(balls));
-  return make_tree_checker(workload, TreeMode::kMeshes);
-}
-
-std::vector<Sphere> by_papers_loop(const Part& part) {
-  const Simplification result =
-      simplify(part.mesh, {.max_error = part.max_error,
-                           .min_external_diameter = part.min_external_diameter,
-                           .method = CoverMethod::kPaper,
-                           .external = ExternalPlacement::kRandom});
-  const std::string broken = broken_promises(result);
-  if (!result.certificate.covered) throw Error(part.name, broken);
-  return result.cover.spheres;
-}
 
 // Of the chosen queries.
 Table1Cells cells(const std::vector<std::uint8_t>& verdicts, const std::vector<std::uint8_t>& truth,
@@ -59,25 +24,6 @@ Table1Cells cells(const std::vector<std::uint8_t>& verdicts, const std::vector<s
 }
 
 }  // namespace
-
-std::vector<Representation> make_representations(const Workload& workload) {
-  Workload copy = workload;
-  const Part part = workpiece(copy);
-  std::vector<Representation> rows;
-  rows.push_back({"original", std::to_string(part.mesh.triangles.size()) + " triangles", true,
-                  make_fcl_mesh_checker(workload, {}), PaperRow{"1942 triangles", 2032, 1798.0}});
-  const std::vector<Sphere> papers = by_papers_loop(part);
-  rows.push_back({"bounding-paper", spheres(papers.size()), true, meshes_against(workload, papers),
-                  PaperRow{"283 spheres", 2222, 102.0}});
-  rows.push_back({"bounding-cover", spheres(part.tree->spheres().size()), true,
-                  make_tree_checker(workload, TreeMode::kMeshes)});
-  std::size_t all = 0;
-  for (const Body& body : workload.bodies) all += body.part.tree->spheres().size();
-  for (const Obstacle& obstacle : workload.obstacles) all += obstacle.part.tree->spheres().size();
-  rows.push_back({"all-simplified", spheres(all), true,
-                  make_tree_checker(workload, TreeMode::kSingle), PaperRow{"-", 2289, 7.0}});
-  return rows;
-}
 
 std::vector<Table1Row> make_table1(const Workload& workload,
                                    std::vector<Representation> representations,

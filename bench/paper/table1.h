@@ -2,31 +2,15 @@
 #pragma once
 
 #include "bench/measure.h"
+#include "bench/paper/representations.h"
 #include "bench/workload.h"
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace spherule {
-
-// What the paper's table says of a method.
-struct PaperRow {
-  std::string complexity;
-  std::size_t collisions = 0;
-  double seconds = 0.0;
-};
-
-// A way to represent the work cell, as an engine.
-struct Representation {
-  std::string method;      // its name in paper.json
-  std::string complexity;  // of the workpiece; of everything where everything is simplified
-  bool is_conservative = false;
-  std::unique_ptr<Checker> checker;
-  std::optional<PaperRow> paper = {};
-};
 
 // Of some of the queries.
 struct Table1Cells {
@@ -46,10 +30,6 @@ struct Table1Row {
   Table1Cells critical;  // the torch at the seams
   std::optional<PaperRow> paper;
 };
-
-// The rows that can be made of a fitted workload: the original meshes first, then the workpiece in
-// spheres, by the paper's loop and by ours, against robot and torch as meshes, and all in spheres.
-std::vector<Representation> make_representations(const Workload& workload);
 
 // Times them in alternating rounds in the program's order and judges their verdicts by the
 // original solids.

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/paper/representations.h"
+
+#include "bench/fcl_convex_checker.h"
+#include "bench/fcl_mesh_checker.h"
+#include "bench/tree_checker.h"
+#include "simplifier/baseline/convex_hull.h"
+#include "simplifier/baseline/decimation.h"
+#include "simplifier/baseline/sphere_packing.h"
+#include "simplifier/baseline/voxelisation.h"
+#include "simplifier/simplify.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <span>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+constexpr double kVoxel = 0.005;  // the paper's grid
+// The narrowest way into the workpiece is its bore of 34 mm.
+constexpr double kNothingNarrower = 0.010;
+
+std::size_t workpiece_index(const Workload& workload) {
+  const auto found =
+      std::find_if(workload.obstacles.begin(), workload.obstacles.end(),
+                   [](const Obstacle& obstacle) { return obstacle.part.name == "workpiece"; });
+  if (found == workload.obstacles.end()) throw Error(workload.name, "has no workpiece");
+  return static_cast<std::size_t>(found - workload.obstacles.begin());
+}
+
+std::string count(std::size_t number, const char* what) {
+  return std::to_string(number) + ' ' + what;
+}
+
+std::vector<Sphere> by_papers_loop(const Part& part) {
+  const Simplification result =
+      simplify(part.mesh, {.max_error = part.max_error,
+                           .min_external_diameter = part.min_external_diameter,
+                           .method = CoverMethod::kPaper,
+                           .external = ExternalPlacement::kRandom});
+  if (!result.certificate.covered) throw Error(part.name, broken_promises(result));
+  return result.cover.spheres;
+}
+
+class Rows {
+ public:
+  explicit Rows(const Workload& workload)
+      : workload_(workload),
+        index_(workpiece_index(workload)),
+        part_(workload.obstacles[index_].part) {}
+
+  const Part& part() const { return part_; }
+
+  void add(Representation row) {
+    std::printf("  %s: %s\n", row.method.c_str(), row.complexity.c_str());
+    std::fflush(stdout);
+    rows_.push_back(std::move(row));
+  }
+
+  // The workpiece as another mesh, as convex parts, or as spheres.
+  void add_mesh(std::string method, const TriangleMesh& mesh, bool is_conservative,
+                std::optional<PaperRow> paper) {
+    Workload changed = workload_;
+    changed.obstacles[index_].part.mesh = mesh;
+    add({std::move(method), count(mesh.triangles.size(), "triangles"), is_conservative,
+         make_fcl_mesh_checker(changed, {}), std::move(paper)});
+  }
+  void add_convex(std::string method, const std::vector<TriangleMesh>& parts,
+                  bool is_conservative) {
+    add({std::move(method), count(parts.size(), parts.size() == 1 ? "hull" : "hulls"),
+         is_conservative, make_fcl_convex_checker(workload_, index_, parts)});
+  }
+  void add_spheres(std::string method, std::span<const Sphere> spheres, bool is_conservative,
+                   std::optional<PaperRow> paper = {}) {
+    Workload changed = workload_;
+    changed.obstacles[index_].part.tree = std::make_shared<const SphereTree>(build_tree(spheres));
+    add({std::move(method), count(spheres.size(), "spheres"), is_conservative,
+         make_tree_checker(changed, TreeMode::kMeshes), std::move(paper)});
+  }
+
+  std::vector<Representation> take() { return std::move(rows_); }
+
+ private:
+  const Workload& workload_;
+  std::size_t index_;
+  const Part& part_;
+  std::vector<Representation> rows_;
+};
+
+}  // namespace
+
+std::vector<Representation> make_representations(const Workload& workload) {
+  Rows rows(workload);
+  const Part& part = rows.part();
+  const TriangleMesh& mesh = part.mesh;
+  rows.add_mesh("original", mesh, true, PaperRow{"1942 triangles", 2032, 1798.0});
+  rows.add_mesh("decimated",
+                decimate(mesh, {.target_triangles = mesh.triangles.size() / 2, .measure = {}}).mesh,
+                false, PaperRow{"996 triangles", 1801, 894.0});
+  rows.add_convex("hull", {convex_hull(mesh).mesh}, true);
+  const SpherePacking packing =
+      pack_spheres(mesh, {.max_error = part.max_error, .closed_below = kNothingNarrower});
+  rows.add_spheres("packing", packing.spheres, false, PaperRow{"4752 spheres", 2134, 258.0});
+  rows.add_spheres("packing-inflated", packing.inflated, true);
+  rows.add_spheres("voxels",
+                   voxelise(mesh, {.step = kVoxel, .ball = VoxelBall::kInscribed}).spheres, false,
+                   PaperRow{"2675 spheres", 2865, 170.0});
+  rows.add_spheres("voxels-covering", voxelise(mesh, {.step = kVoxel}).spheres, true);
+  rows.add_spheres("bounding-paper", by_papers_loop(part), true,
+                   PaperRow{"283 spheres", 2222, 102.0});
+  rows.add_spheres("bounding-cover", part.tree->spheres(), true);
+  std::size_t all = 0;
+  for (const Body& body : workload.bodies) all += body.part.tree->spheres().size();
+  for (const Obstacle& obstacle : workload.obstacles) all += obstacle.part.tree->spheres().size();
+  rows.add({"all-simplified", count(all, "spheres"), true,
+            make_tree_checker(workload, TreeMode::kSingle), PaperRow{"-", 2289, 7.0}});
+  return rows.take();
+}
+
+}  // namespace spherule
