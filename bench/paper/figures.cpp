@@ -3,6 +3,7 @@
 
 #include "bench/paper/space_share.h"
 #include "bench/scenes/shapes.h"
+#include "simplifier/baseline/sphere_packing.h"
 
 #include <utility>
 
@@ -44,6 +45,13 @@ FitCourse bounding_course() {
   const CoverOptions options{.method = CoverMethod::kPaper, .max_error = kError, .history = true};
   SphereCover result = cover(pipe, external, options);
   return {"bounding", std::move(result.history), std::move(result.spheres)};
+}
+
+FitCourse packing_course() {
+  // Nothing of the pipe is narrower than a quarter of its bore.
+  SpherePacking result = pack_spheres(
+      make_paper_pipe(), {.max_error = kError, .closed_below = 0.25 * kPaperBore, .history = true});
+  return {"packing", std::move(result.history), std::move(result.inflated)};
 }
 
 }  // namespace spherule

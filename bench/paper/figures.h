@@ -30,5 +30,7 @@ struct FitCourse {
 };
 // Stage 1 with D = 100 mm, then the paper's loop to E = 1 mm.
 FitCourse bounding_course();
+// The paper's generic packing of the pipe as it is, to the same E.
+FitCourse packing_course();
 
 }  // namespace spherule

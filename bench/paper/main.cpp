@@ -36,6 +36,7 @@ int run(const std::filesystem::path& out) {
   results.figure_3 = figure_3();
   say("figures 6 to 8");
   results.courses.push_back(bounding_course());
+  results.courses.push_back(packing_course());
   say("holes, thin plates, a cube");
   results.claims = study_claims();
   print_claims(results.claims);
