@@ -39,7 +39,7 @@ struct OctreeSpheres {
 //
 // Pockets of the outside whose way in is hardly wider than the smallest cubes are filled.
 // Throws Error for a mesh that validate() refuses, for options out of range (a depth of at most
-// 20), and for a depth or error that makes more than 2^26 cells, with the numbers.
+// 20), and for a depth or error that makes more than 2^24 cells, with the numbers.
 OctreeSpheres octree_spheres(const TriangleMesh& mesh, const OctreeSpheresOptions& options);
 
 }  // namespace spherule

@@ -13,8 +13,8 @@ namespace {
 
 using internal::CellOctree;
 
-// 2 GiB.
-constexpr std::size_t kMaxSpheres = std::size_t{1} << 26;
+// Half a GiB.
+constexpr std::size_t kMaxSpheres = std::size_t{1} << 24;
 
 double step_of(const VoxelisationOptions& options) {
   internal::check_padding(options.padding);
@@ -42,7 +42,7 @@ void count(const CellOctree& octree, Filling filling, Voxelisation& result) {
   if (result.surface + result.inside > kMaxSpheres) {
     std::ostringstream text;
     text << result.step << " makes " << result.surface + result.inside
-         << " voxels; at most 2^26 are made";
+         << " voxels; at most 2^24 are made";
     throw Error("step", text.str());
   }
 }

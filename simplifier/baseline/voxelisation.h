@@ -47,7 +47,7 @@ struct Voxelisation {
 // placed into that grid position otherwise it is left empty") and IV.B ("voxelised using a 5 mm
 // grid of 5 mm diameter spheres").
 // Throws Error for a mesh that validate() refuses, for options out of range, and for a step that
-// makes too many cells or spheres (2^26), with the numbers.
+// makes too many cells or spheres (2^24), with the numbers.
 Voxelisation voxelise(const TriangleMesh& mesh, const VoxelisationOptions& options);
 
 }  // namespace spherule

@@ -35,8 +35,8 @@ class CellOctree {
   static constexpr double kLeastStep = 0x1p-32;
   // A finest cell may hang at most so many halvings below the root.
   static constexpr int kMostLevels = 20;
-  // 24 bytes each, and as many again while they are sorted into inside and outside.
-  static constexpr std::size_t kMaxCells = std::size_t{1} << 26;
+  // 20 bytes each, a quarter more while they are sorted into inside and outside.
+  static constexpr std::size_t kMaxCells = std::size_t{1} << 24;
 
   // Finest cells of edge `step`, so placed that the box of M grown by the padding stands in the
   // middle of the cells along every axis. The mesh must have passed validate(); its vertex_error is
