@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/certificate.h"
+#include "spheretree/sphere.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// A set of balls grown until it covers, and what is proved about it.
+struct ConservativeSpheres {
+  std::vector<Sphere> spheres;  // the same centres in the same order
+  double growth = 0.0;          // of every radius; 0 if the balls cover as they are
+  Certificate certificate;      // of the grown balls, against |M|
+};
+
+// Conservative. Grows every radius by the proved upper bound of the uncovered depth of |M| grown by
+// `padding` and the mesh's vertex_error (certify() without external spheres: a hollow whose way in
+// is narrower than 1/128 of the box diagonal counts as solid), and by 1/4096 of the diagonal, with
+// which the second proof succeeds. Then every point of it is in a ball: one at distance d from the
+// nearest ball is in that ball grown by d. The certificate is that of a second search, on the balls
+// returned. Lengths in the unit of the mesh. Throws Error if there is no ball, if one is not usable
+// or cannot grow any more, for a mesh that validate() refuses and for a padding out of range.
+ConservativeSpheres made_conservative(const TriangleMesh& mesh, std::span<const Sphere> spheres,
+                                      double padding = 0.0);
+
+}  // namespace spherule
