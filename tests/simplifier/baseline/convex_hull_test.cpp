@@ -104,8 +104,12 @@ TEST(ConvexHull, NearlyFlatAndLongPointsAreHeld) {
         points.push_back(turn * Vector3d(random.unit(), width * random.unit(),
                                          width * thickness * random.unit()));
       }
-      if (affine_dimension(points) == 3) {
+      // Thinner than this, growing it would move its far ends by more than is allowed: it may be
+      // refused, but not answered wrongly.
+      try {
         expect_hull(points, convex_hull(points, {}, "slab"), 1e-6);
+      } catch (const Error&) {
+        EXPECT_LE(width * thickness, 1e-6);
       }
     }
   }
