@@ -242,8 +242,10 @@ ConvexHull convex_hull(std::span<const Vector3d> points, const ConvexHullOptions
   Points unit = distinct;
   for (Vector3d& p : unit) p = (p - box.center()) / box.diagonal().norm();
   Expansion expand(distinct, options.padding);
-  // Triangulated facets first; joggled input if their triangles are too thin to be grown.
-  for (const char* way : {"Qt", "QJ"}) {
+  // Triangulated facets first. Where points that are almost in line make triangles too thin to be
+  // grown, facets are merged over more and more of a bend, which leaves such points out of the
+  // vertices; joggled input last.
+  for (const char* way : {"Qt", "Qt C-1e-12", "Qt C-1e-10", "Qt C-1e-8", "QJ"}) {
     const std::vector<Eigen::Vector3i> triangles = run_qhull(unit, way);
     if (triangles.empty() || !is_closed_manifold(triangles)) continue;
     if (std::optional<ConvexHull> hull = expand(triangles)) return *std::move(hull);

@@ -40,11 +40,13 @@ inline int exact_side(const ExactPoint& a, const ExactPoint& b, const ExactPoint
 // How many pairs of a triangle and a point have the point beyond the triangle's plane or on it.
 inline std::size_t exact_outside(const TriangleMesh& hull,
                                  std::span<const Eigen::Vector3d> points) {
+  std::vector<ExactPoint> exact_points;
+  for (const Eigen::Vector3d& p : points) exact_points.push_back(exact(p));
   std::size_t count = 0;
   for (const Eigen::Vector3i& t : hull.triangles) {
     const auto corner = [&](int k) { return exact(hull.vertices[static_cast<std::size_t>(t[k])]); };
     const ExactPoint a = corner(0), b = corner(1), c = corner(2);
-    for (const Eigen::Vector3d& p : points) count += exact_side(a, b, c, exact(p)) >= 0 ? 1 : 0;
+    for (const ExactPoint& p : exact_points) count += exact_side(a, b, c, p) >= 0 ? 1 : 0;
   }
   return count;
 }
