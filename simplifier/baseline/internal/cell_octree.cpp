@@ -57,13 +57,18 @@ class DisjointSets {
 CellOctree::CellOctree(const TriangleMesh& mesh, double step, double padding) : step_(step) {
   place(mesh, padding);
   std::vector<Triangle> triangles;
+  double largest_area = 0.0;
   for (const Eigen::Vector3i& t : mesh.triangles) {
     Triangle corners;
     for (int k = 0; k < 3; ++k) {
       corners[static_cast<std::size_t>(k)] = mesh.vertices[static_cast<std::size_t>(t[k])];
     }
     triangles.push_back(corners);
+    largest_area = std::max(largest_area,
+                            0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm());
   }
+  // No plane cuts more out of a cube than the square root of two times a face.
+  if (largest_area / step_ / step_ > 1.5 * static_cast<double>(kMaxCells)) refuse_count();
   std::vector<std::uint32_t> all(triangles.size());
   std::iota(all.begin(), all.end(), std::uint32_t{0});
   cells_.push_back({});
@@ -121,15 +126,17 @@ double CellOctree::circumscribed(int level) const {
   return 0.8660254037844388 * edge(level) * (1.0 + reserve);
 }
 
+void CellOctree::refuse_count() const {
+  refuse(step_, size_, "more than " + std::to_string(kMaxCells) + " cells");
+}
+
 void CellOctree::refine(std::uint32_t cell, const std::vector<Triangle>& triangles,
                         const std::vector<std::uint32_t>& near) {
   if (cells_[cell].level == levels_) {
     cells_[cell].state = State::kSurface;
     return;
   }
-  if (cells_.size() + 8 > kMaxCells) {
-    refuse(step_, size_, "more than " + std::to_string(kMaxCells) + " cells");
-  }
+  if (cells_.size() + 8 > kMaxCells) refuse_count();
   const Cell parent = cells_[cell];
   const auto first = static_cast<std::uint32_t>(cells_.size());
   for (std::uint32_t k = 0; k < 8; ++k) cells_.push_back(child(parent, k));

@@ -64,6 +64,7 @@ class CellOctree {
 
  private:
   void place(const TriangleMesh& mesh, double padding);
+  [[noreturn]] void refuse_count() const;
   void refine(std::uint32_t cell, const std::vector<std::array<Eigen::Vector3d, 3>>& triangles,
               const std::vector<std::uint32_t>& near);
   // The cell of `level` or coarser that holds the index and is not refined; the refined one of that
