@@ -38,7 +38,8 @@ struct Contact {
 
 // The contact of two sets of balls: of all pairs of spheres that touch, the one that overlaps
 // deepest up to rounding; none exactly if collides() is false. Equal for every tree over the same
-// spheres. Allocates; costs several times as much as collides().
+// spheres. Allocates. Where bodies overlap it has to look at most of the pairs that collide() would
+// list and takes about as long as that, tens to hundreds of times as long as collides().
 std::optional<Contact> deepest_contact(const SphereTree& a, const Pose& world_from_a,
                                        const SphereTree& b, const Pose& world_from_b);
 

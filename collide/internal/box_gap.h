@@ -7,7 +7,8 @@
 // are products of two edges are left out, as is usual: they separate few pairs more.
 //
 // Error budget in the terms of relative_pose.h; boxes (c, h) are those of SphereTree::box(), of
-// which each coordinate has |c_j| + h_j <= reach, so that |c| and |h| are below 1.74 reach.
+// which each coordinate has |c_j| + h_j <= reach (1 + 8 u) + 2^-1070, because a box is rounded
+// outward in its own way, so that |c| and |h| are below 1.74 reach.
 //   Boxes. Centre of a's box seen from that of b's, in b's frame: the image errs by 136 u |c| + 71
 //   u |d|, the difference by u (|ca| + |cb| + |d|) more: less than 240 u S. Each row of R errs by
 //   at most 129 u, so the reach of a's box along an axis of b errs by 129 u |h| and by its

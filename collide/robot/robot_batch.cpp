@@ -28,9 +28,11 @@ void RobotChecker::collides(std::span<const double> configurations, std::span<Sc
   static_assert(kPiece % MechanismCheck::kBlock == 0);
   const std::size_t variables = require_sizes(configurations, verdicts);
   if (scratches.empty()) throw Error("configurations", "there is no scratch to judge them with");
+  if (scratches.size() == 1 || verdicts.size() < kFewestShared) {
+    return collides(configurations, scratches.front(), verdicts);  // to share out would allocate
+  }
   const std::size_t pieces = (verdicts.size() + kPiece - 1) / kPiece;
-  const std::size_t workers = verdicts.size() < kFewestShared ? 1 : scratches.size();
-  internal::share_work(pieces, workers, [&](std::size_t worker, std::size_t piece) {
+  internal::share_work(pieces, scratches.size(), [&](std::size_t worker, std::size_t piece) {
     const std::size_t first = piece * kPiece;
     const std::size_t count = std::min(kPiece, verdicts.size() - first);
     collides(configurations.subspan(first * variables, count * variables), scratches[worker],

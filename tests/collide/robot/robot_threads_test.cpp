@@ -26,6 +26,7 @@ namespace spherule::test {
 namespace {
 
 constexpr std::size_t kPiece = RobotChecker::kPiece;
+constexpr std::size_t kFewestShared = RobotChecker::kFewestShared;
 
 std::vector<RobotChecker::Scratch> scratches(const RobotChecker& checker, std::size_t count) {
   std::vector<RobotChecker::Scratch> result;
@@ -55,21 +56,22 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
     if (variables == 0) continue;
     const RobotChecker checker(robot, random_obstacles(random),
                                {.world_from_root = random.pose(1.0)});
-    // About the ends of pieces and of blocks, and anywhere.
-    const std::size_t sizes[] = {
-        0,
-        1,
-        17,
-        kPiece + 1,
-        RobotChecker::kFewestShared - 1,
-        RobotChecker::kFewestShared,
-        5 * kPiece - 3,
-        7 * kPiece,
-        static_cast<std::size_t>(random.whole(1, 7 * static_cast<int>(kPiece)))};
-    const std::vector<double> path = random_path(random, robot, 7 * kPiece);
+    // About the ends of pieces and of blocks, and anywhere; some are shared out, some are not.
+    constexpr std::size_t kLongest = kFewestShared + 3 * kPiece;
+    const std::size_t sizes[] = {0,
+                                 17,
+                                 kPiece + 1,
+                                 kFewestShared - 1,
+                                 kFewestShared,
+                                 kFewestShared + kPiece - 3,
+                                 kFewestShared + kPiece + 1,
+                                 static_cast<std::size_t>(random.whole(
+                                     static_cast<int>(kFewestShared), static_cast<int>(kLongest)))};
+    const std::vector<double> path = random_path(random, robot, kLongest);
     std::vector<RobotChecker::Scratch> seven =
         scratches(checker, 7);  // what they remember is no matter
     for (const std::size_t size : sizes) {
+      ASSERT_LE(size * variables, path.size());
       const auto configurations = std::span(path).first(size * variables);
       RobotChecker::Scratch scratch(checker);
       std::vector<std::uint8_t> expected(size);
@@ -115,7 +117,7 @@ TEST(RobotThreads, ErrorsAreThoseOfOneThread) {
     }
     return "";
   };
-  std::vector<double> path(8 * kPiece - 5, 0.5);
+  std::vector<double> path(kFewestShared + 3 * kPiece - 5, 0.5);  // long enough to be shared out
   EXPECT_EQ(error_of(path, 3), "");
   std::set<std::string> errors;
   for (const std::size_t first : {std::size_t{3}, 3 * kPiece + 7, path.size() - 1}) {
