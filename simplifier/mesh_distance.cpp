@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/mesh_distance.h"
 
+#include "simplifier/internal/solid_angle.h"
 #include "spheretree/point_triangle.h"
 #include "spheretree/rounding.h"
 
@@ -108,18 +109,11 @@ SurfaceDistance MeshDistance::operator()(const Vector3d& point, double limit) co
 }
 
 double MeshDistance::winding_number(const Vector3d& point) const {
-  double solid_angle = 0.0;
+  double angle = 0.0;
   for (const Corners& t : corners_) {
-    const Vector3d a = t.a - point;
-    const Vector3d b = t.b - point;
-    const Vector3d c = t.c - point;
-    const double la = a.norm();
-    const double lb = b.norm();
-    const double lc = c.norm();
-    const double denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-    solid_angle += 2.0 * std::atan2(a.dot(b.cross(c)), denominator);
+    angle += internal::solid_angle(t.a - point, t.b - point, t.c - point);
   }
-  return solid_angle / (4.0 * std::numbers::pi);
+  return angle / (4.0 * std::numbers::pi);
 }
 
 }  // namespace spherule
