@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/baseline/hubbard_spheres.h"
+
+#include "simplifier/baseline/internal/medial_spheres.h"
+#include "simplifier/baseline/internal/solid_probe.h"
+#include "simplifier/baseline/internal/sphere_reduction.h"
+#include "simplifier/baseline/internal/surface_samples.h"
+#include "simplifier/internal/thread_limit.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <numeric>
+
+namespace spherule {
+namespace {
+
+void check(const HubbardOptions& options) {
+  constexpr std::size_t kMost = 10'000'000;
+  if (options.counts.empty() || options.counts.front() < 1 ||
+      std::adjacent_find(options.counts.begin(), options.counts.end(), std::greater_equal<>()) !=
+          options.counts.end()) {
+    throw Error("counts", "must ascend from at least 1");
+  }
+  if (options.sites < 1 || options.sites > kMost) throw Error("sites", "must be 1 to 10000000");
+  if (options.cover_points < 1 || options.cover_points > kMost) {
+    throw Error("cover points", "must be 1 to 10000000");
+  }
+  if (options.threads < 0) throw Error("threads", "must not be negative");
+}
+
+}  // namespace
+
+SphereLevels hubbard_spheres(const TriangleMesh& mesh, const HubbardOptions& options) {
+  check(options);
+  validate(mesh, "mesh");
+  const internal::ThreadLimit limit(options.threads);
+  const internal::SolidProbe probe(mesh);
+  const std::vector<Eigen::Vector3d> samples =
+      internal::cover_samples(mesh, options.cover_points, 1, options.seed);
+  const internal::MedialAxis axis(probe,
+                                  internal::even_samples(mesh, options.sites, 0, options.seed + 1));
+  std::vector<std::uint32_t> points(samples.size());
+  std::iota(points.begin(), points.end(), 0U);
+
+  // No medial sphere grows by more than the radius that its share of the surface has.
+  const double max_growth = std::sqrt(
+      internal::total_area(mesh) / (std::numbers::pi * static_cast<double>(options.counts.back())));
+  const std::vector<std::size_t> descending(options.counts.rbegin(), options.counts.rend());
+  auto merged =
+      internal::merge_levels({probe, samples, points, axis.spheres(), max_growth}, descending);
+  std::reverse(merged.begin(), merged.end());
+  SphereLevels result;
+  for (const std::vector<internal::FittedSphere>& level : merged) {
+    std::vector<Sphere>& spheres = result.levels.emplace_back();
+    for (const internal::FittedSphere& s : level) spheres.push_back(s.ball);
+    if (result.levels.size() == 1) continue;
+    std::vector<std::int32_t>& parents = result.parents.emplace_back();
+    for (const internal::FittedSphere& s : level) parents.push_back(s.merged_into);
+  }
+  return result;
+}
+
+}  // namespace spherule
