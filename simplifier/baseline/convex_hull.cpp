@@ -204,7 +204,9 @@ int affine_dimension(std::span<const Vector3d> points) {
   for (const Vector3d& p : points) box.extend(p);
   const double extent = points.empty() ? 0.0 : box.diagonal().norm();
   if (extent < kLeastExtent) return 0;
-  const Vector3d center = box.center();
+  // About another point than the mean, the axes of points in a plane need not lie in it.
+  Vector3d center = Vector3d::Zero();
+  for (const Vector3d& p : points) center += p / static_cast<double>(points.size());
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const Vector3d& p : points) {
     const Vector3d q = (p - center) / extent;
