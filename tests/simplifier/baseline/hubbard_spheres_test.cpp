@@ -6,6 +6,7 @@
 #include "spheretree/check.h"
 #include "spheretree/error.h"
 #include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ namespace {
 const HubbardOptions kCoarse = {.counts = {1, 6, 30}, .sites = 150, .cover_points = 400};
 
 TEST(HubbardSpheres, EveryLevelHoldsTheSamples) {
-  for (const NamedMesh& named : zoo_to_fit()) {
+  for (const NamedMesh& named : effort(zoo_to_fit(), 2)) {
     SCOPED_TRACE(named.name);
     const SphereLevels levels = hubbard_spheres(named.mesh, kCoarse);
     ASSERT_EQ(levels.levels.size(), 3U);

@@ -7,6 +7,7 @@
 #include "spheretree/check.h"
 #include "spheretree/error.h"
 #include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
@@ -77,7 +78,7 @@ TEST(MedialAxis, WatchedPointsAreReached) {
 // Each mesh of the zoo, among them sheets, open and self-intersecting ones, needles and parts that
 // are apart.
 TEST(MedialAxis, CoversTheSamples) {
-  for (const NamedMesh& named : zoo_to_fit()) {
+  for (const NamedMesh& named : effort(zoo_to_fit(), 2)) {
     SCOPED_TRACE(named.name);
     const MedialAxisSpheres result = medial_axis(named.mesh, {.spheres = 24, .sampling = kCoarse});
     EXPECT_LE(result.spheres.size(), 24U);

@@ -3,6 +3,7 @@
 
 #include "simplifier/baseline/internal/surface_samples.h"
 #include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +75,7 @@ using Reduce = std::vector<FittedSphere> (*)(const ReductionTask&, const Reducti
 constexpr Reduce kReductions[] = {internal::merge, internal::burst, internal::expand};
 
 TEST(SphereReduction, HoldsAllPointsWithTheWantedCount) {
-  for (const NamedMesh& named : zoo_to_fit()) {
+  for (const NamedMesh& named : effort(zoo_to_fit(), 2)) {
     const Problem problem(named.mesh);
     for (const Reduce reduce : kReductions) {
       for (const std::size_t count : {1U, 7U, 40U}) {
@@ -116,7 +117,7 @@ TEST(SphereReduction, ManyMedialSpheresBecomeFewOfThem) {
 }
 
 TEST(SphereReduction, MergedLevelsHoldWhatBecamePartOfThem) {
-  for (const NamedMesh& named : zoo_to_fit()) {
+  for (const NamedMesh& named : effort(zoo_to_fit(), 2)) {
     SCOPED_TRACE(named.name);
     const Problem problem(named.mesh);
     const std::size_t counts[] = {60, 8, 1};
