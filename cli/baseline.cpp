@@ -145,6 +145,7 @@ int run_method(const Method& method, const BaselineArguments& arguments) {
   figures["volume_ratio"] =
       report.closed && report.volume != 0.0 ? to_json(volume / report.volume) : Json(nullptr);
   figures.update(result.figures);
+  if (rounds_coordinates(arguments.output)) figures["conservative"] = false;
   if (arguments.json) {
     std::cout << to_text(figures);
   } else {

@@ -72,6 +72,10 @@ void check_mesh_output(const fs::path& path) {
   }
 }
 
+bool rounds_coordinates(const fs::path& path) {
+  return !fs::is_directory(path) && lower_extension(path) == ".stl";
+}
+
 void write_meshes(std::span<const TriangleMesh> meshes, const fs::path& path) {
   check_mesh_output(path);
   const std::string extension = lower_extension(path);

@@ -13,6 +13,10 @@ namespace spherule {
 // there, for which the name of a part decides.
 void check_mesh_output(const std::filesystem::path& path);
 
+// Whether what is written there is rounded, so that what was proved of the mesh need not hold of
+// it.
+bool rounds_coordinates(const std::filesystem::path& path);
+
 // Writes the meshes into one file, a component (in OBJ an object) each, in the format that its name
 // asks for; or, if `path` is a folder, each as an OBJ file of its own, part-0001.obj and on. OBJ
 // and PLY hold the coordinates bit for bit, STL rounds them to 32-bit floats. Each file appears

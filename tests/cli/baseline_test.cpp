@@ -26,7 +26,7 @@ class BaselineTest : public CommandTest {
 TEST_F(BaselineTest, EveryFormatIsReadBack) {
   for (const char* name : {"hull.stl", "hull.obj", "hull.PLY"}) {
     const json hull = figures({"hull", "box.stl", "-o", name});
-    EXPECT_EQ(hull.at("conservative"), true);
+    EXPECT_EQ(hull.at("conservative"), std::string(name) != "hull.stl");  // that is rounded
     EXPECT_EQ(hull.at("after").at("triangles"), 12);
     EXPECT_NEAR(hull.at("volume_ratio"), 1.0, 1e-9);
     EXPECT_EQ(hull.at("loss").at(0), 0.0);
@@ -70,7 +70,7 @@ TEST_F(BaselineTest, BadInputIsRefused) {
   expect_refusal({"baseline", "hull", "none.stl", "-o", "hull.obj"}, "none.stl: no such file");
   expect_refusal({"baseline", "hull", "box.stl", "-o", "no/hull.obj"}, "no such folder");
   expect_refusal({"baseline", "hull", "box.stl", "-o", "a.obj", "--triangles", "3"}, "--triangles");
-  expect_refusal({"baseline", "decimate", "box.stl", "-o", "a.obj"}, "limits");
+  expect_refusal({"baseline", "decimate", "box.stl", "-o", "a.obj"}, "--max-error");
   expect_refusal({"baseline", "shrink", "box.stl", "-o", "a.obj"}, "");
   expect_refusal({"baseline"}, "subcommand");
   EXPECT_FALSE(exists("a.obj"));
