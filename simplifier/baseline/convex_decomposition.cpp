@@ -21,7 +21,9 @@ using Eigen::Vector3d;
 
 constexpr double kDefaultConcavity = 0.01;  // share of the box diagonal
 constexpr double kPlate = 1e-4;             // share of the box diagonal
-constexpr double kLibraryExtent = 1000.0;   // the size for which HACD's constants are made
+// Parts are long and thin, and far from exact anyway.
+constexpr double kHullExpansion = 1e-3;
+constexpr double kLibraryExtent = 1000.0;  // the size for which HACD's constants are made
 constexpr std::size_t kNoPart = static_cast<std::size_t>(-1);
 
 void check(const ConvexDecompositionOptions& options) {
@@ -154,7 +156,8 @@ ConvexDecomposition decompose(const TriangleMesh& mesh, const ConvexDecompositio
   for (std::vector<Vector3d>& cloud : points) {
     if (cloud.empty()) continue;
     if (affine_dimension(cloud) < 3) cloud = plate(cloud, kPlate * diagonal);
-    const ConvexHull hull = convex_hull(cloud, {.padding = mesh.vertex_error}, "part of the mesh");
+    const ConvexHull hull =
+        convex_hull(cloud, {mesh.vertex_error, kHullExpansion}, "part of the mesh");
     result.volume += mesh_report(hull.mesh, {.self_intersections = false}).volume;
     result.parts.push_back(hull.mesh);
   }

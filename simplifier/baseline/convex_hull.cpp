@@ -26,7 +26,6 @@ using Eigen::Vector3d;
 using Points = std::vector<Vector3d>;
 
 constexpr double kLeastExtent = 1e-60;
-constexpr double kMostExpansion = 1e-6;  // share of the extent
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -113,7 +112,8 @@ struct Plane {
 
 class Expansion {
  public:
-  Expansion(const Points& points, double padding) : points_(points), padding_(padding) {
+  Expansion(const Points& points, const ConvexHullOptions& options)
+      : points_(points), padding_(options.padding), share_(options.max_expansion) {
     Eigen::AlignedBox3d box;
     for (const Vector3d& p : points) box.extend(p);
     extent_ = box.diagonal().norm();
@@ -130,7 +130,7 @@ class Expansion {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       relative_.col(static_cast<Eigen::Index>(i)) = points_[i] - center_;
     }
-    const double most = kMostExpansion * extent_ + 10.0 * padding_;
+    const double most = share_ * extent_ + 10.0 * padding_;
     double share = first_share(hull);
     for (int attempt = 0; attempt < 12; ++attempt, share *= 2.0) {
       ConvexHull result = expanded(hull, share);
@@ -192,6 +192,7 @@ class Expansion {
 
   const Points& points_;
   double padding_;
+  double share_;  // of the extent, for the expansion
   double extent_ = 0.0;
   Vector3d center_ = Vector3d::Zero();
   Eigen::Matrix3Xd relative_;
@@ -224,6 +225,7 @@ ConvexHull convex_hull(std::span<const Vector3d> points, const ConvexHullOptions
   if (!(options.padding >= 0.0 && std::isfinite(options.padding))) {
     throw Error("padding", "must be finite and not negative");
   }
+  if (!(options.max_expansion > 0.0)) throw Error("max expansion", "must be above zero");
   const auto less = [](const Vector3d& a, const Vector3d& b) {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
   };
@@ -243,7 +245,7 @@ ConvexHull convex_hull(std::span<const Vector3d> points, const ConvexHullOptions
   for (const Vector3d& p : distinct) box.extend(p);
   Points unit = distinct;
   for (Vector3d& p : unit) p = (p - box.center()) / box.diagonal().norm();
-  Expansion expand(distinct, options.padding);
+  Expansion expand(distinct, options);
   // Triangulated facets first. Where points that are almost in line make triangles too thin to be
   // grown, facets are merged over more and more of a bend, which leaves such points out of the
   // vertices; joggled input last.
@@ -261,7 +263,7 @@ ConvexHull convex_hull(const TriangleMesh& mesh, const ConvexHullOptions& option
   for (const Eigen::Vector3i& t : mesh.triangles) {
     for (int k = 0; k < 3; ++k) used.push_back(mesh.vertices[static_cast<std::size_t>(t[k])]);
   }
-  return convex_hull(used, {.padding = options.padding + mesh.vertex_error}, "mesh");
+  return convex_hull(used, {options.padding + mesh.vertex_error, options.max_expansion}, "mesh");
 }
 
 std::vector<int> polygon_list(const TriangleMesh& mesh) {

@@ -21,6 +21,9 @@ struct ConvexHullOptions {
   // added). It moves flat and long hulls more at their far ends than across; for larger distances
   // grow the mesh itself.
   double padding = 0.0;
+  // How far a vertex may be moved, as a share of the extent of the vertices (and ten paddings), for
+  // the proof to succeed: triangles that are long and thin ask for more than others.
+  double max_expansion = 1e-6;
 };
 
 struct ConvexHull {
@@ -41,7 +44,7 @@ struct ConvexHull {
 //
 // Throws Error for a mesh that validate() refuses; for a padding that is negative or not finite;
 // for vertices that coincide, or lie on a line or a plane up to kFlatShare of their extent; for an
-// extent below 1e-60; if no hull can be proved within 1e-6 of the extent (and ten paddings).
+// extent below 1e-60; if no hull can be proved within max_expansion, or that is not above zero.
 ConvexHull convex_hull(const TriangleMesh& mesh, const ConvexHullOptions& options = {});
 
 // The same of points; errors name `subject`.
