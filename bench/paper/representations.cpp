@@ -4,6 +4,7 @@
 #include "bench/fcl_convex_checker.h"
 #include "bench/fcl_mesh_checker.h"
 #include "bench/tree_checker.h"
+#include "simplifier/baseline/convex_decomposition.h"
 #include "simplifier/baseline/convex_hull.h"
 #include "simplifier/baseline/decimation.h"
 #include "simplifier/baseline/sphere_packing.h"
@@ -23,6 +24,8 @@ namespace {
 constexpr double kVoxel = 0.005;  // the paper's grid
 // The narrowest way into the workpiece is its bore of 34 mm.
 constexpr double kNothingNarrower = 0.010;
+// Of the decomposition's parts: a tenth of a pipe.
+constexpr double kConcavity = 0.004;
 
 std::size_t workpiece_index(const Workload& workload) {
   const auto found =
@@ -102,6 +105,8 @@ std::vector<Representation> make_representations(const Workload& workload) {
                 decimate(mesh, {.target_triangles = mesh.triangles.size() / 2, .measure = {}}).mesh,
                 false, PaperRow{"996 triangles", 1801, 894.0});
   rows.add_convex("hull", {convex_hull(mesh).mesh}, true);
+  rows.add_convex("decomposition",
+                  decompose(mesh, {.max_concavity = kConcavity, .measure = {}}).parts, false);
   const SpherePacking packing =
       pack_spheres(mesh, {.max_error = part.max_error, .closed_below = kNothingNarrower});
   rows.add_spheres("packing", packing.spheres, false, PaperRow{"4752 spheres", 2134, 258.0});
