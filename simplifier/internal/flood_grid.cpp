@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/flood_grid.h"
 
+#include "simplifier/internal/disjoint_sets.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace spherule::internal {
 namespace {
@@ -34,27 +34,6 @@ std::uint32_t gather(std::uint64_t x) {
 std::array<std::uint32_t, 3> decode(std::uint64_t code) {
   return {gather(code), gather(code >> 1), gather(code >> 2)};
 }
-
-// Disjoint sets with path halving; the smaller root wins, so the result does not depend on the
-// order.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
-  }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 }  // namespace
 

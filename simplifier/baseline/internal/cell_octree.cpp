@@ -2,6 +2,7 @@
 #include "simplifier/baseline/internal/cell_octree.h"
 
 #include "simplifier/baseline/internal/triangle_cube.h"
+#include "simplifier/internal/disjoint_sets.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -32,25 +33,6 @@ Eigen::AlignedBox3d box_of(const TriangleMesh& mesh) {
   text << step << " for a model of size " << size << ": " << reason;
   throw Error("step", text.str());
 }
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
-  }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::min(a, b)] = std::max(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 }  // namespace
 
