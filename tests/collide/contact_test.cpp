@@ -107,7 +107,7 @@ TEST(Contact, OfSpheresIsTheDeepest) {
       (contact->overlap_depth > 4.0 * slack ? deep : grazing) += 1;
     }
   }
-  EXPECT_GT(deep, effort(100, 10));
+  EXPECT_GT(deep, effort(100, 3));
   EXPECT_GT(grazing, effort(50, 5));
   EXPECT_GT(free, effort(50, 5));
 }

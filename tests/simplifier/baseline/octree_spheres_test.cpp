@@ -57,7 +57,7 @@ void expect_covered(const TriangleMesh& mesh, std::span<const Sphere> balls, Ran
 TEST(OctreeSpheres, CoverAndProtrudeByTheErrorAtMost) {
   Random random(11);
   for (const NamedMesh& named : effort(zoo_to_fit(), 2)) {
-    for (const double offset : {0.0, 1e6}) {
+    for (const double offset : effort(std::vector{1e6, 0.0}, 1)) {
       SCOPED_TRACE(named.name + " at " + std::to_string(offset));
       Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
       motion.translate(Vector3d(offset, -offset / 3.0, 0.0));

@@ -48,7 +48,7 @@ TEST(PackSpheres, StaysInsideAndCoversWhenInflated) {
 
 TEST(PackSpheres, PacksTheWallOfAPipeAndNotItsBore) {
   const TriangleMesh mesh = pipe(20.0, 14.0, 60.0, 40);
-  const SpherePacking packing = pack_spheres(mesh, {.max_error = 2.0});
+  const SpherePacking packing = pack_spheres(mesh, {.max_error = 2.0, .closed_below = 4.0});
   const MeshDistance distance(mesh);
   for (const Sphere& ball : packing.spheres) {
     EXPECT_GT(std::hypot(ball.center.x(), ball.center.y()), 14.0 - 1.0);
@@ -64,8 +64,8 @@ TEST(PackSpheres, PacksTheWallOfAPipeAndNotItsBore) {
 }
 
 TEST(PackSpheres, HistoryTellsErrorAgainstCount) {
-  const SpherePacking packing =
-      pack_spheres(pipe(20.0, 14.0, 60.0, 40), {.max_error = 2.0, .history = true});
+  const SpherePacking packing = pack_spheres(
+      pipe(20.0, 14.0, 60.0, 40), {.max_error = 2.0, .closed_below = 4.0, .history = true});
   ASSERT_GE(packing.history.size(), 10U);
   EXPECT_EQ(packing.history.back().sphere_count, packing.spheres.size());
   for (std::size_t i = 1; i < packing.history.size(); ++i) {
