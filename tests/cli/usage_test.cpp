@@ -49,7 +49,7 @@ TEST_F(UsageTest, OptionsThatAreNotThereYetAreRefused) {
     arguments.insert(arguments.end(), {"--method", method});
     expect_refusal(arguments, method);
   }
-  for (const char* command : {"robot", "audit-robot", "check", "baseline"}) {
+  for (const char* command : {"robot", "audit-robot", "check"}) {
     expect_refusal({command, "x"}, std::string("unknown command: ") + command);
   }
   EXPECT_EQ(files(), std::vector<std::string>{"box.stl"});
