@@ -62,7 +62,7 @@ TEST(OctreeSpheres, CoverAndProtrudeByTheErrorAtMost) {
       Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
       motion.translate(Vector3d(offset, -offset / 3.0, 0.0));
       const TriangleMesh mesh = moved(named.mesh, motion);
-      const double max_error = 0.04 * diagonal_of(mesh);
+      const double max_error = 0.08 * diagonal_of(mesh);
       const OctreeSpheres result = octree_spheres(mesh, {.max_error = max_error});
       expect_layered(result.tree);
       expect_covered(mesh, result.tree.spheres(), random);
