@@ -5,10 +5,16 @@
 #include "spheretree/error.h"
 
 #include <chrono>
+#include <cstdio>
 #include <memory>
 #include <string>
 
 namespace spherule {
+
+void print_fit(const FitRecord& fit) {
+  std::printf("  %s: %zu spheres, %.1f s\n", fit.part.c_str(), fit.spheres, fit.seconds);
+  std::fflush(stdout);
+}
 
 void check_promises(const Simplification& fit, const std::string& part) {
   const std::string broken = broken_promises(fit);

@@ -21,6 +21,9 @@ struct FitRecord {
   bool covered = false;
 };
 
+// A line on standard output.
+void print_fit(const FitRecord& fit);
+
 // Throws Error naming the part and its broken_promises(), if there are any: nothing measured on
 // such a set is worth having.
 void check_promises(const Simplification& fit, const std::string& part);

@@ -5,6 +5,7 @@
 #include "bench/measure.h"
 #include "bench/methods.h"
 #include "bench/oracle.h"
+#include "bench/placed_cell.h"
 #include "bench/real_models.h"
 #include "bench/report.h"
 #include "bench/scene_files.h"
@@ -20,9 +21,6 @@
 
 namespace spherule {
 namespace {
-
-// A configuration of the first weld, for the picture.
-constexpr std::size_t kShownConfiguration = 300;
 
 struct Arguments {
   std::filesystem::path out = "bench/out";
@@ -57,10 +55,7 @@ const Part& part_named(const std::string& name, const Workload& workload) {
 WorkloadResult run(Workload workload, const Arguments& arguments) {
   std::printf("%s: fitting\n", workload.name.c_str());
   std::fflush(stdout);
-  std::vector<FitRecord> fits = fit_parts(workload, [](const FitRecord& fit) {
-    std::printf("  %s: %zu spheres, %.1f s\n", fit.part.c_str(), fit.spheres, fit.seconds);
-    std::fflush(stdout);
-  });
+  std::vector<FitRecord> fits = fit_parts(workload, &print_fit);
   write_scene(workload, workload.program[kShownConfiguration], arguments.out / workload.name);
   std::printf("%s: asking the oracle\n", workload.name.c_str());
   std::fflush(stdout);
@@ -94,7 +89,7 @@ int bench(const Arguments& arguments) {
   write_results(results, arguments.out);
   for (const WorkloadResult& result : results) {
     for (const MethodResult& method : result.methods) {
-      if (method.name.starts_with("spherule") && method.missed > 0) {
+      if (method.name.starts_with("spherule") && method.count.missed > 0) {
         throw Error(result.name, method.name + " missed collisions");
       }
     }

@@ -73,6 +73,19 @@ void time_single_queries(Checker& checker, const std::vector<JointPositions>& sa
 
 }  // namespace
 
+VerdictCount count(const std::vector<std::uint8_t>& verdicts,
+                   const std::vector<std::uint8_t>& truth) {
+  VerdictCount result;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const bool says = verdicts[i] != 0;
+    const bool is = truth[i] != 0;
+    result.collisions += says ? 1 : 0;
+    result.missed += is && !says ? 1 : 0;
+    result.extra += says && !is ? 1 : 0;
+  }
+  return result;
+}
+
 std::vector<Measurement> measure(const std::vector<Method>& methods,
                                  const std::vector<JointPositions>& program,
                                  const MeasureOptions& options) {

@@ -38,6 +38,15 @@ struct Measurement {
   std::vector<std::uint8_t> verdicts;  // of the whole program
 };
 
+// Against the truth: what touches and what is said to.
+struct VerdictCount {
+  std::size_t collisions = 0;  // said
+  std::size_t missed = 0;      // the truth says collision, the verdict free
+  std::size_t extra = 0;       // the reverse
+};
+VerdictCount count(const std::vector<std::uint8_t>& verdicts,
+                   const std::vector<std::uint8_t>& truth);
+
 // Times the methods in alternating rounds, so that a slow moment of the machine meets all of them,
 // in path order and, but for slow ones, in a random order, then single queries, and collects all
 // verdicts.

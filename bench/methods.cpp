@@ -10,23 +10,9 @@
 #include <utility>
 
 namespace spherule {
-namespace {
-
-template <class Count>
-std::size_t sum(const Workload& workload, const Count& count) {
-  std::size_t result = 0;
-  for (const Body& body : workload.bodies) result += count(body.part);
-  for (const Obstacle& obstacle : workload.obstacles) result += count(obstacle.part);
-  return result;
-}
-
-}  // namespace
-
 std::vector<Method> make_methods(const Workload& workload) {
-  const std::size_t triangles =
-      sum(workload, [](const Part& part) { return part.mesh.triangles.size(); });
-  const std::size_t spheres =
-      sum(workload, [](const Part& part) { return part.tree->spheres().size(); });
+  const std::size_t triangles = triangle_count(workload);
+  const std::size_t spheres = sphere_count(workload);
   std::size_t triangles_and_spheres = 0;
   for (const Body& body : workload.bodies) triangles_and_spheres += body.part.mesh.triangles.size();
   for (const Obstacle& obstacle : workload.obstacles) {

@@ -36,15 +36,16 @@ Json to_json(const WorkloadResult& result, const MethodResult& method) {
             {"shuffled_ns_per_query", m.shuffled_ns_per_query},
             {"p50_ns", m.p50_ns},
             {"p99_ns", m.p99_ns},
-            {"collisions", method.collisions},
-            {"missed", method.missed},
-            {"extra", method.extra},
+            {"collisions", method.count.collisions},
+            {"missed", method.count.missed},
+            {"extra", method.count.extra},
             {"spheres_or_triangles", method.primitives}};
-  json["counters"] = {{"setting", method.setting},
-                      {"timed_queries", m.timed_queries},
-                      {"times_fcl_mesh_obbrss", time_of(result, kUsualFcl) / m.ns_per_query},
-                      {"times_fcl_mesh_fastest", time_of(result, kFastestFcl) / m.ns_per_query},
-                      {"extra_percent_of_collisions", percent_of_oracle(result, method.extra)}};
+  json["counters"] = {
+      {"setting", method.setting},
+      {"timed_queries", m.timed_queries},
+      {"times_fcl_mesh_obbrss", time_of(result, kUsualFcl) / m.ns_per_query},
+      {"times_fcl_mesh_fastest", time_of(result, kFastestFcl) / m.ns_per_query},
+      {"extra_percent_of_collisions", percent_of_oracle(result, method.count.extra)}};
   return json;
 }
 
@@ -117,12 +118,14 @@ WorkloadResult evaluate(const Workload& workload, std::vector<FitRecord> fits,
                         .methods = {},
                         .edges = {},
                         .studies = {}};
-  for (const std::uint32_t bits : touching_bodies) result.oracle_collisions += bits != 0 ? 1 : 0;
+  std::vector<std::uint8_t> truth;
+  for (const std::uint32_t bits : touching_bodies) truth.push_back(bits != 0 ? 1 : 0);
+  result.oracle_collisions = static_cast<std::size_t>(std::count(truth.begin(), truth.end(), 1));
   for (std::size_t body = 0; body < workload.bodies.size(); ++body) {
-    const auto count = std::count_if(touching_bodies.begin(), touching_bodies.end(),
-                                     [&](std::uint32_t bits) { return (bits >> body & 1U) != 0; });
+    const auto hits = std::count_if(touching_bodies.begin(), touching_bodies.end(),
+                                    [&](std::uint32_t bits) { return (bits >> body & 1U) != 0; });
     result.oracle_by_body.emplace_back(workload.bodies[body].part.name,
-                                       static_cast<std::size_t>(count));
+                                       static_cast<std::size_t>(hits));
   }
   std::size_t fastest = methods.size();
   for (std::size_t m = 0; m < methods.size(); ++m) {
@@ -130,13 +133,7 @@ WorkloadResult evaluate(const Workload& workload, std::vector<FitRecord> fits,
                       .setting = methods[m].setting,
                       .measurement = std::move(measurements[m]),
                       .primitives = methods[m].primitives};
-    for (std::size_t i = 0; i < touching_bodies.size(); ++i) {
-      const bool says = line.measurement.verdicts[i] != 0;
-      const bool is = touching_bodies[i] != 0;
-      line.collisions += says ? 1 : 0;
-      line.missed += is && !says ? 1 : 0;
-      line.extra += says && !is ? 1 : 0;
-    }
+    line.count = count(line.measurement.verdicts, truth);
     const bool is_fcl_mesh = line.name.starts_with("fcl-mesh");
     result.methods.push_back(std::move(line));
     if (is_fcl_mesh &&
@@ -178,8 +175,9 @@ void print_table(const WorkloadResult& result) {
     std::printf("%-20s %11.1f %11.1f %10.0f %10.0f %8.2f %8.2f %7zu %7zu %8zu %8.1f\n",
                 method.name.c_str(), m.ns_per_query, m.shuffled_ns_per_query, m.p50_ns, m.p99_ns,
                 time_of(result, kUsualFcl) / m.ns_per_query,
-                time_of(result, kFastestFcl) / m.ns_per_query, method.collisions, method.missed,
-                method.extra, percent_of_oracle(result, method.extra));
+                time_of(result, kFastestFcl) / m.ns_per_query, method.count.collisions,
+                method.count.missed, method.count.extra,
+                percent_of_oracle(result, method.count.extra));
     if (method.name == kFastestFcl) std::printf("  (%s)\n", method.setting.c_str());
   }
   const EdgeMeasurement& edges = result.edges;

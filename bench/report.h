@@ -20,9 +20,7 @@ struct MethodResult {
   std::string setting;
   Measurement measurement;
   std::size_t primitives = 0;
-  std::size_t collisions = 0;
-  std::size_t missed = 0;  // the oracle says collision, the method free
-  std::size_t extra = 0;   // the reverse
+  VerdictCount count = {};  // against the oracle
 };
 
 struct WorkloadResult {

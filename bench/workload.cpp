@@ -26,7 +26,23 @@ TriangleMesh moved(TriangleMesh mesh, const Pose& pose) {
   return mesh;
 }
 
+template <class Count>
+std::size_t sum(const Workload& workload, const Count& count) {
+  std::size_t result = 0;
+  for (const Body& body : workload.bodies) result += count(body.part);
+  for (const Obstacle& obstacle : workload.obstacles) result += count(obstacle.part);
+  return result;
+}
+
 }  // namespace
+
+std::size_t triangle_count(const Workload& workload) {
+  return sum(workload, [](const Part& part) { return part.mesh.triangles.size(); });
+}
+
+std::size_t sphere_count(const Workload& workload) {
+  return sum(workload, [](const Part& part) { return part.tree->spheres().size(); });
+}
 
 bool is_tested(const Body& body, const Obstacle& obstacle) {
   return body.link != 0 || obstacle.part.name != "table";

@@ -4,6 +4,7 @@
 #include "bench/scenes/robot.h"
 #include "spheretree/sphere_tree.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -48,6 +49,10 @@ struct Workload {
 // the program, and no engine is asked. (The workpiece is exchanged, so the base is tested against
 // it.)
 bool is_tested(const Body& body, const Obstacle& obstacle);
+
+// Of all its parts together.
+std::size_t triangle_count(const Workload& workload);
+std::size_t sphere_count(const Workload& workload);
 
 // The paper's work cell from bench/scenes: torch, link_6 .. base_link; workpiece, table. E and D as
 // in the paper: robot 20 mm and 100 mm, pipes 1 mm and 100 mm.

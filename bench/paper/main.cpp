@@ -42,18 +42,15 @@ int run(const std::filesystem::path& out) {
   print_claims(results.claims);
   say("fitting the work cell");
   Workload workload = make_paper_cell();
-  fit_parts(workload, [](const FitRecord& fit) {
-    std::printf("  %s: %zu spheres, %.1f s\n", fit.part.c_str(), fit.spheres, fit.seconds);
-    std::fflush(stdout);
-  });
+  fit_parts(workload, &print_fit);
   write_pictures(workload, results.courses, out);
   say("table I");
   results.table1 = make_table1(workload, make_representations(workload), {});
   print_table1(results.table1);
   write_paper(results, out);
   for (const Table1Row& row : results.table1) {
-    if (row.is_conservative && row.whole.missed > 0) {
-      throw Error(row.method, std::to_string(row.whole.missed) + " collisions missed");
+    if (row.is_conservative && row.whole.count.missed > 0) {
+      throw Error(row.method, std::to_string(row.whole.count.missed) + " collisions missed");
     }
   }
   return 0;

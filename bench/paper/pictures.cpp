@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/picture.h"
 #include "bench/paper/report.h"
+#include "bench/placed_cell.h"
 #include "bench/scenes/solids.h"
-#include "collide/robot/kinematics.h"
 
+#include <map>
 #include <string>
-#include <utility>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -16,39 +17,17 @@ const Eigen::Vector3d kOrange(0.93, 0.55, 0.21);
 const Eigen::Vector3d kGrey(0.75, 0.75, 0.75);
 const Eigen::Vector3d kFromTheSide(1.0, -1.2, 0.7);
 
-// A configuration of the first weld.
-constexpr std::size_t kShownConfiguration = 300;
+const std::map<std::string, Eigen::Vector3d> kColors = {
+    {"robot", kOrange}, {"torch", kSteel}, {"workpiece", kBlue}, {"table", kGrey}};
 
-// The parts in their places, as meshes or as spheres.
-PictureItem& add(const Part& part, const Pose& pose, bool in_spheres, PictureItem& item) {
-  if (in_spheres) {
-    for (const Sphere& sphere : part.tree->spheres()) {
-      item.spheres.push_back({pose * sphere.center, sphere.radius});
-    }
-  } else {
-    append(item.mesh, placed(part.mesh, pose.matrix(), pose.translation()));
-  }
-  return item;
+using Cell = std::map<std::string, PlacedParts>;
+
+PictureItem in_meshes(const Cell& cell, const std::string& name) {
+  return {.color = kColors.at(name), .mesh = cell.at(name).mesh};
 }
 
-void draw_cell(const Workload& workload, bool in_spheres, bool only_robot,
-               const std::filesystem::path& path) {
-  std::vector<Pose> world_from_link;
-  forward_kinematics(workload.robot, workload.program[kShownConfiguration], world_from_link);
-  PictureItem robot{.color = kOrange};
-  PictureItem torch{.color = kSteel};
-  for (const Body& body : workload.bodies) {
-    add(body.part, world_from_link[static_cast<std::size_t>(body.link)], in_spheres,
-        body.part.name == "torch" ? torch : robot);
-  }
-  std::vector<PictureItem> items = {std::move(robot), std::move(torch)};
-  if (!only_robot) {
-    for (const Obstacle& obstacle : workload.obstacles) {
-      PictureItem item{.color = obstacle.part.name == "workpiece" ? kBlue : kGrey};
-      items.push_back(add(obstacle.part, obstacle.world_from_part, in_spheres, item));
-    }
-  }
-  write_picture(items, kFromTheSide, path);
+PictureItem in_spheres(const Cell& cell, const std::string& name) {
+  return {.color = kColors.at(name), .spheres = cell.at(name).spheres};
 }
 
 }  // namespace
@@ -66,9 +45,16 @@ void write_pictures(const Workload& workload, const std::vector<FitCourse>& cour
     }
     write_picture({pipe}, kFromTheSide, folder / ("paper-figure4-" + course.method + ".pov"));
   }
-  draw_cell(workload, true, true, folder / "paper-figure5.pov");
-  draw_cell(workload, false, false, folder / "paper-figure9.pov");
-  draw_cell(workload, true, false, folder / "paper-figure9-spheres.pov");
+  const Cell cell = place_cell(workload, workload.program[kShownConfiguration]);
+  write_picture({in_spheres(cell, "robot"), in_spheres(cell, "torch")}, kFromTheSide,
+                folder / "paper-figure5.pov");
+  std::vector<PictureItem> meshes, spheres;
+  for (const auto& [name, color] : kColors) {
+    meshes.push_back(in_meshes(cell, name));
+    spheres.push_back(in_spheres(cell, name));
+  }
+  write_picture(meshes, kFromTheSide, folder / "paper-figure9.pov");
+  write_picture(spheres, kFromTheSide, folder / "paper-figure9-spheres.pov");
 }
 
 }  // namespace spherule

@@ -14,8 +14,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json to_json(const Table1Cells& cells) {
-  return {{"queries", cells.queries}, {"collisions", cells.collisions}, {"missed", cells.missed},
-          {"extra", cells.extra},     {"seconds", cells.seconds},       {"ratio", cells.ratio}};
+  return {{"queries", cells.queries},     {"collisions", cells.count.collisions},
+          {"missed", cells.count.missed}, {"extra", cells.count.extra},
+          {"seconds", cells.seconds},     {"ratio", cells.ratio}};
 }
 
 Json to_json(const Table1Row& row) {
@@ -74,8 +75,8 @@ std::string table1_csv(const std::vector<Table1Row>& rows) {
     for (const bool is_critical : {false, true}) {
       const Table1Cells& cells = is_critical ? row.critical : row.whole;
       text << row.method << ',' << row.complexity << ',' << (is_critical ? "critical" : "whole")
-           << ',' << cells.queries << ',' << cells.collisions << ',' << cells.missed << ','
-           << cells.extra << ',' << cells.seconds << ',' << cells.ratio << '\n';
+           << ',' << cells.queries << ',' << cells.count.collisions << ',' << cells.count.missed
+           << ',' << cells.count.extra << ',' << cells.seconds << ',' << cells.ratio << '\n';
     }
   }
   return text.str();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/representations.h"
 
-#include "bench/fcl_convex_checker.h"
 #include "bench/fcl_mesh_checker.h"
+#include "bench/paper/fcl_convex_checker.h"
 #include "bench/tree_checker.h"
 #include "simplifier/baseline/convex_decomposition.h"
 #include "simplifier/baseline/convex_hull.h"
@@ -118,10 +118,7 @@ std::vector<Representation> make_representations(const Workload& workload) {
   rows.add_spheres("bounding-paper", by_papers_loop(part), true,
                    PaperRow{"283 spheres", 2222, 102.0});
   rows.add_spheres("bounding-cover", part.tree->spheres(), true);
-  std::size_t all = 0;
-  for (const Body& body : workload.bodies) all += body.part.tree->spheres().size();
-  for (const Obstacle& obstacle : workload.obstacles) all += obstacle.part.tree->spheres().size();
-  rows.add({"all-simplified", count(all, "spheres"), true,
+  rows.add({"all-simplified", count(sphere_count(workload), "spheres"), true,
             make_tree_checker(workload, TreeMode::kSingle), PaperRow{"-", 2289, 7.0}});
   return rows.take();
 }

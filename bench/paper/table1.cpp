@@ -13,14 +13,9 @@ namespace {
 // Of the chosen queries.
 Table1Cells cells(const std::vector<std::uint8_t>& verdicts, const std::vector<std::uint8_t>& truth,
                   double ns_per_query) {
-  Table1Cells result{.queries = truth.size()};
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    result.collisions += verdicts[i];
-    result.missed += truth[i] > verdicts[i] ? 1 : 0;
-    result.extra += truth[i] < verdicts[i] ? 1 : 0;
-  }
-  result.seconds = 1e-9 * ns_per_query * static_cast<double>(truth.size());
-  return result;
+  return {.queries = truth.size(),
+          .count = count(verdicts, truth),
+          .seconds = 1e-9 * ns_per_query * static_cast<double>(truth.size())};
 }
 
 }  // namespace
@@ -61,10 +56,10 @@ void print_table1(const std::vector<Table1Row>& rows) {
               "collisions", "missed", "extra", "ms", "ratio", "paper", "coll.", "s", "ratio");
   for (const Table1Row& row : rows) {
     std::printf("%-16s %-16s %7zu (%6zu) %5zu (%5zu) %5zu (%5zu) %9.3f (%8.3f) %8.1f (%6.1f) |",
-                row.method.c_str(), row.complexity.c_str(), row.whole.collisions,
-                row.critical.collisions, row.whole.missed, row.critical.missed, row.whole.extra,
-                row.critical.extra, 1e3 * row.whole.seconds, 1e3 * row.critical.seconds,
-                row.whole.ratio, row.critical.ratio);
+                row.method.c_str(), row.complexity.c_str(), row.whole.count.collisions,
+                row.critical.count.collisions, row.whole.count.missed, row.critical.count.missed,
+                row.whole.count.extra, row.critical.count.extra, 1e3 * row.whole.seconds,
+                1e3 * row.critical.seconds, row.whole.ratio, row.critical.ratio);
     if (row.paper) {
       std::printf(" %-16s %6zu %8.0f %6.1f", row.paper->complexity.c_str(), row.paper->collisions,
                   row.paper->seconds, rows.front().paper->seconds / row.paper->seconds);

@@ -15,11 +15,9 @@ namespace spherule {
 // Of some of the queries.
 struct Table1Cells {
   std::size_t queries = 0;
-  std::size_t collisions = 0;
-  std::size_t missed = 0;  // the original solids touch, the representation is free
-  std::size_t extra = 0;   // the reverse
-  double seconds = 0.0;    // for all of them
-  double ratio = 0.0;      // of the first row's time
+  VerdictCount count = {};  // against the original solids
+  double seconds = 0.0;     // for all of them
+  double ratio = 0.0;       // of the first row's time
 };
 
 struct Table1Row {

@@ -34,15 +34,6 @@ Workload refined(const Workload& workload, std::size_t factor) {
   return result;
 }
 
-std::size_t sphere_count(const Workload& workload) {
-  std::size_t count = 0;
-  for (const Body& body : workload.bodies) count += body.part.tree->spheres().size();
-  for (const Obstacle& obstacle : workload.obstacles) {
-    count += obstacle.part.tree->spheres().size();
-  }
-  return count;
-}
-
 std::uint64_t node_tests(const Workload& workload, const std::vector<Pose>& world_from_link) {
   std::uint64_t tests = 0;
   for (const Body& body : workload.bodies) {

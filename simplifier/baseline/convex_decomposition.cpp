@@ -2,6 +2,7 @@
 #include "simplifier/baseline/convex_decomposition.h"
 
 #include "simplifier/baseline/convex_hull.h"
+#include "simplifier/baseline/internal/mesh_box.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
 
@@ -138,10 +139,7 @@ TriangleMesh join_parts(const std::vector<TriangleMesh>& parts) {
 ConvexDecomposition decompose(const TriangleMesh& mesh, const ConvexDecompositionOptions& options) {
   validate(mesh, "mesh");
   check(options);
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3i& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) box.extend(vertex(mesh, t, k));
-  }
+  const Eigen::AlignedBox3d box = internal::box_of(mesh);
   const double diagonal = box.diagonal().norm();
   const double concavity =
       options.max_concavity > 0.0 ? options.max_concavity : kDefaultConcavity * diagonal;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/made_conservative.h"
 
-#include "simplifier/mesh_distance.h"
+#include "simplifier/baseline/internal/mesh_box.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -18,7 +18,7 @@ ConservativeSpheres made_conservative(const TriangleMesh& mesh, std::span<const 
   result.spheres.assign(spheres.begin(), spheres.end());
   if (!before.covered) {
     // A piece of the proof's finest size lies in one ball only if it has room to spare there.
-    const double piece = options.resolution * MeshDistance(mesh).box().diagonal().norm();
+    const double piece = options.resolution * internal::box_of(mesh).diagonal().norm();
     result.growth = add_up(before.uncovered_depth.upper, piece);
     for (Sphere& sphere : result.spheres) {
       sphere.radius = add_up(sphere.radius, result.growth);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/mesh_deviation.h"
 
+#include "simplifier/baseline/internal/mesh_box.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
@@ -141,12 +142,7 @@ MeshDeviation measure_deviation(const TriangleMesh& original, const TriangleMesh
   if (!(options.tolerance >= 1e-6 && options.tolerance <= 1.0)) {
     throw Error("tolerance", "must be from 1e-6 to 1");
   }
-  Eigen::AlignedBox3d box;
-  for (const TriangleMesh* mesh : {&original, &other}) {
-    for (const Eigen::Vector3i& triangle : mesh->triangles) {
-      for (const Eigen::Vector3d& corner : corners_of(*mesh, triangle)) box.extend(corner);
-    }
-  }
+  const Eigen::AlignedBox3d box = internal::box_of(original).merged(internal::box_of(other));
   const double tolerance = options.tolerance * box.diagonal().norm();
   MeshDeviation deviation;
   deviation.loss = farthest(original, SolidDistance(other), tolerance, options.most_pieces);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The paper's comparisons: what they count, and that conservative rows miss nothing.
 
-#include "bench/fcl_convex_checker.h"
 #include "bench/fcl_mesh_checker.h"
+#include "bench/paper/fcl_convex_checker.h"
 #include "bench/paper/figures.h"
 #include "bench/paper/picture.h"
 #include "bench/paper/space_share.h"
@@ -160,18 +160,18 @@ TEST(Table1, CountsWhatIsMissedAndWhatIsExtra) {
   representations.push_back({"hit", "all", true, std::make_unique<Constant>(1)});
   representations.push_back({"meshes", "all", true, make_fcl_mesh_checker(cell, {})});
   const auto rows = make_table1(cell, std::move(representations), {.rounds = 1});
-  const std::size_t truth = rows[0].whole.missed;
+  const std::size_t truth = rows[0].whole.count.missed;
   EXPECT_GT(truth, 10U);
   EXPECT_EQ(rows[0].whole.queries, program.size());
-  EXPECT_EQ(rows[0].whole.collisions, 0U);
-  EXPECT_EQ(rows[1].whole.collisions, program.size());
-  EXPECT_EQ(rows[1].whole.missed, 0U);
-  EXPECT_EQ(rows[1].whole.extra, program.size() - truth);
-  EXPECT_EQ(rows[2].whole.collisions, truth);
-  EXPECT_EQ(rows[2].whole.missed + rows[2].whole.extra, 0U);
+  EXPECT_EQ(rows[0].whole.count.collisions, 0U);
+  EXPECT_EQ(rows[1].whole.count.collisions, program.size());
+  EXPECT_EQ(rows[1].whole.count.missed, 0U);
+  EXPECT_EQ(rows[1].whole.count.extra, program.size() - truth);
+  EXPECT_EQ(rows[2].whole.count.collisions, truth);
+  EXPECT_EQ(rows[2].whole.count.missed + rows[2].whole.count.extra, 0U);
   for (const Table1Row& row : rows) {
     EXPECT_LT(row.critical.queries, row.whole.queries);
-    EXPECT_LE(row.critical.missed, row.whole.missed);
+    EXPECT_LE(row.critical.count.missed, row.whole.count.missed);
     EXPECT_GT(row.whole.seconds, 0.0);
   }
   EXPECT_EQ(rows[0].whole.ratio, 1.0);

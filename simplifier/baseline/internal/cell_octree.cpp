@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/cell_octree.h"
 
+#include "simplifier/baseline/internal/mesh_box.h"
 #include "simplifier/baseline/internal/triangle_cube.h"
 #include "simplifier/internal/disjoint_sets.h"
 #include "spheretree/error.h"
@@ -19,14 +20,6 @@ namespace {
 
 using Eigen::Vector3d;
 using Index = std::array<std::uint32_t, 3>;
-
-Eigen::AlignedBox3d box_of(const TriangleMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3i& t : mesh.triangles) {
-    for (const int v : t) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
-  }
-  return box;
-}
 
 [[noreturn]] void refuse(double step, double size, const std::string& reason) {
   std::ostringstream text;

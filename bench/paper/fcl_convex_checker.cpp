@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/fcl_convex_checker.h"
+#include "bench/paper/fcl_convex_checker.h"
 
 #include "bench/fcl_models.h"
 #include "bench/scenes/mesh_facts.h"
+#include "bench/scenes/solids.h"
+#include "simplifier/baseline/convex_hull.h"
 #include "spheretree/error.h"
 
 #include <fcl/geometry/shape/convex.h>
@@ -21,11 +23,7 @@ using Box = Eigen::AlignedBox3d;
 std::shared_ptr<fcl::Convex<double>> convex(const TriangleMesh& part) {
   auto vertices =
       std::make_shared<std::vector<fcl::Vector3d>>(part.vertices.begin(), part.vertices.end());
-  auto faces = std::make_shared<std::vector<int>>();  // each with its number of corners in front
-  for (const Eigen::Vector3i& triangle : part.triangles) {
-    faces->push_back(3);
-    faces->insert(faces->end(), triangle.data(), triangle.data() + 3);
-  }
+  auto faces = std::make_shared<std::vector<int>>(polygon_list(part));
   return std::make_shared<fcl::Convex<double>>(
       std::move(vertices), static_cast<int>(part.triangles.size()), std::move(faces));
 }
@@ -44,9 +42,8 @@ class MeshesAndConvexParts : public SingleChecker {
         continue;
       }
       for (const TriangleMesh& part : parts) {
-        TriangleMesh placed = part;
-        for (Eigen::Vector3d& vertex : placed.vertices) vertex = pose * vertex;
-        standing_.push_back({convex(part), pose, bounding_box(placed), i});
+        const Box box = bounding_box(placed(part, pose.linear(), pose.translation()));
+        standing_.push_back({convex(part), pose, box, i});
       }
     }
     for (const Body& body : workload.bodies) {

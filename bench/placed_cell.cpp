@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/placed_cell.h"
+
+#include "bench/scenes/solids.h"
+#include "collide/robot/kinematics.h"
+
+namespace spherule {
+namespace {
+
+void add(const Part& part, const Pose& pose, PlacedParts& group) {
+  append(group.mesh, placed(part.mesh, pose.matrix(), pose.translation()));
+  for (const Sphere& sphere : part.tree->spheres()) {
+    group.spheres.push_back({pose * sphere.center, sphere.radius});
+  }
+}
+
+}  // namespace
+
+std::map<std::string, PlacedParts> place_cell(const Workload& workload,
+                                              const JointPositions& configuration) {
+  std::vector<Pose> world_from_link;
+  forward_kinematics(workload.robot, configuration, world_from_link);
+  std::map<std::string, PlacedParts> groups;
+  for (const Body& body : workload.bodies) {
+    add(body.part, world_from_link[static_cast<std::size_t>(body.link)],
+        groups[body.part.name == "torch" ? "torch" : "robot"]);
+  }
+  for (const Obstacle& obstacle : workload.obstacles) {
+    add(obstacle.part, obstacle.world_from_part, groups[obstacle.part.name]);
+  }
+  return groups;
+}
+
+}  // namespace spherule
