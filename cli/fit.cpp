@@ -7,6 +7,7 @@
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "cli/view_page.h"
+#include "simplifier/cover_breakdown.h"
 #include "simplifier/mesh_io.h"
 #include "simplifier/simplify.h"
 #include "simplifier/zones.h"
@@ -66,6 +67,21 @@ auto blaming_file(const std::string& file, std::string_view subject, Use use) {
     if (file.empty() || !error.subject().starts_with(subject)) throw;
     throw Error(file, error.what());
   }
+}
+
+// Spheres suit thin walls badly: there the count goes with the area, however thin they are.
+void warn_of_thin_parts(const FitArguments& arguments, const TriangleMesh& mesh,
+                        const Simplification& result) {
+  const std::size_t count = result.cover.spheres.size();
+  const double max_error = result.options.max_error;
+  const std::size_t thin = spheres_in_thin_parts(result.external, result.cover.spheres, max_error);
+  if (2 * thin <= count || count <= mesh.triangles.size()) return;
+  std::cerr << "spherule: warning: " << arguments.mesh << ": " << thin << " of " << count
+            << " spheres stand where the part is thinner than 2 E, and the mesh has only "
+            << mesh.triangles.size()
+            << " triangles: spheres suit thin parts badly. A quarter to a third would do with "
+               "--max-error "
+            << 2.0 * max_error << "\n";
 }
 
 // Fails (kNo) if a promise about the spheres is not proved; the files are written nevertheless and
@@ -128,6 +144,7 @@ int fit(const FitArguments& arguments) {
             << (analysis ? describe(*analysis, result) : "") << "seconds: external "
             << result.times.external << ", cover " << result.times.cover << ", levels "
             << result.times.levels << ", certify " << result.times.certify << "\n";
+  warn_of_thin_parts(arguments, mesh, result);
   const std::string broken = broken_promises(result);
   if (broken.empty()) return kYes;
   std::cerr << "spherule: " << arguments.spheres << ": " << broken << "\n";

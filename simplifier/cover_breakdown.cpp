@@ -132,6 +132,12 @@ std::vector<char> alone_at(const Points& points, std::span<const Sphere> balls, 
   return alone;
 }
 
+void check_max_error(double max_error) {
+  if (!(max_error > 0.0 && max_error <= kMaxCoordinate)) {
+    throw Error("max error", "must be positive and finite");
+  }
+}
+
 bool is_thin_at(const Clearance& clearance, const Vector3d& center, double max_error) {
   const ClearanceAt at = clearance(center);
   if (at.lower > kThinReach * max_error) return false;
@@ -147,9 +153,7 @@ bool is_thin_at(const Clearance& clearance, const Vector3d& center, double max_e
 CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& external,
                                std::span<const Sphere> spheres, double max_error, int threads) {
   validate(mesh, "mesh");
-  if (!(max_error > 0.0 && max_error <= kMaxCoordinate)) {
-    throw Error("max error", "must be positive and finite");
-  }
+  check_max_error(max_error);
   const internal::ThreadLimit limit(threads);
   const MeshDistance distance(mesh);
   const Clearance clearance(external, distance);
@@ -182,6 +186,14 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
   result.faces = count(BallRole::kFace);
   result.inside = count(BallRole::kInside);
   return result;
+}
+
+std::size_t spheres_in_thin_parts(const ExternalSpheres& external, std::span<const Sphere> spheres,
+                                  double max_error) {
+  check_max_error(max_error);
+  const Clearance clearance(external);
+  return static_cast<std::size_t>(std::ranges::count_if(
+      spheres, [&](const Sphere& ball) { return clearance(ball.center).upper < max_error; }));
 }
 
 }  // namespace spherule

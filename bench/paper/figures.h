@@ -13,6 +13,8 @@ namespace spherule {
 // the bore 145 % of the metal's volume (figure 8). Its length is not known.
 TriangleMesh make_paper_pipe();
 inline constexpr double kPaperBore = 0.040;
+// "Voxelised using a 5 mm grid of 5 mm diameter spheres" (section IV.B).
+inline constexpr double kPaperVoxel = 0.005;
 
 struct Figure3Row {
   double min_external_diameter = 0.0;

@@ -1,16 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table and the figures of the paper, made again. See bench/README.md.
 #include "bench/fit_parts.h"
+#include "bench/paper/page.h"
+#include "bench/paper/pictures.h"
 #include "bench/paper/report.h"
 #include "spheretree/error.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace spherule {
 namespace {
+
+// Our own parts and, where SPHERULE_MODELS says where they are, real ones.
+std::vector<CountRow> count_all_parts() {
+  std::vector<NamedMesh> parts = own_parts();
+  if (const char* models = std::getenv("SPHERULE_MODELS")) {
+    for (NamedMesh& part : real_parts(models)) parts.push_back(std::move(part));
+  }
+  std::vector<CountRow> rows;
+  for (const NamedMesh& part : parts) {
+    std::printf("  %s, %zu triangles\n", part.name.c_str(), part.mesh.triangles.size());
+    rows.push_back(compare_counts(part, &print_count));
+  }
+  return rows;
+}
 
 std::filesystem::path parse(int count, char** values) {
   std::filesystem::path out = "bench/out";
@@ -32,6 +51,9 @@ void say(const char* what) {
 int run(const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
   PaperResults results;
+  say("figure 2");
+  results.figure_2 = figure_2();
+  print_figure_2(results.figure_2);
   say("figure 3");
   results.figure_3 = figure_3();
   say("figures 6 to 8");
@@ -40,14 +62,18 @@ int run(const std::filesystem::path& out) {
   say("holes, thin plates, a cube");
   results.claims = study_claims();
   print_claims(results.claims);
+  say("spheres at equal protrusion");
+  results.counts = count_all_parts();
+  print_counts(results.counts);
   say("fitting the work cell");
   Workload workload = make_paper_cell();
   fit_parts(workload, &print_fit);
-  write_pictures(workload, results.courses, out);
+  write_pictures(workload, results, out);
   say("table I");
   results.table1 = make_table1(workload, make_representations(workload), {});
   print_table1(results.table1);
   write_paper(results, out);
+  write_page(results, out);
   for (const Table1Row& row : results.table1) {
     if (row.is_conservative && row.whole.count.missed > 0) {
       throw Error(row.method, std::to_string(row.whole.count.missed) + " collisions missed");

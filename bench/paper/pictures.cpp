@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "bench/paper/pictures.h"
+
 #include "bench/paper/picture.h"
-#include "bench/paper/report.h"
 #include "bench/placed_cell.h"
 #include "bench/scenes/solids.h"
+#include "simplifier/baseline/convex_hull.h"
+#include "simplifier/baseline/voxelisation.h"
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -16,6 +20,7 @@ const Eigen::Vector3d kBlue(0.16, 0.44, 0.59);
 const Eigen::Vector3d kOrange(0.93, 0.55, 0.21);
 const Eigen::Vector3d kGrey(0.75, 0.75, 0.75);
 const Eigen::Vector3d kFromTheSide(1.0, -1.2, 0.7);
+const Eigen::Vector3d kFromTheFront(0.35, -1.0, 0.35);
 
 const std::map<std::string, Eigen::Vector3d> kColors = {
     {"robot", kOrange}, {"torch", kSteel}, {"workpiece", kBlue}, {"table", kGrey}};
@@ -30,21 +35,41 @@ PictureItem in_spheres(const Cell& cell, const std::string& name) {
   return {.color = kColors.at(name), .spheres = cell.at(name).spheres};
 }
 
+void write_figure_2(const Figure2& figure, const std::filesystem::path& folder) {
+  write_picture({{.color = kSteel, .mesh = figure.part}}, kFromTheFront,
+                folder / "paper-figure2-mesh.pov");
+  for (const Figure2::Fit& fit : figure.fits) {
+    write_picture({{.color = kBlue, .spheres = fit.spheres}}, kFromTheFront,
+                  folder / ("paper-figure2-" + fit.method + ".pov"));
+  }
+}
+
+// The pipe lying, in every way the paper shows it and ours.
+void write_figure_4(const std::vector<FitCourse>& courses, const std::filesystem::path& folder) {
+  const TriangleMesh pipe = placed(make_paper_pipe(), along_x(), Eigen::Vector3d::Zero());
+  const auto write = [&](const std::string& name, PictureItem item) {
+    write_picture({std::move(item)}, kFromTheSide, folder / ("paper-figure4-" + name + ".pov"));
+  };
+  write("mesh", {.color = kSteel, .mesh = pipe});
+  write("hull", {.color = kSteel, .mesh = convex_hull(pipe).mesh});
+  write("voxels",
+        {.color = kBlue,
+         .spheres = voxelise(pipe, {.step = kPaperVoxel, .ball = VoxelBall::kInscribed}).spheres});
+  for (const FitCourse& course : courses) {
+    PictureItem item{.color = kBlue};
+    for (const Sphere& sphere : course.spheres) {
+      item.spheres.push_back({along_x() * sphere.center, sphere.radius});
+    }
+    write(course.method, std::move(item));
+  }
+}
+
 }  // namespace
 
-void write_pictures(const Workload& workload, const std::vector<FitCourse>& courses,
+void write_pictures(const Workload& workload, const PaperResults& results,
                     const std::filesystem::path& folder) {
-  const Eigen::Matrix3d lying = along_x();
-  write_picture(
-      {{.color = kSteel, .mesh = placed(make_paper_pipe(), lying, Eigen::Vector3d::Zero())}},
-      kFromTheSide, folder / "paper-figure4-mesh.pov");
-  for (const FitCourse& course : courses) {
-    PictureItem pipe{.color = kBlue};
-    for (const Sphere& sphere : course.spheres) {
-      pipe.spheres.push_back({lying * sphere.center, sphere.radius});
-    }
-    write_picture({pipe}, kFromTheSide, folder / ("paper-figure4-" + course.method + ".pov"));
-  }
+  write_figure_2(results.figure_2, folder);
+  write_figure_4(results.courses, folder);
   const Cell cell = place_cell(workload, workload.program[kShownConfiguration]);
   write_picture({in_spheres(cell, "robot"), in_spheres(cell, "torch")}, kFromTheSide,
                 folder / "paper-figure5.pov");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/report.h"
 
+#include "bench/paper/machine.h"
 #include "spheretree/atomic_file.h"
 
 #include <nlohmann/json.hpp>
@@ -55,17 +56,62 @@ Json to_json(const ClaimRow& row) {
           {"max_error", row.max_error},
           {"min_external_diameter", row.min_external_diameter},
           {"spheres_with_stage1", row.with_stage1},
-          {"spheres_without_stage1", row.without_stage1}};
+          {"spheres_without_stage1", row.without_stage1},
+          {"fcl_over_spheres", row.ratio}};
 }
 
-Json to_json(const std::vector<Figure3Row>& rows) {
-  Json json = Json::array();
-  for (const Figure3Row& row : rows) {
-    json.push_back({{"min_external_diameter", row.min_external_diameter},
-                    {"uncovered_reachable", row.reachable},
-                    {"uncovered_random", row.random}});
+Json to_json(const Figure3Row& row) {
+  return {{"min_external_diameter", row.min_external_diameter},
+          {"uncovered_reachable", row.reachable},
+          {"uncovered_random", row.random}};
+}
+
+Json to_json(const Figure2& figure) {
+  Json json = {{"max_error", figure.max_error},
+               {"min_external_diameter", figure.min_external_diameter},
+               {"methods", Json::array()}};
+  for (const Figure2::Fit& fit : figure.fits) {
+    json["methods"].push_back(
+        {{"method", fit.method}, {"spheres", fit.spheres.size()}, {"protrusion", fit.protrusion}});
   }
   return json;
+}
+
+Json to_json(const CountRow& row) {
+  Json json = {{"part", row.part},
+               {"triangles", row.triangles},
+               {"diagonal", row.diagonal},
+               {"max_protrusion", row.max_protrusion},
+               {"methods", Json::array()}};
+  for (const CountEntry& entry : row.entries) {
+    json["methods"].push_back({{"method", entry.method},
+                               {"spheres", entry.spheres > 0 ? Json(entry.spheres) : Json(nullptr)},
+                               {"protrusion", entry.protrusion},
+                               {"growth", entry.growth},
+                               {"setting", entry.setting},
+                               {"seconds", entry.seconds}});
+  }
+  return json;
+}
+
+template <class Row>
+Json list(const std::vector<Row>& rows) {
+  Json json = Json::array();
+  for (const Row& row : rows) json.push_back(to_json(row));
+  return json;
+}
+
+std::string counts_csv(const std::vector<CountRow>& rows) {
+  std::ostringstream text;
+  text << "part,triangles,max_protrusion,method,spheres,protrusion,growth,setting,seconds\n";
+  for (const CountRow& row : rows) {
+    for (const CountEntry& entry : row.entries) {
+      text << '"' << row.part << "\"," << row.triangles << ',' << row.max_protrusion << ','
+           << entry.method << ',' << entry.spheres << ',' << entry.protrusion << ',' << entry.growth
+           << ',' << entry.setting << ',' << entry.seconds << '\n';
+    }
+  }
+  return text.str();
 }
 
 std::string table1_csv(const std::vector<Table1Row>& rows) {
@@ -110,21 +156,23 @@ std::string figure_3_data(const std::vector<Figure3Row>& rows) {
 }  // namespace
 
 void write_paper(const PaperResults& results, const std::filesystem::path& folder) {
-  Json table = Json::array();
-  for (const Table1Row& row : results.table1) table.push_back(to_json(row));
-  Json claims = Json::array();
-  for (const ClaimRow& row : results.claims) claims.push_back(to_json(row));
+  Json machine = Json::object();
+  for (const auto& [name, value] : machine_facts(folder / "packages.txt")) machine[name] = value;
   using Entry = CoverHistoryEntry;
   const Json json = {
-      {"table1", std::move(table)},
+      {"machine", std::move(machine)},
+      {"table1", list(results.table1)},
       {"figures",
-       {{"3", to_json(results.figure_3)},
+       {{"2", to_json(results.figure_2)},
+        {"3", list(results.figure_3)},
         {"6", figure(results.courses, &Entry::surface_error_before, &Entry::surface_error_after)},
         {"7", figure(results.courses, &Entry::coverage_before, &Entry::coverage_after)},
         {"8", figure(results.courses, &Entry::excess_before, &Entry::excess_after)}}},
-      {"claims", std::move(claims)}};
+      {"claims", list(results.claims)},
+      {"counts", list(results.counts)}};
   write_file_atomically(folder / "paper.json", json.dump(1) + "\n");
   write_file_atomically(folder / "paper-table1.csv", table1_csv(results.table1));
+  write_file_atomically(folder / "paper-counts.csv", counts_csv(results.counts));
   write_file_atomically(folder / "paper-figure3.dat", figure_3_data(results.figure_3));
   write_file_atomically(folder / "paper-courses.dat", courses_data(results.courses));
 }

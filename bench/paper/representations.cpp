@@ -3,6 +3,7 @@
 
 #include "bench/fcl_mesh_checker.h"
 #include "bench/paper/fcl_convex_checker.h"
+#include "bench/paper/figures.h"
 #include "bench/tree_checker.h"
 #include "simplifier/baseline/convex_decomposition.h"
 #include "simplifier/baseline/convex_hull.h"
@@ -21,7 +22,6 @@
 namespace spherule {
 namespace {
 
-constexpr double kVoxel = 0.005;  // the paper's grid
 // The narrowest way into the workpiece is its bore of 34 mm.
 constexpr double kNothingNarrower = 0.010;
 // Of the decomposition's parts: a tenth of a pipe.
@@ -112,9 +112,9 @@ std::vector<Representation> make_representations(const Workload& workload) {
   rows.add_spheres("packing", packing.spheres, false, PaperRow{"4752 spheres", 2134, 258.0});
   rows.add_spheres("packing-inflated", packing.inflated, true);
   rows.add_spheres("voxels",
-                   voxelise(mesh, {.step = kVoxel, .ball = VoxelBall::kInscribed}).spheres, false,
-                   PaperRow{"2675 spheres", 2865, 170.0});
-  rows.add_spheres("voxels-covering", voxelise(mesh, {.step = kVoxel}).spheres, true);
+                   voxelise(mesh, {.step = kPaperVoxel, .ball = VoxelBall::kInscribed}).spheres,
+                   false, PaperRow{"2675 spheres", 2865, 170.0});
+  rows.add_spheres("voxels-covering", voxelise(mesh, {.step = kPaperVoxel}).spheres, true);
   rows.add_spheres("bounding-paper", by_papers_loop(part), true,
                    PaperRow{"283 spheres", 2222, 102.0});
   rows.add_spheres("bounding-cover", part.tree->spheres(), true);

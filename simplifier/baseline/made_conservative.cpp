@@ -10,22 +10,19 @@ namespace spherule {
 ConservativeSpheres made_conservative(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                                       double padding) {
   if (spheres.empty()) throw Error("spheres", "there is none that could grow");
-  CertifyOptions options{.padding = padding};
-  options.protrusion_tolerance = 0.0;
-  options.volume = false;
-  const Certificate before = certify(mesh, spheres, options);
+  const CertifyOptions options{.padding = padding};
   ConservativeSpheres result;
   result.spheres.assign(spheres.begin(), spheres.end());
-  if (!before.covered) {
-    // A piece of the proof's finest size lies in one ball only if it has room to spare there.
-    const double piece = options.resolution * internal::box_of(mesh).diagonal().norm();
-    result.growth = add_up(before.uncovered_depth.upper, piece);
-    for (Sphere& sphere : result.spheres) {
-      sphere.radius = add_up(sphere.radius, result.growth);
-      if (!is_usable(sphere)) throw Error("spheres", "too far from the mesh to be grown over it");
-    }
+  result.certificate = certify(mesh, spheres, options);
+  if (result.certificate.covered) return result;
+  // A piece of the proof's finest size lies in one ball only if it has room to spare there.
+  const double piece = options.resolution * internal::box_of(mesh).diagonal().norm();
+  result.growth = add_up(result.certificate.uncovered_depth.upper, piece);
+  for (Sphere& sphere : result.spheres) {
+    sphere.radius = add_up(sphere.radius, result.growth);
+    if (!is_usable(sphere)) throw Error("spheres", "too far from the mesh to be grown over it");
   }
-  result.certificate = certify(mesh, result.spheres, {.padding = padding});
+  result.certificate = certify(mesh, result.spheres, options);
   return result;
 }
 

@@ -54,6 +54,16 @@ TEST_F(FitTest, ChainFromMeshToCollision) {
   EXPECT_EQ(run({"collide", "box.tree", "box.tree", "--pose-b", "45 0 0 0 0 0 1"}).exit_code, 0);
 }
 
+// Where spheres lose to the mesh, the user is told; the result is as good as any.
+TEST_F(FitTest, WarnsOfThinPlates) {
+  write_box("plate.stl", {40, 30, 0.5});
+  const Outcome thin =
+      run({"fit", "plate.stl", "-o", "plate.json", "--max-error", "2", "--effort", "1"});
+  EXPECT_EQ(thin.exit_code, 0) << thin.err;
+  EXPECT_NE(thin.err.find("spherule: warning: plate.stl: "), std::string::npos) << thin.err;
+  EXPECT_NE(thin.err.find("--max-error 4"), std::string::npos) << thin.err;
+}
+
 // Whoever has the report can judge G2: the external spheres are free of the mesh.
 TEST_F(FitTest, ReportHoldsTheSimplifiedSolid) {
   ASSERT_EQ(run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--padding", "0.25",

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace spherule::test {
@@ -73,6 +74,32 @@ TEST(CoverBreakdown, ABallHasFacesOnly) {
       cover_breakdown(mesh, external, balls, shares.max_error * diagonal_of(mesh));
   EXPECT_EQ(found.faces, balls.size() - found.inside);
   EXPECT_GT(found.faces, balls.size() / 3);
+}
+
+// Counted by the gaps to all external balls and to the box.
+TEST(SpheresInThinParts, AreThoseWhoseCentresAreNearTheOutside) {
+  std::size_t in_plate = 0;
+  for (const TriangleMesh& mesh : {thin_sheet(0.01), cube_mesh()}) {
+    const Fit fitted = fit(mesh, {}, {.max_error = 0.03});
+    std::size_t thin = 0;
+    for (const Sphere& ball : fitted.cover.spheres) {
+      const Vector3d& c = ball.center;
+      double gap = std::min((c - fitted.external.box.min()).minCoeff(),
+                            (fitted.external.box.max() - c).minCoeff());
+      for (const Sphere& outside : fitted.external.balls) {
+        gap = std::min(gap, (c - outside.center).norm() - outside.radius);
+      }
+      if (gap < fitted.max_error) ++thin;
+    }
+    EXPECT_EQ(spheres_in_thin_parts(fitted.external, fitted.cover.spheres, fitted.max_error), thin);
+    if (in_plate == 0) {
+      in_plate = thin;
+      EXPECT_EQ(thin, fitted.cover.spheres.size());
+    } else {
+      EXPECT_LT(thin, fitted.cover.spheres.size() / 2);
+    }
+  }
+  EXPECT_THROW(spheres_in_thin_parts({}, {}, 0.0), Error);
 }
 
 // A concave edge is no edge of S that costs balls.

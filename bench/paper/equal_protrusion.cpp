@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/paper/equal_protrusion.h"
+
+#include "bench/paper/figures.h"
+#include "bench/scenes/shapes.h"
+#include "bench/scenes/torch.h"
+#include "simplifier/baseline/made_conservative.h"
+#include "simplifier/mesh_io.h"
+#include "simplifier/mesh_report.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+constexpr int kMostTries = 5;
+// The search ends where the protrusion comes this near to what is allowed, or two settings, of
+// which one does and the other does not, this near to each other.
+constexpr double kNear = 0.95;
+constexpr double kAim = 0.985;
+
+// Looks for the largest setting whose protrusion keeps to a limit, which it nearly reaches.
+class SettingSearch {
+ public:
+  explicit SettingSearch(double limit) : limit_(limit), setting_(limit) {}
+
+  double setting() const { return setting_; }
+
+  // Takes what came of the setting and moves on to the next; false at the end of the search.
+  bool advance(double protrusion, bool holds) {
+    const Point at{setting_, protrusion};
+    if (holds) {
+      held_ = std::max(held_, setting_);
+    } else {
+      broke_ = broke_ == 0.0 ? setting_ : std::min(broke_, setting_);
+    }
+    if (holds && protrusion >= kNear * limit_) return false;
+    const bool is_bracketed = held_ > 0.0 && broke_ > held_;
+    // More balls may have grown less, so that a finer setting broke before a coarser one held.
+    if (held_ > 0.0 && broke_ > 0.0 && kNear * broke_ < held_) return false;
+    setting_ = at.setting * std::clamp(aim_from(at) / at.setting, 0.25, 1.6);
+    if (is_bracketed && !(setting_ > held_ && setting_ < broke_)) {
+      setting_ = std::sqrt(held_ * broke_);
+    }
+    last_ = at;
+    return true;
+  }
+
+ private:
+  struct Point {
+    double setting = 0.0;
+    double protrusion = 0.0;
+  };
+
+  // On the line through the last two points, or through this one and the origin.
+  double aim_from(const Point& at) const {
+    const double aim = kAim * limit_;
+    const double slope = (at.protrusion - last_.protrusion) / (at.setting - last_.setting);
+    return slope > 0.0 ? at.setting + (aim - at.protrusion) / slope
+                       : at.setting * aim / at.protrusion;
+  }
+
+  double limit_;
+  double setting_;
+  double held_ = 0.0;   // the largest that kept to the limit; 0: none yet
+  double broke_ = 0.0;  // the smallest that did not
+  Point last_;
+};
+
+}  // namespace
+
+CountEntry fewest_spheres(const TriangleMesh& mesh, const SphereMethod& method,
+                          double max_protrusion) {
+  CountEntry best{.method = method.name};
+  SettingSearch search(max_protrusion);
+  for (int i = 0; i < kMostTries; ++i) {
+    const double setting = search.setting();
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<Sphere> spheres = method.make(mesh, setting);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    const ConservativeSpheres proved = made_conservative(mesh, spheres);
+    const double protrusion = proved.certificate.protrusion_over_mesh->upper;
+    const bool holds = proved.certificate.covered && protrusion <= max_protrusion;
+    const CountEntry entry{method.name, holds ? proved.spheres.size() : 0,
+                           protrusion,  proved.growth,
+                           setting,     elapsed.count()};
+    if (holds ? best.spheres == 0 || entry.spheres < best.spheres : best.spheres == 0) best = entry;
+    if (!search.advance(protrusion, holds)) break;
+  }
+  return best;
+}
+
+CountRow compare_counts(const NamedMesh& part, const std::function<void(const CountEntry&)>& done) {
+  const double diagonal =
+      mesh_report(part.mesh, {.self_intersections = false}).box.diagonal().norm();
+  CountRow row{part.name, part.mesh.triangles.size(), diagonal, kEqualProtrusion * diagonal, {}};
+  for (const SphereMethod& method : sphere_methods()) {
+    row.entries.push_back(fewest_spheres(part.mesh, method, row.max_protrusion));
+    done(row.entries.back());
+  }
+  return row;
+}
+
+std::vector<NamedMesh> own_parts() {
+  return {{"pipe", make_paper_pipe()},
+          {"torch", make_torch()},
+          {"plate, 50 holes", make_plate_with_holes({0.24, 0.12, 0.01}, 10, 5, 0.006, 12)},
+          {"bracket", make_l_bracket(0.1, 0.06, 0.008)}};
+}
+
+std::vector<NamedMesh> real_parts(const std::filesystem::path& models) {
+  const std::filesystem::path folder = models / "parts";
+  std::vector<std::filesystem::path> files;
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+    if (!entry.path().filename().string().starts_with("LICENSE")) files.push_back(entry.path());
+  }
+  if (files.empty()) throw Error(folder.string(), "no meshes there");
+  std::sort(files.begin(), files.end());
+  std::vector<NamedMesh> parts;
+  for (const auto& file : files) parts.push_back({file.stem().string(), read_mesh(file)});
+  return parts;
+}
+
+void print_count(const CountEntry& entry) {
+  std::printf("    %-12s %6zu spheres, %.1f s\n", entry.method.c_str(), entry.spheres,
+              entry.seconds);
+  std::fflush(stdout);
+}
+
+void print_counts(const std::vector<CountRow>& rows) {
+  if (rows.empty()) return;
+  std::printf("\nspheres that hold a part and protrude by at most %.0f %% of its diagonal\n%-26s",
+              100.0 * kEqualProtrusion, "part");
+  for (const CountEntry& entry : rows.front().entries) {
+    std::printf(" %12s", entry.method.c_str());
+  }
+  std::printf("\n");
+  for (const CountRow& row : rows) {
+    std::printf("%-26s", row.part.c_str());
+    for (const CountEntry& entry : row.entries) std::printf(" %12zu", entry.spheres);
+    std::printf("\n");
+  }
+}
+
+}  // namespace spherule

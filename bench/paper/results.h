@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/paper/claims.h"
+#include "bench/paper/equal_protrusion.h"
+#include "bench/paper/figure2.h"
+#include "bench/paper/figures.h"
+#include "bench/paper/table1.h"
+
+#include <vector>
+
+namespace spherule {
+
+// All that `bench/run --paper` computes.
+struct PaperResults {
+  std::vector<Table1Row> table1;
+  Figure2 figure_2;
+  std::vector<Figure3Row> figure_3;
+  std::vector<FitCourse> courses;  // figures 6 to 8
+  std::vector<ClaimRow> claims;
+  std::vector<CountRow> counts;
+};
+
+}  // namespace spherule
