@@ -3,7 +3,6 @@
 
 #include "bench/paper/figures.h"
 #include "bench/scenes/shapes.h"
-#include "bench/scenes/torch.h"
 #include "simplifier/baseline/made_conservative.h"
 #include "simplifier/mesh_io.h"
 #include "simplifier/mesh_report.h"
@@ -108,7 +107,6 @@ CountRow compare_counts(const NamedMesh& part, const std::function<void(const Co
 
 std::vector<NamedMesh> own_parts() {
   return {{"pipe", make_paper_pipe()},
-          {"torch", make_torch()},
           {"plate, 50 holes", make_plate_with_holes({0.24, 0.12, 0.01}, 10, 5, 0.006, 12)},
           {"bracket", make_l_bracket(0.1, 0.06, 0.008)}};
 }

@@ -51,8 +51,7 @@ CountEntry fewest_spheres(const TriangleMesh& mesh, const SphereMethod& method,
 // A row of all sphere_methods(); `done` is told of each entry.
 CountRow compare_counts(const NamedMesh& part, const std::function<void(const CountEntry&)>& done);
 
-// Closed solids of the project: the paper's pipe, the work cell's torch, a plate with holes, a
-// bracket.
+// Closed solids of the project: the paper's pipe, a plate with holes, a bracket.
 std::vector<NamedMesh> own_parts();
 
 // Every mesh of MODELS/parts, by name. Throws Error if there is none or one cannot be read.

@@ -2,6 +2,7 @@
 #include "bench/paper/sphere_methods.h"
 
 #include "simplifier/baseline/hubbard_spheres.h"
+#include "simplifier/baseline/level_set_packing.h"
 #include "simplifier/baseline/medial_axis.h"
 #include "simplifier/baseline/octree_spheres.h"
 #include "simplifier/baseline/sphere_packing.h"
@@ -20,6 +21,7 @@ constexpr double kAsIs = 1.0;
 constexpr int kEffort = 6;
 // Hubbard's method is told a count: that of balls of radius E side by side on the surface, at most.
 constexpr double kMostBalls = 5000.0;
+constexpr double kLevelSetStep = 0.25;     // of E
 constexpr double kCoverPointsApart = 0.2;  // of E
 constexpr double kFewestCoverPoints = 10000.0;
 constexpr double kMostCoverPoints = 30000.0;
@@ -66,6 +68,10 @@ std::vector<SphereMethod> sphere_methods() {
   return {
       {"packing", [](const TriangleMesh& mesh,
                      double error) { return pack_spheres(mesh, {.max_error = error}).inflated; }},
+      {"openvdb",
+       [](const TriangleMesh& mesh, double error) {
+         return level_set_packing(mesh, {.step = kLevelSetStep * error});
+       }},
       {"voxels", [](const TriangleMesh& mesh,
                     double error) { return voxelise(mesh, {.max_error = error}).spheres; }},
       {"octree",

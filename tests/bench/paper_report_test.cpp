@@ -70,7 +70,7 @@ TEST(SphereMethods, MakeMoreBallsForASmallerError) {
     EXPECT_GT(few, 0U) << method.name;
     EXPECT_GT(method.make(cube, 0.06).size(), few) << method.name;
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"packing", "voxels", "octree", "hubbard",
+  EXPECT_EQ(names, (std::vector<std::string>{"packing", "openvdb", "voxels", "octree", "hubbard",
                                              "medial-axis", "paper", "cover-as-is", "cover"}));
 }
 

@@ -48,6 +48,7 @@ const std::vector<Room>& rooms() {
        {"Eigen", "tbb"},
        {{"meshoptimizer", "simplifier/baseline/decimation.cpp"},
         {"OpenMesh", "simplifier/baseline/decimation.cpp"},
+        {"openvdb", "simplifier/baseline/level_set_packing.cpp"},
         {"qhull", "simplifier/baseline/convex_hull.cpp"},
         {"qhull", "simplifier/baseline/internal/voronoi.cpp"},
         {"bullet", "simplifier/baseline/convex_decomposition.cpp"}}},
@@ -112,6 +113,7 @@ constexpr Prefix kPrefixes[] = {{"Eigen/", "Eigen"},
                                 {"hacd", "bullet"},
                                 {"meshoptimizer.h", "meshoptimizer"},
                                 {"OpenMesh/", "OpenMesh"},
+                                {"openvdb/", "openvdb"},
                                 {"libqhull", "qhull"},
                                 {"spherule/", "spherule"}};
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/baseline/level_set_packing.h"
+
+#include "simplifier/mesh_distance.h"
+#include "spheretree/error.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace spherule::test {
+namespace {
+
+// Judged by the distance to the mesh and the winding number. A ball about a point of the level set
+// reaches at most a step beyond the surface.
+TEST(LevelSetPacking, FillsTheSolidWithBallsInsideOfIt) {
+  constexpr double kStep = 0.5;
+  const TriangleMesh mesh = pipe(20.0, 14.0, 60.0, 40);
+  const std::vector<Sphere> balls =
+      level_set_packing(mesh, {.step = kStep, .min_radius = 1.0, .max_spheres = 400});
+  EXPECT_GT(balls.size(), 50U);
+  EXPECT_LE(balls.size(), 400U);
+  const MeshDistance distance(mesh);
+  for (const Sphere& ball : balls) {
+    EXPECT_NE(std::round(distance.winding_number(ball.center)), 0.0);
+    EXPECT_LE(ball.radius, distance(ball.center).upper + kStep);
+    EXPECT_GE(ball.radius, 1.0 - 1e-3);
+  }
+}
+
+TEST(LevelSetPacking, IsTheSameWhereverTheMeshIsAndOnAnyNumberOfThreads) {
+  TriangleMesh mesh = cube_mesh();
+  const LevelSetPackingOptions options{.step = 0.0625, .max_spheres = 100, .threads = 1};
+  const std::vector<Sphere> balls = level_set_packing(mesh, options);
+  EXPECT_EQ(level_set_packing(mesh, {.step = 0.0625, .max_spheres = 100}), balls);
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex *= 1024.0;
+  const std::vector<Sphere> larger = level_set_packing(mesh, {.step = 64.0, .max_spheres = 100});
+  ASSERT_EQ(larger.size(), balls.size());
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    EXPECT_EQ(larger[i].radius, 1024.0 * balls[i].radius);
+  }
+}
+
+TEST(LevelSetPacking, RefusesBadInput) {
+  const TriangleMesh mesh = cube_mesh();
+  EXPECT_THROW(level_set_packing({}, {.step = 0.1}), Error);
+  EXPECT_THROW(level_set_packing(mesh, {}), Error);
+  EXPECT_THROW(level_set_packing(mesh, {.step = 1e-4}), Error);
+  EXPECT_THROW(level_set_packing(mesh, {.step = std::nan("")}), Error);
+  EXPECT_THROW(level_set_packing(mesh, {.step = 0.1, .min_radius = -1.0}), Error);
+  EXPECT_THROW(level_set_packing(mesh, {.step = 0.1, .max_spheres = 0}), Error);
+  EXPECT_THROW(level_set_packing(mesh, {.step = 0.1, .candidates = 0}), Error);
+}
+
+}  // namespace
+}  // namespace spherule::test
