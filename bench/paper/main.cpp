@@ -62,6 +62,9 @@ int run(const std::filesystem::path& out) {
   say("holes, thin plates, a cube");
   results.claims = study_claims();
   print_claims(results.claims);
+  say("trees");
+  results.trees = study_trees();
+  print_trees(results.trees);
   say("spheres at equal protrusion");
   results.counts = count_all_parts();
   print_counts(results.counts);

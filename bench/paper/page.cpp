@@ -184,6 +184,18 @@ void write_counts(const std::vector<CountRow>& rows, std::ostream& out) {
   }
 }
 
+void write_trees(const std::vector<TreeRow>& rows, std::ostream& out) {
+  out << "<h2>Trees for the same traversal</h2>\n<p>The pipe, asked about a rod in random places "
+         "nearby: the tree as its method has it, and ours over the same leaves.</p>\n";
+  Table table(out,
+              {"method", "leaves", "nodes", "node tests", "ns", "ours: nodes", "node tests", "ns"});
+  for (const TreeRow& row : rows) {
+    table.row({row.method, std::to_string(row.leaves), std::to_string(row.own.nodes),
+               number(row.own.node_tests, 1), number(row.own.ns, 0), std::to_string(row.ours.nodes),
+               number(row.ours.node_tests, 1), number(row.ours.ns, 0)});
+  }
+}
+
 }  // namespace
 
 void write_page(const PaperResults& results, const std::filesystem::path& folder) {
@@ -200,6 +212,7 @@ void write_page(const PaperResults& results, const std::filesystem::path& folder
   image(out, "paper-figure8.svg", "figure 8: volume outside of the solid");
   write_claims(results.claims, out);
   write_counts(results.counts, out);
+  write_trees(results.trees, out);
   out << "<h2>Machine and versions</h2>\n";
   {
     Table table(out, {"", ""});

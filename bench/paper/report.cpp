@@ -94,6 +94,21 @@ Json to_json(const CountRow& row) {
   return json;
 }
 
+Json to_json(const TreeCost& cost) {
+  return {{"nodes", cost.nodes},
+          {"depth", cost.depth},
+          {"node_tests", cost.node_tests},
+          {"ns", cost.ns}};
+}
+
+Json to_json(const TreeRow& row) {
+  return {{"method", row.method},
+          {"leaves", row.leaves},
+          {"collision_percent", row.collision_percent},
+          {"own", to_json(row.own)},
+          {"ours", to_json(row.ours)}};
+}
+
 template <class Row>
 Json list(const std::vector<Row>& rows) {
   Json json = Json::array();
@@ -169,7 +184,8 @@ void write_paper(const PaperResults& results, const std::filesystem::path& folde
         {"7", figure(results.courses, &Entry::coverage_before, &Entry::coverage_after)},
         {"8", figure(results.courses, &Entry::excess_before, &Entry::excess_after)}}},
       {"claims", list(results.claims)},
-      {"counts", list(results.counts)}};
+      {"counts", list(results.counts)},
+      {"trees", list(results.trees)}};
   write_file_atomically(folder / "paper.json", json.dump(1) + "\n");
   write_file_atomically(folder / "paper-table1.csv", table1_csv(results.table1));
   write_file_atomically(folder / "paper-counts.csv", counts_csv(results.counts));

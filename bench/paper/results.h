@@ -6,6 +6,7 @@
 #include "bench/paper/figure2.h"
 #include "bench/paper/figures.h"
 #include "bench/paper/table1.h"
+#include "bench/paper/trees.h"
 
 #include <vector>
 
@@ -19,6 +20,7 @@ struct PaperResults {
   std::vector<FitCourse> courses;  // figures 6 to 8
   std::vector<ClaimRow> claims;
   std::vector<CountRow> counts;
+  std::vector<TreeRow> trees;
 };
 
 }  // namespace spherule
