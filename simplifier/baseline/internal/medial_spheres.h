@@ -30,7 +30,7 @@ struct MedialGoal {
 };
 
 // The medial axis of a solid as balls about Voronoi vertices of sites on its surface, refined where
-// that pays (Bradshaw and O'Sullivan 2004, section 4): a ball that protrudes has the point of the
+// that pays (Bradshaw and O'Sullivan 2004): a ball that protrudes has the point of the
 // surface that is nearest to its centre inside, and becomes smaller balls once that is a site.
 // Departures: sites are added many at a time, the worst balls' first and none in a ball that
 // another new site has hit, and the diagram is made anew each time; the protrusion is bounded by

@@ -14,7 +14,7 @@
 #include <vector>
 
 // From many medial spheres to few that cover the same points of the surface: the three reductions
-// of Bradshaw and O'Sullivan (2004, section 5). Each returned ball holds the points it is given in
+// of Bradshaw and O'Sullivan (2004). Each returned ball holds the points it is given in
 // exact arithmetic, so that all points of the task are covered; between the points nothing is
 // promised. Deterministic, ties by index.
 
