@@ -20,7 +20,7 @@ namespace {
 // Our own parts and, where SPHERULE_MODELS says where they are, real ones.
 std::vector<CountRow> count_all_parts() {
   std::vector<NamedMesh> parts = own_parts();
-  if (const char* models = std::getenv("SPHERULE_MODELS")) {
+  if (const char* models = std::getenv("SPHERULE_MODELS"); models != nullptr && *models != '\0') {
     for (NamedMesh& part : real_parts(models)) parts.push_back(std::move(part));
   }
   std::vector<CountRow> rows;
