@@ -161,7 +161,9 @@ TEST(SecondPhase, ItsSpheresAreCertifiedWhateverItMade) {
         "given", [=](const TriangleMesh&, const ExternalSpheres&, const CoverOptions& passed) {
           EXPECT_EQ(passed.max_error, 0.3);
           EXPECT_EQ(passed.threads, 1);
-          return SphereCover{.spheres = spheres};
+          SphereCover made;
+          made.spheres = spheres;
+          return made;
         }};
     options.threads = 1;
     return simplify(cube_mesh(), options);
