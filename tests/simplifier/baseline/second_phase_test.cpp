@@ -16,8 +16,17 @@
 
 #include <algorithm>
 #include <limits>
+#include <ostream>
 #include <string>
 #include <vector>
+
+namespace spherule {
+
+void PrintTo(const SecondPhase& phase, std::ostream* out) {
+  *out << phase.name;
+}
+
+}  // namespace spherule
 
 namespace spherule::test {
 namespace {
