@@ -18,24 +18,21 @@ CoverAnalysis analyse(const TriangleMesh& mesh, const Simplification& result,
   analysis.breakdown = cover_breakdown(mesh, result.external, result.cover.spheres,
                                        options.max_error, options.threads);
   analysis.coarser_error = 2.0 * options.max_error;
-  // The paper's loop knows one max error only.
-  const std::vector<Zone> zones =
-      options.method == CoverMethod::kCover ? options.zones : std::vector<Zone>{};
-  const SphereCover coarser = cover(mesh, result.external,
-                                    {.method = options.method,
-                                     .max_error = analysis.coarser_error,
-                                     .zones = zones,
-                                     .min_radius = options.min_radius,
-                                     .min_internal_diameter = options.min_internal_diameter,
-                                     .seed = options.seed,
-                                     .effort = std::min(options.effort, kShortSearch),
-                                     .threads = options.threads,
-                                     .progress = progress});
+  SimplifyOptions coarser_options = options;
+  coarser_options.max_error = analysis.coarser_error;
+  // Only kCover knows more than one max error; the others were refused zones that ask for one.
+  if (options.method != CoverMethod::kCover || options.second_phase) coarser_options.zones.clear();
+  coarser_options.effort = std::min(options.effort, kShortSearch);
+  coarser_options.seconds = 0.0;
+  coarser_options.lower_bound = coarser_options.history = false;
+  coarser_options.progress = progress;
+  const SphereCover coarser = cover_solid(mesh, result.external, coarser_options);
   analysis.coarser_count = coarser.spheres.size();
   CertifyOptions certify_options;
   certify_options.external = &result.external;
-  certify_options.resolution = proof_resolution(tightest_error(zones, analysis.coarser_error),
-                                                result.external.box.diagonal().norm());
+  certify_options.resolution =
+      proof_resolution(tightest_error(coarser_options.zones, analysis.coarser_error),
+                       result.external.box.diagonal().norm());
   certify_options.protrusion_tolerance = 0.0;
   certify_options.volume = false;
   certify_options.threads = options.threads;

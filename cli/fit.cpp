@@ -6,6 +6,7 @@
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"
+#include "cli/second_phase.h"
 #include "cli/view_page.h"
 #include "simplifier/cover_breakdown.h"
 #include "simplifier/mesh_io.h"
@@ -38,7 +39,7 @@ struct FitArguments {
   std::string tool;
   std::string zones;
   std::string levels;
-  std::string method = method_names().front();
+  std::string method = second_phase_names().front();
   std::string external = placement_names().front();
   double scale = 1.0;
   SimplifyOptions options;
@@ -90,7 +91,7 @@ int fit(const FitArguments& arguments) {
   check_outputs({arguments.spheres, arguments.report, arguments.tree, arguments.view},
                 {arguments.mesh, arguments.tool, arguments.zones});
   SimplifyOptions options = arguments.options;
-  options.method = method_named(arguments.method);
+  choose_second_phase(arguments.method, options);
   options.external = placement_named(arguments.external);
   if (!arguments.levels.empty()) options.levels = levels_named(arguments.levels);
   options.history = options.lower_bound = !arguments.report.empty();
@@ -163,7 +164,8 @@ void add_fit(CLI::App& app, int& exit_code) {
   command->add_option("--scale", arguments->scale, "Output units per mesh unit");
   auto* diameter = command->add_option(
       "--min-external", options.min_external_diameter,
-      "D, diameter of the smallest thing that will meet the model (default: 4 E)");
+      "D, diameter of the smallest thing that will meet the model (default: 4 E). E / 2 or less "
+      "leaves the solid as it is: the method without a simplification before it");
   diameter->check(check_length);
   command
       ->add_option("--tool", arguments->tool,
@@ -181,8 +183,11 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->check(check_length);
   command->add_option("--min-radius", options.min_radius, "No sphere is smaller than this")
       ->check(check_length);
-  command->add_option("--method", arguments->method, "How the inside is covered: cover, paper")
-      ->check(CLI::IsMember(method_names()));
+  command
+      ->add_option("--method", arguments->method,
+                   "How the inside is covered: cover (fewest spheres), paper (the paper's loop), "
+                   "medial (AMAA) or packing (largest first)")
+      ->check(CLI::IsMember(second_phase_names()));
   command
       ->add_option("--external", arguments->external,
                    "How external spheres are placed: reachable, random, none")

@@ -69,7 +69,7 @@ struct SphereCover {
   std::vector<Sphere> spheres;
   // No cover of S that protrudes by at most E has fewer balls, as proved; 0: not known.
   std::size_t lower_bound = 0;
-  // kPaper: the balls before inflation, and the certified error they were inflated by.
+  // kPaper, and a SecondPhase that inflates: the balls before that, and the certified error.
   std::vector<Sphere> spheres_before_inflation;
   double inflation = 0.0;
   std::vector<CoverHistoryEntry> history;

@@ -3,6 +3,7 @@
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <string_view>
@@ -82,6 +83,20 @@ class Reader {
     const auto* text = std::get_if<std::string>(found);
     if (text == nullptr) throw Error(key, "must be a name");
     value = named(key, names, *text);
+  }
+
+  // Of stage 2.
+  void method(const char* key, SimplifyOptions& options) const {
+    const OptionValue* found = find(key);
+    if (found == nullptr) return;
+    const auto* text = std::get_if<std::string>(found);
+    if (text == nullptr || text->empty()) throw Error(key, "must be a name");
+    const auto is_named = [&](const auto& entry) { return *text == entry.second; };
+    if (std::any_of(kMethods.begin(), kMethods.end(), is_named)) {
+      options.method = method_named(*text);
+    } else {
+      options.second_phase = SecondPhase{.name = *text};
+    }
   }
 
   void flag(const char* key, bool& value) const {
@@ -171,7 +186,8 @@ std::map<std::string, OptionValue> option_record(const SimplifyOptions& options,
       {"min-external", options.min_external_diameter},
       {"padding", options.padding},
       {"min-radius", options.min_radius},
-      {"method", name_of(kMethods, options.method)},
+      {"method",
+       options.second_phase ? options.second_phase->name : name_of(kMethods, options.method)},
       {"external", name_of(kPlacements, options.external)},
       {"external-limit", static_cast<std::int64_t>(options.external_limit)},
       {"min-internal", options.min_internal_diameter},
@@ -192,7 +208,7 @@ SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& re
   read.length("min-external", options.min_external_diameter);
   read.length("padding", options.padding);
   read.length("min-radius", options.min_radius);
-  read.choice("method", kMethods, options.method);
+  read.method("method", options);
   read.choice("external", kPlacements, options.external);
   read.count("external-limit", options.external_limit);
   read.length("min-internal", options.min_internal_diameter);

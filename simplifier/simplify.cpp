@@ -13,6 +13,8 @@
 #include <chrono>
 #include <cstdint>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -29,6 +31,18 @@ double box_diagonal(const TriangleMesh& mesh) {
   return box.diagonal().norm();
 }
 
+void check_phase(const SimplifyOptions& options) {
+  if (!options.second_phase) return;
+  const std::string& name = options.second_phase->name;
+  const std::vector<std::string> taken = method_names();
+  if (name.empty() || std::find(taken.begin(), taken.end(), name) != taken.end()) {
+    throw Error("method", "a second phase from outside needs a name of its own");
+  }
+  if (!options.second_phase->run) {
+    throw Error("method", "there is no second phase '" + name + "' here");
+  }
+}
+
 // What the stages would refuse under other names, and what option_record() could not store.
 void check_options(const SimplifyOptions& options) {
   const auto check = [](const char* name, double value) {
@@ -42,6 +56,7 @@ void check_options(const SimplifyOptions& options) {
   check("min radius", options.min_radius);
   check("min internal diameter", options.min_internal_diameter);
   check("seconds", options.seconds);
+  check_phase(options);
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   if (options.seed > kLargest) throw Error("seed", "must be below 2^63");
 }
@@ -59,6 +74,21 @@ void complete_levels(SimplifyOptions& options) {
     options.levels = check_levels(options.levels);
   }
   std::reverse(options.levels.begin(), options.levels.end());
+}
+
+CoverOptions cover_options(const SimplifyOptions& options) {
+  return {.method = options.method,
+          .max_error = options.max_error,
+          .zones = options.zones,
+          .min_radius = options.min_radius,
+          .min_internal_diameter = options.min_internal_diameter,
+          .seed = options.seed,
+          .effort = options.effort,
+          .seconds = options.seconds,
+          .lower_bound = options.lower_bound,
+          .history = options.history,
+          .threads = options.threads,
+          .progress = options.progress};
 }
 
 class Stopwatch {
@@ -97,25 +127,14 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   result.times.external = external_time.seconds();
 
   const Stopwatch cover_time;
-  const CoverOptions cover_options{.method = used.method,
-                                   .max_error = used.max_error,
-                                   .zones = used.zones,
-                                   .min_radius = used.min_radius,
-                                   .min_internal_diameter = used.min_internal_diameter,
-                                   .seed = used.seed,
-                                   .effort = used.effort,
-                                   .seconds = used.seconds,
-                                   .lower_bound = used.lower_bound,
-                                   .history = used.history,
-                                   .threads = used.threads,
-                                   .progress = used.progress};
-  result.cover = cover(mesh, result.external, cover_options);
+  result.cover = cover_solid(mesh, result.external, used);
   result.times.cover = cover_time.seconds();
 
   const Stopwatch levels_time;
   if (used.levels.size() > 1) {
     const std::span<const double> coarser = std::span(used.levels).first(used.levels.size() - 1);
-    result.levels = fit_levels(mesh, result.external, result.cover.spheres, coarser, cover_options);
+    result.levels =
+        fit_levels(mesh, result.external, result.cover.spheres, coarser, cover_options(used));
   }
   result.times.levels = levels_time.seconds();
 
@@ -130,6 +149,14 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   result.certificate = certify(mesh, result.cover.spheres, certify_options);
   result.times.certify = certify_time.seconds();
   return result;
+}
+
+SphereCover cover_solid(const TriangleMesh& mesh, const ExternalSpheres& external,
+                        const SimplifyOptions& options) {
+  check_phase(options);
+  const CoverOptions passed = cover_options(options);
+  return options.second_phase ? options.second_phase->run(mesh, external, passed)
+                              : cover(mesh, external, passed);
 }
 
 double tool_diameter(std::span<const Sphere> tool) {

@@ -11,12 +11,23 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace spherule {
+
+// A second phase from outside of this library, in the place of cover(). It covers S as well as it
+// can; what it achieved, the certificate says.
+struct SecondPhase {
+  // Stands in option_record() as the method: not empty, and none of method_names().
+  std::string name;
+  std::function<SphereCover(const TriangleMesh&, const ExternalSpheres&, const CoverOptions&)> run =
+      {};
+};
 
 struct SimplifyOptions {
   // E: how far the result may protrude from the simplified solid; 0 chooses 1 % of the box
@@ -36,6 +47,8 @@ struct SimplifyOptions {
   // D is smaller along sharp concave edges too (concave_edges.h).
   bool keep_concave_edges = false;
   CoverMethod method = CoverMethod::kCover;
+  // Where it is set, it is run instead of `method`, with the CoverOptions that cover() would get.
+  std::optional<SecondPhase> second_phase = {};
   ExternalPlacement external = ExternalPlacement::kReachable;
   std::size_t external_limit = 100000;  // attempts of the random placement
   double min_internal_diameter = 0.0;   // of the paper's loop; 0 chooses E / 2
@@ -73,6 +86,12 @@ void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh);
 // Throws Error for a mesh that validate() refuses and for options out of range.
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
 
+// Stage 2 as simplify() runs it: by the second phase, where there is one, else by `method`. E must
+// be filled in. Errors as of cover() or the phase; with the subject "method" for a phase without a
+// name of its own or that cannot be run.
+SphereCover cover_solid(const TriangleMesh& mesh, const ExternalSpheres& external,
+                        const SimplifyOptions& options);
+
 // What was promised and is not proved, as a sentence: that the spheres cover, and, where no least
 // radius was asked for, that they protrude from the simplified solid by at most E, in a zone by at
 // most its own, and the balls of a level by at most that of the level. Empty where all is proved.
@@ -107,6 +126,8 @@ std::string name_of_levels(std::span<const double> levels);
 
 // The options under their command-line names, for SphereFile::options; `scale` is the one the mesh
 // was read with. And back, for an audit: what is absent keeps its default, Error names a bad value.
+// A method that is none of method_names() comes back as the name of a second phase that cannot be
+// run: an audit judges spheres of any origin.
 std::map<std::string, OptionValue> option_record(const SimplifyOptions& options, double scale);
 SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& record);
 

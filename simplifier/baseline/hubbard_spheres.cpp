@@ -2,7 +2,7 @@
 #include "simplifier/baseline/hubbard_spheres.h"
 
 #include "simplifier/baseline/internal/medial_spheres.h"
-#include "simplifier/baseline/internal/solid_probe.h"
+#include "simplifier/baseline/internal/mesh_probe.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
 #include "simplifier/baseline/internal/surface_samples.h"
 #include "simplifier/internal/thread_limit.h"
@@ -37,7 +37,7 @@ SphereLevels hubbard_spheres(const TriangleMesh& mesh, const HubbardOptions& opt
   check(options);
   validate(mesh, "mesh");
   const internal::ThreadLimit limit(options.threads);
-  const internal::SolidProbe probe(mesh);
+  const internal::MeshProbe probe(mesh);
   const std::vector<Eigen::Vector3d> samples =
       internal::cover_samples(mesh, options.cover_points, 1, options.seed);
   const internal::MedialAxis axis(probe,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/medial_axis.h"
 
+#include "simplifier/baseline/internal/best_reduction.h"
 #include "simplifier/baseline/internal/medial_spheres.h"
-#include "simplifier/baseline/internal/solid_probe.h"
+#include "simplifier/baseline/internal/mesh_probe.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
 #include "simplifier/baseline/internal/surface_samples.h"
 #include "simplifier/internal/thread_limit.h"
@@ -26,9 +27,9 @@ using Eigen::Vector3d;
 using internal::FittedSphere;
 using internal::MedialAxis;
 using internal::MedialSphere;
+using internal::MeshProbe;
 using internal::ReductionGoal;
 using internal::ReductionTask;
-using internal::SolidProbe;
 
 // Medial spheres wanted for every ball of the result.
 constexpr std::size_t kSpheresPerBall = 4;
@@ -76,45 +77,12 @@ struct Sampled {
     return std::sqrt(area / (std::numbers::pi * static_cast<double>(count)));
   }
 
-  SolidProbe probe;
+  MeshProbe probe;
   std::vector<Vector3d> samples;
   MedialAxis axis;
   std::vector<std::uint32_t> all_points;
   double area;
 };
-
-bool is_better(const std::vector<FittedSphere>& a, const std::vector<FittedSphere>& b,
-               const ReductionGoal& goal) {
-  const std::pair<double, double> of_a(internal::largest_protrusion(a),
-                                       static_cast<double>(a.size()));
-  const std::pair<double, double> of_b(internal::largest_protrusion(b),
-                                       static_cast<double>(b.size()));
-  if (goal.count > 0) return of_a < of_b;
-  const bool a_holds = of_a.first <= goal.max_protrusion;
-  const bool b_holds = of_b.first <= goal.max_protrusion;
-  if (a_holds != b_holds) return a_holds;
-  return a_holds ? of_a.second < of_b.second : of_a < of_b;
-}
-
-std::vector<FittedSphere> reduce(const ReductionTask& task, const ReductionGoal& goal,
-                                 SphereReduction reduction) {
-  switch (reduction) {
-    case SphereReduction::kMerge:
-      return internal::merge(task, goal);
-    case SphereReduction::kBurst:
-      return internal::burst(task, goal);
-    case SphereReduction::kExpand:
-      return internal::expand(task, goal);
-    case SphereReduction::kBest:
-      break;
-  }
-  std::vector<FittedSphere> best = internal::merge(task, goal);
-  for (std::vector<FittedSphere> other :
-       {internal::burst(task, goal), internal::expand(task, goal)}) {
-    if (is_better(other, best, goal)) best = std::move(other);
-  }
-  return best;
-}
 
 // The medial spheres near the points of a ball.
 std::vector<MedialSphere> spheres_near(const Sampled& sampled, const FittedSphere& ball) {
@@ -160,15 +128,16 @@ MedialAxisSpheres medial_axis(const TriangleMesh& mesh, const MedialAxisOptions&
     // First to learn how far so many balls protrude, then with medial spheres that suit it.
     aim = sampled.share_radius(goal.count);
     sampled.axis.refine({aim, kSpheresPerBall * goal.count, options.sampling.max_sites});
-    best = reduce(sampled.whole(aim), goal, options.reduction);
+    best = internal::reduce(sampled.whole(aim), goal, options.reduction).spheres;
     aim = std::min(aim, internal::largest_protrusion(best));
   } else {
     goal.max_protrusion = options.max_protrusion;
   }
   aim /= options.sampling.error_factor;
   sampled.axis.refine({aim, 0, options.sampling.max_sites});
-  std::vector<FittedSphere> refined = reduce(sampled.whole(aim), goal, options.reduction);
-  if (best.empty() || is_better(refined, best, goal)) best = std::move(refined);
+  std::vector<FittedSphere> refined =
+      internal::reduce(sampled.whole(aim), goal, options.reduction).spheres;
+  if (best.empty() || internal::is_better(refined, best, goal)) best = std::move(refined);
 
   MedialAxisSpheres result;
   for (const FittedSphere& ball : best) result.spheres.push_back(ball.ball);
@@ -205,8 +174,9 @@ SphereLevels medial_axis_tree(const TriangleMesh& mesh, const MedialTreeOptions&
     std::vector<std::vector<FittedSphere>> children(level.size());
     tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
       const std::vector<MedialSphere> near = spheres_near(sampled, level[i]);
-      children[i] = reduce({sampled.probe, sampled.samples, level[i].points, near, aim},
-                           {.count = branching}, options.reduction);
+      children[i] = internal::reduce({sampled.probe, sampled.samples, level[i].points, near, aim},
+                                     {.count = branching}, options.reduction)
+                        .spheres;
     });
     std::vector<FittedSphere> next;
     std::vector<std::int32_t>& parents = levels.parents.emplace_back();

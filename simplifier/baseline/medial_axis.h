@@ -47,7 +47,7 @@ struct MedialAxisOptions {
 struct MedialAxisSpheres {
   std::vector<Sphere> spheres;
   // Upper bound, up to rounding, of the largest distance from a point of the balls to the solid:
-  // the centres' clearances are measured. For open meshes inside is what SolidProbe takes for it.
+  // the centres' clearances are measured. For open meshes inside is what MeshProbe takes for it.
   double protrusion = 0.0;
   std::size_t medial_spheres = 0;  // that they were made from
   std::size_t sites = 0;           // of the Voronoi diagram

@@ -3,11 +3,10 @@
 
 #include "simplifier/internal/cover_bound.h"
 #include "simplifier/internal/cover_moves.h"
+#include "simplifier/internal/cover_options.h"
 #include "simplifier/internal/lazy_cover_search.h"
 #include "simplifier/internal/random.h"
-#include "simplifier/internal/solid_query.h"
 #include "simplifier/internal/surface_extent.h"
-#include "spheretree/error.h"
 
 #include <tbb/parallel_for.h>
 
@@ -102,10 +101,7 @@ CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distanc
       local_(options.max_error, options.zones),
       problem_(options.max_error, options.min_radius, options.zones),
       given_(given.begin(), given.end()) {
-  const double tightest = tightest_error(options.zones, options.max_error);
-  if (finest(tightest) < least_reach(clearance.box())) {
-    throw Error("max error", "too small for coordinates of this size");
-  }
+  check_resolved(clearance, tightest_error(options.zones, options.max_error), kFinest);
 }
 
 std::vector<Sphere> CoverFitter::run() {

@@ -40,15 +40,23 @@ TEST_F(UsageTest, FaultyCommandLinesAreRefused) {
   EXPECT_EQ(files(), std::vector<std::string>{"box.stl"});
 }
 
+TEST_F(UsageTest, MethodsThatAreNotThereAreRefused) {
+  write_box("box.stl", {1, 1, 1});
+  const auto with_method = [](const std::string& method) {
+    return std::vector<std::string>{"fit", "box.stl", "-o", "out.json", "--method", method};
+  };
+  expect_refusal(with_method("other"), "other");
+#ifndef SPHERULE_HAS_BASELINES
+  for (const char* method : {"medial", "packing"}) {
+    expect_refusal(with_method(method), "SPHERULE_BASELINES");
+  }
+#endif
+  EXPECT_EQ(files(), std::vector<std::string>{"box.stl"});
+}
+
 // What belongs to the command line of a later version is refused, not ignored.
 TEST_F(UsageTest, OptionsThatAreNotThereYetAreRefused) {
   write_box("box.stl", {1, 1, 1});
-  const std::vector<std::string> fit = {"fit", "box.stl", "-o", "out.json"};
-  for (const char* method : {"medial", "packing"}) {
-    auto arguments = fit;
-    arguments.insert(arguments.end(), {"--method", method});
-    expect_refusal(arguments, method);
-  }
   for (const char* command : {"robot", "audit-robot", "check"}) {
     expect_refusal({command, "x"}, std::string("unknown command: ") + command);
   }

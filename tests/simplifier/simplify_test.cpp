@@ -146,8 +146,63 @@ TEST(Simplify, BadRecordsAreRefusedByName) {
     EXPECT_EQ(refused(key, 1.5), key);
   }
   for (const char* key : {"method", "external"}) {
-    EXPECT_EQ(refused(key, std::string("other")), key);
+    EXPECT_EQ(refused(key, std::string()), key);
     EXPECT_EQ(refused(key, std::int64_t{1}), key);
+  }
+  EXPECT_EQ(refused("external", std::string("other")), "external");
+}
+
+// --- a second phase from outside ---
+
+TEST(SecondPhase, ItsSpheresAreCertifiedWhateverItMade) {
+  const auto made_of = [](std::vector<Sphere> spheres) {
+    SimplifyOptions options = coarse(0.3);
+    options.second_phase = SecondPhase{
+        "given", [=](const TriangleMesh&, const ExternalSpheres&, const CoverOptions& passed) {
+          EXPECT_EQ(passed.max_error, 0.3);
+          EXPECT_EQ(passed.threads, 1);
+          SphereCover made;
+          made.spheres = spheres;
+          return made;
+        }};
+    options.threads = 1;
+    return simplify(cube_mesh(), options);
+  };
+  const Vector3d middle(0.5, 0.5, 0.5);
+  const Simplification covered = made_of({{middle, 0.87}});
+  EXPECT_TRUE(covered.certificate.covered);
+  EXPECT_NE(broken_promises(covered).find("to protrude by at most 0.3"), std::string::npos);
+  EXPECT_EQ(broken_promises(covered).find("to cover"), std::string::npos);
+  const Simplification leaking = made_of({{middle, 0.79}});
+  EXPECT_FALSE(leaking.certificate.covered);
+  EXPECT_NE(broken_promises(leaking).find("to cover"), std::string::npos);
+  EXPECT_EQ(broken_promises(leaking).find("to protrude"), std::string::npos);
+  EXPECT_FALSE(made_of({}).certificate.covered);
+}
+
+TEST(SecondPhase, ItsNameSurvivesTheRecordButCannotBeRunFromThere) {
+  SimplifyOptions options = coarse(0.3);
+  options.second_phase = SecondPhase{"other", cover};
+  const Record record = option_record(options, 1.0);
+  EXPECT_EQ(std::get<std::string>(record.at("method")), "other");
+  const SimplifyOptions back = options_from_record(record);
+  ASSERT_TRUE(back.second_phase.has_value());
+  EXPECT_EQ(back.second_phase->name, "other");
+  EXPECT_EQ(option_record(back, 1.0), record);
+  EXPECT_FALSE(options_from_record(option_record({}, 1.0)).second_phase.has_value());
+  const auto refused = [](const SimplifyOptions& tried) -> std::string {
+    try {
+      simplify(cube_mesh(), tried);
+    } catch (const Error& error) {
+      return error.subject();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refused(back), "method");
+  EXPECT_EQ(refused(options), "accepted");
+  for (const char* name : {"", "cover", "paper"}) {
+    options.second_phase->name = name;
+    EXPECT_EQ(refused(options), "method");
   }
 }
 

@@ -49,6 +49,11 @@ MedialAxis::MedialAxis(const SolidProbe& probe, std::vector<Vector3d> sites,
   find_spheres();
 }
 
+void MedialAxis::watch(std::span<const Vector3d> watched) {
+  watched_ = watched;
+  is_site_.resize(watched.size(), false);
+}
+
 void MedialAxis::find_spheres() {
   const std::vector<VoronoiVertex> vertices = voronoi_vertices(sites_);
   std::vector<MedialSphere> all(vertices.size());
@@ -68,7 +73,7 @@ bool MedialAxis::add_sites(const MedialGoal& goal) {
   std::vector<Wish> wishes;
   for (const MedialSphere& s : spheres_) {
     if (s.protrusion() <= std::max(allowed, kSettled * s.ball.radius)) continue;
-    wishes.push_back({s.protrusion(), probe_.distance()(s.ball.center).closest, kNone});
+    wishes.push_back({s.protrusion(), probe_.nearest_boundary(s.ball.center), kNone});
   }
   std::vector<Sphere> balls;
   for (const MedialSphere& s : spheres_) balls.push_back(s.ball);

@@ -44,6 +44,9 @@ class MedialAxis {
 
   void refine(const MedialGoal& goal);
 
+  // From here on these are watched; they begin with those watched so far.
+  void watch(std::span<const Eigen::Vector3d> watched);
+
   const std::vector<MedialSphere>& spheres() const { return spheres_; }
   const std::vector<Eigen::Vector3d>& sites() const { return sites_; }
 

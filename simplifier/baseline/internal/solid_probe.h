@@ -1,55 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/mesh_distance.h"
-#include "spheretree/triangle_mesh.h"
-
 #include <Eigen/Core>
-
-#include <cstdint>
-#include <vector>
 
 namespace spherule::internal {
 
-// What the baselines ask about the solid inside of a mesh, in plain double: it serves searches,
-// never a proof. Safe to share between threads.
+// What the methods that work with medial spheres ask about a solid, in plain double: it serves
+// searches, never a proof. Safe to share between threads.
 class SolidProbe {
  public:
-  // The mesh must have passed validate().
-  explicit SolidProbe(const TriangleMesh& mesh);
+  virtual ~SolidProbe() = default;
 
-  // Distance to the surface, negative outside of the solid. A ball of radius r about the point
+  // Distance to the boundary, negative outside of the solid. A ball of radius r about the point
   // protrudes from the solid by at most r minus this.
-  double clearance(const Eigen::Vector3d& point) const;
+  virtual double clearance(const Eigen::Vector3d& point) const = 0;
 
-  // Whether the winding number is closer to another whole number than to zero: right for closed
-  // meshes, inverted ones too, and a sensible guess for open ones. The number is that of
-  // MeshDistance, with groups of triangles that are far away taken as one (Barill and others, "Fast
-  // winding numbers for soups and clouds", 2018, its first-order term).
-  bool is_inside(const Eigen::Vector3d& point) const;
-
-  const MeshDistance& distance() const { return distance_; }
-
- private:
-  // The triangles [begin, end) in depth-first order; an inner node's left child is the next node.
-  struct Node {
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();
-    Eigen::Vector3d area = Eigen::Vector3d::Zero();  // sum of the area vectors
-    double reach = 0.0;                              // of the triangles from the centre
-    std::int32_t right = -1;                         // negative for a leaf
-    std::int32_t begin = 0;
-    std::int32_t end = 0;
-  };
-  struct Corners {
-    Eigen::Vector3d a, b, c;
-  };
-
-  void build(std::int32_t begin, std::int32_t end);
-  double solid_angle_of(std::int32_t node, const Eigen::Vector3d& point) const;
-
-  MeshDistance distance_;
-  std::vector<Corners> corners_;
-  std::vector<Node> nodes_;
+  // The point of the boundary that is nearest to one inside.
+  virtual Eigen::Vector3d nearest_boundary(const Eigen::Vector3d& point) const = 0;
 };
 
 }  // namespace spherule::internal

@@ -2,6 +2,7 @@
 #include "simplifier/baseline/medial_axis.h"
 
 #include "simplifier/baseline/internal/medial_spheres.h"
+#include "simplifier/baseline/internal/mesh_probe.h"
 #include "simplifier/baseline/internal/surface_samples.h"
 #include "simplifier/baseline/made_conservative.h"
 #include "spheretree/check.h"
@@ -26,7 +27,7 @@ const MedialSampling kCoarse = {
 
 TEST(MedialAxis, SpheresAreEmptyOfSitesAndTouchFour) {
   const TriangleMesh mesh = l_bracket();
-  const internal::SolidProbe probe(mesh);
+  const internal::MeshProbe probe(mesh);
   internal::MedialAxis axis(probe, internal::even_samples(mesh, 150, 0, 3));
   for (int round = 0; round < 2; ++round) {
     ASSERT_GT(axis.spheres().size(), 20U);
@@ -52,7 +53,7 @@ double worst(const std::vector<MedialSphere>& spheres) {
 
 TEST(MedialAxis, RefinementReachesTheProtrusionWithFewerSitesThanEvenOnes) {
   const TriangleMesh mesh = l_bracket();
-  const internal::SolidProbe probe(mesh);
+  const internal::MeshProbe probe(mesh);
   internal::MedialAxis adaptive(probe, internal::even_samples(mesh, 100, 0, 3));
   EXPECT_GT(worst(adaptive.spheres()), 0.03);
   adaptive.refine({.max_protrusion = 0.01, .min_spheres = 0, .max_sites = 5000});
@@ -64,7 +65,7 @@ TEST(MedialAxis, RefinementReachesTheProtrusionWithFewerSitesThanEvenOnes) {
 
 TEST(MedialAxis, WatchedPointsAreReached) {
   const TriangleMesh mesh = cube_mesh();
-  const internal::SolidProbe probe(mesh);
+  const internal::MeshProbe probe(mesh);
   const std::vector<Vector3d> watched = internal::cover_samples(mesh, 300, 1, 4);
   internal::MedialAxis axis(probe, internal::even_samples(mesh, 60, 0, 3), watched);
   axis.refine({.max_protrusion = 0.05, .min_spheres = 0, .max_sites = 5000});

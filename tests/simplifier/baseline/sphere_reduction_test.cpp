@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/sphere_reduction.h"
 
+#include "simplifier/baseline/internal/mesh_probe.h"
 #include "simplifier/baseline/internal/surface_samples.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
@@ -30,7 +31,7 @@ struct Problem {
   }
   ReductionTask task() const { return {probe, samples, points, axis.spheres()}; }
 
-  internal::SolidProbe probe;
+  internal::MeshProbe probe;
   std::vector<Vector3d> samples;
   internal::MedialAxis axis;
   std::vector<std::uint32_t> points;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/baseline/internal/solid_probe.h"
+#include "simplifier/baseline/internal/mesh_probe.h"
 
 #include "simplifier/internal/solid_angle.h"
 
@@ -18,7 +18,7 @@ constexpr double kFar = 3.0;
 
 }  // namespace
 
-SolidProbe::SolidProbe(const TriangleMesh& mesh) : distance_(mesh) {
+MeshProbe::MeshProbe(const TriangleMesh& mesh) : distance_(mesh) {
   for (const Eigen::Vector3i& t : mesh.triangles) {
     const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
     corners_.push_back({corner(0), corner(1), corner(2)});
@@ -26,7 +26,7 @@ SolidProbe::SolidProbe(const TriangleMesh& mesh) : distance_(mesh) {
   build(0, static_cast<std::int32_t>(corners_.size()));
 }
 
-void SolidProbe::build(std::int32_t begin, std::int32_t end) {
+void MeshProbe::build(std::int32_t begin, std::int32_t end) {
   const std::size_t self = nodes_.size();
   Node node;
   node.begin = begin;
@@ -57,7 +57,7 @@ void SolidProbe::build(std::int32_t begin, std::int32_t end) {
   build(middle, end);
 }
 
-double SolidProbe::solid_angle_of(std::int32_t index, const Vector3d& point) const {
+double MeshProbe::solid_angle_of(std::int32_t index, const Vector3d& point) const {
   const Node& node = nodes_[static_cast<std::size_t>(index)];
   const Vector3d to = node.center - point;
   const double away = to.norm();
@@ -73,12 +73,12 @@ double SolidProbe::solid_angle_of(std::int32_t index, const Vector3d& point) con
   return angle;
 }
 
-bool SolidProbe::is_inside(const Vector3d& point) const {
+bool MeshProbe::is_inside(const Vector3d& point) const {
   if (!distance_.box().contains(point)) return false;
   return std::abs(solid_angle_of(0, point)) > 2.0 * std::numbers::pi;
 }
 
-double SolidProbe::clearance(const Vector3d& point) const {
+double MeshProbe::clearance(const Vector3d& point) const {
   const SurfaceDistance d = distance_(point);
   return is_inside(point) ? d.lower : -d.upper;
 }

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/simplify.h"
+
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// What --method takes, the default first.
+std::vector<std::string> second_phase_names();
+
+// Has the options cover by that method. Throws Error for a name that is none of them, and for one
+// that only a build with baselines knows.
+void choose_second_phase(const std::string& name, SimplifyOptions& options);
+
+}  // namespace spherule

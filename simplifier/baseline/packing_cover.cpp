@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/baseline/packing_cover.h"
+
+#include "simplifier/baseline/internal/simplified_solid.h"
+#include "simplifier/internal/cover_options.h"
+#include "simplifier/internal/inscribed_balls.h"
+#include "simplifier/internal/thread_limit.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+
+// A point of S and the ball that grows from it.
+struct Candidate {
+  Vector3d point = Vector3d::Zero();
+  Sphere ball;
+};
+
+// The largest ball first, ties in the order of the points.
+std::vector<Candidate> candidates_of(const std::vector<Vector3d>& points,
+                                     const internal::BallGrower& grow,
+                                     std::size_t& seeds_rejected) {
+  std::vector<Candidate> candidates(points.size());
+  std::atomic<std::size_t> rejected = 0;
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    std::size_t here = 0;
+    candidates[i] = {points[i], grow(points[i], here)};
+    rejected += here;
+  });
+  seeds_rejected += rejected;
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [](const Candidate& a, const Candidate& b) { return a.ball.radius > b.ball.radius; });
+  return candidates;
+}
+
+// Places the candidates whose points are still further than `limit` from the balls.
+void place(const std::vector<Candidate>& candidates, double limit, bool where_centers_are_held,
+           internal::BallSet& balls) {
+  for (const Candidate& c : candidates) {
+    if (balls.nearest(c.point).upper <= limit) continue;
+    if (!where_centers_are_held && balls.nearest(c.ball.center).upper < 0.0) continue;
+    balls.add(c.ball);
+    internal::check_count(balls.balls().size());
+  }
+}
+
+}  // namespace
+
+SphereCover packing_cover(const TriangleMesh& mesh, const ExternalSpheres& external,
+                          const CoverOptions& options) {
+  const internal::ThreadLimit threads(options.threads);
+  if (options.progress) options.progress(-1.0, "growing balls");
+  const internal::SimplifiedSolid solid(mesh, external, options, "packing");
+  SphereCover result;
+  const std::vector<Candidate> candidates = candidates_of(
+      solid.samples(mesh), internal::BallGrower(solid.clearance, options), result.seeds_rejected);
+  const double limit = internal::kLoopLimit * options.max_error;
+  internal::BallSet balls;
+  place(candidates, limit, false, balls);
+  place(candidates, limit, true, balls);
+  internal::fill_gaps(solid.clearance, solid.distance, options, balls, result.seeds_rejected);
+  const internal::CoverageProof remaining =
+      internal::remaining_error(solid.clearance, solid.distance, balls.balls(), options.max_error);
+  internal::inflate(result, balls.balls(), std::min(limit, remaining.upper), options);
+  return result;
+}
+
+}  // namespace spherule

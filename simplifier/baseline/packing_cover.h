@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/cover.h"
+#include "simplifier/external_spheres.h"
+#include "spheretree/triangle_mesh.h"
+
+namespace spherule {
+
+// Conservative: on return the union of the balls contains S and protrudes from it by at most E
+// (unless min_radius forces more). A second phase for simplify() (SecondPhase) in the place of
+// cover(): sphere packing with the largest ball first, overlapping allowed. Candidates are the
+// balls inscribed in S that grow from points spread over it and its boundary. The next ball is the
+// largest whose point is still further than E from the balls and whose centre none of them holds;
+// where only balls with centres held are left, the largest of these. Points that the proof then
+// finds further than E from the balls get balls of their own, the furthest first; so, when no point
+// of S is, as proved by subdivision, every radius grows by the certified error that remains. The
+// difference to the paper's loop (CoverMethod::kPaper) is the order, by size and not by distance.
+//
+// Uses max_error, min_internal_diameter (at which balls are seeded), min_radius (no ball is
+// smaller), threads and progress of the options. The packing itself, inside of S, and the inflation
+// are in the result as with CoverMethod::kPaper, in the order in which balls were placed.
+// Deterministic on any number of threads. Throws Error as cover() does, with the subject "zones"
+// where E is smaller in a zone: only one max error is known here.
+SphereCover packing_cover(const TriangleMesh& mesh, const ExternalSpheres& external,
+                          const CoverOptions& options);
+
+}  // namespace spherule

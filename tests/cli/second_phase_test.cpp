@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `fit --method` with the second phases of the library of baselines.
+#include "tests/cli/command_test_support.h"
+
+namespace spherule {
+namespace {
+
+using SecondPhaseTest = CommandTest;
+
+TEST_F(SecondPhaseTest, FitsAndAnAuditProvesTheFile) {
+  write_box("box.stl", {1, 2, 3});
+  for (const char* method : {"medial", "packing"}) {
+    SCOPED_TRACE(method);
+    const Outcome fit = run({"fit", "box.stl", "-o", "box.json", "--max-error", "0.3", "--method",
+                             method, "--report", "report.json", "--tree", "box.tree"});
+    EXPECT_EQ(fit.exit_code, 0) << fit.err;
+    const nlohmann::json file = read_json("box.json");
+    EXPECT_EQ(file["options"]["method"], method);
+    EXPECT_TRUE(file["certificate"]["covered"]);
+    EXPECT_LE(file["certificate"]["protrusion_over_simplified_max"], 0.3);
+    const nlohmann::json report = read_json("report.json");
+    EXPECT_EQ(report["cover"]["spheres_before_inflation"].size(), file["spheres"].size());
+    // Made by the same method.
+    EXPECT_TRUE(report["analysis"]["at_twice_the_error"]["covered"]);
+    EXPECT_LT(report["analysis"]["at_twice_the_error"]["sphere_count"], file["spheres"].size());
+    EXPECT_EQ(run({"audit", "box.stl", "box.json"}).exit_code, 0);
+    EXPECT_EQ(run({"audit", "box.stl", "box.json", "--repair", "mended.json"}).exit_code, 0);
+    EXPECT_EQ(read_json("mended.json")["options"]["method"], method);
+  }
+}
+
+TEST_F(SecondPhaseTest, ZonesOfAnErrorOfTheirOwnAreRefused) {
+  write_box("box.stl", {1, 1, 1});
+  write(
+      "zones.json",
+      R"({"format":"spherule-zones","version":1,"zones":[{"shape":"ball","center":[0,0,0],"radius":0.5,"max_error":0.05}]})");
+  for (const char* method : {"medial", "packing"}) {
+    const Outcome fit = run({"fit", "box.stl", "-o", "out.json", "--max-error", "0.3", "--zones",
+                             "zones.json", "--method", method});
+    EXPECT_EQ(fit.exit_code, 2);
+    EXPECT_NE(fit.err.find(std::string("\"") + method + "\" knows one max error only"),
+              std::string::npos)
+        << fit.err;
+  }
+  EXPECT_FALSE(exists("out.json"));
+}
+
+}  // namespace
+}  // namespace spherule
