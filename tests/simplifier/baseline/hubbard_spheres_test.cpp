@@ -5,6 +5,7 @@
 #include "simplifier/baseline/made_conservative.h"
 #include "spheretree/check.h"
 #include "spheretree/error.h"
+#include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"
@@ -36,7 +37,7 @@ TEST(HubbardSpheres, ReachesTheWantedCounts) {
 }
 
 TEST(HubbardSpheres, MakesAConservativeTree) {
-  const TriangleMesh mesh = l_bracket();
+  const TriangleMesh mesh = slender(l_bracket());
   const SphereLevels levels = hubbard_spheres(mesh, kCoarse);
   const ConservativeSpheres leaves = made_conservative(mesh, levels.levels.back());
   EXPECT_TRUE(leaves.certificate.covered);
