@@ -12,6 +12,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+#include <vector>
+
 namespace spherule::test {
 namespace {
 
@@ -34,6 +38,24 @@ TEST(HubbardSpheres, EveryLevelHoldsTheSamples) {
 TEST(HubbardSpheres, ReachesTheWantedCounts) {
   const SphereLevels levels = hubbard_spheres(l_bracket(), kCoarse);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(levels.levels[k].size(), kCoarse.counts[k]);
+  // Each ball is what became of some of the finer ones.
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::set<std::int32_t> parents(levels.parents[k].begin(), levels.parents[k].end());
+    EXPECT_EQ(parents.size(), levels.levels[k].size());
+  }
+}
+
+TEST(CoverSamples, HoldCornersAndEdges) {
+  const TriangleMesh mesh = cube_mesh();
+  const std::vector<Eigen::Vector3d> samples = internal::cover_samples(mesh, 200, 1, 1);
+  const auto count = [&](int integers) {
+    return std::ranges::count_if(samples, [&](const Eigen::Vector3d& p) {
+      return (p.array() == p.array().round()).count() == integers;
+    });
+  };
+  EXPECT_EQ(count(3), 8);
+  // As far from each other as those spread over the area: the square root of 6 / 200.
+  EXPECT_EQ(count(2), 12 * 4);
 }
 
 TEST(HubbardSpheres, MakesAConservativeTree) {

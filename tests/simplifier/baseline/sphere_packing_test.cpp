@@ -47,6 +47,18 @@ TEST(PackSpheres, StaysInsideAndCoversWhenInflated) {
   }
 }
 
+TEST(PackSpheres, HoldsPaddingAndVertexErrorWhenInflated) {
+  TriangleMesh mesh = cube_mesh();
+  mesh.vertex_error = 0.05;
+  const SpherePacking packing = pack_spheres(mesh, {.max_error = 0.2, .padding = 0.1});
+  Random random(22);
+  std::vector<Vector3d> points;
+  for (const Vector3d& p : points_on_surface(mesh, 1000, random)) {
+    points.push_back(p + 0.1499 * random.direction());
+  }
+  EXPECT_EQ(judge_cover(points, packing.inflated).uncovered, 0U);
+}
+
 TEST(PackSpheres, PacksTheWallOfAPipeAndNotItsBore) {
   const TriangleMesh mesh = pipe(20.0, 14.0, 25.0, 24);
   const SpherePacking packing = pack_spheres(mesh, {.max_error = 2.0, .closed_below = 4.0});
