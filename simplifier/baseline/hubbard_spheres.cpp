@@ -3,6 +3,7 @@
 
 #include "simplifier/baseline/internal/medial_spheres.h"
 #include "simplifier/baseline/internal/mesh_probe.h"
+#include "simplifier/baseline/internal/sampling_checks.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
 #include "simplifier/baseline/internal/surface_samples.h"
 #include "simplifier/internal/thread_limit.h"
@@ -18,17 +19,14 @@ namespace spherule {
 namespace {
 
 void check(const HubbardOptions& options) {
-  constexpr std::size_t kMost = 10'000'000;
   if (options.counts.empty() || options.counts.front() < 1 ||
       std::adjacent_find(options.counts.begin(), options.counts.end(), std::greater_equal<>()) !=
           options.counts.end()) {
     throw Error("counts", "must ascend from at least 1");
   }
-  if (options.sites < 1 || options.sites > kMost) throw Error("sites", "must be 1 to 10000000");
-  if (options.cover_points < 1 || options.cover_points > kMost) {
-    throw Error("cover points", "must be 1 to 10000000");
-  }
-  if (options.threads < 0) throw Error("threads", "must not be negative");
+  internal::check_samples("sites", options.sites);
+  internal::check_samples("cover points", options.cover_points);
+  internal::check_threads(options.threads);
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ struct LevelSetPackingOptions {
 // it about one of many random points is taken, overlapping allowed, until no candidate is left
 // outside of the balls with a ball of the least radius about it. The balls lie in the solid up to a
 // step. What is inside of an open mesh the library guesses; there may be no ball then. Equal input
-// gives equal results. Throws Error for a mesh that validate() refuses, for options out of range, and for a
-// step below 1/4096 of the box diagonal.
+// gives equal results. Throws Error for a mesh that validate() refuses, for options out of range,
+// and for a step below 1/4096 of the box diagonal.
 std::vector<Sphere> level_set_packing(const TriangleMesh& mesh,
                                       const LevelSetPackingOptions& options);
 

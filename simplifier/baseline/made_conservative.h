@@ -22,9 +22,10 @@ struct ConservativeSpheres {
 // is narrower than 1/128 of the box diagonal counts as solid), and by 1/4096 of the diagonal, with
 // which the second proof succeeds. Then every point of it is in a ball: one at distance d from the
 // nearest ball is in that ball grown by d. The certificate is that of a second search, on the balls
-// returned. Lengths in the unit of the mesh. Throws Error if there is no ball, if one is not usable
-// or cannot grow any more, for a mesh that validate() refuses and for a padding out of range.
+// returned. Lengths in the unit of the mesh. On at most `threads` threads, 0: all; the result is
+// the same. Throws Error if there is no ball, if one is not usable or cannot grow any more, for a
+// mesh that validate() refuses and for a padding out of range.
 ConservativeSpheres made_conservative(const TriangleMesh& mesh, std::span<const Sphere> spheres,
-                                      double padding = 0.0);
+                                      double padding = 0.0, int threads = 0);
 
 }  // namespace spherule

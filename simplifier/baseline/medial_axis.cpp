@@ -4,6 +4,7 @@
 #include "simplifier/baseline/internal/best_reduction.h"
 #include "simplifier/baseline/internal/medial_spheres.h"
 #include "simplifier/baseline/internal/mesh_probe.h"
+#include "simplifier/baseline/internal/sampling_checks.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
 #include "simplifier/baseline/internal/surface_samples.h"
 #include "simplifier/internal/thread_limit.h"
@@ -40,20 +41,16 @@ constexpr std::size_t kSpheresPerChild = 16;
 constexpr double kNear = 0.5;
 
 void check(const MedialSampling& sampling, int threads) {
-  constexpr std::size_t kMost = 10'000'000;
-  if (sampling.cover_points < 1 || sampling.cover_points > kMost) {
-    throw Error("cover points", "must be 1 to 10000000");
-  }
+  internal::check_samples("cover points", sampling.cover_points);
   if (sampling.cover_points_per_triangle > 1000) {
     throw Error("cover points per triangle", "must be at most 1000");
   }
-  if (sampling.initial_sites < 1 || sampling.initial_sites > kMost || sampling.max_sites > kMost) {
-    throw Error("sites", "must be 1 to 10000000");
-  }
+  internal::check_samples("sites", sampling.initial_sites);
+  internal::check_samples("most sites", sampling.max_sites, 0);
   if (!(sampling.error_factor > 0.0 && sampling.error_factor <= 1e6)) {
     throw Error("error factor", "must be positive and at most 1e6");
   }
-  if (threads < 0) throw Error("threads", "must not be negative");
+  internal::check_threads(threads);
 }
 
 // The solid, what has to be covered, and the medial axis.

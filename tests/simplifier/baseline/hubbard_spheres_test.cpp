@@ -5,11 +5,16 @@
 #include "simplifier/baseline/made_conservative.h"
 #include "spheretree/check.h"
 #include "spheretree/error.h"
+#include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
 
 namespace spherule::test {
 namespace {
@@ -33,10 +38,28 @@ TEST(HubbardSpheres, EveryLevelHoldsTheSamples) {
 TEST(HubbardSpheres, ReachesTheWantedCounts) {
   const SphereLevels levels = hubbard_spheres(l_bracket(), kCoarse);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(levels.levels[k].size(), kCoarse.counts[k]);
+  // Each ball is what became of some of the finer ones.
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::set<std::int32_t> parents(levels.parents[k].begin(), levels.parents[k].end());
+    EXPECT_EQ(parents.size(), levels.levels[k].size());
+  }
+}
+
+TEST(CoverSamples, HoldCornersAndEdges) {
+  const TriangleMesh mesh = cube_mesh();
+  const std::vector<Eigen::Vector3d> samples = internal::cover_samples(mesh, 200, 1, 1);
+  const auto count = [&](int integers) {
+    return std::ranges::count_if(samples, [&](const Eigen::Vector3d& p) {
+      return (p.array() == p.array().round()).count() == integers;
+    });
+  };
+  EXPECT_EQ(count(3), 8);
+  // As far from each other as those spread over the area: the square root of 6 / 200.
+  EXPECT_EQ(count(2), 12 * 4);
 }
 
 TEST(HubbardSpheres, MakesAConservativeTree) {
-  const TriangleMesh mesh = l_bracket();
+  const TriangleMesh mesh = slender(l_bracket());
   const SphereLevels levels = hubbard_spheres(mesh, kCoarse);
   const ConservativeSpheres leaves = made_conservative(mesh, levels.levels.back());
   EXPECT_TRUE(leaves.certificate.covered);

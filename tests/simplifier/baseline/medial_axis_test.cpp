@@ -7,6 +7,7 @@
 #include "simplifier/baseline/made_conservative.h"
 #include "spheretree/check.h"
 #include "spheretree/error.h"
+#include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"
@@ -91,7 +92,7 @@ TEST(MedialAxis, CoversTheSamples) {
 }
 
 TEST(MedialAxis, CanBeMadeConservative) {
-  const TriangleMesh mesh = cube_mesh();
+  const TriangleMesh mesh = slender(cube_mesh());
   const MedialAxisSpheres result = medial_axis(mesh, {.spheres = 24, .sampling = kCoarse});
   const ConservativeSpheres grown = made_conservative(mesh, result.spheres);
   EXPECT_TRUE(grown.certificate.covered);
@@ -140,7 +141,7 @@ TEST(MedialAxis, FartherProtrusionNeedsFewerBalls) {
 }
 
 TEST(MedialAxis, LevelsHoldTheSamplesAndMakeATree) {
-  const TriangleMesh mesh = l_bracket();
+  const TriangleMesh mesh = slender(l_bracket());
   const SphereLevels levels =
       medial_axis_tree(mesh, {.branching = 4, .depth = 3, .sampling = kCoarse});
   ASSERT_EQ(levels.levels.size(), 4U);

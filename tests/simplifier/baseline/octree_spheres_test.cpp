@@ -3,9 +3,9 @@
 
 #include "simplifier/certificate.h"
 #include "simplifier/mesh_distance.h"
-#include "simplifier/mesh_report.h"
 #include "spheretree/check.h"
 #include "spheretree/error.h"
+#include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
@@ -21,10 +21,6 @@ namespace spherule::test {
 namespace {
 
 using Eigen::Vector3d;
-
-double diagonal_of(const TriangleMesh& mesh) {
-  return MeshDistance(mesh).box().diagonal().norm();
-}
 
 // The tree's parents enclose their children, by long double; its leaves are balls around cubes.
 void expect_layered(const SphereTree& tree) {
@@ -42,44 +38,37 @@ void expect_layered(const SphereTree& tree) {
   }
 }
 
-void expect_covered(const TriangleMesh& mesh, std::span<const Sphere> balls, Random& random) {
-  const MeshDistance distance(mesh);
-  std::vector<Vector3d> points =
-      points_on_surface(mesh, static_cast<std::size_t>(effort(2000, 200)), random);
-  const bool closed = mesh_report(mesh, {.self_intersections = false}).closed;
-  for (int i = 0; closed && i < effort(1000, 100); ++i) {
-    const Vector3d p = random.in_box(distance.box());
-    if (std::abs(distance.winding_number(p)) > 0.5) points.push_back(p);
-  }
-  EXPECT_EQ(judge_cover(points, balls).uncovered, 0U);
-}
-
 TEST(OctreeSpheres, CoverAndProtrudeByTheErrorAtMost) {
   Random random(11);
   for (const NamedMesh& named : effort(zoo_to_fit(), 2)) {
+    SCOPED_TRACE(named.name);
     for (const double offset : effort(std::vector{1e6, 0.0}, 1)) {
-      SCOPED_TRACE(named.name + " at " + std::to_string(offset));
-      Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-      motion.translate(Vector3d(offset, -offset / 3.0, 0.0));
-      const TriangleMesh mesh = moved(named.mesh, motion);
-      const double max_error = 0.08 * diagonal_of(mesh);
-      const OctreeSpheres result = octree_spheres(mesh, {.max_error = max_error});
+      SCOPED_TRACE(offset);
+      const TriangleMesh mesh = moved_far(named.mesh, offset);
+      const OctreeSpheres result = octree_spheres(mesh, {.max_error = 0.08 * diagonal_of(mesh)});
       expect_layered(result.tree);
-      expect_covered(mesh, result.tree.spheres(), random);
-      const Certificate certificate =
-          certify(mesh, result.tree.spheres(), {.resolution = 1.0 / 512.0, .volume = false});
-      // A surface through the corners of cubes lies in no ball with room to spare.
-      EXPECT_LE(certificate.surface_depth.upper, 0.1 * max_error);
-      EXPECT_EQ(certificate.uncovered_depth.lower, 0.0);
-      EXPECT_LE(certificate.protrusion_over_mesh->lower, max_error);
+      expect_samples_covered(mesh, result.tree.spheres(), random);
     }
   }
 }
 
+TEST(OctreeSpheres, CoverAndProtrudeAsCertified) {
+  for (const std::string& name :
+       effort(std::vector<std::string>{"l-bracket", "soup", "open-box"}, 2)) {
+    SCOPED_TRACE(name);
+    const TriangleMesh mesh = moved_far(slender(mesh_named(name)), 1e6);
+    const double max_error = 0.02 * diagonal_of(mesh);
+    expect_certified(mesh, octree_spheres(mesh, {.max_error = max_error}).tree.spheres(),
+                     max_error);
+  }
+}
+
 TEST(OctreeSpheres, ProtrusionIsProvedOnAWholePart) {
-  const OctreeSpheres result = octree_spheres(l_bracket(), {.max_error = 0.05});
+  const TriangleMesh mesh = slender(l_bracket());
+  const OctreeSpheres result = octree_spheres(mesh, {.max_error = 0.05});
   const Certificate certificate =
-      certify(l_bracket(), result.tree.spheres(), {.protrusion_tolerance = 5e-3, .volume = false});
+      certify(mesh, result.tree.spheres(),
+              {.resolution = 1.0 / 512.0, .protrusion_tolerance = 5e-3, .volume = false});
   // The certificate's bounds are 0.5 % of the diagonal apart.
   EXPECT_LE(certificate.protrusion_over_mesh->upper, 0.06);
   EXPECT_GT(certificate.protrusion_over_mesh->lower, 0.02);
@@ -92,7 +81,7 @@ TEST(OctreeSpheres, ADepthGivesCubesOfOneSizeOnTheSurface) {
     const OctreeSpheres solid = octree_spheres(l_bracket(), {.depth = depth});
     EXPECT_EQ(solid.tree.depth(), depth);
     expect_layered(solid.tree);
-    expect_covered(l_bracket(), solid.tree.spheres(), random);
+    expect_samples_covered(l_bracket(), solid.tree.spheres(), random);
     const OctreeSpheres surface =
         octree_spheres(l_bracket(), {.depth = depth, .filling = Filling::kSurface});
     expect_layered(surface.tree);

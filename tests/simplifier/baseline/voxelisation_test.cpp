@@ -2,9 +2,8 @@
 #include "simplifier/baseline/voxelisation.h"
 
 #include "simplifier/certificate.h"
-#include "simplifier/mesh_distance.h"
-#include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
+#include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/baseline/exact_cube.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
@@ -145,29 +144,23 @@ TEST(Voxelise, FillsWhatCannotBeReached) {
 TEST(Voxelise, CoversWithCircumscribedBalls) {
   Random random(5);
   for (const NamedMesh& named : effort(zoo_to_fit(), 2)) {
+    SCOPED_TRACE(named.name);
     for (const double offset : effort(std::vector{1e6, 0.0}, 1)) {
-      SCOPED_TRACE(named.name + " at " + std::to_string(offset));
-      Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-      motion.translate(Vector3d(offset, -offset / 3.0, 0.0));
-      const TriangleMesh mesh = moved(named.mesh, motion);
-      const MeshDistance distance(mesh);
-      const double max_error = 0.05 * distance.box().diagonal().norm();
-      const Voxelisation voxels = voxelise(mesh, {.max_error = max_error});
-      std::vector<Vector3d> points =
-          points_on_surface(mesh, static_cast<std::size_t>(effort(2000, 200)), random);
-      const bool closed = mesh_report(mesh, {.self_intersections = false}).closed;
-      for (int i = 0; closed && i < effort(1000, 100); ++i) {
-        const Vector3d p = random.in_box(distance.box());
-        if (std::abs(distance.winding_number(p)) > 0.5) points.push_back(p);
-      }
-      EXPECT_EQ(judge_cover(points, voxels.spheres).uncovered, 0U);
-      const Certificate certificate =
-          certify(mesh, voxels.spheres, {.resolution = 1.0 / 512.0, .volume = false});
-      // A surface through the corners of cubes lies in no ball with room to spare.
-      EXPECT_LE(certificate.surface_depth.upper, 0.1 * max_error);
-      EXPECT_EQ(certificate.uncovered_depth.lower, 0.0);
-      EXPECT_LE(certificate.protrusion_over_mesh->lower, max_error);
+      SCOPED_TRACE(offset);
+      const TriangleMesh mesh = moved_far(named.mesh, offset);
+      const Voxelisation voxels = voxelise(mesh, {.max_error = 0.05 * diagonal_of(mesh)});
+      expect_samples_covered(mesh, voxels.spheres, random);
     }
+  }
+}
+
+TEST(Voxelise, CoversAsCertified) {
+  for (const std::string& name :
+       effort(std::vector<std::string>{"l-bracket", "soup", "open-box"}, 2)) {
+    SCOPED_TRACE(name);
+    const TriangleMesh mesh = moved_far(slender(mesh_named(name)), 1e6);
+    const double max_error = 0.02 * diagonal_of(mesh);
+    expect_certified(mesh, voxelise(mesh, {.max_error = max_error}).spheres, max_error);
   }
 }
 
@@ -185,9 +178,10 @@ TEST(Voxelise, GrowsByPaddingAndVertexError) {
 
 TEST(Voxelise, ThePapersBallsLeaveCorners) {
   const VoxelisationOptions options{.step = 0.1, .ball = VoxelBall::kInscribed};
-  const Voxelisation voxels = voxelise(l_bracket(), options);
+  const TriangleMesh mesh = slender(l_bracket());
+  const Voxelisation voxels = voxelise(mesh, options);
   for (const Sphere& ball : voxels.spheres) EXPECT_EQ(ball.radius, 0.05);
-  const Certificate certificate = certify(l_bracket(), voxels.spheres);
+  const Certificate certificate = certify(mesh, voxels.spheres, {.resolution = 1.0 / 512.0});
   EXPECT_FALSE(certificate.covered);
   EXPECT_GT(certificate.uncovered_depth.lower, 0.01);
 }

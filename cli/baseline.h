@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/json.h"
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace spherule {
+
+// What every method of `spherule baseline` takes.
+struct BaselineArguments {
+  std::string mesh;
+  std::string output;
+  double scale = 1.0;
+  bool json = false;
+};
+
+// What the command of a method is called, and what its help says.
+struct BaselineText {
+  const char* name;
+  const char* summary;
+  const char* example;  // a line
+};
+
+// Each adds the commands of the methods that make meshes, or spheres; returns the lines of their
+// examples.
+std::string add_mesh_baselines(CLI::App& baseline, int& exit_code);
+std::string add_sphere_baselines(CLI::App& baseline, int& exit_code);
+
+// Adds the command of one method with what every method takes. `figures` explains, below the
+// example, what it prints.
+CLI::App* add_baseline_method(CLI::App& baseline, const BaselineText& text,
+                              BaselineArguments& arguments, const char* output_help,
+                              const char* figures);
+
+// A line for every figure: its name, and its value as JSON.
+void print_figures(const Json& figures);
+
+// The line of an example, as the help of a method and of all methods shows it.
+std::string example_line(const BaselineText& text);
+
+}  // namespace spherule

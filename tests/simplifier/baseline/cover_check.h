@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/certificate.h"
+#include "simplifier/mesh_distance.h"
+#include "simplifier/mesh_report.h"
+#include "tests/simplifier/judge.h"
+#include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace spherule::test {
+
+// The mesh a sixteenth as thick. certify() finds what is inside by a flood whose cells are a share
+// of the diagonal: quick where the box is long and thin, and no less telling.
+inline TriangleMesh slender(TriangleMesh mesh) {
+  for (Eigen::Vector3d& v : mesh.vertices) v = v.cwiseProduct(Eigen::Vector3d(1.0, 0.0625, 0.0625));
+  return mesh;
+}
+
+inline TriangleMesh moved_far(const TriangleMesh& mesh, double offset) {
+  return moved(mesh, Eigen::Isometry3d(Eigen::Translation3d(offset, -offset / 3.0, 0.0)));
+}
+
+inline double diagonal_of(const TriangleMesh& mesh) {
+  return MeshDistance(mesh).box().diagonal().norm();
+}
+
+// Of points on the surface and, if the mesh is closed, inside, none is outside of the balls.
+inline void expect_samples_covered(const TriangleMesh& mesh, std::span<const Sphere> balls,
+                                   Random& random) {
+  const MeshDistance distance(mesh);
+  std::vector<Eigen::Vector3d> points =
+      points_on_surface(mesh, static_cast<std::size_t>(effort(2000, 200)), random);
+  const bool closed = mesh_report(mesh, {.self_intersections = false}).closed;
+  for (int i = 0; closed && i < effort(1000, 100); ++i) {
+    const Eigen::Vector3d p = random.in_box(distance.box());
+    if (std::abs(distance.winding_number(p)) > 0.5) points.push_back(p);
+  }
+  EXPECT_EQ(judge_cover(points, balls).uncovered, 0U);
+}
+
+// What a certificate can say of balls around cubes, of which none protrudes by more than the error.
+inline void expect_certified(const TriangleMesh& mesh, std::span<const Sphere> balls,
+                             double max_error) {
+  const Certificate certificate =
+      certify(mesh, balls, {.resolution = 1.0 / 512.0, .volume = false});
+  // A surface through the corners of cubes lies in no ball with room to spare.
+  EXPECT_LE(certificate.surface_depth.upper, 0.1 * max_error);
+  EXPECT_EQ(certificate.uncovered_depth.lower, 0.0);
+  EXPECT_LE(certificate.protrusion_over_mesh->lower, max_error);
+}
+
+}  // namespace spherule::test
