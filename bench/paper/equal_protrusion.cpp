@@ -22,6 +22,9 @@ constexpr int kMostTries = 5;
 // which one does and the other does not, this near to each other.
 constexpr double kNear = 0.95;
 constexpr double kAim = 0.985;
+// Of the limit: a protrusion that such a setting does not mend (a sealed cavity that is filled) is
+// there at any.
+constexpr double kFinest = 0.1;
 
 // Looks for the largest setting whose protrusion keeps to a limit, which it nearly reaches.
 class SettingSearch {
@@ -77,19 +80,19 @@ CountEntry fewest_spheres(const TriangleMesh& mesh, const SphereMethod& method,
                           double max_protrusion) {
   CountEntry best{.method = method.name};
   SettingSearch search(max_protrusion);
-  for (int i = 0; i < kMostTries; ++i) {
-    const double setting = search.setting();
+  for (int i = 0; i < kMostTries && search.setting() >= kFinest * max_protrusion; ++i) {
+    CountEntry entry{.method = method.name, .setting = search.setting()};
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<Sphere> spheres = method.make(mesh, setting);
+    const std::vector<Sphere> spheres = method.make(mesh, entry.setting);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    entry.seconds = elapsed.count();
     const ConservativeSpheres proved = made_conservative(mesh, spheres);
-    const double protrusion = proved.certificate.protrusion_over_mesh->upper;
-    const bool holds = proved.certificate.covered && protrusion <= max_protrusion;
-    const CountEntry entry{method.name, holds ? proved.spheres.size() : 0,
-                           protrusion,  proved.growth,
-                           setting,     elapsed.count()};
+    entry.protrusion = proved.certificate.protrusion_over_mesh->upper;
+    entry.growth = proved.growth;
+    const bool holds = proved.certificate.covered && entry.protrusion <= max_protrusion;
+    if (holds) entry.spheres = proved.spheres.size();
     if (holds ? best.spheres == 0 || entry.spheres < best.spheres : best.spheres == 0) best = entry;
-    if (!search.advance(protrusion, holds)) break;
+    if (!search.advance(entry.protrusion, holds)) break;
   }
   return best;
 }
