@@ -107,8 +107,7 @@ std::string add_sphere_baselines(CLI::App& baseline, int& exit_code) {
     CLI::App* command = add_baseline_method(
         baseline, method.text, *arguments, "Where the spheres go (JSON), covering or not",
         "Lengths are in output units. Exit code 0: the spheres are proved to cover the mesh and "
-        "its "
-        "inside, as `spherule audit` proves it; 1: they are not.");
+        "its inside, as `spherule audit` proves it; 1: they are not.");
     method.add_options(*command, *arguments);
     command
         ->add_option("--padding", arguments->padding,
