@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/baseline_spheres.h"
 #include "cli/check_length.h"
+#include "spheretree/error.h"
 #include "spheretree/refit.h"
 
 #include <CLI/CLI.hpp>
@@ -149,6 +150,7 @@ MadeSpheres run_filling(const TriangleMesh& mesh, const SphereArguments& argumen
   options.threads = arguments.threads;
   MadeSpheres made;
   made.spheres = level_set_packing(mesh, options);
+  if (made.spheres.empty()) throw Error(arguments.mesh, "no sphere of that size fits inside");
   made.options = {{"step", options.step}, {"spheres", stored(options.max_spheres)}};
   store(made, "min-radius", options.min_radius, 0.0);
   return made;
@@ -170,6 +172,7 @@ void add_medial(CLI::App& command, SphereArguments& arguments) {
       ->check(CLI::IsMember(kReductions));
   CLI::Option* tree =
       command.add_flag("--tree", arguments.levels, "Make levels of spheres, and write the finest");
+  tree->disable_flag_override();
   tree->excludes(spheres)->excludes(protrusion);
   command
       .add_option("--branching", arguments.medial_tree.branching,
@@ -295,8 +298,8 @@ MadeSpheres run_hubbard(const TriangleMesh& mesh, const SphereArguments& argumen
 
 }  // namespace
 
-const std::vector<SphereMethod>& sphere_methods() {
-  static const std::vector<SphereMethod> kMethods = {
+const std::vector<SphereBaseline>& sphere_baselines() {
+  static const std::vector<SphereBaseline> kMethods = {
       {{"voxelise", "A ball for every voxel; around it they cover, of its width they do not",
         "spherule baseline voxelise part.stl -o voxels.json --step 5 --conservative"},
        add_voxels,

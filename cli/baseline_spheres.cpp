@@ -37,7 +37,7 @@ auto timed(double& seconds, Make make) {
 ConservativeSpheres certified(const TriangleMesh& mesh, std::vector<Sphere> spheres,
                               const SphereArguments& arguments, const Progress& progress) {
   if (arguments.conservative) {
-    return made_conservative(mesh, spheres, arguments.padding, arguments.threads);
+    return made_conservative(mesh, spheres, arguments.padding, arguments.threads, progress);
   }
   // As `spherule audit` does, so that it comes to the same verdict.
   Certificate certificate =
@@ -59,7 +59,7 @@ void print(const SphereArguments& arguments, Json figures, const ConservativeSph
   print_figures({{"seconds", seconds}});
 }
 
-int run_method(const SphereMethod& method, const SphereArguments& arguments) {
+int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
   check_outputs({arguments.output, arguments.tree_file}, {arguments.mesh});
   const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
   double making = 0.0;
@@ -102,7 +102,7 @@ int run_method(const SphereMethod& method, const SphereArguments& arguments) {
 
 std::string add_sphere_baselines(CLI::App& baseline, int& exit_code) {
   std::string examples;
-  for (const SphereMethod& method : sphere_methods()) {
+  for (const SphereBaseline& method : sphere_baselines()) {
     auto arguments = std::make_shared<SphereArguments>();
     CLI::App* command = add_baseline_method(
         baseline, method.text, *arguments, "Where the spheres go (JSON), covering or not",

@@ -54,11 +54,11 @@ struct MadeSpheres {
 };
 
 // A method is one row: what its help says, what only it takes, and the call.
-struct SphereMethod {
+struct SphereBaseline {
   BaselineText text;
   void (*add_options)(CLI::App&, SphereArguments&);
   MadeSpheres (*run)(const TriangleMesh&, const SphereArguments&, const Progress&);
 };
-const std::vector<SphereMethod>& sphere_methods();
+const std::vector<SphereBaseline>& sphere_baselines();
 
 }  // namespace spherule

@@ -8,7 +8,7 @@ class App;
 namespace spherule {
 
 // Exit codes of every command. What "no" means stands with each command: what is not
-// proved (fit), a leak (audit), a collision (collide).
+// proved (fit, baseline), a leak (audit), a collision (collide).
 inline constexpr int kYes = 0;
 inline constexpr int kNo = 1;
 inline constexpr int kBadInput = 2;

@@ -39,7 +39,7 @@ struct FitArguments {
   std::string tool;
   std::string zones;
   std::string levels;
-  std::string method = second_phase_names().front();
+  std::string method = fit_method_names().front();
   std::string external = placement_names().front();
   double scale = 1.0;
   SimplifyOptions options;
@@ -80,8 +80,7 @@ void warn_of_thin_parts(const FitArguments& arguments, const TriangleMesh& mesh,
   std::cerr << "spherule: warning: " << arguments.mesh << ": " << thin << " of " << count
             << " spheres stand where the part is thinner than 2 E, and the mesh has only "
             << mesh.triangles.size()
-            << " triangles: spheres suit thin parts badly. A quarter to a third would do with "
-               "--max-error "
+            << " triangles: spheres suit thin parts badly. Far fewer would do with --max-error "
             << 2.0 * max_error << "\n";
 }
 
@@ -91,7 +90,7 @@ int fit(const FitArguments& arguments) {
   check_outputs({arguments.spheres, arguments.report, arguments.tree, arguments.view},
                 {arguments.mesh, arguments.tool, arguments.zones});
   SimplifyOptions options = arguments.options;
-  choose_second_phase(arguments.method, options);
+  choose_method(arguments.method, options);
   options.external = placement_named(arguments.external);
   if (!arguments.levels.empty()) options.levels = levels_named(arguments.levels);
   options.history = options.lower_bound = !arguments.report.empty();
@@ -164,8 +163,8 @@ void add_fit(CLI::App& app, int& exit_code) {
   command->add_option("--scale", arguments->scale, "Output units per mesh unit");
   auto* diameter = command->add_option(
       "--min-external", options.min_external_diameter,
-      "D, diameter of the smallest thing that will meet the model (default: 4 E). E / 2 or less "
-      "leaves the solid as it is: the method without a simplification before it");
+      "D, diameter of the smallest thing that will meet the model (default: 4 E). With E / 2 "
+      "or less only gaps narrower than that are filled: the method without stage 1");
   diameter->check(check_length);
   command
       ->add_option("--tool", arguments->tool,
@@ -187,7 +186,7 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->add_option("--method", arguments->method,
                    "How the inside is covered: cover (fewest spheres), paper (the paper's loop), "
                    "medial (AMAA) or packing (largest first)")
-      ->check(CLI::IsMember(second_phase_names()));
+      ->check(CLI::IsMember(fit_method_names()));
   command
       ->add_option("--external", arguments->external,
                    "How external spheres are placed: reachable, random, none")
@@ -197,7 +196,7 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--min-internal", options.min_internal_diameter,
-                   "Diameter at which the paper's loop seeds a sphere (default: E / 2)")
+                   "Diameter at which paper and packing seed a sphere (default: E / 2)")
       ->check(check_length);
   command->add_option("--levels", arguments->levels,
                       "E1,E2,...: fit coarser levels of detail too and join all in one tree; the "
@@ -205,8 +204,9 @@ void add_fit(CLI::App& app, int& exit_code) {
   // Without the check CLI11 takes -1 for the largest number; files store 63 bits.
   command->add_option("--seed", options.seed, "Seed of everything random")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
-  auto* effort = command->add_option("--effort", options.effort,
-                                     "Rounds of looking for fewer spheres than at first; 0: none");
+  auto* effort =
+      command->add_option("--effort", options.effort,
+                          "Rounds of looking for fewer spheres than at first, with cover; 0: none");
   effort->check(CLI::NonNegativeNumber);
   command
       ->add_option_function<double>(
@@ -215,8 +215,8 @@ void add_fit(CLI::App& app, int& exit_code) {
             arguments->options.seconds = seconds;
             arguments->options.effort = std::numeric_limits<int>::max();
           },
-          "Look for fewer spheres for so long, less where it no longer finds any; the result then "
-          "depends on the machine")
+          "With cover: look for fewer spheres for so long, less where it no longer finds any; the "
+          "result then depends on the machine")
       ->check(CLI::PositiveNumber)
       ->check(check_length)
       ->excludes(effort);

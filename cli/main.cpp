@@ -41,7 +41,9 @@ int run(int argc, char** argv) {
 #ifdef SPHERULE_HAS_BASELINES
   add_baseline(app, exit_code);
 #endif
-  app.footer("Exit codes: 0 done; 1 a leak (fit, audit) or a collision (collide); 2 bad input.");
+  app.footer(
+      "Exit codes: 0 done; 1 a leak (fit, audit, baseline) or a collision (collide); 2 bad "
+      "input.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version

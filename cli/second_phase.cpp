@@ -24,13 +24,13 @@ const std::vector<SecondPhase>& phases_from_baselines() {
 
 }  // namespace
 
-std::vector<std::string> second_phase_names() {
+std::vector<std::string> fit_method_names() {
   std::vector<std::string> names = method_names();
   for (const SecondPhase& phase : phases_from_baselines()) names.push_back(phase.name);
   return names;
 }
 
-void choose_second_phase(const std::string& name, SimplifyOptions& options) {
+void choose_method(const std::string& name, SimplifyOptions& options) {
   const std::vector<SecondPhase>& phases = phases_from_baselines();
   const auto chosen = std::find_if(phases.begin(), phases.end(),
                                    [&](const SecondPhase& phase) { return phase.name == name; });

@@ -2,8 +2,8 @@
 #include "simplifier/cover.h"
 
 #include "simplifier/internal/clearance.h"
+#include "simplifier/internal/cover_checks.h"
 #include "simplifier/internal/cover_fitter.h"
-#include "simplifier/internal/cover_options.h"
 #include "simplifier/internal/internal_spheres.h"
 #include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_distance.h"

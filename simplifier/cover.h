@@ -27,7 +27,8 @@ struct CoverOptions {
   // No ball of the result is smaller than this radius (a tool made of such balls passes stage 1 of
   // what it meets unchanged). Protrusion may exceed E where it forces a larger ball.
   double min_radius = 0.0;
-  // kPaper: diameter at which a ball is seeded (the paper's min_internal_size); 0 chooses E / 2.
+  // kPaper, and a SecondPhase that packs: diameter at which a ball is seeded (the paper's
+  // min_internal_size); 0 chooses E / 2.
   double min_internal_diameter = 0.0;
   std::uint64_t seed = 1;
   // kCover: rounds of looking for fewer balls than the first proved answer; 0: none. The search
@@ -73,7 +74,8 @@ struct SphereCover {
   std::vector<Sphere> spheres_before_inflation;
   double inflation = 0.0;
   std::vector<CoverHistoryEntry> history;
-  std::size_t seeds_rejected = 0;  // kPaper: seeds that had to be moved before a ball fitted
+  // kPaper, and a SecondPhase that packs: seeds that had to be moved before a ball fitted.
+  std::size_t seeds_rejected = 0;
 };
 
 // Stage 2: covers S with balls that protrude from it by at most E (covering.md, sections 1, 4 and

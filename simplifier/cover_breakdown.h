@@ -35,12 +35,12 @@ struct CoverBreakdown {
 CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& external,
                                std::span<const Sphere> spheres, double max_error, int threads = 0);
 
-// How many of the balls of a cover stand where S is thinner than 2 E: the clearance of their centre
-// to the outside of S is below E (up to its rounding). Such a ball is larger than the wall that it
-// covers, and there are many: a plate of area A and thickness t takes some A / (2.6 (E^2 + E t)),
-// discs that cover it side by side, so that half the E costs up to four times as many. "Sphere
-// packing is not suited to models which are long, wide and narrow such as a thin plate" (the paper,
-// section III). Throws Error for a max_error that is not positive and finite.
+// How many balls have their centre within E of the outside of S (up to the rounding of clearances):
+// in a cover by cover() these are the balls of walls thinner than 2 E, which are larger than the
+// wall. Of these there are many: a plate of area A and thickness t takes A / (2.6 (E^2 + E t)) even
+// if discs cover it perfectly. "Sphere packing is not suited to models which are long, wide and
+// narrow such as a thin plate" (the paper, section III). cover_breakdown() looks closer, at both
+// sides of the wall. Throws Error for a max_error that is not positive and finite.
 std::size_t spheres_in_thin_parts(const ExternalSpheres& external, std::span<const Sphere> spheres,
                                   double max_error);
 

@@ -83,10 +83,16 @@ CountEntry fewest_spheres(const TriangleMesh& mesh, const SphereMethod& method,
   for (int i = 0; i < kMostTries && search.setting() >= kFinest * max_protrusion; ++i) {
     CountEntry entry{.method = method.name, .setting = search.setting()};
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<Sphere> spheres = method.make(mesh, entry.setting);
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    entry.seconds = elapsed.count();
-    const ConservativeSpheres proved = made_conservative(mesh, spheres);
+    ConservativeSpheres proved;
+    try {
+      const std::vector<Sphere> spheres = method.make(mesh, entry.setting);
+      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+      entry.seconds = elapsed.count();
+      proved = made_conservative(mesh, spheres);
+    } catch (const Error& error) {
+      std::printf("    %s, error %g: %s\n", entry.method.c_str(), entry.setting, error.what());
+      break;
+    }
     entry.protrusion = proved.certificate.protrusion_over_mesh->upper;
     entry.growth = proved.growth;
     const bool holds = proved.certificate.covered && entry.protrusion <= max_protrusion;
@@ -118,9 +124,12 @@ std::vector<NamedMesh> real_parts(const std::filesystem::path& models) {
   const std::filesystem::path folder = models / "parts";
   std::vector<std::filesystem::path> files;
   std::error_code failed;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
-    if (!entry.path().filename().string().starts_with("LICENSE")) files.push_back(entry.path());
+  for (std::filesystem::directory_iterator entry(folder, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    const std::filesystem::path& file = entry->path();
+    if (!file.filename().string().starts_with("LICENSE")) files.push_back(file);
   }
+  if (failed) throw Error(folder.string(), failed.message());
   if (files.empty()) throw Error(folder.string(), "no meshes there");
   std::sort(files.begin(), files.end());
   std::vector<NamedMesh> parts;

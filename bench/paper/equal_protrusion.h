@@ -22,7 +22,7 @@ struct NamedMesh {
 struct CountEntry {
   std::string method;
   std::size_t spheres = 0;  // 0: none of the settings that were tried does it
-  // Of those balls, or, if there are none, of the finest that were made: the certified upper bound
+  // Of those balls, or, if there are none, of the last that were made: the certified upper bound
   // of their protrusion over |M|, and what they had to grow by to cover it.
   double protrusion = 0.0;
   double growth = 0.0;
@@ -41,10 +41,10 @@ struct CountRow {
 // Of every allowed protrusion to the box diagonal.
 inline constexpr double kEqualProtrusion = 0.02;
 
-// The fewest balls of `method`, with the setting varied, that one judge proves to hold |M| and to
+// The fewest balls of `method` found with five settings that one judge proves to hold |M| and to
 // protrude from it by at most `max_protrusion`: made_conservative(), which grows what does not
-// cover by itself. (Balls around voxels touch at corners, so they grow too, by 1/4096 of the
-// diagonal.)
+// cover by itself. A setting that the method or the judge refuses ends the search. (Balls around
+// voxels touch at corners, so they grow too, by 1/4096 of the diagonal.)
 CountEntry fewest_spheres(const TriangleMesh& mesh, const SphereMethod& method,
                           double max_protrusion);
 

@@ -17,12 +17,16 @@
 namespace spherule {
 namespace {
 
-// Our own parts and, where SPHERULE_MODELS says where they are, real ones.
-std::vector<CountRow> count_all_parts() {
+// Our own and, where SPHERULE_MODELS says where they are, real ones.
+std::vector<NamedMesh> all_parts() {
   std::vector<NamedMesh> parts = own_parts();
   if (const char* models = std::getenv("SPHERULE_MODELS"); models != nullptr && *models != '\0') {
     for (NamedMesh& part : real_parts(models)) parts.push_back(std::move(part));
   }
+  return parts;
+}
+
+std::vector<CountRow> count_all(const std::vector<NamedMesh>& parts) {
   std::vector<CountRow> rows;
   for (const NamedMesh& part : parts) {
     std::printf("  %s, %zu triangles\n", part.name.c_str(), part.mesh.triangles.size());
@@ -50,6 +54,8 @@ void say(const char* what) {
 
 int run(const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
+  // First of all, since some may be unreadable.
+  const std::vector<NamedMesh> parts = all_parts();
   PaperResults results;
   say("figure 2");
   results.figure_2 = figure_2();
@@ -66,7 +72,7 @@ int run(const std::filesystem::path& out) {
   results.trees = study_trees();
   print_trees(results.trees);
   say("spheres at equal protrusion");
-  results.counts = count_all_parts();
+  results.counts = count_all(parts);
   print_counts(results.counts);
   say("fitting the work cell");
   Workload workload = make_paper_cell();

@@ -18,7 +18,7 @@ struct SphereMethod {
   std::function<std::vector<Sphere>(const TriangleMesh& mesh, double error)> make;
 };
 
-// All that the library has: packing, OpenVDB's own, voxels, octree, Hubbard's and medial-axis balls
+// Those that are compared: packing, OpenVDB's own, voxels, octree, Hubbard's and medial-axis balls
 // as the literature makes them; the bounding sphere simplification by the paper's loop and by ours
 // after stage 1 with D = 4 E; and ours with D = E, at which hardly any part changes ("cover-as-is";
 // the paper's loop without stage 1 is the packing).

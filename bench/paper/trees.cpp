@@ -47,21 +47,23 @@ std::vector<Pose> poses_near(const SphereTree& tree) {
 void measure(const SphereTree& rod, const std::vector<Pose>& poses, const SphereTree& own,
              const SphereTree& ours, TreeRow& row) {
   const std::pair<const SphereTree*, TreeCost*> trees[] = {{&own, &row.own}, {&ours, &row.ours}};
-  std::size_t hits[2] = {};
+  std::vector<bool> hits[2];
   for (int i = 0; i < 2; ++i) {
     const auto& [tree, cost] = trees[i];
     std::uint64_t tests = 0;
     for (const Pose& pose : poses) {
       const CollisionResult result = collide(rod, pose, *tree, Pose(), {.max_pairs = 1});
       tests += result.cost.node_tests;
-      hits[i] += result.pairs.empty() ? 0U : 1U;
+      hits[i].push_back(!result.pairs.empty());
     }
     cost->nodes = tree->node_count();
     cost->depth = tree->depth();
     cost->node_tests = static_cast<double>(tests) / static_cast<double>(poses.size());
   }
   if (hits[0] != hits[1]) throw Error(row.method, "two trees over the same balls answer otherwise");
-  row.collision_percent = 100.0 * static_cast<double>(hits[0]) / static_cast<double>(poses.size());
+  row.collision_percent = 100.0 *
+                          static_cast<double>(std::count(hits[0].begin(), hits[0].end(), true)) /
+                          static_cast<double>(poses.size());
   std::vector<double> times[2];
   for (int round = 0; round < kRounds; ++round) {
     for (int i = 0; i < 2; ++i) {

@@ -53,7 +53,7 @@ struct SmallRow {
 std::vector<SmallRow> study_small_environments(const Workload& workload,
                                                const StudyOptions& options);
 
-// Two bodies at a distance: torch and workpiece. Medians over random poses.
+// Two bodies at a distance, for instance torch and workpiece. Medians over random poses.
 struct DistanceRow {
   double relative =
       0.0;  // distance / size; size: the mean of the diameters of the balls around them

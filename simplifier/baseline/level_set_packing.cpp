@@ -2,6 +2,7 @@
 #include "simplifier/baseline/level_set_packing.h"
 
 #include "simplifier/baseline/internal/mesh_box.h"
+#include "simplifier/baseline/internal/sampling_checks.h"
 #include "simplifier/internal/thread_limit.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -16,22 +17,20 @@ namespace spherule {
 namespace {
 
 constexpr double kMostSteps = 4096.0;  // along the box diagonal
-constexpr std::size_t kMost = 10'000'000;
-constexpr float kHalfWidth = 3.0F;  // of the level set's band, in voxels
+constexpr double kLeastRadius = 0.5;   // steps
+constexpr float kHalfWidth = 3.0F;     // of the level set's band, in voxels
 
 void check(const LevelSetPackingOptions& options, double diagonal) {
-  if (!(options.step >= diagonal / kMostSteps && options.step <= kMaxCoordinate)) {
-    throw Error("step", "must be at least 1/4096 of the box diagonal");
+  if (!(options.step > 0.0 && options.step >= diagonal / kMostSteps &&
+        options.step <= kMaxCoordinate)) {
+    throw Error("step", "must be positive and at least 1/4096 of the box diagonal");
   }
   if (!(options.min_radius >= 0.0 && options.min_radius <= kMaxCoordinate)) {
     throw Error("min radius", "must be finite and not negative");
   }
-  if (options.max_spheres < 1 || options.max_spheres > kMost) {
-    throw Error("max spheres", "must be 1 to 10000000");
-  }
-  if (options.candidates < 1 || options.candidates > kMost) {
-    throw Error("candidates", "must be 1 to 10000000");
-  }
+  internal::check_samples("max spheres", options.max_spheres);
+  internal::check_samples("candidates", options.candidates);
+  internal::check_threads(options.threads);
 }
 
 }  // namespace
@@ -54,24 +53,24 @@ std::vector<Sphere> level_set_packing(const TriangleMesh& mesh,
     triangles.emplace_back(static_cast<openvdb::Index32>(t[0]), static_cast<openvdb::Index32>(t[1]),
                            static_cast<openvdb::Index32>(t[2]));
   }
+  const auto least = static_cast<float>(options.min_radius > 0.0 ? options.min_radius / options.step
+                                                                 : kLeastRadius);
   std::vector<openvdb::Vec4s> balls;
   try {
     openvdb::initialize();
     const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
     const auto grid =
         openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*unit, points, triangles, kHalfWidth);
-    const double least = options.min_radius > 0.0 ? options.min_radius / options.step : 0.5;
-    openvdb::tools::fillWithSpheres(*grid, balls,
-                                    openvdb::Vec2i(1, static_cast<int>(options.max_spheres)), true,
-                                    static_cast<float>(least), std::numeric_limits<float>::max(),
-                                    0.0F, static_cast<int>(options.candidates));
+    openvdb::tools::fillWithSpheres(
+        *grid, balls, openvdb::Vec2i(1, static_cast<int>(options.max_spheres)), true, least,
+        std::numeric_limits<float>::max(), 0.0F, static_cast<int>(options.candidates));
   } catch (const openvdb::Exception& error) {
     throw Error("level set", error.what());
   }
   std::vector<Sphere> spheres;
   for (const openvdb::Vec4s& ball : balls) {
-    // Without an inside the library leaves one ball that is none.
-    if (!(ball[3] > 0.0F)) continue;
+    // One ball at least the library makes, however small.
+    if (!(ball[3] >= least)) continue;
     spheres.push_back({box.min() + options.step * Eigen::Vector3d(ball[0], ball[1], ball[2]),
                        options.step * static_cast<double>(ball[3])});
   }

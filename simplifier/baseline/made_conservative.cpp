@@ -8,9 +8,9 @@
 namespace spherule {
 
 ConservativeSpheres made_conservative(const TriangleMesh& mesh, std::span<const Sphere> spheres,
-                                      double padding, int threads) {
+                                      double padding, int threads, const Progress& progress) {
   if (spheres.empty()) throw Error("spheres", "there is none that could grow");
-  const CertifyOptions options{.padding = padding, .threads = threads};
+  const CertifyOptions options{.padding = padding, .threads = threads, .progress = progress};
   ConservativeSpheres result;
   result.spheres.assign(spheres.begin(), spheres.end());
   result.certificate = certify(mesh, spheres, options);

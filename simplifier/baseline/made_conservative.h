@@ -26,6 +26,7 @@ struct ConservativeSpheres {
 // the same. Throws Error if there is no ball, if one is not usable or cannot grow any more, for a
 // mesh that validate() refuses and for a padding out of range.
 ConservativeSpheres made_conservative(const TriangleMesh& mesh, std::span<const Sphere> spheres,
-                                      double padding = 0.0, int threads = 0);
+                                      double padding = 0.0, int threads = 0,
+                                      const Progress& progress = {});
 
 }  // namespace spherule

@@ -2,7 +2,7 @@
 #include "simplifier/baseline/packing_cover.h"
 
 #include "simplifier/baseline/internal/simplified_solid.h"
-#include "simplifier/internal/cover_options.h"
+#include "simplifier/internal/cover_checks.h"
 #include "simplifier/internal/inscribed_balls.h"
 #include "simplifier/internal/thread_limit.h"
 

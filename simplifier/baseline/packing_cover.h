@@ -7,15 +7,17 @@
 
 namespace spherule {
 
-// Conservative: on return the union of the balls contains S and protrudes from it by at most E
-// (unless min_radius forces more). A second phase for simplify() (SecondPhase) in the place of
+// Conservative: on return the union of the balls contains S and protrudes from it by at most E,
+// unless min_radius forces more, or external balls close S by a hair and no point of S is found
+// there (certify() says how far). A second phase for simplify() (SecondPhase) in the place of
 // cover(): sphere packing with the largest ball first, overlapping allowed. Candidates are the
 // balls inscribed in S that grow from points spread over it and its boundary. The next ball is the
-// largest whose point is still further than E from the balls and whose centre none of them holds;
-// where only balls with centres held are left, the largest of these. Points that the proof then
-// finds further than E from the balls get balls of their own, the furthest first; so, when no point
-// of S is, as proved by subdivision, every radius grows by the certified error that remains. The
-// difference to the paper's loop (CoverMethod::kPaper) is the order, by size and not by distance.
+// largest whose point is still further than 0.97 E from the balls and whose centre none of them
+// holds; where only balls with centres held are left, the largest of these. Points that the proof
+// then finds further than that from the balls get balls of their own, the furthest first; so, when
+// no point of S is, as proved by subdivision, every radius grows by the certified error that
+// remains. The difference to the paper's loop (CoverMethod::kPaper) is the order, by size and not
+// by distance.
 //
 // Uses max_error, min_internal_diameter (at which balls are seeded), min_radius (no ball is
 // smaller), threads and progress of the options. The packing itself, inside of S, and the inflation

@@ -2,8 +2,8 @@
 #include "simplifier/internal/cover_fitter.h"
 
 #include "simplifier/internal/cover_bound.h"
+#include "simplifier/internal/cover_checks.h"
 #include "simplifier/internal/cover_moves.h"
-#include "simplifier/internal/cover_options.h"
 #include "simplifier/internal/lazy_cover_search.h"
 #include "simplifier/internal/random.h"
 #include "simplifier/internal/surface_extent.h"

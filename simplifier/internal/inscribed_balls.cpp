@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/inscribed_balls.h"
 
-#include "simplifier/internal/cover_options.h"
+#include "simplifier/internal/cover_checks.h"
 #include "simplifier/internal/medial_ascent.h"
 #include "spheretree/rounding.h"
 

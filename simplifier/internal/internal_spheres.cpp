@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/internal_spheres.h"
 
+#include "simplifier/internal/cover_checks.h"
 #include "simplifier/internal/cover_history.h"
-#include "simplifier/internal/cover_options.h"
 #include "simplifier/internal/inscribed_balls.h"
 
 #include <algorithm>

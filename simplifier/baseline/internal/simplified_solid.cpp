@@ -2,7 +2,7 @@
 #include "simplifier/baseline/internal/simplified_solid.h"
 
 #include "simplifier/baseline/internal/surface_samples.h"
-#include "simplifier/internal/cover_options.h"
+#include "simplifier/internal/cover_checks.h"
 #include "simplifier/internal/cube.h"
 #include "simplifier/internal/inscribed_balls.h"
 

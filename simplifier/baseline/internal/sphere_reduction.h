@@ -22,7 +22,7 @@ namespace spherule::internal {
 
 struct ReductionTask {
   const SolidProbe& probe;
-  std::span<const Eigen::Vector3d> samples;  // of the surface
+  std::span<const Eigen::Vector3d> samples;  // of the surface, or of the solid
   std::span<const std::uint32_t> points;     // those of the samples that are to be covered
   std::span<const MedialSphere> spheres;
   // A point for which every medial sphere would have to grow by more becomes a ball of radius 0 of
@@ -46,7 +46,8 @@ struct FittedSphere {
   double protrusion() const { return ball.radius - clearance; }
 };
 
-// The largest protrusion of the balls, an upper bound; 0 for none.
+// The largest protrusion of the balls, an upper bound where clearances are of points inside; 0 for
+// none.
 double largest_protrusion(std::span<const FittedSphere> spheres);
 
 // What the reductions start from: each point goes to the medial sphere that holds it deepest, or

@@ -4,6 +4,7 @@
 #include "simplifier/certificate.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/mesh_report.h"
+#include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
@@ -28,10 +29,6 @@ inline TriangleMesh moved_far(const TriangleMesh& mesh, double offset) {
   return moved(mesh, Eigen::Isometry3d(Eigen::Translation3d(offset, -offset / 3.0, 0.0)));
 }
 
-inline double diagonal_of(const TriangleMesh& mesh) {
-  return MeshDistance(mesh).box().diagonal().norm();
-}
-
 // Of points on the surface and, if the mesh is closed, inside, none is outside of the balls.
 inline void expect_samples_covered(const TriangleMesh& mesh, std::span<const Sphere> balls,
                                    Random& random) {
@@ -52,7 +49,7 @@ inline void expect_certified(const TriangleMesh& mesh, std::span<const Sphere> b
   const Certificate certificate =
       certify(mesh, balls, {.resolution = 1.0 / 512.0, .volume = false});
   // A surface through the corners of cubes lies in no ball with room to spare.
-  EXPECT_LE(certificate.surface_depth.upper, 0.1 * max_error);
+  EXPECT_LE(certificate.uncovered_depth.upper, 0.1 * max_error);
   EXPECT_EQ(certificate.uncovered_depth.lower, 0.0);
   EXPECT_LE(certificate.protrusion_over_mesh->lower, max_error);
 }

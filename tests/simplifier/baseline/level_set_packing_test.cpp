@@ -34,12 +34,18 @@ TEST(LevelSetPacking, IsTheSameWhereverTheMeshIsAndOnAnyNumberOfThreads) {
   const LevelSetPackingOptions options{.step = 0.0625, .max_spheres = 100, .threads = 1};
   const std::vector<Sphere> balls = level_set_packing(mesh, options);
   EXPECT_EQ(level_set_packing(mesh, {.step = 0.0625, .max_spheres = 100}), balls);
-  for (Eigen::Vector3d& vertex : mesh.vertices) vertex *= 1024.0;
+  const Eigen::Vector3d shift(4096.0, -8192.0, 0.0);
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex = 1024.0 * vertex + shift;
   const std::vector<Sphere> larger = level_set_packing(mesh, {.step = 64.0, .max_spheres = 100});
   ASSERT_EQ(larger.size(), balls.size());
   for (std::size_t i = 0; i < balls.size(); ++i) {
     EXPECT_EQ(larger[i].radius, 1024.0 * balls[i].radius);
+    EXPECT_EQ(larger[i].center, 1024.0 * balls[i].center + shift);
   }
+}
+
+TEST(LevelSetPacking, MakesNoBallThatIsTooSmall) {
+  EXPECT_TRUE(level_set_packing(cube_mesh(), {.step = 0.05, .min_radius = 0.6}).empty());
 }
 
 TEST(LevelSetPacking, RefusesBadInput) {
@@ -47,6 +53,10 @@ TEST(LevelSetPacking, RefusesBadInput) {
   EXPECT_THROW(level_set_packing({}, {.step = 0.1}), Error);
   EXPECT_THROW(level_set_packing(mesh, {}), Error);
   EXPECT_THROW(level_set_packing(mesh, {.step = 1e-4}), Error);
+  EXPECT_THROW(level_set_packing(mesh, {.step = 0.1, .threads = -1}), Error);
+  TriangleMesh point = mesh;
+  for (Eigen::Vector3d& vertex : point.vertices) vertex = {1, 1, 1};
+  EXPECT_THROW(level_set_packing(point, {}), Error);
   EXPECT_THROW(level_set_packing(mesh, {.step = std::nan("")}), Error);
   EXPECT_THROW(level_set_packing(mesh, {.step = 0.1, .min_radius = -1.0}), Error);
   EXPECT_THROW(level_set_packing(mesh, {.step = 0.1, .max_spheres = 0}), Error);

@@ -72,7 +72,7 @@ void expect_tight(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t see
   EXPECT_LE(*certificate.protrusion_over_simplified_max, fitted.max_error);
 }
 
-TEST_P(SecondPhaseOfBaselines, CoversTheZooWithinTheError) {
+TEST_P(SecondPhaseOfBaselines, CoversSevenShapesWithinTheError) {
   std::vector<NamedMesh> shapes = effort(zoo_to_fit(), 3);
   shapes.resize(std::min<std::size_t>(shapes.size(), 7));  // the others take long
   for (const NamedMesh& named : shapes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/internal/cover_options.h"
+#include "simplifier/internal/cover_checks.h"
 
 #include "simplifier/internal/solid_query.h"
 #include "simplifier/zones.h"
