@@ -222,7 +222,7 @@ TEST_F(BaselineSpheresTest, BadOptionsAreRefused) {
   refuse({"medial", "--tree-file", "out.tree"}, "--tree");
   refuse({"medial", "--tree", "--spheres", "5"}, "--tree");
   refuse({"medial", "--tree", "--branching", "1"}, "branching");
-  refuse({"medial", "--tree=false", "--tree-file", "out.tree"}, "--tree");
+  refuse({"medial", "--tree=false", "--tree-file", "out.tree"}, "tree was given");
   refuse({"octree"}, "--depth");
   refuse({"octree", "--depth", "21"}, "depth");
   refuse({"octree", "--depth", "3", "--max-error", "1"}, "--depth");
