@@ -74,9 +74,10 @@ auto blaming_file(const std::string& file, std::string_view subject, Use use) {
 void warn_of_thin_parts(const FitArguments& arguments, const TriangleMesh& mesh,
                         const Simplification& result) {
   const std::size_t count = result.cover.spheres.size();
+  if (count <= mesh.triangles.size()) return;
   const double max_error = result.options.max_error;
   const std::size_t thin = spheres_in_thin_parts(result.external, result.cover.spheres, max_error);
-  if (2 * thin <= count || count <= mesh.triangles.size()) return;
+  if (2 * thin <= count) return;
   std::cerr << "spherule: warning: " << arguments.mesh << ": " << thin << " of " << count
             << " spheres stand where the part is thinner than 2 E, and the mesh has only "
             << mesh.triangles.size()

@@ -2,14 +2,13 @@
 #include "simplifier/cover_breakdown.h"
 
 #include "simplifier/internal/clearance.h"
+#include "simplifier/internal/cover_checks.h"
 #include "simplifier/internal/cube.h"
 #include "simplifier/internal/local_error.h"
 #include "simplifier/internal/point_grid.h"
 #include "simplifier/internal/solid_cells.h"
 #include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_distance.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
 
 #include <Eigen/Geometry>
 #include <tbb/parallel_for.h>
@@ -132,12 +131,6 @@ std::vector<char> alone_at(const Points& points, std::span<const Sphere> balls, 
   return alone;
 }
 
-void check_max_error(double max_error) {
-  if (!(max_error > 0.0 && max_error <= kMaxCoordinate)) {
-    throw Error("max error", "must be positive and finite");
-  }
-}
-
 bool is_thin_at(const Clearance& clearance, const Vector3d& center, double max_error) {
   const ClearanceAt at = clearance(center);
   if (at.lower > kThinReach * max_error) return false;
@@ -153,7 +146,7 @@ bool is_thin_at(const Clearance& clearance, const Vector3d& center, double max_e
 CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& external,
                                std::span<const Sphere> spheres, double max_error, int threads) {
   validate(mesh, "mesh");
-  check_max_error(max_error);
+  internal::check_max_error(max_error);
   const internal::ThreadLimit limit(threads);
   const MeshDistance distance(mesh);
   const Clearance clearance(external, distance);
@@ -190,7 +183,7 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
 
 std::size_t spheres_in_thin_parts(const ExternalSpheres& external, std::span<const Sphere> spheres,
                                   double max_error) {
-  check_max_error(max_error);
+  internal::check_max_error(max_error);
   const Clearance clearance(external);
   return static_cast<std::size_t>(std::ranges::count_if(
       spheres, [&](const Sphere& ball) { return clearance(ball.center).upper < max_error; }));

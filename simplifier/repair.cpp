@@ -3,6 +3,7 @@
 
 #include "simplifier/internal/ball_growth.h"
 #include "simplifier/internal/clearance.h"
+#include "simplifier/internal/cover_checks.h"
 #include "simplifier/internal/cover_fitter.h"
 #include "simplifier/internal/local_error.h"
 #include "simplifier/internal/solid_cells.h"
@@ -33,9 +34,7 @@ constexpr int kRounds = 40;
 
 void check(std::span<const Sphere> spheres, const RepairOptions& options) {
   internal::check_usable(spheres);
-  if (!(options.max_error > 0.0 && options.max_error <= kMaxCoordinate)) {
-    throw Error("max error", "must be positive and finite");
-  }
+  internal::check_max_error(options.max_error);
   check_zones(options.zones, options.max_error, std::numeric_limits<double>::infinity());
   if (options.effort < 0) throw Error("effort", "must not be negative");
 }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/simplify.h"
 
+#include "simplifier/internal/mesh_box.h"
 #include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <chrono>
@@ -24,11 +23,7 @@ constexpr double kDefaultDiameter = 4.0;  // of E: 90-degree edges ask for balls
 constexpr double kResolutionOfError = 0.005;
 
 double box_diagonal(const TriangleMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3i& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) box.extend(mesh.vertices[static_cast<std::size_t>(t[k])]);
-  }
-  return box.diagonal().norm();
+  return internal::box_of(mesh).diagonal().norm();
 }
 
 void check_phase(const SimplifyOptions& options) {

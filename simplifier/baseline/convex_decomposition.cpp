@@ -2,7 +2,7 @@
 #include "simplifier/baseline/convex_decomposition.h"
 
 #include "simplifier/baseline/convex_hull.h"
-#include "simplifier/baseline/internal/mesh_box.h"
+#include "simplifier/internal/mesh_box.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
 

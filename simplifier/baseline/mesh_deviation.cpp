@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/mesh_deviation.h"
 
-#include "simplifier/baseline/internal/mesh_box.h"
+#include "simplifier/internal/mesh_box.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/error.h"

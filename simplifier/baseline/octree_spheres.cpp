@@ -3,6 +3,7 @@
 
 #include "simplifier/baseline/internal/cell_octree.h"
 #include "simplifier/baseline/internal/cell_options.h"
+#include "simplifier/internal/cover_checks.h"
 #include "simplifier/mesh_distance.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"

@@ -3,6 +3,7 @@
 
 #include "simplifier/baseline/internal/cell_octree.h"
 #include "simplifier/baseline/internal/cell_options.h"
+#include "simplifier/internal/cover_checks.h"
 #include "spheretree/error.h"
 
 #include <cstdint>

@@ -15,11 +15,15 @@ constexpr std::size_t kMaxSpheres = 2'000'000;
 
 }  // namespace
 
-void check_options(const CoverOptions& options) {
-  const auto usable = [](double x) { return x >= 0.0 && x <= kMaxCoordinate; };
-  if (!(usable(options.max_error) && options.max_error > 0.0)) {
+void check_max_error(double max_error) {
+  if (!(max_error > 0.0 && max_error <= kMaxCoordinate)) {
     throw Error("max error", "must be positive and finite");
   }
+}
+
+void check_options(const CoverOptions& options) {
+  const auto usable = [](double x) { return x >= 0.0 && x <= kMaxCoordinate; };
+  check_max_error(options.max_error);
   if (!usable(options.min_radius)) throw Error("min radius", "must be finite and not negative");
   if (!usable(options.min_internal_diameter)) {
     throw Error("min internal diameter", "must be finite and not negative");

@@ -11,6 +11,9 @@
 
 namespace spherule::internal {
 
+// An E that is not positive and finite.
+void check_max_error(double max_error);
+
 // Options out of range.
 void check_options(const CoverOptions& options);
 

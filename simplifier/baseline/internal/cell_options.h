@@ -18,10 +18,4 @@ inline void check_padding(double padding) {
   }
 }
 
-inline void check_max_error(double max_error) {
-  if (!(max_error > 0.0 && max_error <= kMaxCoordinate)) {
-    throw Error("max error", "must be positive and finite");
-  }
-}
-
 }  // namespace spherule::internal

@@ -13,6 +13,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -39,6 +41,17 @@ inline void expect_samples_covered(const TriangleMesh& mesh, std::span<const Sph
   for (int i = 0; closed && i < effort(1000, 100); ++i) {
     const Eigen::Vector3d p = random.in_box(distance.box());
     if (std::abs(distance.winding_number(p)) > 0.5) points.push_back(p);
+  }
+  EXPECT_EQ(judge_cover(points, balls).uncovered, 0U);
+}
+
+// Points as far from the surface as it was grown by, all but, are in the balls.
+inline void expect_grown_covered(const TriangleMesh& mesh, double growth, std::size_t count,
+                                 std::span<const Sphere> balls, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector3d& p : points_on_surface(mesh, count, random)) {
+    points.push_back(p + growth * random.direction());
   }
   EXPECT_EQ(judge_cover(points, balls).uncovered, 0U);
 }

@@ -51,12 +51,7 @@ TEST(PackSpheres, HoldsPaddingAndVertexErrorWhenInflated) {
   TriangleMesh mesh = cube_mesh();
   mesh.vertex_error = 0.05;
   const SpherePacking packing = pack_spheres(mesh, {.max_error = 0.2, .padding = 0.1});
-  Random random(22);
-  std::vector<Vector3d> points;
-  for (const Vector3d& p : points_on_surface(mesh, 1000, random)) {
-    points.push_back(p + 0.1499 * random.direction());
-  }
-  EXPECT_EQ(judge_cover(points, packing.inflated).uncovered, 0U);
+  expect_grown_covered(mesh, 0.1499, 1000, packing.inflated, 22);
 }
 
 TEST(PackSpheres, PacksTheWallOfAPipeAndNotItsBore) {

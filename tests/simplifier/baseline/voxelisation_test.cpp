@@ -168,12 +168,7 @@ TEST(Voxelise, GrowsByPaddingAndVertexError) {
   TriangleMesh mesh = cube_mesh();
   mesh.vertex_error = 0.1;
   const Voxelisation voxels = voxelise(mesh, {.step = 0.11, .padding = 0.2});
-  Random random(6);
-  std::vector<Vector3d> points;
-  for (const Vector3d& p : points_on_surface(mesh, 3000, random)) {
-    points.push_back(p + 0.2999 * random.direction());
-  }
-  EXPECT_EQ(judge_cover(points, voxels.spheres).uncovered, 0U);
+  expect_grown_covered(mesh, 0.2999, 3000, voxels.spheres, 6);
 }
 
 TEST(Voxelise, ThePapersBallsLeaveCorners) {
