@@ -10,7 +10,7 @@
 namespace spherule {
 namespace {
 
-bool is_free_at_many(const RobotChecker& checker, RobotChecker::Scratch& scratch,
+bool is_free_at_many(const RobotTreeChecker& checker, RobotTreeChecker::Scratch& scratch,
                      const JointPositions& from, const JointPositions& to) {
   constexpr int kSteps = 10000;
   for (int step = 0; step <= kSteps; ++step) {
@@ -25,8 +25,8 @@ bool is_free_at_many(const RobotChecker& checker, RobotChecker::Scratch& scratch
 }  // namespace
 
 EdgeMeasurement measure_edges(const Workload& workload) {
-  const RobotChecker checker = make_robot_checker(workload);
-  RobotChecker::Scratch scratch(checker);
+  const RobotTreeChecker checker = make_robot_tree_checker(workload);
+  RobotTreeChecker::Scratch scratch(checker);
   const std::vector<JointPositions>& program = workload.program;
   checker.check_edge(program[0], program[1], scratch);  // warms the scratch up
   const double cost = clock_cost();

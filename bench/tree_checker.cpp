@@ -32,7 +32,7 @@ class SingleTreeChecker : public Checker {
 
 class BatchTreeChecker : public Checker {
  public:
-  explicit BatchTreeChecker(RobotChecker checker)
+  explicit BatchTreeChecker(RobotTreeChecker checker)
       : checker_(std::move(checker)), scratch_(checker_) {}
 
   void check(std::span<const JointPositions> configurations,
@@ -43,8 +43,8 @@ class BatchTreeChecker : public Checker {
   }
 
  private:
-  RobotChecker checker_;
-  RobotChecker::Scratch scratch_;
+  RobotTreeChecker checker_;
+  RobotTreeChecker::Scratch scratch_;
 };
 
 class PairTreeChecker : public SingleChecker {
@@ -95,10 +95,10 @@ RobotMeshChecker make_mesh_checker(const Workload& workload, InstructionSet inst
 
 }  // namespace
 
-RobotChecker make_robot_checker(const Workload& workload, InstructionSet instructions,
-                                bool confirmed) {
+RobotTreeChecker make_robot_tree_checker(const Workload& workload, InstructionSet instructions,
+                                         bool confirmed) {
   RobotModel robot = workload.robot;
-  RobotCheckerOptions options{.instructions = instructions};
+  RobotTreeCheckerOptions options{.instructions = instructions};
   const auto add_mesh = [&](const Part& part) {
     if (!confirmed) return;
     options.meshes.push_back(std::make_shared<const CoveredMesh>(part.mesh, part.tree));
@@ -115,7 +115,7 @@ RobotChecker make_robot_checker(const Workload& workload, InstructionSet instruc
       if (!is_tested(body, workload.obstacles[i])) options.untested.push_back({body.link, i});
     }
   }
-  return RobotChecker(std::move(robot), std::move(obstacles), options);
+  return RobotTreeChecker(std::move(robot), std::move(obstacles), options);
 }
 
 std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mode,
@@ -125,9 +125,10 @@ std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mo
     return std::make_unique<SingleTreeChecker<RobotMeshChecker>>(
         make_mesh_checker(workload, instructions));
   }
-  RobotChecker checker = make_robot_checker(workload, instructions, mode == TreeMode::kConfirmed);
+  RobotTreeChecker checker =
+      make_robot_tree_checker(workload, instructions, mode == TreeMode::kConfirmed);
   if (mode == TreeMode::kBatch) return std::make_unique<BatchTreeChecker>(std::move(checker));
-  return std::make_unique<SingleTreeChecker<RobotChecker>>(std::move(checker));
+  return std::make_unique<SingleTreeChecker<RobotTreeChecker>>(std::move(checker));
 }
 
 }  // namespace spherule

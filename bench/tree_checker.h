@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/workload.h"
-#include "collide/robot/robot_checker.h"
+#include "collide/robot/robot_tree_checker.h"
 
 #include <memory>
 
@@ -10,9 +10,9 @@ namespace spherule {
 
 // The workload's robot with its sphere trees, among its obstacles; contacts confirmed on the
 // triangles if asked for.
-RobotChecker make_robot_checker(const Workload& workload,
-                                InstructionSet instructions = best_instruction_set(),
-                                bool confirmed = false);
+RobotTreeChecker make_robot_tree_checker(const Workload& workload,
+                                         InstructionSet instructions = best_instruction_set(),
+                                         bool confirmed = false);
 
 enum class TreeMode { kSingle, kBatch, kConfirmed, kPairs, kMeshes };
 

@@ -74,10 +74,10 @@ const Cell& cell() {
   return kCell;
 }
 
-void run(benchmark::State& state, const RobotChecker& checker,
+void run(benchmark::State& state, const RobotTreeChecker& checker,
          const std::vector<JointPositions>& program) {
   const auto count = static_cast<std::size_t>(state.range(0));
-  std::vector<RobotChecker::Scratch> scratches;
+  std::vector<RobotTreeChecker::Scratch> scratches;
   for (int i = 0; i < state.range(1); ++i) scratches.emplace_back(checker);
   std::vector<std::uint8_t> verdicts(count);
   const std::span<const double> configurations(program.front().data(), count * kJoints);
@@ -96,14 +96,14 @@ void run(benchmark::State& state, const RobotChecker& checker,
 }
 
 void BM_AlongThePath(benchmark::State& state) {
-  run(state, make_robot_checker(cell().workload), cell().workload.program);
+  run(state, make_robot_tree_checker(cell().workload), cell().workload.program);
 }
 void BM_InRandomOrder(benchmark::State& state) {
-  run(state, make_robot_checker(cell().workload), cell().jumps);
+  run(state, make_robot_tree_checker(cell().workload), cell().jumps);
 }
 // Contacts confirmed on the triangles.
 void BM_ConfirmedAlongThePath(benchmark::State& state) {
-  run(state, make_robot_checker(cell().workload, best_instruction_set(), true),
+  run(state, make_robot_tree_checker(cell().workload, best_instruction_set(), true),
       cell().workload.program);
 }
 

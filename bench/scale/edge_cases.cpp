@@ -45,8 +45,8 @@ class EdgeCheck {
 
   void run(SceneRandom& random) {
     RobotScene scene(random);
-    const RobotChecker checker(scene.robot(), scene.obstacles());
-    RobotChecker::Scratch scratch(checker);
+    const RobotTreeChecker checker(scene.robot(), scene.obstacles());
+    RobotTreeChecker::Scratch scratch(checker);
     for (int i = 0; i < kEdgesOfAScene; ++i) {
       const Edge edge = make_edge(scene, random);
       if (!MechanismCheck::is_in_range(edge.from) || !MechanismCheck::is_in_range(edge.to)) {

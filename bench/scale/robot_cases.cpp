@@ -88,8 +88,8 @@ void check_configurations(std::uint64_t configurations, std::uint64_t seed, Scal
     };
     first.clear();
     for (const Rows& row : rows) {
-      const RobotChecker checker(scene.robot(), scene.obstacles(), {.instructions = row.set});
-      RobotChecker::Scratch scratch(checker);
+      const RobotTreeChecker checker(scene.robot(), scene.obstacles(), {.instructions = row.set});
+      RobotTreeChecker::Scratch scratch(checker);
       for (std::size_t i = 0; i < kConfigurations; ++i) {
         const std::span<const double> configuration(&asked.positions[i * variables], variables);
         judge(*row.single, i, checker.collides(configuration, scratch));

@@ -3,7 +3,7 @@
 
 #include "bench/scale/exact_oracle.h"
 #include "bench/scale/random_scene.h"
-#include "collide/robot/robot_checker.h"
+#include "collide/robot/robot_tree_checker.h"
 
 #include <optional>
 #include <span>

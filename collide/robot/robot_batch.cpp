@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/internal/shared_work.h"
-#include "collide/robot/robot_checker.h"
+#include "collide/robot/robot_tree_checker.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace spherule {
 
 // Returns the number of variables.
-std::size_t RobotChecker::require_sizes(std::span<const double> configurations,
-                                        std::span<const std::uint8_t> verdicts) const {
+std::size_t RobotTreeChecker::require_sizes(std::span<const double> configurations,
+                                            std::span<const std::uint8_t> verdicts) const {
   const auto variables = static_cast<std::size_t>(robot_.variable_count());
   if (configurations.size() != verdicts.size() * variables) {
     throw Error("configurations", std::to_string(configurations.size()) + " numbers for " +
@@ -23,8 +23,9 @@ std::size_t RobotChecker::require_sizes(std::span<const double> configurations,
   return variables;
 }
 
-void RobotChecker::collides(std::span<const double> configurations, std::span<Scratch> scratches,
-                            std::span<std::uint8_t> verdicts) const {
+void RobotTreeChecker::collides(std::span<const double> configurations,
+                                std::span<Scratch> scratches,
+                                std::span<std::uint8_t> verdicts) const {
   static_assert(kPiece % MechanismCheck::kBlock == 0);
   const std::size_t variables = require_sizes(configurations, verdicts);
   if (scratches.empty()) throw Error("configurations", "there is no scratch to judge them with");
@@ -40,8 +41,8 @@ void RobotChecker::collides(std::span<const double> configurations, std::span<Sc
   });
 }
 
-void RobotChecker::collides(std::span<const double> configurations, Scratch& scratch,
-                            std::span<std::uint8_t> verdicts) const {
+void RobotTreeChecker::collides(std::span<const double> configurations, Scratch& scratch,
+                                std::span<std::uint8_t> verdicts) const {
   constexpr std::size_t kBlock = MechanismCheck::kBlock;
   const std::size_t variables = require_sizes(configurations, verdicts);
   const auto configuration = [&](std::size_t i) {

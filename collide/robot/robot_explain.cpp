@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/kinematics.h"
-#include "collide/robot/robot_checker.h"
+#include "collide/robot/robot_tree_checker.h"
 
 #include <algorithm>
 #include <cassert>
@@ -10,7 +10,7 @@
 namespace spherule {
 
 // What is tested, in the order in which it is told of: links from the last to the first.
-std::vector<RobotChecker::TestedBody> RobotChecker::tested_bodies() const {
+std::vector<RobotTreeChecker::TestedBody> RobotTreeChecker::tested_bodies() const {
   std::vector<TestedBody> result;
   for (const MechanismPair& pair : pairs_) {
     result.push_back(
@@ -24,8 +24,8 @@ std::vector<RobotChecker::TestedBody> RobotChecker::tested_bodies() const {
   return result;
 }
 
-std::optional<Contact> RobotChecker::contact_of(const TestedBody& tested,
-                                                const Pose& world_from_link) const {
+std::optional<Contact> RobotTreeChecker::contact_of(const TestedBody& tested,
+                                                    const Pose& world_from_link) const {
   const PlacedTree& other = obstacles_[tested.obstacle];
   const CoveredMesh* const mesh = obstacle_meshes_[tested.obstacle];
   if (tested.body->mesh == nullptr || mesh == nullptr) {
@@ -34,9 +34,9 @@ std::optional<Contact> RobotChecker::contact_of(const TestedBody& tested,
   return deepest_contact(*tested.body->mesh, world_from_link, *mesh, other.world_from_tree);
 }
 
-std::vector<RobotContact> RobotChecker::explain(std::span<const double> configuration,
-                                                Scratch& scratch,
-                                                const ExplainRequest& request) const {
+std::vector<RobotContact> RobotTreeChecker::explain(std::span<const double> configuration,
+                                                    Scratch& scratch,
+                                                    const ExplainRequest& request) const {
   std::vector<RobotContact> result;
   if (!collides(configuration, scratch) || request.max_contacts == 0) return result;
   std::vector<Pose>& world_from_link = scratch.world_from_link_;

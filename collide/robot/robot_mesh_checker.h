@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collide/mesh_mechanism.h"
-#include "collide/robot/robot_checker.h"
+#include "collide/robot/robot_tree_checker.h"
 
 #include <memory>
 #include <optional>

@@ -50,7 +50,7 @@ std::optional<Sphere> random_sphere_of(SceneRandom& random, const RobotModel& ro
 }
 
 bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
-            std::span<const double> configuration, const RobotCheckerOptions& options) {
+            std::span<const double> configuration, const RobotTreeCheckerOptions& options) {
   std::vector<Pose> world_from_link;
   forward_kinematics(robot, configuration, world_from_link, options.world_from_root);
   for (std::size_t link = 0; link < robot.links().size(); ++link) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Random robots with spheres among random obstacles, and what a RobotChecker has to say of them.
+// Random robots with spheres among random obstacles, and what a RobotTreeChecker has to say of
+// them.
 
-#include "collide/robot/robot_checker.h"
+#include "collide/robot/robot_tree_checker.h"
 #include "tests/collide/scene_random.h"
 
 #include <memory>
@@ -27,6 +28,6 @@ std::optional<Sphere> random_sphere_of(SceneRandom& random, const RobotModel& ro
 
 // By the exact queries.
 bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
-            std::span<const double> configuration, const RobotCheckerOptions& options);
+            std::span<const double> configuration, const RobotTreeCheckerOptions& options);
 
 }  // namespace spherule::test

@@ -3,7 +3,7 @@
 
 #include "collide/collide.h"
 #include "collide/robot/kinematics.h"
-#include "collide/robot/robot_checker.h"
+#include "collide/robot/robot_tree_checker.h"
 #include "spheretree/error.h"
 #include "tests/collide/exact_pose.h"
 #include "tests/collide/robot/checked_scene.h"
@@ -29,7 +29,7 @@ namespace {
 struct Scene {
   RobotModel robot{"base"};
   std::vector<PlacedTree> obstacles{};
-  RobotCheckerOptions options{};
+  RobotTreeCheckerOptions options{};
 
   const CoveredMesh* mesh_of(const SphereTree& tree) const {
     for (const auto& mesh : options.meshes) {
@@ -102,8 +102,8 @@ struct Count {
 };
 
 // Asks for all contacts of a configuration and for the first few.
-void expect_explained(const Scene& scene, const RobotChecker& checker,
-                      std::span<const double> configuration, RobotChecker::Scratch& scratch,
+void expect_explained(const Scene& scene, const RobotTreeChecker& checker,
+                      std::span<const double> configuration, RobotTreeChecker::Scratch& scratch,
                       Count& count) {
   const Depths expected = expected_depths(scene, configuration);
   const std::vector<RobotContact> contacts = checker.explain(configuration, scratch);
@@ -168,8 +168,8 @@ TEST(RobotExplain, TellsWhatTouchesWhat) {
           {random.whole(0, static_cast<int>(scene.robot.links().size()) - 1),
            random.bits() % scene.obstacles.size()});
     }
-    const RobotChecker checker(scene.robot, scene.obstacles, scene.options);
-    RobotChecker::Scratch scratch(checker);
+    const RobotTreeChecker checker(scene.robot, scene.obstacles, scene.options);
+    RobotTreeChecker::Scratch scratch(checker);
     for (int k = 0; k < 30; ++k) {
       const double largest = k % 10 == 0 ? 99.0 : k % 10 == 1 ? 300.0 : 3.2;
       const std::vector<double> at = random_configuration(random, scene.robot, largest);
@@ -202,8 +202,8 @@ TEST(RobotExplain, IsEmptyExactlyIfFreeNearContact) {
     const Eigen::Vector3d center =
         sphere->center + (sphere->radius + 0.1 + gap) * random.point(1.0).normalized();
     scene.obstacles = {{ball({0, 0, 0}, 0.1), Pose::from_translation(center)}};
-    const RobotChecker checker(scene.robot, scene.obstacles, scene.options);
-    RobotChecker::Scratch scratch(checker);
+    const RobotTreeChecker checker(scene.robot, scene.obstacles, scene.options);
+    RobotTreeChecker::Scratch scratch(checker);
     ASSERT_NO_FATAL_FAILURE(expect_explained(scene, checker, at, scratch, count)) << i;
   }
   EXPECT_GT(count.none, effort(100, 10));
@@ -231,8 +231,8 @@ TEST(RobotExplain, TellsWhatMeshesTouch) {
       scene.obstacles.push_back({covered(random.uniform(0.05, size)), random.pose(1.5)});
     }
     scene.obstacles.push_back({random_tree(random, 0.2), random.pose(1.5)});
-    const RobotChecker checker(scene.robot, scene.obstacles, scene.options);
-    RobotChecker::Scratch scratch(checker);
+    const RobotTreeChecker checker(scene.robot, scene.obstacles, scene.options);
+    RobotTreeChecker::Scratch scratch(checker);
     std::vector<double> at = random_configuration(random, scene.robot, 3.2);
     const std::vector<double> heading = random_configuration(random, scene.robot, 0.03);
     for (int k = 0; k < 40; ++k) {
@@ -254,9 +254,10 @@ TEST(RobotExplain, NamesLinksAndRefusesBadInput) {
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
   robot.attach("arm", ball({5, 0, 0}, 0.1));
   robot.attach("arm", ball({1, 0, 0}, 0.1));
-  const RobotChecker checker(robot, {{ball({0, 0, 0.15}, 0.1), Pose()},
-                                     {ball({1, 0, 0}, 0.1), Pose::from_translation({0.1, 0, 0})}});
-  RobotChecker::Scratch scratch(checker);
+  const RobotTreeChecker checker(robot,
+                                 {{ball({0, 0, 0.15}, 0.1), Pose()},
+                                  {ball({1, 0, 0}, 0.1), Pose::from_translation({0.1, 0, 0})}});
+  RobotTreeChecker::Scratch scratch(checker);
   const std::vector<RobotContact> contacts = checker.explain(std::vector<double>{0.0}, scratch);
   ASSERT_EQ(contacts.size(), 2U);
   const auto name = [&](const RobotContact& contact) {

@@ -2,7 +2,7 @@
 // Configurations shared out among threads: the verdicts and the errors of one thread.
 
 #include "collide/robot/internal/shared_work.h"
-#include "collide/robot/robot_checker.h"
+#include "collide/robot/robot_tree_checker.h"
 #include "spheretree/error.h"
 #include "tests/collide/robot/checked_scene.h"
 #include "tests/collide/robot/robots.h"
@@ -25,11 +25,12 @@
 namespace spherule::test {
 namespace {
 
-constexpr std::size_t kPiece = RobotChecker::kPiece;
-constexpr std::size_t kFewestShared = RobotChecker::kFewestShared;
+constexpr std::size_t kPiece = RobotTreeChecker::kPiece;
+constexpr std::size_t kFewestShared = RobotTreeChecker::kFewestShared;
 
-std::vector<RobotChecker::Scratch> scratches(const RobotChecker& checker, std::size_t count) {
-  std::vector<RobotChecker::Scratch> result;
+std::vector<RobotTreeChecker::Scratch> scratches(const RobotTreeChecker& checker,
+                                                 std::size_t count) {
+  std::vector<RobotTreeChecker::Scratch> result;
   for (std::size_t i = 0; i < count; ++i) result.emplace_back(checker);
   return result;
 }
@@ -54,8 +55,8 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
     const auto variables = static_cast<std::size_t>(robot.variable_count());
     if (variables == 0) continue;
-    const RobotChecker checker(robot, random_obstacles(random),
-                               {.world_from_root = random.pose(1.0)});
+    const RobotTreeChecker checker(robot, random_obstacles(random),
+                                   {.world_from_root = random.pose(1.0)});
     // About the ends of pieces and of blocks, and anywhere; some are shared out, some are not.
     constexpr std::size_t kLongest = kFewestShared + 3 * kPiece;
     const std::size_t sizes[] = {0,
@@ -68,12 +69,12 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
                                  static_cast<std::size_t>(random.whole(
                                      static_cast<int>(kFewestShared), static_cast<int>(kLongest)))};
     const std::vector<double> path = random_path(random, robot, kLongest);
-    std::vector<RobotChecker::Scratch> seven =
+    std::vector<RobotTreeChecker::Scratch> seven =
         scratches(checker, 7);  // what they remember is no matter
     for (const std::size_t size : sizes) {
       ASSERT_LE(size * variables, path.size());
       const auto configurations = std::span(path).first(size * variables);
-      RobotChecker::Scratch scratch(checker);
+      RobotTreeChecker::Scratch scratch(checker);
       std::vector<std::uint8_t> expected(size);
       checker.collides(configurations, scratch, expected);
       for (const std::uint8_t verdict : expected) (verdict == 1 ? hits : free) += 1;
@@ -89,25 +90,25 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
 }
 
 // One that slides along x and touches from 0.9 to 1.1.
-RobotChecker slide() {
+RobotTreeChecker slide() {
   RobotModel robot("base");
   robot.add_link("slide", "base",
                  {.name = "slide", .type = JointType::kPrismatic, .axis = {1, 0, 0}});
   robot.attach("slide", ball({0, 0, 0}, 0.05));
-  return RobotChecker(robot, {{ball({1, 0, 0}, 0.05), Pose()}});
+  return RobotTreeChecker(robot, {{ball({1, 0, 0}, 0.05), Pose()}});
 }
 
 // What is thrown is what one thread would meet first, whichever thread meets which first.
 TEST(RobotThreads, ErrorsAreThoseOfOneThread) {
-  const RobotChecker checker = slide();
+  const RobotTreeChecker checker = slide();
   constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
   constexpr double kTooFar = 1e17;
   const auto error_of = [&](const std::vector<double>& path, std::size_t threads) -> std::string {
-    std::vector<RobotChecker::Scratch> some = scratches(checker, threads);
+    std::vector<RobotTreeChecker::Scratch> some = scratches(checker, threads);
     std::vector<std::uint8_t> verdicts(path.size());
     try {
       if (threads == 0) {
-        RobotChecker::Scratch scratch(checker);
+        RobotTreeChecker::Scratch scratch(checker);
         checker.collides(path, scratch, verdicts);
       } else {
         checker.collides(path, some, verdicts);
@@ -137,13 +138,13 @@ TEST(RobotThreads, ErrorsAreThoseOfOneThread) {
 }
 
 TEST(RobotThreads, RefusesWhatDoesNotFit) {
-  const RobotChecker checker = slide();
-  std::vector<RobotChecker::Scratch> two = scratches(checker, 2);
+  const RobotTreeChecker checker = slide();
+  std::vector<RobotTreeChecker::Scratch> two = scratches(checker, 2);
   std::vector<std::uint8_t> verdicts(2);
   EXPECT_THROW(checker.collides(std::vector<double>{0.0}, two, verdicts), Error);
-  EXPECT_THROW(
-      checker.collides(std::vector<double>{0.0, 1.0}, std::span<RobotChecker::Scratch>(), verdicts),
-      Error);
+  EXPECT_THROW(checker.collides(std::vector<double>{0.0, 1.0},
+                                std::span<RobotTreeChecker::Scratch>(), verdicts),
+               Error);
   checker.collides(std::vector<double>{0.0, 1.0}, two, verdicts);
   EXPECT_EQ(verdicts, (std::vector<std::uint8_t>{0, 1}));
   checker.collides({}, two, {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/robot/robot_checker.h"
+#include "collide/robot/robot_tree_checker.h"
 
 #include "collide/collide.h"
 #include "collide/robot/internal/moving_frames.h"
@@ -31,7 +31,7 @@ double pose_error(const RobotModel& robot, std::span<const PlacedTree> obstacles
 }
 
 void check_input(const RobotModel& robot, std::span<const PlacedTree> obstacles,
-                 const RobotCheckerOptions& options) {
+                 const RobotTreeCheckerOptions& options) {
   internal::check_obstacles(obstacles);
   for (const auto& mesh : options.meshes) {
     if (!mesh) throw Error("robot checker", "a mesh is missing");
@@ -41,8 +41,8 @@ void check_input(const RobotModel& robot, std::span<const PlacedTree> obstacles,
 
 }  // namespace
 
-RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
-                           const RobotCheckerOptions& options)
+RobotTreeChecker::RobotTreeChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
+                                   const RobotTreeCheckerOptions& options)
     : robot_(std::move(robot)),
       obstacles_(std::move(obstacles)),
       world_from_root_(options.world_from_root),
@@ -91,19 +91,19 @@ RobotChecker::RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
                  !meshes_.empty());
 }
 
-const CoveredMesh* RobotChecker::mesh_of(const SphereTree& tree) const {
+const CoveredMesh* RobotTreeChecker::mesh_of(const SphereTree& tree) const {
   const auto found = std::find_if(meshes_.begin(), meshes_.end(),
                                   [&](const auto& mesh) { return &mesh->cover() == &tree; });
   return found == meshes_.end() ? nullptr : found->get();
 }
 
 // Whether the fast check can be asked.
-bool RobotChecker::is_usual(std::span<const double> configuration) const {
+bool RobotTreeChecker::is_usual(std::span<const double> configuration) const {
   return configuration.size() == static_cast<std::size_t>(robot_.variable_count()) &&
          MechanismCheck::is_in_range(configuration);
 }
 
-bool RobotChecker::collides(std::span<const double> configuration, Scratch& scratch) const {
+bool RobotTreeChecker::collides(std::span<const double> configuration, Scratch& scratch) const {
   if (!is_usual(configuration)) return collides_exactly(configuration, scratch);
   if (always_) return true;
   bool is_placed = false;
@@ -114,8 +114,8 @@ bool RobotChecker::collides(std::span<const double> configuration, Scratch& scra
   return check_->collides(configuration, scratch.memory_, confirm) || contains_component(scratch);
 }
 
-bool RobotChecker::within(std::span<const double> configuration, double clearance,
-                          Scratch& scratch) const {
+bool RobotTreeChecker::within(std::span<const double> configuration, double clearance,
+                              Scratch& scratch) const {
   require_clearance(clearance);
   const auto is_near = [&](const Body& body, const Pose& world_from_link, std::size_t obstacle) {
     return spherule::within(*body.tree, world_from_link, *obstacles_[obstacle].tree,
@@ -151,8 +151,9 @@ bool RobotChecker::within(std::span<const double> configuration, double clearanc
 // Whether the robot touches an obstacle at the contact, or where it last did: a robot that touches
 // often did so a moment ago, by the same triangles. `is_placed` says whether the scratch holds the
 // configuration's poses.
-bool RobotChecker::touches(std::span<const double> configuration, const MechanismContact& contact,
-                           bool& is_placed, Scratch& scratch) const {
+bool RobotTreeChecker::touches(std::span<const double> configuration,
+                               const MechanismContact& contact, bool& is_placed,
+                               Scratch& scratch) const {
   if (!is_placed) {
     forward_kinematics(robot_, configuration, scratch.world_from_link_, world_from_root_);
     is_placed = true;
@@ -171,7 +172,8 @@ bool RobotChecker::touches(std::span<const double> configuration, const Mechanis
 }
 
 // The canonical test, and the one of the triangles.
-RobotChecker::Finding RobotChecker::find(const MechanismContact& contact, Scratch& scratch) const {
+RobotTreeChecker::Finding RobotTreeChecker::find(const MechanismContact& contact,
+                                                 Scratch& scratch) const {
   const Body& body = bodies_[static_cast<std::size_t>(contact.pair.body)];
   const auto index = static_cast<std::size_t>(contact.pair.obstacle);
   const PlacedTree& obstacle = obstacles_[index];
@@ -195,7 +197,7 @@ RobotChecker::Finding RobotChecker::find(const MechanismContact& contact, Scratc
 
 // A robot that touches often did so a moment ago, by the same triangles or by others near to them.
 // What is not proved by the former alone is left to the test of the spheres.
-bool RobotChecker::touches_still(const Touch& touch, Scratch& scratch) const {
+bool RobotTreeChecker::touches_still(const Touch& touch, Scratch& scratch) const {
   if (check_->is_following(scratch.memory_)) {
     const double depth = depth_of(touch, scratch);
     if (depth > 0.0) {
@@ -206,7 +208,7 @@ bool RobotChecker::touches_still(const Touch& touch, Scratch& scratch) const {
   return find(touch.contact, scratch) == Finding::kTouch;
 }
 
-double RobotChecker::depth_of(const Touch& touch, const Scratch& scratch) const {
+double RobotTreeChecker::depth_of(const Touch& touch, const Scratch& scratch) const {
   const Body& body = bodies_[static_cast<std::size_t>(touch.contact.pair.body)];
   const auto obstacle = static_cast<std::size_t>(touch.contact.pair.obstacle);
   return contact_depth(*body.mesh, scratch.world_from_link_[body.link], *obstacle_meshes_[obstacle],
@@ -215,7 +217,7 @@ double RobotChecker::depth_of(const Touch& touch, const Scratch& scratch) const 
 
 // The poses of forward_kinematics() are within pose_error_ of those of the exact mechanism, now and
 // wherever the memory is asked for; as much again covers the ball's.
-void RobotChecker::remember(const Touch& touch, double depth, Scratch& scratch) const {
+void RobotTreeChecker::remember(const Touch& touch, double depth, Scratch& scratch) const {
   if (depth <= 3.0 * pose_error_) return;
   const Body& body = bodies_[static_cast<std::size_t>(touch.contact.pair.body)];
   const auto& [p, q, r] = body.mesh->mesh().triangle(touch.triangles.a);
@@ -227,7 +229,7 @@ void RobotChecker::remember(const Touch& touch, double depth, Scratch& scratch) 
 }
 
 // Where no triangles touch but spheres do, under the poses that the scratch holds.
-bool RobotChecker::contains_component(Scratch& scratch) const {
+bool RobotTreeChecker::contains_component(Scratch& scratch) const {
   return std::any_of(
       scratch.unconfirmed_.begin(), scratch.unconfirmed_.end(), [&](const MechanismPair& pair) {
         const Body& body = bodies_[static_cast<std::size_t>(pair.body)];
@@ -238,8 +240,8 @@ bool RobotChecker::contains_component(Scratch& scratch) const {
       });
 }
 
-bool RobotChecker::body_collides(const Body& body, const Pose& world_from_link,
-                                 std::size_t obstacle) const {
+bool RobotTreeChecker::body_collides(const Body& body, const Pose& world_from_link,
+                                     std::size_t obstacle) const {
   const PlacedTree& other = obstacles_[obstacle];
   const CoveredMesh* const mesh = obstacle_meshes_[obstacle];
   if (body.mesh == nullptr || mesh == nullptr) {
@@ -248,8 +250,8 @@ bool RobotChecker::body_collides(const Body& body, const Pose& world_from_link,
   return spherule::collides(*body.mesh, world_from_link, *mesh, other.world_from_tree);
 }
 
-EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<const double> to,
-                                    Scratch& scratch, const EdgeRequest& request) const {
+EdgeResult RobotTreeChecker::check_edge(std::span<const double> from, std::span<const double> to,
+                                        Scratch& scratch, const EdgeRequest& request) const {
   for (const std::span<const double> end : {from, to}) {
     if (!is_usual(end)) {
       throw Error("edge",
@@ -270,7 +272,8 @@ EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<cons
       });
 }
 
-bool RobotChecker::collides_exactly(std::span<const double> configuration, Scratch& scratch) const {
+bool RobotTreeChecker::collides_exactly(std::span<const double> configuration,
+                                        Scratch& scratch) const {
   std::vector<Pose>& world_from_link = scratch.world_from_link_;
   forward_kinematics(robot_, configuration, world_from_link, world_from_root_);
   return always_ || std::any_of(pairs_.begin(), pairs_.end(), [&](const MechanismPair& pair) {

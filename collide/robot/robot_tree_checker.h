@@ -28,7 +28,7 @@ struct PlacedTree {
   Pose world_from_tree;
 };
 
-struct RobotCheckerOptions {
+struct RobotTreeCheckerOptions {
   Pose world_from_root{};
   // Confirmation on the triangles (opt-in): contacts of two trees that are both the cover() of one
   // of these count only if their meshes touch (mesh_contact.h). Free stays certain; false alarms
@@ -46,13 +46,13 @@ struct RobotCheckerOptions {
 // given; so G4 and G5 hold with respect to these poses, and no instruction set changes an answer.
 // Links of the robot against each other are no matter of this class. It keeps the robot and the
 // trees alive; immutable, threads may share it, each with a scratch of its own.
-class RobotChecker {
+class RobotTreeChecker {
  public:
   // Throws Error for a missing tree, an index out of range, a robot or obstacle that reaches beyond
   // kMaxCoordinate from the world's origin or the robot's root, and instructions that this machine
   // has not got.
-  RobotChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
-               const RobotCheckerOptions& options = {});
+  RobotTreeChecker(RobotModel robot, std::vector<PlacedTree> obstacles,
+                   const RobotTreeCheckerOptions& options = {});
 
  private:
   // A contact that was confirmed on triangles: of the body's mesh and the obstacle's.
@@ -68,10 +68,10 @@ class RobotChecker {
   // query allocates once its scratch is warm. Those of several threads share no cache line.
   class alignas(64) Scratch {
    public:
-    explicit Scratch(const RobotChecker& checker) : memory_(*checker.check_) {}
+    explicit Scratch(const RobotTreeChecker& checker) : memory_(*checker.check_) {}
 
    private:
-    friend class RobotChecker;
+    friend class RobotTreeChecker;
     MechanismCheck::Scratch memory_;
     std::vector<Pose> world_from_link_;
     std::vector<MechanismPair> unconfirmed_;  // spheres touch, but no triangles do
