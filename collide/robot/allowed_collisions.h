@@ -35,9 +35,10 @@ class AllowedCollisions {
   // move.
   explicit AllowedCollisions(const RobotModel& robot);
 
-  std::size_t link_count() const { return names_.size(); }
+  const std::vector<std::string>& link_names() const { return names_; }
 
-  // Throws Error for names that are no links.
+  // What is allowed already keeps its reason. Throws Error for names that are no links, or indices
+  // out of range.
   void allow(std::string_view first, std::string_view second);
   // The pairs that an SRDF disables. Throws Error for names that are no links, before any is taken.
   void allow(std::span<const std::pair<std::string, std::string>> pairs);

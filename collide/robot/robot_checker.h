@@ -129,6 +129,14 @@ class RobotChecker {
   struct Parts;
   explicit RobotChecker(std::shared_ptr<const Parts> parts);
 
+  bool is_free_of_itself(std::span<const double> configuration, Scratch& scratch) const;
+  EdgeResult check_within_limits(std::span<const double> from, std::span<const double> to,
+                                 double end, Scratch& scratch, const EdgeRequest& request) const;
+  // Of a pair: what is told of its two sides, and of the padding.
+  CheckedBody body_of(int piece, std::int32_t sphere) const;
+  CheckedBody other_of(std::size_t pair, std::int32_t sphere) const;
+  double padding_of(std::size_t pair) const;
+
   std::shared_ptr<const Parts> parts_;
 };
 

@@ -10,8 +10,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -100,6 +102,46 @@ class RobotScene {
   // copied, but for those of bodies that have padding or regions. Throws Error for what reaches
   // too far to be computed with, and as RobotTreeChecker does.
   RobotChecker snapshot(const RobotCheckerOptions& options = {}) const;
+
+ private:
+  class Snapshot;
+  struct Obstacle {
+    ObstacleShape shape;
+    Pose world_from_shape;
+  };
+  struct Attached {
+    std::string link;
+    std::shared_ptr<const SphereTree> tree;
+    Pose link_from_object;
+  };
+  // An intended contact: of a body, or its region unless that name is empty, and another.
+  struct Intended {
+    std::string body;
+    std::string region;
+    std::string other;
+    friend auto operator<=>(const Intended&, const Intended&) = default;
+  };
+  using NamePair = std::pair<std::string, std::string>;
+
+  bool is_body(std::string_view name) const;
+  void require_free_name(const std::string& name) const;
+  void require_body(std::string_view name) const;
+  // That the two can meet: a body, and an obstacle or another body.
+  void require_pair(std::string_view body, std::string_view other) const;
+  void require_region(const Region& region) const;
+  // The trees whose spheres a body consists of.
+  std::vector<std::shared_ptr<const SphereTree>> trees_of(std::string_view body) const;
+  void forget(std::string_view name);
+
+  RobotModel robot_;
+  Pose world_from_root_;
+  AllowedCollisions allowed_;
+  std::map<std::string, Obstacle, std::less<>> obstacles_;
+  std::map<std::string, Attached, std::less<>> attached_;
+  std::map<std::string, double, std::less<>> padding_;
+  std::map<NamePair, double> pair_padding_;              // names in their order
+  std::map<NamePair, std::vector<BodySphere>> regions_;  // of a body and a region, sorted
+  std::set<Intended> intended_;
 };
 
 }  // namespace spherule
