@@ -6,7 +6,9 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,7 +16,7 @@
 namespace spherule {
 
 // kContinuous is a revolute joint without limits.
-enum class JointType { kFixed, kRevolute, kContinuous, kPrismatic };
+enum class JointType { kFixed, kRevolute, kPrismatic, kContinuous };
 
 // Joint between a parent link and its child: child frame = origin, then the motion about or along
 // `axis`. Lengths in metres, angles in radians.
@@ -37,6 +39,12 @@ struct Joint {
 
   bool moves() const { return variable >= 0; }
   bool turns() const { return type == JointType::kRevolute || type == JointType::kContinuous; }
+  // In a configuration of variable_count() numbers, product and sum rounded; 0 if it is fixed.
+  double position(std::span<const double> configuration) const {
+    if (!moves()) return 0.0;
+    const double value = configuration[static_cast<std::size_t>(variable)];
+    return mimics < 0 ? value : multiplier * value + offset;
+  }
 };
 
 // A link with the sphere trees that are rigidly attached to it, in the link's frame.
@@ -78,15 +86,23 @@ class RobotModel {
   const std::vector<int>& variable_joints() const { return variable_joints_; }
   bool has_mimics() const { return has_mimics_; }
 
-  // Index of a link or a joint, or -1.
+  // Index of a link or a joint, or -1; joints without a name are not found.
   int find_link(std::string_view name) const;
   int find_joint(std::string_view name) const;
 
  private:
+  // What a joint was told to follow.
+  struct Follow {
+    double multiplier = 1.0;
+    double offset = 0.0;
+  };
+  std::size_t require_moving_joint(std::string_view name) const;
+  bool follows(std::size_t joint, std::size_t other) const;
   void number_variables();
 
   std::vector<Link> links_;
   std::vector<Joint> joints_;
+  std::vector<Follow> follow_;  // for each joint
   std::vector<int> variable_joints_;
   bool has_mimics_ = false;
 };
