@@ -148,8 +148,8 @@ EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<cons
                                     Scratch& scratch, const EdgeRequest& request) const {
   for (const std::span<const double> end : {from, to}) {
     require_configuration(parts_->robot, end);
-    if (!MechanismCheck::is_in_range(end)) {
-      throw Error("edge", "a position is beyond " +
+    if (!parts_->pairs.is_usual(end)) {
+      throw Error("edge", "a joint's position is beyond " +
                               std::to_string(MechanismCheck::kLargestVariable) + " in magnitude");
     }
   }

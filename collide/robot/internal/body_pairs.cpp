@@ -101,6 +101,14 @@ BodyPairs::BodyPairs(RobotModel robot, const Pose& world_from_root,
   }
 }
 
+bool BodyPairs::is_usual(std::span<const double> configuration) const {
+  return std::all_of(robot_.joints().begin(), robot_.joints().end(), [&](const Joint& joint) {
+    if (!joint.moves()) return true;
+    const double variable = configuration[static_cast<std::size_t>(joint.variable)];
+    return std::abs(joint.multiplier * variable + joint.offset) <= MechanismCheck::kLargestVariable;
+  });
+}
+
 void BodyPairs::place(std::span<const double> configuration, Memory& memory) const {
   forward_kinematics(robot_, configuration, memory.world_from_link, world_from_root_);
   memory.placed.resize(pieces_.size());

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -75,6 +76,10 @@ class BodyPairs {
   const std::vector<CheckedPair>& pairs() const { return pairs_; }
   std::size_t tested() const { return tested_; }
 
+  // Whether the bounds of errors hold: no joint's position is beyond
+  // MechanismCheck::kLargestVariable. For a configuration of the right size.
+  bool is_usual(std::span<const double> configuration) const;
+
   // Takes a configuration; the functions below answer for it. Throws Error as forward_kinematics().
   void place(std::span<const double> configuration, Memory& memory) const;
 
@@ -92,8 +97,8 @@ class BodyPairs {
   // How far any point of a link may be from where the exact mechanism has it.
   double pose_error() const { return pose_error_; }
 
-  // A straight motion up to the fraction `end`, as EdgeHalving says. Both ends must be in
-  // MechanismCheck::is_in_range(), the resolution above zero.
+  // A straight motion up to the fraction `end`, as EdgeHalving says. Both ends must be is_usual(),
+  // the resolution above zero.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, double end,
                         const EdgeRequest& request, Memory& memory) const;
 
