@@ -19,8 +19,9 @@ struct PointCloudOptions {
   BuildOptions build = {};
 };
 
-// Spheres that stand for points measured on surfaces: a ball of `radius` about every point (half
-// the spacing of the points or more closes the gaps between them). Points that are equal are merged.
+// Spheres that stand for points measured on surfaces: a ball of `radius` about every point, points
+// that are equal being merged. Surfaces are without gaps only if the radius is large enough for how
+// far apart the points lie, which is the caller's to know.
 //
 // With cells, one ball for those of a cell: it contains the balls of all its points in exact
 // arithmetic, and protrudes from their union by at most sqrt(3) times the cell's side, up to

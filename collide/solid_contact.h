@@ -14,8 +14,8 @@ struct SolidContact {
   // exactly the given poses, rounded downward: below zero where rounding alone may have made them
   // touch. In the unit of the tree.
   double overlap_depth = 0.0;
-  // In the middle of what the sphere and the solid share of the line through the sphere's centre
-  // along which it leaves the solid soonest, up to rounding.
+  // A point of both, up to rounding: the sphere's centre where it is in the solid, otherwise the
+  // point of the solid that is nearest to it.
   Eigen::Vector3d world_point = Eigen::Vector3d::Zero();
 };
 
