@@ -56,24 +56,51 @@ void add_balls(const Triangle& triangle, double radius, std::vector<Sphere>& sph
   add_balls({middle, triangle[(k + 1) % 3], triangle[(k + 2) % 3]}, radius, spheres);
 }
 
+std::vector<Sphere> balls_around(const TriangleMesh& mesh, double radius) {
+  std::vector<Sphere> spheres;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const auto corner = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
+    add_balls({corner(0), corner(1), corner(2)}, radius, spheres);
+  }
+  return spheres;
+}
+
+std::vector<Sphere> balls_of(const LinkDescription& link) {
+  std::vector<Sphere> spheres;
+  for (const LinkShape& shape : link.collision) {
+    const Ball& ball = std::get<Ball>(std::get<Primitive>(shape.geometry));
+    spheres.push_back({shape.link_from_shape.translation(), ball.radius});
+  }
+  return spheres;
+}
+
+template <class SpheresOf>
+Arm make_arm(const std::filesystem::path& models, SpheresOf spheres_of) {
+  RobotDescription robot = read_urdf(models / "robots" / "franka_panda" / "franka_panda.urdf");
+  Arm arm{std::move(robot.model), {}};
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    const TriangleMesh& mesh = arm.meshes.emplace_back(mesh_of(robot.links[i]));
+    arm.triangles += mesh.triangles.size();
+    const std::vector<Sphere> spheres = spheres_of(i, mesh);
+    if (spheres.empty()) continue;
+    arm.spheres += spheres.size();
+    arm.model.attach(robot.links[i].name, std::make_shared<const SphereTree>(build_tree(spheres)));
+  }
+  return arm;
+}
+
 }  // namespace
 
 Arm make_panda(const std::filesystem::path& models, double radius) {
-  RobotDescription robot = read_urdf(models / "robots" / "franka_panda" / "franka_panda.urdf");
-  Arm arm{std::move(robot.model), {}};
-  for (const LinkDescription& link : robot.links) {
-    const TriangleMesh& mesh = arm.meshes.emplace_back(mesh_of(link));
-    arm.triangles += mesh.triangles.size();
-    std::vector<Sphere> spheres;
-    for (const Eigen::Vector3i& t : mesh.triangles) {
-      const auto corner = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
-      add_balls({corner(0), corner(1), corner(2)}, radius, spheres);
-    }
-    if (spheres.empty()) continue;
-    arm.spheres += spheres.size();
-    arm.model.attach(link.name, std::make_shared<const SphereTree>(build_tree(spheres)));
-  }
-  return arm;
+  return make_arm(
+      models, [&](std::size_t, const TriangleMesh& mesh) { return balls_around(mesh, radius); });
+}
+
+Arm make_panda(const std::filesystem::path& models, const std::filesystem::path& spherized) {
+  const RobotDescription spheres = read_urdf(spherized);
+  return make_arm(models, [&](std::size_t link, const TriangleMesh&) {
+    return balls_of(spheres.links.at(link));
+  });
 }
 
 }  // namespace spherule

@@ -25,4 +25,7 @@ struct Arm {
 // are missing.
 Arm make_panda(const std::filesystem::path& models, double radius);
 
+// The same with the balls of a spherized URDF, as `spherule robot` writes it, for the same links.
+Arm make_panda(const std::filesystem::path& models, const std::filesystem::path& spherized);
+
 }  // namespace spherule

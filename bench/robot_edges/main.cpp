@@ -2,7 +2,7 @@
 
 // Moves of a Panda in seven scenes of primitives, self-collision included: proved by RobotChecker,
 // and sampled by FCL as planners do it. Prints what each misses, and the ratio of their times.
-//   SPHERULE_MODELS=DIR spherule_robot_edges [EDGES [RADIUS]]
+//   SPHERULE_MODELS=DIR spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]]
 
 #include "bench/clock.h"
 #include "bench/robot_edges/arm.h"
@@ -16,7 +16,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -178,12 +180,12 @@ void measure_itself(const Arm& arm, const AllowedCollisions& allowed, RandomNumb
               1e-3 * ours / count, found, all.size(), 1e-3 * theirs / count, met);
 }
 
-void run(const char* models, std::size_t edges, double radius) {
-  const Arm arm = make_panda(models, radius);
+void run(const Arm& arm, std::size_t edges) {
   AllowedCollisions allowed(arm.model);
+  // How far the hand is closed is not the arm's affair.
+  allowed.allow("panda_leftfinger", "panda_rightfinger");
   allow_sampled(sample_collisions(arm.model, allowed, {.configurations = 2000}), allowed);
-  std::printf("%zu triangles, %zu spheres of up to %.0f mm\n", arm.triangles, arm.spheres,
-              1e3 * radius);
+  std::printf("%zu triangles, %zu spheres\n", arm.triangles, arm.spheres);
   RandomNumbers random(7);
   measure_itself(arm, allowed, random);
   std::printf("%-8s %6s %7s %7s %7s %7s %6s %7s %9s %9s %7s\n", "scene", "edges", "contact",
@@ -210,13 +212,17 @@ int main(int argc, char** argv) {
     return 2;
   }
   const double edges = argc > 1 ? std::atof(argv[1]) : 10000.0;
-  const double radius = argc > 2 ? std::atof(argv[2]) : 0.02;
-  if (!(edges >= 7.0 && edges <= 1e9 && radius > 0.0)) {
-    std::fprintf(stderr, "usage: spherule_robot_edges [EDGES [RADIUS]]\n");
+  const std::string spheres = argc > 2 ? argv[2] : "0.02";
+  const double radius = std::atof(spheres.c_str());
+  if (!(edges >= 7.0 && edges <= 1e9)) {
+    std::fprintf(stderr, "usage: spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]]\n");
     return 2;
   }
   try {
-    spherule::run(models, static_cast<std::size_t>(edges), radius);
+    using namespace spherule;
+    const Arm arm = radius > 0.0 ? make_panda(models, radius)
+                                 : make_panda(models, std::filesystem::path(spheres));
+    run(arm, static_cast<std::size_t>(edges));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;
