@@ -89,8 +89,7 @@ Joint joint_of(const urdf::Joint& joint) {
       result.type = JointType::kContinuous;
       break;
     default:
-      throw Error("joint " + in_quotes(joint.name),
-                  "planar and floating joints cannot be modelled");
+      throw Error("type", "planar and floating joints cannot be modelled");
   }
   if (result.type == JointType::kRevolute || result.type == JointType::kPrismatic) {
     result.lower = joint.limits->lower;
@@ -102,8 +101,10 @@ Joint joint_of(const urdf::Joint& joint) {
 class Reader {
  public:
   Reader(const urdf::ModelInterface& model, const std::vector<std::string>& joints,
-         internal::MeshPaths paths)
-      : model_(model), paths_(std::move(paths)) {
+         const std::filesystem::path& path, const UrdfOptions& options)
+      : model_(model),
+        paths_(path, options),
+        require_visual_meshes_(options.require_visual_meshes) {
     for (std::size_t i = 0; i < joints.size(); ++i) order_[joints[i]] = i;
   }
 
@@ -175,8 +176,12 @@ class Reader {
   LinkDescription link_of(const urdf::Link& link) {
     LinkDescription result{.name = link.name};
     try {
-      for (const auto& visual : link.visual_array) result.visual.push_back(shape_of(*visual));
-      for (const auto& shape : link.collision_array) result.collision.push_back(shape_of(*shape));
+      for (const auto& visual : link.visual_array) {
+        result.visual.push_back(shape_of(*visual, require_visual_meshes_));
+      }
+      for (const auto& collision : link.collision_array) {
+        result.collision.push_back(shape_of(*collision, true));
+      }
     } catch (const Error& error) {
       throw Error("link " + in_quotes(link.name), error.what());
     }
@@ -184,15 +189,15 @@ class Reader {
   }
 
   template <class Shape>
-  LinkShape shape_of(const Shape& shape) {
-    return {shape.name, pose_of(shape.origin), geometry_of(*shape.geometry)};
+  LinkShape shape_of(const Shape& shape, bool require_mesh) {
+    return {shape.name, pose_of(shape.origin), geometry_of(*shape.geometry, require_mesh)};
   }
 
-  std::variant<MeshFile, Primitive> geometry_of(const urdf::Geometry& geometry) {
+  std::variant<MeshFile, Primitive> geometry_of(const urdf::Geometry& geometry, bool require_mesh) {
     Primitive primitive;
     switch (geometry.type) {
       case urdf::Geometry::MESH:
-        return mesh_of(static_cast<const urdf::Mesh&>(geometry));
+        return mesh_of(static_cast<const urdf::Mesh&>(geometry), require_mesh);
       case urdf::Geometry::BOX: {
         const urdf::Vector3& size = static_cast<const urdf::Box&>(geometry).dim;
         primitive = Box{{size.x, size.y, size.z}};
@@ -206,19 +211,27 @@ class Reader {
         primitive = Cylinder{cylinder.radius, cylinder.length};
         break;
       }
+      default:
+        throw Error("shape", "its type is not known");
     }
     require_primitive(primitive, "shape");
     return primitive;
   }
 
-  MeshFile mesh_of(const urdf::Mesh& mesh) {
+  MeshFile mesh_of(const urdf::Mesh& mesh, bool required) {
     const Eigen::Vector3d scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
     if ((scale.array() == 0.0).any()) throw Error(mesh.filename, "its scale is zero");
-    return {paths_.find(mesh.filename), scale};
+    try {
+      return {paths_.find(mesh.filename), scale};
+    } catch (const Error&) {
+      if (required) throw;
+      return {mesh.filename, scale};
+    }
   }
 
   const urdf::ModelInterface& model_;
   internal::MeshPaths paths_;
+  bool require_visual_meshes_;
   std::map<std::string, std::size_t> order_{};
   std::vector<std::pair<std::string, urdf::JointMimicSharedPtr>> mimics_{};
 };
@@ -232,8 +245,7 @@ RobotDescription read_urdf(const std::filesystem::path& path, const UrdfOptions&
   const urdf::ModelInterfaceSharedPtr model = parse(plain.text, name);
   std::size_t shapes = 0;
   try {
-    RobotDescription robot =
-        Reader(*model, plain.joints, internal::MeshPaths(path, options)).read(shapes);
+    RobotDescription robot = Reader(*model, plain.joints, path, options).read(shapes);
     if (shapes != plain.shapes) throw Error("urdfdom", "it has lost shapes");
     return robot;
   } catch (const Error& error) {

@@ -73,7 +73,7 @@ const std::vector<Room>& rooms() {
        {"spheretree", "simplifier", "simplifier/baseline", "collide", "collide/robot",
         "collide/fcl", "collide/ompl", "bench"},
        {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "tbb",
-        "tinyxml2", "zlib"},
+        "tinyxml2", "urdfdom", "zlib"},
        {}},
       // Users of the installed package: they see the library from outside.
       {"tests/consumer", {}, {"Eigen", "spherule"}, {}},

@@ -130,7 +130,7 @@ ExactPose exact_pose(const Pose& pose) {
   return {result, exact<Real>(pose.translation())};
 }
 
-ExactPose exact_motion(const Joint& joint, double position) {
+ExactPose exact_motion(const Joint& joint, const Real& position) {
   const Vector<Real> axis = exact<Real>(joint.axis);
   const Real length = sqrt(squared_distance(axis, Vector<Real>{0, 0, 0}));
   if (joint.type == JointType::kFixed) return {{1, 0, 0, 0}, {0, 0, 0}};
@@ -138,7 +138,7 @@ ExactPose exact_motion(const Joint& joint, double position) {
     const Real step = position / length;
     return {{1, 0, 0, 0}, {axis[0] * step, axis[1] * step, axis[2] * step}};
   }
-  const Real half = Real(position) / 2;
+  const Real half = position / 2;
   const Real s = sin(half) / length;
   return {{cos(half), axis[0] * s, axis[1] * s, axis[2] * s}, {0, 0, 0}};
 }
@@ -147,34 +147,75 @@ ExactPose compose(const ExactPose& a, const ExactPose& b) {
   return {product(a.q, b.q), image(a, b.t)};
 }
 
+// Of every link, of the mechanism that the model stores.
+std::vector<ExactPose> exact_poses_of(const RobotModel& robot,
+                                      const std::vector<double>& configuration, const Pose& root) {
+  std::vector<ExactPose> poses = {exact_pose(root)};
+  for (const Joint& joint : robot.joints()) {
+    Real position = 0;
+    if (joint.variable >= 0) {
+      position = Real(joint.multiplier) * configuration[static_cast<std::size_t>(joint.variable)] +
+                 joint.offset;
+    }
+    poses.push_back(compose(compose(poses[static_cast<std::size_t>(joint.parent_link)],
+                                    exact_pose(joint.parent_from_joint)),
+                            exact_motion(joint, position)));
+  }
+  return poses;
+}
+
+double error_of(const Pose& computed, const ExactPose& pose, const Eigen::Vector3d& point) {
+  const Vector<Real> p = exact<Real>(point);
+  return sqrt(squared_distance(transform(computed, p), image(pose, p))).convert_to<double>();
+}
+
 TEST(Kinematics, ErrorBoundCoversTheErrorAndIsNotIdle) {
   SceneRandom random(2);
   double worst = 0.0;
-  for (int i = 0; i < 60; ++i) {
-    const RobotModel robot = random_robot(random, random.whole(1, 10), i % 2 == 0);
-    const std::vector<double> configuration = random_configuration(random, robot, 100.0);
+  for (int i = 0; i < 90; ++i) {
+    RobotModel robot = random_robot(random, random.whole(1, 10), i % 2 == 0);
+    const bool has_mimics = i % 3 == 0;
+    if (has_mimics) add_random_mimics(random, robot, 5.0);
+    const std::vector<double> configuration =
+        random_configuration(random, robot, has_mimics ? 50.0 : 100.0);
     const Pose root = random.pose(10.0);
     const std::vector<Pose> poses = poses_of(robot, configuration, root);
-    std::vector<ExactPose> exact_poses = {exact_pose(root)};
+    const std::vector<ExactPose> exact_poses = exact_poses_of(robot, configuration, root);
     const double reach = 1.5;
     const double bound = kinematics_error_bound(robot, reach, root.translation().norm() + 1e-9);
-    for (const Joint& joint : robot.joints()) {
-      const double position =
-          joint.variable < 0 ? 0.0 : configuration[static_cast<std::size_t>(joint.variable)];
-      exact_poses.push_back(
-          compose(compose(exact_poses[static_cast<std::size_t>(joint.parent_link)],
-                          exact_pose(joint.parent_from_joint)),
-                  exact_motion(joint, position)));
+    for (std::size_t link = 1; link < poses.size(); ++link) {
       const Eigen::Vector3d point = reach * random.point(1.0).normalized() * (1.0 - 1e-12);
-      const Vector<Real> computed =
-          transform(poses[static_cast<std::size_t>(joint.child_link)], exact<Real>(point));
-      const Real error =
-          sqrt(squared_distance(computed, image(exact_poses.back(), exact<Real>(point))));
+      const double error = error_of(poses[link], exact_poses[link], point);
       ASSERT_LE(error, bound);
-      worst = std::max(worst, (error / bound).convert_to<double>());
+      worst = std::max(worst, error / bound);
     }
   }
   EXPECT_GT(worst, 1e-3);
+}
+
+// A large offset that nearly cancels: the position's rounding is the whole error.
+TEST(Kinematics, ErrorBoundCoversMimicsThatCancel) {
+  SceneRandom random(6);
+  double worst = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    RobotModel robot;
+    robot.add_link("a", "base_link", {.name = "a", .type = JointType::kPrismatic});
+    robot.add_link("b", "base_link",
+                   {.name = "b",
+                    .type = i % 2 == 0 ? JointType::kContinuous : JointType::kPrismatic,
+                    .lower = -1.0,
+                    .upper = 1.0});
+    const double plain = kinematics_error_bound(robot, 2.0);
+    const double multiplier = random.uniform(1e5, 1e6);
+    const double variable = random.uniform(90.0, 99.0);
+    robot.mimic("b", "a", multiplier, random.uniform(-90.0, 90.0) - multiplier * variable);
+    const std::vector<double> configuration = {variable};
+    const double error = error_of(poses_of(robot, configuration)[2],
+                                  exact_poses_of(robot, configuration, Pose())[2], {2.0, 0, 0});
+    ASSERT_LE(error, kinematics_error_bound(robot, 2.0));
+    worst = std::max(worst, error / plain);
+  }
+  EXPECT_GT(worst, 10.0) << "more than the bound without mimics";
 }
 
 TEST(Kinematics, PutsTheRootWhereItIsTold) {

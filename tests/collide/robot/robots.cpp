@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/collide/robot/robots.h"
 
+#include "spheretree/error.h"
+
 #include <string>
 
 namespace spherule::test {
@@ -19,6 +21,20 @@ RobotModel random_robot(SceneRandom& random, int joints, bool branching) {
     robot.add_link("link_" + std::to_string(i + 1), "link_" + std::to_string(parent), joint);
   }
   return robot;
+}
+
+void add_random_mimics(SceneRandom& random, RobotModel& robot, double offset) {
+  for (const Joint& joint : std::vector<Joint>(robot.joints())) {
+    if (!joint.moves() || random.whole(0, 1) == 0) continue;
+    const int last = static_cast<int>(robot.joints().size()) - 1;
+    const auto other = static_cast<std::size_t>(random.whole(0, last));
+    try {
+      robot.mimic(joint.name, robot.joints()[other].name, random.uniform(-1.0, 1.0),
+                  random.uniform(-offset, offset));
+    } catch (const Error&) {
+      // It is fixed, or follows this one.
+    }
+  }
 }
 
 std::vector<double> random_configuration(SceneRandom& random, const RobotModel& robot,

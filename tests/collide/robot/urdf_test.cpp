@@ -173,6 +173,20 @@ TEST(ReadUrdf, FindsMeshes) {
   }
 }
 
+TEST(ReadUrdf, KeepsVisualMeshesThatAreMissingIfTold) {
+  const UrdfOptions options{.require_visual_meshes = false};
+  const auto shape = [](const std::string& tag, const std::string& name) {
+    return link_of("<" + tag + "><geometry><mesh filename='" + name + "'/></geometry></" + tag +
+                   ">");
+  };
+  for (const std::string name : {"x.stl", "package://p/x.stl"}) {
+    const RobotDescription robot = read_text(shape("visual", name), options);
+    EXPECT_EQ(std::get<MeshFile>(robot.links[0].visual.at(0).geometry).path, fs::path(name));
+    EXPECT_THROW(read_text(shape("visual", name)), Error);
+    EXPECT_THROW(read_text(shape("collision", name), options), Error);
+  }
+}
+
 struct BadFile {
   std::string text;
   std::vector<std::string> reasons;
