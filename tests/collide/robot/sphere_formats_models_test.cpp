@@ -19,7 +19,7 @@ struct Published {
 constexpr Published kPublished[] = {
     {"franka_panda/peer_spheres/curobo_franka.yml", SphereFormat::kCurobo, 61, 11},
     {"franka_panda/peer_spheres/robometrics_franka_spheres.yml", SphereFormat::kCurobo, 61, 11},
-    {"franka_panda/peer_spheres/morphit_franka.yml", SphereFormat::kCurobo, 100, 10},
+    {"franka_panda/peer_spheres/morphit_franka.yml", SphereFormat::kCurobo, 158, 11},
     {"franka_panda/peer_spheres/vamp_panda_spherized.urdf", SphereFormat::kUrdf, 59, 11},
     {"franka_panda/peer_spheres/foam_smaller_panda_spherized.urdf", SphereFormat::kUrdf, 59, 11},
     {"franka_panda/peer_spheres/cricket_panda_spherized_1.urdf", SphereFormat::kUrdf, 11, 11},

@@ -43,6 +43,7 @@ class SphereFormats : public ::testing::Test {
   TempDir folder_;
 };
 
+using Buffers = std::map<std::string, double>;
 using Pairs = std::set<std::pair<std::string, std::string>>;
 Pairs pairs_of(const RobotSpheres& spheres) {
   Pairs pairs;
@@ -54,7 +55,7 @@ Pairs pairs_of(const RobotSpheres& spheres) {
 
 TEST_F(SphereFormats, EveryFormatReadsBackBitForBit) {
   test::Random random(11);
-  for (int round = 0; round < test::effort(30, 4); ++round) {
+  for (int round = 0; round < test::effort(12, 3); ++round) {
     const RobotSpheres spheres = random_spheres(random, 1 + random.index(60));
     const SphereFileContext context = context_for(spheres);
     for (const SphereFormat format : kWritten) {
@@ -67,12 +68,8 @@ TEST_F(SphereFormats, EveryFormatReadsBackBitForBit) {
       EXPECT_EQ(pairs_of(read.spheres), keeps_none ? Pairs() : pairs_of(spheres));
       const bool keeps_buffers = !keeps_none && format != SphereFormat::kSrdf;
       EXPECT_EQ(read.spheres.self_collision_buffer,
-                keeps_buffers ? spheres.self_collision_buffer
-                              : decltype(spheres.self_collision_buffer)());
-      const std::size_t empty = static_cast<std::size_t>(
-          std::count_if(spheres.links.begin(), spheres.links.end(),
-                        [](const LinkSpheres& link) { return link.spheres.empty(); }));
-      EXPECT_EQ(read.spheres.switched_off, format == SphereFormat::kSrdf ? empty : 0);
+                keeps_buffers ? spheres.self_collision_buffer : Buffers());
+      EXPECT_EQ(read.spheres.switched_off, 0u);
       const std::string bytes = read_file(file("out"));
       write_robot_spheres(spheres, format, context, file("out"));
       EXPECT_EQ(bytes, read_file(file("out")));
@@ -83,7 +80,7 @@ TEST_F(SphereFormats, EveryFormatReadsBackBitForBit) {
 TEST_F(SphereFormats, ManySpheres) {
   test::Random random(12);
   RobotSpheres spheres{.robot = "many", .links = {{"a", {}}, {"b", {}}}};
-  for (int k = 0; k < test::effort(20000, 2000); ++k) {
+  for (int k = 0; k < test::effort(6000, 1000); ++k) {
     spheres.links[random.index(2)].spheres.push_back({random.direction(), random.unit() + 1e-9});
   }
   for (const SphereFormat format : kWritten) {
@@ -132,7 +129,9 @@ TEST_F(SphereFormats, NumbersInYamlAndXmlHaveNoExponent) {
     const std::string text = read_file(file("out"));
     EXPECT_NE(text.find("0.0000001"), std::string::npos) << text;
     EXPECT_NE(text.find("1000000000000000.0"), std::string::npos) << text;
-    EXPECT_EQ(text.find("e-"), std::string::npos) << text;
+    EXPECT_EQ(text.find("e-0"), std::string::npos) << text;
+    EXPECT_EQ(text.find("e+"), std::string::npos) << text;
+    EXPECT_NE(text.find("0.000000004"), std::string::npos) << text;
   }
 }
 
@@ -231,7 +230,7 @@ TEST_F(SphereFormats, UrdfKeepsTheRestAndFindsItsMeshes) {
 TEST_F(SphereFormats, BallsOnFixedJointsAreMovedOutward) {
   using Real = boost::multiprecision::cpp_bin_float_50;
   test::Random random(13);
-  for (int round = 0; round < test::effort(20000, 500); ++round) {
+  for (int round = 0; round < test::effort(5000, 300); ++round) {
     const double size = std::pow(10.0, random.between(-8, 8));
     const Sphere ball{random.direction() * size * random.unit(), random.unit() * 0.01 * size};
     const Eigen::Vector3d angles = random.direction() * random.between(0, 8);
