@@ -36,9 +36,9 @@ std::span<const LinkShape> link_shapes(const LinkDescription& link, LinkGeometry
 // tessellation cost. Curved primitives get tessellations from outside, which therefore add nothing
 // to t; they lie within `chord_error` of the primitive.
 //
-// Throws Error: as read_mesh(); for a scale that is zero or not finite, a primitive of unusable
-// size, a half-space, a chord error that is not positive or asks for more than 4096 triangles
-// around (naming the link); and for coordinates beyond kMaxCoordinate.
+// Throws Error: as read_mesh(); naming the link, for a scale that is zero or not finite, a
+// primitive of unusable size, a half-space, and a chord error that is not positive or asks for
+// more than 1024 sides around; for coordinates beyond kMaxCoordinate.
 std::optional<TriangleMesh> link_mesh(const LinkDescription& link,
                                       const LinkMeshOptions& options = {});
 

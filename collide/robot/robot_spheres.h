@@ -2,8 +2,8 @@
 #pragma once
 
 #include "collide/robot/link_mesh.h"
-#include "collide/robot/link_spheres.h"
 #include "collide/robot/robot_description.h"
+#include "collide/robot/sphere_formats.h"
 #include "simplifier/simplify.h"
 
 #include <cstddef>
@@ -46,14 +46,14 @@ struct RobotCoverOptions {
 // One link's cover and what is proved of it. Lengths in metres, in the frame of the link.
 struct LinkCover {
   std::string link;
-  std::vector<Sphere> spheres;  // empty for a link without geometry
+  std::vector<Sphere> spheres = {};  // empty for a link without geometry
   // Of the fit and the proof; absent for a link without geometry.
-  std::optional<Simplification> fit;
+  std::optional<Simplification> fit = std::nullopt;
   std::size_t triangles = 0;  // of the link's mesh, tessellated primitives included
   double vertex_error = 0.0;  // of that mesh; in the fit's padding
   double seconds = 0.0;       // on the wall clock
   // For a person: an open mesh, promises that are not proved.
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = {};
 };
 
 struct RobotCover {
@@ -64,19 +64,22 @@ struct RobotCover {
 
 // Covers the geometry of every link with spheres, each link by simplify(), and certifies them: the
 // one function behind `spherule robot`. Promises G1 and G2 (guarantee.md) for each link whose
-// `fit` says so; broken_promises() finds the others. What is covered is the link's mesh grown by
-// its vertex error and the padding (link_mesh.h), so that exact primitives are covered too, and S
-// is that mesh simplified for things not smaller than D. Equal input and options give equal
-// spheres on any number of threads, unless `seconds` is set.
+// `fit` says so; links_not_proved() names the others. What is covered is the link's mesh grown by
+// its vertex error and the padding (link_mesh.h), so that exact primitives are covered too; their
+// tessellation lies outside of them by at most E / 16, which counts as mesh. S is that mesh
+// simplified for things not smaller than D. Equal input and options give equal spheres on any
+// number of threads, unless `seconds` is set.
+//
 // Throws Error for options out of range, an option for a link that does not exist or has no such
-// geometry, a robot without any, and as link_mesh(); all files are read before the first is
-// covered.
+// geometry, a robot without any, a link more than 10,000 E across (its mesh is probably in
+// millimetres), and as link_mesh(). All files are read before the first link is covered.
 RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& options = {});
 
 // Names of the links for which not everything promised is proved, in their order.
 std::vector<std::string> links_not_proved(const RobotCover& cover);
 
-// The spheres of all links that have some, as the writers of formats take them.
-std::vector<LinkSpheres> link_spheres(const RobotCover& cover);
+// The spheres of all links, as the writers of formats take them: none for a link without geometry.
+// Which pairs are not to be checked against each other is for the caller to add.
+RobotSpheres robot_spheres(const RobotCover& cover);
 
 }  // namespace spherule
