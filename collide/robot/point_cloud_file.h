@@ -17,8 +17,8 @@ struct PointCloudFile {
 
 // Reads the points of a PLY file (the vertices; text or binary, whatever else it has), or of a text
 // file with x, y and z at the beginning of each line, separated by blanks, commas or semicolons,
-// what follows a # being passed over: the files of the extensions xyz, txt, csv, asc and pts. Numbers
-// are multiplied by `scale`.
+// what follows a # being passed over: the files of the extensions xyz, txt, csv, asc and pts.
+// Numbers are multiplied by `scale`.
 //
 // Throws Error, whose subject is the file and whose reason names the line or the point: for a file
 // that cannot be read, another extension, a PLY header that is malformed or has no x, y and z, a

@@ -89,10 +89,10 @@ struct SceneDescription {
 // that is misspelt does not place an obstacle elsewhere than it was meant.
 //
 // Throws Error, whose subject is the file and whose reason names the place in it: for a file that
-// cannot be read, is no JSON (with the line), or is of another format or a newer version of it; keys
-// that are unknown, missing or there twice; values of a wrong type; numbers out of range; names that
-// are empty or taken; and regions of bodies that the scene and contacts of regions that it has not.
-// Links are not known here.
+// cannot be read, is no JSON (with the line), or is of another format or a newer version of it;
+// keys that are unknown, missing or there twice; values of a wrong type; numbers out of range;
+// names that are empty or taken; and regions of bodies that the scene and contacts of regions that
+// it has not. Links are not known here.
 SceneDescription read_scene(const std::filesystem::path& path);
 
 }  // namespace spherule

@@ -22,15 +22,15 @@ struct Trajectory {
   }
 };
 
-// Reads a trajectory: text with a configuration on each line, numbers in radians and metres that are
-// separated by commas, semicolons or blanks. If the first line has a word that is no number, it
-// names the joints, in any order: each that moves and mimics no other once; a column named "time" is
-// passed over. Without it the numbers are those of a configuration, in their order. Empty lines and
-// what follows a # are passed over.
+// Reads a trajectory: text with a configuration on each line, numbers in radians and metres that
+// are separated by commas, semicolons or blanks. If the first line has a word that is no number, it
+// names the joints, in any order: each that moves and mimics no other once; a column named "time"
+// is passed over. Without it the numbers are those of a configuration, in their order. Empty lines
+// and what follows a # are passed over.
 //
-// Throws Error, whose subject is the file and whose reason names the line: for a file that cannot be
-// read, a joint that is unknown, fixed, a mimic, missing or there twice, a line with too few or too
-// many numbers, what is no finite number, and a file without configurations.
+// Throws Error, whose subject is the file and whose reason names the line: for a file that cannot
+// be read, a joint that is unknown, fixed, a mimic, missing or there twice, a line with too few or
+// too many numbers, what is no finite number, and a file without configurations.
 Trajectory read_trajectory(const std::filesystem::path& path, const RobotModel& robot);
 
 }  // namespace spherule
