@@ -30,7 +30,7 @@ std::vector<Vector3d> text_points(std::string_view text, const std::string& file
     Vector3d point;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::optional<double> number = internal::number_of(lines.words()[k]);
-      if (!number) refuse("\"" + std::string(lines.words()[k]) + "\" is not a finite number");
+      if (!number) refuse(internal::quoted(lines.words()[k]) + " is not a finite number");
       point[static_cast<Eigen::Index>(k)] = *number;
     }
     points.push_back(point);

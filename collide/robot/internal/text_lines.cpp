@@ -47,4 +47,11 @@ bool TextLines::next() {
   return false;
 }
 
+std::string quoted(std::string_view word) {
+  std::string result(1, '"');
+  result += word;
+  result += '"';
+  return result;
+}
+
 }  // namespace spherule::internal

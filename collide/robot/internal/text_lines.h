@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,5 +28,8 @@ class TextLines {
   std::size_t number_ = 0;
   std::vector<std::string_view> words_;
 };
+
+// In quotes, for messages.
+std::string quoted(std::string_view word);
 
 }  // namespace spherule::internal
