@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/scene_file.h"
 
+#include "collide/robot/internal/text_lines.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/duplicate_keys.h"
 #include "spheretree/error.h"
@@ -42,13 +43,13 @@ class Value {
     unless(json_.is_object(), "is not an object");
     for (const auto& [key, value] : json_.items()) {
       unless(std::find(keys.begin(), keys.end(), key) != keys.end(),
-             "the key \"" + key + "\" is not known here");
+             "the key " + internal::quoted(key) + " is not known here");
     }
   }
   bool has(const char* key) const { return json_.contains(key); }
   Value at(const char* key) const {
     const auto found = json_.find(key);
-    if (found == json_.end()) refuse("\"" + std::string(key) + "\" is missing");
+    if (found == json_.end()) refuse(internal::quoted(key) + " is missing");
     return Value(*found, place_.empty() ? key : place_ + ", " + key, file_);
   }
   // The elements of a list, of which each is called `what` and its number; none if it is not there.
@@ -63,7 +64,7 @@ class Value {
   }
   // The same place with the name of what stands there.
   Value named(const std::string& name) const {
-    return Value(json_, place_ + " \"" + name + "\"", file_);
+    return Value(json_, place_ + " " + internal::quoted(name), file_);
   }
 
   std::string text() const {
@@ -169,7 +170,8 @@ class SceneReader {
   std::string take_name(const Value& value) {
     value.unless(value.has("name"), "\"name\" is missing");
     const std::string name = value.at("name").name();
-    value.unless(names_.insert(name).second, "the name \"" + name + "\" is there twice");
+    value.unless(names_.insert(name).second,
+                 "the name " + internal::quoted(name) + " is there twice");
     return name;
   }
 
@@ -180,7 +182,8 @@ class SceneReader {
     for (const char* key : keys) {
       all += (all.empty() ? "" : ", ") + std::string(key);
       if (!object.has(key)) continue;
-      object.unless(found.empty(), "has both \"" + found + "\" and \"" + key + "\"");
+      object.unless(found.empty(),
+                    "has both " + internal::quoted(found) + " and " + internal::quoted(key));
       found = key;
     }
     object.unless(!found.empty(), "has no shape: one of " + all);
@@ -287,7 +290,8 @@ class SceneReader {
     ball.require_keys({"center", "radius"});
     region.around = {ball.at("center").numbers<3>(), ball.at("radius").positive()};
     value.unless(regions_.insert({region.body, region.name}).second,
-                 "the region \"" + region.name + "\" of \"" + region.body + "\" is there twice");
+                 "the region " + internal::quoted(region.name) + " of " +
+                     internal::quoted(region.body) + " is there twice");
     scene_.regions.push_back(std::move(region));
   }
 
@@ -296,8 +300,9 @@ class SceneReader {
     SceneContact contact{value.at("body").name(), {}, value.at("other").name()};
     if (value.has("region")) {
       contact.region = value.at("region").name();
-      value.unless(regions_.contains({contact.body, contact.region}),
-                   "\"" + contact.body + "\" has no region \"" + contact.region + "\"");
+      value.unless(
+          regions_.contains({contact.body, contact.region}),
+          internal::quoted(contact.body) + " has no region " + internal::quoted(contact.region));
     }
     scene_.allowed_contacts.push_back(std::move(contact));
   }

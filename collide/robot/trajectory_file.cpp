@@ -66,10 +66,11 @@ class Reader {
   int variable_of(std::string_view word) const {
     const std::string name(word);
     const int index = robot_.find_joint(name);
-    if (index < 0) refuse("the robot has no joint \"" + name + "\"");
+    if (index < 0) refuse("the robot has no joint " + internal::quoted(name));
     const Joint& joint = robot_.joints()[static_cast<std::size_t>(index)];
-    if (!joint.moves()) refuse("joint \"" + name + "\" is fixed and has no position");
-    if (joint.mimics >= 0) refuse("joint \"" + name + "\" mimics another; leave it out");
+    if (!joint.moves()) refuse("joint " + internal::quoted(name) + " is fixed and has no position");
+    if (joint.mimics >= 0)
+      refuse("joint " + internal::quoted(name) + " mimics another; leave it out");
     return joint.variable;
   }
 
@@ -82,13 +83,13 @@ class Reader {
       }
       columns_.push_back(variable_of(word));
       char& there = seen[static_cast<std::size_t>(columns_.back())];
-      if (there != 0) refuse("joint \"" + std::string(word) + "\" is there twice");
+      if (there != 0) refuse("joint " + internal::quoted(word) + " is there twice");
       there = 1;
     }
     const auto missing = std::find(seen.begin(), seen.end(), 0);
     if (missing == seen.end()) return;
-    refuse("joint \"" + name_of_variable(static_cast<std::size_t>(missing - seen.begin())) +
-           "\" is missing");
+    const auto variable = static_cast<std::size_t>(missing - seen.begin());
+    refuse("joint " + internal::quoted(name_of_variable(variable)) + " is missing");
   }
 
   void number_columns() {
@@ -104,7 +105,7 @@ class Reader {
     trajectory_.positions.resize(at + trajectory_.width);
     for (std::size_t i = 0; i < words.size(); ++i) {
       const std::optional<double> number = internal::number_of(words[i]);
-      if (!number) refuse("\"" + std::string(words[i]) + "\" is not a finite number");
+      if (!number) refuse(internal::quoted(words[i]) + " is not a finite number");
       if (columns_[i] == kPassedOver) continue;
       trajectory_.positions[at + static_cast<std::size_t>(columns_[i])] = *number;
     }

@@ -180,8 +180,8 @@ class PlyReader {
     if (word_ >= words_.size()) refuse(place_ + " has too few numbers");
     const std::optional<double> number = number_of(words_[word_]);
     if (!number) {
-      refuse("line " + std::to_string(line_) + ": \"" + std::string(words_[word_]) +
-             "\" is not a finite number");
+      refuse("line " + std::to_string(line_) + ": " + quoted(words_[word_]) +
+             " is not a finite number");
     }
     ++word_;
     return *number;
