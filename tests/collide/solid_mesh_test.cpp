@@ -358,15 +358,5 @@ TEST(SolidMeshTest, GrowsByTheVertexError) {
   EXPECT_EQ(distance(ball, at(-0.2), solid, Pose()).upper, 0.0);
 }
 
-// What within() and distance() say of the surface alone.
-TEST(MeshTreeTest, SurfaceWithinAClearance) {
-  const MeshTree cube(cube_mesh());
-  const SphereTree ball = tree_of({{0.5, 0.5, 0.5}, 0.25});
-  EXPECT_FALSE(within(ball, Pose(), cube, Pose(), 0.2));
-  EXPECT_TRUE(within(ball, Pose(), cube, Pose(), 0.25));
-  EXPECT_NEAR(distance(ball, Pose(), cube, Pose()).lower, 0.25, 1e-12);
-  EXPECT_NEAR(distance(ball, Pose(), cube, Pose()).upper, 0.25, 1e-12);
-}
-
 }  // namespace
 }  // namespace spherule::test
