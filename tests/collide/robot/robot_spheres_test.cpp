@@ -203,17 +203,48 @@ TEST(RobotSpheres, ProgressGrowsAndNamesLinks) {
 
 TEST(RobotSpheres, NamesTheLinksWhoseProofFailed) {
   Random random(16);
-  RobotCover cover = cover_robot(random_robot(random, 3), quick(0.03));
+  const RobotDescription robot = random_robot(random, 3);
+  RobotCover cover = cover_robot(robot, quick(0.04));
   EXPECT_TRUE(links_not_proved(cover).empty());
   cover.links[2].fit->certificate.covered = false;
   EXPECT_EQ(links_not_proved(cover), std::vector<std::string>{"link2"});
 
-  const RobotSpheres spheres = robot_spheres(cover);
+  const RobotSpheres spheres = robot_spheres(robot, cover);
   EXPECT_EQ(spheres.robot, "chain");
   ASSERT_EQ(spheres.links.size(), 3U);
   EXPECT_EQ(spheres.links[1].link, "link1");
   EXPECT_TRUE(spheres.links[1].spheres.empty());
   EXPECT_EQ(spheres.links[2].spheres, cover.links[2].spheres);
+}
+
+// A hand with two fingers and a flange that carries nothing, and a camera fixed to the arm.
+TEST(RobotSpheres, NeighboursAreNotCheckedAgainstEachOther) {
+  RobotDescription robot;
+  robot.model = RobotModel("base");
+  const auto add = [&](const char* name, const char* parent, JointType type) {
+    robot.model.add_link(name, parent, {.name = name, .type = type, .lower = -1, .upper = 1});
+  };
+  add("arm", "base", JointType::kRevolute);
+  add("camera", "arm", JointType::kFixed);
+  add("lens", "camera", JointType::kFixed);
+  add("wrist", "arm", JointType::kRevolute);
+  add("flange", "wrist", JointType::kFixed);
+  add("left", "flange", JointType::kPrismatic);
+  add("right", "flange", JointType::kPrismatic);
+  RobotCover cover;
+  for (const Link& link : robot.model.links()) {
+    robot.links.push_back({.name = link.name});
+    cover.links.push_back({.link = link.name});
+    if (link.name != "flange") cover.links.back().spheres = {Sphere{{0, 0, 0}, 1}};
+  }
+  std::vector<std::string> pairs;
+  for (const DisabledPair& pair : robot_spheres(robot, cover).self_collision_ignore) {
+    EXPECT_EQ(pair.reason, "Adjacent");
+    pairs.push_back(pair.link_a + " " + pair.link_b);
+  }
+  // Not "camera wrist": the arm between them has spheres of its own. Nor "left right".
+  EXPECT_EQ(pairs, (std::vector<std::string>{"base arm", "arm camera", "arm lens", "arm wrist",
+                                             "camera lens", "wrist left", "wrist right"}));
 }
 
 std::string refusal(const RobotDescription& robot, const RobotCoverOptions& options) {
