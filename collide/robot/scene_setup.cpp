@@ -27,7 +27,7 @@ SharedTree shared(SphereTree tree) {
 
 // A link of one shape that is a mesh.
 LinkDescription link_of(const std::string& name, const MeshFile& mesh) {
-  return {.name = name, .collision = {LinkShape{.name = {}, .geometry = mesh}}};
+  return {.name = name, .visual = {}, .collision = {LinkShape{{}, Pose(), mesh}}};
 }
 
 // Makes what is asked of the robot's scene.
