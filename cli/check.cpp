@@ -211,6 +211,8 @@ void add_check(CLI::App& app, int& exit_code) {
                       "the robot first)");
   command->add_option("--max-error", arguments->cover.max_error,
                       "Without --spheres: how far spheres may protrude, in metres (default 0.01)");
+  command->add_option("--effort", arguments->cover.effort,
+                      "Without --spheres: how long to look for fewer spheres, as fit has it");
   command->add_option("--geometry", arguments->geometry, "Which shapes: collision or visual");
   command->add_option("--package", arguments->packages, "NAME=DIR, a root of package:// paths");
   command->add_option("--threads", arguments->cover.threads, "0: all (default)");

@@ -169,10 +169,11 @@ TEST_F(CheckTest, AddsPadding) {
 TEST_F(CheckTest, CoversTheRobotAndAToolWhereThereAreNoSpheres) {
   write_box("tool.stl", {0.1, 0.02, 0.02});
   write("cell.json", wall_and(R"("attached": [{"name": "tool", "link": "wrist",
-    "mesh": {"file": "tool.stl"}, "pose": {"position": [0.05, -0.01, -0.01]}}])"));
+    "mesh": {"file": "tool.stl"}, "pose": {"position": [0.05, -0.01, -0.01]}}],
+    "allowed_contacts": [{"body": "tool", "other": "hand"}])"));
   write("path.csv", "-0.3 0\n-0.1 0\n0.03 0\n");
-  const Outcome outcome =
-      run({"check", "slider.urdf", "cell.json", "path.csv", "--max-error", "0.02", "--json"});
+  const Outcome outcome = run({"check", "slider.urdf", "cell.json", "path.csv", "--max-error",
+                               "0.02", "--effort", "0", "--json"});
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   const json report = json::parse(outcome.out);
   EXPECT_EQ(report["colliding"], 2);
@@ -188,8 +189,8 @@ TEST_F(CheckTest, RefusesBadInput) {
   refused("path.csv: line 1: the robot has no joint \"elbow\"");
   write("path.csv", "0 0\n\n0 200\n");
   expect_refusal(command({"--edges"}), "path.csv: line 3: a position beyond 100");
-  expect_refusal(command({"--edges", "--resolution", "0"}), "resolution");
   write("path.csv", "0 0\n");
+  expect_refusal(command({"--edges", "--resolution", "0"}), "resolution");
   write("cell.json", wall_and(R"("obstacle": [])"));
   refused("cell.json: the key \"obstacle\" is not known here");
   write("cell.json", wall_and(R"("allowed_contacts": [{"body": "arm", "other": "wall"}])"));
