@@ -173,7 +173,7 @@ TEST_F(CheckTest, CoversTheRobotAndAToolWhereThereAreNoSpheres) {
     "allowed_contacts": [{"body": "tool", "other": "hand"}])"));
   write("path.csv", "-0.3 0\n-0.1 0\n0.03 0\n");
   const Outcome outcome = run({"check", "slider.urdf", "cell.json", "path.csv", "--max-error",
-                               "0.02", "--effort", "0", "--json"});
+                               "0.04", "--effort", "0", "--json"});
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   const json report = json::parse(outcome.out);
   EXPECT_EQ(report["colliding"], 2);
