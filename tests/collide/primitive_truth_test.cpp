@@ -60,8 +60,8 @@ TEST(PrimitiveTruth, AgreesWithFcl) {
     int doubtful = 0;
     for (int i = 0; i < effort(3000, 300); ++i) {
       const auto [solid, geometry] = random_solid(random, kind);
-      const Pose world_from_solid(random.rotation(), random.direction());
-      const Pose world_from_tree(random.rotation(), random.direction());
+      const Pose world_from_solid(random.rotation(), 0.4 * random.direction());
+      const Pose world_from_tree(random.rotation(), 0.4 * random.direction());
       const double radius = random.between(0.01, 0.5);
       const Vector3d center = 1.2 * random.between(0.0, 1.0) * random.direction();
       const SphereTree tree = build_tree(std::vector<Sphere>{{center, radius}});
