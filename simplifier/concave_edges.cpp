@@ -141,8 +141,8 @@ class Chains {
       const double sine = std::max(kLeastSine, std::sin(chain.angle / 2.0));
       const double touching =
           options.min_external_diameter / 2.0 + options.padding + options.margin;
-      const Capsule capsule{point(chain.vertices.front()), point(chain.vertices.back()),
-                            touching / sine + tolerance};
+      const ZoneCapsule capsule{point(chain.vertices.front()), point(chain.vertices.back()),
+                                touching / sine + tolerance};
       result.push_back({.shape = capsule,
                         .max_error = std::nullopt,
                         .min_external_diameter = edge_diameter(chain.angle, options)});

@@ -88,7 +88,7 @@ ZoneShape read_box(const Json& entry, const std::string& subject, const std::str
 ZoneShape read_capsule(const Json& entry, const std::string& subject, const std::string& where) {
   const Reader read(entry, subject, where,
                     {"shape", "from", "to", "radius", "max_error", "min_external"});
-  return Capsule{read.point("from"), read.point("to"), read.number("radius")};
+  return ZoneCapsule{read.point("from"), read.point("to"), read.number("radius")};
 }
 
 Zone read_zone(const Json& entry, const std::string& subject, const std::string& where) {
@@ -122,7 +122,7 @@ struct WriteShape {
   Json operator()(const Eigen::AlignedBox3d& box) const {
     return {{"shape", "box"}, {"min", list(box.min())}, {"max", list(box.max())}};
   }
-  Json operator()(const Capsule& capsule) const {
+  Json operator()(const ZoneCapsule& capsule) const {
     return {{"shape", "capsule"},
             {"from", list(capsule.from)},
             {"to", list(capsule.to)},

@@ -15,7 +15,7 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
 // A segment is a triangle with two equal corners.
-TriangleDistance to_axis(const Capsule& capsule, const Vector3d& point) {
+TriangleDistance to_axis(const ZoneCapsule& capsule, const Vector3d& point) {
   return point_triangle_distance(point, capsule.from, capsule.to, capsule.to);
 }
 
@@ -33,7 +33,7 @@ struct DistanceLower {
     }
     return norm_lower(gap);
   }
-  double operator()(const Capsule& capsule) const {
+  double operator()(const ZoneCapsule& capsule) const {
     return std::max(0.0, sub_down(to_axis(capsule, point).lower, capsule.radius));
   }
 };
@@ -51,7 +51,7 @@ struct Contains {
     }
     return true;
   }
-  bool operator()(const Capsule& capsule) const {
+  bool operator()(const ZoneCapsule& capsule) const {
     return add_up(to_axis(capsule, point).upper, reach) <= capsule.radius;
   }
 };
@@ -59,7 +59,7 @@ struct Contains {
 struct Bounding {
   AlignedBox3d operator()(const Sphere& ball) const { return about(ball.center, ball.radius); }
   AlignedBox3d operator()(const AlignedBox3d& box) const { return box; }
-  AlignedBox3d operator()(const Capsule& capsule) const {
+  AlignedBox3d operator()(const ZoneCapsule& capsule) const {
     return about(capsule.from, capsule.radius).merged(about(capsule.to, capsule.radius));
   }
 
@@ -79,7 +79,7 @@ struct IsUsable {
     return is_usable_point(box.min()) && is_usable_point(box.max()) &&
            (box.min().array() <= box.max().array()).all();
   }
-  bool operator()(const Capsule& capsule) const {
+  bool operator()(const ZoneCapsule& capsule) const {
     return is_usable(Sphere{capsule.from, capsule.radius}) && is_usable_point(capsule.to);
   }
 };
@@ -91,7 +91,7 @@ bool equal_shapes(const ZoneShape& a, const ZoneShape& b) {
     return box->min() == other.min() && box->max() == other.max();
   }
   if (const auto* ball = std::get_if<Sphere>(&a)) return *ball == std::get<Sphere>(b);
-  return std::get<Capsule>(a) == std::get<Capsule>(b);
+  return std::get<ZoneCapsule>(a) == std::get<ZoneCapsule>(b);
 }
 
 }  // namespace

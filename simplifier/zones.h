@@ -16,18 +16,18 @@
 namespace spherule {
 
 // All points within `radius` of the segment between two points; a radius of 0 is the segment.
-struct Capsule {
+struct ZoneCapsule {
   Eigen::Vector3d from = Eigen::Vector3d::Zero();
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
   double radius = 0.0;
 };
 
-inline bool operator==(const Capsule& a, const Capsule& b) {
+inline bool operator==(const ZoneCapsule& a, const ZoneCapsule& b) {
   return a.from == b.from && a.to == b.to && a.radius == b.radius;
 }
 
 // Closed and convex, which the rule for steps of the flood rests on.
-using ZoneShape = std::variant<Sphere, Eigen::AlignedBox3d, Capsule>;
+using ZoneShape = std::variant<Sphere, Eigen::AlignedBox3d, ZoneCapsule>;
 
 // A part of space in which E or D is smaller than elsewhere. Where zones overlap, the smallest
 // value counts.

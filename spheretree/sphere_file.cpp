@@ -2,6 +2,7 @@
 #include "spheretree/sphere_file.h"
 
 #include "spheretree/atomic_file.h"
+#include "spheretree/duplicate_keys.h"
 #include "spheretree/error.h"
 #include "spheretree/internal/file_content.h"
 
@@ -9,7 +10,6 @@
 
 #include <cmath>
 #include <limits>
-#include <set>
 #include <string_view>
 
 namespace spherule {
@@ -92,29 +92,8 @@ ordered_json written(const std::string& name, const OptionValue& value, const Re
 
 // --- reading ---
 
-// Notices keys that an object holds twice; the parser would silently keep the last.
-class DuplicateKeys {
- public:
-  void see(int depth, json::parse_event_t event, const json& parsed) {
-    const auto level = static_cast<std::size_t>(depth);
-    if (event == json::parse_event_t::object_start) {
-      keys_.resize(level + 1);
-      keys_[level].clear();
-    } else if (event == json::parse_event_t::key) {
-      const auto& key = parsed.get_ref<const std::string&>();
-      if (!keys_[level - 1].insert(key).second && duplicate_.empty()) duplicate_ = key;
-    }
-  }
-
-  const std::string& duplicate() const { return duplicate_; }
-
- private:
-  std::vector<std::set<std::string>> keys_;
-  std::string duplicate_;
-};
-
 json parsed(std::string_view text, const Refusal& refuse) {
-  DuplicateKeys keys;
+  DuplicateKeys<json> keys;
   json document;
   try {
     document = json::parse(text, [&keys](int depth, json::parse_event_t event, json& part) {
@@ -124,7 +103,7 @@ json parsed(std::string_view text, const Refusal& refuse) {
   } catch (const json::exception& error) {
     refuse(std::string("is not JSON: ") + error.what());
   }
-  refuse.unless(keys.duplicate().empty(), "the key \"" + keys.duplicate() + "\" appears twice");
+  refuse.unless(keys.duplicate().empty(), "the key " + keys.duplicate() + " appears twice");
   return document;
 }
 

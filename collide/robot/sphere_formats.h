@@ -84,13 +84,22 @@ struct SphereFormatFile {
 //   Links that have other shapes and no sphere are not in `links`.
 // - cuRobo: also a file whose `collision_spheres` names another file, relative to it.
 // - XRDF: the geometry that `collision` names.
-// - A radius of zero or below switches a ball off (all formats but our own two): it is left out and
-//   counted. So are shapes that are no spheres. Nothing else is left out.
+// - A radius of zero or below switches a ball off, and so does its link's absence from cuRobo's
+//   collision_link_names: it is left out and counted. (In SRDF a radius of zero says that the link
+//   has no balls, and one below zero is refused; in our own formats only the latter.) Shapes that
+//   are no spheres are left out and counted. Nothing else is left out.
 // Throws Error, naming the file, the place (a line, a link, a number) and the reason, for a file
 // that cannot be read or is of none of these formats, a URDF without spheres, names or keys that
 // are there twice, values of a wrong type, numbers beyond 1e15.
 SphereFormatFile read_robot_spheres(const std::filesystem::path& path,
                                     const SphereReadOptions& options = {});
+
+// Whether a format holds the balls of one mesh and names no link.
+bool is_of_one_mesh(const SphereFormatFile& file);
+
+// The balls that checks against the world see where buffers shrink them: radii plus what is below
+// zero of the buffers, rounded down, without those that vanish. Buffers above zero do not count.
+std::vector<LinkSpheres> shrunk_by_buffers(const RobotSpheres& spheres);
 
 // What the formats say of the robot beside its balls.
 struct SphereFileContext {

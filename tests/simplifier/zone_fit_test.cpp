@@ -28,7 +28,7 @@ bool holds(const ZoneShape& shape, const Vector3d& p) {
     return (p - ball->center).norm() <= ball->radius;
   }
   if (const auto* box = std::get_if<AlignedBox3d>(&shape)) return box->contains(p);
-  const auto& capsule = std::get<Capsule>(shape);
+  const auto& capsule = std::get<ZoneCapsule>(shape);
   for (int i = 0; i <= 1000; ++i) {
     const Vector3d at = capsule.from + i / 1000.0 * (capsule.to - capsule.from);
     if ((p - at).norm() <= capsule.radius) return true;
@@ -77,7 +77,7 @@ std::vector<Zone> zones_of_all_shapes() {
   return {{.shape = Sphere{{1, 1, 1}, 0.2}, .max_error = kZoneError},
           {.shape = AlignedBox3d(Vector3d(-0.3, -0.3, -0.3), Vector3d(0.2, 0.15, 0.1)),
            .max_error = 2.0 * kZoneError},
-          {.shape = Capsule{{1, 0.2, 0}, {1, 0.5, 0}, 0.1}, .max_error = kZoneError}};
+          {.shape = ZoneCapsule{{1, 0.2, 0}, {1, 0.5, 0}, 0.1}, .max_error = kZoneError}};
 }
 
 TEST(ZoneFit, NoPointOfABallInAZoneIsFurtherFromTheSolidThanTheZoneAllows) {

@@ -187,7 +187,7 @@ TEST(ConcaveEdges, TheInsideEdgeOfABracketIsTheOnlyOne) {
     for (const TriangleMesh& variant : {mesh, inverted(mesh)}) {
       const std::vector<Zone> zones = concave_edge_zones(variant, kEdges);
       ASSERT_EQ(zones.size(), 1U);
-      const auto& capsule = std::get<Capsule>(zones[0].shape);
+      const auto& capsule = std::get<ZoneCapsule>(zones[0].shape);
       EXPECT_NEAR((capsule.to - capsule.from).norm(), 0.5, 1e-12);
       // E / 2 = r (sqrt 2 - 1).
       EXPECT_NEAR(*zones[0].min_external_diameter, 0.1 / (std::numbers::sqrt2 - 1.0), 1e-9);
@@ -245,7 +245,7 @@ TEST(ConcaveEdges, TheCornerIsKept) {
   const std::vector<Zone> zones =
       concave_edge_zones(bracket, {.min_external_diameter = 9.0, .max_error = 1.0});
   ASSERT_EQ(zones.size(), 1U);
-  const auto& edge = std::get<Capsule>(zones[0].shape);
+  const auto& edge = std::get<ZoneCapsule>(zones[0].shape);
   const Vector3d middle = (edge.from + edge.to) / 2.0;
   // Away from both arms, which lie along x and z.
   const Vector3d inwards = Vector3d(1, 0, 1).normalized();

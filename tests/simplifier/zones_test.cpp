@@ -31,7 +31,7 @@ Real true_distance(const ZoneShape& shape, const Vector3d& at) {
         p.cwiseMax(box->min().cast<Real>()).cwiseMin(box->max().cast<Real>()).eval();
     return (p - inside).norm();
   }
-  const auto& capsule = std::get<Capsule>(shape);
+  const auto& capsule = std::get<ZoneCapsule>(shape);
   const Vector3l from = capsule.from.cast<Real>();
   const Vector3l way = capsule.to.cast<Real>() - from;
   const Real length = way.squaredNorm();
@@ -49,9 +49,9 @@ ZoneShape random_shape(Random& random) {
     case 1:
       return AlignedBox3d(a.cwiseMin(b), a.cwiseMax(b));
     case 2:
-      return Capsule{a, a, 0.5 * random.unit()};
+      return ZoneCapsule{a, a, 0.5 * random.unit()};
     default:
-      return Capsule{a, b, 0.5 * random.unit()};
+      return ZoneCapsule{a, b, 0.5 * random.unit()};
   }
 }
 
@@ -82,8 +82,10 @@ TEST(Zones, DistancesAreBoundsAndContainmentIsCertain) {
 TEST(Zones, ThePointsOfAShapeAreContainedUpToRounding) {
   const AlignedBox3d box(Vector3d(0, 0, 0), Vector3d(1, 2, 3));
   EXPECT_TRUE(certainly_contains(ZoneShape(box), Vector3d(0, 2, 1.5)));
-  EXPECT_TRUE(certainly_contains(ZoneShape(Capsule{{0, 0, 0}, {1, 0, 0}, 0.5}), {0.5, 0.499, 0}));
-  EXPECT_FALSE(certainly_contains(ZoneShape(Capsule{{0, 0, 0}, {1, 0, 0}, 0.5}), {0.5, 0.501, 0}));
+  EXPECT_TRUE(
+      certainly_contains(ZoneShape(ZoneCapsule{{0, 0, 0}, {1, 0, 0}, 0.5}), {0.5, 0.499, 0}));
+  EXPECT_FALSE(
+      certainly_contains(ZoneShape(ZoneCapsule{{0, 0, 0}, {1, 0, 0}, 0.5}), {0.5, 0.501, 0}));
 }
 
 // min(E, min over Z of max(e, dist(c, Z) - d)), by going through all zones.
@@ -123,7 +125,7 @@ TEST(Zones, AFileHoldsBallsBoxesAndCapsules) {
   const std::vector<Zone> expected = {
       {Sphere{{1, 2, 3}, 4.0}, 0.5, 2.0},
       {AlignedBox3d(Vector3d(0, 0, 0), Vector3d(1, 2.5, 3)), 0.1, std::nullopt},
-      {Capsule{{0, 0, 0}, {0, 0, 9}, 1e-3}, std::nullopt, 0.3}};
+      {ZoneCapsule{{0, 0, 0}, {0, 0, 9}, 1e-3}, std::nullopt, 0.3}};
   EXPECT_EQ(zones, expected);
   EXPECT_EQ(tightest_error(zones, 1.0), 0.1);
   EXPECT_EQ(tightest_error(zones, 0.05), 0.05);

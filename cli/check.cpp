@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/check_report.h"
+#include "cli/command.h"
+#include "cli/progress.h"
+#include "cli/robot_options.h"
+#include "collide/robot/robot_checker.h"
+#include "collide/robot/scene_setup.h"
+#include "collide/robot/sphere_formats.h"
+#include "collide/robot/trajectory_file.h"
+#include "collide/robot/urdf.h"
+#include "spheretree/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+struct CheckArguments {
+  std::string urdf;
+  std::string scene;
+  std::string trajectory;
+  std::string spheres;
+  std::string geometry = geometry_names().front();
+  std::vector<std::string> packages;
+  RobotCoverOptions cover;
+  double resolution = EdgeRequest{}.resolution;
+  bool edges = false;
+  bool json = false;
+};
+
+void warn(const std::string& what) {
+  std::cerr << "spherule: warning: " << what << "\n";
+}
+
+// What a robot is made of for this check, and pairs of links that its spheres' file leaves out.
+struct SphereRobot {
+  RobotModel model;
+  std::vector<DisabledPair> ignored;
+};
+
+// Links that have a shape and no sphere would be free everywhere.
+void warn_of_bare_links(const RobotDescription& robot, const RobotModel& model,
+                        LinkGeometry geometry) {
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    if (model.links()[i].trees.empty() && !link_shapes(robot.links[i], geometry).empty()) {
+      warn("link " + robot.links[i].name + " has a shape but no spheres: it is not checked");
+    }
+  }
+}
+
+SphereRobot read_spheres(const CheckArguments& arguments, const RobotDescription& robot) {
+  RobotSpheres read = read_robot_spheres(arguments.spheres).spheres;
+  if (read.collision_buffer != 0.0 || !read.collision_buffers.empty() ||
+      !read.self_collision_buffer.empty()) {
+    warn(arguments.spheres + ": its buffers are not added; name them as padding in the scene");
+  }
+  return {with_spheres(robot.model, read.links), std::move(read.self_collision_ignore)};
+}
+
+SphereRobot cover(const CheckArguments& arguments, const RobotDescription& robot,
+                  RobotCoverOptions options) {
+  const RobotCover covered = [&] {
+    ProgressBar bar;
+    options.progress = bar.callback();
+    return cover_robot(robot, options);
+  }();
+  std::vector<LinkSpheres> spheres;
+  for (const LinkCover& link : covered.links) {
+    if (link.fit && !link.fit->certificate.covered) {
+      throw Error(arguments.urdf,
+                  "link " + link.link + ": its spheres are not proved to cover all of it");
+    }
+    for (const std::string& warning : link.warnings) warn("link " + link.link + ": " + warning);
+    spheres.push_back({link.link, link.spheres});
+  }
+  return {with_spheres(robot.model, spheres), {}};
+}
+
+// Motions are proved for positions up to that, in radians and metres.
+constexpr double kLargestPosition = 100.0;
+
+void require_provable(const Trajectory& trajectory, const std::string& file) {
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    for (const double position : trajectory.configuration(i)) {
+      if (std::abs(position) <= kLargestPosition) continue;
+      throw Error(file, "line " + std::to_string(trajectory.lines[i]) +
+                            ": a position beyond 100, of which no motion is proved");
+    }
+  }
+}
+
+class TrajectoryCheck {
+ public:
+  TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory, int threads)
+      : checker_(checker), trajectory_(trajectory) {
+    const unsigned count = threads > 0 ? static_cast<unsigned>(threads)
+                                       : std::max(1u, std::thread::hardware_concurrency());
+    for (unsigned i = 0; i < count; ++i) scratches_.emplace_back(checker);
+    report_.configurations = trajectory.size();
+  }
+
+  CheckReport configurations() && {
+    std::vector<std::uint8_t> free(trajectory_.size());
+    checker_.check_configs(trajectory_.positions, scratches_, free);
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      if (free[i] != 0) continue;
+      ++report_.colliding;
+      explain(trajectory_.configuration(i), {.line = trajectory_.lines[i]});
+    }
+    return std::move(report_);
+  }
+
+  CheckReport motions(double resolution) && {
+    const std::size_t count = trajectory_.size() - 1;
+    const std::span all(trajectory_.positions);
+    const std::size_t numbers = count * trajectory_.width;
+    const std::vector<EdgeResult> results =
+        checker_.check_edges(all.first(numbers), all.last(numbers), scratches_,
+                             {.resolution = resolution, .first = true});
+    report_.motions = count;
+    for (std::size_t i = 0; i < count; ++i) {
+      TrajectoryPoint at{.line = trajectory_.lines[i], .to_line = trajectory_.lines[i + 1]};
+      if (results[i].verdict == Verdict::kCollision) {
+        ++report_.colliding;
+        at.fraction = results[i].contact_at;
+        explain(between(i, at.fraction), at);
+      } else if (results[i].verdict == Verdict::kUnknown) {
+        at.fraction = results[i].free_until;
+        report_.not_proved.push_back(at);
+      }
+    }
+    return std::move(report_);
+  }
+
+ private:
+  std::vector<double> between(std::size_t index, double fraction) const {
+    const std::span<const double> from = trajectory_.configuration(index);
+    const std::span<const double> to = trajectory_.configuration(index + 1);
+    std::vector<double> result(from.begin(), from.end());
+    for (std::size_t k = 0; k < result.size(); ++k) result[k] += fraction * (to[k] - from[k]);
+    return result;
+  }
+
+  void explain(std::span<const double> configuration, const TrajectoryPoint& at) {
+    for (const CheckedContact& contact : checker_.explain(configuration, scratches_.front())) {
+      report_.add({at, contact});
+    }
+  }
+
+  const RobotChecker& checker_;
+  const Trajectory& trajectory_;
+  std::vector<RobotChecker::Scratch> scratches_;
+  CheckReport report_;
+};
+
+int check(const CheckArguments& arguments) {
+  RobotCoverOptions options = arguments.cover;
+  options.geometry = geometry_named(arguments.geometry);
+  const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
+  const SceneDescription scene = read_scene(arguments.scene);
+  const Trajectory trajectory = read_trajectory(arguments.trajectory, robot.model);
+  if (arguments.edges) require_provable(trajectory, arguments.trajectory);
+  require_resolution(arguments.resolution);
+
+  SphereRobot spheres =
+      arguments.spheres.empty() ? cover(arguments, robot, options) : read_spheres(arguments, robot);
+  warn_of_bare_links(robot, spheres.model, options.geometry);
+  PreparedScene prepared = prepare_scene(std::move(spheres.model), scene, options);
+  for (const std::string& warning : prepared.warnings) warn(warning);
+  AllowedCollisions allowed = prepared.scene.allowed_collisions();
+  for (const DisabledPair& pair : spheres.ignored) allowed.allow(pair.link_a, pair.link_b);
+  prepared.scene.set_allowed_collisions(std::move(allowed));
+
+  const RobotChecker checker = prepared.scene.snapshot();
+  TrajectoryCheck trajectory_check(checker, trajectory, options.threads);
+  const CheckReport report = arguments.edges && trajectory.size() > 1
+                                 ? std::move(trajectory_check).motions(arguments.resolution)
+                                 : std::move(trajectory_check).configurations();
+  std::cout << (arguments.json ? check_json(report) : check_table(report));
+  return report.is_free() ? kYes : kNo;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "check",
+      "Check a robot along a trajectory in a scene; exit 0 free, 1 collision or not proved");
+  auto arguments = std::make_shared<CheckArguments>();
+  command->add_option("urdf", arguments->urdf, "URDF of the robot")->required();
+  command->add_option("scene", arguments->scene, "Scene, JSON (docs/scene-file.md)")->required();
+  command
+      ->add_option("trajectory", arguments->trajectory,
+                   "Configurations, one a line, with or without a line of joint names")
+      ->required();
+  command->add_flag("--edges", arguments->edges,
+                    "Prove every motion from one configuration to the next");
+  command->add_option("--resolution", arguments->resolution,
+                      "With --edges: how closely motions are looked at, in metres (default 1e-4)");
+  command->add_option("--spheres", arguments->spheres,
+                      "Spheres of the robot, in any format that audit-robot reads (default: cover "
+                      "the robot first)");
+  command->add_option("--max-error", arguments->cover.max_error,
+                      "Without --spheres: how far spheres may protrude, in metres (default 0.01)");
+  command->add_option("--effort", arguments->cover.effort,
+                      "Without --spheres: how long to look for fewer spheres, as fit has it");
+  command->add_option("--geometry", arguments->geometry, "Which shapes: collision or visual");
+  command->add_option("--package", arguments->packages, "NAME=DIR, a root of package:// paths");
+  command->add_option("--threads", arguments->cover.threads, "0: all (default)");
+  command->add_flag("--json", arguments->json, "Print the result as JSON");
+  command->footer(
+      "Examples:\n"
+      "  spherule check robot.urdf cell.json path.csv\n"
+      "  spherule check robot.urdf cell.json path.csv --edges --spheres robot.spheres.json --json");
+  command->callback([arguments, &exit_code] { exit_code = check(*arguments); });
+}
+
+}  // namespace spherule

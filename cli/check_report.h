@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/robot/robot_checker.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// Where on a trajectory: a configuration, or a point of the motion from it to the next one.
+struct TrajectoryPoint {
+  std::size_t line = 0;     // of the file
+  std::size_t to_line = 0;  // of the next configuration; 0 for the configuration itself
+  double fraction = 0.0;    // of the motion
+};
+
+struct FoundContact {
+  TrajectoryPoint at;
+  CheckedContact contact;
+};
+
+// Two bodies, or a body and an obstacle, that touch somewhere.
+struct TouchingPair {
+  std::size_t count = 0;  // of configurations or motions
+  FoundContact first;     // on the trajectory
+  FoundContact worst;     // the deepest
+};
+
+// What a check of a trajectory found.
+struct CheckReport {
+  std::size_t configurations = 0;
+  std::optional<std::size_t> motions{};       // where motions were proved
+  std::size_t colliding = 0;                  // of the motions, or of the configurations
+  std::vector<TrajectoryPoint> not_proved{};  // motions, and up to where they are free
+  std::vector<TouchingPair> pairs{};          // in the order of the first contacts
+
+  bool is_free() const { return colliding == 0 && not_proved.empty(); }
+  void add(const FoundContact& found);
+};
+
+// For a person, a few lines and a table, and as JSON.
+std::string check_table(const CheckReport& report);
+std::string check_json(const CheckReport& report);
+
+}  // namespace spherule

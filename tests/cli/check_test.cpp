@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/cli/command_test_support.h"
+
+#include <string>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+using nlohmann::json;
+
+// A ball of radius 0.05 that slides along x and turns about z.
+constexpr const char* kRobot = R"(<?xml version="1.0"?>
+<robot name="slider">
+  <link name="base"/>
+  <link name="hand">
+    <collision><geometry><sphere radius="0.05"/></geometry></collision>
+  </link>
+  <link name="wrist"/>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
+    <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+  <joint name="turn" type="continuous"><parent link="hand"/><child link="wrist"/>
+    <axis xyz="0 0 1"/></joint>
+</robot>
+)";
+
+// A wall of a millimetre at x = 0, and what else is given.
+std::string wall_and(const std::string& keys) {
+  return R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "wall", "box": {"size": [0.001, 1, 1]}}])" +
+         (keys.empty() ? "" : ", " + keys) + "}";
+}
+
+class CheckTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write("slider.urdf", kRobot);
+    write("slider.json", R"({"hand": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
+    write("cell.json", wall_and(""));
+    write("path.csv", "-1 0\n1 0\n");
+  }
+
+  std::vector<std::string> command(const std::vector<std::string>& more) const {
+    std::vector<std::string> line = {"check",    "slider.urdf", "cell.json",
+                                     "path.csv", "--spheres",   "slider.json"};
+    line.insert(line.end(), more.begin(), more.end());
+    return line;
+  }
+  json checked(int exit_code, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> line = command(more);
+    line.push_back("--json");
+    const Outcome outcome = run(line);
+    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
+    return json::parse(outcome.out);
+  }
+};
+
+TEST_F(CheckTest, ConfigurationsOrMotions) {
+  const json configurations = checked(0);
+  EXPECT_EQ(configurations["verdict"], "free");
+  EXPECT_EQ(configurations["configurations"], 2);
+  EXPECT_TRUE(configurations["first_contact"].is_null());
+
+  const json motions = checked(1, {"--edges"});
+  EXPECT_EQ(motions["verdict"], "collision");
+  EXPECT_EQ(motions["motions"], 1);
+  EXPECT_EQ(motions["colliding"], 1);
+  const json& contact = motions["first_contact"];
+  EXPECT_EQ(contact["line"], 1);
+  EXPECT_EQ(contact["to_line"], 2);
+  EXPECT_NEAR(contact["fraction"].get<double>(), (1.0 - 0.0505) / 2.0, 2e-4);
+  EXPECT_EQ(contact["first"]["name"], "hand");
+  EXPECT_EQ(contact["first"]["kind"], "link");
+  EXPECT_EQ(contact["second"]["name"], "wall");
+  EXPECT_EQ(contact["second"]["kind"], "obstacle");
+
+  write("path.csv", "turn,slide\n0,1\n90,0.5\n");
+  EXPECT_EQ(checked(0, {"--edges"})["verdict"], "free");
+}
+
+TEST_F(CheckTest, FirstAndDeepestContacts) {
+  write("path.csv", "slide,turn\n# far\n-1,0\n0.04,0\n0.01,0\n1,0\n0.03,0\n");
+  const json report = checked(1);
+  EXPECT_EQ(report["colliding"], 3);
+  ASSERT_EQ(report["pairs"].size(), 1u);
+  EXPECT_EQ(report["pairs"][0]["count"], 3);
+  EXPECT_EQ(report["first_contact"]["line"], 4);
+  EXPECT_EQ(report["worst_contact"]["line"], 5);
+  EXPECT_NEAR(report["first_contact"]["depth"].get<double>(), 0.0105, 1e-6);
+  EXPECT_NEAR(report["worst_contact"]["depth"].get<double>(), 0.0405, 1e-6);
+  const Outcome table = run(command({}));
+  EXPECT_EQ(table.exit_code, 1);
+  EXPECT_NE(table.out.find("collision: 5 configurations, 3 of them collide"), std::string::npos)
+      << table.out;
+  EXPECT_NE(table.out.find("40.5"), std::string::npos) << table.out;
+}
+
+TEST_F(CheckTest, GrazingIsNotProved) {
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "floor", "half_space": {}, "pose": {"position": [0, 0, -0.050001]}}]})");
+  const json coarse = checked(1, {"--edges", "--resolution", "0.01"});
+  EXPECT_EQ(coarse["verdict"], "not proved");
+  ASSERT_EQ(coarse["not_proved"].size(), 1u);
+  EXPECT_EQ(coarse["not_proved"][0]["line"], 1);
+  EXPECT_EQ(coarse["colliding"], 0);
+}
+
+TEST_F(CheckTest, ObstaclesOfAllKinds) {
+  write_box("block.stl", {1000, 1000, 1000});
+  write_spheres("balls.json", {{0.0, 0.0, 0.0, 0.01}});
+  run({"tree", "balls.json", "-o", "balls.tree"});
+  write("scan.xyz", "0 0 0\n0.001 0 0\n");
+  const auto scene = [](const std::string& shape) {
+    return R"({"format": "spherule-scene", "version": 1, "obstacles": [{"name": "thing", )" +
+           shape + R"(, "pose": {"position": [1, 0, 0]}}]})";
+  };
+  for (const std::string shape :
+       {R"("mesh": {"file": "block.stl", "scale": 0.001})", R"("spheres": {"file": "balls.json"})",
+        R"("tree": {"file": "balls.tree"})", R"("points": {"file": "scan.xyz", "radius": 0.01})",
+        R"("ball": {"radius": 0.01})", R"("capsule": {"radius": 0.01, "length": 0.1})",
+        R"("cylinder": {"radius": 0.01, "length": 0.1})"}) {
+    SCOPED_TRACE(shape);
+    write("cell.json", scene(shape));
+    write("path.csv", "0 0\n");
+    EXPECT_EQ(checked(0)["verdict"], "free");
+    // The hand is wholly inside the block.
+    write("path.csv", shape.find("mesh") != std::string::npos ? "1.06 0\n" : "1 0\n");
+    EXPECT_EQ(checked(1)["first_contact"]["second"]["name"], "thing");
+  }
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "thing", "mesh": {"file": "block.stl", "scale": 0.001},
+     "pose": {"position": [0, -0.5, -0.5]}}]})");
+  write("path.csv", "0.5 0\n");
+  EXPECT_EQ(checked(1)["colliding"], 1);
+}
+
+TEST_F(CheckTest, AToolWhoseTipMayTouch) {
+  write_spheres("tool.json", {{0.0, 0.0, 0.0, 0.01}, {0.1, 0.0, 0.0, 0.02}});
+  const std::string tool =
+      R"("attached": [{"name": "tool", "link": "wrist", "spheres": {"file": "tool.json"},
+                       "pose": {"position": [0.1, 0, 0]}}],
+         "regions": [{"body": "tool", "name": "tip",
+                      "ball": {"center": [0.1, 0, 0], "radius": 0.01}}])";
+  write("path.csv", "-0.19 0\n");  // the tip, of which the centre is at 0.2
+  write("cell.json", wall_and(tool));
+  const json contact = checked(1)["first_contact"];
+  EXPECT_EQ(contact["first"]["name"], "tool");
+  EXPECT_EQ(contact["first"]["kind"], "attached");
+  const std::string allowed =
+      R"(, "allowed_contacts": [{"body": "tool", "region": "tip", "other": "wall"}])";
+  write("cell.json", wall_and(tool + allowed));
+  EXPECT_EQ(checked(0)["verdict"], "free");
+  write("path.csv", "-0.09 0\n");  // the rest of it
+  EXPECT_EQ(checked(1)["first_contact"]["first"]["name"], "tool");
+  write("path.csv", "-0.19 3.14159\n");  // turned away
+  EXPECT_EQ(checked(0)["verdict"], "free");
+}
+
+TEST_F(CheckTest, AddsPadding) {
+  write("path.csv", "0.06 0\n");
+  EXPECT_EQ(checked(0)["verdict"], "free");
+  write("cell.json", wall_and(R"("padding": [{"body": "hand", "distance": 0.02}])"));
+  const json contact = checked(1)["first_contact"];
+  EXPECT_NEAR(contact["depth"].get<double>(), 0.0105, 1e-6);
+  EXPECT_NEAR(contact["padding"].get<double>(), 0.02, 1e-12);
+}
+
+TEST_F(CheckTest, CoversTheRobotAndAToolWhereThereAreNoSpheres) {
+  write_box("tool.stl", {0.1, 0.02, 0.02});
+  write("cell.json", wall_and(R"("attached": [{"name": "tool", "link": "wrist",
+    "mesh": {"file": "tool.stl"}, "pose": {"position": [0.05, -0.01, -0.01]}}],
+    "allowed_contacts": [{"body": "tool", "other": "hand"}])"));
+  write("path.csv", "-0.3 0\n-0.1 0\n0.03 0\n");
+  const Outcome outcome = run({"check", "slider.urdf", "cell.json", "path.csv", "--max-error",
+                               "0.04", "--effort", "0", "--json"});
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  const json report = json::parse(outcome.out);
+  EXPECT_EQ(report["colliding"], 2);
+  EXPECT_EQ(report["first_contact"]["first"]["name"], "tool");
+  EXPECT_EQ(report["first_contact"]["line"], 2);
+}
+
+TEST_F(CheckTest, RefusesBadInput) {
+  const auto refused = [this](const std::string& reason) { expect_refusal(command({}), reason); };
+  write("path.csv", "0 0\n0\n");
+  refused("path.csv: line 2: has 1 numbers instead of 2");
+  write("path.csv", "slide,elbow\n0,0\n");
+  refused("path.csv: line 1: the robot has no joint \"elbow\"");
+  write("path.csv", "0 0\n\n0 200\n");
+  expect_refusal(command({"--edges"}), "path.csv: line 3: a position beyond 100");
+  write("path.csv", "0 0\n");
+  expect_refusal(command({"--edges", "--resolution", "0"}), "resolution");
+  write("cell.json", wall_and(R"("obstacle": [])"));
+  refused("cell.json: the key \"obstacle\" is not known here");
+  write("cell.json", wall_and(R"("allowed_contacts": [{"body": "arm", "other": "wall"}])"));
+  refused("arm");
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "part", "mesh": {"file": "none.stl"}}]})");
+  refused("none.stl");
+  write("cell.json", wall_and(""));
+  write("slider.json", R"({"arm": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
+  refused("the robot has no such link");
+  expect_refusal({"check", "none.urdf", "cell.json", "path.csv"}, "none.urdf");
+}
+
+TEST_F(CheckTest, WarnsOfLinksWithoutSpheres) {
+  write("slider.json", R"({"wrist": {"centers": [[0, 0, 0]], "radii": [0.01]}})");
+  const Outcome outcome = run(command({}));
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.err.find("link hand has a shape but no spheres"), std::string::npos)
+      << outcome.err;
+}
+
+}  // namespace
+}  // namespace spherule
