@@ -109,7 +109,6 @@ class Reader {
   }
 
   RobotDescription read(std::size_t& shapes) {
-    check_parents();
     RobotDescription robot{.name = model_.getName(), .model = RobotModel(root().name)};
     add_links(robot.model);
     for (const auto& [joint, mimic] : mimics_) {
@@ -124,18 +123,6 @@ class Reader {
 
  private:
   const urdf::Link& root() const { return *model_.getRoot(); }
-
-  void check_parents() const {
-    std::map<std::string, std::string> joint_above;
-    for (const auto& [name, joint] : model_.joints_) {
-      const auto [other, is_first] = joint_above.emplace(joint->child_link_name, name);
-      if (!is_first) {
-        throw Error(
-            "link " + in_quotes(other->first),
-            "it is below two joints, " + in_quotes(other->second) + " and " + in_quotes(name));
-      }
-    }
-  }
 
   // Depth first; urdfdom has the joints below a link in the order of their names.
   void add_links(RobotModel& robot) {
@@ -156,12 +143,6 @@ class Reader {
         mimics_.emplace_back(joint->name, joint->mimic);
       }
       wait(*model_.links_.at(joint->child_link_name));
-    }
-    for (const auto& [name, link] : model_.links_) {
-      if (robot.find_link(name) < 0) {
-        throw Error("link " + in_quotes(name),
-                    "the root " + in_quotes(root().name) + " is not above it");
-      }
     }
   }
 

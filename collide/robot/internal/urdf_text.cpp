@@ -3,6 +3,8 @@
 
 #include <array>
 #include <charconv>
+#include <map>
+#include <set>
 #include <string_view>
 
 namespace spherule::internal {
@@ -160,6 +162,32 @@ void refuse_xacro(const XmlElement& element) {
   for (const XmlElement& child : element.children()) refuse_xacro(child);
 }
 
+std::string link_at(const XmlElement& joint, std::string_view end) {
+  return joint.needed_child(end).needed("link");
+}
+
+// Refuses links below two joints, and links above themselves.
+void check_tree(const std::vector<XmlElement>& joints) {
+  std::map<std::string, const XmlElement*> above;
+  for (const XmlElement& joint : joints) {
+    const std::string link = link_at(joint, "child");
+    const auto [other, is_first] = above.emplace(link, &joint);
+    if (!is_first) {
+      joint.refuse("link '" + link + "' is below two joints, this one and '" +
+                   other->second->needed("name") + "'");
+    }
+  }
+  std::set<std::string> below_root;
+  for (const auto& [link, joint] : above) {
+    std::set<std::string> way;
+    for (std::string at = link; above.contains(at) && !below_root.contains(at);
+         at = link_at(*above.at(at), "parent")) {
+      if (!way.insert(at).second) above.at(at)->refuse("link '" + at + "' is above itself");
+    }
+    below_root.merge(way);
+  }
+}
+
 }  // namespace
 
 UrdfText plain_urdf(const XmlElement& robot) {
@@ -169,7 +197,9 @@ UrdfText plain_urdf(const XmlElement& robot) {
   UrdfText result;
   Writer writer;
   for (const XmlElement& link : robot.children("link")) writer.link(link);
-  for (const XmlElement& joint : robot.children("joint")) {
+  const std::vector<XmlElement> joints = robot.children("joint");
+  check_tree(joints);
+  for (const XmlElement& joint : joints) {
     result.joints.push_back(joint.needed("name"));
     writer.joint(joint);
   }

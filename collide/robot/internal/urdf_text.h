@@ -13,7 +13,8 @@ namespace spherule::internal {
 // way, for urdfdom to read.
 //
 // urdfdom 3.0.1 drops all shapes of a link with an incomplete inertia and says so on the console
-// only; takes the first of two origins or shapes; passes what it quotes from a file to a function
+// only; takes the first of two origins or shapes, or the last of two joints above
+// a link; never frees a ring of links; passes what it quotes from a file to a function
 // of the printf family as the format; and reads beyond the text's end after a broken UTF-8
 // sequence. So it is given nothing but what is used, with numbers that are known to be numbers.
 struct UrdfText {
