@@ -252,7 +252,13 @@ std::vector<std::string> check_public_headers(const std::string& folder, std::st
   if (!std::regex_search(text, match, kList)) {
     return {folder + "/CMakeLists.txt: lists no HEADERS before SOURCES"};
   }
-  std::istringstream list(match[1]);
+  // Some are added where another library is there.
+  static const std::regex kMore(R"(\bFILE_SET\s+HEADERS\s+FILES\s([^)]*)\))");
+  std::string names = match[1];
+  for (std::sregex_iterator more(text.begin(), text.end(), kMore), end; more != end; ++more) {
+    names.append(" ").append((*more)[1]);
+  }
+  std::istringstream list(names);
   const std::set<std::string> listed{std::istream_iterator<std::string>(list), {}};
   std::vector<std::string> problems;
   for (const std::string& header : headers) {
