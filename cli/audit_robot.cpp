@@ -34,7 +34,8 @@ struct AuditRobotArguments {
   std::string link;
   std::optional<std::size_t> level;
   std::string repaired;
-  double max_error = 0.0;
+  std::optional<double> max_error;
+  double min_external = 0.0;
   bool json = false;
 };
 
@@ -106,15 +107,18 @@ int audit(const AuditRobotArguments& arguments) {
                   [](const auto& buffer) { return buffer.second < 0.0; });
   if (mend) check_repair(arguments, report.file, is_shrunk);
   RobotAuditOptions options{.geometry = geometry,
+                            .min_external_diameter = arguments.min_external,
                             .configurations = configurations_of(arguments.poses, robot.model)};
+  if (arguments.max_error) options.max_error = *arguments.max_error;
   {
     ProgressBar bar;
     options.progress = bar.callback();
     report.audit = audit_robot(robot, shrunk_by_buffers(spheres), options);
     if (mend) {
-      report.repair = repair_robot(
-          robot, spheres.links,
-          {.geometry = geometry, .max_error = arguments.max_error, .progress = options.progress});
+      report.repair = repair_robot(robot, spheres.links,
+                                   {.geometry = geometry,
+                                    .max_error = arguments.max_error.value_or(0.0),
+                                    .progress = options.progress});
     }
   }
   if (mend) {
@@ -163,17 +167,22 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
   command->add_option("--level", arguments->level,
                       "Which level of a file with levels, 0 the coarsest (default: the finest)");
   command->add_flag("--json", arguments->json, "Print the certificates as JSON");
-  CLI::Option* repair = command->add_option(
+  command->add_option(
       "--repair", arguments->repaired,
       "Where the file goes with spheres grown and added so that they cover every link; exit 0 then "
       "says that these do");
   command
       ->add_option("--max-error", arguments->max_error,
-                   "How far a repaired sphere may protrude, metres (default: 1 % of the link's box "
-                   "diagonal, or as far as its spheres do)")
+                   "E, metres: for which the spheres were made (default 0.01), and how far a "
+                   "repaired one may protrude (default: 1 % of the link's box diagonal, or as far "
+                   "as its spheres do)")
       ->check(CLI::PositiveNumber)
-      ->check(check_length)
-      ->needs(repair);
+      ->check(check_length);
+  command
+      ->add_option("--min-external", arguments->min_external,
+                   "D, metres, for which the spheres were made (default: 4 E)")
+      ->check(CLI::PositiveNumber)
+      ->check(check_length);
   command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
 }
 

@@ -20,6 +20,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kSharePoints = 20000;
+// Of E: how closely curved primitives are tessellated, as cover_robot() does it.
+constexpr double kChordErrorOfError = 1.0 / 16.0;
 // Up to which positions kinematics_error_bound() holds.
 constexpr double kLargestPosition = 100.0;
 
@@ -118,11 +120,6 @@ class PlacedRobot {
  public:
   PlacedRobot(const RobotDescription& robot, std::span<const LinkParts> parts,
               std::span<const double> configuration) {
-    for (const double position : configuration) {
-      if (!(std::abs(position) <= kLargestPosition)) {
-        throw Error("configuration", "a position is beyond 100");
-      }
-    }
     forward_kinematics(robot.model, configuration, world_from_link_);
     for (const LinkParts& part : parts) {
       const double reach = reach_of(part);
@@ -184,27 +181,72 @@ ConfigurationAudit audit_placed(const PlacedRobot& placed, std::span<const LinkP
   return result;
 }
 
+// How simplify() makes S of a mesh, and looks at its cover.
+struct SimplifiedSolid {
+  SimplifiedSolid(const TriangleMesh& mesh, SimplifyOptions& lengths) {
+    complete_lengths(lengths, mesh);
+    external = place_external_spheres(mesh, external_options(lengths));
+    certify_options = {
+        .external = &external,
+        .resolution = proof_resolution(lengths.max_error, external.box.diagonal().norm()),
+        .protrusion_tolerance = 0.0,
+        .volume = false,
+        .threads = lengths.threads};
+  }
+  SimplifiedSolid(const SimplifiedSolid&) = delete;
+  SimplifiedSolid& operator=(const SimplifiedSolid&) = delete;
+
+  ExternalSpheres external;
+  CertifyOptions certify_options;
+};
+
+Certificate audited(const LinkParts& part, const LinkDescription& link,
+                    const RobotAuditOptions& options) {
+  Certificate certificate = certify(*part.mesh, part.spheres, {.threads = options.threads});
+  if (certificate.covered || certificate.uncovered_depth.lower > 0.0 || part.spheres.empty()) {
+    return certificate;
+  }
+  const auto mesh = link_mesh(
+      link, {.geometry = options.geometry, .chord_error = options.max_error * kChordErrorOfError});
+  SimplifyOptions lengths{.max_error = options.max_error,
+                          .min_external_diameter = options.min_external_diameter,
+                          .threads = options.threads};
+  const SimplifiedSolid solid(*mesh, lengths);
+  Certificate of_solid = certify(*mesh, part.spheres, solid.certify_options);
+  if (!of_solid.covered) return certificate;
+  of_solid.protrusion_over_mesh = certificate.protrusion_over_mesh;
+  of_solid.volume_ratio = certificate.volume_ratio;
+  return of_solid;
+}
+
 LinkRepair repaired(const LinkParts& part, const RobotRepairOptions& options) {
   SimplifyOptions lengths{.max_error = options.max_error, .threads = options.threads};
-  complete_lengths(lengths, *part.mesh);
-  const ExternalSpheres external = place_external_spheres(*part.mesh, external_options(lengths));
-  const CertifyOptions certify_options{
-      .external = &external,
-      .resolution = proof_resolution(lengths.max_error, external.box.diagonal().norm()),
-      .protrusion_tolerance = 0.0,
-      .volume = false,
-      .threads = options.threads};
+  const SimplifiedSolid solid(*part.mesh, lengths);
   LinkRepair result{
       .link = part.link, .max_error = lengths.max_error, .repair = {}, .certificate = {}};
   if (options.max_error == 0.0) {
-    const Certificate before = certify(*part.mesh, part.spheres, certify_options);
+    const Certificate before = certify(*part.mesh, part.spheres, solid.certify_options);
     result.max_error =
         std::max(result.max_error, before.protrusion_over_simplified_max.value_or(0.0));
   }
-  result.repair = repair(*part.mesh, external, part.spheres,
+  result.repair = repair(*part.mesh, solid.external, part.spheres,
                          {.max_error = result.max_error, .threads = options.threads});
-  result.certificate = certify(*part.mesh, result.repair.spheres, certify_options);
+  result.certificate = certify(*part.mesh, result.repair.spheres, solid.certify_options);
   return result;
+}
+
+// Before long work is done for nothing.
+void check_configurations(const RobotDescription& robot,
+                          const std::vector<std::vector<double>>& configurations) {
+  std::vector<Pose> world_from_link;
+  for (const std::vector<double>& configuration : configurations) {
+    for (const double position : configuration) {
+      if (!(std::abs(position) <= kLargestPosition)) {
+        throw Error("configuration", "a position is beyond 100");
+      }
+    }
+    forward_kinematics(robot.model, configuration, world_from_link);
+  }
 }
 
 void report(const Progress& progress, std::size_t done, std::size_t all, const std::string& link) {
@@ -216,6 +258,10 @@ void report(const Progress& progress, std::size_t done, std::size_t all, const s
 RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
                        const RobotAuditOptions& options) {
   RobotAudit result;
+  if (!(options.max_error > 0.0 && options.max_error <= kMaxCoordinate)) {
+    throw Error("max error", "must be positive and finite");
+  }
+  check_configurations(robot, options.configurations);
   const std::vector<LinkParts> parts =
       parts_of(robot, spheres, options.geometry, &result.unknown_links);
   const std::size_t steps = parts.size() + options.configurations.size();
@@ -224,7 +270,7 @@ RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSphere
     report(options.progress, part.index, steps, part.link);
     LinkAudit audit{part.link, part.spheres.size(), std::nullopt, 0.0};
     if (part.mesh) {
-      audit.certificate = certify(*part.mesh, part.spheres, {.threads = options.threads});
+      audit.certificate = audited(part, robot.links[part.index], options);
       if (!audit.certificate->covered) {
         audit.uncovered_share = uncovered_share(*part.mesh, part.spheres);
         result.links_covered = false;

@@ -18,6 +18,12 @@ namespace spherule {
 
 struct RobotAuditOptions {
   LinkGeometry geometry = LinkGeometry::kCollision;
+  // Spheres that cover a simplified solid S with little to spare need not cover everything that
+  // certify() cannot tell from |M|: it reaches the mesh to within some 1/256 of its diagonal. Where
+  // it finds no leak and no proof, spheres are judged once more by S as cover_robot() makes it for
+  // this E and D (0: 4 E). S holds M and |M| whatever E and D are, so that this is proof as well.
+  double max_error = 0.01;
+  double min_external_diameter = 0.0;
   // Configurations in which the robot is judged as a whole (radians and metres).
   std::vector<std::vector<double>> configurations = {};
   int threads = 0;         // 0: all
@@ -28,7 +34,8 @@ struct RobotAuditOptions {
 struct LinkAudit {
   std::string link;
   std::size_t spheres = 0;
-  // Of the mesh and its inside, as written in the mesh files; absent for a link without geometry.
+  // Of the mesh and its inside, as written in the mesh files; of S (see the options) if that is
+  // what is proved. Absent for a link without geometry.
   std::optional<Certificate> certificate;
   // Share of the surface that no sphere holds, estimated from points spread evenly over it.
   double uncovered_share = 0.0;
@@ -57,9 +64,9 @@ struct RobotAudit {
 // neighbours; what the rounding of kinematics and poses can do is charged to the mesh and to the
 // spheres, so that a cover that is proved holds for the exact mechanism. Spheres of links that the
 // robot has not got count nowhere.
-// Throws Error: as link_mesh() and forward_kinematics(), for spheres that are not usable (naming
-// the link), a link named twice, a robot without any such geometry, and a configuration with a
-// number beyond 100.
+// Throws Error: as link_mesh() and forward_kinematics(), for an E or D out of range, for spheres
+// that are not usable (naming the link), a link named twice, a robot without any such geometry, and
+// a configuration with a number beyond 100.
 RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
                        const RobotAuditOptions& options = {});
 

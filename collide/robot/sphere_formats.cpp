@@ -166,8 +166,8 @@ SphereFormatFile read_robot_spheres(const fs::path& path, const SphereReadOption
   const std::string file = path.string();
   switch (text[start]) {
     case '<':
-      if (internal::is_srdf(text)) return {SphereFormat::kSrdf, read_sphere_srdf(path)};
-      return {SphereFormat::kUrdf, internal::read_sphere_urdf(text, file)};
+      if (internal::is_srdf(path)) return {SphereFormat::kSrdf, read_sphere_srdf(path)};
+      return {SphereFormat::kUrdf, internal::read_sphere_urdf(path)};
     case '{':
     case '[':
       return internal::read_sphere_json(text, path, options);

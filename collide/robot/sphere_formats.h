@@ -103,11 +103,10 @@ std::vector<LinkSpheres> shrunk_by_buffers(const RobotSpheres& spheres);
 
 // What the formats say of the robot beside its balls.
 struct SphereFileContext {
-  // The robot's URDF. kUrdf: the document whose <collision> elements are replaced. kCurobo:
-  // urdf_path.
+  // The robot's URDF: the document whose <collision> elements are replaced (kUrdf), or what
+  // urdf_path names, as it stands here (kCurobo).
   std::filesystem::path urdf = {};
-  // kSrdf, kCurobo, kXrdf: a file of that format, all of which is kept but the balls. Empty: a new
-  // one.
+  // A file of the format, kSrdf, kCurobo or kXrdf, that is kept but for the balls. Empty: none.
   std::filesystem::path original = {};
   std::string base_link = {};                 // cuRobo, XRDF: the root
   std::string tool_link = {};                 // cuRobo: ee_link, XRDF: tool_frames
@@ -119,9 +118,8 @@ struct SphereFileContext {
 // Numbers are written in the shortest form that reads back to the same double, decimal without an
 // exponent in XML and YAML. The file appears whole or not at all; equal input gives equal bytes.
 // - kUrdf: `context.urdf`, with the collision elements of each link of `spheres` replaced by one
-// for
-//   each ball, and leaves that stand for one ball of such a link (above) taken out; everything else
-//   is kept. Relative paths of meshes and textures are made relative to the new place.
+//   for each ball, and leaves that stand for one ball of such a link (above) taken out; everything
+//   else is kept. Relative paths of meshes and textures are made relative to the new place.
 // - kSrdf, kCurobo, kXrdf: what `context.original` holds beside the balls is kept, comments of YAML
 //   excepted; pairs and buffers of `spheres` go into a new file only.
 // - A link without balls: in SRDF, one ball of radius 0 says so; in a URDF it has no <collision>.

@@ -10,9 +10,9 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kRobot = R"(<robot name="two"><link name="base">
-  <visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>
-  <collision><geometry><box size="0.2 0.1 0.08"/></geometry></collision></link>
-<link name="arm"><collision><geometry><box size="0.06 0.06 0.06"/></geometry></collision></link>
+  <visual><geometry><box size="0.15 0.01 0.01"/></geometry></visual>
+  <collision><geometry><box size="0.2 0.02 0.02"/></geometry></collision></link>
+<link name="arm"><collision><geometry><box size="0.08 0.01 0.01"/></geometry></collision></link>
 <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
   <origin xyz="0.3 0 0"/><axis xyz="0 0 1"/><limit lower="-4" upper="4" effort="1" velocity="1"/>
 </joint></robot>)";
@@ -35,11 +35,11 @@ class AuditRobotCommand : public CommandTest {
 };
 
 TEST_F(AuditRobotCommand, ExitCodeAndTable) {
-  write("good.yml", balls(0.12, 0.06));
+  write("good.yml", balls(0.12, 0.05));
   const Outcome good = run({"audit-robot", "two.urdf", "good.yml"});
   EXPECT_EQ(good.exit_code, 0) << good.err;
   EXPECT_NE(good.out.find("cuRobo yml"), std::string::npos) << good.out;
-  write("leaks.yml", balls(0.1, 0.06));
+  write("leaks.yml", balls(0.09, 0.05));
   const Outcome leaks = run({"audit-robot", "two.urdf", "leaks.yml"});
   EXPECT_EQ(leaks.exit_code, 1) << leaks.err;
   EXPECT_NE(leaks.out.find("NO"), std::string::npos) << leaks.out;
@@ -47,7 +47,7 @@ TEST_F(AuditRobotCommand, ExitCodeAndTable) {
 }
 
 TEST_F(AuditRobotCommand, Json) {
-  write("leaks.yml", balls(0.1, 0.06) +
+  write("leaks.yml", balls(0.09, 0.05) +
                          "      ghost:\n      - {center: [0, 0, 0], radius: 1}\n"
                          "      - {center: [0, 0, 0], radius: -1}\n");
   const Outcome result = run({"audit-robot", "two.urdf", "leaks.yml", "--json"});
@@ -58,7 +58,7 @@ TEST_F(AuditRobotCommand, Json) {
   EXPECT_EQ(report.at("unknown_links"), json({"ghost"}));
   const json& base = report.at("links").at(0);
   EXPECT_EQ(base.at("sphere_count"), 1);
-  const double depth = std::sqrt(0.01 + 0.0025 + 0.0016) - 0.1;
+  const double depth = std::sqrt(0.01 + 0.0001 + 0.0001) - 0.09;
   EXPECT_LE(base.at("certificate").at("uncovered_depth_surface").at(0), depth + 1e-9);
   EXPECT_GE(base.at("certificate").at("uncovered_depth_surface").at(1), depth - 1e-9);
   EXPECT_EQ(report.at("links").at(1).at("certificate").at("covered"), true);
@@ -68,7 +68,7 @@ TEST_F(AuditRobotCommand, PosesDecide) {
   write("arm.json",
         "{\"base\": {\"centers\": [], \"radii\": []}, \"arm\": {\"centers\": [[0, 0, 0], [0.3, 0, "
         "0]], "
-        "\"radii\": [0.06, 0.125]}}");
+        "\"radii\": [0.05, 0.105]}}");
   write("good.csv", "turn\n3.14159\n");
   write("bad.csv", "3.14159\n0\n");
   EXPECT_EQ(run({"audit-robot", "two.urdf", "arm.json"}).exit_code, 1);
@@ -83,7 +83,7 @@ TEST_F(AuditRobotCommand, PosesDecide) {
 
 TEST_F(AuditRobotCommand, RepairKeepsTheFormat) {
   const RobotSpheres leaky{.robot = "two",
-                           .links = {{"base", {{{0, 0, 0}, 0.1}}}, {"arm", {{{0, 0, 0}, 0.06}}}}};
+                           .links = {{"base", {{{0, 0, 0}, 0.09}}}, {"arm", {{{0, 0, 0}, 0.05}}}}};
   for (const SphereFormat format :
        {SphereFormat::kUrdf, SphereFormat::kSrdf, SphereFormat::kCurobo, SphereFormat::kXrdf,
         SphereFormat::kFoam, SphereFormat::kSpherule}) {
@@ -94,12 +94,12 @@ TEST_F(AuditRobotCommand, RepairKeepsTheFormat) {
         run({"audit-robot", "two.urdf", "leaky", "--repair", "mended", "--max-error", "0.03"});
     EXPECT_EQ(mended.exit_code, 0) << mended.err;
     EXPECT_EQ(read_robot_spheres(folder_ / "mended").format, format);
-    EXPECT_EQ(run({"audit-robot", "two.urdf", "mended"}).exit_code, 0);
+    EXPECT_EQ(run({"audit-robot", "two.urdf", "mended", "--max-error", "0.03"}).exit_code, 0);
   }
 }
 
 TEST_F(AuditRobotCommand, BuffersBelowZeroShrink) {
-  write("shrunk.yml", balls(0.12, 0.06) + "    collision_sphere_buffer: -0.02\n");
+  write("shrunk.yml", balls(0.12, 0.05) + "    collision_sphere_buffer: -0.02\n");
   const Outcome result = run({"audit-robot", "two.urdf", "shrunk.yml"});
   EXPECT_EQ(result.exit_code, 1) << result.err;
   EXPECT_NE(result.err.find("shrink"), std::string::npos);
@@ -108,7 +108,7 @@ TEST_F(AuditRobotCommand, BuffersBelowZeroShrink) {
 }
 
 TEST_F(AuditRobotCommand, BadInput) {
-  write("good.yml", balls(0.12, 0.06));
+  write("good.yml", balls(0.12, 0.05));
   write("one.json", "[{\"spheres\": []}]");
   write("columns.json", "{\"arm\": {\"centers\": [], \"radii\": []}}");
   write("poses.csv", "1, 2\n");
@@ -119,7 +119,7 @@ TEST_F(AuditRobotCommand, BadInput) {
   expect_refusal({"audit-robot", "two.urdf", "columns.json", "--repair", "out"}, "is read only");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--poses", "poses.csv"}, "poses.csv: ");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--geometry", "other"}, "--geometry");
-  expect_refusal({"audit-robot", "two.urdf", "good.yml", "--max-error", "1"}, "--repair");
+  expect_refusal({"audit-robot", "two.urdf", "good.yml", "--max-error", "-1"}, "--max-error");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--repair", "good.yml"}, "good.yml");
   EXPECT_EQ(run({"audit-robot", "two.urdf", "one.json", "--link", "arm"}).exit_code, 1);
 }

@@ -252,11 +252,11 @@ std::vector<std::string> check_public_headers(const std::string& folder, std::st
   if (!std::regex_search(text, match, kList)) {
     return {folder + "/CMakeLists.txt: lists no HEADERS before SOURCES"};
   }
-  std::string names = match[1];
-  // Those that only a part of the builds have are added to the set later.
+  // Some are added where another library is there.
   static const std::regex kMore(R"(\bFILE_SET\s+HEADERS\s+FILES\s([^)]*)\))");
+  std::string names = match[1];
   for (std::sregex_iterator more(text.begin(), text.end(), kMore), end; more != end; ++more) {
-    names += ' ' + (*more)[1].str();
+    names.append(" ").append((*more)[1]);
   }
   std::istringstream list(names);
   const std::set<std::string> listed{std::istream_iterator<std::string>(list), {}};

@@ -86,6 +86,9 @@ TEST(Structure, HeadersThatAreNeitherPublicNorInternalAreFound) {
   };
   EXPECT_EQ(count({"a.h", "b.h", "internal/e.h"}), 0u);
   EXPECT_EQ(count({"a.h", "d.h"}), 1u);
+  const std::string more =
+      cmake + "if(X)\n  target_sources(room PUBLIC FILE_SET HEADERS FILES d.h)\nendif()";
+  EXPECT_EQ(check_public_headers("room", more, {"a.h", "d.h"}).size(), 0u);
   EXPECT_EQ(count({"e.h", "sub/a.h"}), 2u);
   EXPECT_EQ(check_public_headers("room", "spherule_library(room\n  HEADERS internal/a.h SOURCES b)",
                                  {"internal/a.h"})

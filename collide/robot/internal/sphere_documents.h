@@ -45,9 +45,9 @@ class SphereGatherer {
 Sphere moved_ball(const Sphere& ball, const Eigen::Vector3d& roll_pitch_yaw,
                   const Eigen::Vector3d& translation);
 
-// XML. The root element's children tell URDF from SRDF.
-bool is_srdf(std::string_view text);
-RobotSpheres read_sphere_urdf(std::string_view text, const std::string& file);
+// XML. The root element's children tell URDF from SRDF, which srdf.h reads.
+bool is_srdf(const std::filesystem::path& path);
+RobotSpheres read_sphere_urdf(const std::filesystem::path& path);
 std::string sphere_urdf(const RobotSpheres& spheres, const SphereFileContext& context,
                         const std::filesystem::path& path);
 std::string sphere_srdf(const RobotSpheres& spheres, const SphereFileContext& context);

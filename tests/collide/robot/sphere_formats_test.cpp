@@ -80,7 +80,7 @@ TEST_F(SphereFormats, EveryFormatReadsBackBitForBit) {
 TEST_F(SphereFormats, ManySpheres) {
   test::Random random(12);
   RobotSpheres spheres{.robot = "many", .links = {{"a", {}}, {"b", {}}}};
-  for (int k = 0; k < test::effort(6000, 1000); ++k) {
+  for (int k = 0; k < test::effort(2000, 300); ++k) {
     spheres.links[random.index(2)].spheres.push_back({random.direction(), random.unit() + 1e-9});
   }
   for (const SphereFormat format : kWritten) {
