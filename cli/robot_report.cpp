@@ -12,7 +12,7 @@
 namespace spherule {
 namespace {
 
-constexpr double kMillimetres = 1000.0;
+constexpr double kMillimetresPerMetre = 1000.0;
 
 // Over all links.
 struct Totals {
@@ -82,14 +82,15 @@ class Cell {
 std::string depth_text(bool covered, double depth) {
   if (covered) return "0";
   std::ostringstream out;
-  out << std::setprecision(3) << depth * kMillimetres;
+  out << std::setprecision(3) << depth * kMillimetresPerMetre;
   return out.str();
 }
 
 void write_row(std::ostream& out, const std::string& name, double max_error, const Totals& sums) {
-  out << name << Cell(max_error * kMillimetres, 8, 1) << std::setw(11) << sums.triangles
+  out << name << Cell(max_error * kMillimetresPerMetre, 8, 1) << std::setw(11) << sums.triangles
       << std::setw(9) << sums.spheres << std::setw(11) << depth_text(sums.covered, sums.depth)
-      << Cell(sums.protrusion * kMillimetres, 12, 2) << Cell(sums.over_mesh * kMillimetres, 11, 2);
+      << Cell(sums.protrusion * kMillimetresPerMetre, 12, 2)
+      << Cell(sums.over_mesh * kMillimetresPerMetre, 11, 2);
 }
 
 }  // namespace
@@ -135,7 +136,7 @@ std::string robot_table(const RobotCover& cover, double seconds) {
   std::ostringstream out;
   out << padded("link")
       << "       E  triangles  spheres  uncovered  protrusion  over mesh  volume  seconds\n"
-      << padded("") << "    [mm]                            [mm]        [mm]       [mm]\n";
+      << padded("") << "    [mm]                           [mm]        [mm]       [mm]\n";
   for (const LinkCover& link : cover.links) {
     if (!link.fit) {
       out << padded(link.link) << "  no " << name_of(cover.options.geometry) << " geometry\n";

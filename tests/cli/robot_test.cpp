@@ -280,6 +280,10 @@ TEST_F(RobotTest, BadInputIsRefusedBeforeTheWork) {
   refuse({"--link", "finger:zones=none.json"}, "none.json");
   refuse({"--tool-link", "thumb"}, "--tool-link: the robot has no link 'thumb'");
   refuse({"--srdf", "lug.stl"}, "lug.stl");
+  write("other.yml", "robot_cfg: 3\n");
+  refuse({"--curobo", "other.yml"}, "other.yml");
+  refuse({"--xrdf", "none.xrdf"}, "none.xrdf");
+  fs::remove(folder_ / "other.yml");
   refuse({"--effort", "1", "--seconds", "1"}, "--seconds");
   refuse({"--threads", "-1"}, "--threads");
   refuse({"--seed", "-1"}, "--seed");

@@ -63,7 +63,7 @@ TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
   Random random(11);
   for (int i = 0; i < effort(2, 1); ++i) {
     const RobotDescription robot = random_robot(random, 3);
-    RobotCoverOptions options = quick(0.04);
+    RobotCoverOptions options = quick(0.06);
     options.padding = i % 2 == 0 ? 0.005 : 0.0;
     const RobotCover cover = cover_robot(robot, options);
     EXPECT_EQ(cover.robot, "chain");
@@ -79,7 +79,7 @@ TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
       }
       ASSERT_TRUE(link.fit);
       EXPECT_TRUE(link.fit->certificate.covered);
-      EXPECT_LE(*link.fit->certificate.protrusion_over_simplified_max, 0.04);
+      EXPECT_LE(*link.fit->certificate.protrusion_over_simplified_max, 0.06);
       EXPECT_TRUE(link.warnings.empty()) << link.warnings.front();
       for (int k = 0; k < 3000; ++k) {
         WidePoint p = point_of(robot.links[l], random);
@@ -89,7 +89,7 @@ TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
       // Over the shapes themselves: a gap between shapes may be filled, which the certificate
       // bounds, and tessellation adds E / 16.
       EXPECT_LE(sampled_protrusion(link, robot.links[l], random),
-                link.fit->certificate.protrusion_over_mesh->upper + 0.04 / 16 + options.padding);
+                link.fit->certificate.protrusion_over_mesh->upper + 0.06 / 16 + options.padding);
     }
   }
 }
@@ -112,7 +112,7 @@ TEST(RobotSpheres, AreEqualOnAnyNumberOfThreads) {
   options.effort = 1;
   options.threads = 1;
   const RobotCover alone = cover_robot(robot, options);
-  for (const int threads : {5, 2}) {
+  for (const int threads : effort(std::vector{5, 2}, 1)) {
     options.threads = threads;
     const RobotCover cover = cover_robot(robot, options);
     for (std::size_t l = 0; l < robot.links.size(); ++l) {
