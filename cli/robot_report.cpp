@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iomanip>
+#include <optional>
 #include <span>
 #include <sstream>
 
@@ -143,8 +144,13 @@ std::string robot_table(const RobotCover& cover, double seconds) {
       continue;
     }
     write_row(out, padded(link.link), link.fit->options.max_error, Totals({&link, 1}));
-    out << Cell(link.fit->certificate.volume_ratio.value_or(0.0), 8, 2) << Cell(link.seconds, 9, 1)
-        << "\n";
+    const std::optional<double>& volume = link.fit->certificate.volume_ratio;
+    if (volume) {
+      out << Cell(*volume, 8, 2);
+    } else {  // an open mesh has none
+      out << std::setw(8) << "-";
+    }
+    out << Cell(link.seconds, 9, 1) << "\n";
   }
   write_row(out, padded("total"), cover.options.max_error, Totals(cover.links));
   out << std::setw(8) << "" << Cell(seconds, 9, 1) << "\n";
