@@ -97,7 +97,7 @@ std::vector<std::string> links_to_cover(const RobotDescription& robot, LinkGeome
 
 // Fails (kNo), naming the links, if something promised of a link is not proved; the files are
 // written nevertheless and say so.
-int cover(const RobotArguments& arguments) {
+int cover_links(const RobotArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   RobotCoverOptions options = arguments.options;
   options.geometry = geometry_named(arguments.geometry);
@@ -107,7 +107,9 @@ int cover(const RobotArguments& arguments) {
   if (!plan.tool_link.empty() && robot.model.find_link(plan.tool_link) < 0) {
     throw Error("--tool-link", "the robot has no link '" + plan.tool_link + "'");
   }
-  check_places(arguments, plan.all(robot, links_to_cover(robot, options.geometry)));
+  const std::vector<std::string> links = links_to_cover(robot, options.geometry);
+  check_places(arguments, plan.all(robot, links));
+  rehearse_robot_files(plan, robot, links);
   RobotSpheres spheres;
   add_disabled_pairs(arguments.srdf, robot.model, spheres);  // refuses a bad file in time
 
@@ -225,7 +227,7 @@ void add_robot(CLI::App& app, int& exit_code) {
       "Example: spherule robot panda.urdf -o spheres --max-error 0.02 --geometry visual\n"
       "         --package franka_description=../franka_description --link "
       "panda_hand:max-error=0.005");
-  command->callback([arguments, &exit_code] { exit_code = cover(*arguments); });
+  command->callback([arguments, &exit_code] { exit_code = cover_links(*arguments); });
 }
 
 }  // namespace spherule

@@ -6,6 +6,7 @@
 #include "spheretree/tree_file.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <system_error>
 
@@ -74,6 +75,27 @@ fs::path original(const RobotFilePlan& plan, SphereFormat format) {
   }
 }
 
+// An empty folder that vanishes with the object.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = (fs::temp_directory_path() / "spherule-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) throw Error(pattern, "cannot be made");
+    path_ = pattern;
+  }
+  ~ScratchFolder() {
+    std::error_code fault;
+    fs::remove_all(path_, fault);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
 }  // namespace
 
 std::vector<std::string> robot_format_names() {
@@ -100,6 +122,20 @@ std::vector<fs::path> RobotFilePlan::all(const RobotDescription& robot,
   }
   files.push_back(report(robot));
   return files;
+}
+
+void rehearse_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
+                          const std::vector<std::string>& links) {
+  const ScratchFolder folder;
+  RobotFilePlan rehearsal = plan;
+  rehearsal.folder = folder.path();
+  std::erase(rehearsal.formats, kTree);
+  RobotSpheres spheres;
+  spheres.robot = robot.name;
+  for (const std::string& link : links) {
+    spheres.links.push_back({link, {Sphere{Eigen::Vector3d::Zero(), 1.0}}});
+  }
+  write_robot_files(rehearsal, robot, spheres);
 }
 
 void write_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,

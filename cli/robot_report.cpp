@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cstddef>
 #include <iomanip>
+#include <optional>
 #include <span>
 #include <sstream>
 
 namespace spherule {
 namespace {
 
-constexpr double kMillimetres = 1000.0;
+constexpr double kMillimetresPerMetre = 1000.0;
 
 // Over all links.
 struct Totals {
@@ -82,14 +83,15 @@ class Cell {
 std::string depth_text(bool covered, double depth) {
   if (covered) return "0";
   std::ostringstream out;
-  out << std::setprecision(3) << depth * kMillimetres;
+  out << std::setprecision(3) << depth * kMillimetresPerMetre;
   return out.str();
 }
 
 void write_row(std::ostream& out, const std::string& name, double max_error, const Totals& sums) {
-  out << name << Cell(max_error * kMillimetres, 8, 1) << std::setw(11) << sums.triangles
+  out << name << Cell(max_error * kMillimetresPerMetre, 8, 1) << std::setw(11) << sums.triangles
       << std::setw(9) << sums.spheres << std::setw(11) << depth_text(sums.covered, sums.depth)
-      << Cell(sums.protrusion * kMillimetres, 12, 2) << Cell(sums.over_mesh * kMillimetres, 11, 2);
+      << Cell(sums.protrusion * kMillimetresPerMetre, 12, 2)
+      << Cell(sums.over_mesh * kMillimetresPerMetre, 11, 2);
 }
 
 }  // namespace
@@ -135,15 +137,20 @@ std::string robot_table(const RobotCover& cover, double seconds) {
   std::ostringstream out;
   out << padded("link")
       << "       E  triangles  spheres  uncovered  protrusion  over mesh  volume  seconds\n"
-      << padded("") << "    [mm]                            [mm]        [mm]       [mm]\n";
+      << padded("") << "    [mm]                           [mm]        [mm]       [mm]\n";
   for (const LinkCover& link : cover.links) {
     if (!link.fit) {
       out << padded(link.link) << "  no " << name_of(cover.options.geometry) << " geometry\n";
       continue;
     }
     write_row(out, padded(link.link), link.fit->options.max_error, Totals({&link, 1}));
-    out << Cell(link.fit->certificate.volume_ratio.value_or(0.0), 8, 2) << Cell(link.seconds, 9, 1)
-        << "\n";
+    const std::optional<double>& volume = link.fit->certificate.volume_ratio;
+    if (volume) {
+      out << Cell(*volume, 8, 2);
+    } else {  // an open mesh has none
+      out << std::setw(8) << "-";
+    }
+    out << Cell(link.seconds, 9, 1) << "\n";
   }
   write_row(out, padded("total"), cover.options.max_error, Totals(cover.links));
   out << std::setw(8) << "" << Cell(seconds, 9, 1) << "\n";

@@ -51,11 +51,15 @@ int more_sides(int sides) {
   return sides % 3 == 0 ? sides / 3 * 4 : sides / 2 * 3;
 }
 
-// The fewest sides whose corners stand out of a circle of that radius by at most `chord_error`;
-// `power` is 2 for outlines that are polygons themselves.
-int sides_for(double radius, int power, double chord_error, const std::string& subject) {
+enum class OutlineKind { kStraight, kRounded };
+
+// The fewest sides with which no corner stands out of the primitive by more than `chord_error`.
+// Those of a rounded outline, a polygon itself, stand out twice.
+int sides_for(double radius, OutlineKind kind, double chord_error, const std::string& subject) {
   for (int sides = kLeastSides; sides <= kMostSides; sides = more_sides(sides)) {
-    if (radius * (std::pow(corner_factor(sides), power) - 1.0) <= chord_error) return sides;
+    const double factor = corner_factor(sides);
+    const double farthest = kind == OutlineKind::kRounded ? factor * factor : factor;
+    if (radius * (farthest - 1.0) <= chord_error) return sides;
   }
   std::ostringstream reason;
   reason << "a radius of " << radius << " with a chord error of " << chord_error
@@ -133,7 +137,7 @@ struct MeshAround {
     return rounded(capsule.radius, capsule.length);
   }
   TriangleMesh operator()(const Cylinder& cylinder) const {
-    const int sides = sides_for(cylinder.radius, 1, chord_error, subject);
+    const int sides = sides_for(cylinder.radius, OutlineKind::kStraight, chord_error, subject);
     return turn({{cylinder.radius, cylinder.length / 2}, {cylinder.radius, -cylinder.length / 2}},
                 sides);
   }
@@ -142,7 +146,7 @@ struct MeshAround {
   }
 
   TriangleMesh rounded(double radius, double length) const {
-    const int sides = sides_for(radius, 2, chord_error, subject);
+    const int sides = sides_for(radius, OutlineKind::kRounded, chord_error, subject);
     return turn(rounded_outline(radius, length, sides), sides);
   }
 };

@@ -126,7 +126,7 @@ RobotDescription random_robot(Random& random, int links) {
       joint.upper = 1;
       robot.model.add_link(link.name, "link" + std::to_string(i - 1), joint);
     }
-    const std::size_t shapes = i % 3 == 1 ? 0 : 1 + random.index(3);
+    const std::size_t shapes = i % 3 == 1 ? 0 : 1 + random.index(2);
     for (std::size_t s = 0; s < shapes; ++s) {
       link.collision.push_back({.name = "",
                                 .link_from_shape = random_pose(random, 0.1),

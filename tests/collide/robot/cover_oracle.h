@@ -31,7 +31,7 @@ WidePoint point_of(const Primitive& primitive, Random& random);
 // How far outside of the primitive a point lies, 0 within; of a half-space not known.
 Wide distance_to(const Primitive& primitive, const WidePoint& point);
 
-// A robot of a chain of `links` links with one to three primitives each as collision shapes; every
+// A robot of a chain of `links` links with one or two primitives each as collision shapes; every
 // third link from the second on has none.
 RobotDescription random_robot(Random& random, int links);
 

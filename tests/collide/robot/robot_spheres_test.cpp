@@ -55,6 +55,14 @@ Wide sampled_protrusion(const LinkCover& cover, const LinkDescription& link, Ran
   return largest;
 }
 
+// The same robot with boxes for its shapes: few triangles are certified quickly.
+RobotDescription boxes_of(RobotDescription robot) {
+  for (LinkDescription& link : robot.links) {
+    for (LinkShape& shape : link.collision) shape.geometry = Box{{0.1, 0.15, 0.2}};
+  }
+  return robot;
+}
+
 RobotCoverOptions quick(double max_error) {
   return {.max_error = max_error, .effort = 0};
 }
@@ -63,7 +71,7 @@ TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
   Random random(11);
   for (int i = 0; i < effort(2, 1); ++i) {
     const RobotDescription robot = random_robot(random, 3);
-    RobotCoverOptions options = quick(0.04);
+    RobotCoverOptions options = quick(0.06);
     options.padding = i % 2 == 0 ? 0.005 : 0.0;
     const RobotCover cover = cover_robot(robot, options);
     EXPECT_EQ(cover.robot, "chain");
@@ -79,7 +87,7 @@ TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
       }
       ASSERT_TRUE(link.fit);
       EXPECT_TRUE(link.fit->certificate.covered);
-      EXPECT_LE(*link.fit->certificate.protrusion_over_simplified_max, 0.04);
+      EXPECT_LE(*link.fit->certificate.protrusion_over_simplified_max, 0.06);
       EXPECT_TRUE(link.warnings.empty()) << link.warnings.front();
       for (int k = 0; k < 3000; ++k) {
         WidePoint p = point_of(robot.links[l], random);
@@ -89,7 +97,7 @@ TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
       // Over the shapes themselves: a gap between shapes may be filled, which the certificate
       // bounds, and tessellation adds E / 16.
       EXPECT_LE(sampled_protrusion(link, robot.links[l], random),
-                link.fit->certificate.protrusion_over_mesh->upper + 0.04 / 16 + options.padding);
+                link.fit->certificate.protrusion_over_mesh->upper + 0.06 / 16 + options.padding);
     }
   }
 }
@@ -107,12 +115,12 @@ TEST(RobotSpheres, ABallIsOneBall) {
 
 TEST(RobotSpheres, AreEqualOnAnyNumberOfThreads) {
   Random random(12);
-  const RobotDescription robot = random_robot(random, 3);
+  const RobotDescription robot = boxes_of(random_robot(random, 3));
   RobotCoverOptions options = quick(0.05);
   options.effort = 1;
   options.threads = 1;
   const RobotCover alone = cover_robot(robot, options);
-  for (const int threads : {5, 2}) {
+  for (const int threads : effort(std::vector{5, 2}, 1)) {
     options.threads = threads;
     const RobotCover cover = cover_robot(robot, options);
     for (std::size_t l = 0; l < robot.links.size(); ++l) {
@@ -123,7 +131,7 @@ TEST(RobotSpheres, AreEqualOnAnyNumberOfThreads) {
 
 TEST(RobotSpheres, OptionsOfALinkAreForThatLink) {
   Random random(13);
-  const RobotDescription robot = random_robot(random, 3);
+  const RobotDescription robot = boxes_of(random_robot(random, 3));
   RobotCoverOptions options = quick(0.05);
   const RobotCover plain = cover_robot(robot, options);
   EXPECT_EQ(plain.links[0].fit->options.min_external_diameter, 0.2);
@@ -177,7 +185,7 @@ TEST(RobotSpheres, WarnOfAnOpenMeshAndCoverIt) {
 
 TEST(RobotSpheres, ProgressGrowsAndNamesLinks) {
   Random random(15);
-  const RobotDescription robot = random_robot(random, 3);
+  const RobotDescription robot = boxes_of(random_robot(random, 3));
   RobotCoverOptions options = quick(0.06);
   std::mutex mutex;
   std::vector<double> shares;
@@ -200,7 +208,7 @@ TEST(RobotSpheres, ProgressGrowsAndNamesLinks) {
 
 TEST(RobotSpheres, NamesTheLinksWhoseProofFailed) {
   Random random(16);
-  const RobotDescription robot = random_robot(random, 3);
+  const RobotDescription robot = boxes_of(random_robot(random, 3));
   RobotCover cover = cover_robot(robot, quick(0.06));
   EXPECT_TRUE(links_not_proved(cover).empty());
   cover.links[2].fit->certificate.covered = false;
