@@ -171,7 +171,7 @@ class MechanismCheck {
 
   struct Parts;
   struct Translator;
-  class EdgeSearch;
+  class EdgeMotion;
   std::unique_ptr<const Parts> parts_;
 };
 

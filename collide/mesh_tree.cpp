@@ -3,8 +3,10 @@
 
 #include "collide/internal/mesh_search.h"
 #include "collide/internal/packed_mesh.h"
+#include "collide/internal/pair_space.h"
 #include "collide/internal/queries.h"
 #include "collide/internal/triangle_leaves.h"
+#include "collide/within.h"
 #include "spheretree/build.h"
 #include "spheretree/enclosing_sphere.h"
 
@@ -41,8 +43,23 @@ MeshTree::MeshTree(const TriangleMesh& mesh)
 
 bool collides(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
               const Pose& world_from_b) noexcept {
-  static const internal::MeshKernels& kKernels = internal::mesh_kernels_for(best_instruction_set());
-  return internal::collides_by(kKernels, a, world_from_a, b, world_from_b);
+  return internal::collides_by(internal::best_mesh_kernels(), a, world_from_a, b, world_from_b);
+}
+
+bool within(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
+            const Pose& world_from_b, double clearance) {
+  require_clearance(clearance);
+  return internal::collides_by(internal::best_mesh_kernels(), a, world_from_a, b, world_from_b,
+                               clearance);
+}
+
+DistanceResult distance(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
+                        const Pose& world_from_b, const DistanceRequest& request) {
+  const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
+  const internal::TriangleLeaves leaves(a, b, pose);
+  const internal::PairSpace space(a, b.tree(), pose, leaves);
+  return internal::NearestFirst(space, pose.gap_error(), request)
+      .run(NodePair(0, 0), pose.gap(a.ball(0), b.tree().ball(0)));
 }
 
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collide/collide.h"
+#include "collide/distance.h"
 #include "spheretree/triangle_mesh.h"
 
 #include <array>
@@ -48,7 +49,18 @@ bool collides(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
                         const Pose& world_from_b, const CollisionRequest& request = {});
 
-// The test that both rest on, for one sphere and one triangle.
+// Whether they come within a clearance of each other: never false if the exact gap is at most the
+// clearance, and true for a greater one only as collides() is. Throws Error as require_clearance()
+// does.
+bool within(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
+            const Pose& world_from_b, double clearance);
+
+// Their separation distance between certified bounds, as far apart as those of
+// point_triangle_distance(). In `nearest`, `b` is the triangle.
+DistanceResult distance(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
+                        const Pose& world_from_b, const DistanceRequest& request = {});
+
+// The test that collides() and collide() rest on, for one sphere and one triangle.
 bool meets_triangle(const SphereTree& a, std::int32_t sphere, const Pose& world_from_a,
                     const MeshTree& b, std::int32_t triangle, const Pose& world_from_b) noexcept;
 

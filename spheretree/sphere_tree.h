@@ -20,7 +20,7 @@ struct SphereTreeData {
 };
 
 // The points p of a frame with |p - center| <= half_size in each coordinate.
-struct Box {
+struct AxisAlignedBox {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   Eigen::Vector3d half_size = Eigen::Vector3d::Zero();
 };
@@ -65,7 +65,7 @@ class SphereTree {
   double reach() const { return reach_; }
   // A box along the axes of the frame that holds every sphere in exact arithmetic, the smallest up
   // to rounding. Of the spheres alone, as reach() is.
-  const Box& box() const { return box_; }
+  const AxisAlignedBox& box() const { return box_; }
 
   // The balls that stand at distance `level` from the root, and the leaves above them: a set of
   // balls whose union contains all spheres. level 0 is the root, level depth() the spheres
@@ -83,7 +83,7 @@ class SphereTree {
   int depth_ = 0;
   int branching_ = 0;
   double reach_ = 0.0;
-  Box box_;
+  AxisAlignedBox box_;
 };
 
 }  // namespace spherule

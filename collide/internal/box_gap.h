@@ -49,7 +49,7 @@ inline bool ball_apart_from_box(const SphereTree& a, const Pose& world_from_a, c
   const double wx = (ra[0] * x + ra[3] * y) + (ra[6] * z + dx);
   const double wy = (ra[1] * x + ra[4] * y) + (ra[7] * z + dy);
   const double wz = (ra[2] * x + ra[5] * y) + (ra[8] * z + dz);
-  const Box& box = b.box();
+  const AxisAlignedBox& box = b.box();
   double squared = 0.0;
   for (int i = 0; i < 3; ++i) {
     const double along = (rb[3 * i] * wx + rb[3 * i + 1] * wy) + rb[3 * i + 2] * wz;
@@ -75,8 +75,8 @@ inline bool far_apart(const SphereTree& a, const Pose& world_from_a, const Spher
 // No sphere of a is nearer to one of b: negative, and of no use, where no axis separates the boxes.
 inline double box_gap(const SphereTree& a, const SphereTree& b, const RelativePose& pose) {
   const FrameChange b_from_a = pose.b_from_a();
-  const Box& box_a = a.box();
-  const Box& box_b = b.box();
+  const AxisAlignedBox& box_a = a.box();
+  const AxisAlignedBox& box_b = b.box();
   const Eigen::Vector3d apart = b_from_a(box_a.center) - box_b.center;
   double gaps_b[3], gaps_a[3];
   for (int i = 0; i < 3; ++i) {

@@ -156,7 +156,8 @@ MeshInside::MeshInside(const TriangleMesh& mesh) {
   }
 }
 
-bool MeshInside::contains(const MeshTree& tree, const Vector3d& point, double error) const {
+std::optional<bool> MeshInside::find(const MeshTree& tree, const Vector3d& point,
+                                     double error) const {
   if (!has_inside_) return false;
   for (int k = 0; k < 3; ++k) {
     if (point[k] < sub_down(box_.min()[k], error) || point[k] > add_up(box_.max()[k], error)) {
@@ -167,7 +168,7 @@ bool MeshInside::contains(const MeshTree& tree, const Vector3d& point, double er
     const std::optional<int> winding = crossings(tree, is_solid_, Ray(point, error, direction));
     if (winding) return *winding != 0;
   }
-  return true;
+  return std::nullopt;
 }
 
 }  // namespace spherule::internal

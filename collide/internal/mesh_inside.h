@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,8 @@ class MeshInside {
   std::span<const Eigen::Vector3d> component_points() const { return points_; }
   bool has_inside() const { return has_inside_; }
   bool is_closed() const { return is_closed_; }
+  // Around the closed components, and so around the inside; empty where there are none.
+  const Eigen::AlignedBox3d& box() const { return box_; }
 
   // Whether a point is inside; `tree` is of the same mesh. The point may be off by `error`: never
   // false if the exact one is inside; true also if it cannot be told apart from a point of the
@@ -45,7 +48,11 @@ class MeshInside {
   // The winding number is the sum of the signed crossings of a ray with the triangles. Each
   // crossing is decided with the error of the point counted, so that the sum is that of the ray
   // from the exact point; a ray that passes an edge too near is given up for another one.
-  bool contains(const MeshTree& tree, const Eigen::Vector3d& point, double error) const;
+  bool contains(const MeshTree& tree, const Eigen::Vector3d& point, double error) const {
+    return find(tree, point, error).value_or(true);
+  }
+  // The same, and nothing where it cannot be told.
+  std::optional<bool> find(const MeshTree& tree, const Eigen::Vector3d& point, double error) const;
 
  private:
   std::vector<char> is_solid_;  // of each triangle: whether its component is closed

@@ -18,6 +18,8 @@ namespace {
 // finds it apart, too: where the mesh's lanes are numbers, because of ball_triangle.h, which asks
 // for 2 v S and a distance of 4 v S; where not, because the leaf's ball is what is apart. 48 v T
 // covers it, and the absolute term what underflows (packed_tree.h).
+// A clearance is part of every radius and of T, rounded up once; the margin is that of the growth
+// without it.
 constexpr double kGrowth = 48.0 * kFloatRoundoff;
 constexpr double kAbsolute = 0x1p-60;
 static_assert(MeshNode::kWidth == 8);
@@ -26,11 +28,12 @@ struct Question {
   const SphereTree& a;
   const MeshTree& b;
   const RelativePose& pose;
+  double clearance;
 
   static bool confirm(void* context, KernelPair /*pair*/, std::int32_t sphere,
                       std::int32_t triangle) {
     const Question& in = *static_cast<const Question*>(context);
-    return TriangleLeaves(in.a, in.b, in.pose).touches(sphere, triangle);
+    return TriangleLeaves(in.a, in.b, in.pose, in.clearance).touches(sphere, triangle);
   }
 };
 
@@ -44,18 +47,24 @@ const MeshKernels& mesh_kernels_for([[maybe_unused]] InstructionSet set) {
   return portable_mesh_kernels();
 }
 
+const MeshKernels& best_mesh_kernels() {
+  static const MeshKernels& kKernels = mesh_kernels_for(best_instruction_set());
+  return kKernels;
+}
+
 bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& world_from_a,
-                 const MeshTree& b, const Pose& world_from_b) noexcept {
-  if (far_apart(a, world_from_a, b.tree(), world_from_b)) return false;
+                 const MeshTree& b, const Pose& world_from_b, double clearance) noexcept {
+  if (far_apart(a, world_from_a, b.tree(), world_from_b, clearance)) return false;
   const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
-  if (boxes_apart(a, b.tree(), pose)) return false;
+  if (boxes_apart(a, b.tree(), pose, clearance)) return false;
   const PackedMesh& mesh = b.packed();
   if (a.branching() > MeshNode::kWidth || a.depth() + mesh.depth() > MeshTasks::kLevels) {
-    return any_pair(a, b.tree(), pose, TriangleLeaves(a, b, pose));
+    return any_pair_within(a, b.tree(), pose, TriangleLeaves(a, b, pose, clearance), clearance);
   }
   const SphereTreeData& data = a.data();
   const FrameChange to_mesh = pose.b_from_a();
-  const float growth = rounded_up_to_single(kGrowth * pose.node_size() + kAbsolute);
+  const double rounding = kGrowth * (pose.node_size() + clearance) + kAbsolute;
+  const float growth = rounded_up_to_single(rounding + clearance);
   MeshBalls balls = {.x = data.x.data(),
                      .y = data.y.data(),
                      .z = data.z.data(),
@@ -75,8 +84,9 @@ bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& wo
       static_cast<float>(center.z()),        static_cast<float>(a.ball(0).radius) + growth,
       a.is_leaf(0) ? ~a.sphere_index(0) : 0, 0};
   MeshTasks tasks;  // 24 KiB that are not touched before they are needed
-  Question question{a, b, pose};
-  return kernels.meets(mesh.view(), balls, 3.0F * growth, tasks, &Question::confirm, &question);
+  Question question{a, b, pose, clearance};
+  return kernels.meets(mesh.view(), balls, 3.0F * rounded_up_to_single(rounding), tasks,
+                       &Question::confirm, &question);
 }
 
 }  // namespace spherule::internal

@@ -90,10 +90,32 @@ class CollectPairs {
   double smallest_gap_ = std::numeric_limits<double>::infinity();
 };
 
+// The same for pairs that come within a clearance, of which the leaf test knows.
+template <class LeafTest>
+class FindNear : public FindAny<LeafTest> {
+ public:
+  FindNear(const LeafTest& test, double clearance)
+      : FindAny<LeafTest>(test), clearance_(clearance) {}
+
+  double margin(NodePair) const noexcept { return clearance_; }
+  bool nearest_first() const noexcept { return false; }
+
+ private:
+  const double clearance_;
+};
+
 template <class LeafTest>
 bool any_pair(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
               const LeafTest& test) noexcept {
   FindAny<LeafTest> query(test);
+  traverse(a, b, pose, query);
+  return query.found();
+}
+
+template <class LeafTest>
+bool any_pair_within(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
+                     const LeafTest& test, double clearance) noexcept {
+  FindNear<LeafTest> query(test, clearance);
   traverse(a, b, pose, query);
   return query.found();
 }

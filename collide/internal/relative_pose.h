@@ -104,15 +104,12 @@ class RelativePose {
  public:
   RelativePose(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                const Pose& world_from_b)
-      : world_from_a_(world_from_a),
-        world_from_b_(world_from_b),
-        dx_(world_from_a.translation().x() - world_from_b.translation().x()),
-        dy_(world_from_a.translation().y() - world_from_b.translation().y()),
-        dz_(world_from_a.translation().z() - world_from_b.translation().z()) {
-    const double offset = std::abs(dx_) + std::abs(dy_) + std::abs(dz_);
-    scene_size_ = (a.reach() + b.reach()) + offset;
-    node_size_ = (node_reach(a) + node_reach(b)) + offset;
-  }
+      : RelativePose(a, world_from_a, b.reach(), node_reach(b), world_from_b) {}
+
+  // The same for a body b that is no tree and reaches so far from the origin of its frame.
+  RelativePose(const SphereTree& a, const Pose& world_from_a, double reach_b,
+               const Pose& world_from_b)
+      : RelativePose(a, world_from_a, reach_b, reach_b, world_from_b) {}
 
   // S and T of the budget above.
   double scene_size() const { return scene_size_; }
@@ -160,6 +157,18 @@ class RelativePose {
   }
 
  private:
+  RelativePose(const SphereTree& a, const Pose& world_from_a, double reach_b, double node_reach_b,
+               const Pose& world_from_b)
+      : world_from_a_(world_from_a),
+        world_from_b_(world_from_b),
+        dx_(world_from_a.translation().x() - world_from_b.translation().x()),
+        dy_(world_from_a.translation().y() - world_from_b.translation().y()),
+        dz_(world_from_a.translation().z() - world_from_b.translation().z()) {
+    const double offset = std::abs(dx_) + std::abs(dy_) + std::abs(dz_);
+    scene_size_ = (a.reach() + reach_b) + offset;
+    node_size_ = (node_reach(a) + node_reach_b) + offset;
+  }
+
   static double row(const Eigen::Matrix3d& m, int i, const Eigen::Vector3d& x) {
     return m(i, 0) * x.x() + m(i, 1) * x.y() + m(i, 2) * x.z();
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collide/internal/ball_triangle.h"
+#include "collide/internal/nearest_first.h"
 #include "collide/internal/relative_pose.h"
 #include "collide/internal/tree_pair.h"
 #include "collide/mesh_tree.h"
@@ -28,22 +29,29 @@ namespace spherule::internal {
 // The last term has no bound that could be relied on. are_apart() has one, so that filters in
 // single precision never find apart what is accepted here: it loses no contact with r + 136 u S and
 // the 8 u S that it asks for, and 160 u S covers the rounding of the sum.
+//
+// A clearance c adds c (1 + 32 u) to both pads: S + c takes the place of S, of whose 8 u c and of
+// the roundings of the sum, 2 u c, it leaves nothing over.
 class TriangleLeaves {
  public:
-  TriangleLeaves(const SphereTree& a, const MeshTree& b, const RelativePose& pose)
+  TriangleLeaves(const SphereTree& a, const MeshTree& b, const RelativePose& pose,
+                 double clearance = 0.0)
       : a_(a),
         b_(b),
         pose_(pose),
         b_from_a_(pose.b_from_a()),
-        pad_(144.0 * kUnitRoundoff * pose.scene_size() + kUnderflow),
-        axis_pad_(160.0 * kUnitRoundoff * pose.scene_size() + kUnderflow) {}
+        clearance_(clearance),
+        pad_((144.0 * kUnitRoundoff * pose.scene_size() + kUnderflow) + clearance * kMarginUp),
+        axis_pad_((160.0 * kUnitRoundoff * pose.scene_size() + kUnderflow) +
+                  clearance * kMarginUp) {}
 
   bool touches(NodePair pair) const {
     return touches(a_.sphere_index(pair.index(0)), b_.tree().sphere_index(pair.index(1)));
   }
   bool touches(std::int32_t sphere, std::int32_t triangle) const {
     const Sphere& ball = a_.spheres()[static_cast<std::size_t>(sphere)];
-    return pose_.touches(ball, b_.tree().spheres()[static_cast<std::size_t>(triangle)]) &&
+    return pose_.touches(ball, b_.tree().spheres()[static_cast<std::size_t>(triangle)],
+                         clearance_) &&
            !are_apart(b_from_a_(ball.center), b_.triangle(triangle), ball.radius + axis_pad_) &&
            lower(ball, triangle) <= ball.radius + pad_;
   }
@@ -52,18 +60,26 @@ class TriangleLeaves {
     return std::max(lower(ball, b_.tree().sphere_index(pair.index(1))) - ball.radius,
                     pose_.gap(ball, b_.tree().ball(pair.index(1))));
   }
+  GapInterval interval(NodePair pair) const {
+    const Sphere ball = a_.ball(pair.index(0));
+    const TriangleDistance found = distance(ball, b_.tree().sphere_index(pair.index(1)));
+    return {found.lower - ball.radius, found.upper - ball.radius};
+  }
 
  private:
-  double lower(const Sphere& ball, std::int32_t triangle) const {
+  TriangleDistance distance(const Sphere& ball, std::int32_t triangle) const {
     const std::array<Eigen::Vector3d, 3>& corners = b_.triangle(triangle);
-    return point_triangle_distance(b_from_a_(ball.center), corners[0], corners[1], corners[2])
-        .lower;
+    return point_triangle_distance(b_from_a_(ball.center), corners[0], corners[1], corners[2]);
+  }
+  double lower(const Sphere& ball, std::int32_t triangle) const {
+    return distance(ball, triangle).lower;
   }
 
   const SphereTree& a_;
   const MeshTree& b_;
   const RelativePose& pose_;
   const FrameChange b_from_a_;
+  const double clearance_;
   const double pad_;
   const double axis_pad_;
 };

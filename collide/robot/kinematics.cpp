@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/kinematics.h"
 
+#include "collide/robot/internal/mimic_error.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -36,12 +37,12 @@ using Eigen::Vector3d;
 //   A point at distance `reach` is turned with the last link: (54 n + 8) u reach.
 // With L the sum of the steps' lengths (100 m for a prismatic motion), over n joints
 //     (54 n + 8) u reach + (54 n + 79) u L + 2 n u (D + L).
+//   mimics: a position that errs by e (mimic_error.h) turns what lies beyond the joint, at most
+//     reach + L from it, by e, or shifts it by e.
 double chain_bound(double joints, double length, double reach, double root_distance) {
   return kUnitRoundoff * ((60.0 * joints + 10.0) * reach + (60.0 * joints + 85.0) * length +
                           4.0 * joints * root_distance);
 }
-
-constexpr double kLargestPosition = 100.0;
 
 // The joint's own rotation is composed first: it does not wait for the parent's, which is the chain
 // of operations that the time of a long mechanism depends on.
@@ -49,7 +50,7 @@ Pose move(const Pose& world_from_parent, const Quaterniond& parent_rotation, con
           double position) {
   const Quaterniond at_zero = joint.parent_from_joint.rotation();
   const Vector3d& origin = joint.parent_from_joint.translation();
-  if (joint.type == JointType::kRevolute) {
+  if (joint.turns()) {
     const double sine = std::sin(0.5 * position);
     const double cosine = std::cos(0.5 * position);
     const Quaterniond turn(cosine, joint.axis.x() * sine, joint.axis.y() * sine,
@@ -78,26 +79,31 @@ void forward_kinematics(const RobotModel& robot, std::span<const double> configu
   const Quaterniond root_rotation = unit_rotation(world_from_root.rotation());
   for (const Joint& joint : robot.joints()) {
     const auto parent = static_cast<std::size_t>(joint.parent_link);
-    const double position =
-        joint.variable < 0 ? 0.0 : configuration[static_cast<std::size_t>(joint.variable)];
-    world_from_link[static_cast<std::size_t>(joint.child_link)] =
-        move(world_from_link[parent],
-             parent == 0 ? root_rotation : world_from_link[parent].rotation(), joint, position);
+    world_from_link[static_cast<std::size_t>(joint.child_link)] = move(
+        world_from_link[parent], parent == 0 ? root_rotation : world_from_link[parent].rotation(),
+        joint, joint.position(configuration));
   }
 }
 
 double kinematics_error_bound(const RobotModel& robot, double reach, double root_distance) {
-  // Joints and length of the chain to each link; a parent comes before its children.
-  std::vector<double> joints(robot.links().size(), 0.0);
-  std::vector<double> length(robot.links().size(), 0.0);
+  // Of the chain to each link; a parent comes before its children.
+  struct Chain {
+    double joints = 0.0;
+    double length = 0.0;
+    double turned = 0.0;  // by errors of positions
+    double shifted = 0.0;
+  };
+  std::vector<Chain> chains(robot.links().size());
   double bound = 0.0;
   for (const Joint& joint : robot.joints()) {
-    const auto parent = static_cast<std::size_t>(joint.parent_link);
-    const auto child = static_cast<std::size_t>(joint.child_link);
-    joints[child] = joints[parent] + 1.0;
-    length[child] = length[parent] + joint.parent_from_joint.translation().norm() +
-                    (joint.type == JointType::kPrismatic ? kLargestPosition : 0.0);
-    bound = std::max(bound, chain_bound(joints[child], length[child], reach, root_distance));
+    Chain chain = chains[static_cast<std::size_t>(joint.parent_link)];
+    chain.joints += 1.0;
+    chain.length += joint.parent_from_joint.translation().norm();
+    if (joint.type == JointType::kPrismatic) chain.length += internal::kLargestPosition;
+    (joint.turns() ? chain.turned : chain.shifted) += internal::mimic_error(joint);
+    bound = std::max(bound, chain_bound(chain.joints, chain.length, reach, root_distance) +
+                                chain.turned * (reach + chain.length) + chain.shifted);
+    chains[static_cast<std::size_t>(joint.child_link)] = chain;
   }
   return bound;
 }

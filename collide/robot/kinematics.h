@@ -19,8 +19,9 @@ void forward_kinematics(const RobotModel& robot, std::span<const double> configu
 
 // Bound on the distance between a point at distance at most `reach` from a link's frame mapped by
 // the computed pose and by the exact mechanism (the joints exactly as the model stores them), in
-// metres, for any configuration with |q| <= 100 and a root at distance at most `root_distance`
-// from the world's origin. The error budget stands in kinematics.cpp.
+// metres, for any configuration with joint positions of at most 100 in magnitude and a root at
+// distance at most `root_distance` from the world's origin. The error budget stands in
+// kinematics.cpp.
 double kinematics_error_bound(const RobotModel& robot, double reach, double root_distance = 0.0);
 
 }  // namespace spherule

@@ -52,7 +52,8 @@ void RobotTreeChecker::collides(std::span<const double> configurations, Scratch&
     const std::size_t last = std::min(first + kBlock, verdicts.size()) - 1;
     std::array<const double*, kBlock> block;  // filled up with the last one
     for (std::size_t i = 0; i < kBlock; ++i) {
-      block[i] = configuration(std::min(first + i, last)).data();
+      const std::size_t index = std::min(first + i, last);
+      block[i] = positions_.of(configuration(index), scratch.room_, i).data();
     }
     int placed = -1;
     std::uint32_t unconfirmed = 0;
@@ -60,8 +61,8 @@ void RobotTreeChecker::collides(std::span<const double> configurations, Scratch&
         check_->collides(block, scratch.memory_, [&](int index, const MechanismContact& contact) {
           bool is_placed = std::exchange(placed, index) == index;
           scratch.unconfirmed_.clear();
-          const bool touch = touches({block[static_cast<std::size_t>(index)], variables}, contact,
-                                     is_placed, scratch);
+          const std::size_t asked = std::min(first + static_cast<std::size_t>(index), last);
+          const bool touch = touches(configuration(asked), contact, is_placed, scratch);
           if (!scratch.unconfirmed_.empty()) unconfirmed |= 1U << index;
           return touch;
         });

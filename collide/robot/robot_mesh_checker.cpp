@@ -35,7 +35,8 @@ RobotMeshChecker::RobotMeshChecker(RobotModel robot, std::vector<LinkMesh> meshe
     : robot_(std::move(robot)),
       meshes_(std::move(meshes)),
       obstacles_(std::move(obstacles)),
-      world_from_root_(options.world_from_root) {
+      world_from_root_(options.world_from_root),
+      positions_(robot_) {
   check_input(robot_, meshes_, obstacles_, options.untested);
   const internal::MovingFrames frames(robot_);
   std::vector<Pose> standing;
@@ -82,17 +83,18 @@ bool RobotMeshChecker::meets(const Pair& pair, const std::vector<Pose>& world_fr
 }
 
 bool RobotMeshChecker::collides(std::span<const double> configuration, Scratch& scratch) const {
-  const bool is_usual = configuration.size() == static_cast<std::size_t>(robot_.variable_count()) &&
-                        MechanismCheck::is_in_range(configuration);
+  const bool has_size = configuration.size() == static_cast<std::size_t>(robot_.variable_count());
+  const std::span<const double> positions =
+      has_size ? positions_.of(configuration, scratch.room_) : configuration;
   std::vector<Pose>& placed = scratch.world_from_link_;
-  if (!is_usual) {
+  if (!has_size || !MechanismCheck::is_in_range(positions)) {
     forward_kinematics(robot_, configuration, placed, world_from_root_);
     return std::any_of(pairs_.begin(), pairs_.end(),
                        [&](const Pair& pair) { return meets(pair, placed); });
   }
   if (always_) return true;
   bool is_placed = false;
-  return check_->collides(configuration, scratch.memory_, [&](const MeshContactInDoubt& contact) {
+  return check_->collides(positions, scratch.memory_, [&](const MeshContactInDoubt& contact) {
     if (!is_placed) forward_kinematics(robot_, configuration, placed, world_from_root_);
     is_placed = true;
     const LinkMesh& mesh = meshes_[moving_[static_cast<std::size_t>(contact.pair.body)]];

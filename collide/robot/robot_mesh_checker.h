@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collide/mesh_mechanism.h"
+#include "collide/robot/joint_positions.h"
 #include "collide/robot/robot_tree_checker.h"
 
 #include <memory>
@@ -42,17 +43,19 @@ class RobotMeshChecker {
   // once its scratch is warm.
   class Scratch {
    public:
-    explicit Scratch(const RobotMeshChecker& checker) : memory_(*checker.check_) {}
+    explicit Scratch(const RobotMeshChecker& checker)
+        : memory_(*checker.check_), room_(checker.positions_.room_for(1)) {}
 
    private:
     friend class RobotMeshChecker;
     MeshMechanismCheck::Scratch memory_;
     std::vector<Pose> world_from_link_;
+    JointPositions::Room room_;
   };
 
   // Throws Error for a configuration of the wrong size or with a number that is not finite.
-  // Configurations with a position beyond 100 (radians or metres) are answered as exactly, but
-  // slowly; where such a one leads out of all bounds, forward_kinematics() throws.
+  // Configurations with a joint's position beyond 100 (radians or metres) are answered as exactly,
+  // but slowly; where such a one leads out of all bounds, forward_kinematics() throws.
   bool collides(std::span<const double> configuration, Scratch& scratch) const;
 
  private:
@@ -67,6 +70,7 @@ class RobotMeshChecker {
   std::vector<LinkMesh> meshes_;
   std::vector<PlacedTree> obstacles_;
   Pose world_from_root_;
+  JointPositions positions_;
   std::vector<Pair> pairs_;          // that are tested
   std::vector<std::size_t> moving_;  // the meshes that variables move
   bool always_ = false;              // a mesh that stands with the root meets an obstacle

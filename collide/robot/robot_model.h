@@ -6,17 +6,23 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace spherule {
 
-enum class JointType { kFixed, kRevolute, kPrismatic };
+// kContinuous is a revolute joint without limits.
+enum class JointType { kFixed, kRevolute, kPrismatic, kContinuous };
 
 // Joint between a parent link and its child: child frame = origin, then the motion about or along
 // `axis`. Lengths in metres, angles in radians.
+//
+// The position of a joint is multiplier * variable + offset, of the variable of a configuration
+// that moves it: 1 and 0, unless the joint mimics another. Only RobotModel sets these.
 struct Joint {
   std::string name{};
   JointType type = JointType::kFixed;
@@ -27,6 +33,18 @@ struct Joint {
   double lower = 0.0;                               // limits of the position
   double upper = 0.0;
   int variable = -1;  // index into a configuration; -1 if fixed
+  double multiplier = 1.0;
+  double offset = 0.0;
+  int mimics = -1;  // the joint that it was told to follow, by its index; -1 if none
+
+  bool moves() const { return variable >= 0; }
+  bool turns() const { return type == JointType::kRevolute || type == JointType::kContinuous; }
+  // In a configuration of variable_count() numbers, product and sum rounded; 0 if it is fixed.
+  double position(std::span<const double> configuration) const {
+    if (!moves()) return 0.0;
+    const double value = configuration[static_cast<std::size_t>(variable)];
+    return mimics < 0 ? value : multiplier * value + offset;
+  }
 };
 
 // A link with the sphere trees that are rigidly attached to it, in the link's frame.
@@ -37,30 +55,56 @@ struct Link {
 };
 
 // A jointed mechanism: serial or branching chains of revolute and prismatic joints, with a root
-// link. Links are stored so that a parent comes before its children.
+// link. Links are stored so that a parent comes before its children. A configuration has one number
+// for each joint that moves and mimics no other, in the order of these joints.
 class RobotModel {
  public:
   explicit RobotModel(std::string root_link = "base_link");
 
-  // Adds a link below `parent_link` through `joint` (whose link indices and variable are set here)
-  // and returns its index. Throws Error for a name that is taken, an unknown parent, an axis that
-  // is zero or not finite, and limits that are not finite or reversed.
+  // Adds a link below `parent_link` through `joint` and returns its index. What is set here: the
+  // joint's link indices and variable, no mimic, and for a continuous joint the limits, -pi and pi:
+  // one turn, for whoever draws positions. Throws Error for a name that is taken, an unknown
+  // parent, an axis that is zero or not finite (of a joint that moves: that of a fixed one is of no
+  // use and replaced), and limits that are not finite or reversed.
   int add_link(std::string name, std::string_view parent_link, Joint joint);
+
+  // From now on `joint` stands at multiplier * (position of `other`) + offset. `other` may mimic a
+  // third, and may come later; then the factors of the chain are multiplied out, rounded, and what
+  // stands in Joint is what counts. Variables are numbered anew. Throws Error for a joint that does
+  // not exist or is fixed, mimics one already, would mimic itself, and for numbers that are not
+  // finite.
+  void mimic(std::string_view joint, std::string_view other, double multiplier = 1.0,
+             double offset = 0.0);
 
   // Attaches a tree to a link; throws Error for an unknown link or a null tree.
   void attach(std::string_view link, std::shared_ptr<const SphereTree> tree);
 
   const std::vector<Link>& links() const { return links_; }
   const std::vector<Joint>& joints() const { return joints_; }
-  int variable_count() const { return variable_count_; }
+  int variable_count() const { return static_cast<int>(variable_joints_.size()); }
+  // The joint whose position each number of a configuration is, by its index.
+  const std::vector<int>& variable_joints() const { return variable_joints_; }
+  bool has_mimics() const { return has_mimics_; }
 
-  // Index of a link, or -1.
+  // Index of a link or a joint, or -1; joints without a name are not found.
   int find_link(std::string_view name) const;
+  int find_joint(std::string_view name) const;
 
  private:
+  // What a joint was told to follow.
+  struct Follow {
+    double multiplier = 1.0;
+    double offset = 0.0;
+  };
+  std::size_t require_moving_joint(std::string_view name) const;
+  bool follows(std::size_t joint, std::size_t other) const;
+  void number_variables();
+
   std::vector<Link> links_;
   std::vector<Joint> joints_;
-  int variable_count_ = 0;
+  std::vector<Follow> follow_;  // for each joint
+  std::vector<int> variable_joints_;
+  bool has_mimics_ = false;
 };
 
 }  // namespace spherule

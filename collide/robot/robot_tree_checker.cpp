@@ -46,7 +46,8 @@ RobotTreeChecker::RobotTreeChecker(RobotModel robot, std::vector<PlacedTree> obs
     : robot_(std::move(robot)),
       obstacles_(std::move(obstacles)),
       world_from_root_(options.world_from_root),
-      meshes_(options.meshes) {
+      meshes_(options.meshes),
+      positions_(robot_) {
   check_input(robot_, obstacles_, options);
   const internal::MovingFrames frames(robot_);
   std::vector<Pose> standing;
@@ -97,21 +98,25 @@ const CoveredMesh* RobotTreeChecker::mesh_of(const SphereTree& tree) const {
   return found == meshes_.end() ? nullptr : found->get();
 }
 
-// Whether the fast check can be asked.
-bool RobotTreeChecker::is_usual(std::span<const double> configuration) const {
-  return configuration.size() == static_cast<std::size_t>(robot_.variable_count()) &&
-         MechanismCheck::is_in_range(configuration);
+// What the fast check is asked for, if it can be.
+std::optional<std::span<const double>> RobotTreeChecker::usual_positions(
+    std::span<const double> configuration, Scratch& scratch, std::size_t place) const {
+  if (configuration.size() != static_cast<std::size_t>(robot_.variable_count())) return {};
+  const std::span<const double> positions = positions_.of(configuration, scratch.room_, place);
+  if (!MechanismCheck::is_in_range(positions)) return {};
+  return positions;
 }
 
 bool RobotTreeChecker::collides(std::span<const double> configuration, Scratch& scratch) const {
-  if (!is_usual(configuration)) return collides_exactly(configuration, scratch);
+  const auto positions = usual_positions(configuration, scratch);
+  if (!positions) return collides_exactly(configuration, scratch);
   if (always_) return true;
   bool is_placed = false;
   scratch.unconfirmed_.clear();
   const auto confirm = [&](const MechanismContact& contact) {
     return touches(configuration, contact, is_placed, scratch);
   };
-  return check_->collides(configuration, scratch.memory_, confirm) || contains_component(scratch);
+  return check_->collides(*positions, scratch.memory_, confirm) || contains_component(scratch);
 }
 
 bool RobotTreeChecker::within(std::span<const double> configuration, double clearance,
@@ -126,7 +131,8 @@ bool RobotTreeChecker::within(std::span<const double> configuration, double clea
         return is_near(pair.body, pair.world_from_link, pair.obstacle);
       });
   std::vector<Pose>& world_from_link = scratch.world_from_link_;
-  if (!is_usual(configuration)) {
+  const auto positions = usual_positions(configuration, scratch);
+  if (!positions) {
     forward_kinematics(robot_, configuration, world_from_link, world_from_root_);
     return stands_near || std::any_of(pairs_.begin(), pairs_.end(), [&](const MechanismPair& pair) {
              const Body& body = bodies_[static_cast<std::size_t>(pair.body)];
@@ -145,7 +151,7 @@ bool RobotTreeChecker::within(std::span<const double> configuration, double clea
                           *obstacle.tree, contact.obstacle_sphere, obstacle.world_from_tree,
                           clearance);
   };
-  return check_->within(configuration, clearance, scratch.memory_, confirm) || stands_near;
+  return check_->within(*positions, clearance, scratch.memory_, confirm) || stands_near;
 }
 
 // Whether the robot touches an obstacle at the contact, or where it last did: a robot that touches
@@ -252,23 +258,24 @@ bool RobotTreeChecker::body_collides(const Body& body, const Pose& world_from_li
 
 EdgeResult RobotTreeChecker::check_edge(std::span<const double> from, std::span<const double> to,
                                         Scratch& scratch, const EdgeRequest& request) const {
-  for (const std::span<const double> end : {from, to}) {
-    if (!is_usual(end)) {
-      throw Error("edge",
-                  "an end has " + std::to_string(end.size()) + " positions, for a robot of " +
-                      std::to_string(robot_.variable_count()) + " variables, or one beyond " +
-                      std::to_string(MechanismCheck::kLargestVariable));
-    }
-  }
+  const auto positions_at = [&](std::span<const double> end, std::size_t place) {
+    const auto positions = usual_positions(end, scratch, place);
+    if (positions) return *positions;
+    throw Error("edge", "an end has " + std::to_string(end.size()) + " positions, for a robot of " +
+                            std::to_string(robot_.variable_count()) + " variables, or one beyond " +
+                            std::to_string(MechanismCheck::kLargestVariable));
+  };
+  const std::span<const double> first = positions_at(from, 0);
+  const std::span<const double> last = positions_at(to, 1);
   require_resolution(request.resolution);
   if (always_) return {.verdict = Verdict::kCollision, .contact_at = 0.0};
   std::uint64_t placed = 0;  // configurations are numbered from one
   scratch.unconfirmed_.clear();
   return check_->check_edge(
-      from, to, scratch.memory_, request,
+      first, last, scratch.memory_, request,
       [&](std::uint64_t number, std::span<const double> at, const MechanismContact& contact) {
         bool is_placed = std::exchange(placed, number) == number;
-        return touches(at, contact, is_placed, scratch);
+        return touches(positions_.configuration_at(at, scratch.room_), contact, is_placed, scratch);
       });
 }
 

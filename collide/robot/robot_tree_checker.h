@@ -3,6 +3,7 @@
 
 #include "collide/mechanism_check.h"
 #include "collide/mesh_contact.h"
+#include "collide/robot/joint_positions.h"
 #include "collide/robot/robot_contact.h"
 #include "collide/robot/robot_model.h"
 #include "spheretree/pose.h"
@@ -68,7 +69,8 @@ class RobotTreeChecker {
   // query allocates once its scratch is warm. Those of several threads share no cache line.
   class alignas(64) Scratch {
    public:
-    explicit Scratch(const RobotTreeChecker& checker) : memory_(*checker.check_) {}
+    explicit Scratch(const RobotTreeChecker& checker)
+        : memory_(*checker.check_), room_(checker.positions_.room_for(MechanismCheck::kBlock)) {}
 
    private:
     friend class RobotTreeChecker;
@@ -76,13 +78,14 @@ class RobotTreeChecker {
     std::vector<Pose> world_from_link_;
     std::vector<MechanismPair> unconfirmed_;  // spheres touch, but no triangles do
     std::optional<Touch> last_;
+    JointPositions::Room room_;
   };
 
   // Fastest where each configuration is near the one before: the scratch then knows how far the
   // robot was from everything, or how deep in it.
   // Throws Error for a configuration of the wrong size or with a number that is not finite.
-  // Configurations with a position beyond 100 (radians or metres) are answered as exactly, but
-  // slowly; where such a one leads out of all bounds, forward_kinematics() throws.
+  // Configurations with a joint's position beyond 100 (radians or metres) are answered as exactly,
+  // but slowly; where such a one leads out of all bounds, forward_kinematics() throws.
   bool collides(std::span<const double> configuration, Scratch& scratch) const;
 
   // What touches what: a contact for each link and each obstacle that touch, of the link's trees
@@ -120,11 +123,12 @@ class RobotTreeChecker {
   static constexpr std::size_t kFewestShared = 4096;
 
   // Whether the robot is free all along a straight motion in joint space, from one configuration to
-  // another: proved at every point of it (G6), for the exact motion as for the poses that
-  // forward_kinematics() computes for configurations on it. A contact that is found is one for
-  // which collides() answers true; where meshes are given, a body inside another that touches none
-  // of its triangles is not looked for: such a motion is kUnknown. Throws Error for configurations
-  // as above, a position beyond 100 in magnitude, and a resolution that is not above zero.
+  // another: proved at every point of it (G6), for the exact motion (of mimics, too) as for the
+  // poses that forward_kinematics() computes for configurations on it. A contact that is found is
+  // one for which collides() answers true; where meshes are given, a body inside another that
+  // touches none of its triangles is not looked for: such a motion is kUnknown. Throws Error for
+  // configurations as above, a position beyond 100 in magnitude, and a resolution that is not above
+  // zero.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
                         const EdgeRequest& request = {}) const;
 
@@ -159,7 +163,9 @@ class RobotTreeChecker {
   void remember(const Touch& touch, double depth, Scratch& scratch) const;
   bool touches(std::span<const double> configuration, const MechanismContact& contact,
                bool& is_placed, Scratch& scratch) const;
-  bool is_usual(std::span<const double> configuration) const;
+  std::optional<std::span<const double>> usual_positions(std::span<const double> configuration,
+                                                         Scratch& scratch,
+                                                         std::size_t place = 0) const;
   std::size_t require_sizes(std::span<const double> configurations,
                             std::span<const std::uint8_t> verdicts) const;
   bool contains_component(Scratch& scratch) const;
@@ -173,6 +179,7 @@ class RobotTreeChecker {
   Pose world_from_root_;
   std::vector<std::shared_ptr<const CoveredMesh>> meshes_;
   std::vector<const CoveredMesh*> obstacle_meshes_;
+  JointPositions positions_;
   std::vector<Body> bodies_;  // that variables move, the last link first
   std::vector<MechanismPair> pairs_;
   std::vector<Standing> standing_;  // pairs that no variable moves

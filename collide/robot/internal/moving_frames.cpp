@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/internal/moving_frames.h"
 
+#include "collide/robot/internal/mimic_error.h"
 #include "collide/robot/kinematics.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -38,11 +39,12 @@ MovingFrames::MovingFrames(const RobotModel& robot)
       continue;
     }
     const Pose joint_from_frame(turn_from_z_to(joint.axis), Eigen::Vector3d::Zero());
-    frame_of_link[link] = static_cast<int>(frames.size());
+    const int moving = static_cast<int>(frames.size());
+    frame_of_link[link] = moving;
     frame_from_link[link] = joint_from_frame.inverse();
     frames.push_back({.parent = frame_of_link[parent],
                       .parent_from_frame = frame_from_joint * joint_from_frame,
-                      .variable = joint.variable,
+                      .variable = moving,
                       .prismatic = joint.type == JointType::kPrismatic});
   }
 }
@@ -50,19 +52,23 @@ MovingFrames::MovingFrames(const RobotModel& robot)
 // The error of forward_kinematics(); that of the frames' own poses, of which a link has at most
 // four compositions a joint with 80 u of the lengths involved each, and a turn of the axis, of less
 // than 40 u; and the slack of the canonical test, 152 u of the scene. All are bounded for the whole
-// robot and scene at once.
+// robot and scene at once. Where joints mimic others, what a position may be off on a straight
+// motion turns or shifts what lies beyond.
 double moving_pose_error(const RobotModel& robot, double reach, double scene,
                          double root_distance) {
   double length = 0.0;
+  double turned = 0.0;
+  double shifted = 0.0;
   for (const Joint& joint : robot.joints()) {
     length += joint.parent_from_joint.translation().norm() +
-              (joint.type == JointType::kPrismatic ? MechanismCheck::kLargestVariable : 0.0);
+              (joint.type == JointType::kPrismatic ? kLargestPosition : 0.0);
+    (joint.turns() ? turned : shifted) += mimic_error_on_edges(joint);
   }
   const double all = std::max(reach + length, scene) + root_distance;
   if (!(all <= kMaxCoordinate)) throw Error("robot", "it or an obstacle reaches too far");
   const double joints = static_cast<double>(robot.joints().size());
   return kinematics_error_bound(robot, reach, root_distance) +
-         360.0 * kUnitRoundoff * (joints + 2.0) * all;
+         360.0 * kUnitRoundoff * (joints + 2.0) * all + turned * (reach + length) + shifted;
 }
 
 }  // namespace spherule::internal

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/allowed_collisions.h"
+
+#include "collide/robot/internal/link_paths.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+
+namespace spherule {
+namespace {
+
+// Whether all links on the way, but its two ends, carry no spheres.
+bool passes_no_spheres(const RobotModel& robot, const std::vector<int>& joints, int first) {
+  int link = first;
+  for (std::size_t i = 0; i + 1 < joints.size(); ++i) {
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(joints[i])];
+    link = joint.child_link == link ? joint.parent_link : joint.child_link;
+    if (!robot.links()[static_cast<std::size_t>(link)].trees.empty()) return false;
+  }
+  return true;
+}
+
+AllowedReason by_structure(const RobotModel& robot, int first, int second) {
+  const std::vector<int> joints = internal::joints_between(robot, first, second);
+  const auto moving = std::count_if(joints.begin(), joints.end(), [&](int joint) {
+    return robot.joints()[static_cast<std::size_t>(joint)].moves();
+  });
+  if (moving == 0) return AllowedReason::kRigid;
+  if (moving == 1 && passes_no_spheres(robot, joints, first)) return AllowedReason::kAdjacent;
+  return AllowedReason::kTested;
+}
+
+}  // namespace
+
+std::string_view name_of(AllowedReason reason) {
+  switch (reason) {
+    case AllowedReason::kRigid:
+      return "rigid";
+    case AllowedReason::kAdjacent:
+      return "adjacent";
+    case AllowedReason::kGiven:
+      return "given";
+    case AllowedReason::kNever:
+      return "never in the sample";
+    case AllowedReason::kAlways:
+      return "always in the sample";
+    case AllowedReason::kTested:
+      break;
+  }
+  return "tested";
+}
+
+AllowedCollisions::AllowedCollisions(const RobotModel& robot) {
+  for (const Link& link : robot.links()) names_.push_back(link.name);
+  const int count = static_cast<int>(names_.size());
+  bits_.resize((names_.size() * names_.size() + 63) / 64);
+  reasons_.resize(names_.size() * names_.size(), AllowedReason::kTested);
+  for (int first = 0; first < count; ++first) {
+    for (int second = first; second < count; ++second) {
+      set(first, second, by_structure(robot, first, second));
+    }
+  }
+}
+
+int AllowedCollisions::link(std::string_view name) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  if (found == names_.end()) throw Error("link " + std::string(name), "there is no such link");
+  return static_cast<int>(found - names_.begin());
+}
+
+void AllowedCollisions::set(int first, int second, AllowedReason reason) {
+  for (const std::size_t i : {index(first, second), index(second, first)}) {
+    const std::uint64_t bit = std::uint64_t{1} << (i % 64);
+    bits_[i / 64] = reason == AllowedReason::kTested ? bits_[i / 64] & ~bit : bits_[i / 64] | bit;
+    reasons_[i] = reason;
+  }
+}
+
+void AllowedCollisions::allow(std::string_view first, std::string_view second) {
+  allow(link(first), link(second), AllowedReason::kGiven);
+}
+
+void AllowedCollisions::allow(std::span<const std::pair<std::string, std::string>> pairs) {
+  std::vector<std::pair<int, int>> found;
+  for (const auto& [first, second] : pairs) found.emplace_back(link(first), link(second));
+  for (const auto& [first, second] : found) allow(first, second, AllowedReason::kGiven);
+}
+
+void AllowedCollisions::allow(int first, int second, AllowedReason reason) {
+  const int count = static_cast<int>(names_.size());
+  if (first < 0 || second < 0 || first >= count || second >= count) {
+    throw Error("allowed collisions", "link " + std::to_string(first) + " or " +
+                                          std::to_string(second) + " is not there: the robot has " +
+                                          std::to_string(count) + " links");
+  }
+  if (reason == AllowedReason::kTested) {
+    throw Error("allowed collisions", "a pair that is tested is not allowed");
+  }
+  if (!allows(first, second)) set(first, second, reason);
+}
+
+void AllowedCollisions::forbid(std::string_view first, std::string_view second) {
+  const int a = link(first);
+  const int b = link(second);
+  if (a == b) throw Error("link " + names_[static_cast<std::size_t>(a)], "it cannot meet itself");
+  set(a, b, AllowedReason::kTested);
+}
+
+bool AllowedCollisions::allows(std::string_view first, std::string_view second) const {
+  return allows(link(first), link(second));
+}
+
+std::vector<AllowedCollisions::Pair> AllowedCollisions::pairs() const {
+  std::vector<Pair> result;
+  const int count = static_cast<int>(names_.size());
+  for (int first = 0; first < count; ++first) {
+    for (int second = first + 1; second < count; ++second) {
+      if (allows(first, second)) result.push_back({first, second, reason(first, second)});
+    }
+  }
+  return result;
+}
+
+}  // namespace spherule

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/internal/body_pairs.h"
+
+#include "collide/collide.h"
+#include "collide/mechanism_check.h"
+#include "collide/robot/internal/link_paths.h"
+#include "collide/robot/internal/moving_frames.h"
+#include "collide/robot/kinematics.h"
+#include "collide/solid_mesh.h"
+#include "collide/within.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+// Root balls. Let W bound |p| + |t| of the centre p of a root ball in its frame and the pose's
+// translation t, and all that a sphere reaches from the world's origin. A placed centre errs by
+// 40 u W (pose.h), so that the computed distance of two is within 90 u W of the exact one, with
+// roundings. What a canonical test accepts is at most collision_slack() apart: 152 u of the scene,
+// at most 152 u (2 W + 1.74 * 2 W) < 840 u W. So two whose balls are further apart than the radii,
+// the clearance and kBallPad W touch for no canonical test, and their exact gap is at least the
+// computed one less that.
+
+namespace spherule::internal {
+namespace {
+
+constexpr double kBallPad = 1024.0 * kUnitRoundoff;
+
+// How far any of the balls of a tree, those of nodes included, reaches.
+double reach_of(const SphereTree& tree) {
+  return std::max(tree.reach(), tree.ball(0).center.norm() + tree.ball(0).radius);
+}
+
+struct SizeOf {
+  double operator()(const std::shared_ptr<const SphereTree>& tree) const { return reach_of(*tree); }
+  double operator()(const std::shared_ptr<const SolidMesh>& mesh) const {
+    return reach_of(mesh->mesh().tree()) + mesh->growth();
+  }
+  double operator()(const Primitive& primitive) const { return std::visit(*this, primitive); }
+  double operator()(const Box& box) const { return box.size.norm(); }
+  double operator()(const Ball& ball) const { return ball.radius; }
+  double operator()(const Cylinder& solid) const { return solid.radius + solid.length; }
+  double operator()(const Capsule& solid) const { return solid.radius + solid.length; }
+  double operator()(const HalfSpace&) const { return 0.0; }
+};
+
+// Calls `function` with the shape as the queries take it.
+template <class Function>
+auto with_shape(const PlacedShape& placed, Function function) {
+  return std::visit(
+      [&](const auto& shape) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Primitive>) {
+          return function(shape);
+        } else {
+          return function(*shape);
+        }
+      },
+      placed.shape);
+}
+
+double largest_reach(const RobotModel& robot, std::span<const CheckedPiece> pieces) {
+  double reach = 0.0;
+  for (const CheckedPiece& piece : pieces) reach = std::max(reach, reach_of(*piece.tree));
+  for (const Link& link : robot.links()) {
+    for (const auto& tree : link.trees) reach = std::max(reach, reach_of(*tree));
+  }
+  return reach;
+}
+
+}  // namespace
+
+BodyPairs::BodyPairs(RobotModel robot, const Pose& world_from_root,
+                     std::vector<CheckedPiece> pieces, std::vector<PlacedShape> obstacles,
+                     std::vector<CheckedPair> pairs, std::size_t tested)
+    : robot_(std::move(robot)),
+      world_from_root_(world_from_root),
+      pieces_(std::move(pieces)),
+      obstacles_(std::move(obstacles)),
+      pairs_(std::move(pairs)),
+      tested_(tested) {
+  double scene = 0.0;
+  for (const PlacedShape& obstacle : obstacles_) {
+    scene = std::max(scene, obstacle.world_from_shape.translation().norm() +
+                                std::visit(SizeOf(), obstacle.shape));
+  }
+  const double reach = largest_reach(robot_, pieces_);
+  const double root = world_from_root_.translation().norm();
+  pose_error_ = moving_pose_error(robot_, reach, scene, root);
+  size_ = pose_error_ / (360.0 * kUnitRoundoff);
+  for (std::size_t i = 0; i < tested_; ++i) {
+    const CheckedPair& pair = pairs_[i];
+    const int first = pieces_[static_cast<std::size_t>(pair.piece)].link;
+    const int second = pair.is_obstacle ? 0 : pieces_[static_cast<std::size_t>(pair.other)].link;
+    std::vector<int> path;
+    for (const int joint : joints_between(robot_, first, second)) {
+      if (robot_.joints()[static_cast<std::size_t>(joint)].moves()) path.push_back(joint);
+    }
+    paths_.push_back(std::move(path));
+  }
+}
+
+bool BodyPairs::is_usual(std::span<const double> configuration) const {
+  return std::all_of(robot_.joints().begin(), robot_.joints().end(), [&](const Joint& joint) {
+    if (!joint.moves()) return true;
+    const double variable = configuration[static_cast<std::size_t>(joint.variable)];
+    return std::abs(joint.multiplier * variable + joint.offset) <= MechanismCheck::kLargestVariable;
+  });
+}
+
+void BodyPairs::place(std::span<const double> configuration, Memory& memory) const {
+  forward_kinematics(robot_, configuration, memory.world_from_link, world_from_root_);
+  memory.placed.resize(pieces_.size());
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const Sphere ball = pieces_[i].tree->ball(0);
+    memory.placed[i] = {pose_of(pieces_[i], memory) * ball.center, ball.radius};
+  }
+  memory.pad = MechanismCheck::is_in_range(configuration) ? kBallPad * size_
+                                                          : std::numeric_limits<double>::infinity();
+}
+
+// True only if the canonical test for this clearance would say no.
+bool BodyPairs::balls_apart(const CheckedPair& pair, double clearance, const Memory& memory) const {
+  if (pair.is_obstacle) return false;
+  const Sphere& a = memory.placed[static_cast<std::size_t>(pair.piece)];
+  const Sphere& b = memory.placed[static_cast<std::size_t>(pair.other)];
+  const double limit = (a.radius + b.radius) + (clearance * (1.0 + 1e-9) + memory.pad);
+  return (a.center - b.center).squaredNorm() > limit * limit;
+}
+
+bool BodyPairs::touches(std::size_t index, const Memory& memory) const {
+  const CheckedPair& pair = pairs_[index];
+  if (balls_apart(pair, 0.0, memory)) return false;
+  const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
+  if (!pair.is_obstacle) {
+    const CheckedPiece& b = pieces_[static_cast<std::size_t>(pair.other)];
+    return collides(*a.tree, pose_of(a, memory), *b.tree, pose_of(b, memory));
+  }
+  const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
+  return with_shape(obstacle, [&](const auto& shape) {
+    return collides(*a.tree, pose_of(a, memory), shape, obstacle.world_from_shape);
+  });
+}
+
+// A robot that touches often did so a moment ago, in the same place.
+bool BodyPairs::any_touches(Memory& memory) const {
+  if (memory.last < tested_ && touches(memory.last, memory)) return true;
+  for (std::size_t i = 0; i < tested_; ++i) {
+    if (i == memory.last || !touches(i, memory)) continue;
+    memory.last = i;
+    return true;
+  }
+  return false;
+}
+
+bool BodyPairs::is_near(const CheckedPair& pair, double clearance, const Memory& memory) const {
+  if (!(clearance <= kMaxCoordinate)) return true;
+  if (balls_apart(pair, clearance, memory)) return false;
+  const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
+  if (!pair.is_obstacle) {
+    const CheckedPiece& b = pieces_[static_cast<std::size_t>(pair.other)];
+    return within(*a.tree, pose_of(a, memory), *b.tree, pose_of(b, memory), clearance);
+  }
+  const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
+  return with_shape(obstacle, [&](const auto& shape) {
+    return within(*a.tree, pose_of(a, memory), shape, obstacle.world_from_shape, clearance);
+  });
+}
+
+double BodyPairs::gap_bound(std::size_t index, const Memory& memory) const {
+  const CheckedPair& pair = pairs_[index];
+  if (pair.is_obstacle) return -std::numeric_limits<double>::infinity();
+  const Sphere& a = memory.placed[static_cast<std::size_t>(pair.piece)];
+  const Sphere& b = memory.placed[static_cast<std::size_t>(pair.other)];
+  return distance_lower(a.center, b.center) - (a.radius + b.radius) - memory.pad;
+}
+
+DistanceResult BodyPairs::distance(std::size_t index, const Memory& memory,
+                                   const DistanceRequest& request) const {
+  const CheckedPair& pair = pairs_[index];
+  const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
+  if (!pair.is_obstacle) {
+    const CheckedPiece& b = pieces_[static_cast<std::size_t>(pair.other)];
+    return spherule::distance(*a.tree, pose_of(a, memory), *b.tree, pose_of(b, memory), request);
+  }
+  const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
+  return with_shape(obstacle, [&](const auto& shape) {
+    return spherule::distance(*a.tree, pose_of(a, memory), shape, obstacle.world_from_shape,
+                              request);
+  });
+}
+
+std::optional<PairContact> BodyPairs::deepest_contact(std::size_t index,
+                                                      const Memory& memory) const {
+  const auto between_trees =
+      [&](const std::optional<Contact>& found) -> std::optional<PairContact> {
+    if (!found) return std::nullopt;
+    return PairContact{found->spheres.a, found->spheres.b, found->overlap_depth,
+                       found->world_point};
+  };
+  const CheckedPair& pair = pairs_[index];
+  const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
+  if (!pair.is_obstacle) {
+    const CheckedPiece& b = pieces_[static_cast<std::size_t>(pair.other)];
+    return between_trees(
+        spherule::deepest_contact(*a.tree, pose_of(a, memory), *b.tree, pose_of(b, memory)));
+  }
+  const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
+  return with_shape(obstacle, [&](const auto& shape) -> std::optional<PairContact> {
+    const auto found =
+        spherule::deepest_contact(*a.tree, pose_of(a, memory), shape, obstacle.world_from_shape);
+    if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, SphereTree>) {
+      return between_trees(found);
+    } else {
+      if (!found) return std::nullopt;
+      return PairContact{found->sphere, -1, found->overlap_depth, found->world_point};
+    }
+  });
+}
+
+}  // namespace spherule::internal

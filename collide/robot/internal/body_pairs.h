@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Pairs of spheres on links, and of spheres and standing solids, in double precision: what a
+// RobotChecker tests itself. Its proofs are in body_pairs.cpp (one configuration, growth) and
+// body_edge.cpp (motions).
+
+#include "collide/contact.h"
+#include "collide/distance.h"
+#include "collide/edge.h"
+#include "collide/robot/robot_model.h"
+#include "collide/robot/robot_scene.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace spherule::internal {
+
+// Spheres on a link that are tested as one: a tree of a link or an attached object, or some of its
+// spheres, grown by the padding that is asked for.
+struct CheckedPiece {
+  std::shared_ptr<const SphereTree> tree;
+  int link = 0;                         // that carries it
+  std::size_t body = 0;                 // whose spheres they are
+  std::size_t body_tree = 0;            // of which tree of the body
+  std::vector<std::int32_t> spheres{};  // which of them; empty: all
+  double padding = 0.0;
+};
+
+struct PlacedShape {
+  ObstacleShape shape;
+  Pose world_from_shape;
+};
+
+// A piece and another, or a piece and an obstacle.
+struct CheckedPair {
+  int piece = 0;
+  int other = 0;
+  bool is_obstacle = false;
+};
+
+// The spheres that overlap deepest, or the sphere and the solid (then `other_sphere` is -1 unless
+// that is a tree). Indices into the trees of the pieces.
+struct PairContact {
+  std::int32_t sphere = -1;
+  std::int32_t other_sphere = -1;
+  double overlap_depth = 0.0;
+  Eigen::Vector3d world_point = Eigen::Vector3d::Zero();
+};
+
+class BodyPairs {
+ public:
+  // Only the first `tested` pairs are asked by any_touches() and check_edge(). Indices must be in
+  // range. Throws Error for what reaches beyond kMaxCoordinate.
+  BodyPairs(RobotModel robot, const Pose& world_from_root, std::vector<CheckedPiece> pieces,
+            std::vector<PlacedShape> obstacles, std::vector<CheckedPair> pairs, std::size_t tested);
+
+  struct Memory {
+    std::vector<Pose> world_from_link{};
+    std::vector<Sphere> placed{};  // root balls of the pieces, in the world, up to pad
+    double pad = 0.0;
+    std::size_t last = 0;  // the pair that touched last
+    // Of a motion: what changes, a configuration on it, the axes of the joints there.
+    std::vector<double> changes{};
+    std::vector<double> variables{};
+    std::vector<Eigen::Vector3d> axes{};
+    std::vector<std::int32_t> open_pairs{};
+  };
+
+  const std::vector<CheckedPiece>& pieces() const { return pieces_; }
+  const std::vector<PlacedShape>& obstacles() const { return obstacles_; }
+  const std::vector<CheckedPair>& pairs() const { return pairs_; }
+  std::size_t tested() const { return tested_; }
+
+  // Whether the bounds of errors hold: no joint's position is beyond
+  // MechanismCheck::kLargestVariable. For a configuration of the right size.
+  bool is_usual(std::span<const double> configuration) const;
+
+  // Takes a configuration; the functions below answer for it. Throws Error as forward_kinematics().
+  void place(std::span<const double> configuration, Memory& memory) const;
+
+  // By the canonical tests.
+  bool touches(std::size_t pair, const Memory& memory) const;
+  bool any_touches(Memory& memory) const;
+
+  // A lower bound of the exact gap of a pair, found at once; -infinity if there is none.
+  double gap_bound(std::size_t pair, const Memory& memory) const;
+  DistanceResult distance(std::size_t pair, const Memory& memory,
+                          const DistanceRequest& request) const;
+  // None exactly if touches() is false.
+  std::optional<PairContact> deepest_contact(std::size_t pair, const Memory& memory) const;
+
+  // How far any point of a link may be from where the exact mechanism has it.
+  double pose_error() const { return pose_error_; }
+
+  // A straight motion up to the fraction `end`, as EdgeHalving says. Both ends must be is_usual(),
+  // the resolution above zero.
+  EdgeResult check_edge(std::span<const double> from, std::span<const double> to, double end,
+                        const EdgeRequest& request, Memory& memory) const;
+
+ private:
+  class EdgeMotion;
+
+  const Pose& pose_of(const CheckedPiece& piece, const Memory& memory) const {
+    return memory.world_from_link[static_cast<std::size_t>(piece.link)];
+  }
+  bool balls_apart(const CheckedPair& pair, double clearance, const Memory& memory) const;
+  bool is_near(const CheckedPair& pair, double clearance, const Memory& memory) const;
+  double growth(std::size_t pair, double half, const Memory& memory) const;
+  double turning_radius(const Sphere& ball, int joint, const Memory& memory) const;
+
+  RobotModel robot_;
+  Pose world_from_root_;
+  std::vector<CheckedPiece> pieces_;
+  std::vector<PlacedShape> obstacles_;
+  std::vector<CheckedPair> pairs_;
+  std::size_t tested_;
+  std::vector<std::vector<int>> paths_;  // of each tested pair: the joints that move one of the two
+                                         // against the other, from the first to the second
+  double size_ = 0.0;                    // bounds all coordinates within the usual range
+  double pose_error_ = 0.0;
+};
+
+}  // namespace spherule::internal

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/internal/link_paths.h"
+
+#include <cstddef>
+
+namespace spherule::internal {
+namespace {
+
+// To the root.
+std::vector<int> joints_above(const RobotModel& robot, int link) {
+  std::vector<int> joints;
+  for (;;) {
+    const int joint = robot.links()[static_cast<std::size_t>(link)].parent_joint;
+    if (joint < 0) return joints;
+    joints.push_back(joint);
+    link = robot.joints()[static_cast<std::size_t>(joint)].parent_link;
+  }
+}
+
+}  // namespace
+
+std::vector<int> joints_between(const RobotModel& robot, int first, int second) {
+  std::vector<int> up = joints_above(robot, first);
+  std::vector<int> down = joints_above(robot, second);
+  while (!up.empty() && !down.empty() && up.back() == down.back()) {
+    up.pop_back();
+    down.pop_back();
+  }
+  up.insert(up.end(), down.rbegin(), down.rend());
+  return up;
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/robot/robot_model.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// From configurations to what a check made from MovingFrames is asked for, the positions of the
+// joints that move, and back. Where no joint mimics another, both are the same numbers and nothing
+// is done.
+class JointPositions {
+ public:
+  explicit JointPositions(const RobotModel& robot);
+
+  // What is written to: the positions of several configurations, and a configuration.
+  struct Room {
+    std::vector<double> positions{};
+    std::vector<double> configuration{};
+  };
+  Room room_for(std::size_t configurations) const;
+
+  // The positions in a configuration of as many numbers as the robot has variables, kept at a
+  // `place` below the number that the room was made for. Allocates nothing.
+  std::span<const double> of(std::span<const double> configuration, Room& room,
+                             std::size_t place = 0) const {
+    return has_mimics_ ? computed(configuration, room, place) : configuration;
+  }
+
+  // The variables among positions. Allocates nothing.
+  std::span<const double> configuration_at(std::span<const double> positions, Room& room) const {
+    return has_mimics_ ? picked(positions, room) : positions;
+  }
+
+ private:
+  std::span<const double> computed(std::span<const double> configuration, Room& room,
+                                   std::size_t place) const;
+  std::span<const double> picked(std::span<const double> positions, Room& room) const;
+
+  bool has_mimics_;
+  std::vector<Joint> moving_{};
+  std::vector<std::size_t> variables_{};  // where the positions hold them
+};
+
+}  // namespace spherule

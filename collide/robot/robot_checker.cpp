@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/robot_checker.h"
+
+#include "collide/mechanism_check.h"
+#include "collide/robot/internal/checker_parts.h"
+#include "collide/robot/internal/shared_work.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+// Edges that a thread takes at a time, and configurations.
+constexpr std::size_t kEdgesAPiece = 16;
+constexpr std::size_t kConfigurationsAPiece = RobotTreeChecker::kPiece;
+
+void require_configuration(const RobotModel& robot, std::span<const double> configuration) {
+  if (configuration.size() != static_cast<std::size_t>(robot.variable_count())) {
+    throw Error("configuration", "it has " + std::to_string(configuration.size()) +
+                                     " numbers where the robot has " +
+                                     std::to_string(robot.variable_count()) + " variables");
+  }
+  if (!std::all_of(configuration.begin(), configuration.end(),
+                   [](double position) { return std::isfinite(position); })) {
+    throw Error("configuration", "a position is not finite");
+  }
+}
+
+// Of a joint that has limits.
+double position_of(const Joint& joint, std::span<const double> configuration) {
+  return joint.multiplier * configuration[static_cast<std::size_t>(joint.variable)] + joint.offset;
+}
+
+bool has_limits(const Joint& joint) {
+  return joint.moves() && joint.type != JointType::kContinuous;
+}
+
+bool is_within_limits(const RobotModel& robot, std::span<const double> configuration) {
+  return std::all_of(robot.joints().begin(), robot.joints().end(), [&](const Joint& joint) {
+    if (!has_limits(joint)) return true;
+    const double position = position_of(joint, configuration);
+    return joint.lower <= position && position <= joint.upper;
+  });
+}
+
+// Up to this fraction a motion that starts within the limits stays there; above 1 if it does not
+// leave them. What rounding leaves in doubt at the end counts as inside it.
+double leaves_limits_at(const RobotModel& robot, std::span<const double> from,
+                        std::span<const double> to) {
+  double first = std::numeric_limits<double>::infinity();
+  for (const Joint& joint : robot.joints()) {
+    if (!has_limits(joint)) continue;
+    const double start = position_of(joint, from);
+    const double end = position_of(joint, to);
+    const double limit = end > joint.upper ? joint.upper : joint.lower;
+    if (joint.lower <= end && end <= joint.upper) continue;
+    const double at = (limit - start) / (end - start);
+    first = std::min(first, std::clamp(at * (1.0 - 1e-12), 0.0, 1.0));
+  }
+  return first;
+}
+
+std::size_t require_sizes(const RobotModel& robot, std::size_t numbers, std::size_t answers) {
+  const auto variables = static_cast<std::size_t>(robot.variable_count());
+  if (numbers != answers * variables) {
+    throw Error("configurations", std::to_string(numbers) + " numbers for " +
+                                      std::to_string(answers) + " answers on a robot with " +
+                                      std::to_string(variables) + " variables");
+  }
+  return variables;
+}
+
+}  // namespace
+
+RobotChecker::RobotChecker(std::shared_ptr<const Parts> parts) : parts_(std::move(parts)) {}
+
+const RobotModel& RobotChecker::robot() const {
+  return parts_->robot;
+}
+
+RobotChecker::Scratch::Scratch(const RobotChecker& checker)
+    : memory_(std::make_unique<Memory>(Memory{.owner = checker.parts_})) {
+  if (checker.parts_->standing) memory_->standing.emplace(*checker.parts_->standing);
+}
+RobotChecker::Scratch::~Scratch() = default;
+RobotChecker::Scratch::Scratch(Scratch&&) noexcept = default;
+RobotChecker::Scratch& RobotChecker::Scratch::operator=(Scratch&&) noexcept = default;
+
+bool RobotChecker::check_config(std::span<const double> configuration, Scratch& scratch) const {
+  require_configuration(parts_->robot, configuration);
+  if (parts_->enforces_limits && !is_within_limits(parts_->robot, configuration)) return false;
+  Scratch::Memory& memory = *scratch.memory_;
+  assert(memory.owner == parts_);
+  if (parts_->standing && parts_->standing->collides(configuration, *memory.standing)) return false;
+  return is_free_of_itself(configuration, scratch);
+}
+
+// Of itself, and of all that is not a standing tree.
+bool RobotChecker::is_free_of_itself(std::span<const double> configuration,
+                                     Scratch& scratch) const {
+  if (parts_->pairs.tested() == 0) return true;
+  parts_->pairs.place(configuration, scratch.memory_->pairs);
+  return !parts_->pairs.any_touches(scratch.memory_->pairs);
+}
+
+void RobotChecker::check_configs(std::span<const double> configurations, Scratch& scratch,
+                                 std::span<std::uint8_t> free) const {
+  const std::size_t variables = require_sizes(parts_->robot, configurations.size(), free.size());
+  const auto configuration = [&](std::size_t i) {
+    return configurations.subspan(i * variables, variables);
+  };
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    require_configuration(parts_->robot, configuration(i));
+  }
+  assert(scratch.memory_->owner == parts_);
+  if (parts_->standing) {
+    parts_->standing->collides(configurations, *scratch.memory_->standing, free);
+  } else {
+    std::fill(free.begin(), free.end(), std::uint8_t{0});
+  }
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const bool is_outside =
+        parts_->enforces_limits && !is_within_limits(parts_->robot, configuration(i));
+    const bool is_free =
+        free[i] == 0 && !is_outside && is_free_of_itself(configuration(i), scratch);
+    free[i] = is_free ? 1 : 0;
+  }
+}
+
+void RobotChecker::check_configs(std::span<const double> configurations,
+                                 std::span<Scratch> scratches, std::span<std::uint8_t> free) const {
+  const std::size_t variables = require_sizes(parts_->robot, configurations.size(), free.size());
+  if (scratches.empty()) throw Error("configurations", "there is no scratch to judge them with");
+  const std::size_t pieces = (free.size() + kConfigurationsAPiece - 1) / kConfigurationsAPiece;
+  internal::share_work(pieces, scratches.size(), [&](std::size_t worker, std::size_t piece) {
+    const std::size_t first = piece * kConfigurationsAPiece;
+    const std::size_t count = std::min(kConfigurationsAPiece, free.size() - first);
+    check_configs(configurations.subspan(first * variables, count * variables), scratches[worker],
+                  free.subspan(first, count));
+  });
+}
+
+EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<const double> to,
+                                    Scratch& scratch, const EdgeRequest& request) const {
+  for (const std::span<const double> end : {from, to}) {
+    require_configuration(parts_->robot, end);
+    if (!parts_->pairs.is_usual(end)) {
+      throw Error("edge", "a joint's position is beyond " +
+                              std::to_string(MechanismCheck::kLargestVariable) + " in magnitude");
+    }
+  }
+  require_resolution(request.resolution);
+  assert(scratch.memory_->owner == parts_);
+  if (!parts_->enforces_limits) return check_within_limits(from, to, 1.0, scratch, request);
+  if (!is_within_limits(parts_->robot, from)) {
+    return {.verdict = Verdict::kCollision, .contact_at = 0.0};
+  }
+  const double leaves_at = leaves_limits_at(parts_->robot, from, to);
+  if (leaves_at > 1.0) return check_within_limits(from, to, 1.0, scratch, request);
+  if (!request.first) return {.verdict = Verdict::kCollision, .contact_at = 1.0};
+  EdgeResult result = check_within_limits(from, to, leaves_at, scratch, request);
+  result.verdict = Verdict::kCollision;
+  result.contact_at = std::min(result.contact_at, 1.0);
+  return result;
+}
+
+// The motion up to the fraction `end`, whatever the limits: obstacles that are trees first, because
+// they take the least time; then, as far as these leave it free, all others.
+EdgeResult RobotChecker::check_within_limits(std::span<const double> from,
+                                             std::span<const double> to, double end,
+                                             Scratch& scratch, const EdgeRequest& request) const {
+  EdgeResult standing{.verdict = Verdict::kFree, .free_until = end};
+  if (parts_->standing) {
+    standing = parts_->standing->check_edge(from, to, *scratch.memory_->standing, request);
+    if (standing.free_until >= end && standing.verdict != Verdict::kFree) {
+      standing = {.verdict = Verdict::kFree, .configurations = standing.configurations};
+    }
+    standing.free_until = std::min(standing.free_until, end);
+    if (standing.verdict == Verdict::kCollision && !request.first) {
+      standing.free_until = 0.0;
+      return standing;
+    }
+    if (standing.verdict == Verdict::kFree) standing.free_until = end;
+  }
+  if (parts_->pairs.tested() == 0 || standing.free_until == 0.0) return standing;
+  EdgeRequest rest = request;
+  rest.max_configurations -= std::min(rest.max_configurations, standing.configurations);
+  EdgeResult own =
+      parts_->pairs.check_edge(from, to, standing.free_until, rest, scratch.memory_->pairs);
+  own.configurations += standing.configurations;
+  if (own.verdict == Verdict::kFree || standing.verdict == Verdict::kCollision) {
+    own.verdict = standing.verdict == Verdict::kFree ? own.verdict : standing.verdict;
+    own.contact_at = std::min(own.contact_at, standing.contact_at);
+  }
+  return own;
+}
+
+std::vector<EdgeResult> RobotChecker::check_edges(std::span<const double> from,
+                                                  std::span<const double> to,
+                                                  std::span<Scratch> scratches,
+                                                  const EdgeRequest& request) const {
+  const auto variables = static_cast<std::size_t>(parts_->robot.variable_count());
+  if (from.size() != to.size() || (variables == 0 ? !from.empty() : from.size() % variables != 0)) {
+    throw Error("edges", std::to_string(from.size()) + " numbers for their starts and " +
+                             std::to_string(to.size()) + " for their ends, on a robot with " +
+                             std::to_string(variables) + " variables");
+  }
+  if (scratches.empty()) throw Error("edges", "there is no scratch to judge them with");
+  const std::size_t count = variables == 0 ? 0 : from.size() / variables;
+  std::vector<EdgeResult> results(count);
+  const std::size_t pieces = (count + kEdgesAPiece - 1) / kEdgesAPiece;
+  internal::share_work(pieces, scratches.size(), [&](std::size_t worker, std::size_t piece) {
+    const std::size_t last = std::min(count, (piece + 1) * kEdgesAPiece);
+    for (std::size_t i = piece * kEdgesAPiece; i < last; ++i) {
+      results[i] = check_edge(from.subspan(i * variables, variables),
+                              to.subspan(i * variables, variables), scratches[worker], request);
+    }
+  });
+  return results;
+}
+
+double RobotChecker::measure_edge(std::span<const double> from, std::span<const double> to,
+                                  Scratch& scratch, double resolution) const {
+  return check_edge(from, to, scratch, {.resolution = resolution, .first = true}).free_until;
+}
+
+}  // namespace spherule

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/contact.h"
+#include "collide/edge.h"
+#include "collide/instruction_set.h"
+#include "collide/robot/robot_contact.h"
+#include "collide/robot/robot_model.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+struct RobotCheckerOptions {
+  // A configuration with a joint outside its limits counts as a collision.
+  bool enforce_limits = false;
+  InstructionSet instructions = best_instruction_set();
+};
+
+// One side of a pair that is tested: a link, an attached object or an obstacle.
+struct CheckedBody {
+  enum class Kind { kLink, kAttached, kObstacle };
+  Kind kind = Kind::kLink;
+  std::string name;
+  // The tree and sphere that touch, as BodySphere tells them; -1 for a mesh or a primitive.
+  std::size_t tree = 0;
+  std::int32_t sphere = -1;
+};
+
+// Two bodies, or a body and an obstacle, that touch.
+struct CheckedContact {
+  CheckedBody first;   // a body
+  CheckedBody second;  // another, or an obstacle
+  // How much is missing, at least, for the two named spheres (or the sphere and the solid) to keep
+  // the padding that is asked for; rounded downward. Below zero only by rounding.
+  double overlap_depth = 0.0;
+  double padding = 0.0;  // asked for, of both bodies and the pair together
+  Eigen::Vector3d world_point = Eigen::Vector3d::Zero();  // between the two, up to rounding
+};
+
+struct RobotClearance {
+  // No two of the spheres and solids that are tested against each other come nearer than this to
+  // touching, in exact arithmetic; 0 where they touch or nearly. Infinite if nothing is tested.
+  double lower = std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();  // the nearest two are not further apart
+  CheckedBody first;  // the pair that attains `upper`, empty names if nothing is tested
+  CheckedBody second;
+};
+
+// Is a robot free of obstacles and of itself? A snapshot of a RobotScene, immutable: threads may
+// share it, each with a scratch of its own; a copy shares what the first one holds.
+//
+// "Free" means: no two spheres (padded as the scene says) of what is tested against each other
+// overlap or touch, in exact arithmetic under the poses that forward_kinematics() computes (G4); a
+// solid mesh or primitive is tested with its inside. What is not free has a gap of rounding only
+// (G5), collision_slack() for spheres.
+class RobotChecker {
+ public:
+  const RobotModel& robot() const;
+
+  // What a query writes to. Unless it says so, no query allocates once its scratch is warm.
+  class Scratch {
+   public:
+    explicit Scratch(const RobotChecker& checker);
+    ~Scratch();
+    Scratch(Scratch&&) noexcept;
+    Scratch& operator=(Scratch&&) noexcept;
+
+   private:
+    friend class RobotChecker;
+    struct Memory;
+    std::unique_ptr<Memory> memory_;
+  };
+
+  // All throw Error for a configuration of the wrong size or with a number that is not finite.
+
+  // True if the configuration is free: of obstacles and of itself, and within the limits if these
+  // are enforced.
+  bool check_config(std::span<const double> configuration, Scratch& scratch) const;
+
+  // The same for many, which lie one behind the other: free[i] is 1 if the i-th is free, otherwise
+  // 0. Throws Error also if there are not variable_count() numbers for every answer; after an Error
+  // the answers mean nothing.
+  void check_configs(std::span<const double> configurations, Scratch& scratch,
+                     std::span<std::uint8_t> free) const;
+  // On several threads, one for each scratch, of which the caller's is one: the same answers, and
+  // the same Error. Throws Error, too, if there is no scratch. Allocates.
+  void check_configs(std::span<const double> configurations, std::span<Scratch> scratches,
+                     std::span<std::uint8_t> free) const;
+
+  // Whether the straight motion in joint space is free at every point of it: proved (G6), for the
+  // exact motion as for the poses that forward_kinematics() computes for configurations on it.
+  // Where limits are enforced, leaving them is a contact. Throws Error also for a position beyond
+  // 100 in magnitude and for a resolution that is not above zero.
+  EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
+                        const EdgeRequest& request = {}) const;
+
+  // The same for many, each from from[i] to to[i], which lie one behind the other: the edges of a
+  // path of n configurations are those from the first n - 1 to the last n - 1. One thread for each
+  // scratch, as above.
+  std::vector<EdgeResult> check_edges(std::span<const double> from, std::span<const double> to,
+                                      std::span<Scratch> scratches,
+                                      const EdgeRequest& request = {}) const;
+
+  // How much of the motion is proved free: every point before this fraction is; 1 if all of it is,
+  // its end, too. At most the fraction of the first contact. `resolution` as in EdgeRequest.
+  double measure_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
+                      double resolution = 1e-4) const;
+
+  // How far the robot is from the nearest contact, and of which two. Allocates.
+  RobotClearance clearance(std::span<const double> configuration, Scratch& scratch) const;
+
+  // What touches what: one contact, the deepest, for each two bodies, and each body and obstacle,
+  // that touch. Empty exactly if all are free of each other: the limits are not asked. Allocates.
+  std::vector<CheckedContact> explain(std::span<const double> configuration, Scratch& scratch,
+                                      const ExplainRequest& request = {}) const;
+
+ private:
+  friend class RobotScene;
+  struct Parts;
+  explicit RobotChecker(std::shared_ptr<const Parts> parts);
+
+  bool is_free_of_itself(std::span<const double> configuration, Scratch& scratch) const;
+  EdgeResult check_within_limits(std::span<const double> from, std::span<const double> to,
+                                 double end, Scratch& scratch, const EdgeRequest& request) const;
+  // Of a pair: what is told of its two sides, and of the padding.
+  CheckedBody body_of(int piece, std::int32_t sphere) const;
+  CheckedBody other_of(std::size_t pair, std::int32_t sphere) const;
+  double padding_of(std::size_t pair) const;
+
+  std::shared_ptr<const Parts> parts_;
+};
+
+}  // namespace spherule

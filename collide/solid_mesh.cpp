@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/solid_mesh.h"
+
+#include "collide/internal/ball_space.h"
+#include "collide/internal/balls_inside.h"
+#include "collide/internal/mesh_inside.h"
+#include "collide/internal/mesh_search.h"
+#include "collide/internal/one_tree.h"
+#include "collide/within.h"
+#include "spheretree/point_triangle.h"
+
+#include <algorithm>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+using internal::BallsInside;
+using internal::GapInterval;
+
+// With a clearance, growth included. Where no ball comes so near to a triangle, none meets one, and
+// each is on one side of the surface.
+bool comes_within(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
+                  const Pose& world_from_solid, double clearance) noexcept {
+  const double reach = clearance > 0.0 ? add_up(clearance, solid.growth()) : solid.growth();
+  if (internal::collides_by(internal::best_mesh_kernels(), tree, world_from_tree, solid.mesh(),
+                            world_from_solid, reach)) {
+    return true;
+  }
+  if (!solid.has_inside()) return false;
+  const RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
+  return BallsInside(tree, solid, pose).find() >= 0;
+}
+
+// Of a point, given in the mesh's frame, to the balls of its tree and to its triangles: what
+// BallSpace asks for.
+class PointGaps {
+ public:
+  PointGaps(const MeshTree& mesh, const Vector3d& point) : mesh_(mesh), point_(point) {}
+
+  double gap(const Sphere& ball) const { return (ball.center - point_).norm() - ball.radius; }
+  TriangleDistance to_triangle(std::int32_t triangle) const {
+    const auto& [a, b, c] = mesh_.triangle(triangle);
+    return point_triangle_distance(point_, a, b, c);
+  }
+  GapInterval leaf_gap(std::int32_t triangle) const {
+    const TriangleDistance found = to_triangle(triangle);
+    return {found.lower, found.upper};
+  }
+
+ private:
+  const MeshTree& mesh_;
+  const Vector3d point_;
+};
+
+// Of all spheres that may touch the solid, the one that is deepest in it.
+//
+// A point of the solid's boundary is at most growth() from the surface, so that a sphere whose
+// centre is inside has to move by its radius, growth() and the centre's distance from the surface,
+// and one whose centre is not by the radius and growth() less that distance. The distance is that
+// of the centre's image, off by error(); what NearestFirst adds for its own roundings is counted
+// in.
+class FindDeepest {
+ public:
+  FindDeepest(const SphereTree& tree, const SolidMesh& solid, const BallsInside& balls)
+      : tree_(tree), solid_(solid), balls_(balls) {}
+
+  bool afford(std::int32_t, std::int32_t) const { return true; }
+  bool enters(std::int32_t node) const {
+    const Sphere ball = tree_.ball(static_cast<std::size_t>(node));
+    const Vector3d center = balls_.in_mesh(ball.center);
+    const double reach = add_up(ball.radius, solid_.growth());
+    return !balls_.is_clear(center, reach) || balls_.contains(center);
+  }
+  bool leaf(std::int32_t node) {
+    const auto index = static_cast<std::size_t>(node);
+    const Sphere ball = tree_.ball(index);
+    const Vector3d center = balls_.in_mesh(ball.center);
+    const PointGaps gaps(solid_.mesh(), center);
+    const internal::BallSpace space(solid_.mesh().tree(), gaps);
+    const DistanceResult to_surface =
+        internal::NearestFirst(space, balls_.error(), DistanceRequest{}).run(0, space.gap(0));
+    const bool inside = balls_.certainly_contains(center);
+    const double reach = sub_down(add_down(ball.radius, solid_.growth()), balls_.error());
+    const double depth =
+        inside ? add_down(reach, to_surface.lower) : sub_down(reach, to_surface.upper);
+    const std::int32_t sphere = tree_.sphere_index(index);
+    if (sphere_ >= 0 && (depth < depth_ || (depth == depth_ && sphere > sphere_))) return true;
+    depth_ = depth;
+    sphere_ = sphere;
+    in_mesh_ = inside ? center : gaps.to_triangle(to_surface.nearest.a).closest;
+    return true;
+  }
+  std::int32_t sphere() const { return sphere_; }
+  double depth() const { return depth_; }
+  const Vector3d& in_mesh() const { return in_mesh_; }
+
+ private:
+  const SphereTree& tree_;
+  const SolidMesh& solid_;
+  const BallsInside& balls_;
+  std::int32_t sphere_ = -1;
+  double depth_ = 0.0;
+  Vector3d in_mesh_ = Vector3d::Zero();
+};
+
+}  // namespace
+
+SolidMesh::SolidMesh(const TriangleMesh& mesh)
+    : mesh_(mesh),
+      growth_(mesh.vertex_error),
+      inside_(std::make_shared<const internal::MeshInside>(mesh)) {}
+
+bool SolidMesh::is_closed() const {
+  return inside_->is_closed();
+}
+
+bool SolidMesh::has_inside() const {
+  return inside_->has_inside();
+}
+
+bool collides(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
+              const Pose& world_from_solid) noexcept {
+  return comes_within(tree, world_from_tree, solid, world_from_solid, 0.0);
+}
+
+bool within(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
+            const Pose& world_from_solid, double clearance) {
+  require_clearance(clearance);
+  return comes_within(tree, world_from_tree, solid, world_from_solid, clearance);
+}
+
+DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
+                        const Pose& world_from_solid, const DistanceRequest& request) {
+  DistanceRequest to_surface = request;
+  to_surface.enough = add_up(request.enough, solid.growth());
+  DistanceResult result =
+      distance(tree, world_from_tree, solid.mesh(), world_from_solid, to_surface);
+  result.upper = result.upper > solid.growth() ? sub_up(result.upper, solid.growth()) : 0.0;
+  // Where a ball may meet a triangle, the lower bound is 0 and the upper one as good as it gets.
+  if (!(result.lower > 0.0)) return result;
+  const RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
+  const std::int32_t inside = BallsInside(tree, solid, pose).find();
+  if (inside >= 0) {
+    result.lower = result.upper = 0.0;
+    result.nearest = {inside, -1};
+  } else {
+    result.lower = std::max(0.0, sub_down(result.lower, solid.growth()));
+  }
+  return result;
+}
+
+std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
+                                            const SolidMesh& solid, const Pose& world_from_solid) {
+  if (!collides(tree, world_from_tree, solid, world_from_solid)) return std::nullopt;
+  const RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
+  const BallsInside balls(tree, solid, pose);
+  FindDeepest query(tree, solid, balls);
+  internal::search_tree(tree, query);
+  return SolidContact{query.sphere(), query.depth(), world_from_solid * query.in_mesh()};
+}
+
+}  // namespace spherule

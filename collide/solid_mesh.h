@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/collide.h"
+#include "collide/distance.h"
+#include "collide/mesh_tree.h"
+#include "collide/solid_contact.h"
+#include "spheretree/pose.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <memory>
+#include <optional>
+
+namespace spherule {
+
+namespace internal {
+class MeshInside;
+}  // namespace internal
+
+// A mesh with its inside, as an obstacle. Immutable; threads may share it.
+//
+// The solid is the closed set of the points within growth() of a triangle or of the inside, where
+// the inside are the points of winding number other than zero. It contains the mesh of the file and
+// its inside, because growth() is TriangleMesh::vertex_error. Each connected component is judged by
+// itself: one that has a boundary, or whose triangles are not turned consistently, has no inside,
+// and what lies within it without touching it is free.
+class SolidMesh {
+ public:
+  // Throws Error for a mesh that validate() refuses.
+  explicit SolidMesh(const TriangleMesh& mesh);
+
+  const MeshTree& mesh() const { return mesh_; }
+  double growth() const { return growth_; }
+  // Whether all components have an inside, and whether any has.
+  bool is_closed() const;
+  bool has_inside() const;
+
+  // For queries.
+  const internal::MeshInside& inside() const { return *inside_; }
+
+ private:
+  MeshTree mesh_;
+  double growth_;
+  std::shared_ptr<const internal::MeshInside> inside_;
+};
+
+// Whether a set of balls and a solid, rigidly placed, overlap.
+//
+// G4: if a ball and the solid have a point in common in exact arithmetic under exactly the given
+// poses, the answer is true; so a ball wholly inside collides, whatever component it is in. G5: as
+// for collides() of a MeshTree (mesh_tree.h), with growth() beside the radius; a point that is
+// nearer to the surface than rounding tells counts as inside. Allocates as collides() of two trees
+// does.
+bool collides(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
+              const Pose& world_from_solid) noexcept;
+
+// Whether they come within a clearance of each other: never false if the exact distance is at most
+// the clearance. Throws Error as require_clearance() does.
+bool within(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
+            const Pose& world_from_solid, double clearance);
+
+// Their separation distance between certified bounds, both 0 where a ball is inside. In `nearest`,
+// `b` is the triangle, or -1 where sphere `a` is inside. The limits of the request are those of the
+// search for the nearest triangle; whether a ball is inside is asked after it.
+DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
+                        const Pose& world_from_solid, const DistanceRequest& request = {});
+
+// The sphere that is deepest in the solid, up to rounding; none exactly if collides() is false.
+// Looks at every sphere that touches. Allocates.
+std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
+                                            const SolidMesh& solid, const Pose& world_from_solid);
+
+}  // namespace spherule
