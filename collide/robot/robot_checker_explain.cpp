@@ -6,6 +6,7 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace spherule {
@@ -85,7 +86,9 @@ RobotClearance RobotChecker::clearance(std::span<const double> configuration,
                                  pairs.obstacles()[static_cast<std::size_t>(pair.other)].shape);
     result.second = other_of(i, is_tree ? found.nearest.b : -1);
   }
-  result.lower = std::max(0.0, sub_down(result.lower, 2.0 * pairs.pose_error()));
+  if (std::isfinite(result.lower)) {
+    result.lower = std::max(0.0, sub_down(result.lower, 2.0 * pairs.pose_error()));
+  }
   return result;
 }
 

@@ -95,7 +95,7 @@ TEST(RobotScene, OnlyARegionMayTouch) {
     EXPECT_FALSE(Asked(scene).free(1.0, 0.5));
     scene.define_region({"slide", "tip"}, Sphere{{0.49, 0, 0}, 0.02});
     EXPECT_FALSE(Asked(scene).free(1.0, 0.5)) << "a name alone allows nothing";
-    scene.allow_contact({"slide", "tip"}, "seam");
+    scene.allow_contact(Region{"slide", "tip"}, "seam");
     EXPECT_TRUE(Asked(scene).free(1.0, 0.5));
     EXPECT_FALSE(Asked(scene).free(1.0, 0.6)) << "the wire";
     EXPECT_FALSE(Asked(scene).free(1.0, 0.7)) << "the nozzle";
@@ -114,15 +114,15 @@ TEST(RobotScene, OnlyARegionMayTouch) {
     scene.forbid_contact("slide", "seam");
     EXPECT_FALSE(Asked(scene).free(1.0, 0.7));
     EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
-    scene.forbid_contact({"slide", "tip"}, "seam");
+    scene.forbid_contact(Region{"slide", "tip"}, "seam");
     EXPECT_FALSE(Asked(scene).free(1.0, 0.6));
-    scene.allow_contact({"slide", "tip"}, "seam");
+    scene.allow_contact(Region{"slide", "tip"}, "seam");
     scene.remove("seam");
     scene.add("seam", shape, Pose::from_translation({1, 0, 1}));
     EXPECT_FALSE(Asked(scene).free(1.0, 0.5)) << "what was allowed went with the obstacle";
     // All spheres.
     scene.define_region({"slide", "tip"}, Sphere{{0, 0, 0}, 9.0});
-    scene.allow_contact({"slide", "tip"}, "seam");
+    scene.allow_contact(Region{"slide", "tip"}, "seam");
     EXPECT_TRUE(Asked(scene).free(1.0, 0.7));
   }
 }
@@ -135,7 +135,7 @@ TEST(RobotScene, RegionsOfToolsAndLinks) {
   EXPECT_TRUE(Asked(scene).free(0.1, -1.0));
   EXPECT_FALSE(Asked(scene).free(0.1, -0.7));
   scene.define_region({"gripper", "jaw"}, std::vector<BodySphere>{{0, 1}});
-  scene.allow_contact({"gripper", "jaw"}, "base");
+  scene.allow_contact(Region{"gripper", "jaw"}, "base");
   EXPECT_TRUE(Asked(scene).free(0.1, -0.9));
   EXPECT_FALSE(Asked(scene).free(0.1, -0.7)) << "the other sphere";
   EXPECT_EQ(scene.attached(), std::vector<std::string>{"gripper"});
@@ -212,8 +212,8 @@ TEST(RobotScene, RefusesBadEdits) {
   EXPECT_THROW(scene.allow_contact("nose", "post"), Error);
   EXPECT_THROW(scene.allow_contact("post", "slide"), Error);
   EXPECT_THROW(scene.allow_contact("slide", "slide"), Error);
-  EXPECT_THROW(scene.allow_contact({"slide", "tip"}, "post"), Error);
-  EXPECT_THROW(scene.forbid_contact({"slide", "tip"}, "post"), Error);
+  EXPECT_THROW(scene.allow_contact(Region{"slide", "tip"}, "post"), Error);
+  EXPECT_THROW(scene.forbid_contact(Region{"slide", "tip"}, "post"), Error);
   using Spheres = std::vector<BodySphere>;
   EXPECT_THROW(scene.define_region({"slide", "tip"}, Spheres{}), Error);
   EXPECT_THROW(scene.define_region({"slide", "tip"}, Spheres{{0, 5}}), Error);

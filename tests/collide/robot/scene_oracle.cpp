@@ -88,7 +88,7 @@ std::optional<long double> OracleScene::gap(std::span<const double> configuratio
 }
 
 RandomScene random_scene(SceneRandom& random) {
-  const RobotModel robot = random_robot_with_trees(random, 0.15);
+  const RobotModel robot = random_robot_with_trees(random, 0.4);
   const Pose world_from_root = random.whole(0, 1) == 0 ? Pose() : random.pose(3.0);
   RandomScene result{RobotScene(robot, world_from_root), {robot, world_from_root, {}, {}}};
   auto& [scene, oracle] = result;
@@ -106,7 +106,7 @@ RandomScene random_scene(SceneRandom& random) {
   for (int n = random.whole(0, 2); n > 0; --n) {
     const int link = random.whole(0, links - 1);
     const std::string name = "object_" + std::to_string(n);
-    const auto tree = random_tree(random, 0.15);
+    const auto tree = random_tree(random, 0.4);
     const Pose pose = random.pose(0.3);
     scene.attach(name, robot.links()[static_cast<std::size_t>(link)].name, tree, pose);
     oracle.bodies.push_back({name, link, pose, spheres_of({tree})});
@@ -114,7 +114,7 @@ RandomScene random_scene(SceneRandom& random) {
   const std::size_t bodies = oracle.bodies.size();
   for (int n = random.whole(0, 3); n > 0; --n) {
     const std::string name = "obstacle_" + std::to_string(n);
-    const auto tree = random_tree(random, 0.4);
+    const auto tree = random_tree(random, 0.6);
     const Pose pose = random.pose(2.0);
     scene.add(name, tree, pose);
     oracle.bodies.push_back({name, -1, pose, spheres_of({tree})});
