@@ -11,11 +11,11 @@ namespace spherule {
 namespace {
 
 bool is_free_at_many(const RobotTreeChecker& checker, RobotTreeChecker::Scratch& scratch,
-                     const JointPositions& from, const JointPositions& to) {
+                     const ArmPositions& from, const ArmPositions& to) {
   constexpr int kSteps = 10000;
   for (int step = 0; step <= kSteps; ++step) {
     const double t = static_cast<double>(step) / kSteps;
-    JointPositions at;
+    ArmPositions at;
     for (std::size_t i = 0; i < at.size(); ++i) at[i] = (1.0 - t) * from[i] + t * to[i];
     if (checker.collides(at, scratch)) return false;
   }
@@ -27,7 +27,7 @@ bool is_free_at_many(const RobotTreeChecker& checker, RobotTreeChecker::Scratch&
 EdgeMeasurement measure_edges(const Workload& workload) {
   const RobotTreeChecker checker = make_robot_tree_checker(workload);
   RobotTreeChecker::Scratch scratch(checker);
-  const std::vector<JointPositions>& program = workload.program;
+  const std::vector<ArmPositions>& program = workload.program;
   checker.check_edge(program[0], program[1], scratch);  // warms the scratch up
   const double cost = clock_cost();
   EdgeMeasurement result;

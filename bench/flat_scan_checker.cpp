@@ -149,7 +149,7 @@ class FlatScanChecker : public Checker {
                 scan == FlatScan::kBallsInFront};
   }
 
-  void check(std::span<const JointPositions> configurations,
+  void check(std::span<const ArmPositions> configurations,
              std::span<std::uint8_t> verdicts) override {
     for (std::size_t i = 0; i < configurations.size(); ++i) {
       verdicts[i] = check_(problem_, configurations[i].data(), scratch_) ? 1 : 0;

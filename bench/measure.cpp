@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint64_t kShuffleSeed = 1;
 
-std::vector<JointPositions> every(const std::vector<JointPositions>& program, std::size_t stride) {
-  std::vector<JointPositions> sample;
+std::vector<ArmPositions> every(const std::vector<ArmPositions>& program, std::size_t stride) {
+  std::vector<ArmPositions> sample;
   for (std::size_t i = 0; i < program.size(); i += stride) sample.push_back(program[i]);
   return sample;
 }
@@ -27,7 +27,7 @@ constexpr std::size_t kSlowRun = 8;
 // slice of time falls on some runs of a round, on others in the next.
 class Rounds {
  public:
-  Rounds(const std::vector<JointPositions>& timed, std::size_t run)
+  Rounds(const std::vector<ArmPositions>& timed, std::size_t run)
       : timed_(timed), run_(run), times_((timed.size() + run - 1) / run) {}
 
   void add(Checker& checker, std::vector<std::uint8_t>& verdicts) {
@@ -49,16 +49,16 @@ class Rounds {
   }
 
  private:
-  std::span<const JointPositions> timed_;
+  std::span<const ArmPositions> timed_;
   std::size_t run_;
   std::vector<std::vector<double>> times_;
 };
 
-void time_single_queries(Checker& checker, const std::vector<JointPositions>& sample, double cost,
+void time_single_queries(Checker& checker, const std::vector<ArmPositions>& sample, double cost,
                          Measurement& result) {
   std::vector<double> times;
   std::uint8_t verdict = 0;
-  for (const JointPositions& configuration : sample) {
+  for (const ArmPositions& configuration : sample) {
     const auto start = Clock::now();
     checker.check({&configuration, 1}, {&verdict, 1});
     times.push_back(std::max(0.0, nanoseconds(Clock::now() - start) - cost));
@@ -87,7 +87,7 @@ VerdictCount count(const std::vector<std::uint8_t>& verdicts,
 }
 
 std::vector<Measurement> measure(const std::vector<Method>& methods,
-                                 const std::vector<JointPositions>& program,
+                                 const std::vector<ArmPositions>& program,
                                  const MeasureOptions& options) {
   const auto sample = every(program, options.stride);
   const auto slow_sample = every(program, options.slow_stride);

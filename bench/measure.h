@@ -51,7 +51,7 @@ VerdictCount count(const std::vector<std::uint8_t>& verdicts,
 // in path order and, but for slow ones, in a random order, then single queries, and collects all
 // verdicts.
 std::vector<Measurement> measure(const std::vector<Method>& methods,
-                                 const std::vector<JointPositions>& program,
+                                 const std::vector<ArmPositions>& program,
                                  const MeasureOptions& options);
 
 }  // namespace spherule

@@ -38,10 +38,10 @@ Oracle::Oracle(const Workload& workload) {
 Oracle::~Oracle() = default;
 
 std::vector<std::uint32_t> Oracle::touching_bodies(
-    std::span<const JointPositions> configurations) const {
+    std::span<const ArmPositions> configurations) const {
   std::vector<std::uint32_t> result;
   std::vector<Pose> world_from_link;
-  for (const JointPositions& configuration : configurations) {
+  for (const ArmPositions& configuration : configurations) {
     forward_kinematics(impl_->robot, configuration, world_from_link);
     std::uint32_t bits = 0;
     for (std::size_t body = 0; body < impl_->bodies.size(); ++body) {

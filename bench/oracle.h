@@ -17,7 +17,7 @@ class Oracle {
   ~Oracle();
 
   // Bit i: body i of the workload touches an obstacle. One word for each configuration.
-  std::vector<std::uint32_t> touching_bodies(std::span<const JointPositions> configurations) const;
+  std::vector<std::uint32_t> touching_bodies(std::span<const ArmPositions> configurations) const;
 
  private:
   struct Impl;

@@ -17,7 +17,7 @@ void add(const Part& part, const Pose& pose, PlacedParts& group) {
 }  // namespace
 
 std::map<std::string, PlacedParts> place_cell(const Workload& workload,
-                                              const JointPositions& configuration) {
+                                              const ArmPositions& configuration) {
   std::vector<Pose> world_from_link;
   forward_kinematics(workload.robot, configuration, world_from_link);
   std::map<std::string, PlacedParts> groups;

@@ -21,6 +21,6 @@ struct PlacedParts {
 
 // The cell in one configuration: robot, torch, workpiece and table, by these names.
 std::map<std::string, PlacedParts> place_cell(const Workload& workload,
-                                              const JointPositions& configuration);
+                                              const ArmPositions& configuration);
 
 }  // namespace spherule

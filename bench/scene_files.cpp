@@ -7,7 +7,7 @@
 
 namespace spherule {
 
-void write_scene(const Workload& workload, const JointPositions& configuration,
+void write_scene(const Workload& workload, const ArmPositions& configuration,
                  const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   for (const auto& [name, group] : place_cell(workload, configuration)) {

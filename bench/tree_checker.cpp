@@ -18,7 +18,7 @@ class SingleTreeChecker : public Checker {
   explicit SingleTreeChecker(AnyChecker checker)
       : checker_(std::move(checker)), scratch_(checker_) {}
 
-  void check(std::span<const JointPositions> configurations,
+  void check(std::span<const ArmPositions> configurations,
              std::span<std::uint8_t> verdicts) override {
     for (std::size_t i = 0; i < configurations.size(); ++i) {
       verdicts[i] = checker_.collides(configurations[i], scratch_) ? 1 : 0;
@@ -35,7 +35,7 @@ class BatchTreeChecker : public Checker {
   explicit BatchTreeChecker(RobotTreeChecker checker)
       : checker_(std::move(checker)), scratch_(checker_) {}
 
-  void check(std::span<const JointPositions> configurations,
+  void check(std::span<const ArmPositions> configurations,
              std::span<std::uint8_t> verdicts) override {
     if (configurations.empty()) return;
     checker_.collides({configurations.front().data(), configurations.size() * kJoints}, scratch_,

@@ -85,7 +85,7 @@ Workload make_paper_cell() {
   return make_cell("paper-cell", make_robot_links(), make_torch(), flange_from_wire());
 }
 
-void SingleChecker::check(std::span<const JointPositions> configurations,
+void SingleChecker::check(std::span<const ArmPositions> configurations,
                           std::span<std::uint8_t> verdicts) {
   for (std::size_t i = 0; i < configurations.size(); ++i) {
     forward_kinematics(robot_, configurations[i], world_from_link_);

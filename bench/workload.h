@@ -41,7 +41,7 @@ struct Workload {
   RobotModel robot;
   std::vector<Body> bodies = {};
   std::vector<Obstacle> obstacles = {};
-  std::vector<JointPositions> program = {};
+  std::vector<ArmPositions> program = {};
   std::vector<std::uint8_t> is_critical = {};  // of the program, see scenes/program.h
 };
 
@@ -68,7 +68,7 @@ Workload make_cell(std::string name, std::span<const TriangleMesh> links, const 
 class Checker {
  public:
   virtual ~Checker() = default;
-  virtual void check(std::span<const JointPositions> configurations,
+  virtual void check(std::span<const ArmPositions> configurations,
                      std::span<std::uint8_t> verdicts) = 0;
 };
 
@@ -76,7 +76,7 @@ class Checker {
 class SingleChecker : public Checker {
  public:
   explicit SingleChecker(const RobotModel& robot) : robot_(robot) {}
-  void check(std::span<const JointPositions> configurations,
+  void check(std::span<const ArmPositions> configurations,
              std::span<std::uint8_t> verdicts) override;
 
  protected:

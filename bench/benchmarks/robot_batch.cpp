@@ -65,7 +65,7 @@ struct Cell {
   }
 
   Workload workload;
-  std::vector<JointPositions> jumps;
+  std::vector<ArmPositions> jumps;
   std::size_t spheres = 0;
 };
 
@@ -75,7 +75,7 @@ const Cell& cell() {
 }
 
 void run(benchmark::State& state, const RobotTreeChecker& checker,
-         const std::vector<JointPositions>& program) {
+         const std::vector<ArmPositions>& program) {
   const auto count = static_cast<std::size_t>(state.range(0));
   std::vector<RobotTreeChecker::Scratch> scratches;
   for (int i = 0; i < state.range(1); ++i) scratches.emplace_back(checker);

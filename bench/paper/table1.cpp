@@ -26,7 +26,7 @@ std::vector<Table1Row> make_table1(const Workload& workload,
   const auto touching = Oracle(workload).touching_bodies(workload.program);
   std::vector<std::uint8_t> truth;
   for (const std::uint32_t bodies : touching) truth.push_back(bodies != 0 ? 1 : 0);
-  std::vector<JointPositions> critical;
+  std::vector<ArmPositions> critical;
   std::vector<std::uint8_t> critical_truth;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (workload.is_critical[i] == 0) continue;

@@ -48,17 +48,17 @@ Matrix6d jacobian(const RobotModel& robot, const std::vector<Pose>& world_from_l
 
 }  // namespace
 
-JointPositions on_joint_grid(const JointPositions& positions) {
-  JointPositions result;
+ArmPositions on_joint_grid(const ArmPositions& positions) {
+  ArmPositions result;
   std::transform(positions.begin(), positions.end(), result.begin(),
                  [](double q) { return std::nearbyint(q * 0x1p20) * 0x1p-20; });
   return result;
 }
 
-std::optional<JointPositions> solve_inverse_kinematics(const RobotModel& robot,
-                                                       const Pose& world_from_flange,
-                                                       const JointPositions& start) {
-  JointPositions positions = start;
+std::optional<ArmPositions> solve_inverse_kinematics(const RobotModel& robot,
+                                                     const Pose& world_from_flange,
+                                                     const ArmPositions& start) {
+  ArmPositions positions = start;
   std::vector<Pose> world_from_link;
   const auto lacking = [&] {
     forward_kinematics(robot, positions, world_from_link);

@@ -18,10 +18,10 @@ using Eigen::Vector3d;
 constexpr double kTableDistance = 1.55;
 constexpr double kWorkpieceYaw = 0.2;  // radians
 
-constexpr JointPositions kHome{0.0, -0.15, 0.1, 0.0, 1.1, 0.0};
+constexpr ArmPositions kHome{0.0, -0.15, 0.1, 0.0, 1.1, 0.0};
 // Behind the fixture post, and a clear way round to it.
-constexpr JointPositions kStation{0.52, 0.32, 0.18, 0.0, 0.6, 0.0};
-constexpr JointPositions kAboveStation{0.52, -0.2, -0.2, 0.0, 0.9, 0.0};
+constexpr ArmPositions kStation{0.52, 0.32, 0.18, 0.0, 0.6, 0.0};
+constexpr ArmPositions kAboveStation{0.52, -0.2, -0.2, 0.0, 0.9, 0.0};
 
 // Configurations of one pass: home to above the seam, down, weld, up, home.
 constexpr std::size_t kTransfer = 55;
@@ -49,7 +49,7 @@ class ProgramWriter {
     add(on_joint_grid(kHome));
   }
 
-  JointPositions solve(const WireTarget& target, const JointPositions& start) const {
+  ArmPositions solve(const WireTarget& target, const ArmPositions& start) const {
     const auto solution = solve_inverse_kinematics(
         robot_, world_from_wire(target, world_from_workpiece()) * wire_from_flange_, start);
     if (!solution) throw Error("program", "a target is out of the robot's reach");
@@ -57,11 +57,11 @@ class ProgramWriter {
   }
 
   // Straight in joint space, `steps` configurations with the end, without the start.
-  void move_to(const JointPositions& end, std::size_t steps) {
-    const JointPositions start = last();
+  void move_to(const ArmPositions& end, std::size_t steps) {
+    const ArmPositions start = last();
     for (std::size_t i = 1; i <= steps; ++i) {
       const double share = static_cast<double>(i) / static_cast<double>(steps);
-      JointPositions between;
+      ArmPositions between;
       for (std::size_t j = 0; j < between.size(); ++j) {
         between[j] = start[j] + share * (end[j] - start[j]);
       }
@@ -77,8 +77,8 @@ class ProgramWriter {
   Program take() { return std::move(program_); }
 
  private:
-  const JointPositions& last() const { return program_.configurations.back(); }
-  void add(const JointPositions& configuration, bool is_critical = false) {
+  const ArmPositions& last() const { return program_.configurations.back(); }
+  void add(const ArmPositions& configuration, bool is_critical = false) {
     program_.configurations.push_back(configuration);
     program_.is_critical.push_back(is_critical ? 1 : 0);
   }
@@ -133,7 +133,7 @@ Program make_program(const Pose& flange_from_wire) {
   return writer.take();
 }
 
-std::vector<JointPositions> shuffled(std::vector<JointPositions> program, std::uint64_t seed) {
+std::vector<ArmPositions> shuffled(std::vector<ArmPositions> program, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   // Fisher and Yates; the standard library's shuffle differs between implementations.
   for (std::size_t left = program.size(); left > 1; --left) {

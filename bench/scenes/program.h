@@ -17,7 +17,7 @@ Pose world_from_table();
 Pose world_from_workpiece();
 
 struct Program {
-  std::vector<JointPositions> configurations;
+  std::vector<ArmPositions> configurations;
   // 1 for those in which the wire is at the metal, on a pass: the paper's critical section.
   std::vector<std::uint8_t> is_critical;
 };
@@ -32,6 +32,6 @@ struct Program {
 Program make_program(const Pose& flange_from_wire);
 
 // The same configurations in an order without coherence (seeded, the same on every machine).
-std::vector<JointPositions> shuffled(std::vector<JointPositions> program, std::uint64_t seed);
+std::vector<ArmPositions> shuffled(std::vector<ArmPositions> program, std::uint64_t seed);
 
 }  // namespace spherule

@@ -9,7 +9,7 @@
 namespace spherule {
 
 inline constexpr int kJoints = 6;
-using JointPositions = std::array<double, kJoints>;  // radians
+using ArmPositions = std::array<double, kJoints>;  // radians
 
 // A six-axis industrial robot with the joint origins, axes and limits of the ABB IRB 4400L-30/2.43,
 // in metres and radians: links base_link, link_1 .. link_6, without trees.

@@ -88,8 +88,8 @@ std::vector<SizeRow> study_sizes(const Workload& workload,
       hit[k] |= verdicts[k];
     }
   }
-  std::vector<JointPositions> path;
-  std::vector<JointPositions> free;
+  std::vector<ArmPositions> path;
+  std::vector<ArmPositions> free;
   for (std::size_t k = 0; k < hit.size(); k += options.stride) {
     path.push_back(workload.program[k]);
     if (hit[k] == 0) free.push_back(workload.program[k]);

@@ -43,10 +43,10 @@ std::shared_ptr<const SphereTree> scattered(const Workload& workload, std::size_
   return std::make_shared<const SphereTree>(build_tree(balls));
 }
 
-std::vector<JointPositions> random_configurations(const RobotModel& robot) {
+std::vector<ArmPositions> random_configurations(const RobotModel& robot) {
   RandomNumbers random(kSeed);
-  std::vector<JointPositions> result(kRandomConfigurations);
-  for (JointPositions& configuration : result) {
+  std::vector<ArmPositions> result(kRandomConfigurations);
+  for (ArmPositions& configuration : result) {
     for (const Joint& joint : robot.joints()) {
       configuration[static_cast<std::size_t>(joint.variable)] =
           random.between(joint.lower, joint.upper);
@@ -66,7 +66,7 @@ class Kinematics : public SingleChecker {
   }
 };
 
-SmallRow measure_row(const Workload& cell, const std::vector<JointPositions>& configurations,
+SmallRow measure_row(const Workload& cell, const std::vector<ArmPositions>& configurations,
                      std::string order, int rounds) {
   std::vector<std::unique_ptr<Checker>> checkers;
   for (const TreeMode mode : {TreeMode::kSingle, TreeMode::kBatch, TreeMode::kPairs}) {
@@ -106,7 +106,7 @@ std::vector<SmallRow> study_small_environments(const Workload& workload,
     body.part.tree =
         std::make_shared<const SphereTree>(build_tree(coarse_cover(*body.part.tree, kCoarseBody)));
   }
-  std::vector<JointPositions> path;
+  std::vector<ArmPositions> path;
   for (std::size_t i = 0; i < workload.program.size(); i += options.stride) {
     path.push_back(workload.program[i]);
   }

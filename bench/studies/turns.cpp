@@ -17,7 +17,7 @@ constexpr std::size_t kRun = 1024;
 }  // namespace
 
 std::vector<double> time_in_turns(std::span<const std::unique_ptr<Checker>> checkers,
-                                  std::span<const JointPositions> configurations, int rounds) {
+                                  std::span<const ArmPositions> configurations, int rounds) {
   const std::size_t runs = (configurations.size() + kRun - 1) / kRun;
   // By checker and run: the least so far.
   std::vector<std::vector<double>> least(
@@ -45,7 +45,7 @@ std::vector<double> time_in_turns(std::span<const std::unique_ptr<Checker>> chec
 }
 
 std::vector<std::uint8_t> verdicts_of(Checker& checker,
-                                      std::span<const JointPositions> configurations) {
+                                      std::span<const ArmPositions> configurations) {
   std::vector<std::uint8_t> verdicts(configurations.size());
   checker.check(configurations, verdicts);
   return verdicts;

@@ -99,7 +99,8 @@ class RobotChecker {
 
   // Whether the straight motion in joint space is free at every point of it: proved (G6), for the
   // exact motion as for the poses that forward_kinematics() computes for configurations on it.
-  // Where limits are enforced, leaving them is a contact. Throws Error also for a position beyond
+  // Where limits are enforced, leaving them is a contact. Unless the first contact is asked for,
+  // free_until may be 0 where one is found. Throws Error also for a position beyond
   // 100 in magnitude and for a resolution that is not above zero.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
                         const EdgeRequest& request = {}) const;

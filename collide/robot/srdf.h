@@ -33,16 +33,17 @@ struct DisabledPair {
   std::string reason;  // empty if the file gives none
 };
 
-struct JointPosition {
+// Radians or metres; several numbers for a planar or floating joint to the world.
+struct JointState {
   std::string joint;
-  double position = 0.0;  // radians or metres
+  std::vector<double> position;
 };
 
 // A named configuration of a group.
 struct GroupState {
   std::string name;
   std::string group;
-  std::vector<JointPosition> positions{};
+  std::vector<JointState> joints{};
 };
 
 struct EndEffector {
@@ -62,13 +63,14 @@ struct SemanticDescription {
   std::vector<LinkSpheres> sphere_approximations{};  // in the link's frame, metres
 };
 
-// Reads an SRDF file. Other elements (virtual and passive joints, properties, changes of defaults
-// for collisions) are not read: none of them disables a pair that is not listed here as disabled.
+// Reads an SRDF file. Spheres of radius zero stand for none and are left out. Other elements
+// (virtual and passive joints, properties, defaults for collisions and exceptions from them) are
+// not read: without them no pair is disabled that is not listed here.
 //
-// Throws Error, whose subject is the file and whose reason names the element and its line: for a
-// file that cannot be read or is no SRDF, a missing or empty name, a number that is malformed or
-// not finite, a radius below zero, a pair of a link with itself, two groups, end effectors or
-// sphere approximations of the same name, a group within itself, and a group that does not exist.
+// Throws Error, whose subject is the file and whose reason names the line and the element: for a
+// file that cannot be read or is no SRDF, a name that is missing, a number that is malformed or not
+// finite, a radius below zero, a pair of a link with itself, a group that is not there or contains
+// itself, and two groups, states of a group, end effectors or sphere approximations of one name.
 SemanticDescription read_srdf(const std::filesystem::path& path);
 
 // What the description names and the robot has not got, a line each ("group arm: there is no joint

@@ -36,13 +36,13 @@ void add_balls(Workload& cell) {
   }
 }
 
-std::vector<JointPositions> every(const Workload& cell, std::size_t stride) {
-  std::vector<JointPositions> sample;
+std::vector<ArmPositions> every(const Workload& cell, std::size_t stride) {
+  std::vector<ArmPositions> sample;
   for (std::size_t i = 0; i < cell.program.size(); i += stride) sample.push_back(cell.program[i]);
   return sample;
 }
 
-std::vector<std::uint8_t> verdicts(Checker& checker, const std::vector<JointPositions>& sample) {
+std::vector<std::uint8_t> verdicts(Checker& checker, const std::vector<ArmPositions>& sample) {
   std::vector<std::uint8_t> result(sample.size(), 2);
   checker.check(sample, result);
   return result;
@@ -84,7 +84,7 @@ TEST(Oracle, SeesABodyInsideAnother) {
   Workload cell{.name = "inside", .robot = make_robot()};
   cell.bodies.push_back({{.name = "cube", .mesh = make_cube(0.05)}, kJoints});
   cell.obstacles.push_back({{.name = "block", .mesh = make_cube(8.0)}, Pose()});
-  const std::vector<JointPositions> sample{JointPositions{}};
+  const std::vector<ArmPositions> sample{ArmPositions{}};
   EXPECT_EQ(verdicts(*make_fcl_mesh_checker(cell, {}), sample)[0], 0);
   EXPECT_EQ(Oracle(cell).touching_bodies(sample)[0], 1u);
   std::swap(cell.bodies[0].part.mesh, cell.obstacles[0].part.mesh);

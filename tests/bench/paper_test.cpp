@@ -73,7 +73,7 @@ Workload boxes_for(const TriangleMesh& mesh) {
   return cell;
 }
 
-std::vector<std::uint8_t> verdicts(Checker& checker, const std::vector<JointPositions>& sample) {
+std::vector<std::uint8_t> verdicts(Checker& checker, const std::vector<ArmPositions>& sample) {
   std::vector<std::uint8_t> result(sample.size());
   checker.check(sample, result);
   return result;
@@ -93,7 +93,7 @@ TEST(FclConvexChecker, AnswersAsMeshesOfTheSameParts) {
     both.triangles.emplace_back(triangle.array() + first);
   }
   const Workload cell = boxes_for(both);
-  std::vector<JointPositions> sample;
+  std::vector<ArmPositions> sample;
   for (std::size_t i = 0; i < cell.program.size(); i += 97) sample.push_back(cell.program[i]);
   const auto meshes = verdicts(*make_fcl_mesh_checker(cell, {}), sample);
   const auto parts = verdicts(*make_fcl_convex_checker(cell, 0, {left, right}), sample);
@@ -136,7 +136,7 @@ TEST(Picture, ShowsEveryTriangleWithAnAreaAndEveryBall) {
 class Constant : public Checker {
  public:
   explicit Constant(std::uint8_t verdict) : verdict_(verdict) {}
-  void check(std::span<const JointPositions> configurations,
+  void check(std::span<const ArmPositions> configurations,
              std::span<std::uint8_t> verdicts) override {
     for (std::size_t i = 0; i < configurations.size(); ++i) verdicts[i] = verdict_;
   }
@@ -147,7 +147,7 @@ class Constant : public Checker {
 
 TEST(Table1, CountsWhatIsMissedAndWhatIsExtra) {
   Workload cell = make_paper_cell();
-  std::vector<JointPositions> program;
+  std::vector<ArmPositions> program;
   std::vector<std::uint8_t> is_critical;
   for (std::size_t i = 0; i < cell.program.size(); i += 101) {
     program.push_back(cell.program[i]);

@@ -18,9 +18,9 @@ namespace spherule {
 namespace {
 
 // FNV-1a over the grid steps.
-std::uint64_t hash(const std::vector<JointPositions>& program) {
+std::uint64_t hash(const std::vector<ArmPositions>& program) {
   std::uint64_t value = 14695981039346656037U;
-  for (const JointPositions& positions : program) {
+  for (const ArmPositions& positions : program) {
     for (const double q : positions) {
       auto steps = static_cast<std::uint64_t>(static_cast<std::int64_t>(q * 0x1p20));
       for (int byte = 0; byte < 8; ++byte, steps >>= 8)
@@ -34,7 +34,7 @@ TEST(Program, IsTheSameEverywhere) {
   const auto [program, is_critical] = make_program(flange_from_wire());
   ASSERT_EQ(program.size(), kProgramSize);
   ASSERT_EQ(is_critical.size(), kProgramSize);
-  for (const JointPositions& positions : program) EXPECT_EQ(on_joint_grid(positions), positions);
+  for (const ArmPositions& positions : program) EXPECT_EQ(on_joint_grid(positions), positions);
   EXPECT_EQ(hash(program), 0xc9a7e55f6321b085U);
 }
 
@@ -92,7 +92,7 @@ TEST(Program, ShufflingKeepsTheConfigurations) {
 
 TEST(InverseKinematics, BringsTheFlangeToTheTarget) {
   const RobotModel robot = make_robot();
-  const JointPositions reference{0.3, 0.2, 0.1, -0.4, 0.8, 0.5};
+  const ArmPositions reference{0.3, 0.2, 0.1, -0.4, 0.8, 0.5};
   std::vector<Pose> links;
   forward_kinematics(robot, reference, links);
   const Pose target = links.back() * link6_from_flange();
@@ -108,7 +108,7 @@ TEST(InverseKinematics, BringsTheFlangeToTheTarget) {
 // The oracle on a part of the program; the benchmark asks it about all of it.
 TEST(Program, HasTheWantedShareOfCollisions) {
   const Workload cell = make_paper_cell();
-  std::vector<JointPositions> sample;
+  std::vector<ArmPositions> sample;
   for (std::size_t i = 0; i < cell.program.size(); i += 7) sample.push_back(cell.program[i]);
   std::size_t collisions = 0;
   std::vector<std::size_t> by_body(cell.bodies.size(), 0);

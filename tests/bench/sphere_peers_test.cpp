@@ -78,7 +78,7 @@ std::vector<std::pair<Eigen::Matrix<long double, 3, 1>, long double>> placed(con
 }
 
 // The least gap of two spheres of the pairs that are tested, in long double.
-double gap_of(const Workload& workload, const JointPositions& configuration) {
+double gap_of(const Workload& workload, const ArmPositions& configuration) {
   std::vector<Pose> world_from_link;
   forward_kinematics(workload.robot, configuration, world_from_link);
   long double least = std::numeric_limits<long double>::infinity();
@@ -96,8 +96,8 @@ double gap_of(const Workload& workload, const JointPositions& configuration) {
   return static_cast<double>(least);
 }
 
-JointPositions random_configuration(Random& random, const RobotModel& robot) {
-  JointPositions configuration;
+ArmPositions random_configuration(Random& random, const RobotModel& robot) {
+  ArmPositions configuration;
   for (const Joint& joint : robot.joints()) {
     configuration[static_cast<std::size_t>(joint.variable)] =
         random.between(joint.lower, joint.upper);
@@ -107,7 +107,7 @@ JointPositions random_configuration(Random& random, const RobotModel& robot) {
 
 // Some balls on every other link; obstacles with one ball at the gap from a ball of the robot, and
 // some more around.
-Workload random_scene(Random& random, JointPositions& configuration, double gap) {
+Workload random_scene(Random& random, ArmPositions& configuration, double gap) {
   Workload scene{.name = "random", .robot = make_robot()};
   configuration = random_configuration(random, scene.robot);
   for (int link = kJoints; link >= 0; link -= 2) {
@@ -140,7 +140,7 @@ TEST(SpherePeers, MissNothingAndAddNoMoreThanTheirPads) {
   for (int i = 0; i < 1000; ++i) {
     const double gaps[] = {0.0,   -1e-9, 1e-9, -1e-7, 1e-7, -1e-6, 1e-6,
                            -1e-5, 1e-5,  1e-4, -1e-4, 1e-3, 0.1,   0.5};
-    JointPositions configuration;
+    ArmPositions configuration;
     const Workload scene = random_scene(random, configuration, gaps[random.index(14)]);
     const double gap = gap_of(scene, configuration);
     const double pad = single_precision_pad(scene_reach(scene));
@@ -169,7 +169,7 @@ TEST(SpherePeers, MoveAsTheRobotDoes) {
   Random random(6);
   for (int i = 0; i < 200; ++i) {
     Workload scene{.name = "one ball", .robot = make_robot()};
-    JointPositions configuration;
+    ArmPositions configuration;
     for (double& position : configuration) position = random.between(-10.0, 10.0);
     const Sphere ball{0.3 * random.direction(), 0.0};
     scene.bodies.push_back({part_of("ball", {ball}), kJoints});

@@ -147,7 +147,7 @@ TEST(FclPair, EverySettingAnswersAlike) {
 class Recorder : public Checker {
  public:
   explicit Recorder(std::vector<double>& asked) : asked_(asked) {}
-  void check(std::span<const JointPositions> configurations,
+  void check(std::span<const ArmPositions> configurations,
              std::span<std::uint8_t> verdicts) override {
     for (std::size_t i = 0; i < configurations.size(); ++i) {
       asked_.push_back(configurations[i][0]);
@@ -160,7 +160,7 @@ class Recorder : public Checker {
 };
 
 TEST(Turns, EveryCheckerIsAskedEverythingInOrder) {
-  std::vector<JointPositions> configurations(2500);
+  std::vector<ArmPositions> configurations(2500);
   std::vector<double> once;
   for (std::size_t i = 0; i < configurations.size(); ++i) {
     configurations[i][0] = static_cast<double>(i);

@@ -74,6 +74,48 @@ TEST(RobotScene, ObstaclesComeMoveAndGo) {
   EXPECT_FALSE(before.free(1.0, 0.6)) << "a snapshot does not change";
 }
 
+// What was an obstacle moves with the robot, and meets what the robot alone would pass.
+TEST(RobotScene, AnObstacleIsPickedUp) {
+  RobotScene scene(welder());
+  const auto part = ball({0, 0, 0}, 0.1);
+  scene.add("part", part, Pose::from_translation({1, 0, 1}));
+  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({1.3, 0, 1.15}));
+  EXPECT_FALSE(Asked(scene).free(1.0, 0.6));
+  scene.remove("part");
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.8));
+  scene.attach("part", "slide", part, Pose::from_translation({0.4, 0, 0}));
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
+  EXPECT_FALSE(Asked(scene).free(1.0, 0.8));
+  Asked asked(scene);
+  const auto told = asked.checker.explain(Configuration{1.0, 0.8}, asked.scratch);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].first.kind, CheckedBody::Kind::kAttached);
+  EXPECT_EQ(told[0].first.name, "part");
+  EXPECT_EQ(told[0].second.name, "post");
+  scene.detach("part");
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.8));
+}
+
+TEST(RobotScene, PaddingKeepsApart) {
+  RobotScene scene(welder());
+  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({1, 0, 1}));
+  // The tip of the wire is 0.02 in front of the post.
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.38));
+  scene.set_padding("slide", 0.015);
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.38));
+  scene.set_padding("slide", "post", 0.01);
+  EXPECT_FALSE(Asked(scene).free(1.0, 0.38)) << "both count";
+  Asked asked(scene);
+  EXPECT_NEAR(asked.checker.clearance(Configuration{1.0, 0.3}, asked.scratch).lower, 0.075, 1e-9);
+  const auto told = asked.checker.explain(Configuration{1.0, 0.38}, asked.scratch);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NEAR(told[0].overlap_depth, 0.005, 1e-9);
+  EXPECT_NEAR(told[0].padding, 0.025, 1e-12);
+  scene.set_padding("slide", 0.0);
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.38));
+}
+
 TEST(RobotScene, CloudsAreTrees) {
   RobotScene scene(welder());
   std::vector<Eigen::Vector3d> points;
@@ -206,7 +248,7 @@ TEST(RobotScene, RefusesBadEdits) {
     EXPECT_THROW(scene.set_padding("slide", "post", bad), Error);
   }
   EXPECT_THROW(scene.set_padding("post", 0.1), Error) << "no body";
-  EXPECT_THROW(scene.set_padding("post", "slide", 0.1), Error);
+  EXPECT_THROW(scene.set_padding("post", "slide", 0.1), Error) << "the body comes first";
   EXPECT_THROW(scene.set_padding("slide", "slide", 0.1), Error);
   EXPECT_THROW(scene.set_padding("slide", "nose", 0.1), Error);
   EXPECT_THROW(scene.allow_contact("nose", "post"), Error);

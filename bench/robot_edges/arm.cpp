@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/robot_edges/arm.h"
+
+#include "collide/robot/urdf.h"
+#include "simplifier/mesh_io.h"
+#include "spheretree/build.h"
+#include "spheretree/enclosing_sphere.h"
+
+#include <array>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace spherule {
+namespace {
+
+using Triangle = std::array<Eigen::Vector3d, 3>;
+
+// The meshes of a link in its frame; shapes that are no meshes do not occur.
+TriangleMesh mesh_of(const LinkDescription& link) {
+  TriangleMesh result;
+  for (const LinkShape& shape : link.collision) {
+    const MeshFile& file = std::get<MeshFile>(shape.geometry);
+    const TriangleMesh mesh = read_mesh(file.path);
+    const Eigen::Vector3i first =
+        Eigen::Vector3i::Constant(static_cast<int>(result.vertices.size()));
+    for (const Eigen::Vector3d& vertex : mesh.vertices) {
+      result.vertices.push_back(shape.link_from_shape * vertex.cwiseProduct(file.scale));
+    }
+    for (const Eigen::Vector3i& triangle : mesh.triangles) {
+      result.triangles.push_back(triangle + first);
+    }
+  }
+  return result;
+}
+
+// A piece whose ball is too large is halved, at the middle of its longest edge.
+void add_balls(const Triangle& triangle, double radius, std::vector<Sphere>& spheres) {
+  const Sphere ball = enclosing_sphere(triangle);
+  if (ball.radius <= radius) {
+    spheres.push_back(ball);
+    return;
+  }
+  int longest = 0;
+  const auto length = [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    return (triangle[(k + 1) % 3] - triangle[k]).norm();
+  };
+  for (const int i : {1, 2}) {
+    if (length(i) > length(longest)) longest = i;
+  }
+  const auto k = static_cast<std::size_t>(longest);
+  const Eigen::Vector3d middle = 0.5 * (triangle[k] + triangle[(k + 1) % 3]);
+  add_balls({triangle[k], middle, triangle[(k + 2) % 3]}, radius, spheres);
+  add_balls({middle, triangle[(k + 1) % 3], triangle[(k + 2) % 3]}, radius, spheres);
+}
+
+}  // namespace
+
+Arm make_panda(const std::filesystem::path& models, double radius) {
+  RobotDescription robot = read_urdf(models / "robots" / "franka_panda" / "franka_panda.urdf");
+  Arm arm{std::move(robot.model), {}};
+  for (const LinkDescription& link : robot.links) {
+    const TriangleMesh& mesh = arm.meshes.emplace_back(mesh_of(link));
+    arm.triangles += mesh.triangles.size();
+    std::vector<Sphere> spheres;
+    for (const Eigen::Vector3i& t : mesh.triangles) {
+      const auto corner = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
+      add_balls({corner(0), corner(1), corner(2)}, radius, spheres);
+    }
+    if (spheres.empty()) continue;
+    arm.spheres += spheres.size();
+    arm.model.attach(link.name, std::make_shared<const SphereTree>(build_tree(spheres)));
+  }
+  return arm;
+}
+
+}  // namespace spherule

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/robot_edges/fcl_arm.h"
+
+#include "bench/fcl_models.h"
+#include "collide/robot/kinematics.h"
+
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <fcl/narrowphase/collision.h>
+
+#include <stdexcept>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
+
+struct MakeGeometry {
+  Geometry operator()(const Box& box) const { return std::make_shared<fcl::Boxd>(box.size); }
+  Geometry operator()(const Ball& ball) const {
+    return std::make_shared<fcl::Sphered>(ball.radius);
+  }
+  Geometry operator()(const Cylinder& solid) const {
+    return std::make_shared<fcl::Cylinderd>(solid.radius, solid.length);
+  }
+  Geometry operator()(const Capsule& solid) const {
+    return std::make_shared<fcl::Capsuled>(solid.radius, solid.length);
+  }
+  Geometry operator()(const HalfSpace&) const {
+    throw std::logic_error("the scenes have no half-spaces");
+  }
+};
+
+struct FclObstacle {
+  Geometry geometry;
+  fcl::Transform3d pose;
+  Eigen::AlignedBox3d box;
+};
+
+}  // namespace
+
+struct FclArm::Parts {
+  const RobotModel& robot;
+  std::vector<std::unique_ptr<FclModel<fcl::OBBRSSd>>> links{};
+  std::vector<std::pair<std::size_t, std::size_t>> pairs{};
+  std::vector<std::size_t> moving{};  // links with a mesh that a variable moves
+  std::vector<FclObstacle> obstacles{};
+  fcl::CollisionRequestd request{};
+  std::vector<Pose> world_from_link{};
+  std::vector<fcl::Transform3d> poses{};
+  std::vector<Eigen::AlignedBox3d> boxes{};
+
+  bool touch(const fcl::CollisionGeometryd* a, const fcl::Transform3d& pose_a,
+             const fcl::CollisionGeometryd* b, const fcl::Transform3d& pose_b) const {
+    fcl::CollisionResultd result;
+    return fcl::collide(a, pose_a, b, pose_b, request, result) > 0;
+  }
+};
+
+FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const PrimitiveScene& scene)
+    : parts_(std::make_unique<Parts>(Parts{arm.model})) {
+  for (const TriangleMesh& mesh : arm.meshes) {
+    parts_->links.push_back(
+        mesh.triangles.empty() ? nullptr : std::make_unique<FclModel<fcl::OBBRSSd>>(mesh));
+  }
+  const std::size_t count = parts_->links.size();
+  for (std::size_t i = count; i-- > 0;) {
+    if (!parts_->links[i]) continue;
+    if (!allowed.allows(0, static_cast<int>(i)) ||
+        allowed.reason(0, static_cast<int>(i)) != AllowedReason::kRigid) {
+      parts_->moving.push_back(i);
+    }
+    for (std::size_t k = i; k-- > 0;) {
+      if (!parts_->links[k] || allowed.allows(static_cast<int>(i), static_cast<int>(k))) continue;
+      parts_->pairs.emplace_back(i, k);
+    }
+  }
+  for (const PlacedPrimitive& obstacle : scene.obstacles) {
+    const Geometry geometry = std::visit(MakeGeometry(), obstacle.primitive);
+    const fcl::Transform3d pose = fcl_pose<double>(obstacle.world_from_primitive);
+    fcl::CollisionObjectd object(geometry, pose);
+    object.computeAABB();
+    parts_->obstacles.push_back(
+        {geometry, pose, Eigen::AlignedBox3d(object.getAABB().min_, object.getAABB().max_)});
+  }
+  parts_->poses.resize(count);
+  parts_->boxes.resize(count);
+}
+
+FclArm::~FclArm() = default;
+
+bool FclArm::collides(std::span<const double> configuration) {
+  Parts& in = *parts_;
+  forward_kinematics(in.robot, configuration, in.world_from_link);
+  for (std::size_t i = 0; i < in.links.size(); ++i) {
+    if (!in.links[i]) continue;
+    in.poses[i] = fcl_pose<double>(in.world_from_link[i]);
+    in.boxes[i] = in.links[i]->world_box(in.poses[i]);
+  }
+  for (const std::size_t link : in.moving) {
+    for (const FclObstacle& obstacle : in.obstacles) {
+      if (!in.boxes[link].intersects(obstacle.box)) continue;
+      if (in.touch(in.links[link]->geometry.get(), in.poses[link], obstacle.geometry.get(),
+                   obstacle.pose)) {
+        return true;
+      }
+    }
+  }
+  for (const auto& [a, b] : in.pairs) {
+    if (!in.boxes[a].intersects(in.boxes[b])) continue;
+    if (in.touch(in.links[a]->geometry.get(), in.poses[a], in.links[b]->geometry.get(),
+                 in.poses[b])) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace spherule

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/robot_edges/arm.h"
+#include "bench/robot_edges/primitive_scenes.h"
+#include "collide/robot/allowed_collisions.h"
+
+#include <memory>
+#include <span>
+
+namespace spherule {
+
+// The arm's meshes among primitives, and against each other where this is not allowed, by FCL:
+// oriented boxes with swept spheres in double, with a test of the boxes along the world's axes in
+// front. What tells a link inside another one is not asked; primitives are solid to FCL.
+class FclArm {
+ public:
+  FclArm(const Arm& arm, const AllowedCollisions& allowed, const PrimitiveScene& scene);
+  ~FclArm();
+
+  bool collides(std::span<const double> configuration);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace spherule
