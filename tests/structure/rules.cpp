@@ -76,7 +76,7 @@ const std::vector<Room>& rooms() {
         "tinyxml2", "zlib"},
        {}},
       // Users of the installed package: they see the library from outside.
-      {"tests/consumer", {}, {"Eigen", "spherule"}, {}},
+      {"tests/consumer", {}, {"Eigen", "fcl", "ompl", "spherule"}, {}},
   };
   return kRooms;
 }
