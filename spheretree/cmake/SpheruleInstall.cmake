@@ -33,3 +33,6 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/spheruleConfigVersion.cma
 install(FILES ${PROJECT_BINARY_DIR}/spheruleConfig.cmake
               ${PROJECT_BINARY_DIR}/spheruleConfigVersion.cmake
         DESTINATION ${destination})
+if(SPHERULE_OMPL)
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/SpheruleOmpl.cmake DESTINATION ${destination})
+endif()

@@ -23,25 +23,34 @@ function(spherule_compile_settings target kind)
   endif()
 endfunction()
 
-# Declares the library spherule::NAME from HEADERS (public), SOURCES (everything else) and LINKS
-# (public dependencies), and installs it as the component NAME of the package. Headers are reached as
-# "spheretree/sphere.h" from inside the repository and as <spherule/spheretree/sphere.h> by users.
+# Declares the library spherule::NAME from HEADERS (public), SOURCES (everything else; a library of
+# headers has none) and LINKS (public dependencies), and installs it as the component NAME of the
+# package. Headers are reached as "spheretree/sphere.h" from inside the repository and as
+# <spherule/spheretree/sphere.h> by users.
 function(spherule_library name)
   cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES;LINKS" ${ARGN})
   set(target spherule_${name})
-  add_library(${target} ${ARG_SOURCES})
+  if(ARG_SOURCES)
+    set(scope PUBLIC)
+    add_library(${target} ${ARG_SOURCES})
+    # Before 1.0 a minor version may change the binary interface.
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON
+                          VERSION ${PROJECT_VERSION}
+                          SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+                          INSTALL_RPATH "$ORIGIN")
+    spherule_compile_settings(${target} library)
+  else()
+    set(scope INTERFACE)
+    add_library(${target} INTERFACE)
+    target_compile_features(${target} INTERFACE cxx_std_20)
+  endif()
   add_library(spherule::${name} ALIAS ${target})
-  # Before 1.0 a minor version may change the binary interface.
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
-                        VERSION ${PROJECT_VERSION}
-                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-                        INSTALL_RPATH "$ORIGIN")
-  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
                  FILES ${ARG_HEADERS})
   target_include_directories(${target} INTERFACE $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_link_libraries(${target} PUBLIC ${ARG_LINKS})
-  spherule_compile_settings(${target} library)
+  target_link_libraries(${target} ${scope} ${ARG_LINKS})
 
   # One export per component, so that a user of one does not load the dependencies of another. The
   # components this one links are recorded for the package configuration (SpheruleInstall.cmake).

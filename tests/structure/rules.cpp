@@ -70,16 +70,16 @@ const std::vector<Room>& rooms() {
       {"cli", kLibraries, {"Eigen", "CLI", "nlohmann"}, {}},
       {"bench",
        kLibraries,
-       {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann"},
+       {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann", "ompl"},
        {{"boost", "bench/scale/exact_oracle.cpp"}}},
       {"tests",
        {"spheretree", "simplifier", "simplifier/baseline", "collide", "collide/robot",
         "collide/fcl", "collide/ompl", "bench"},
-       {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "tbb",
-        "tinyxml2", "urdfdom", "zlib"},
+       {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "ompl", "tbb",
+         "tinyxml2", "urdfdom", "zlib"},
        {}},
       // Users of the installed package: they see the library from outside.
-      {"tests/consumer", {}, {"Eigen", "spherule"}, {}},
+      {"tests/consumer", {}, {"Eigen", "fcl", "ompl", "spherule"}, {}},
   };
   return kRooms;
 }
