@@ -21,6 +21,7 @@ void add_tree(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_collide(CLI::App& app, int& exit_code);
 void add_view(CLI::App& app, int& exit_code);
+void add_robot(CLI::App& app, int& exit_code);
 void add_baseline(CLI::App& app, int& exit_code);
 
 }  // namespace spherule

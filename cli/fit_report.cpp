@@ -6,11 +6,6 @@
 namespace spherule {
 namespace {
 
-Json to_json(const Eigen::AlignedBox3d& box) {
-  return {{"min", spherule::to_json(Eigen::Vector3d(box.min()))},
-          {"max", spherule::to_json(Eigen::Vector3d(box.max()))}};
-}
-
 Json to_json(const std::string& file, const TriangleMesh& mesh, const MeshReport& report) {
   return {{"file", file},
           {"vertices", report.vertices},
@@ -24,20 +19,10 @@ Json to_json(const std::string& file, const TriangleMesh& mesh, const MeshReport
           {"inverted_components", report.inverted_components},
           {"self_intersections", report.self_intersections},
           {"closed", report.closed},
-          {"box", to_json(report.box)},
+          {"box", spherule::to_json(report.box)},
           {"area", report.area},
           {"volume", report.volume},
           {"vertex_error", mesh.vertex_error}};
-}
-
-Json to_json(const ExternalSpheres& external) {
-  return {{"box", to_json(external.box)},
-          {"min_external_diameter", spherule::to_json(external.min_external_diameter)},
-          {"padding", external.padding},
-          {"grid_step", external.grid_step},
-          {"closing_slack", spherule::to_json(external.closing_slack)},
-          {"nodes_examined", external.nodes_examined},
-          {"external_spheres", spherule::to_json(external.balls)}};
 }
 
 Json to_json(const CoverHistoryEntry& entry) {
@@ -93,7 +78,7 @@ std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
                      {"levels", result.times.levels},
                      {"certify", result.times.certify}};
   json["certificate"] = spherule::to_json(result.certificate);
-  json["simplified_solid"] = to_json(result.external);
+  json["simplified_solid"] = spherule::to_json(result.external);
   json["cover"] = to_json(result.cover);
   json["analysis"] = spherule::to_json(analysis);
   json["levels"] = to_json(result.levels);

@@ -15,6 +15,11 @@ Json to_json(const Eigen::Vector3d& point) {
   return Json::array({to_json(point.x()), to_json(point.y()), to_json(point.z())});
 }
 
+Json to_json(const Eigen::AlignedBox3d& box) {
+  return {{"min", to_json(Eigen::Vector3d(box.min()))},
+          {"max", to_json(Eigen::Vector3d(box.max()))}};
+}
+
 Json to_json(const Bounds& bounds) {
   return Json::array({to_json(bounds.lower), to_json(bounds.upper)});
 }
@@ -60,6 +65,16 @@ Json to_json(const Certificate& certificate) {
   json["pieces"] = certificate.pieces;
   json["cells"] = certificate.cells;
   return json;
+}
+
+Json to_json(const ExternalSpheres& external) {
+  return {{"box", to_json(external.box)},
+          {"min_external_diameter", to_json(external.min_external_diameter)},
+          {"padding", external.padding},
+          {"grid_step", external.grid_step},
+          {"closing_slack", to_json(external.closing_slack)},
+          {"nodes_examined", external.nodes_examined},
+          {"external_spheres", to_json(external.balls)}};
 }
 
 std::string to_text(const Json& json, Layout layout) {

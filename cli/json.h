@@ -16,11 +16,16 @@ using Json = nlohmann::ordered_json;
 // JSON knows no infinity: infinite numbers become the strings "inf" and "-inf", as in SPHERES.json.
 Json to_json(double value);
 Json to_json(const Eigen::Vector3d& point);
+Json to_json(const Eigen::AlignedBox3d& box);
 Json to_json(const Bounds& bounds);
 Json to_json(std::span<const Sphere> spheres);
 Json to_json(const std::map<std::string, OptionValue>& options);
 // Everything a certificate says; the keys that SPHERES.json has too mean the same there.
 Json to_json(const Certificate& certificate);
+
+// The simplified solid with all external spheres kept, so that anyone can judge what was
+// simplified away.
+Json to_json(const ExternalSpheres& external);
 
 template <class T>
 Json to_json(const std::optional<T>& value) {

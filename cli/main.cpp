@@ -38,11 +38,14 @@ int run(int argc, char** argv) {
   add_info(app, exit_code);
   add_collide(app, exit_code);
   add_view(app, exit_code);
+#ifdef SPHERULE_HAS_ROBOT
+  add_robot(app, exit_code);
+#endif
 #ifdef SPHERULE_HAS_BASELINES
   add_baseline(app, exit_code);
 #endif
   app.footer(
-      "Exit codes: 0 done; 1 a leak (fit, audit, baseline) or a collision (collide); 2 bad "
+      "Exit codes: 0 done; 1 a leak (fit, audit, robot, baseline) or a collision (collide); 2 bad "
       "input.");
   try {
     app.parse(argc, argv);

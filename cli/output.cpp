@@ -55,8 +55,7 @@ fs::path place_of(const fs::path& path) {
 
 }  // namespace
 
-void check_outputs(std::initializer_list<fs::path> outputs,
-                   std::initializer_list<fs::path> inputs) {
+void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs) {
   std::set<fs::path> taken;
   for (const fs::path& input : inputs) {
     if (!input.empty()) taken.insert(place_of(input));

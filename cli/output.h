@@ -3,14 +3,14 @@
 
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
+#include <vector>
 
 namespace spherule {
 
 // Throws Error, before long work is done for nothing, if a file of `outputs` cannot be made where
 // it is asked for, is one of `inputs`, or is named twice. Empty paths are files not asked for.
-void check_outputs(std::initializer_list<std::filesystem::path> outputs,
-                   std::initializer_list<std::filesystem::path> inputs);
+void check_outputs(const std::vector<std::filesystem::path>& outputs,
+                   const std::vector<std::filesystem::path>& inputs);
 
 // Runs `write`, which writes files beside their place and renames them, to its end even if the user
 // interrupts, and obeys the interruption afterwards: Ctrl-C leaves no half-written file.

@@ -39,7 +39,7 @@ struct LinkDescription {
 struct RobotDescription {
   std::string name;
   RobotModel model;
-  std::vector<LinkDescription> links;  // in the order of model.links()
+  std::vector<LinkDescription> links{};  // in the order of model.links()
 };
 
 }  // namespace spherule

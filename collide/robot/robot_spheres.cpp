@@ -165,6 +165,23 @@ struct ThreadShares {
   int within;         // threads of simplify(), the link's own and those that all links share
 };
 
+// Whether at most one joint moves two links against each other, and no link with spheres stands
+// between them if one does.
+bool are_neighbours(const RobotModel& model, const RobotCover& cover, int a, int b) {
+  int moving = 0;
+  bool passes_spheres = false;
+  // A parent's index is below its child's: the larger of two is never an ancestor of the other.
+  while (a != b) {
+    int& lower = a > b ? a : b;
+    const Link& link = model.links()[static_cast<std::size_t>(lower)];
+    const Joint& joint = model.joints()[static_cast<std::size_t>(link.parent_joint)];
+    moving += joint.moves() ? 1 : 0;
+    lower = joint.parent_link;
+    passes_spheres |= a != b && !cover.links[static_cast<std::size_t>(lower)].spheres.empty();
+  }
+  return moving == 0 || (moving == 1 && !passes_spheres);
+}
+
 }  // namespace
 
 RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& options) {
@@ -206,10 +223,18 @@ std::vector<std::string> links_not_proved(const RobotCover& cover) {
   return names;
 }
 
-RobotSpheres robot_spheres(const RobotCover& cover) {
+RobotSpheres robot_spheres(const RobotDescription& robot, const RobotCover& cover) {
   RobotSpheres result;
   result.robot = cover.robot;
   for (const LinkCover& link : cover.links) result.links.push_back({link.link, link.spheres});
+  for (std::size_t a = 0; a < cover.links.size(); ++a) {
+    for (std::size_t b = a + 1; b < cover.links.size(); ++b) {
+      if (cover.links[a].spheres.empty() || cover.links[b].spheres.empty()) continue;
+      if (!are_neighbours(robot.model, cover, static_cast<int>(a), static_cast<int>(b))) continue;
+      result.self_collision_ignore.push_back(
+          {cover.links[a].link, cover.links[b].link, "Adjacent"});
+    }
+  }
   return result;
 }
 

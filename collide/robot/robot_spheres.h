@@ -79,7 +79,10 @@ RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& o
 std::vector<std::string> links_not_proved(const RobotCover& cover);
 
 // The spheres of all links, as the writers of formats take them: none for a link without geometry.
-// Which pairs are not to be checked against each other is for the caller to add.
-RobotSpheres robot_spheres(const RobotCover& cover);
+// Pairs of links that are not to be checked against each other are those that no joint moves
+// against each other, and those that one joint joins, directly or past links without spheres:
+// covers of neighbours overlap at their joint in any configuration. Whether others may touch is
+// for an SRDF to say.
+RobotSpheres robot_spheres(const RobotDescription& robot, const RobotCover& cover);
 
 }  // namespace spherule

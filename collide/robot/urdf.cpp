@@ -63,7 +63,7 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& 
   return model;
 }
 
-std::string quoted(const std::string& name) {
+std::string in_quotes(const std::string& name) {
   return "'" + name + "'";
 }
 
@@ -89,7 +89,8 @@ Joint joint_of(const urdf::Joint& joint) {
       result.type = JointType::kContinuous;
       break;
     default:
-      throw Error("joint " + quoted(joint.name), "planar and floating joints cannot be modelled");
+      throw Error("joint " + in_quotes(joint.name),
+                  "planar and floating joints cannot be modelled");
   }
   if (result.type == JointType::kRevolute || result.type == JointType::kPrismatic) {
     result.lower = joint.limits->lower;
@@ -128,8 +129,9 @@ class Reader {
     for (const auto& [name, joint] : model_.joints_) {
       const auto [other, is_first] = joint_above.emplace(joint->child_link_name, name);
       if (!is_first) {
-        throw Error("link " + quoted(other->first),
-                    "it is below two joints, " + quoted(other->second) + " and " + quoted(name));
+        throw Error(
+            "link " + in_quotes(other->first),
+            "it is below two joints, " + in_quotes(other->second) + " and " + in_quotes(name));
       }
     }
   }
@@ -148,7 +150,7 @@ class Reader {
     while (!waiting.empty()) {
       const urdf::JointSharedPtr joint = std::move(waiting.back());
       waiting.pop_back();
-      robot.add_link(joint->child_link_name, joint->parent_link_name, joint_of(*joint));
+      add_link(robot, *joint);
       if (joint->mimic && joint->type != urdf::Joint::FIXED) {
         mimics_.emplace_back(joint->name, joint->mimic);
       }
@@ -156,8 +158,17 @@ class Reader {
     }
     for (const auto& [name, link] : model_.links_) {
       if (robot.find_link(name) < 0) {
-        throw Error("link " + quoted(name), "the root " + quoted(root().name) + " is not above it");
+        throw Error("link " + in_quotes(name),
+                    "the root " + in_quotes(root().name) + " is not above it");
       }
+    }
+  }
+
+  static void add_link(RobotModel& robot, const urdf::Joint& joint) {
+    try {
+      robot.add_link(joint.child_link_name, joint.parent_link_name, joint_of(joint));
+    } catch (const Error& error) {
+      throw Error("joint " + in_quotes(joint.name), error.what());
     }
   }
 
@@ -167,7 +178,7 @@ class Reader {
       for (const auto& visual : link.visual_array) result.visual.push_back(shape_of(*visual));
       for (const auto& shape : link.collision_array) result.collision.push_back(shape_of(*shape));
     } catch (const Error& error) {
-      throw Error("link " + quoted(link.name), error.what());
+      throw Error("link " + in_quotes(link.name), error.what());
     }
     return result;
   }

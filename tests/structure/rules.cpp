@@ -72,8 +72,8 @@ const std::vector<Room>& rooms() {
       {"tests",
        {"spheretree", "simplifier", "simplifier/baseline", "collide", "collide/robot",
         "collide/fcl", "collide/ompl", "bench"},
-       {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "tbb", "tinyxml2",
-        "zlib"},
+       {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "tbb",
+        "tinyxml2", "zlib"},
        {}},
       // Users of the installed package: they see the library from outside.
       {"tests/consumer", {}, {"Eigen", "spherule"}, {}},

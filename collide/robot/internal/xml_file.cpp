@@ -16,9 +16,10 @@ namespace {
 constexpr std::string_view kSpace = " \t\r\n";
 constexpr std::size_t kQuotedLength = 60;
 
-std::string quoted(std::string_view text) {
-  const bool is_long = text.size() > kQuotedLength;
-  return "'" + std::string(text.substr(0, kQuotedLength)) + (is_long ? "...'" : "'");
+std::string in_quotes(std::string_view text) {
+  std::string result("'");
+  result.append(text.substr(0, kQuotedLength));
+  return result.append(text.size() > kQuotedLength ? "...'" : "'");
 }
 
 std::vector<std::string_view> words_of(std::string_view text) {
@@ -118,7 +119,7 @@ std::optional<std::vector<double>> XmlElement::numbers(std::string_view name) co
   std::vector<double> result;
   for (const std::string_view word : words_of(*text)) {
     const auto number = number_of(word);
-    if (!number) refuse(std::string(name) + ": " + quoted(word) + " is no finite number");
+    if (!number) refuse(std::string(name) + ": " + in_quotes(word) + " is no finite number");
     result.push_back(*number);
   }
   return result;
@@ -155,7 +156,7 @@ Eigen::Vector3d XmlElement::needed_vector(std::string_view name) const {
 void XmlElement::require_attributes(std::initializer_list<std::string_view> known) const {
   for (const auto* a = element_->FirstAttribute(); a != nullptr; a = a->Next()) {
     if (std::find(known.begin(), known.end(), a->Name()) == known.end()) {
-      refuse("it has an attribute " + quoted(a->Name()) + " of unknown meaning");
+      refuse("it has an attribute " + in_quotes(a->Name()) + " of unknown meaning");
     }
   }
 }
@@ -167,8 +168,8 @@ void XmlElement::refuse(const std::string& reason) const {
     const tinyxml2::XMLElement* const around = node->ToElement();
     const bool is_root = node->Parent()->ToDocument() != nullptr;
     const char* const name = around && !is_root ? around->Attribute("name") : nullptr;
-    if (name == nullptr) continue;
-    place += std::string(around->Name()) + " " + quoted(name) + ": ";
+    if (name == nullptr || *name == '\0') continue;
+    place += std::string(around->Name()) + " " + in_quotes(name) + ": ";
     break;
   }
   throw Error(*file_, place + "<" + element_->Name() + ">: " + reason);

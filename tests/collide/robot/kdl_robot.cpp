@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/collide/robot/kdl_robot.h"
 
-#include <kdl/jntarray.hpp>
-#include <kdl/treefksolverpos_recursive.hpp>
-#include <tinyxml2.h>
-
 #include <cstdlib>
 #include <set>
 #include <stdexcept>
+#include <tinyxml2.h>
 
 namespace spherule::test {
 namespace {
@@ -35,11 +32,10 @@ KDL::Frame frame_of(const XMLElement* origin) {
 KDL::Joint joint_of(const XMLElement& joint, const KDL::Frame& frame) {
   const std::string name = joint.Attribute("name");
   const std::string type = joint.Attribute("type");
-  const KDL::Vector axis =
-      frame.M * vector_of(joint.FirstChildElement("axis"), "xyz", "1 0 0");
+  const KDL::Vector axis = frame.M * vector_of(joint.FirstChildElement("axis"), "xyz", "1 0 0");
   if (type == "revolute" || type == "continuous") return {name, frame.p, axis, KDL::Joint::RotAxis};
   if (type == "prismatic") return {name, frame.p, axis, KDL::Joint::TransAxis};
-  return {name, KDL::Joint::None};
+  return KDL::Joint(name, KDL::Joint::None);
 }
 
 }  // namespace
@@ -85,7 +81,7 @@ KdlRobot::KdlRobot(const std::filesystem::path& urdf) {
       variables_.push_back(name);
     }
   }
-  tree_ = tree;  // a copy numbers its joints anew, and a copy of it keeps the numbers
+  tree_ = tree;
 }
 
 double KdlRobot::position(const std::string& joint,
@@ -98,21 +94,14 @@ double KdlRobot::position(const std::string& joint,
 
 std::map<std::string, Eigen::Isometry3d> KdlRobot::poses(
     const std::map<std::string, double>& positions) const {
-  const KDL::Tree tree(tree_);
-  KDL::JntArray values(tree.getNrOfJoints() + 1);  // one at least
-  for (const auto& [name, element] : tree.getSegments()) {
-    const KDL::Joint& joint = element.segment.getJoint();
-    if (joint.getType() != KDL::Joint::None) {
-      values(element.q_nr) = position(joint.getName(), positions);
-    }
-  }
-  values.data.conservativeResize(tree.getNrOfJoints());
-  KDL::TreeFkSolverPos_recursive solver(tree);
   std::map<std::string, Eigen::Isometry3d> result;
   for (const std::string& link : links_) {
-    KDL::Frame frame;
-    if (tree.getNrOfJoints() > 0 && solver.JntToCart(values, frame, link) < 0) {
-      throw std::runtime_error(link);
+    KDL::Frame frame = KDL::Frame::Identity();
+    for (auto at = tree_.getSegment(link); at != tree_.getRootSegment(); at = at->second.parent) {
+      const KDL::Segment& segment = at->second.segment;
+      const bool moves = segment.getJoint().getType() != KDL::Joint::None;
+      const double value = moves ? position(segment.getJoint().getName(), positions) : 0.0;
+      frame = segment.pose(value) * frame;
     }
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     for (int row = 0; row < 3; ++row) {

@@ -61,10 +61,10 @@ RobotCoverOptions quick(double max_error) {
 
 TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
   Random random(11);
-  for (int i = 0; i < effort(4, 1); ++i) {
-    const RobotDescription robot = random_robot(random, 4);
-    RobotCoverOptions options = quick(0.02);
-    options.padding = i % 2 == 0 ? 0.0 : 0.005;
+  for (int i = 0; i < effort(2, 1); ++i) {
+    const RobotDescription robot = random_robot(random, 3);
+    RobotCoverOptions options = quick(0.04);
+    options.padding = i % 2 == 0 ? 0.005 : 0.0;
     const RobotCover cover = cover_robot(robot, options);
     EXPECT_EQ(cover.robot, "chain");
     EXPECT_TRUE(links_not_proved(cover).empty());
@@ -79,7 +79,7 @@ TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
       }
       ASSERT_TRUE(link.fit);
       EXPECT_TRUE(link.fit->certificate.covered);
-      EXPECT_LE(*link.fit->certificate.protrusion_over_simplified_max, 0.02);
+      EXPECT_LE(*link.fit->certificate.protrusion_over_simplified_max, 0.04);
       EXPECT_TRUE(link.warnings.empty()) << link.warnings.front();
       for (int k = 0; k < 3000; ++k) {
         WidePoint p = point_of(robot.links[l], random);
@@ -89,7 +89,7 @@ TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
       // Over the shapes themselves: a gap between shapes may be filled, which the certificate
       // bounds, and tessellation adds E / 16.
       EXPECT_LE(sampled_protrusion(link, robot.links[l], random),
-                link.fit->certificate.protrusion_over_mesh->upper + 0.02 / 16 + options.padding);
+                link.fit->certificate.protrusion_over_mesh->upper + 0.04 / 16 + options.padding);
     }
   }
 }
@@ -100,19 +100,19 @@ TEST(RobotSpheres, ABallIsOneBall) {
   robot.links = {{.name = "base_link",
                   .visual = {},
                   .collision = {{.name = "", .link_from_shape = {}, .geometry = Ball{0.05}}}}};
-  const RobotCover cover = cover_robot(robot);
+  const RobotCover cover = cover_robot(robot, quick(0.02));
   ASSERT_EQ(cover.links[0].spheres.size(), 1U);
-  EXPECT_NEAR(cover.links[0].spheres[0].radius, 0.055, 0.006);
+  EXPECT_NEAR(cover.links[0].spheres[0].radius, 0.06, 0.011);
 }
 
 TEST(RobotSpheres, AreEqualOnAnyNumberOfThreads) {
   Random random(12);
-  const RobotDescription robot = random_robot(random, 4);
-  RobotCoverOptions options = quick(0.02);
-  options.effort = 3;
+  const RobotDescription robot = random_robot(random, 3);
+  RobotCoverOptions options = quick(0.05);
+  options.effort = 1;
   options.threads = 1;
   const RobotCover alone = cover_robot(robot, options);
-  for (const int threads : effort(std::vector{5, 2, 0}, 1)) {
+  for (const int threads : {5, 2}) {
     options.threads = threads;
     const RobotCover cover = cover_robot(robot, options);
     for (std::size_t l = 0; l < robot.links.size(); ++l) {
@@ -124,36 +124,33 @@ TEST(RobotSpheres, AreEqualOnAnyNumberOfThreads) {
 TEST(RobotSpheres, OptionsOfALinkAreForThatLink) {
   Random random(13);
   const RobotDescription robot = random_robot(random, 3);
-  RobotCoverOptions options = quick(0.03);
+  RobotCoverOptions options = quick(0.05);
   const RobotCover plain = cover_robot(robot, options);
-  EXPECT_EQ(plain.links[0].fit->options.min_external_diameter, 0.12);
-  options.links["link2"] = {.max_error = 0.01, .padding = 0.004};
+  EXPECT_EQ(plain.links[0].fit->options.min_external_diameter, 0.2);
+  options.links["link2"] = {.max_error = 0.025, .padding = 0.004};
   const RobotCover own = cover_robot(robot, options);
   EXPECT_EQ(own.links[0].spheres, plain.links[0].spheres);
   EXPECT_GT(own.links[2].spheres.size(), plain.links[2].spheres.size());
-  EXPECT_EQ(own.links[2].fit->options.max_error, 0.01);
-  EXPECT_EQ(own.links[2].fit->options.min_external_diameter, 0.04);
-  EXPECT_LE(*own.links[2].fit->certificate.protrusion_over_simplified_max, 0.01);
+  EXPECT_EQ(own.links[2].fit->options.max_error, 0.025);
+  EXPECT_EQ(own.links[2].fit->options.min_external_diameter, 0.1);
+  EXPECT_LE(*own.links[2].fit->certificate.protrusion_over_simplified_max, 0.025);
   for (int k = 0; k < 2000; ++k) {
     WidePoint p = point_of(robot.links[2], random);
     p += Wide(0.004) * random.direction().cast<Wide>();
     ASSERT_LE(outside_of(own.links[2].spheres, p), 0);
   }
 
-  options.min_external_diameter = 0.05;
-  options.links["link2"].padding.reset();
-  EXPECT_EQ(cover_robot(robot, options).links[2].fit->options.min_external_diameter, 0.05);
-  options.links["link2"].min_external_diameter = 0.02;
-  const RobotCover both = cover_robot(robot, options);
-  EXPECT_EQ(both.links[2].fit->options.min_external_diameter, 0.02);
-  EXPECT_EQ(both.links[0].fit->options.min_external_diameter, 0.05);
-
+  // The robot's D counts where the link has none of its own, whatever its E.
+  options.min_external_diameter = 0.15;
   Zone zone{.shape = Eigen::AlignedBox3d(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1)),
-            .max_error = 0.005};
+            .max_error = 0.04};
+  options.links["link0"].min_external_diameter = 0.08;
   options.links["link0"].zones = {zone};
   const RobotCover zoned = cover_robot(robot, options);
+  EXPECT_EQ(zoned.links[2].fit->options.min_external_diameter, 0.15);
+  EXPECT_EQ(zoned.links[0].fit->options.min_external_diameter, 0.08);
   ASSERT_EQ(zoned.links[0].fit->certificate.protrusion_in_zones.size(), 1U);
-  EXPECT_LE(zoned.links[0].fit->certificate.protrusion_in_zones[0], 0.005);
+  EXPECT_LE(zoned.links[0].fit->certificate.protrusion_in_zones[0], 0.04);
   EXPECT_TRUE(zoned.links[2].fit->certificate.protrusion_in_zones.empty());
 }
 
@@ -180,8 +177,8 @@ TEST(RobotSpheres, WarnOfAnOpenMeshAndCoverIt) {
 
 TEST(RobotSpheres, ProgressGrowsAndNamesLinks) {
   Random random(15);
-  const RobotDescription robot = random_robot(random, 4);
-  RobotCoverOptions options = quick(0.03);
+  const RobotDescription robot = random_robot(random, 3);
+  RobotCoverOptions options = quick(0.06);
   std::mutex mutex;
   std::vector<double> shares;
   std::vector<std::string> names;
@@ -195,7 +192,7 @@ TEST(RobotSpheres, ProgressGrowsAndNamesLinks) {
   EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
   EXPECT_EQ(shares.front(), 0.0);
   EXPECT_EQ(shares.back(), 1.0);
-  for (const char* name : {"link0", "link2", "link3"}) {
+  for (const char* name : {"link0", "link2"}) {
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   }
   EXPECT_EQ(std::find(names.begin(), names.end(), "link1"), names.end());
@@ -203,17 +200,48 @@ TEST(RobotSpheres, ProgressGrowsAndNamesLinks) {
 
 TEST(RobotSpheres, NamesTheLinksWhoseProofFailed) {
   Random random(16);
-  RobotCover cover = cover_robot(random_robot(random, 3), quick(0.03));
+  const RobotDescription robot = random_robot(random, 3);
+  RobotCover cover = cover_robot(robot, quick(0.06));
   EXPECT_TRUE(links_not_proved(cover).empty());
   cover.links[2].fit->certificate.covered = false;
   EXPECT_EQ(links_not_proved(cover), std::vector<std::string>{"link2"});
 
-  const RobotSpheres spheres = robot_spheres(cover);
+  const RobotSpheres spheres = robot_spheres(robot, cover);
   EXPECT_EQ(spheres.robot, "chain");
   ASSERT_EQ(spheres.links.size(), 3U);
   EXPECT_EQ(spheres.links[1].link, "link1");
   EXPECT_TRUE(spheres.links[1].spheres.empty());
   EXPECT_EQ(spheres.links[2].spheres, cover.links[2].spheres);
+}
+
+// A hand with two fingers and a flange that carries nothing, and a camera fixed to the arm.
+TEST(RobotSpheres, NeighboursAreNotCheckedAgainstEachOther) {
+  RobotDescription robot;
+  robot.model = RobotModel("base");
+  const auto add = [&](const char* name, const char* parent, JointType type) {
+    robot.model.add_link(name, parent, {.name = name, .type = type, .lower = -1, .upper = 1});
+  };
+  add("arm", "base", JointType::kRevolute);
+  add("camera", "arm", JointType::kFixed);
+  add("lens", "camera", JointType::kFixed);
+  add("wrist", "arm", JointType::kRevolute);
+  add("flange", "wrist", JointType::kFixed);
+  add("left", "flange", JointType::kPrismatic);
+  add("right", "flange", JointType::kPrismatic);
+  RobotCover cover;
+  for (const Link& link : robot.model.links()) {
+    robot.links.push_back({.name = link.name});
+    cover.links.push_back({.link = link.name});
+    if (link.name != "flange") cover.links.back().spheres = {Sphere{{0, 0, 0}, 1}};
+  }
+  std::vector<std::string> pairs;
+  for (const DisabledPair& pair : robot_spheres(robot, cover).self_collision_ignore) {
+    EXPECT_EQ(pair.reason, "Adjacent");
+    pairs.push_back(pair.link_a + " " + pair.link_b);
+  }
+  // Not "camera wrist": the arm between them has spheres of its own. Nor "left right".
+  EXPECT_EQ(pairs, (std::vector<std::string>{"base arm", "arm camera", "arm lens", "arm wrist",
+                                             "camera lens", "wrist left", "wrist right"}));
 }
 
 std::string refusal(const RobotDescription& robot, const RobotCoverOptions& options) {

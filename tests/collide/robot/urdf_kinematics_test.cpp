@@ -54,7 +54,7 @@ TEST(UrdfKinematics, AgreesWithKdlOnRandomRobots) {
   for (int i = 0; i < effort(200, 20); ++i) {
     const std::string urdf = random_urdf(random, static_cast<int>(random.index(15)));
     SCOPED_TRACE(urdf);
-    compare_with_kdl(folder.write("robot.urdf", urdf), random, 5);
+    compare_with_kdl(folder.write("robot_" + std::to_string(i) + ".urdf", urdf), random, 5);
     if (HasFatalFailure()) return;
   }
 }

@@ -6,10 +6,10 @@
 #include "spheretree/error.h"
 #include "tests/support/temp_dir.h"
 
-#include <console_bridge/console.h>
 #include <gtest/gtest.h>
 
-#include <clocale>
+#include <console_bridge/console.h>
+#include <locale>
 #include <numbers>
 #include <vector>
 
@@ -163,8 +163,8 @@ TEST(ReadUrdf, FindsMeshes) {
   EXPECT_EQ(find("package://the_arm/a.stl"), "src/arm/a.stl");
   EXPECT_EQ(find("package://the_arm/urdf/c.stl"), "src/arm/urdf/c.stl");
   EXPECT_EQ(find("package://tool/meshes/b.stl"), "src/tool/meshes/b.stl");
-  const UrdfOptions given{.packages = {{"x", folder.path() / "src"},
-                                       {"tool", folder.path() / "src/arm"}}};
+  const UrdfOptions given{
+      .packages = {{"x", folder.path() / "src"}, {"tool", folder.path() / "src/arm"}}};
   EXPECT_EQ(find("package://x/tool/meshes/b.stl", given), "src/tool/meshes/b.stl");
   EXPECT_EQ(find("package://tool/a.stl", given), "src/arm/a.stl");
   for (const char* missing : {"d.stl", "package://arm/a.stl", "package://the_arm/b.stl",
@@ -325,12 +325,16 @@ TEST(ReadUrdf, LeavesTheConsoleAlone) {
   EXPECT_EQ(console_bridge::getOutputHandler(), &listener);
 }
 
+class DecimalComma : public std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+};
+
 TEST(ReadUrdf, ReadsNumbersInAnyLocale) {
-  const char* const german = std::setlocale(LC_ALL, "de_DE.UTF-8");
-  if (german == nullptr) GTEST_SKIP() << "there is no German locale";
+  const std::locale before =
+      std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
   const RobotDescription robot = read_text(link_of(
       "<visual><origin xyz='0.5 1.5e-3 2'/><geometry><sphere radius='0.25'/></geometry></visual>"));
-  std::setlocale(LC_ALL, "C");
+  std::locale::global(before);
   const LinkShape& shape = robot.links[0].visual[0];
   EXPECT_EQ(shape.link_from_shape.translation(), Eigen::Vector3d(0.5, 1.5e-3, 2.0));
   EXPECT_EQ(std::get<Ball>(std::get<Primitive>(shape.geometry)).radius, 0.25);

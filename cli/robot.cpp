@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/check_length.h"
+#include "cli/command.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/robot_files.h"
+#include "cli/robot_options.h"
+#include "cli/robot_report.h"
+#include "collide/robot/robot_spheres.h"
+#include "collide/robot/srdf.h"
+#include "collide/robot/urdf.h"
+#include "simplifier/simplify.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RobotArguments {
+  std::string urdf;
+  std::string folder;
+  std::string geometry = geometry_names().front();
+  std::vector<std::string> packages;
+  std::vector<std::string> links;
+  std::vector<std::string> formats = robot_format_names();
+  std::string srdf;
+  std::string curobo;
+  std::string xrdf;
+  std::string tool_link;
+  bool json = false;
+  RobotCoverOptions options;
+};
+
+RobotFilePlan plan_of(const RobotArguments& arguments) {
+  RobotFilePlan plan{.folder = arguments.folder,
+                     .urdf = arguments.urdf,
+                     .formats = arguments.formats,
+                     .srdf = arguments.srdf,
+                     .curobo = arguments.curobo,
+                     .xrdf = arguments.xrdf,
+                     .tool_link = arguments.tool_link};
+  std::sort(plan.formats.begin(), plan.formats.end());
+  plan.formats.erase(std::unique(plan.formats.begin(), plan.formats.end()), plan.formats.end());
+  return plan;
+}
+
+// Refuses places that cannot be written, before long work is done for nothing. A folder that is not
+// there is made, but only once there is something to put into it.
+void check_places(const RobotArguments& arguments, const std::vector<fs::path>& outputs) {
+  std::vector<fs::path> inputs = {arguments.urdf, arguments.srdf, arguments.curobo, arguments.xrdf};
+  std::error_code fault;
+  if (fs::exists(arguments.folder, fault)) {
+    if (!fs::is_directory(arguments.folder, fault)) {
+      throw Error(arguments.folder, "is not a folder");
+    }
+    check_outputs(outputs, inputs);
+  } else {
+    check_outputs({arguments.folder}, inputs);
+  }
+}
+
+// The pairs of an SRDF that are about links of the robot and not there yet.
+void add_disabled_pairs(const std::string& srdf, const RobotModel& model, RobotSpheres& spheres) {
+  if (srdf.empty()) return;
+  std::vector<DisabledPair>& known = spheres.self_collision_ignore;
+  for (const DisabledPair& pair : read_srdf(srdf).disabled_pairs) {
+    if (model.find_link(pair.link_a) < 0 || model.find_link(pair.link_b) < 0) continue;
+    const bool there = std::any_of(known.begin(), known.end(), [&](const DisabledPair& other) {
+      return (other.link_a == pair.link_a && other.link_b == pair.link_b) ||
+             (other.link_a == pair.link_b && other.link_b == pair.link_a);
+    });
+    if (!there) known.push_back(pair);
+  }
+}
+
+std::vector<std::string> links_to_cover(const RobotDescription& robot, LinkGeometry geometry) {
+  std::vector<std::string> names;
+  for (const LinkDescription& link : robot.links) {
+    if (!link_shapes(link, geometry).empty()) names.push_back(link.name);
+  }
+  return names;
+}
+
+// Fails (kNo), naming the links, if something promised of a link is not proved; the files are
+// written nevertheless and say so.
+int cover(const RobotArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  RobotCoverOptions options = arguments.options;
+  options.geometry = geometry_named(arguments.geometry);
+  options.links = link_options(arguments.links);
+  const RobotFilePlan plan = plan_of(arguments);
+  const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
+  if (!plan.tool_link.empty() && robot.model.find_link(plan.tool_link) < 0) {
+    throw Error("--tool-link", "the robot has no link '" + plan.tool_link + "'");
+  }
+  check_places(arguments, plan.all(robot, links_to_cover(robot, options.geometry)));
+  RobotSpheres spheres;
+  add_disabled_pairs(arguments.srdf, robot.model, spheres);  // refuses a bad file in time
+
+  const RobotCover result = [&] {
+    ProgressBar bar;
+    options.progress = bar.callback();
+    return cover_robot(robot, options);
+  }();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  spheres = robot_spheres(robot, result);
+  add_disabled_pairs(arguments.srdf, robot.model, spheres);
+  const Json summary = robot_summary(arguments.urdf, result, seconds.count());
+  write_uninterrupted([&] {
+    write_robot_files(plan, robot, spheres);
+    write_file_atomically(plan.report(robot), robot_report(summary, result));
+  });
+
+  std::cout << (arguments.json ? to_text(summary) : robot_table(result, seconds.count()));
+  for (const LinkCover& link : result.links) {
+    for (const std::string& warning : link.warnings) {
+      std::cerr << "spherule: warning: link " << link.link << ": " << warning << "\n";
+    }
+  }
+  const std::vector<std::string> open = links_not_proved(result);
+  if (open.empty()) return kYes;
+  std::cerr << "spherule: " << arguments.urdf << ": not proved for";
+  for (const std::string& link : open) std::cerr << " " << link;
+  std::cerr << "\n";
+  return kNo;
+}
+
+void add_search_options(CLI::App& command, const std::shared_ptr<RobotArguments>& arguments) {
+  RobotCoverOptions& options = arguments->options;
+  // Files store 63 bits.
+  command.add_option("--seed", options.seed, "Seed of everything random")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+  auto* effort = command.add_option("--effort", options.effort,
+                                    "Rounds of looking for fewer spheres than at first, for each "
+                                    "link; 0: none");
+  effort->check(CLI::NonNegativeNumber);
+  command
+      .add_option_function<double>(
+          "--seconds",
+          [arguments](double seconds) {
+            arguments->options.seconds = seconds;
+            arguments->options.effort = std::numeric_limits<int>::max();
+          },
+          "Look for fewer spheres for so long, for each link; the result then depends on the "
+          "machine")
+      ->check(CLI::PositiveNumber)
+      ->check(check_length)
+      ->excludes(effort);
+  command.add_option("--threads", options.threads, "Threads, 0: all; the result is the same")
+      ->check(CLI::NonNegativeNumber);
+}
+
+}  // namespace
+
+void add_robot(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("robot", "Cover every link of a robot with spheres, with a proof");
+  auto arguments = std::make_shared<RobotArguments>();
+  RobotCoverOptions& options = arguments->options;
+  command->add_option("urdf", arguments->urdf, "The robot (URDF)")->required();
+  command
+      ->add_option("-o,--output", arguments->folder,
+                   "Folder for what is written; it is made if it is not there")
+      ->required();
+  command
+      ->add_option("--max-error", options.max_error,
+                   "E in metres, how far the spheres may protrude (default: 0.01)")
+      ->check(check_length)
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--min-external", options.min_external_diameter,
+                   "D in metres, diameter of the smallest thing that will meet the robot (default: "
+                   "4 E)")
+      ->check(check_length);
+  command->add_option("--padding", options.padding, "Grow every link by so many metres")
+      ->check(check_length);
+  command
+      ->add_option("--geometry", arguments->geometry,
+                   "What is covered: collision (default) or visual geometry")
+      ->check(CLI::IsMember(geometry_names()));
+  command
+      ->add_option("--package", arguments->packages,
+                   "NAME=DIR: where package://NAME/ leads to; may be repeated")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--link", arguments->links,
+                   "NAME:max-error=E,min-external=D,padding=T,zones=FILE: what is other for one "
+                   "link; may be repeated")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--format", arguments->formats,
+                   "urdf,srdf,curobo,xrdf,foam,json,tree: what is written (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(robot_format_names()));
+  command->add_option("--srdf", arguments->srdf,
+                      "The robot's SRDF: its disabled pairs are ignored, and all but its spheres "
+                      "is kept");
+  command->add_option("--curobo", arguments->curobo,
+                      "The robot's cuRobo file, of which all but the spheres is kept");
+  command->add_option("--xrdf", arguments->xrdf,
+                      "The robot's XRDF, of which all but the spheres is kept");
+  command->add_option("--tool-link", arguments->tool_link,
+                      "The tool's link in new cuRobo and XRDF files (default: where the chain of "
+                      "joints ends or branches)");
+  add_search_options(*command, arguments);
+  command->add_flag("--json", arguments->json, "Print the summary as JSON, lengths in metres");
+  command->footer(
+      "Writes NAME.spheres.urdf, NAME.srdf, NAME.curobo.yml, NAME.xrdf, NAME.foam.json,\n"
+      "NAME.spheres.json, NAME.LINK.tree and NAME.report.json, NAME being the robot's name.\n"
+      "Example: spherule robot panda.urdf -o spheres --max-error 0.02 --geometry visual\n"
+      "         --package franka_description=../franka_description --link "
+      "panda_hand:max-error=0.005");
+  command->callback([arguments, &exit_code] { exit_code = cover(*arguments); });
+}
+
+}  // namespace spherule

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/robot_files.h"
+
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "spheretree/tree_file.h"
+
+#include <algorithm>
+#include <optional>
+#include <system_error>
+
+namespace spherule {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTree = "tree";
+
+std::string checked_name(const std::string& name) {
+  if (name.empty() || name.find_first_of(std::string("/\0", 2)) != std::string::npos) {
+    throw Error("'" + name + "'", "cannot be part of the name of a file");
+  }
+  return name;
+}
+
+// Down from the root as long as only one way leads on: only one that has joints that move or, past
+// the last of those, only one at all.
+std::string last_link(const RobotModel& model) {
+  const std::size_t count = model.links().size();
+  std::vector<bool> moves(count, false);  // a joint at the link or below it
+  std::vector<std::vector<std::size_t>> children(count);
+  for (std::size_t i = count; i-- > 1;) {
+    const Joint& joint = model.joints()[static_cast<std::size_t>(model.links()[i].parent_joint)];
+    const auto parent = static_cast<std::size_t>(joint.parent_link);
+    moves[i] = moves[i] || joint.moves();
+    moves[parent] = moves[parent] || moves[i];
+    children[parent].push_back(i);
+  }
+  std::size_t link = 0;
+  for (;;) {
+    std::vector<std::size_t> ways = children[link];
+    if (moves[link]) std::erase_if(ways, [&](std::size_t child) { return !moves[child]; });
+    if (ways.size() != 1) return model.links()[link].name;
+    link = ways.front();
+    // Whether the link's own joint moves does not matter any more.
+    moves[link] = std::any_of(children[link].begin(), children[link].end(),
+                              [&](std::size_t child) { return moves[child]; });
+  }
+}
+
+SphereFileContext context_of(const RobotFilePlan& plan, const RobotDescription& robot) {
+  SphereFileContext context;
+  context.urdf = plan.urdf;
+  context.base_link = robot.model.links().front().name;
+  context.tool_link = plan.tool_link.empty() ? last_link(robot.model) : plan.tool_link;
+  for (const int index : robot.model.variable_joints()) {
+    const Joint& joint = robot.model.joints()[static_cast<std::size_t>(index)];
+    context.joint_names.push_back(joint.name);
+    context.joint_positions.push_back(std::clamp(0.0, joint.lower, joint.upper));
+  }
+  return context;
+}
+
+fs::path original(const RobotFilePlan& plan, SphereFormat format) {
+  switch (format) {
+    case SphereFormat::kSrdf:
+      return plan.srdf;
+    case SphereFormat::kCurobo:
+      return plan.curobo;
+    case SphereFormat::kXrdf:
+      return plan.xrdf;
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> robot_format_names() {
+  return {"urdf", "srdf", "curobo", "xrdf", "foam", "json", kTree};
+}
+
+fs::path RobotFilePlan::report(const RobotDescription& robot) const {
+  return folder / (checked_name(robot.name) + ".report.json");
+}
+
+fs::path RobotFilePlan::tree(const RobotDescription& robot, const std::string& link) const {
+  return folder / (checked_name(robot.name) + "." + checked_name(link) + ".tree");
+}
+
+std::vector<fs::path> RobotFilePlan::all(const RobotDescription& robot,
+                                         const std::vector<std::string>& links) const {
+  std::vector<fs::path> files;
+  for (const std::string& format : formats) {
+    if (format == kTree) {
+      for (const std::string& link : links) files.push_back(tree(robot, link));
+    } else {
+      files.push_back(folder / sphere_file_name(robot.name, *sphere_format_named(format)));
+    }
+  }
+  files.push_back(report(robot));
+  return files;
+}
+
+void write_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
+                       const RobotSpheres& spheres) {
+  std::error_code fault;
+  fs::create_directory(plan.folder, fault);
+  if (fault) throw Error(plan.folder.string(), fault.message());
+  SphereFileContext context = context_of(plan, robot);
+  for (const std::string& name : plan.formats) {
+    if (name == kTree) {
+      for (const LinkSpheres& link : spheres.links) {
+        if (link.spheres.empty()) continue;
+        save_tree(build_tree(link.spheres), plan.tree(robot, link.link));
+      }
+      continue;
+    }
+    const SphereFormat format = *sphere_format_named(name);
+    context.original = original(plan, format);
+    write_robot_spheres(spheres, format, context,
+                        plan.folder / sphere_file_name(robot.name, format));
+  }
+}
+
+}  // namespace spherule

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/robot/robot_description.h"
+#include "collide/robot/sphere_formats.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// What --format takes: the names of the formats that are written, and "tree".
+std::vector<std::string> robot_format_names();
+
+// The files of `spherule robot`.
+struct RobotFilePlan {
+  std::filesystem::path folder;
+  std::filesystem::path urdf;
+  std::vector<std::string> formats;  // names
+  // Files of these formats of which all but the spheres is kept; empty: new ones.
+  std::filesystem::path srdf;
+  std::filesystem::path curobo;
+  std::filesystem::path xrdf;
+  std::string tool_link;  // empty: where the robot's chain of moving joints ends or branches
+
+  std::filesystem::path report(const RobotDescription& robot) const;
+  std::filesystem::path tree(const RobotDescription& robot, const std::string& link) const;
+  // All that will be written for a robot of which these links get spheres. Throws Error for names
+  // that cannot be names of files.
+  std::vector<std::filesystem::path> all(const RobotDescription& robot,
+                                         const std::vector<std::string>& links) const;
+};
+
+// Makes the folder if it is not there and writes the files, but for the report. Throws Error.
+void write_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
+                       const RobotSpheres& spheres);
+
+}  // namespace spherule

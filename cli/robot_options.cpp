@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/robot_options.h"
+
+#include "spheretree/error.h"
+
+#include <charconv>
+#include <optional>
+#include <system_error>
+
+namespace spherule {
+namespace {
+
+std::optional<double> number(const std::string& text) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [stop, fault] = std::from_chars(text.data(), end, value);
+  if (fault != std::errc() || stop != end) return std::nullopt;
+  return value;
+}
+
+// Splits at the first `separator`; nothing where either side is empty.
+std::optional<std::pair<std::string, std::string>> split(const std::string& text, char separator) {
+  const std::size_t at = text.find(separator);
+  if (at == std::string::npos || at == 0 || at + 1 == text.size()) return std::nullopt;
+  return std::pair(text.substr(0, at), text.substr(at + 1));
+}
+
+std::vector<std::string> parts(const std::string& text) {
+  std::vector<std::string> result(1);
+  for (const char c : text) {
+    if (c == ',') {
+      result.emplace_back();
+    } else {
+      result.back() += c;
+    }
+  }
+  return result;
+}
+
+void set(LinkCoverOptions& options, const std::string& setting, const std::string& subject) {
+  const auto pair = split(setting, '=');
+  if (!pair) throw Error(subject, "'" + setting + "' is not NAME=VALUE");
+  const auto& [name, value] = *pair;
+  if (name == "zones") {
+    if (!options.zones.empty()) throw Error(subject, "zones is given twice");
+    options.zones = read_zones(value);
+    return;
+  }
+  std::optional<double>* length = name == "max-error"      ? &options.max_error
+                                  : name == "min-external" ? &options.min_external_diameter
+                                  : name == "padding"      ? &options.padding
+                                                           : nullptr;
+  if (length == nullptr) {
+    throw Error(subject, "'" + name + "' is none of max-error, min-external, padding and zones");
+  }
+  if (length->has_value()) throw Error(subject, name + " is given twice");
+  *length = number(value);
+  if (!length->has_value()) throw Error(subject, "'" + value + "' is not a number");
+}
+
+}  // namespace
+
+UrdfOptions urdf_options(const std::vector<std::string>& packages) {
+  UrdfOptions options;
+  for (const std::string& text : packages) {
+    const auto pair = split(text, '=');
+    if (!pair) throw Error("--package", "'" + text + "' is not NAME=DIR");
+    if (!options.packages.emplace(pair->first, pair->second).second) {
+      throw Error("--package", pair->first + " is given twice");
+    }
+  }
+  return options;
+}
+
+std::vector<std::string> geometry_names() {
+  return {"collision", "visual"};
+}
+
+LinkGeometry geometry_named(const std::string& name) {
+  if (name == "collision") return LinkGeometry::kCollision;
+  if (name == "visual") return LinkGeometry::kVisual;
+  throw Error("--geometry", "'" + name + "' is neither collision nor visual");
+}
+
+std::map<std::string, LinkCoverOptions> link_options(const std::vector<std::string>& texts) {
+  std::map<std::string, LinkCoverOptions> links;
+  for (const std::string& text : texts) {
+    const auto pair = split(text, ':');
+    if (!pair) {
+      throw Error("--link", "'" + text + "' is not NAME:max-error=E,min-external=D");
+    }
+    for (const std::string& setting : parts(pair->second)) {
+      set(links[pair->first], setting, "--link " + pair->first);
+    }
+  }
+  return links;
+}
+
+}  // namespace spherule

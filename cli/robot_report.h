@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/json.h"
+#include "collide/robot/robot_spheres.h"
+
+#include <string>
+
+namespace spherule {
+
+// What covering a robot came to, beside the spheres themselves: options, and a link the triangles,
+// spheres, certificate, warnings and seconds; lengths in metres. `seconds` is for all of it.
+Json robot_summary(const std::string& urdf, const RobotCover& cover, double seconds);
+
+// The text of NAME.report.json: the summary, and a link the simplified solid with all external
+// spheres kept, so that anyone can judge what was simplified away.
+std::string robot_report(const Json& summary, const RobotCover& cover);
+
+// The same as a table for a person, lengths in millimetres.
+std::string robot_table(const RobotCover& cover, double seconds);
+
+}  // namespace spherule
