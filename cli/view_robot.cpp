@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/view_robot.h"
+
+#include "cli/robot_options.h"
+#include "cli/view_files.h"
+#include "collide/robot/link_mesh.h"
+#include "collide/robot/sphere_formats.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <string_view>
+
+namespace spherule {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kMeshEndings = {".stl", ".obj", ".ply",  ".off",
+                                     ".dae", ".3mf", ".gltf", ".glb"};
+
+bool is_urdf(const std::string& file) {
+  const std::string text = read_file(file);
+  const auto has = [&](std::string_view mark) { return text.find(mark) != std::string::npos; };
+  return has("<robot") && has("<link") && !has("<link_sphere_approximation") &&
+         !has("<disable_collisions");
+}
+
+bool is_by_links(const Json& json) {
+  return json.is_object() && json.contains("links") && json["links"].is_array() &&
+         !json["links"].empty() && json["links"][0].is_object() &&
+         json["links"][0].contains("certificate");
+}
+
+const char* name_of(JointType type) {
+  switch (type) {
+    case JointType::kRevolute:
+      return "revolute";
+    case JointType::kPrismatic:
+      return "prismatic";
+    case JointType::kContinuous:
+      return "continuous";
+    case JointType::kFixed:
+      break;
+  }
+  return "fixed";
+}
+
+Json json_of(const Pose& pose) {
+  const Eigen::Quaterniond q = pose.rotation();
+  const Eigen::Vector3d& t = pose.translation();
+  return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
+}
+
+Json json_of(const RobotDescription& robot) {
+  Json json{{"name", robot.name}, {"links", Json::array()}, {"joints", Json::array()}};
+  for (const Link& link : robot.model.links()) {
+    json["links"].push_back({{"name", link.name}, {"joint", link.parent_joint}});
+  }
+  for (const Joint& joint : robot.model.joints()) {
+    json["joints"].push_back({{"name", joint.name},
+                              {"type", name_of(joint.type)},
+                              {"parent", joint.parent_link},
+                              {"origin", json_of(joint.parent_from_joint)},
+                              {"axis", to_json(joint.axis)},
+                              {"lower", joint.lower},
+                              {"upper", joint.upper},
+                              {"variable", joint.variable},
+                              {"multiplier", joint.mimics < 0 ? 1.0 : joint.multiplier},
+                              {"offset", joint.mimics < 0 ? 0.0 : joint.offset}});
+  }
+  json["variables"] = robot.model.variable_joints();
+  return json;
+}
+
+int require_link(const RobotDescription& robot, const std::string& link, const std::string& file) {
+  const int index = robot.model.find_link(link);
+  if (index < 0) throw Error(file, "the robot has no link '" + link + "'");
+  return index;
+}
+
+// Without balls, which are those of a spherized URDF and shown as spheres.
+ViewItem mesh_item(const RobotDescription& robot, LinkGeometry geometry, const std::string& name) {
+  ViewItem item{.name = name + " geometry", .parts = {}};
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    LinkDescription link = robot.links[i];
+    std::erase_if(link.collision, [](const LinkShape& shape) {
+      const auto* primitive = std::get_if<Primitive>(&shape.geometry);
+      return primitive != nullptr && std::holds_alternative<Ball>(*primitive);
+    });
+    auto mesh = link_mesh(link, {.geometry = geometry});
+    if (mesh) item.parts.push_back({std::move(*mesh), static_cast<int>(i)});
+  }
+  return item;
+}
+
+ViewItem sphere_item(const RobotDescription& robot, const RobotSpheres& spheres,
+                     const std::string& file) {
+  ViewItem item{.name = file, .parts = {}};
+  for (const LinkSpheres& link : spheres.links) {
+    const int index = require_link(robot, link.link, file);
+    if (!link.spheres.empty()) item.parts.push_back({build_tree(link.spheres), index});
+  }
+  return item;
+}
+
+// Of the report of a robot's cover or of its audit.
+ViewItem leak_item(const RobotDescription& robot, const Json& json, const std::string& file) {
+  ViewItem item{.name = "leaks: " + file, .parts = {}};
+  std::size_t leaking = 0;
+  for (const Json& entry : json.at("links")) {
+    const auto certificate = entry.find("certificate");
+    if (certificate == entry.end() || !certificate->is_object()) continue;
+    const int link = require_link(robot, entry.at("link").get<std::string>(), file);
+    if (!certificate->at("covered").get<bool>()) ++leaking;
+    item.parts.push_back({leaks_of(*certificate, file), link});
+  }
+  item.facts = leaking == 0 ? "all links covered (proved)"
+                            : std::to_string(leaking) + " of " + std::to_string(item.parts.size()) +
+                                  " links not proved to be covered";
+  return item;
+}
+
+bool has_balls(const RobotDescription& robot) {
+  return std::any_of(robot.links.begin(), robot.links.end(), [](const LinkDescription& link) {
+    return std::any_of(link.collision.begin(), link.collision.end(), [](const LinkShape& shape) {
+      const auto* primitive = std::get_if<Primitive>(&shape.geometry);
+      return primitive != nullptr && std::holds_alternative<Ball>(*primitive);
+    });
+  });
+}
+
+}  // namespace
+
+bool is_robot_file(const std::string& file) {
+  std::string ending = fs::path(file).extension();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (std::find(kMeshEndings.begin(), kMeshEndings.end(), ending) != kMeshEndings.end()) {
+    return false;
+  }
+  if (ending == ".json") {
+    const Json json = json_in(file);
+    if (is_by_links(json)) return true;
+    const bool ours = json.is_object() && (json.contains("deepest_leak") ||
+                                           json.value("format", Json()) == "spherule-report" ||
+                                           json.value("format", Json()) == "spherule-spheres");
+    return !json.is_null() && !ours;
+  }
+  if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") return true;
+  return read_file(file).find("<robot") != std::string::npos;
+}
+
+void add_robot(const std::vector<std::string>& files, const RobotViewOptions& options,
+               ViewScene& scene) {
+  if (files.empty()) return;
+  const auto urdf = std::find_if(files.begin(), files.end(), is_urdf);
+  if (urdf == files.end()) {
+    throw Error(files.front(), "belongs to a robot: its URDF must be named too");
+  }
+  const RobotDescription robot = read_urdf(*urdf, urdf_options(options.packages));
+  scene.title = *urdf;
+  scene.robot = json_of(robot);
+  for (const std::string& name : options.geometry) {
+    ViewItem item = mesh_item(robot, geometry_named(name), name);
+    item.shown = name == options.geometry.front();
+    if (!item.parts.empty()) scene.items.push_back(std::move(item));
+  }
+  for (const std::string& file : files) {
+    if (file == *urdf && !has_balls(robot)) continue;
+    if (const Json json = json_in(file); is_by_links(json)) {
+      try {
+        scene.items.push_back(leak_item(robot, json, file));
+      } catch (const Json::exception& error) {
+        throw Error(file, error.what());
+      }
+      continue;
+    }
+    scene.items.push_back(sphere_item(robot, read_robot_spheres(file).spheres, file));
+  }
+}
+
+}  // namespace spherule
