@@ -8,7 +8,7 @@ class App;
 namespace spherule {
 
 // Exit codes of every command. What "no" means stands with each command: what is not
-// proved (fit, baseline), a leak (audit), a collision (collide).
+// proved (fit, baseline), a leak (audit, audit-robot), a collision (collide).
 inline constexpr int kYes = 0;
 inline constexpr int kNo = 1;
 inline constexpr int kBadInput = 2;
@@ -22,6 +22,7 @@ void add_info(CLI::App& app, int& exit_code);
 void add_collide(CLI::App& app, int& exit_code);
 void add_view(CLI::App& app, int& exit_code);
 void add_robot(CLI::App& app, int& exit_code);
+void add_audit_robot(CLI::App& app, int& exit_code);
 void add_baseline(CLI::App& app, int& exit_code);
 
 }  // namespace spherule

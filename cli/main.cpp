@@ -40,6 +40,7 @@ int run(int argc, char** argv) {
   add_view(app, exit_code);
 #ifdef SPHERULE_HAS_ROBOT
   add_robot(app, exit_code);
+  add_audit_robot(app, exit_code);
 #endif
 #ifdef SPHERULE_HAS_BASELINES
   add_baseline(app, exit_code);

@@ -30,10 +30,12 @@ bool is_urdf(const std::string& file) {
          !has("<disable_collisions");
 }
 
+// What `robot` and `audit-robot --json` write.
 bool is_by_links(const Json& json) {
-  return json.is_object() && json.contains("links") && json["links"].is_array() &&
-         !json["links"].empty() && json["links"][0].is_object() &&
-         json["links"][0].contains("certificate");
+  if (!json.is_object() || !json.contains("links") || !json["links"].is_array()) return false;
+  return std::any_of(json["links"].begin(), json["links"].end(), [](const Json& link) {
+    return link.is_object() && link.contains("link") && link.contains("certificate");
+  });
 }
 
 const char* name_of(JointType type) {
@@ -77,12 +79,6 @@ Json json_of(const RobotDescription& robot) {
   return json;
 }
 
-int require_link(const RobotDescription& robot, const std::string& link, const std::string& file) {
-  const int index = robot.model.find_link(link);
-  if (index < 0) throw Error(file, "the robot has no link '" + link + "'");
-  return index;
-}
-
 // Without balls, which are those of a spherized URDF and shown as spheres.
 ViewItem mesh_item(const RobotDescription& robot, LinkGeometry geometry, const std::string& name) {
   ViewItem item{.name = name + " geometry", .parts = {}};
@@ -98,13 +94,28 @@ ViewItem mesh_item(const RobotDescription& robot, LinkGeometry geometry, const s
   return item;
 }
 
+// What a file says of links that the robot has not cannot be shown, but is not passed over in
+// silence.
+void add_unknown(std::size_t count, ViewItem& item) {
+  if (count == 0) return;
+  if (!item.facts.empty()) item.facts += "; ";
+  item.facts += std::to_string(count) + (count == 1 ? " link" : " links") +
+                " of the file left out: the robot has none of that name";
+}
+
 ViewItem sphere_item(const RobotDescription& robot, const RobotSpheres& spheres,
                      const std::string& file) {
   ViewItem item{.name = file, .parts = {}};
+  std::size_t unknown = 0;
   for (const LinkSpheres& link : spheres.links) {
-    const int index = require_link(robot, link.link, file);
-    if (!link.spheres.empty()) item.parts.push_back({build_tree(link.spheres), index});
+    const int index = robot.model.find_link(link.link);
+    if (index < 0) ++unknown;
+    if (index >= 0 && !link.spheres.empty()) {
+      item.parts.push_back({build_tree(link.spheres), index});
+    }
   }
+  if (item.parts.empty()) throw Error(file, "has no spheres for a link of the robot");
+  add_unknown(unknown, item);
   return item;
 }
 
@@ -112,16 +123,22 @@ ViewItem sphere_item(const RobotDescription& robot, const RobotSpheres& spheres,
 ViewItem leak_item(const RobotDescription& robot, const Json& json, const std::string& file) {
   ViewItem item{.name = "leaks: " + file, .parts = {}};
   std::size_t leaking = 0;
+  std::size_t unknown = 0;
   for (const Json& entry : json.at("links")) {
     const auto certificate = entry.find("certificate");
     if (certificate == entry.end() || !certificate->is_object()) continue;
-    const int link = require_link(robot, entry.at("link").get<std::string>(), file);
+    const int link = robot.model.find_link(entry.at("link").get<std::string>());
+    if (link < 0) {
+      ++unknown;
+      continue;
+    }
     if (!certificate->at("covered").get<bool>()) ++leaking;
     item.parts.push_back({leaks_of(*certificate, file), link});
   }
   item.facts = leaking == 0 ? "all links covered (proved)"
                             : std::to_string(leaking) + " of " + std::to_string(item.parts.size()) +
                                   " links not proved to be covered";
+  add_unknown(unknown, item);
   return item;
 }
 

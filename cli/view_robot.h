@@ -18,8 +18,9 @@ struct RobotViewOptions {
 bool is_robot_file(const std::string& file);
 
 // Adds the robot of the first URDF among the files, the meshes of its links, and what the other
-// files hold for them: spheres as trees, so that the page has levels of them, and leaks. Throws
-// Error, naming the file, for files without a URDF among them and for links that the robot has not.
+// files hold for them: spheres as trees, so that the page has levels of them, and leaks. What is
+// said of links that the robot has not is left out and counted. Throws Error, naming the file, for
+// files without a URDF among them and for spheres of which none are of a link of the robot.
 void add_robot(const std::vector<std::string>& files, const RobotViewOptions& options,
                ViewScene& scene);
 

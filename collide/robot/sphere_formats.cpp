@@ -180,6 +180,25 @@ SphereFormatFile read_robot_spheres(const fs::path& path, const SphereReadOption
   return internal::read_sphere_yaml(text, path);
 }
 
+bool is_of_one_mesh(const SphereFormatFile& file) {
+  return file.spheres.links.size() == 1 && file.spheres.links.front().link.empty();
+}
+
+std::vector<LinkSpheres> shrunk_by_buffers(const RobotSpheres& spheres) {
+  std::vector<LinkSpheres> links;
+  for (const LinkSpheres& link : spheres.links) {
+    const auto own = spheres.collision_buffers.find(link.link);
+    const double buffer =
+        own == spheres.collision_buffers.end() ? spheres.collision_buffer : own->second;
+    links.push_back({link.link, {}});
+    for (Sphere ball : link.spheres) {
+      if (buffer < 0.0) ball.radius = add_down(ball.radius, buffer);
+      if (ball.radius >= 0.0) links.back().spheres.push_back(ball);
+    }
+  }
+  return links;
+}
+
 void write_robot_spheres(const RobotSpheres& spheres, SphereFormat format,
                          const SphereFileContext& context, const fs::path& path) {
   check_writable(spheres, format, path.string());

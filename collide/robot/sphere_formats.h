@@ -94,6 +94,13 @@ struct SphereFormatFile {
 SphereFormatFile read_robot_spheres(const std::filesystem::path& path,
                                     const SphereReadOptions& options = {});
 
+// Whether a format holds the balls of one mesh and names no link.
+bool is_of_one_mesh(const SphereFormatFile& file);
+
+// The balls that checks against the world see where buffers shrink them: radii plus what is below
+// zero of the buffers, rounded down, without those that vanish. Buffers above zero do not count.
+std::vector<LinkSpheres> shrunk_by_buffers(const RobotSpheres& spheres);
+
 // What the formats say of the robot beside its balls.
 struct SphereFileContext {
   // The robot's URDF. kUrdf: the document whose <collision> elements are replaced. kCurobo:

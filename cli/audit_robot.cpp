@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/audit_robot.h"
+
+#include "cli/audit_robot_report.h"
+#include "cli/check_length.h"
+#include "cli/command.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/robot_options.h"
+#include "collide/robot/sphere_formats.h"
+#include "collide/robot/trajectory_file.h"
+#include "collide/robot/urdf.h"
+#include "spheretree/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+struct AuditRobotArguments {
+  std::string urdf;
+  std::string spheres;
+  std::string geometry = geometry_names().front();
+  std::vector<std::string> packages;
+  std::string poses;
+  std::string link;
+  std::optional<std::size_t> level;
+  std::string repaired;
+  double max_error = 0.0;
+  bool json = false;
+};
+
+// The only link with geometry.
+std::string only_link(const RobotDescription& robot, LinkGeometry geometry,
+                      const std::string& file) {
+  std::vector<std::string> names;
+  for (const LinkDescription& link : robot.links) {
+    if (!link_shapes(link, geometry).empty()) names.push_back(link.name);
+  }
+  if (names.size() != 1) throw Error(file, "holds the spheres of one mesh: name its link (--link)");
+  return names.front();
+}
+
+SphereFormatFile read(const AuditRobotArguments& arguments, const RobotDescription& robot,
+                      LinkGeometry geometry) {
+  SphereFormatFile file =
+      read_robot_spheres(arguments.spheres, {.link = arguments.link, .level = arguments.level});
+  if (is_of_one_mesh(file)) {
+    file.spheres.links.front().link = only_link(robot, geometry, arguments.spheres);
+  }
+  return file;
+}
+
+std::vector<std::vector<double>> configurations_of(const std::string& file,
+                                                   const RobotModel& model) {
+  std::vector<std::vector<double>> configurations;
+  if (file.empty()) return configurations;
+  const Trajectory trajectory = read_trajectory(file, model);
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const auto positions = trajectory.configuration(i);
+    configurations.emplace_back(positions.begin(), positions.end());
+  }
+  return configurations;
+}
+
+void check_repair(const AuditRobotArguments& arguments, const SphereFormatFile& file,
+                  bool is_shrunk) {
+  if (!is_written(file.format)) {
+    throw Error(arguments.spheres,
+                std::string(name_of(file.format)) + " is read only and cannot be repaired");
+  }
+  if (is_shrunk) throw Error(arguments.spheres, "spheres with a buffer below 0 are not repaired");
+}
+
+// In the format of the file, which is kept but for the spheres.
+void write_repaired(const AuditRobotArguments& arguments, const SphereFormatFile& file,
+                    const RobotRepair& repair) {
+  RobotSpheres spheres = file.spheres;
+  spheres.links = repair.spheres;
+  write_robot_spheres(spheres, file.format,
+                      {.urdf = arguments.spheres, .original = arguments.spheres},
+                      arguments.repaired);
+}
+
+int audit(const AuditRobotArguments& arguments) {
+  const bool mend = !arguments.repaired.empty();
+  check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses});
+  const LinkGeometry geometry = geometry_named(arguments.geometry);
+  const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
+  RobotAuditReport report{.file = read(arguments, robot, geometry),
+                          .audit = {},
+                          .repaired_file = arguments.repaired,
+                          .repair = std::nullopt};
+  const RobotSpheres& spheres = report.file.spheres;
+  const bool is_shrunk =
+      spheres.collision_buffer < 0.0 ||
+      std::any_of(spheres.collision_buffers.begin(), spheres.collision_buffers.end(),
+                  [](const auto& buffer) { return buffer.second < 0.0; });
+  if (mend) check_repair(arguments, report.file, is_shrunk);
+  RobotAuditOptions options{.geometry = geometry,
+                            .configurations = configurations_of(arguments.poses, robot.model)};
+  {
+    ProgressBar bar;
+    options.progress = bar.callback();
+    report.audit = audit_robot(robot, shrunk_by_buffers(spheres), options);
+    if (mend) {
+      report.repair = repair_robot(
+          robot, spheres.links,
+          {.geometry = geometry, .max_error = arguments.max_error, .progress = options.progress});
+    }
+  }
+  if (mend) {
+    write_uninterrupted([&] { write_repaired(arguments, report.file, *report.repair); });
+  }
+  std::cout << (arguments.json ? to_text(audit_json(report)) : audit_table(report));
+  if (is_shrunk) {
+    std::cerr << "spherule: " << arguments.spheres
+              << ": spheres were certified as its buffers below 0 shrink them\n";
+  }
+  if (mend) {
+    const std::vector<LinkRepair>& links = report.repair->links;
+    return std::all_of(links.begin(), links.end(),
+                       [](const LinkRepair& link) { return link.certificate.covered; })
+               ? kYes
+               : kNo;
+  }
+  const RobotAudit& result = report.audit;
+  return (arguments.poses.empty() ? result.links_covered : result.configurations_covered) ? kYes
+                                                                                          : kNo;
+}
+
+}  // namespace
+
+void add_audit_robot(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "audit-robot",
+      "Prove whether a file's spheres cover a robot, link by link; exit 0 covered, 1 leaks");
+  auto arguments = std::make_shared<AuditRobotArguments>();
+  command->add_option("urdf", arguments->urdf, "The robot, with its meshes")->required();
+  command
+      ->add_option("spheres", arguments->spheres,
+                   "Its spheres: spherized URDF, SRDF, cuRobo yml, XRDF, or JSON of foam, MorphIt, "
+                   "ballpark or spherule; told apart by content")
+      ->required();
+  command
+      ->add_option("--geometry", arguments->geometry,
+                   "Which of the robot's geometries is to be covered")
+      ->check(CLI::IsMember(geometry_names()));
+  command->add_option("--package", arguments->packages, "Where a package is: NAME=DIR");
+  command->add_option("--poses", arguments->poses,
+                      "Configurations (CSV) in which spheres of other links may cover too; the "
+                      "exit code is then about these");
+  command->add_option("--link", arguments->link,
+                      "Whose spheres they are, if the file names no link");
+  command->add_option("--level", arguments->level,
+                      "Which level of a file with levels, 0 the coarsest (default: the finest)");
+  command->add_flag("--json", arguments->json, "Print the certificates as JSON");
+  CLI::Option* repair = command->add_option(
+      "--repair", arguments->repaired,
+      "Where the file goes with spheres grown and added so that they cover every link; exit 0 then "
+      "says that these do");
+  command
+      ->add_option("--max-error", arguments->max_error,
+                   "How far a repaired sphere may protrude, metres (default: 1 % of the link's box "
+                   "diagonal, or as far as its spheres do)")
+      ->check(CLI::PositiveNumber)
+      ->check(check_length)
+      ->needs(repair);
+  command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
+}
+
+}  // namespace spherule

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/json.h"
+#include "collide/robot/audit_robot.h"
+#include "collide/robot/sphere_formats.h"
+
+#include <string>
+
+namespace spherule {
+
+// What `audit-robot` found, and what it did where it mended. Lengths in metres.
+struct RobotAuditReport {
+  SphereFormatFile file;
+  RobotAudit audit;
+  std::string repaired_file;  // where the mended spheres went; empty if nowhere
+  std::optional<RobotRepair> repair;
+};
+
+// A table of the links, the configurations and the repair, lengths in millimetres.
+std::string audit_table(const RobotAuditReport& report);
+
+Json audit_json(const RobotAuditReport& report);
+
+}  // namespace spherule

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include <filesystem>
+#include <vector>
+
+namespace spherule {
+
+struct PointCloudFile {
+  std::vector<Eigen::Vector3d> points{};
+  // Bound of the distance between a point as stored here and as written in the file, scaled
+  // exactly.
+  double point_error = 0.0;
+};
+
+// Reads the points of a PLY file (the vertices; text or binary, whatever else it has), or of a text
+// file with x, y and z at the beginning of each line, separated by blanks, commas or semicolons,
+// what follows a # being passed over: the files of the extensions xyz, txt, csv, asc and pts.
+// Numbers are multiplied by `scale`.
+//
+// Throws Error, whose subject is the file and whose reason names the line or the point: for a file
+// that cannot be read, another extension, a PLY header that is malformed or has no x, y and z, a
+// file that is cut short, what is no number or beyond kMaxCoordinate, a file without points, and a
+// scale that is not positive.
+PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale = 1.0);
+
+}  // namespace spherule

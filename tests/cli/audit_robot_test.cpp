@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/sphere_formats.h"
+#include "tests/cli/command_test_support.h"
+
+#include <cmath>
+
+namespace spherule {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kRobot = R"(<robot name="two"><link name="base">
+  <visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>
+  <collision><geometry><box size="0.2 0.1 0.08"/></geometry></collision></link>
+<link name="arm"><collision><geometry><box size="0.06 0.06 0.06"/></geometry></collision></link>
+<joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
+  <origin xyz="0.3 0 0"/><axis xyz="0 0 1"/><limit lower="-4" upper="4" effort="1" velocity="1"/>
+</joint></robot>)";
+
+// cuRobo yml with a ball for each link.
+std::string balls(double base, double arm) {
+  return "robot_cfg:\n  kinematics:\n    collision_spheres:\n      base:\n      - {center: [0, 0, "
+         "0], "
+         "radius: " +
+         std::to_string(base) +
+         "}\n      arm:\n      - {center: [0, 0, 0], radius: " + std::to_string(arm) + "}\n";
+}
+
+class AuditRobotCommand : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write("two.urdf", kRobot);
+  }
+};
+
+TEST_F(AuditRobotCommand, ExitCodeAndTable) {
+  write("good.yml", balls(0.12, 0.06));
+  const Outcome good = run({"audit-robot", "two.urdf", "good.yml"});
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_NE(good.out.find("cuRobo yml"), std::string::npos) << good.out;
+  write("leaks.yml", balls(0.1, 0.06));
+  const Outcome leaks = run({"audit-robot", "two.urdf", "leaks.yml"});
+  EXPECT_EQ(leaks.exit_code, 1) << leaks.err;
+  EXPECT_NE(leaks.out.find("NO"), std::string::npos) << leaks.out;
+  EXPECT_EQ(run({"audit-robot", "two.urdf", "leaks.yml", "--geometry", "visual"}).exit_code, 0);
+}
+
+TEST_F(AuditRobotCommand, Json) {
+  write("leaks.yml", balls(0.1, 0.06) +
+                         "      ghost:\n      - {center: [0, 0, 0], radius: 1}\n"
+                         "      - {center: [0, 0, 0], radius: -1}\n");
+  const Outcome result = run({"audit-robot", "two.urdf", "leaks.yml", "--json"});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report.at("links_covered"), false);
+  EXPECT_EQ(report.at("switched_off"), 1);
+  EXPECT_EQ(report.at("unknown_links"), json({"ghost"}));
+  const json& base = report.at("links").at(0);
+  EXPECT_EQ(base.at("sphere_count"), 1);
+  const double depth = std::sqrt(0.01 + 0.0025 + 0.0016) - 0.1;
+  EXPECT_LE(base.at("certificate").at("uncovered_depth_surface").at(0), depth + 1e-9);
+  EXPECT_GE(base.at("certificate").at("uncovered_depth_surface").at(1), depth - 1e-9);
+  EXPECT_EQ(report.at("links").at(1).at("certificate").at("covered"), true);
+}
+
+TEST_F(AuditRobotCommand, PosesDecide) {
+  write("arm.json",
+        "{\"base\": {\"centers\": [], \"radii\": []}, \"arm\": {\"centers\": [[0, 0, 0], [0.3, 0, "
+        "0]], "
+        "\"radii\": [0.06, 0.125]}}");
+  write("good.csv", "turn\n3.14159\n");
+  write("bad.csv", "3.14159\n0\n");
+  EXPECT_EQ(run({"audit-robot", "two.urdf", "arm.json"}).exit_code, 1);
+  const Outcome good = run({"audit-robot", "two.urdf", "arm.json", "--poses", "good.csv"});
+  EXPECT_EQ(good.exit_code, 0) << good.err << good.out;
+  const Outcome bad = run({"audit-robot", "two.urdf", "arm.json", "--poses", "bad.csv", "--json"});
+  EXPECT_EQ(bad.exit_code, 1) << bad.err;
+  const json poses = json::parse(bad.out).at("configurations");
+  EXPECT_EQ(poses.at(0).at("deepest_link"), "");
+  EXPECT_EQ(poses.at(1).at("deepest_link"), "base");
+}
+
+TEST_F(AuditRobotCommand, RepairKeepsTheFormat) {
+  const RobotSpheres leaky{.robot = "two",
+                           .links = {{"base", {{{0, 0, 0}, 0.1}}}, {"arm", {{{0, 0, 0}, 0.06}}}}};
+  for (const SphereFormat format :
+       {SphereFormat::kUrdf, SphereFormat::kSrdf, SphereFormat::kCurobo, SphereFormat::kXrdf,
+        SphereFormat::kFoam, SphereFormat::kSpherule}) {
+    SCOPED_TRACE(std::string(name_of(format)));
+    write_robot_spheres(leaky, format, {.urdf = folder_ / "two.urdf"}, folder_ / "leaky");
+    EXPECT_EQ(run({"audit-robot", "two.urdf", "leaky"}).exit_code, 1);
+    const Outcome mended =
+        run({"audit-robot", "two.urdf", "leaky", "--repair", "mended", "--max-error", "0.03"});
+    EXPECT_EQ(mended.exit_code, 0) << mended.err;
+    EXPECT_EQ(read_robot_spheres(folder_ / "mended").format, format);
+    EXPECT_EQ(run({"audit-robot", "two.urdf", "mended"}).exit_code, 0);
+  }
+}
+
+TEST_F(AuditRobotCommand, BuffersBelowZeroShrink) {
+  write("shrunk.yml", balls(0.12, 0.06) + "    collision_sphere_buffer: -0.02\n");
+  const Outcome result = run({"audit-robot", "two.urdf", "shrunk.yml"});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_NE(result.err.find("shrink"), std::string::npos);
+  expect_refusal({"audit-robot", "two.urdf", "shrunk.yml", "--repair", "out.yml"},
+                 "buffer below 0");
+}
+
+TEST_F(AuditRobotCommand, BadInput) {
+  write("good.yml", balls(0.12, 0.06));
+  write("one.json", "[{\"spheres\": []}]");
+  write("columns.json", "{\"arm\": {\"centers\": [], \"radii\": []}}");
+  write("poses.csv", "1, 2\n");
+  expect_refusal({"audit-robot", "missing.urdf", "good.yml"}, "missing.urdf: ");
+  expect_refusal({"audit-robot", "two.urdf", "missing.yml"}, "missing.yml: ");
+  expect_refusal({"audit-robot", "two.urdf", "two.urdf"}, "holds no spheres");
+  expect_refusal({"audit-robot", "two.urdf", "one.json"}, "name its link");
+  expect_refusal({"audit-robot", "two.urdf", "columns.json", "--repair", "out"}, "is read only");
+  expect_refusal({"audit-robot", "two.urdf", "good.yml", "--poses", "poses.csv"}, "poses.csv: ");
+  expect_refusal({"audit-robot", "two.urdf", "good.yml", "--geometry", "other"}, "--geometry");
+  expect_refusal({"audit-robot", "two.urdf", "good.yml", "--max-error", "1"}, "--repair");
+  expect_refusal({"audit-robot", "two.urdf", "good.yml", "--repair", "good.yml"}, "good.yml");
+  EXPECT_EQ(run({"audit-robot", "two.urdf", "one.json", "--link", "arm"}).exit_code, 1);
+}
+
+}  // namespace
+}  // namespace spherule

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/audit_robot.h"
+
+#include "collide/robot/urdf.h"
+#include "spheretree/error.h"
+#include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/temp_dir.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+
+// A box of half extents 0.1, 0.05, 0.04; a link turned about z and shifted along x from it that has
+// a smaller one; and one that has nothing.
+constexpr const char* kRobot = R"(<robot name="two"><link name="base">
+  <collision><geometry><box size="0.2 0.1 0.08"/></geometry></collision></link>
+<link name="arm"><collision><geometry><box size="0.06 0.06 0.06"/></geometry></collision></link>
+<link name="bare"/>
+<joint name="turn" type="continuous"><parent link="base"/><child link="arm"/>
+  <origin xyz="0.3 0 0"/><axis xyz="0 0 1"/></joint>
+<joint name="fixed" type="fixed"><parent link="arm"/><child link="bare"/></joint></robot>)";
+
+const Vector3d kBaseHalf(0.1, 0.05, 0.04);
+const Vector3d kArmHalf(0.03, 0.03, 0.03);
+
+class AuditRobot : public ::testing::Test {
+ protected:
+  AuditRobot() : robot_(read_urdf(folder_.write("two.urdf", kRobot))) {}
+
+  test::TempDir folder_;
+  RobotDescription robot_;
+};
+
+// Of a box about the origin, moved, from one ball: a corner is the farthest point.
+double depth_of_box(const Vector3d& half, const Pose& world_from_box, const Vector3d& center,
+                    double radius) {
+  double farthest = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3d sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    farthest =
+        std::max(farthest, (world_from_box * sign.cwiseProduct(half).eval() - center).norm());
+  }
+  return farthest - radius;
+}
+
+TEST_F(AuditRobot, LinkByLink) {
+  const std::vector<LinkSpheres> spheres = {
+      {"base", {{{0, 0, 0}, 0.1}}}, {"arm", {{{0, 0, 0}, 0.053}}}, {"ghost", {{{0, 0, 0}, 1}}}};
+  const RobotAudit audit = audit_robot(robot_, spheres);
+  ASSERT_EQ(audit.links.size(), 3u);
+  EXPECT_FALSE(audit.links_covered);
+  EXPECT_EQ(audit.unknown_links, std::vector<std::string>{"ghost"});
+  const LinkAudit& base = audit.links[0];
+  EXPECT_FALSE(base.certificate->covered);
+  const double depth = depth_of_box(kBaseHalf, {}, {0, 0, 0}, 0.1);
+  EXPECT_LE(base.certificate->surface_depth.lower, depth + 1e-12);
+  EXPECT_GE(base.certificate->surface_depth.upper, depth - 1e-12);
+  EXPECT_NEAR(base.certificate->surface_depth.lower, depth, 1e-3);
+  EXPECT_TRUE(audit.links[1].certificate->covered);
+  EXPECT_EQ(audit.links[1].uncovered_share, 0.0);
+  EXPECT_FALSE(audit.links[2].certificate.has_value());
+
+  // The share of the surface outside of the ball, by random points on the faces.
+  test::Random random(5);
+  const Vector3d areas(kBaseHalf.y() * kBaseHalf.z(), kBaseHalf.x() * kBaseHalf.z(),
+                       kBaseHalf.x() * kBaseHalf.y());
+  const int points = test::effort(200000, 50000);
+  int outside = 0;
+  for (int i = 0; i < points; ++i) {
+    const double pick = random.between(0, areas.sum());
+    const int face = pick < areas.x() ? 0 : pick < areas.x() + areas.y() ? 1 : 2;
+    Vector3d point;
+    for (int axis = 0; axis < 3; ++axis) point[axis] = random.between(-1, 1) * kBaseHalf[axis];
+    point[face] = kBaseHalf[face];
+    outside += point.norm() > 0.1 ? 1 : 0;
+  }
+  EXPECT_GT(outside, 0);
+  EXPECT_NEAR(base.uncovered_share, static_cast<double>(outside) / points, 0.01);
+}
+
+TEST_F(AuditRobot, LinksWithoutSpheresLeak) {
+  const RobotAudit audit = audit_robot(robot_, {});
+  EXPECT_FALSE(audit.links_covered);
+  EXPECT_FALSE(audit.links[0].certificate->covered);
+  EXPECT_EQ(audit.links[0].uncovered_share, 1.0);
+}
+
+TEST_F(AuditRobot, NeighboursCoverInSomeConfigurations) {
+  // The arm carries a ball that holds the base where the joint stands near pi, and one for itself.
+  const Vector3d center(0.3, 0.0, 0.0);
+  const double radius = 0.125;
+  const std::vector<LinkSpheres> spheres = {{"base", {}},
+                                            {"arm", {{center, radius}, {{0, 0, 0}, 0.06}}}};
+  RobotAuditOptions options;
+  for (const double q : {std::numbers::pi, 3.2, 3.5, 0.0, -99.0})
+    options.configurations.push_back({q});
+  const RobotAudit audit = audit_robot(robot_, spheres, options);
+  ASSERT_EQ(audit.configurations.size(), options.configurations.size());
+  EXPECT_FALSE(audit.links_covered);
+  EXPECT_FALSE(audit.configurations_covered);
+  for (std::size_t i = 0; i < options.configurations.size(); ++i) {
+    const double q = options.configurations[i][0];
+    const Vector3d ball(0.3 + 0.3 * std::cos(q), 0.3 * std::sin(q), 0.0);
+    // The arm's own small ball is farther away from the base than this.
+    const double depth = depth_of_box(kBaseHalf, {}, ball, radius);
+    const ConfigurationAudit& found = audit.configurations[i];
+    if (depth <= 0.0) {
+      EXPECT_EQ(found.uncovered_depth.upper, 0.0) << q;
+      EXPECT_EQ(found.deepest_link, "") << q;
+      continue;
+    }
+    EXPECT_EQ(found.deepest_link, "base");
+    EXPECT_LE(found.uncovered_depth.lower, depth + 1e-12) << q;
+    EXPECT_GE(found.uncovered_depth.upper, std::min(depth, 0.05)) << q;
+  }
+  EXPECT_EQ(audit.configurations[0].uncovered_depth.upper, 0.0);  // both kinds are there
+  EXPECT_GT(audit.configurations[3].uncovered_depth.lower, 0.0);
+  const RobotAudit good = audit_robot(robot_, spheres, {.configurations = {{std::numbers::pi}}});
+  EXPECT_TRUE(good.configurations_covered);
+}
+
+TEST_F(AuditRobot, RepairCovers) {
+  test::Random random(6);
+  for (int round = 0; round < test::effort(3, 1); ++round) {
+    std::vector<LinkSpheres> spheres = {{"base", {}}, {"ghost", {{{1, 2, 3}, 4}}}};
+    for (int k = 0; k < 3; ++k) {
+      Vector3d center;
+      for (int axis = 0; axis < 3; ++axis) center[axis] = random.between(-1, 1) * kBaseHalf[axis];
+      spheres[0].spheres.push_back({center, random.between(0.01, 0.05)});
+    }
+    const RobotRepair mended = repair_robot(robot_, spheres, {.max_error = 0.02});
+    ASSERT_EQ(mended.spheres.size(), 3u);
+    EXPECT_EQ(mended.spheres[1].spheres, spheres[1].spheres);
+    EXPECT_EQ(mended.spheres[2].link, "arm");
+    ASSERT_EQ(mended.links.size(), 2u);
+    for (const LinkRepair& link : mended.links) {
+      EXPECT_TRUE(link.certificate.covered) << link.link;
+      EXPECT_EQ(link.max_error, 0.02);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(mended.spheres[0].spheres[k].center, spheres[0].spheres[k].center);
+      EXPECT_GE(mended.spheres[0].spheres[k].radius, spheres[0].spheres[k].radius);
+    }
+    EXPECT_TRUE(audit_robot(robot_, mended.spheres).links_covered);
+  }
+}
+
+TEST_F(AuditRobot, BadInput) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<LinkSpheres> good = {{"base", {{{0, 0, 0}, 0.2}}}};
+  EXPECT_THROW(audit_robot(robot_, std::vector<LinkSpheres>{good[0], good[0]}), Error);
+  EXPECT_THROW(audit_robot(robot_, std::vector<LinkSpheres>{{"base", {{{0, 0, kNan}, 1}}}}), Error);
+  EXPECT_THROW(audit_robot(robot_, std::vector<LinkSpheres>{{"arm", {{{0, 0, 0}, -1}}}}), Error);
+  EXPECT_THROW(audit_robot(robot_, good, {.geometry = LinkGeometry::kVisual}), Error);
+  EXPECT_THROW(audit_robot(robot_, good, {.configurations = {{}}}), Error);
+  EXPECT_THROW(audit_robot(robot_, good, {.configurations = {{kNan}}}), Error);
+  EXPECT_THROW(audit_robot(robot_, good, {.configurations = {{101.0}}}), Error);
+  EXPECT_THROW(repair_robot(robot_, good, {.max_error = -1.0}), Error);
+}
+
+}  // namespace
+}  // namespace spherule
