@@ -76,13 +76,16 @@ void add_view(CLI::App& app, int& exit_code) {
                     "Mark where samples of the meshes lie outside of the spheres; `audit` proves");
 #ifdef SPHERULE_HAS_ROBOT
   command
-      ->add_option(
-          "--geometry", arguments->robot.geometry,
-          "The robot's meshes: collision (default), visual or both; the first is shown and "
-          "searched for leaks")
-      ->check(CLI::IsMember(geometry_names()));
-  command->add_option("--package", arguments->robot.packages,
-                      "NAME=DIR: where the robot's package NAME is; may be given again");
+      ->add_option("--geometry", arguments->robot.geometry,
+                   "The robot's meshes: collision (default), visual, or both with a comma between; "
+                   "the first is shown and searched for leaks")
+      ->check(CLI::IsMember(geometry_names()))
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("--package", arguments->robot.packages,
+                   "NAME=DIR: where the robot's package NAME is; may be given again")
+      ->allow_extra_args(false);
 #endif
   command->callback([arguments, &exit_code] { exit_code = view(*arguments); });
 }

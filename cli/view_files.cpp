@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <sstream>
 
 namespace spherule {
@@ -30,21 +29,10 @@ Eigen::Vector3d point_of(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
-std::vector<Sphere> spheres_of(const Json& list, const std::string& file) {
-  std::vector<Sphere> spheres;
-  for (const Json& entry : list) {
-    const Sphere sphere{point_of(entry.at("center")), entry.at("radius").get<double>()};
-    if (!is_usable(sphere)) throw Error(file, "holds a sphere that is not usable");
-    spheres.push_back(sphere);
-  }
-  return spheres;
-}
-
-// Nothing for a certificate that knows of no leak but says that there may be one.
-std::optional<ViewItem> leak_item(const Json& certificate, const std::string& file) {
-  return ViewItem{.name = "leaks: " + file,
-                  .parts = {{leaks_of(certificate, file)}},
-                  .facts = describe_cover(certificate)};
+ViewItem leak_item(const Json& certificate, const std::string& file) {
+  return {.name = "leaks: " + file,
+          .parts = {{leaks_of(certificate, file)}},
+          .facts = describe_cover(certificate)};
 }
 
 std::vector<ViewItem> report_items(const Json& report, const std::string& file) {
@@ -62,7 +50,7 @@ std::vector<ViewItem> report_items(const Json& report, const std::string& file) 
                    .external = true,
                    .shown = false});
   if (!report.at("certificate").at("covered").get<bool>()) {
-    items.push_back(*leak_item(report.at("certificate"), file));
+    items.push_back(leak_item(report.at("certificate"), file));
   }
   return items;
 }
@@ -90,6 +78,18 @@ std::string describe_cover(const Json& certificate) {
     text << "not proved to cover";
   }
   return text.str();
+}
+
+std::vector<Sphere> spheres_of(const Json& list, const std::string& file) {
+  return reading(file, [&] {
+    std::vector<Sphere> spheres;
+    for (const Json& entry : list) {
+      const Sphere sphere{point_of(entry.at("center")), entry.at("radius").get<double>()};
+      if (!is_usable(sphere)) throw Error(file, "holds a sphere that is not usable");
+      spheres.push_back(sphere);
+    }
+    return spheres;
+  });
 }
 
 std::vector<LeakPoint> leaks_of(const Json& certificate, const std::string& file) {
@@ -128,7 +128,7 @@ std::vector<ViewItem> view_items(const std::string& file) {
     if (json.is_object() && json.value("format", "") == "spherule-report") {
       return report_items(json, file);
     }
-    if (json.is_object() && json.contains("deepest_leak")) return {*leak_item(json, file)};
+    if (json.is_object() && json.contains("deepest_leak")) return {leak_item(json, file)};
     return {{.name = file, .parts = {{read_mesh(file)}}}};
   });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/view_page.h"
+#include "spheretree/sphere.h"
 
 #include <filesystem>
 #include <string>
@@ -15,6 +16,9 @@ std::string describe_cover(const Json& certificate);
 // The leaks that a certificate as JSON tells of, the deepest first: its deepest, and those that
 // `audit --json` lists. Throws Error, naming `file`, for values of a wrong type.
 std::vector<LeakPoint> leaks_of(const Json& certificate, const std::string& file);
+
+// A list of {"center", "radius"}. Throws as above, and for spheres that are not usable.
+std::vector<Sphere> spheres_of(const Json& list, const std::string& file);
 
 // The JSON in a file whose name ends with .json; null for other files and for what is no JSON.
 Json json_in(const std::filesystem::path& file);

@@ -13,6 +13,7 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 #include <string_view>
 
 namespace spherule {
@@ -119,9 +120,12 @@ ViewItem sphere_item(const RobotDescription& robot, const RobotSpheres& spheres,
   return item;
 }
 
-// Of the report of a robot's cover or of its audit.
-ViewItem leak_item(const RobotDescription& robot, const Json& json, const std::string& file) {
-  ViewItem item{.name = "leaks: " + file, .parts = {}};
+// Of the report of a robot's cover, which has the external spheres too, or of its audit.
+std::vector<ViewItem> report_items(const RobotDescription& robot, const Json& json,
+                                   const std::string& file) {
+  ViewItem external{
+      .name = "external spheres", .parts = {}, .external = true, .facts = {}, .shown = false};
+  ViewItem leaks{.name = "leaks: " + file, .parts = {}};
   std::size_t leaking = 0;
   std::size_t unknown = 0;
   for (const Json& entry : json.at("links")) {
@@ -133,13 +137,17 @@ ViewItem leak_item(const RobotDescription& robot, const Json& json, const std::s
       continue;
     }
     if (!certificate->at("covered").get<bool>()) ++leaking;
-    item.parts.push_back({leaks_of(*certificate, file), link});
+    leaks.parts.push_back({leaks_of(*certificate, file), link});
+    if (const auto solid = entry.find("simplified_solid"); solid != entry.end()) {
+      external.parts.push_back({spheres_of(solid->at("external_spheres"), file), link});
+    }
   }
-  item.facts = leaking == 0 ? "all links covered (proved)"
-                            : std::to_string(leaking) + " of " + std::to_string(item.parts.size()) +
-                                  " links not proved to be covered";
-  add_unknown(unknown, item);
-  return item;
+  leaks.facts = leaking == 0
+                    ? "all links covered (proved)"
+                    : std::to_string(leaking) + " of " + std::to_string(leaks.parts.size()) +
+                          " links not proved to be covered";
+  add_unknown(unknown, leaks);
+  return {std::move(external), std::move(leaks)};
 }
 
 bool has_balls(const RobotDescription& robot) {
@@ -190,7 +198,8 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
     if (file == *urdf && !has_balls(robot)) continue;
     if (const Json json = json_in(file); is_by_links(json)) {
       try {
-        scene.items.push_back(leak_item(robot, json, file));
+        std::vector<ViewItem> items = report_items(robot, json, file);
+        std::move(items.begin(), items.end(), std::back_inserter(scene.items));
       } catch (const Json::exception& error) {
         throw Error(file, error.what());
       }

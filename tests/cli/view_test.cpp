@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/cli/command_test_support.h"
+#include "tests/cli/view_scene.h"
 
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <vector>
 
 namespace spherule {
@@ -12,16 +11,6 @@ namespace {
 using nlohmann::json;
 
 using ViewTest = CommandTest;
-
-// The scene that a page carries.
-json scene_of(const std::string& page) {
-  const std::string start = "<script id=\"scene\" type=\"application/json\">";
-  const std::size_t begin = page.find(start);
-  const std::size_t end = page.find("</script>", begin);
-  EXPECT_NE(begin, std::string::npos);
-  EXPECT_NE(end, std::string::npos);
-  return json::parse(page.substr(begin + start.size(), end - begin - start.size()));
-}
 
 TEST_F(ViewTest, PageHoldsAllFiles) {
   write_box("box.stl", {4, 2, 1});
@@ -57,24 +46,6 @@ TEST_F(ViewTest, PageHoldsAllFiles) {
   for (const char* mark : {"src=", "href=", "import", "url(", "fetch(", "XMLHttpRequest"}) {
     EXPECT_EQ(own.find(mark), std::string::npos) << mark;
   }
-}
-
-// The numbers of a base64 text of 32-bit floats.
-std::vector<float> floats_of(const std::string& text) {
-  static const std::string kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    if (c == '=') break;
-    bits = bits << 6 | static_cast<std::uint32_t>(kDigits.find(c));
-    count += 6;
-    if (count >= 8) bytes += static_cast<char>(bits >> (count -= 8) & 255u);
-  }
-  std::vector<float> numbers(bytes.size() / 4);
-  std::memcpy(numbers.data(), bytes.data(), numbers.size() * 4);
-  return numbers;
 }
 
 TEST_F(ViewTest, LeaksOfAnAudit) {

@@ -14,18 +14,19 @@ const kDirections = {
   home: [0.62, -0.9, 0.55], front: [0, -1, 0], right: [1, 0, 0], top: [0, -1e-4, 1],
 };
 
-function free_area() {
-  const panel = document.getElementById("panel");
-  const beside = !document.body.classList.contains("bare") && innerWidth > 700;
-  return {left: beside ? panel.getBoundingClientRect().right : 0, width: innerWidth,
-          height: innerHeight};
+// What the panel covers: a strip at the left, or on narrow screens at the bottom.
+function covered_area() {
+  if (document.body.classList.contains("bare")) return {left: 0, bottom: 0};
+  const panel = document.getElementById("panel").getBoundingClientRect();
+  return innerWidth > 700 ? {left: panel.right, bottom: 0}
+                          : {left: 0, bottom: innerHeight - panel.top};
 }
 
 // The scene stands in the middle of what the panel leaves free.
 function fit_view() {
-  const {left, width, height} = free_area();
-  camera.aspect = width / height;
-  camera.setViewOffset(width, height, -left / 2, 0, width, height);
+  const {left, bottom} = covered_area();
+  camera.aspect = innerWidth / innerHeight;
+  camera.setViewOffset(innerWidth, innerHeight, -left / 2, bottom / 2, innerWidth, innerHeight);
 }
 
 // Looks at a box from a direction, from as near as all of it is seen.
@@ -33,9 +34,10 @@ function look_from(name) {
   const direction = new THREE.Vector3().fromArray(kDirections[name]).normalize();
   const across = new THREE.Vector3().crossVectors(camera.up, direction).normalize();
   const upward = new THREE.Vector3().crossVectors(direction, across);
-  const {left, width, height} = free_area();
-  const slope_y = Math.tan(kFieldOfView * Math.PI / 360);
-  const slope_x = slope_y * Math.max(width - left, 1) / height;
+  const {left, bottom} = covered_area();
+  const slope = 2 * Math.tan(kFieldOfView * Math.PI / 360) / innerHeight;  // of a pixel
+  const slope_x = 0.5 * slope * Math.max(innerWidth - left, 1);
+  const slope_y = 0.5 * slope * Math.max(innerHeight - bottom, 1);
   const box = scene_box();
   const middle = box.getCenter(new THREE.Vector3());
   let distance = 0;

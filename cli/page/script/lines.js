@@ -68,6 +68,7 @@ function make_lines(ends, material, order) {
   return lines;
 }
 function replace_lines(lines, ends) {
+  if (ends.length === 0 && !lines.visible) return;
   lines.geometry.dispose();
   lines.geometry = line_geometry(ends);
   lines.visible = ends.length > 0;

@@ -5,6 +5,12 @@ const joint_rows = [];
 const position_text = (joint, value) => joint.type === "prismatic"
     ? distance_text(value) : `${(value * 180 / Math.PI).toFixed(1)}°`;
 
+// Without the name of the robot, with which names often begin.
+function plain_name(name) {
+  const start = `${robot_data.name}_`;
+  return name.startsWith(start) && name.length > start.length ? name.slice(start.length) : name;
+}
+
 function set_configuration(positions) {
   positions.forEach((position, index) => {
     configuration[index] = position;
@@ -29,7 +35,9 @@ function add_joints() {
       input.set_value(value);
       readout.textContent = position_text(joint, value);
     });
-    panel_part("joint-list").append(row(joint.name, input, readout));
+    const line = row(plain_name(joint.name), input, readout);
+    line.title = joint.name;
+    panel_part("joint-list").append(line);
   });
   const action = (label, positions) => {
     const button = node("button", {type: "button"}, label);
@@ -76,7 +84,8 @@ function add_links() {
     });
     const leak = deepest_of_link(index);
     panel_part("link-list").append(node("div", {className: "link"},
-        node("label", {}, box, node("span", {className: "title"}, link.name)), only,
+        node("label", {title: link.name}, box,
+             node("span", {className: "title"}, plain_name(link.name))), only,
         node("span", {className: "count"}, link_note(index)),
         node("span", {className: "depth"}, leak ? distance_text(leak.depth) : "")));
   });
