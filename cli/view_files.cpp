@@ -30,7 +30,7 @@ Eigen::Vector3d point_of(const Json& json) {
 }
 
 ViewItem leak_item(const Json& certificate, const std::string& file) {
-  return {.name = "leaks: " + file,
+  return {.name = leaks_name(file),
           .parts = {{leaks_of(certificate, file)}},
           .facts = describe_cover(certificate)};
 }
@@ -66,6 +66,10 @@ std::string facts_of(const SphereFile& file) {
 }
 
 }  // namespace
+
+std::string leaks_name(const std::filesystem::path& file) {
+  return "leaks: " + file.filename().string();
+}
 
 std::string describe_cover(const Json& certificate) {
   if (certificate.at("covered").get<bool>()) return "covered (proved)";
@@ -137,7 +141,7 @@ std::vector<ViewItem> sampled_leaks(const std::vector<ViewItem>& items) {
   std::vector<ViewItem> found;
   for (const ViewItem& item : items) {
     if (item.external) continue;
-    ViewItem leaks{.name = "leaks: " + item.name, .parts = {}, .facts = "found by samples"};
+    ViewItem leaks{.name = leaks_name(item.name), .parts = {}, .facts = "found by samples"};
     bool has_spheres = false;
     for (const ViewPart& part : item.parts) {
       std::span<const Sphere> spheres;

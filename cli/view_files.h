@@ -10,6 +10,9 @@
 
 namespace spherule {
 
+// What an item of the leaks of a file is called.
+std::string leaks_name(const std::filesystem::path& file);
+
 // "covered (proved)", or between which bounds the deepest leak is; of a certificate as JSON.
 std::string describe_cover(const Json& certificate);
 

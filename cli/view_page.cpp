@@ -201,9 +201,9 @@ std::string make_view_page(const ViewScene& scene) {
   }
   // The scene goes in last: no mark is looked for in what the user named.
   std::string page(kViewPageHtml);
-  replace(page, "/*STYLE*/", std::string(kViewPageStyle));
-  replace(page, "/*THREE*/", std::string(kViewPageThree));
-  replace(page, "/*SCRIPT*/", std::string(kViewPageScript));
+  replace(page, "/*STYLE*/", kViewPageStyle);
+  replace(page, "/*THREE*/", kViewPageThree);
+  replace(page, "/*SCRIPT*/", kViewPageScript);
   replace(page, "<!--TITLE-->", html_text(scene.title));
   replace(page, "/*SCENE*/", script_text(json));
   return page;

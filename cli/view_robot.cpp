@@ -125,7 +125,7 @@ std::vector<ViewItem> report_items(const RobotDescription& robot, const Json& js
                                    const std::string& file) {
   ViewItem external{
       .name = "external spheres", .parts = {}, .external = true, .facts = {}, .shown = false};
-  ViewItem leaks{.name = "leaks: " + file, .parts = {}};
+  ViewItem leaks{.name = leaks_name(file), .parts = {}};
   std::size_t leaking = 0;
   std::size_t unknown = 0;
   for (const Json& entry : json.at("links")) {

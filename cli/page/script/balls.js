@@ -20,7 +20,7 @@ const kBallVertex = `
     vec3 across = normalize(cross(sight, abs(sight.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0)));
     ray = center + side * (position.x * across + position.y * cross(across, sight));
     eye_ball = vec4(center, r);
-    variation = fract(float(gl_InstanceID) * 0.618034) - 0.5;
+    variation = fract(float(gl_InstanceID) * 0.754878) - 0.5;
     gl_Position = projectionMatrix * vec4(ray, 1.0);
   }`;
 

@@ -9,7 +9,10 @@ Object.assign(controls, {enableKeys: false, enableDamping: true, dampingFactor: 
                          screenSpacePanning: true, rotateSpeed: 0.9,
                          minDistance: 0.005 * scene_size, maxDistance: 20 * scene_size});
 controls.addEventListener("change", () => redraw());
+controls.addEventListener("start", () => { view_name = null; });
 
+// The direction last looked from, until the camera is moved otherwise.
+let view_name = "home";
 const kDirections = {
   home: [0.62, -0.9, 0.55], front: [0, -1, 0], right: [1, 0, 0], top: [0, -1e-4, 1],
 };
@@ -31,6 +34,7 @@ function fit_view() {
 
 // Looks at a box from a direction, from as near as all of it is seen.
 function look_from(name) {
+  view_name = name;
   const direction = new THREE.Vector3().fromArray(kDirections[name]).normalize();
   const across = new THREE.Vector3().crossVectors(camera.up, direction).normalize();
   const upward = new THREE.Vector3().crossVectors(direction, across);
@@ -47,13 +51,23 @@ function look_from(name) {
     const aside = Math.max(Math.abs(p.dot(across)) / slope_x, Math.abs(p.dot(upward)) / slope_y);
     distance = Math.max(distance, p.dot(direction) + 1.12 * aside);
   }
-  look_at(middle, direction.multiplyScalar(distance));
+  place_camera(middle, direction.multiplyScalar(distance));
 }
-function look_at(target, offset) {
+// When there is more or less room for the picture.
+function fit_again() {
+  if (view_name) look_from(view_name);
+  redraw();
+}
+
+function place_camera(target, offset) {
   controls.target.copy(target);
   camera.position.copy(target).add(offset);
   controls.update();
   redraw();
+}
+function look_at(target, offset) {
+  view_name = null;
+  place_camera(target, offset);
 }
 
 function look_at_leak(leak) {

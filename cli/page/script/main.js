@@ -70,7 +70,7 @@ function start() {
   add_robot();
   hear_keys();
   canvas.addEventListener("dblclick", () => look_from("home"));
-  window.addEventListener("resize", redraw);
+  window.addEventListener("resize", fit_again);
   apply_theme();
   look_from("home");
 }

@@ -148,5 +148,5 @@ function add_heading() {
 }
 function fold() {
   document.body.classList.toggle("bare");
-  redraw();
+  fit_again();
 }
