@@ -3,6 +3,7 @@
 
 #include "simplifier/internal/box_cell.h"
 #include "simplifier/internal/clearance.h"
+#include "simplifier/internal/closed_shells.h"
 #include "simplifier/internal/proof.h"
 #include "simplifier/internal/protrusion.h"
 #include "simplifier/internal/thread_limit.h"
@@ -115,14 +116,12 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   if (options.progress) options.progress(-1.0, "proving the surface");
   internal::CoverageProof surface = internal::prove_surface(mesh, balls, finest);
   if (options.progress) options.progress(-1.0, "proving the solid");
-  const bool closed = mesh_report(mesh, {.self_intersections = false}).closed;
+  const internal::ClosedShells shells(mesh);
   // Every point of S is a witness against S; against |M| itself only one that is proved to be
   // inside.
-  const internal::CoverageProof solid =
-      internal::prove_solid(clearance, distance, balls, finest, [&](const Vector3d& p) {
-        return options.external != nullptr ||
-               (closed && std::abs(distance.winding_number(p)) > 0.5);
-      });
+  const internal::CoverageProof solid = internal::prove_solid(
+      clearance, distance, balls, finest,
+      [&](const Vector3d& p) { return options.external != nullptr || shells.contain(p); });
   bound_by_solid(surface, solid, distance, external);
   result.surface_depth = {surface.lower, surface.upper};
   result.solid_depth = {solid.lower, solid.upper};
@@ -142,9 +141,10 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   if (options.protrusion_tolerance > 0.0) {
     if (options.progress) options.progress(-1.0, "measuring the protrusion");
     result.protrusion_over_mesh = internal::protrusion_over_mesh(
-        distance, closed, clearance, balls, options.protrusion_tolerance * diagonal);
+        distance, shells, clearance, balls, options.protrusion_tolerance * diagonal);
   }
-  if (options.volume && closed && !spheres.empty()) {
+  if (options.volume && !spheres.empty() &&
+      mesh_report(mesh, {.self_intersections = false}).closed) {
     result.volume_ratio = internal::estimate_volume_ratio(distance, balls);
   }
   return result;

@@ -44,7 +44,7 @@ Eigen::AlignedBox3d box_of(std::span<const Sphere> balls) {
 struct Cell {
   BoxCell box;
   double upper;  // no point of the cell is further from M
-  bool outside;  // known to be free of M with winding number zero
+  bool outside;  // known to be free of M and in no shell
 };
 
 bool below(const Cell& a, const Cell& b) {
@@ -81,8 +81,9 @@ double greatest_in(const Zone& zone, std::span<const Sphere> balls,
   return result;
 }
 
-Bounds protrusion_over_mesh(const MeshDistance& distance, bool closed, const Clearance& clearance,
-                            const BallsToProve& balls, double tolerance) {
+Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& shells,
+                            const Clearance& clearance, const BallsToProve& balls,
+                            double tolerance) {
   Bounds result;
   if (balls.balls.empty()) return result;
   std::vector<Cell> heap{
@@ -103,13 +104,12 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, bool closed, const Cle
     const NearestBall gap = balls.hierarchy.nearest(q);
     if (gap.lower > reach) continue;
     const SurfaceDistance d = distance(q);
-    if (closed && !cell.outside && d.lower > reach) {
-      if (std::abs(distance.winding_number(q)) > 0.5) continue;
+    if (!cell.outside && d.lower > reach) {
+      if (shells.contain(q)) continue;
       cell.outside = true;
     }
     cell.upper = std::min(cell.upper, add_up(d.upper, reach));
-    if (gap.upper <= 0.0 && d.lower > met &&
-        (cell.outside || !closed || std::abs(distance.winding_number(q)) < 0.5)) {
+    if (gap.upper <= 0.0 && d.lower > met && (cell.outside || !shells.contain(q))) {
       met = d.lower;
       if (clearance(q).upper < 0.0) result.lower = std::max(result.lower, d.lower);
     }

@@ -3,6 +3,7 @@
 
 #include "simplifier/certificate.h"
 #include "simplifier/internal/clearance.h"
+#include "simplifier/internal/closed_shells.h"
 #include "simplifier/internal/proof.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/zones.h"
@@ -24,11 +25,12 @@ double greatest_in(const Zone& zone, std::span<const Sphere> balls,
 
 // Bounds of the protrusion over |M|, the largest distance from a point of the balls to |M|,
 // searched best-first until they are `tolerance` (or 2 % of their value) apart. The upper bound is
-// proved: it counts a point as inside only where the winding number of a closed mesh says so
-// (`closed`), and measures from the surface elsewhere, so sealed hollows and open meshes can make
-// it too large. The lower bound is witnessed by points outside of S.
-Bounds protrusion_over_mesh(const MeshDistance& distance, bool closed, const Clearance& clearance,
-                            const BallsToProve& balls, double tolerance);
+// proved: it counts a point as inside only where a closed shell says so, and measures from the
+// surface elsewhere, so open meshes, and hollows that several parts seal together, can make it too
+// large. The lower bound is witnessed by points outside of S.
+Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& shells,
+                            const Clearance& clearance, const BallsToProve& balls,
+                            double tolerance);
 
 // Volume of the union of the balls over the volume inside of a closed mesh, from fixed samples.
 double estimate_volume_ratio(const MeshDistance& distance, const BallsToProve& balls);

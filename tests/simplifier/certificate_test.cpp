@@ -156,6 +156,35 @@ TEST(Certificate, TheSmallestResolutionIsThatOfTheCoordinates) {
   EXPECT_LT(unproved.uncovered_depth.upper, 1e-11);
 }
 
+// A sealed hollow is inside, whatever is in it: the balls protrude as if the cube were solid. Nor
+// does a part that is not closed take its closed neighbours' inside away.
+TEST(Certificate, BallsInASealedHollowDoNotProtrude) {
+  const auto cube = [](double low, double high) {
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    motion.translation() = Vector3d::Constant(low);
+    TriangleMesh mesh = cube_mesh();
+    for (Vector3d& v : mesh.vertices) v *= high - low;
+    return moved(mesh, motion);
+  };
+  TriangleMesh sheet = cube(0.4, 0.6);
+  sheet.triangles.resize(2);
+  const TriangleMesh hollow = joined(cube_mesh(), inverted(cube(0.2, 0.8)));
+  const int n = 3;
+  const std::vector<Sphere> balls = grid_of_balls(n);
+  const double beyond_a_face = balls.front().radius - 0.5 / n;
+  CertifyOptions options;
+  options.protrusion_tolerance = 1e-3;
+  const ExternalSpheres box = box_of(cube_mesh());
+  options.external = &box;
+  for (const TriangleMesh& mesh :
+       {cube_mesh(), hollow, joined(hollow, cube(0.4, 0.6)), joined(hollow, sheet)}) {
+    const Bounds protrusion = certify(mesh, balls, options).protrusion_over_mesh.value();
+    EXPECT_LE(protrusion.lower, beyond_a_face);
+    EXPECT_GE(protrusion.upper, beyond_a_face);
+    EXPECT_LT(protrusion.upper, 1.05 * beyond_a_face);
+  }
+}
+
 // Balls along the surface leave the inside open. The surface is covered, but |M| is not.
 TEST(Certificate, AHollowSetIsNotACoverEvenWithoutExternalSpheres) {
   Random random(91);
