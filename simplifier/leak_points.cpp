@@ -63,7 +63,7 @@ class Sampler {
   std::vector<LeakPoint> found_;
 };
 
-// The deepest of them, each at least `separation` or its depth from those before.
+// The deepest of them, each further than `separation` from those before.
 std::vector<LeakPoint> deepest(std::vector<LeakPoint> points, double separation,
                                std::size_t max_count) {
   std::stable_sort(points.begin(), points.end(),
@@ -78,7 +78,7 @@ std::vector<LeakPoint> deepest(std::vector<LeakPoint> points, double separation,
     if (dropped[i]) continue;
     kept.push_back(points[i]);
     near.clear();
-    grid.find(points[i].point, std::max(separation, points[i].depth), near);
+    grid.find(points[i].point, separation, near);
     for (const std::uint32_t other : near) dropped[other] = 1;
   }
   return kept;

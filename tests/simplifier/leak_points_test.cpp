@@ -54,16 +54,15 @@ TEST(LeakPointsTest, AreLeaksOfTheSurfaceAndMissNone) {
       EXPECT_GT(leaks[i].depth, 0.0);
       EXPECT_GE(gap(leaks[i].point, balls), static_cast<long double>(leaks[i].depth));
       EXPECT_NEAR(static_cast<double>(gap(leaks[i].point, balls)), leaks[i].depth, 1e-14);
-      if (i > 0) EXPECT_GE(leaks[i - 1].depth, leaks[i].depth);
+      if (i > 0) {
+        EXPECT_GE(leaks[i - 1].depth, leaks[i].depth);
+      }
       for (std::size_t k = 0; k < i; ++k) {
         EXPECT_GT((leaks[i].point - leaks[k].point).norm(), options.separation * diagonal);
       }
     }
-    // Every point of the surface that is deeper than the samples are apart has a leak nearby: no
-    // further than the greatest depth or the separation.
-    const double reach =
-        std::max(options.separation * diagonal, leaks.empty() ? 0.0 : leaks.front().depth) +
-        options.spacing * diagonal;
+    // Every point of the surface that is deeper than the samples are apart has a leak nearby.
+    const double reach = (options.separation + options.spacing) * diagonal;
     for (int sample = 0; sample < effort(500, 100); ++sample) {
       Vector3d p = random.in_box({Vector3d::Zero(), Vector3d::Ones()});
       p[static_cast<int>(random.index(3))] = random.index(2) == 0 ? 0.0 : 1.0;

@@ -5,7 +5,8 @@
 // its half side is r d / sqrt(d^2 - r^2) for a ball of radius r at distance d.
 const kBallVertex = `
   attribute vec4 ball;
-  uniform float least_radius;  // pixels; no ball is drawn smaller
+  uniform float least_radius;     // pixels; no ball is drawn smaller
+  uniform float greatest_radius;  // none larger
   uniform vec2 viewport;
   varying vec3 ray;
   flat varying vec4 eye_ball;
@@ -14,7 +15,7 @@ const kBallVertex = `
     vec3 center = (modelViewMatrix * vec4(ball.xyz, 1.0)).xyz;
     float d = length(center);
     float pixel = 2.0 * max(-center.z, 0.0) / (projectionMatrix[1][1] * viewport.y);
-    float r = max(ball.w, least_radius * pixel);
+    float r = max(min(ball.w, greatest_radius), least_radius * pixel);
     float side = r * d / sqrt(max(d * d - r * r, 0.04 * r * r));
     vec3 sight = center / max(d, 1e-20);
     vec3 across = normalize(cross(sight, abs(sight.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0)));
@@ -89,6 +90,7 @@ function make_ball_materials(order, uniforms = {}, options = {}) {
     // Discs of several sets lie in one plane: later sets are drawn a little in front.
     lift: {value: 1e-4 * (1 + order)},
     least_radius: {value: 0},
+    greatest_radius: {value: 1e30},
     ...uniforms,
   }, options);
 }

@@ -71,7 +71,7 @@ function look_at(target, offset) {
 }
 
 function look_at_leak(leak) {
-  labelled_leak = leak;
+  label_leak(leak);
   const offset = camera.position.clone().sub(controls.target);
   const distance = Math.max(14 * leak.depth, 0.12 * scene_size);
   look_at(leak_place(leak), offset.setLength(Math.min(distance, offset.length())));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The things to look at. Each has parts, one for every link of a robot that has it, otherwise one.
-const kLeakPixels = 4;  // least radius of a leak's mark
+// Marks of leaks: their least radius in pixels, and their greatest as a share of the scene.
+const kLeakPixels = 3;
+const kLeakShare = 0.004;
 
 // Meshes are drawn first, then spheres, external spheres over them, and leaks at last.
 const kKindRank = {mesh: 0, spheres: 1, tree: 1, external: 2, leaks: 3};
@@ -36,10 +38,12 @@ function make_item(data, order) {
 }
 
 // Leaks are shown wherever the cut is. Circles of many thousands of external spheres would blacken.
+const not_cut = {value: new THREE.Vector4(0, 0, 0, 1)};
+const leak_radius = {value: 1e30};
 function ball_uniforms(kind) {
   if (kind === "external") return {ring_tint: {value: 0.74}};
-  return kind === "leaks"
-      ? {least_radius: {value: kLeakPixels}, cut: {value: new THREE.Vector4(0, 0, 0, 1)}} : {};
+  return kind === "leaks" ? {least_radius: {value: kLeakPixels}, greatest_radius: leak_radius,
+                             cut: not_cut} : {};
 }
 
 // Balls in a base64 text, 16 bytes each.
@@ -162,3 +166,4 @@ function scene_box() {
 }
 const start_box = scene_box();
 const scene_size = start_box.getSize(new THREE.Vector3()).length();
+leak_radius.value = kLeakShare * scene_size;

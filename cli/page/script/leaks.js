@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Leaks as a list, the deepest first. A leak is a ball about its point: its radius is the depth,
-// the distance from the point to the nearest sphere.
+// Leaks as a list, the deepest first. Each is a mark at its point, and the one with the label also a
+// ball about it, as large as it is deep: the depth is the distance to the nearest sphere.
 const leaks = [];
 for (const item of items.filter((one) => one.kind === "leaks")) {
   for (const part of item.parts) {
@@ -19,7 +19,23 @@ const leak_shown = (leak) =>
 const leak_link = (leak) => leak.part.link >= 0 ? robot_data.links[leak.part.link].name : "";
 
 // The one with a label in the scene.
-let labelled_leak = leaks[0] || null;
+let labelled_leak = null;
+
+const depth_materials = make_ball_materials(1000, {cut: not_cut}, {depthWrite: false});
+let depth_ball = null;
+function label_leak(leak) {
+  if (depth_ball) depth_ball.parent.remove(depth_ball);
+  labelled_leak = leak;
+  if (!leak) return;
+  const ball = new Float32Array([...leak.point.toArray(), leak.depth]);
+  depth_ball = new THREE.Mesh(make_ball_geometry(ball), depth_materials.colour);
+  depth_ball.frustumCulled = false;
+  depth_ball.renderOrder = 1500;
+  leak.part.group.add(depth_ball);
+}
+set_alpha(depth_materials, 0.3);
+theme_listeners.push(() => depth_materials.colour.uniforms.base.value.set(theme().leak));
+label_leak(leaks[0] || null);
 
 function deepest_of_link(link) {
   return leaks.find((leak) => leak.part.link === link) || null;

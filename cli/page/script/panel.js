@@ -127,7 +127,8 @@ function add_leaks() {
 }
 function place_text(leak) {
   const place = leak.point.toArray().map((value, axis) => value + scene_data.middle[axis]);
-  return place.map(length_text).join(", ");
+  return place.map((value) => length_text(Math.abs(value) < 1e-6 * scene_size ? 0 : value))
+      .join(", ");
 }
 
 function add_heading() {
