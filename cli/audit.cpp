@@ -5,6 +5,7 @@
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"
+#include "simplifier/leak_points.h"
 #include "simplifier/mesh_io.h"
 #include "simplifier/repair.h"
 #include "simplifier/simplify.h"
@@ -18,6 +19,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 
@@ -103,10 +105,21 @@ Repaired repaired(const AuditArguments& arguments, const TriangleMesh& mesh, dou
   return result;
 }
 
-void print(const AuditArguments& arguments, const Certificate& certificate,
-           const std::optional<ExternalSpheres>& external, const std::optional<Repaired>& mended) {
+// Where to look: for showing, beside the deepest leak, which is proved.
+Json json_of(std::span<const LeakPoint> leaks) {
+  Json list = Json::array();
+  for (const LeakPoint& leak : leaks) {
+    list.push_back({{"point", to_json(leak.point)}, {"depth", to_json(leak.depth)}});
+  }
+  return list;
+}
+
+void print(const AuditArguments& arguments, const TriangleMesh& mesh, const SphereFile& file,
+           const Certificate& certificate, const std::optional<ExternalSpheres>& external,
+           const std::optional<Repaired>& mended) {
   if (arguments.json) {
     Json json = json_of(certificate, external);
+    if (!certificate.covered) json["leaks"] = json_of(leak_points(mesh, file.spheres));
     if (mended) {
       json["repair"] = {{"file", arguments.repaired},
                         {"max_error", to_json(mended->max_error)},
@@ -173,7 +186,7 @@ int audit(const AuditArguments& arguments) {
     mended = repaired(arguments, mesh, scale, file, options, certificate, certify_options);
     write_uninterrupted([&] { save_spheres(mended->file, arguments.repaired); });
   }
-  print(arguments, certificate, external, mended);
+  print(arguments, mesh, file, certificate, external, mended);
   return (mended ? mended->certificate : certificate).covered ? kYes : kNo;
 }
 

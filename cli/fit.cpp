@@ -47,15 +47,15 @@ struct FitArguments {
 
 void write_view(const FitArguments& arguments, const TriangleMesh& mesh,
                 const Simplification& result, const std::optional<SphereTree>& tree) {
-  std::vector<ViewItem> items;
-  items.push_back({.name = arguments.mesh, .content = mesh});
-  items.push_back({.name = "external spheres", .content = result.external.balls, .shown = false});
-  if (tree) {
-    items.push_back({.name = arguments.spheres, .content = *tree});
-  } else {
-    items.push_back({.name = arguments.spheres, .content = result.cover.spheres});
-  }
-  write_file_atomically(arguments.view, make_view_page(arguments.mesh, items));
+  ViewScene scene{.title = arguments.mesh, .items = {}};
+  scene.items.push_back({.name = arguments.mesh, .parts = {{mesh}}});
+  scene.items.push_back({.name = "external spheres",
+                         .parts = {{result.external.balls}},
+                         .external = true,
+                         .shown = false});
+  const ViewContent spheres = tree ? ViewContent(*tree) : ViewContent(result.cover.spheres);
+  scene.items.push_back({.name = arguments.spheres, .parts = {{spheres}}});
+  write_file_atomically(arguments.view, make_view_page(scene));
 }
 
 // Runs what depends on a file that an option names, and blames that file for what is wrong with

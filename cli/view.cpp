@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
 #include "cli/output.h"
-#include "cli/recognize.h"
+#include "cli/view_files.h"
 #include "cli/view_page.h"
-#include "simplifier/mesh_io.h"
+#ifdef SPHERULE_HAS_ROBOT
+#include "cli/robot_options.h"
+#include "cli/view_robot.h"
+#endif
 #include "spheretree/atomic_file.h"
-#include "spheretree/sphere_file.h"
-#include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,28 +24,36 @@ namespace {
 struct ViewArguments {
   std::vector<std::string> files;
   std::string page;
+  bool leaks = false;
+#ifdef SPHERULE_HAS_ROBOT
+  RobotViewOptions robot{.packages = {}, .geometry = {geometry_names().front()}};
+#endif
 };
 
-ViewItem load_item(const std::string& file) {
-  switch (recognize(file)) {
-    case FileKind::kSpheres:
-      return {.name = file, .content = load_spheres(file).spheres};
-    case FileKind::kTree:
-      return {.name = file, .content = load_tree(file)};
-    case FileKind::kMesh:
-      break;
+ViewScene load_scene(const ViewArguments& arguments) {
+  ViewScene scene{.title = arguments.files.front(), .items = {}};
+  std::vector<std::string> others = arguments.files;
+#ifdef SPHERULE_HAS_ROBOT
+  const auto of_robot = std::stable_partition(
+      others.begin(), others.end(), [](const auto& file) { return !is_robot_file(file); });
+  add_robot({of_robot, others.end()}, arguments.robot, scene);
+  others.erase(of_robot, others.end());
+#endif
+  for (const std::string& file : others) {
+    std::vector<ViewItem> items = view_items(file);
+    std::move(items.begin(), items.end(), std::back_inserter(scene.items));
   }
-  return {.name = file, .content = read_mesh(file)};
+  if (arguments.leaks) {
+    std::vector<ViewItem> found = sampled_leaks(scene.items);
+    std::move(found.begin(), found.end(), std::back_inserter(scene.items));
+  }
+  return scene;
 }
 
 int view(const ViewArguments& arguments) {
   check_outputs({arguments.page}, {});
-  std::vector<ViewItem> items;
-  for (const std::string& file : arguments.files) {
-    check_outputs({arguments.page}, {file});
-    items.push_back(load_item(file));
-  }
-  const std::string page = make_view_page(arguments.files.front(), items);
+  for (const std::string& file : arguments.files) check_outputs({arguments.page}, {file});
+  const std::string page = make_view_page(load_scene(arguments));
   write_uninterrupted([&] { write_file_atomically(arguments.page, page); });
   std::cout << "page: " << arguments.page << " (" << page.size() / 1024 << " KiB)\n";
   return kYes;
@@ -51,12 +62,31 @@ int view(const ViewArguments& arguments) {
 }  // namespace
 
 void add_view(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("view", "Make a page that shows meshes, spheres and trees in one scene");
+  CLI::App* command = app.add_subcommand(
+      "view", "Make a page that shows meshes, spheres, trees, leaks and a robot in one scene");
   auto arguments = std::make_shared<ViewArguments>();
-  command->add_option("files", arguments->files, "Meshes, spheres (JSON) and trees, in one unit")
+  command
+      ->add_option(
+          "files", arguments->files,
+          "Meshes, spheres (JSON), trees, reports of `fit`, what `audit --json` printed, in "
+          "one unit; a robot's URDF and files of its spheres")
       ->required();
   command->add_option("-o,--output", arguments->page, "Where the page goes (HTML)")->required();
+  command->add_flag("--leaks", arguments->leaks,
+                    "Mark where samples of the meshes lie outside of the spheres; `audit` proves");
+#ifdef SPHERULE_HAS_ROBOT
+  command
+      ->add_option("--geometry", arguments->robot.geometry,
+                   "The robot's meshes: collision (default), visual, or both with a comma between; "
+                   "the first is shown and searched for leaks")
+      ->check(CLI::IsMember(geometry_names()))
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("--package", arguments->robot.packages,
+                   "NAME=DIR: where the robot's package NAME is; may be given again")
+      ->allow_extra_args(false);
+#endif
   command->callback([arguments, &exit_code] { exit_code = view(*arguments); });
 }
 

@@ -55,19 +55,34 @@ void extend(Eigen::AlignedBox3d& box, const Sphere& sphere) {
   box.extend(sphere.center - reach).extend(sphere.center + reach);
 }
 
+struct BoxExtender {
+  Eigen::AlignedBox3d& box;
+
+  void operator()(const TriangleMesh& mesh) const {
+    for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  }
+  void operator()(const SphereTree& tree) const {
+    for (const Sphere& sphere : tree.spheres()) extend(box, sphere);
+  }
+  void operator()(const std::vector<Sphere>& spheres) const {
+    for (const Sphere& sphere : spheres) extend(box, sphere);
+  }
+  void operator()(const std::vector<LeakPoint>& leaks) const {
+    for (const LeakPoint& leak : leaks) box.extend(leak.point);
+  }
+};
+
+// Of what is shown at first; of everything if that is nothing.
 Eigen::AlignedBox3d box_of(std::span<const ViewItem> items) {
-  Eigen::AlignedBox3d box;
+  Eigen::AlignedBox3d shown;
+  Eigen::AlignedBox3d all;
   for (const ViewItem& item : items) {
-    if (!item.shown) continue;
-    if (const auto* mesh = std::get_if<TriangleMesh>(&item.content)) {
-      for (const Eigen::Vector3d& vertex : mesh->vertices) box.extend(vertex);
-    } else if (const auto* tree = std::get_if<SphereTree>(&item.content)) {
-      for (const Sphere& sphere : tree->spheres()) extend(box, sphere);
-    } else {
-      for (const Sphere& sphere : std::get<std::vector<Sphere>>(item.content)) extend(box, sphere);
+    for (const ViewPart& part : item.parts) {
+      std::visit(BoxExtender{all}, part.content);
+      if (item.shown) std::visit(BoxExtender{shown}, part.content);
     }
   }
-  return box;
+  return shown.isEmpty() ? all : shown;
 }
 
 // x, y, z, radius of each sphere.
@@ -91,19 +106,46 @@ struct ContentEncoder {
     for (const Eigen::Vector3i& triangle : mesh.triangles) {
       corners.insert(corners.end(), triangle.data(), triangle.data() + 3);
     }
-    return {{"kind", "mesh"}, {"positions", encode(positions)}, {"corners", encode(corners)}};
+    return {{"positions", encode(positions)}, {"corners", encode(corners)}};
   }
   Json operator()(const std::vector<Sphere>& spheres) const {
-    return {{"kind", "spheres"}, {"levels", Json::array({encode_spheres(spheres, middle)})}};
+    return {{"levels", Json::array({encode_spheres(spheres, middle)})}};
   }
   Json operator()(const SphereTree& tree) const {
     Json levels = Json::array();
     for (int level = 0; level <= tree.depth(); ++level) {
       levels.push_back(encode_spheres(tree.level(level), middle));
     }
-    return {{"kind", "tree"}, {"levels", std::move(levels)}};
+    return {{"levels", std::move(levels)}};
+  }
+  Json operator()(const std::vector<LeakPoint>& leaks) const {
+    std::vector<Sphere> balls;
+    for (const LeakPoint& leak : leaks) balls.push_back({leak.point, leak.depth});
+    return (*this)(balls);
   }
 };
+
+// What the page calls an item of this content.
+const char* kind_of(const ViewItem& item) {
+  struct Kind {
+    const char* operator()(const TriangleMesh&) const { return "mesh"; }
+    const char* operator()(const std::vector<Sphere>&) const { return "spheres"; }
+    const char* operator()(const SphereTree&) const { return "tree"; }
+    const char* operator()(const std::vector<LeakPoint>&) const { return "leaks"; }
+  };
+  return item.external ? "external" : std::visit(Kind{}, item.parts.front().content);
+}
+
+Json json_of(const ViewItem& item, const Eigen::Vector3d& middle) {
+  Json json{{"name", item.name}, {"kind", kind_of(item)}, {"shown", item.shown}};
+  if (!item.facts.empty()) json["facts"] = item.facts;
+  json["parts"] = Json::array();
+  for (const ViewPart& part : item.parts) {
+    Json& encoded = json["parts"].emplace_back(std::visit(ContentEncoder{middle}, part.content));
+    encoded["link"] = part.link;
+  }
+  return json;
+}
 
 // JSON that may stand inside a script element: no "</script>" and no "<!--" can occur in it.
 std::string script_text(const Json& json) {
@@ -145,26 +187,25 @@ void replace(std::string& text, std::string_view mark, const std::string& with) 
 
 }  // namespace
 
-std::string make_view_page(const std::string& title, std::span<const ViewItem> items) {
-  const Eigen::AlignedBox3d box = box_of(items);
+std::string make_view_page(const ViewScene& scene) {
+  const Eigen::AlignedBox3d box = box_of(scene.items);
   if (box.isEmpty()) throw Error("view", "there is nothing to show");
-  const Eigen::Vector3d middle = box.center();
-  Json scene;
-  scene["size"] = box.diagonal().norm();
-  scene["middle"] = to_json(middle);
-  scene["items"] = Json::array();
-  for (const ViewItem& item : items) {
-    Json json = std::visit(ContentEncoder{middle}, item.content);
-    json["name"] = item.name;
-    json["shown"] = item.shown;
-    scene["items"].push_back(std::move(json));
+  const Eigen::Vector3d middle =
+      scene.robot.is_null() ? Eigen::Vector3d(box.center()) : Eigen::Vector3d::Zero();
+  Json json;
+  json["middle"] = to_json(middle);
+  json["robot"] = scene.robot;
+  json["items"] = Json::array();
+  for (const ViewItem& item : scene.items) {
+    if (!item.parts.empty()) json["items"].push_back(json_of(item, middle));
   }
   // The scene goes in last: no mark is looked for in what the user named.
   std::string page(kViewPageHtml);
-  replace(page, "/*STYLE*/", std::string(kViewPageStyle));
-  replace(page, "/*SCRIPT*/", std::string(kViewPageScript));
-  replace(page, "<!--TITLE-->", html_text(title));
-  replace(page, "/*SCENE*/", script_text(scene));
+  replace(page, "/*STYLE*/", kViewPageStyle);
+  replace(page, "/*THREE*/", kViewPageThree);
+  replace(page, "/*SCRIPT*/", kViewPageScript);
+  replace(page, "<!--TITLE-->", html_text(scene.title));
+  replace(page, "/*SCENE*/", script_text(json));
   return page;
 }
 

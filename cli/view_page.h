@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/json.h"
+#include "simplifier/leak_points.h"
 #include "spheretree/sphere_tree.h"
 #include "spheretree/triangle_mesh.h"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -11,15 +14,33 @@
 
 namespace spherule {
 
-// One thing to look at. Of a tree, a slider on the page chooses the level.
+using ViewContent =
+    std::variant<TriangleMesh, std::vector<Sphere>, SphereTree, std::vector<LeakPoint>>;
+
+// A piece of an item, in the frame of a link of the scene's robot, or of the world.
+struct ViewPart {
+  ViewContent content;
+  int link = -1;  // -1: the world
+};
+
+// One thing to look at. Of trees, a slider on the page chooses the level.
 struct ViewItem {
   std::string name;
-  std::variant<TriangleMesh, std::vector<Sphere>, SphereTree> content;
-  bool shown = true;  // at first; the page has a switch for each item
+  std::vector<ViewPart> parts;  // of one kind
+  bool external = false;        // spheres that are external ones
+  std::string facts{};          // a line of text below the name
+  bool shown = true;            // at first; the page has a switch for each item
+};
+
+struct ViewScene {
+  std::string title;
+  std::vector<ViewItem> items;
+  Json robot = nullptr;  // its links and joints (cli/view_robot.h)
 };
 
 // A self-contained HTML page (no network) that draws the items in one scene. Coordinates are
-// written as 32-bit floats relative to the middle of the scene: the page is for looking only.
-std::string make_view_page(const std::string& title, std::span<const ViewItem> items);
+// written as 32-bit floats, without a robot relative to the middle of the scene: the page is for
+// looking only.
+std::string make_view_page(const ViewScene& scene);
 
 }  // namespace spherule

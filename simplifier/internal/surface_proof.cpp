@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/proof.h"
 #include "simplifier/internal/subdivision.h"
+#include "simplifier/internal/surface_piece.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 namespace spherule::internal {
 namespace {
 
 using Eigen::Vector3d;
-
-struct Piece {
-  std::array<Vector3d, 3> corner;
-};
 
 // A midpoint is off by at most sqrt(3) u times the largest coordinate, and the midpoint of points
 // that are off by some amount is off by no more than that plus one rounding. After n halvings of
@@ -28,30 +24,11 @@ double subdivision_error(const TriangleMesh& mesh) {
   return 256.0 * kUnitRoundoff * magnitude;
 }
 
-void halve(const Piece& piece, std::vector<Piece>& parts) {
-  const auto& p = piece.corner;
-  std::size_t longest = 0;
-  double length = -1.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double l = (p[(k + 1) % 3] - p[k]).squaredNorm();
-    if (l > length) {
-      length = l;
-      longest = k;
-    }
-  }
-  const Vector3d& from = p[longest];
-  const Vector3d& to = p[(longest + 1) % 3];
-  const Vector3d& apex = p[(longest + 2) % 3];
-  const Vector3d middle = (from + to) / 2.0;
-  parts.push_back({{from, middle, apex}});
-  parts.push_back({{middle, to, apex}});
-}
-
 }  // namespace
 
 CoverageProof prove_surface(const TriangleMesh& mesh, const BallsToProve& balls, double finest) {
   const double error = subdivision_error(mesh);
-  const auto examine = [&](const Piece& piece) {
+  const auto examine = [&](const SurfacePiece& piece) {
     const auto& [a, b, c] = piece.corner;
     Finding found;
     found.point = (a + b + c) / 3.0;
@@ -69,13 +46,13 @@ CoverageProof prove_surface(const TriangleMesh& mesh, const BallsToProve& balls,
     found.witness = true;
     return found;
   };
-  std::vector<Piece> pieces;
+  std::vector<SurfacePiece> pieces;
   pieces.reserve(mesh.triangles.size());
   for (const Eigen::Vector3i& t : mesh.triangles) {
     const auto vertex = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
     pieces.push_back({{vertex(0), vertex(1), vertex(2)}});
   }
-  return Subdivision<Piece, decltype(examine), decltype(&halve)>(finest, examine, &halve)
+  return Subdivision<SurfacePiece, decltype(examine), decltype(&halve)>(finest, examine, &halve)
       .prove(pieces);
 }
 

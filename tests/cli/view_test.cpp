@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/cli/command_test_support.h"
+#include "tests/cli/view_scene.h"
+
+#include <cmath>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -7,16 +11,6 @@ namespace {
 using nlohmann::json;
 
 using ViewTest = CommandTest;
-
-// The scene that a page carries.
-json scene_of(const std::string& page) {
-  const std::string start = "<script id=\"scene\" type=\"application/json\">";
-  const std::size_t begin = page.find(start);
-  const std::size_t end = page.find("</script>", begin);
-  EXPECT_NE(begin, std::string::npos);
-  EXPECT_NE(end, std::string::npos);
-  return json::parse(page.substr(begin + start.size(), end - begin - start.size()));
-}
 
 TEST_F(ViewTest, PageHoldsAllFiles) {
   write_box("box.stl", {4, 2, 1});
@@ -35,14 +29,73 @@ TEST_F(ViewTest, PageHoldsAllFiles) {
   EXPECT_EQ(items[2].at("kind"), "tree");
   // Four 4-byte numbers a sphere, in base64; the last level of the tree is the spheres themselves.
   const std::size_t bytes = (30 * 16 + 2) / 3 * 4;
-  EXPECT_EQ(items[1].at("levels").at(0).get<std::string>().size(), bytes);
-  EXPECT_EQ(items[2].at("levels").back().get<std::string>().size(), bytes);
-  EXPECT_GT(items[2].at("levels").size(), 2u);
-  // All parts were put in, and nothing is fetched from elsewhere.
-  for (const char* mark :
-       {"/*STYLE*/", "/*SCRIPT*/", "/*SCENE*/", "<!--TITLE-->", "://", "src=", "import", "url("}) {
+  const json levels = items[2].at("parts").at(0).at("levels");
+  EXPECT_EQ(items[1].at("parts").at(0).at("levels").at(0).get<std::string>().size(), bytes);
+  EXPECT_EQ(levels.back().get<std::string>().size(), bytes);
+  EXPECT_GT(levels.size(), 2u);
+  // All parts were put in, with the licence of what is not ours.
+  for (const char* mark : {"/*STYLE*/", "/*THREE*/", "/*SCRIPT*/", "/*SCENE*/", "<!--TITLE-->"}) {
     EXPECT_EQ(page.find(mark), std::string::npos) << mark;
   }
+  EXPECT_NE(page.find("Copyright (c) 2010-2019 three.js authors"), std::string::npos);
+  // Our own parts fetch nothing; of three.js only what is asked for would.
+  const std::size_t three = page.find("\nthree.js, release");
+  const std::size_t after = page.find("</script>", three);
+  ASSERT_LT(three, after);
+  const std::string own = page.substr(0, three) + page.substr(after);
+  for (const char* mark : {"src=", "href=", "import", "url(", "fetch(", "XMLHttpRequest"}) {
+    EXPECT_EQ(own.find(mark), std::string::npos) << mark;
+  }
+}
+
+TEST_F(ViewTest, LeaksOfAnAudit) {
+  write_box("box.stl", {4, 2, 1});
+  write_spheres("two.json", {{1, 1, 0.5, 1.2}, {2, 1, 0.5, 1.2}});
+  const Outcome audit = run({"audit", "box.stl", "two.json", "--json"});
+  ASSERT_EQ(audit.exit_code, 1);
+  const json certificate = json::parse(audit.out);
+  ASSERT_GT(certificate.at("leaks").size(), 10u);
+  // The corners at x = 4 are the furthest: sqrt(2^2 + 1^2 + 0.5^2) from a centre.
+  const double deepest = std::sqrt(5.25) - 1.2;
+  EXPECT_NEAR(certificate.at("leaks").at(0).at("depth").get<double>(), deepest, 1e-12);
+
+  write("audit.json", audit.out);
+  ASSERT_EQ(run({"view", "box.stl", "two.json", "audit.json", "-o", "page.html"}).exit_code, 0);
+  const json scene = scene_of(read("page.html"));
+  const json leaks = scene.at("items").at(2);
+  EXPECT_EQ(leaks.at("kind"), "leaks");
+  EXPECT_NE(leaks.at("facts").get<std::string>().find("proved"), std::string::npos);
+  const auto numbers = floats_of(leaks.at("parts").at(0).at("levels").at(0));
+  ASSERT_EQ(numbers.size(), 4 * (certificate.at("leaks").size() + 1));
+  EXPECT_NEAR(numbers[3], deepest, 0.01);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double place = certificate.at("deepest_leak").at(axis);
+    EXPECT_NEAR(numbers[axis] + scene.at("middle").at(axis).get<double>(), place, 1e-5);
+  }
+  // What covers has none, and says so.
+  write_spheres("ball.json", {{2, 1, 0.5, 2.5}});
+  const Outcome covered = run({"audit", "box.stl", "ball.json", "--json"});
+  ASSERT_EQ(covered.exit_code, 0);
+  EXPECT_FALSE(json::parse(covered.out).contains("leaks"));
+  write("covered.json", covered.out);
+  ASSERT_EQ(run({"view", "box.stl", "covered.json", "-o", "page.html"}).exit_code, 0);
+  EXPECT_EQ(scene_of(read("page.html")).at("items").at(1).at("facts"), "covered (proved)");
+}
+
+TEST_F(ViewTest, ReportHoldsExternalSpheres) {
+  write_box("box.stl", {4, 2, 1});
+  ASSERT_EQ(run({"fit", "box.stl", "--max-error", "0.5", "--min-external", "3", "--effort", "0",
+                 "-o", "box.json", "--report", "report.json"})
+                .exit_code,
+            0);
+  ASSERT_EQ(run({"view", "box.stl", "box.json", "report.json", "-o", "page.html"}).exit_code, 0);
+  const json items = scene_of(read("page.html")).at("items");
+  ASSERT_EQ(items.size(), 3u);
+  EXPECT_EQ(items[2].at("kind"), "external");
+  EXPECT_EQ(items[2].at("shown"), false);
+  const auto numbers = floats_of(items[2].at("parts").at(0).at("levels").at(0));
+  const json report = read_json("report.json");
+  EXPECT_EQ(numbers.size(), 4 * report.at("simplified_solid").at("external_spheres").size());
 }
 
 TEST_F(ViewTest, NamesCannotBreakThePage) {
@@ -60,6 +113,10 @@ TEST_F(ViewTest, BadInput) {
   expect_refusal({"view", "none.json", "-o", "page.html"}, "nothing to show");
   expect_refusal({"view", "text.txt", "-o", "page.html"}, "text.txt: ");
   expect_refusal({"info", "text.txt"}, "text.txt: ");
+  write("audit.json", R"({"deepest_leak": "here", "covered": false, "uncovered_depth": 3})");
+  expect_refusal({"view", "audit.json", "-o", "page.html"}, "audit.json: ");
+  write("report.json", R"({"format": "spherule-report"})");
+  expect_refusal({"view", "report.json", "-o", "page.html"}, "report.json: ");
   expect_refusal({"view", "none.json", "-o", "none.json"}, "named twice");
   EXPECT_FALSE(exists("page.html"));
 }

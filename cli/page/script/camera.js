@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The camera, and what moves it: mouse and touch by OrbitControls of three.js, keys by ourselves.
+const kFieldOfView = 32;  // degrees, vertical
+const camera = new THREE.PerspectiveCamera(kFieldOfView, 1, 1, 2);
+camera.up.set(0, 0, 1);
+const canvas = document.getElementById("canvas");
+const controls = new THREE.OrbitControls(camera, canvas);
+Object.assign(controls, {enableKeys: false, enableDamping: true, dampingFactor: 0.18,
+                         screenSpacePanning: true, rotateSpeed: 0.9,
+                         minDistance: 0.005 * scene_size, maxDistance: 20 * scene_size});
+controls.addEventListener("change", () => redraw());
+controls.addEventListener("start", () => { view_name = null; });
+
+// The direction last looked from, until the camera is moved otherwise.
+let view_name = "home";
+const kDirections = {
+  home: [0.62, -0.9, 0.55], front: [0, -1, 0], right: [1, 0, 0], top: [0, -1e-4, 1],
+};
+
+// What the panel covers: a strip at the left, or on narrow screens at the bottom.
+function covered_area() {
+  if (document.body.classList.contains("bare")) return {left: 0, bottom: 0};
+  const panel = document.getElementById("panel").getBoundingClientRect();
+  return innerWidth > 700 ? {left: panel.right, bottom: 0}
+                          : {left: 0, bottom: innerHeight - panel.top};
+}
+
+// The scene stands in the middle of what the panel leaves free.
+function fit_view() {
+  const {left, bottom} = covered_area();
+  camera.aspect = innerWidth / innerHeight;
+  camera.setViewOffset(innerWidth, innerHeight, -left / 2, bottom / 2, innerWidth, innerHeight);
+}
+
+// Looks at a box from a direction, from as near as all of it is seen.
+function look_from(name) {
+  view_name = name;
+  const direction = new THREE.Vector3().fromArray(kDirections[name]).normalize();
+  const across = new THREE.Vector3().crossVectors(camera.up, direction).normalize();
+  const upward = new THREE.Vector3().crossVectors(direction, across);
+  const {left, bottom} = covered_area();
+  const slope = 2 * Math.tan(kFieldOfView * Math.PI / 360) / innerHeight;  // of a pixel
+  const slope_x = 0.5 * slope * Math.max(innerWidth - left, 1);
+  const slope_y = 0.5 * slope * Math.max(innerHeight - bottom, 1);
+  const box = scene_box();
+  const middle = box.getCenter(new THREE.Vector3());
+  let distance = 0;
+  for (let corner = 0; corner < 8; ++corner) {
+    const p = new THREE.Vector3(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                corner & 4 ? box.max.z : box.min.z).sub(middle);
+    const aside = Math.max(Math.abs(p.dot(across)) / slope_x, Math.abs(p.dot(upward)) / slope_y);
+    distance = Math.max(distance, p.dot(direction) + 1.12 * aside);
+  }
+  place_camera(middle, direction.multiplyScalar(distance));
+}
+// When there is more or less room for the picture.
+function fit_again() {
+  if (view_name) look_from(view_name);
+  redraw();
+}
+
+function place_camera(target, offset) {
+  controls.target.copy(target);
+  camera.position.copy(target).add(offset);
+  controls.update();
+  redraw();
+}
+function look_at(target, offset) {
+  view_name = null;
+  place_camera(target, offset);
+}
+
+function look_at_leak(leak) {
+  label_leak(leak);
+  const offset = camera.position.clone().sub(controls.target);
+  const distance = Math.max(14 * leak.depth, 0.12 * scene_size);
+  look_at(leak_place(leak), offset.setLength(Math.min(distance, offset.length())));
+}
+
+function turn(yaw, pitch) {
+  const offset = camera.position.clone().sub(controls.target);
+  offset.applyAxisAngle(camera.up, yaw);
+  const polar = offset.angleTo(camera.up);
+  const next = Math.min(Math.PI - 0.01, Math.max(0.01, polar + pitch));
+  const across = new THREE.Vector3().crossVectors(camera.up, offset).normalize();
+  look_at(controls.target.clone(), offset.applyAxisAngle(across, next - polar));
+}
+function zoom(factor) {
+  const offset = camera.position.clone().sub(controls.target);
+  look_at(controls.target.clone(), offset.multiplyScalar(factor));
+}
+function pan(x, y) {
+  const step = 0.05 * camera.position.distanceTo(controls.target);
+  const shift = new THREE.Vector3(x, y, 0).multiplyScalar(step).applyQuaternion(camera.quaternion);
+  look_at(controls.target.clone().add(shift), camera.position.clone().sub(controls.target));
+}
+
+// How much of the world a pixel shows at the point looked at.
+function length_of_pixel() {
+  const distance = camera.position.distanceTo(controls.target);
+  return 2 * distance * Math.tan(kFieldOfView * Math.PI / 360) / innerHeight;
+}
+
+function place_clipping_planes() {
+  const far = camera.position.distanceTo(start_box.getCenter(new THREE.Vector3())) + 2 * scene_size;
+  camera.far = far;
+  camera.near = Math.max(0.002 * camera.position.distanceTo(controls.target), far * 1e-4);
+  camera.updateProjectionMatrix();
+}

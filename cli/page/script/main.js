@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Starts, draws when something has changed, and hands keys on.
+const context = canvas.getContext("webgl2", {antialias: true, alpha: false, stencil: true});
+const renderer = context ? new THREE.WebGLRenderer({canvas, context, antialias: true}) : null;
+
+let drawing = false;
+function redraw() {
+  if (!drawing && renderer) requestAnimationFrame(draw);
+  drawing = true;
+}
+// After a change of what is shown, and not only of where it is seen from.
+function refresh() {
+  apply_items();
+  apply_cut();
+  redraw();
+}
+
+function draw() {
+  drawing = false;
+  const ratio = Math.min(devicePixelRatio || 1, 2);
+  if (renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
+  const size = renderer.getSize(new THREE.Vector2());
+  if (size.x !== innerWidth || size.y !== innerHeight) {
+    renderer.setSize(innerWidth, innerHeight, false);
+  }
+  renderer.getDrawingBufferSize(shared_uniforms.viewport.value);
+  controls.update();  // asks for another frame while the camera still glides
+  fit_view();
+  place_clipping_planes();
+  camera.updateMatrixWorld(true);
+  place_cut(camera);
+  renderer.render(world, camera);
+  place_axes();
+  place_scale();
+  place_label();
+  document.documentElement.dataset.drawn = String(renderer.info.render.calls);
+}
+
+const kKeys = {
+  ArrowLeft: () => turn(-0.1, 0), ArrowRight: () => turn(0.1, 0),
+  ArrowUp: () => turn(0, -0.1), ArrowDown: () => turn(0, 0.1),
+  "+": () => zoom(0.9), "=": () => zoom(0.9), "-": () => zoom(1.1),
+  0: () => look_from("home"), 1: () => look_from("front"), 2: () => look_from("right"),
+  3: () => look_from("top"), p: fold, d: switch_theme,
+};
+const kShiftKeys = {ArrowLeft: () => pan(-1, 0), ArrowRight: () => pan(1, 0),
+                    ArrowUp: () => pan(0, 1), ArrowDown: () => pan(0, -1)};
+
+function hear_keys() {
+  window.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.target.tagName === "INPUT" && event.key.startsWith("Arrow")) return;
+    const action = event.shiftKey && kShiftKeys[event.key] || kKeys[event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  });
+}
+
+function start() {
+  if (!renderer) throw new Error("this browser cannot draw WebGL 2");
+  theme_listeners.push(() => {
+    renderer.setClearColor(colour(theme().ground), 1);
+    refresh();
+  });
+  add_heading();
+  items.forEach(add_item);
+  add_leaks();
+  add_cut();
+  add_robot();
+  hear_keys();
+  canvas.addEventListener("dblclick", () => look_from("home"));
+  window.addEventListener("resize", fit_again);
+  apply_theme();
+  look_from("home");
+}
+start();

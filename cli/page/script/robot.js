@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The robot's links as a tree of frames that joints move; parts of the scene hang in the frames.
+const world = new THREE.Scene();
+const link_frames = [];
+
+function pose_to(object, pose) {
+  object.position.fromArray(pose);
+  object.quaternion.fromArray(pose, 3);
+}
+
+// A joint is its origin, fixed in the parent, and in that the moving frame of its child.
+const joint_frames = [];
+if (robot_data) {
+  for (const link of robot_data.links) {
+    const frame = new THREE.Group();
+    frame.name = link.name;
+    if (link.joint < 0) {
+      world.add(frame);
+    } else {
+      const joint = robot_data.joints[link.joint];
+      const origin = new THREE.Group();
+      pose_to(origin, joint.origin);
+      link_frames[joint.parent].add(origin);
+      origin.add(frame);
+      joint_frames[link.joint] = {joint, frame, axis: new THREE.Vector3().fromArray(joint.axis)};
+    }
+    link_frames.push(frame);
+  }
+}
+
+const frame_of = (link) => link >= 0 ? link_frames[link] : world;
+
+// The joint that each number of a configuration is the position of.
+const variable_joints = robot_data
+    ? robot_data.variables.map((index) => robot_data.joints[index]) : [];
+
+// At first and on request: zero where that is well within the limits, otherwise their middle.
+function rest_position(joint) {
+  const [low, high] = [joint.lower, joint.upper];
+  const margin = 0.1 * (high - low);
+  return low + margin < 0 && 0 < high - margin ? 0 : 0.5 * (low + high);
+}
+const configuration = variable_joints.map(rest_position);
+
+function place_links() {
+  for (const {joint, frame, axis} of joint_frames.filter(Boolean)) {
+    if (joint.variable < 0) continue;
+    const position = joint.multiplier * configuration[joint.variable] + joint.offset;
+    if (joint.type === "prismatic") {
+      frame.position.copy(axis).multiplyScalar(position);
+    } else {
+      frame.quaternion.setFromAxisAngle(axis, position);
+    }
+  }
+  world.updateMatrixWorld(true);
+}
+place_links();

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/view_robot.h"
+
+#include "cli/robot_options.h"
+#include "cli/view_files.h"
+#include "collide/robot/link_mesh.h"
+#include "collide/robot/sphere_formats.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <iterator>
+#include <string_view>
+
+namespace spherule {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kMeshEndings = {".stl", ".obj", ".ply",  ".off",
+                                     ".dae", ".3mf", ".gltf", ".glb"};
+
+bool is_urdf(const std::string& file) {
+  const std::string text = read_file(file);
+  const auto has = [&](std::string_view mark) { return text.find(mark) != std::string::npos; };
+  return has("<robot") && has("<link") && !has("<link_sphere_approximation") &&
+         !has("<disable_collisions");
+}
+
+// What `robot` and `audit-robot --json` write.
+bool is_by_links(const Json& json) {
+  if (!json.is_object() || !json.contains("links") || !json["links"].is_array()) return false;
+  return std::any_of(json["links"].begin(), json["links"].end(), [](const Json& link) {
+    return link.is_object() && link.contains("link") && link.contains("certificate");
+  });
+}
+
+const char* name_of(JointType type) {
+  switch (type) {
+    case JointType::kRevolute:
+      return "revolute";
+    case JointType::kPrismatic:
+      return "prismatic";
+    case JointType::kContinuous:
+      return "continuous";
+    case JointType::kFixed:
+      break;
+  }
+  return "fixed";
+}
+
+Json json_of(const Pose& pose) {
+  const Eigen::Quaterniond q = pose.rotation();
+  const Eigen::Vector3d& t = pose.translation();
+  return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
+}
+
+Json json_of(const RobotDescription& robot) {
+  Json json{{"name", robot.name}, {"links", Json::array()}, {"joints", Json::array()}};
+  for (const Link& link : robot.model.links()) {
+    json["links"].push_back({{"name", link.name}, {"joint", link.parent_joint}});
+  }
+  for (const Joint& joint : robot.model.joints()) {
+    json["joints"].push_back({{"name", joint.name},
+                              {"type", name_of(joint.type)},
+                              {"parent", joint.parent_link},
+                              {"origin", json_of(joint.parent_from_joint)},
+                              {"axis", to_json(joint.axis)},
+                              {"lower", joint.lower},
+                              {"upper", joint.upper},
+                              {"variable", joint.variable},
+                              {"multiplier", joint.mimics < 0 ? 1.0 : joint.multiplier},
+                              {"offset", joint.mimics < 0 ? 0.0 : joint.offset}});
+  }
+  json["variables"] = robot.model.variable_joints();
+  return json;
+}
+
+// Without balls, which are those of a spherized URDF and shown as spheres.
+ViewItem mesh_item(const RobotDescription& robot, LinkGeometry geometry, const std::string& name) {
+  ViewItem item{.name = name + " geometry", .parts = {}};
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    LinkDescription link = robot.links[i];
+    std::erase_if(link.collision, [](const LinkShape& shape) {
+      const auto* primitive = std::get_if<Primitive>(&shape.geometry);
+      return primitive != nullptr && std::holds_alternative<Ball>(*primitive);
+    });
+    auto mesh = link_mesh(link, {.geometry = geometry});
+    if (mesh) item.parts.push_back({std::move(*mesh), static_cast<int>(i)});
+  }
+  return item;
+}
+
+// What a file says of links that the robot has not cannot be shown, but is not passed over in
+// silence.
+void add_unknown(std::size_t count, ViewItem& item) {
+  if (count == 0) return;
+  if (!item.facts.empty()) item.facts += "; ";
+  item.facts += std::to_string(count) + (count == 1 ? " link" : " links") +
+                " of the file left out: the robot has none of that name";
+}
+
+ViewItem sphere_item(const RobotDescription& robot, const RobotSpheres& spheres,
+                     const std::string& file) {
+  ViewItem item{.name = file, .parts = {}};
+  std::size_t unknown = 0;
+  for (const LinkSpheres& link : spheres.links) {
+    const int index = robot.model.find_link(link.link);
+    if (index < 0) ++unknown;
+    if (index >= 0 && !link.spheres.empty()) {
+      item.parts.push_back({build_tree(link.spheres), index});
+    }
+  }
+  if (item.parts.empty()) throw Error(file, "has no spheres for a link of the robot");
+  add_unknown(unknown, item);
+  return item;
+}
+
+// Of the report of a robot's cover, which has the external spheres too, or of its audit.
+std::vector<ViewItem> report_items(const RobotDescription& robot, const Json& json,
+                                   const std::string& file) {
+  ViewItem external{
+      .name = "external spheres", .parts = {}, .external = true, .facts = {}, .shown = false};
+  ViewItem leaks{.name = leaks_name(file), .parts = {}};
+  std::size_t leaking = 0;
+  std::size_t unknown = 0;
+  for (const Json& entry : json.at("links")) {
+    const auto certificate = entry.find("certificate");
+    if (certificate == entry.end() || !certificate->is_object()) continue;
+    const int link = robot.model.find_link(entry.at("link").get<std::string>());
+    if (link < 0) {
+      ++unknown;
+      continue;
+    }
+    if (!certificate->at("covered").get<bool>()) ++leaking;
+    leaks.parts.push_back({leaks_of(*certificate, file), link});
+    if (const auto solid = entry.find("simplified_solid"); solid != entry.end()) {
+      external.parts.push_back({spheres_of(solid->at("external_spheres"), file), link});
+    }
+  }
+  leaks.facts = leaking == 0
+                    ? "all links covered (proved)"
+                    : std::to_string(leaking) + " of " + std::to_string(leaks.parts.size()) +
+                          " links not proved to be covered";
+  add_unknown(unknown, leaks);
+  return {std::move(external), std::move(leaks)};
+}
+
+bool has_balls(const RobotDescription& robot) {
+  return std::any_of(robot.links.begin(), robot.links.end(), [](const LinkDescription& link) {
+    return std::any_of(link.collision.begin(), link.collision.end(), [](const LinkShape& shape) {
+      const auto* primitive = std::get_if<Primitive>(&shape.geometry);
+      return primitive != nullptr && std::holds_alternative<Ball>(*primitive);
+    });
+  });
+}
+
+}  // namespace
+
+bool is_robot_file(const std::string& file) {
+  std::string ending = fs::path(file).extension();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (std::find(kMeshEndings.begin(), kMeshEndings.end(), ending) != kMeshEndings.end()) {
+    return false;
+  }
+  if (ending == ".json") {
+    const Json json = json_in(file);
+    if (is_by_links(json)) return true;
+    const bool ours = json.is_object() && (json.contains("deepest_leak") ||
+                                           json.value("format", Json()) == "spherule-report" ||
+                                           json.value("format", Json()) == "spherule-spheres");
+    return !json.is_null() && !ours;
+  }
+  if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") return true;
+  return read_file(file).find("<robot") != std::string::npos;
+}
+
+void add_robot(const std::vector<std::string>& files, const RobotViewOptions& options,
+               ViewScene& scene) {
+  if (files.empty()) return;
+  const auto urdf = std::find_if(files.begin(), files.end(), is_urdf);
+  if (urdf == files.end()) {
+    throw Error(files.front(), "belongs to a robot: its URDF must be named too");
+  }
+  const RobotDescription robot = read_urdf(*urdf, urdf_options(options.packages));
+  scene.title = *urdf;
+  scene.robot = json_of(robot);
+  for (const std::string& name : options.geometry) {
+    ViewItem item = mesh_item(robot, geometry_named(name), name);
+    item.shown = name == options.geometry.front();
+    if (!item.parts.empty()) scene.items.push_back(std::move(item));
+  }
+  for (const std::string& file : files) {
+    if (file == *urdf && !has_balls(robot)) continue;
+    if (const Json json = json_in(file); is_by_links(json)) {
+      try {
+        std::vector<ViewItem> items = report_items(robot, json, file);
+        std::move(items.begin(), items.end(), std::back_inserter(scene.items));
+      } catch (const Json::exception& error) {
+        throw Error(file, error.what());
+      }
+      continue;
+    }
+    scene.items.push_back(sphere_item(robot, read_robot_spheres(file).spheres, file));
+  }
+}
+
+}  // namespace spherule

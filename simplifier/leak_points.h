@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/sphere.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// A point of a surface that no ball contains.
+struct LeakPoint {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // on the surface, up to its rounding
+  double depth = 0.0;                               // positive: no ball is nearer to `point`
+};
+
+struct LeakPointOptions {
+  // How far the samples are apart and how far those returned, as shares of the diagonal of the
+  // mesh's box; positive.
+  double spacing = 1.0 / 400.0;
+  double separation = 1.0 / 60.0;
+  std::size_t max_count = 2000;  // the deepest are returned
+};
+
+// Where the surface of a mesh is outside of all balls, the deepest point first: for showing where
+// to look. Every point returned is a leak. That none is returned proves nothing, since only samples
+// are looked at: certify() proves. Without any ball there is no depth to tell, and nothing is
+// returned. Equal input gives equal output. Throws Error for a mesh that validate() refuses, balls
+// that are not usable, and options out of range.
+std::vector<LeakPoint> leak_points(const TriangleMesh& mesh, std::span<const Sphere> spheres,
+                                   const LeakPointOptions& options = {});
+
+}  // namespace spherule

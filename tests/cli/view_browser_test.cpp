@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page as a browser shows it: opened from its file, without a network.
+#include "tests/cli/command_test_support.h"
+#include "tests/cli/png_image.h"
+
+#include <cstdlib>
+#include <functional>
+#include <string>
+
+namespace spherule {
+namespace {
+
+using Pixel = Picture::Pixel;
+
+constexpr int kWidth = 900;
+constexpr int kHeight = 600;
+
+// A browser that can be run without a display; empty if there is none.
+std::string browser() {
+  for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
+    const std::string command = std::string("command -v ") + name + " > /dev/null 2>&1";
+    if (std::system(command.c_str()) == 0) return name;
+  }
+  return "";
+}
+
+// What is left of a page without its scripts and the scene in one of them.
+std::string without_scripts(std::string dom) {
+  const std::string end = "</script>";
+  for (;;) {
+    const std::size_t from = dom.find("<script");
+    if (from == std::string::npos) return dom;
+    const std::size_t to = dom.find(end, from);
+    if (to == std::string::npos) return dom.substr(0, from);
+    dom.erase(from, to + end.size() - from);
+  }
+}
+
+class ViewBrowserTest : public CommandTest {
+ protected:
+  // What the page looks like and what stands in it once it has drawn itself. `state` is what is
+  // behind # in its address.
+  struct Shown {
+    Picture picture;
+    std::string dom;
+  };
+
+  void SetUp() override {
+    CommandTest::SetUp();
+    browser_ = browser();
+    if (browser_.empty()) GTEST_SKIP() << "no chromium to open the page with";
+  }
+
+  Shown show(const std::string& page, const std::string& state) {
+    const std::string folder = folder_.string();
+    const std::string command = "cd '" + folder + "' && HOME='" + folder + "' timeout 120 " +
+                                browser_ +
+                                " --headless --no-sandbox --use-gl=angle --use-angle=swiftshader"
+                                " --enable-unsafe-swiftshader --hide-scrollbars --no-first-run"
+                                " --host-resolver-rules='MAP * ~NOTFOUND' --user-data-dir='" +
+                                folder + "/.profile'" + " --window-size=" + std::to_string(kWidth) +
+                                "," + std::to_string(kHeight) +
+                                " --virtual-time-budget=3000 --screenshot=shot.png --dump-dom"
+                                " 'file://" +
+                                folder + "/" + page + "#" + state + "' > dom.html 2> browser.log";
+    EXPECT_EQ(std::system(command.c_str()), 0) << read("browser.log");
+    Shown shown{.picture = {}, .dom = without_scripts(read("dom.html"))};
+    EXPECT_NE(shown.dom.find("data-drawn="), std::string::npos) << read("browser.log");
+    EXPECT_EQ(shown.dom.find("data-failure="), std::string::npos) << shown.dom.substr(0, 500);
+    if (exists("shot.png")) shown.picture = decode_png(read("shot.png"));
+    return shown;
+  }
+
+  std::string browser_;
+};
+
+// Right of the panel, where the scene is.
+std::size_t count(const Picture& picture, const std::function<bool(const Pixel&)>& is_wanted) {
+  std::size_t number = 0;
+  for (std::size_t y = 0; y < picture.height; ++y) {
+    for (std::size_t x = 340; x < picture.width; ++x) number += is_wanted(picture.at(x, y));
+  }
+  return number;
+}
+
+bool is_red(const Pixel& p) {
+  return p[0] > 120 && p[0] > 2 * p[1] && p[0] > 2 * p[2];
+}
+bool is_blue(const Pixel& p) {
+  return p[2] > p[0] + 25 && p[2] > p[1] + 10;
+}
+bool is_grey(const Pixel& p) {
+  return std::abs(p[0] - p[1]) < 14 && p[2] >= p[0] && p[2] - p[0] < 28 && p[0] > 60 && p[0] < 200;
+}
+auto is_exactly(const Pixel& wanted) {
+  return [wanted](const Pixel& p) { return p == wanted; };
+}
+
+TEST_F(ViewBrowserTest, LeakingPartByDay) {
+  write_box("box.stl", {4, 2, 1});
+  write_spheres("two.json", {{1, 1, 0.5, 1.2}, {2, 1, 0.5, 1.2}});
+  ASSERT_EQ(run({"view", "box.stl", "two.json", "--leaks", "-o", "page.html"}).exit_code, 0);
+  const Shown shown = show("page.html", "theme=light");
+  ASSERT_EQ(shown.picture.width, static_cast<std::size_t>(kWidth));
+  EXPECT_EQ(shown.picture.at(kWidth - 2, 2), (Pixel{0xf3, 0xf5, 0xf8}));
+  EXPECT_GT(count(shown.picture, is_red), 100u);
+  EXPECT_GT(count(shown.picture, is_blue), 5000u);
+  EXPECT_GT(count(shown.picture, is_grey), 3000u);
+  for (const char* text : {"12 triangles", "2 spheres", "leaks: two.json", "deepest leak",
+                           "found by samples", ">4 × 2 × 1<"}) {
+    EXPECT_NE(shown.dom.find(text), std::string::npos) << text;
+  }
+}
+
+TEST_F(ViewBrowserTest, CutByNight) {
+  write_box("box.stl", {4, 2, 1});
+  write_spheres("one.json", {{2, 1, 0.5, 2.4}});
+  ASSERT_EQ(run({"tree", "one.json", "-o", "one.tree"}).exit_code, 0);
+  ASSERT_EQ(run({"view", "box.stl", "one.tree", "-o", "page.html"}).exit_code, 0);
+  // Cut in the middle, seen from where the normal points: a disc with the outline of the box on it.
+  const Shown shown = show("page.html", "theme=dark&cut=-y:0.5");
+  EXPECT_EQ(shown.picture.at(kWidth - 2, 2), (Pixel{0x12, 0x15, 0x1a}));
+  EXPECT_GT(count(shown.picture, is_exactly({0xf4, 0xf6, 0xfa})), 300u);
+  EXPECT_GT(count(shown.picture, is_blue), 20000u);
+}
+
+TEST_F(ViewBrowserTest, Robot) {
+#ifndef SPHERULE_HAS_ROBOT
+  GTEST_SKIP() << "built without robots";
+#endif
+  write("arm.urdf", R"(<?xml version="1.0"?>
+<robot name="arm">
+  <link name="base"><collision><geometry><box size="0.4 0.4 0.2"/></geometry></collision></link>
+  <link name="boom"><collision><origin xyz="0.4 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry>
+    </collision></link>
+  <joint name="hip" type="revolute"><parent link="base"/><child link="boom"/>
+    <origin xyz="0 0 0.2"/><axis xyz="0 0 1"/><limit lower="1" upper="2" effort="1" velocity="1"/>
+  </joint>
+</robot>)");
+  write("arm.yml",
+        "collision_spheres:\n  base:\n  - center: [0, 0, 0]\n    radius: 0.31\n"
+        "  boom:\n  - center: [0.4, 0, 0]\n    radius: 0.2\n");
+  const Outcome view = run({"view", "arm.urdf", "arm.yml", "--leaks", "-o", "page.html"});
+  ASSERT_EQ(view.exit_code, 0) << view.err;
+  const Shown shown = show("page.html", "theme=light");
+  EXPECT_GT(count(shown.picture, is_blue), 3000u);
+  EXPECT_GT(count(shown.picture, is_red), 60u);
+  // The joint stands in the middle of its limits, which do not hold zero.
+  for (const char* text : {">arm<", "2 links, 1 joint", "joint hip", "85.9°", "collision geometry",
+                           "2 spheres", ">boom<"}) {
+    EXPECT_NE(shown.dom.find(text), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace spherule
