@@ -22,8 +22,8 @@ struct LeakPointOptions {
   // How far the samples are apart and how far those returned, as shares of the diagonal of the
   // mesh's box; positive.
   double spacing = 1.0 / 400.0;
-  double separation = 1.0 / 60.0;
-  std::size_t max_count = 2000;  // the deepest are returned
+  double separation = 1.0 / 25.0;
+  std::size_t max_count = 500;  // the deepest are returned
 };
 
 // Where the surface of a mesh is outside of all balls, the deepest point first: for showing where

@@ -89,9 +89,6 @@ bool is_red(const Pixel& p) {
 bool is_blue(const Pixel& p) {
   return p[2] > p[0] + 25 && p[2] > p[1] + 10;
 }
-bool is_grey(const Pixel& p) {
-  return std::abs(p[0] - p[1]) < 14 && p[2] >= p[0] && p[2] - p[0] < 28 && p[0] > 60 && p[0] < 200;
-}
 auto is_exactly(const Pixel& wanted) {
   return [wanted](const Pixel& p) { return p == wanted; };
 }
@@ -103,9 +100,9 @@ TEST_F(ViewBrowserTest, LeakingPartByDay) {
   const Shown shown = show("page.html", "theme=light");
   ASSERT_EQ(shown.picture.width, static_cast<std::size_t>(kWidth));
   EXPECT_EQ(shown.picture.at(kWidth - 2, 2), (Pixel{0xf3, 0xf5, 0xf8}));
-  EXPECT_GT(count(shown.picture, is_red), 100u);
+  // Marks lie on the end of the box that sticks out.
+  EXPECT_GT(count(shown.picture, is_red), 500u);
   EXPECT_GT(count(shown.picture, is_blue), 5000u);
-  EXPECT_GT(count(shown.picture, is_grey), 3000u);
   for (const char* text : {"12 triangles", "2 spheres", "leaks: two.json", "deepest leak",
                            "found by samples", ">4 × 2 × 1<"}) {
     EXPECT_NE(shown.dom.find(text), std::string::npos) << text;

@@ -79,7 +79,7 @@ TEST(LeakPointsTest, CornersAreFound) {
   const auto leaks = leak_points(cube_mesh(), std::vector<Sphere>{{Vector3d::Constant(0.5), 0.8}});
   ASSERT_GE(leaks.size(), 8u);
   for (std::size_t i = 0; i < 8; ++i) {
-    EXPECT_NEAR(leaks[i].depth, std::sqrt(0.75) - 0.8, 1e-15);
+    EXPECT_NEAR(leaks[i].depth, std::sqrt(0.75) - 0.8, 1e-14);
   }
   EXPECT_EQ(leak_points(cube_mesh(), std::vector<Sphere>{{Vector3d::Constant(0.5), 0.8}},
                         {.max_count = 3})

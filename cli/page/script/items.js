@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The things to look at. Each has parts, one for every link of a robot that has it, otherwise one.
 // Marks of leaks: their least radius in pixels, and their greatest as a share of the scene.
-const kLeakPixels = 3;
-const kLeakShare = 0.004;
+const kLeakPixels = 2.5;
+const kLeakShare = 0.003;
 
 // Meshes are drawn first, then spheres, external spheres over them, and leaks at last.
 const kKindRank = {mesh: 0, spheres: 1, tree: 1, external: 2, leaks: 3};

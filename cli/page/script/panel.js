@@ -116,14 +116,18 @@ function add_cut() {
 function add_leaks() {
   panel_part("leaks").hidden = leaks.length === 0;
   const list = panel_part("leak-list");
-  for (const leak of leaks.slice(0, 8)) {
+  // Of a robot, the deepest of each link.
+  const listed = leaks.filter(
+      (leak) => leak.part.link < 0 || leak === deepest_of_link(leak.part.link)).slice(0, 8);
+  for (const leak of listed) {
     const button = node("button", {type: "button", className: "leak"},
                         node("span", {className: "depth"}, distance_text(leak.depth)),
                         node("span", {className: "where"}, leak_link(leak) || place_text(leak)));
     button.addEventListener("click", () => look_at_leak(leak));
     list.append(button);
   }
-  if (leaks.length > 8) list.append(node("p", {className: "note"}, `and ${leaks.length - 8} more`));
+  const rest = leaks.length - listed.length;
+  if (rest > 0) list.append(node("p", {className: "note"}, `and ${rest.toLocaleString("en-US")} more`));
 }
 function place_text(leak) {
   const place = leak.point.toArray().map((value, axis) => value + scene_data.middle[axis]);
