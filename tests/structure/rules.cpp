@@ -76,7 +76,7 @@ const std::vector<Room>& rooms() {
        {"spheretree", "simplifier", "simplifier/baseline", "collide", "collide/robot",
         "collide/fcl", "collide/ompl", "bench"},
        {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "ompl", "tbb",
-         "tinyxml2", "urdfdom", "zlib"},
+        "tinyxml2", "urdfdom", "zlib"},
        {}},
       // Users of the installed package: they see the library from outside.
       {"tests/consumer", {}, {"Eigen", "fcl", "ompl", "spherule"}, {}},
