@@ -46,7 +46,8 @@ function look_from(name) {
   const middle = box.getCenter(new THREE.Vector3());
   let distance = 0;
   for (let corner = 0; corner < 8; ++corner) {
-    const p = new THREE.Vector3(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+    const p = new THREE.Vector3(corner & 1 ? box.max.x : box.min.x,
+                                corner & 2 ? box.max.y : box.min.y,
                                 corner & 4 ? box.max.z : box.min.z).sub(middle);
     const aside = Math.max(Math.abs(p.dot(across)) / slope_x, Math.abs(p.dot(upward)) / slope_y);
     distance = Math.max(distance, p.dot(direction) + 1.12 * aside);

@@ -127,7 +127,9 @@ function add_leaks() {
     list.append(button);
   }
   const rest = leaks.length - listed.length;
-  if (rest > 0) list.append(node("p", {className: "note"}, `and ${rest.toLocaleString("en-US")} more`));
+  if (rest > 0) {
+    list.append(node("p", {className: "note"}, `and ${rest.toLocaleString("en-US")} more`));
+  }
 }
 function place_text(leak) {
   const place = leak.point.toArray().map((value, axis) => value + scene_data.middle[axis]);

@@ -54,10 +54,10 @@ function add_joints() {
 
 // How many spheres a link has, over all sets that are there.
 function link_note(link) {
-  const counts = items.filter((item) => item.kind === "spheres" || item.kind === "tree")
-                      .map((item) => item.parts.filter((part) => part.link === link)
-                                         .reduce((sum, part) => sum + level_of(item, part).count, 0));
-  return counts.join(" / ");
+  const sets = items.filter((item) => item.kind === "spheres" || item.kind === "tree");
+  const count_in = (item) => item.parts.filter((part) => part.link === link)
+                                 .reduce((sum, part) => sum + level_of(item, part).count, 0);
+  return sets.map(count_in).join(" / ");
 }
 
 function add_links() {
