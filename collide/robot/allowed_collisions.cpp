@@ -9,24 +9,18 @@
 namespace spherule {
 namespace {
 
-// Whether all links on the way, but its two ends, carry no spheres.
-bool passes_no_spheres(const RobotModel& robot, const std::vector<int>& joints, int first) {
-  int link = first;
-  for (std::size_t i = 0; i + 1 < joints.size(); ++i) {
-    const Joint& joint = robot.joints()[static_cast<std::size_t>(joints[i])];
-    link = joint.child_link == link ? joint.parent_link : joint.child_link;
-    if (!robot.links()[static_cast<std::size_t>(link)].trees.empty()) return false;
-  }
-  return true;
-}
-
 AllowedReason by_structure(const RobotModel& robot, int first, int second) {
-  const std::vector<int> joints = internal::joints_between(robot, first, second);
-  const auto moving = std::count_if(joints.begin(), joints.end(), [&](int joint) {
-    return robot.joints()[static_cast<std::size_t>(joint)].moves();
-  });
-  if (moving == 0) return AllowedReason::kRigid;
-  if (moving == 1 && passes_no_spheres(robot, joints, first)) return AllowedReason::kAdjacent;
+  const auto has_spheres = [&](int link) {
+    return !robot.links()[static_cast<std::size_t>(link)].trees.empty();
+  };
+  switch (internal::how_joined(robot, first, second, has_spheres)) {
+    case internal::Joined::kRigidly:
+      return AllowedReason::kRigid;
+    case internal::Joined::kByOneJoint:
+      return AllowedReason::kAdjacent;
+    case internal::Joined::kFurther:
+      break;
+  }
   return AllowedReason::kTested;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/robot_spheres.h"
 
+#include "collide/robot/internal/link_paths.h"
 #include "collide/robot/internal/shared_work.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
@@ -165,23 +166,6 @@ struct ThreadShares {
   int within;         // threads of simplify(), the link's own and those that all links share
 };
 
-// Whether at most one joint moves two links against each other, and no link with spheres stands
-// between them if one does.
-bool are_neighbours(const RobotModel& model, const RobotCover& cover, int a, int b) {
-  int moving = 0;
-  bool passes_spheres = false;
-  // A parent's index is below its child's: the larger of two is never an ancestor of the other.
-  while (a != b) {
-    int& lower = a > b ? a : b;
-    const Link& link = model.links()[static_cast<std::size_t>(lower)];
-    const Joint& joint = model.joints()[static_cast<std::size_t>(link.parent_joint)];
-    moving += joint.moves() ? 1 : 0;
-    lower = joint.parent_link;
-    passes_spheres |= a != b && !cover.links[static_cast<std::size_t>(lower)].spheres.empty();
-  }
-  return moving == 0 || (moving == 1 && !passes_spheres);
-}
-
 }  // namespace
 
 RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& options) {
@@ -227,12 +211,20 @@ RobotSpheres robot_spheres(const RobotDescription& robot, const RobotCover& cove
   RobotSpheres result;
   result.robot = cover.robot;
   for (const LinkCover& link : cover.links) result.links.push_back({link.link, link.spheres});
-  for (std::size_t a = 0; a < cover.links.size(); ++a) {
-    for (std::size_t b = a + 1; b < cover.links.size(); ++b) {
-      if (cover.links[a].spheres.empty() || cover.links[b].spheres.empty()) continue;
-      if (!are_neighbours(robot.model, cover, static_cast<int>(a), static_cast<int>(b))) continue;
-      result.self_collision_ignore.push_back(
-          {cover.links[a].link, cover.links[b].link, "Adjacent"});
+  const auto has_spheres = [&](int link) {
+    return !cover.links[static_cast<std::size_t>(link)].spheres.empty();
+  };
+  const int count = static_cast<int>(cover.links.size());
+  for (int first = 0; first < count; ++first) {
+    for (int second = first + 1; second < count; ++second) {
+      if (!has_spheres(first) || !has_spheres(second)) continue;
+      if (internal::how_joined(robot.model, first, second, has_spheres) ==
+          internal::Joined::kFurther) {
+        continue;
+      }
+      result.self_collision_ignore.push_back({cover.links[static_cast<std::size_t>(first)].link,
+                                              cover.links[static_cast<std::size_t>(second)].link,
+                                              "Adjacent"});
     }
   }
   return result;

@@ -30,4 +30,20 @@ std::vector<int> joints_between(const RobotModel& robot, int first, int second) 
   return up;
 }
 
+Joined how_joined(const RobotModel& robot, int first, int second,
+                  const std::function<bool(int)>& has_spheres) {
+  const std::vector<int> joints = joints_between(robot, first, second);
+  int moving = 0;
+  bool passes_spheres = false;
+  int link = first;
+  for (const int index : joints) {
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
+    moving += joint.moves() ? 1 : 0;
+    link = joint.child_link == link ? joint.parent_link : joint.child_link;
+    passes_spheres |= link != second && has_spheres(link);
+  }
+  if (moving == 0) return Joined::kRigidly;
+  return moving == 1 && !passes_spheres ? Joined::kByOneJoint : Joined::kFurther;
+}
+
 }  // namespace spherule::internal
