@@ -45,25 +45,36 @@ void warn(const std::string& what) {
 struct SphereRobot {
   RobotModel model;
   std::vector<DisabledPair> ignored;
+  bool is_whole = true;  // every shape that was read stands in spheres
 };
 
-// Links that have a shape and no sphere would be free everywhere.
-void warn_of_bare_links(const RobotDescription& robot, const RobotModel& model,
-                        LinkGeometry geometry) {
+// Whether there are none: links that have a shape and no sphere, which would be free everywhere.
+bool has_no_bare_links(const RobotDescription& robot, const RobotModel& model,
+                       LinkGeometry geometry) {
+  bool none = true;
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     if (model.links()[i].trees.empty() && !link_shapes(robot.links[i], geometry).empty()) {
       warn("link " + robot.links[i].name + " has a shape but no spheres: it is not checked");
+      none = false;
     }
   }
+  return none;
 }
 
 SphereRobot read_spheres(const CheckArguments& arguments, const RobotDescription& robot) {
   RobotSpheres read = read_robot_spheres(arguments.spheres).spheres;
+  const auto warn_of = [&](std::size_t count, const char* what) {
+    if (count > 0) warn(arguments.spheres + ": " + std::to_string(count) + what);
+  };
+  warn_of(read.other_shapes, " shapes are no spheres: they are not checked");
+  warn_of(read.switched_off, " spheres are switched off: they are not checked");
+  warn_of(read.self_collision_ignore.size(), " pairs of links are not tested against each other");
   if (read.collision_buffer != 0.0 || !read.collision_buffers.empty() ||
       !read.self_collision_buffer.empty()) {
     warn(arguments.spheres + ": its buffers are not added; name them as padding in the scene");
   }
-  return {with_spheres(robot.model, read.links), std::move(read.self_collision_ignore)};
+  return {with_spheres(robot.model, read.links), std::move(read.self_collision_ignore),
+          read.other_shapes == 0};
 }
 
 SphereRobot cover(const CheckArguments& arguments, const RobotDescription& robot,
@@ -82,7 +93,7 @@ SphereRobot cover(const CheckArguments& arguments, const RobotDescription& robot
     for (const std::string& warning : link.warnings) warn("link " + link.link + ": " + warning);
     spheres.push_back({link.link, link.spheres});
   }
-  return {with_spheres(robot.model, spheres), {}};
+  return {with_spheres(robot.model, spheres), {}, true};
 }
 
 // Motions are proved for positions up to that, in radians and metres.
@@ -173,7 +184,8 @@ int check(const CheckArguments& arguments) {
 
   SphereRobot spheres =
       arguments.spheres.empty() ? cover(arguments, robot, options) : read_spheres(arguments, robot);
-  warn_of_bare_links(robot, spheres.model, options.geometry);
+  const bool is_whole =
+      has_no_bare_links(robot, spheres.model, options.geometry) && spheres.is_whole;
   PreparedScene prepared = prepare_scene(std::move(spheres.model), scene, options);
   for (const std::string& warning : prepared.warnings) warn(warning);
   AllowedCollisions allowed = prepared.scene.allowed_collisions();
@@ -182,9 +194,10 @@ int check(const CheckArguments& arguments) {
 
   const RobotChecker checker = prepared.scene.snapshot();
   TrajectoryCheck trajectory_check(checker, trajectory, options.threads);
-  const CheckReport report = arguments.edges && trajectory.size() > 1
-                                 ? std::move(trajectory_check).motions(arguments.resolution)
-                                 : std::move(trajectory_check).configurations();
+  CheckReport report = arguments.edges && trajectory.size() > 1
+                           ? std::move(trajectory_check).motions(arguments.resolution)
+                           : std::move(trajectory_check).configurations();
+  report.is_whole = is_whole;
   std::cout << (arguments.json ? check_json(report) : check_table(report));
   return report.is_free() ? kYes : kNo;
 }

@@ -33,7 +33,7 @@ const TouchingPair* deepest(const CheckReport& report) {
 }
 
 const char* verdict_of(const CheckReport& report) {
-  return report.colliding > 0 ? "collision" : report.not_proved.empty() ? "free" : "not proved";
+  return report.colliding > 0 ? "collision" : report.is_free() ? "free" : "not proved";
 }
 
 Json to_json(const CheckedBody& body) {

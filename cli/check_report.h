@@ -37,7 +37,9 @@ struct CheckReport {
   std::vector<TrajectoryPoint> not_proved{};  // motions, and up to where they are free
   std::vector<TouchingPair> pairs{};          // in the order of the first contacts
 
-  bool is_free() const { return colliding == 0 && not_proved.empty(); }
+  bool is_whole = true;  // no part of the robot was left out
+
+  bool is_free() const { return colliding == 0 && not_proved.empty() && is_whole; }
   void add(const FoundContact& found);
 };
 

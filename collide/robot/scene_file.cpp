@@ -311,6 +311,8 @@ class SceneReader {
     value.require_keys({"body", "other", "distance"});
     ScenePadding padding{value.at("body").name(), {}, value.at("distance").not_negative()};
     if (value.has("other")) padding.other = value.at("other").name();
+    value.unless(padded_.insert(std::minmax(padding.body, padding.other)).second,
+                 "the padding of " + internal::quoted(padding.body) + " is given twice");
     scene_.padding.push_back(std::move(padding));
   }
 
@@ -319,6 +321,7 @@ class SceneReader {
   const Value root_;
   std::set<std::string> names_;
   std::set<std::pair<std::string, std::string>> regions_;
+  std::set<std::pair<std::string, std::string>> padded_;  // in order; one body: with an empty name
   SceneDescription scene_;
 };
 

@@ -202,14 +202,24 @@ TEST_F(CheckTest, RefusesBadInput) {
   write("slider.json", R"({"arm": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
   refused("the robot has no such link");
   expect_refusal({"check", "none.urdf", "cell.json", "path.csv"}, "none.urdf");
+  expect_refusal({"check", "slider.urdf"}, "scene");
 }
 
-TEST_F(CheckTest, WarnsOfLinksWithoutSpheres) {
+// What stands in no spheres is not checked, so that nothing is called free.
+TEST_F(CheckTest, NothingIsFreeWithAShapeLeftOut) {
   write("slider.json", R"({"wrist": {"centers": [[0, 0, 0]], "radii": [0.01]}})");
-  const Outcome outcome = run(command({}));
-  EXPECT_EQ(outcome.exit_code, 0);
+  Outcome outcome = run(command({}));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(outcome.out.starts_with("not proved")) << outcome.out;
   EXPECT_NE(outcome.err.find("link hand has a shape but no spheres"), std::string::npos)
       << outcome.err;
+
+  write("slider.json", R"(<robot name="slider"><link name="hand">
+    <collision><geometry><sphere radius="0.05"/></geometry></collision>
+    <collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
+  outcome = run(command({}));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("1 shapes are no spheres"), std::string::npos) << outcome.err;
 }
 
 }  // namespace

@@ -54,14 +54,5 @@ TEST_F(UsageTest, MethodsThatAreNotThereAreRefused) {
   EXPECT_EQ(files(), std::vector<std::string>{"box.stl"});
 }
 
-// What belongs to the command line of a later version is refused, not ignored.
-TEST_F(UsageTest, OptionsThatAreNotThereYetAreRefused) {
-  write_box("box.stl", {1, 1, 1});
-  for (const char* command : {"audit-robot", "check"}) {
-    expect_refusal({command, "x"}, std::string("unknown command: ") + command);
-  }
-  EXPECT_EQ(files(), std::vector<std::string>{"box.stl"});
-}
-
 }  // namespace
 }  // namespace spherule

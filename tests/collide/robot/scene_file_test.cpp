@@ -183,6 +183,9 @@ TEST_F(SceneFileTest, RefusesFaultyRest) {
                "\"a\" has no region \"tip\"");
   expect_fault(scene(R"("allowed_contacts": [{"body": "a"}])"), "\"other\" is missing");
   expect_fault(scene(R"("padding": [{"body": "a", "distance": -1}])"), "is below 0");
+  expect_fault(scene(R"("padding": [{"body": "a", "other": "b", "distance": 1},
+                                     {"body": "b", "other": "a", "distance": 0}])"),
+               "the padding of \"b\" is given twice");
   expect_fault(scene(R"("robot": {"urdf": "a"})"), "robot: the key \"urdf\"");
 }
 
