@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 
 namespace spherule::test {
 namespace {
@@ -303,6 +304,32 @@ TEST(RobotScene, RefusesBadConfigurations) {
     // A large position is answered all the same.
     EXPECT_EQ(checker.check_config(Configuration{1.0, 150.0}, scratch), !enforce);
     EXPECT_EQ(checker.check_config(Configuration{1.5, 0.0}, scratch), !enforce);
+  }
+}
+
+// The scene has changed: what a scratch remembers of the old one is of no use.
+TEST(RobotScene, RefusesTheScratchOfAnotherSnapshot) {
+  RobotScene scene(welder());
+  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({5, 0, 0}));
+  std::optional<RobotChecker> before(scene.snapshot());
+  std::vector<RobotChecker::Scratch> old;
+  old.emplace_back(*before);
+  const RobotChecker copy = *before;
+  const Configuration q = {1.0, 0.0};
+  EXPECT_TRUE(copy.check_config(q, old[0]));
+  scene.move("post", Pose::from_translation({0.3, 0, 1}));
+  std::vector<std::uint8_t> answers(1);
+  for (int i = 0; i < 2; ++i) {
+    const RobotChecker checker = scene.snapshot();
+    EXPECT_THROW((void)checker.check_config(q, old[0]), Error);
+    EXPECT_THROW(checker.check_configs(q, old[0], answers), Error);
+    EXPECT_THROW(checker.check_configs(q, old, answers), Error);
+    EXPECT_THROW((void)checker.check_edge(q, q, old[0]), Error);
+    EXPECT_THROW((void)checker.check_edges(q, q, old), Error);
+    EXPECT_THROW((void)checker.measure_edge(q, q, old[0]), Error);
+    EXPECT_THROW((void)checker.clearance(q, old[0]), Error);
+    EXPECT_THROW((void)checker.explain(q, old[0]), Error);
+    before.reset();  // the next may lie where it lay
   }
 }
 
