@@ -30,7 +30,9 @@ std::vector<std::string> names_in(const Map& map) {
 }  // namespace
 
 RobotScene::RobotScene(RobotModel robot, const Pose& world_from_root)
-    : robot_(std::move(robot)), world_from_root_(world_from_root), allowed_(robot_) {}
+    : robot_(std::move(robot)),
+      world_from_root_(unit_rotation(world_from_root.rotation()), world_from_root.translation()),
+      allowed_(robot_) {}
 
 void RobotScene::set_allowed_collisions(AllowedCollisions allowed) {
   if (!std::equal(allowed.link_names().begin(), allowed.link_names().end(), robot_.links().begin(),
