@@ -40,6 +40,14 @@ void RobotScene::set_allowed_collisions(AllowedCollisions allowed) {
                   [](const std::string& name, const Link& link) { return name == link.name; })) {
     throw Error("allowed collisions", "they are those of a robot with other links");
   }
+  const AllowedCollisions own(robot_);
+  for (const auto& [first, second, reason] : allowed.pairs()) {
+    const bool is_by_structure =
+        reason == AllowedReason::kRigid || reason == AllowedReason::kAdjacent;
+    if (!is_by_structure || own.allows(first, second)) continue;
+    const auto& names = own.link_names();
+    allowed.forbid(names[static_cast<std::size_t>(first)], names[static_cast<std::size_t>(second)]);
+  }
   allowed_ = std::move(allowed);
 }
 
