@@ -409,22 +409,6 @@ TEST(RobotScene, PaddingsAddUpToNoLess) {
   EXPECT_TRUE(is_found);
 }
 
-// The root's own spheres stand where forward_kinematics() has the others' root.
-TEST(RobotScene, TheRootsRotationIsMadeUnit) {
-  for (int i = 1; i < 50; ++i) {
-    const Eigen::Quaterniond rotation(0.3 * i, 0.5, 0.1 + 0.07 * i, 0.7);
-    const auto clearance_of = [](const Pose& root) {
-      RobotScene scene(welder(), root);
-      scene.add("board", Primitive(Box{{1, 1, 1}}), Pose::from_translation({3, 4, 5}));
-      const RobotChecker checker = scene.snapshot();
-      RobotChecker::Scratch scratch(checker);
-      return checker.clearance(Configuration{0.0, -2.0}, scratch).upper;
-    };
-    EXPECT_EQ(clearance_of(Pose(rotation, {0.1, 0.2, 0.3})),
-              clearance_of(Pose(unit_rotation(rotation), {0.1, 0.2, 0.3})));
-  }
-}
-
 // The scene has changed: what a scratch remembers of the old one is of no use.
 TEST(RobotScene, RefusesTheScratchOfAnotherSnapshot) {
   RobotScene scene(welder());
