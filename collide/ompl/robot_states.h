@@ -4,6 +4,7 @@
 #include "collide/robot/robot_checker.h"
 #include "spheretree/error.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -22,15 +23,16 @@ namespace spherule {
 // The states of a space of OMPL as configurations of a robot, and what queries about them write to,
 // lent to one thread at a time.
 //
-// The space is a RealVectorStateSpace, an SO2StateSpace (for a continuous joint), or a compound of
+// The space is a RealVectorStateSpace, an SO2StateSpace (for a joint that turns), or a compound of
 // these and of such compounds. Their numbers, in their order, are those of a configuration. Motions
 // between states are those of these spaces: straight, and by the shorter way round in SO2. A class
 // of the user's own that overrides interpolate() is not seen as such; its motions are not those
 // that are answered for.
 class RobotStates {
  public:
-  // Throws Error for a space of another kind, and if it has not as many numbers as the robot has
-  // variables.
+  // Throws Error for a space of another kind, if it has not as many numbers as the robot has
+  // variables, and for a number of SO2 whose turn by 2 pi is not the same pose: one that moves a
+  // joint that does not turn, or that mimics with a multiplier that is no integer.
   RobotStates(RobotChecker checker, ompl::base::StateSpacePtr space)
       : checker_(std::move(checker)), space_(std::move(space)) {
     if (!space_) throw Error("state space", "there is none");
@@ -40,6 +42,13 @@ class RobotStates {
       throw Error("state space", "it has " + std::to_string(turns_.size()) +
                                      " numbers, the robot has " + std::to_string(variables) +
                                      " variables");
+    }
+    for (const Joint& joint : checker_.robot().joints()) {
+      if (!joint.moves() || turns_[static_cast<std::size_t>(joint.variable)] == 0) continue;
+      if (joint.turns() && joint.multiplier == std::trunc(joint.multiplier)) continue;
+      throw Error("state space", "a number of SO2 moves joint " + joint.name +
+                                     ", for which a turn by 2 pi is not the same pose: use a real "
+                                     "one");
     }
   }
 

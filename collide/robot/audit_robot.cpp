@@ -240,12 +240,12 @@ void check_configurations(const RobotDescription& robot,
                           const std::vector<std::vector<double>>& configurations) {
   std::vector<Pose> world_from_link;
   for (const std::vector<double>& configuration : configurations) {
-    for (const double position : configuration) {
-      if (!(std::abs(position) <= kLargestPosition)) {
-        throw Error("configuration", "a position is beyond 100");
+    forward_kinematics(robot.model, configuration, world_from_link);
+    for (const Joint& joint : robot.model.joints()) {
+      if (!(std::abs(joint.position(configuration)) <= kLargestPosition)) {
+        throw Error("configuration", "the position of joint " + joint.name + " is beyond 100");
       }
     }
-    forward_kinematics(robot.model, configuration, world_from_link);
   }
 }
 

@@ -66,7 +66,7 @@ struct RobotAudit {
 // robot has not got count nowhere.
 // Throws Error: as link_mesh() and forward_kinematics(), for an E or D out of range, for spheres
 // that are not usable (naming the link), a link named twice, a robot without any such geometry, and
-// a configuration with a number beyond 100.
+// a configuration that takes a joint's position, a mimic's too, beyond 100.
 RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
                        const RobotAuditOptions& options = {});
 

@@ -32,6 +32,7 @@ void RobotTreeChecker::collides(std::span<const double> configurations,
   if (scratches.size() == 1 || verdicts.size() < kFewestShared) {
     return collides(configurations, scratches.front(), verdicts);  // to share out would allocate
   }
+  for (const Scratch& scratch : scratches) require_own(scratch);
   const std::size_t pieces = (verdicts.size() + kPiece - 1) / kPiece;
   internal::share_work(pieces, scratches.size(), [&](std::size_t worker, std::size_t piece) {
     const std::size_t first = piece * kPiece;
@@ -44,6 +45,7 @@ void RobotTreeChecker::collides(std::span<const double> configurations,
 void RobotTreeChecker::collides(std::span<const double> configurations, Scratch& scratch,
                                 std::span<std::uint8_t> verdicts) const {
   constexpr std::size_t kBlock = MechanismCheck::kBlock;
+  require_own(scratch);
   const std::size_t variables = require_sizes(configurations, verdicts);
   const auto configuration = [&](std::size_t i) {
     return configurations.subspan(i * variables, variables);

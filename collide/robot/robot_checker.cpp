@@ -7,7 +7,6 @@
 #include "spheretree/error.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -90,11 +89,18 @@ RobotChecker::Scratch::~Scratch() = default;
 RobotChecker::Scratch::Scratch(Scratch&&) noexcept = default;
 RobotChecker::Scratch& RobotChecker::Scratch::operator=(Scratch&&) noexcept = default;
 
+// A scratch keeps what it was made for, so that no later snapshot is at its address.
+void RobotChecker::require_own(const Scratch& scratch) const {
+  if (!scratch.memory_ || scratch.memory_->owner != parts_) {
+    throw Error("scratch", "it was made for another checker");
+  }
+}
+
 bool RobotChecker::check_config(std::span<const double> configuration, Scratch& scratch) const {
+  require_own(scratch);
   require_configuration(parts_->robot, configuration);
   if (parts_->enforces_limits && !is_within_limits(parts_->robot, configuration)) return false;
   Scratch::Memory& memory = *scratch.memory_;
-  assert(memory.owner == parts_);
   if (parts_->standing && parts_->standing->collides(configuration, *memory.standing)) return false;
   return is_free_of_itself(configuration, scratch);
 }
@@ -109,6 +115,7 @@ bool RobotChecker::is_free_of_itself(std::span<const double> configuration,
 
 void RobotChecker::check_configs(std::span<const double> configurations, Scratch& scratch,
                                  std::span<std::uint8_t> free) const {
+  require_own(scratch);
   const std::size_t variables = require_sizes(parts_->robot, configurations.size(), free.size());
   const auto configuration = [&](std::size_t i) {
     return configurations.subspan(i * variables, variables);
@@ -116,7 +123,6 @@ void RobotChecker::check_configs(std::span<const double> configurations, Scratch
   for (std::size_t i = 0; i < free.size(); ++i) {
     require_configuration(parts_->robot, configuration(i));
   }
-  assert(scratch.memory_->owner == parts_);
   if (parts_->standing) {
     parts_->standing->collides(configurations, *scratch.memory_->standing, free);
   } else {
@@ -135,6 +141,7 @@ void RobotChecker::check_configs(std::span<const double> configurations,
                                  std::span<Scratch> scratches, std::span<std::uint8_t> free) const {
   const std::size_t variables = require_sizes(parts_->robot, configurations.size(), free.size());
   if (scratches.empty()) throw Error("configurations", "there is no scratch to judge them with");
+  for (const Scratch& scratch : scratches) require_own(scratch);
   const std::size_t pieces = (free.size() + kConfigurationsAPiece - 1) / kConfigurationsAPiece;
   internal::share_work(pieces, scratches.size(), [&](std::size_t worker, std::size_t piece) {
     const std::size_t first = piece * kConfigurationsAPiece;
@@ -146,6 +153,7 @@ void RobotChecker::check_configs(std::span<const double> configurations,
 
 EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<const double> to,
                                     Scratch& scratch, const EdgeRequest& request) const {
+  require_own(scratch);
   for (const std::span<const double> end : {from, to}) {
     require_configuration(parts_->robot, end);
     if (!parts_->pairs.is_usual(end)) {
@@ -154,7 +162,6 @@ EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<cons
     }
   }
   require_resolution(request.resolution);
-  assert(scratch.memory_->owner == parts_);
   if (!parts_->enforces_limits) return check_within_limits(from, to, 1.0, scratch, request);
   if (!is_within_limits(parts_->robot, from)) {
     return {.verdict = Verdict::kCollision, .contact_at = 0.0};
@@ -210,6 +217,7 @@ std::vector<EdgeResult> RobotChecker::check_edges(std::span<const double> from,
                              std::to_string(variables) + " variables");
   }
   if (scratches.empty()) throw Error("edges", "there is no scratch to judge them with");
+  for (const Scratch& scratch : scratches) require_own(scratch);
   const std::size_t count = variables == 0 ? 0 : from.size() / variables;
   std::vector<EdgeResult> results(count);
   const std::size_t pieces = (count + kEdgesAPiece - 1) / kEdgesAPiece;

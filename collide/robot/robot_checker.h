@@ -67,7 +67,8 @@ class RobotChecker {
  public:
   const RobotModel& robot() const;
 
-  // What a query writes to. Unless it says so, no query allocates once its scratch is warm.
+  // What a query writes to: made for one snapshot and its copies; with that of another one every
+  // query throws Error. Unless it says so, no query allocates once its scratch is warm.
   class Scratch {
    public:
     explicit Scratch(const RobotChecker& checker);
@@ -130,6 +131,7 @@ class RobotChecker {
   struct Parts;
   explicit RobotChecker(std::shared_ptr<const Parts> parts);
 
+  void require_own(const Scratch& scratch) const;
   bool is_free_of_itself(std::span<const double> configuration, Scratch& scratch) const;
   EdgeResult check_within_limits(std::span<const double> from, std::span<const double> to,
                                  double end, Scratch& scratch, const EdgeRequest& request) const;

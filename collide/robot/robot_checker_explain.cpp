@@ -36,6 +36,7 @@ double RobotChecker::padding_of(std::size_t index) const {
 std::vector<CheckedContact> RobotChecker::explain(std::span<const double> configuration,
                                                   Scratch& scratch,
                                                   const ExplainRequest& request) const {
+  require_own(scratch);
   std::vector<CheckedContact> result;
   internal::BodyPairs::Memory& memory = scratch.memory_->pairs;
   parts_->pairs.place(configuration, memory);
@@ -64,6 +65,7 @@ std::vector<CheckedContact> RobotChecker::explain(std::span<const double> config
 // of a pose under those of the exact mechanism.
 RobotClearance RobotChecker::clearance(std::span<const double> configuration,
                                        Scratch& scratch) const {
+  require_own(scratch);
   internal::BodyPairs::Memory& memory = scratch.memory_->pairs;
   const internal::BodyPairs& pairs = parts_->pairs;
   pairs.place(configuration, memory);

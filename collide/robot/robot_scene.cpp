@@ -30,13 +30,23 @@ std::vector<std::string> names_in(const Map& map) {
 }  // namespace
 
 RobotScene::RobotScene(RobotModel robot, const Pose& world_from_root)
-    : robot_(std::move(robot)), world_from_root_(world_from_root), allowed_(robot_) {}
+    : robot_(std::move(robot)),
+      world_from_root_(unit_rotation(world_from_root.rotation()), world_from_root.translation()),
+      allowed_(robot_) {}
 
 void RobotScene::set_allowed_collisions(AllowedCollisions allowed) {
   if (!std::equal(allowed.link_names().begin(), allowed.link_names().end(), robot_.links().begin(),
                   robot_.links().end(),
                   [](const std::string& name, const Link& link) { return name == link.name; })) {
     throw Error("allowed collisions", "they are those of a robot with other links");
+  }
+  const AllowedCollisions own(robot_);
+  for (const auto& [first, second, reason] : allowed.pairs()) {
+    const bool is_by_structure =
+        reason == AllowedReason::kRigid || reason == AllowedReason::kAdjacent;
+    if (!is_by_structure || own.allows(first, second)) continue;
+    const auto& names = own.link_names();
+    allowed.forbid(names[static_cast<std::size_t>(first)], names[static_cast<std::size_t>(second)]);
   }
   allowed_ = std::move(allowed);
 }

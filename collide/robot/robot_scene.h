@@ -61,7 +61,9 @@ class RobotScene {
 
   const RobotModel& robot() const { return robot_; }
   const AllowedCollisions& allowed_collisions() const { return allowed_; }
-  // Throws Error for those of a robot with another number of links.
+  // What they allow as rigid or adjacent, though it is not so by this robot's own joints and
+  // spheres (they may come from a model whose links had no spheres yet), is tested again. Throws
+  // Error for those of a robot with other links.
   void set_allowed_collisions(AllowedCollisions allowed);
 
   // Throws Error for a name that is taken or empty, a missing tree or mesh, or a primitive that

@@ -88,8 +88,8 @@ RobotTreeChecker::RobotTreeChecker(RobotModel robot, std::vector<PlacedTree> obs
     placed.push_back({root_from_world * obstacle.world_from_tree, obstacle.tree});
   }
   pose_error_ = pose_error(robot_, obstacles_, world_from_root_);
-  check_.emplace(frames.frames, bodies, placed, pairs_, pose_error_, options.instructions,
-                 !meshes_.empty());
+  check_ = std::make_shared<const MechanismCheck>(
+      frames.frames, bodies, placed, pairs_, pose_error_, options.instructions, !meshes_.empty());
 }
 
 const CoveredMesh* RobotTreeChecker::mesh_of(const SphereTree& tree) const {
@@ -108,6 +108,7 @@ std::optional<std::span<const double>> RobotTreeChecker::usual_positions(
 }
 
 bool RobotTreeChecker::collides(std::span<const double> configuration, Scratch& scratch) const {
+  require_own(scratch);
   const auto positions = usual_positions(configuration, scratch);
   if (!positions) return collides_exactly(configuration, scratch);
   if (always_) return true;
@@ -121,6 +122,7 @@ bool RobotTreeChecker::collides(std::span<const double> configuration, Scratch& 
 
 bool RobotTreeChecker::within(std::span<const double> configuration, double clearance,
                               Scratch& scratch) const {
+  require_own(scratch);
   require_clearance(clearance);
   const auto is_near = [&](const Body& body, const Pose& world_from_link, std::size_t obstacle) {
     return spherule::within(*body.tree, world_from_link, *obstacles_[obstacle].tree,
@@ -258,6 +260,7 @@ bool RobotTreeChecker::body_collides(const Body& body, const Pose& world_from_li
 
 EdgeResult RobotTreeChecker::check_edge(std::span<const double> from, std::span<const double> to,
                                         Scratch& scratch, const EdgeRequest& request) const {
+  require_own(scratch);
   const auto positions_at = [&](std::span<const double> end, std::size_t place) {
     const auto positions = usual_positions(end, scratch, place);
     if (positions) return *positions;

@@ -6,6 +6,7 @@
 #include "collide/robot/joint_positions.h"
 #include "collide/robot/robot_contact.h"
 #include "collide/robot/robot_model.h"
+#include "spheretree/error.h"
 #include "spheretree/pose.h"
 
 #include <cstddef>
@@ -65,15 +66,20 @@ class RobotTreeChecker {
  public:
   const RobotModel& robot() const { return robot_; }
 
-  // What a query writes to: made for one checker, which must outlive its use. Unless it says so, no
-  // query allocates once its scratch is warm. Those of several threads share no cache line.
+  // What a query writes to: made for one checker, which must outlive its use; with that of another
+  // one every query throws Error. Unless it says so, no query allocates once its scratch is warm.
+  // Those of several threads share no cache line.
   class alignas(64) Scratch {
    public:
     explicit Scratch(const RobotTreeChecker& checker)
-        : memory_(*checker.check_), room_(checker.positions_.room_for(MechanismCheck::kBlock)) {}
+        : check_(checker.check_),
+          memory_(*check_),
+          room_(checker.positions_.room_for(MechanismCheck::kBlock)) {}
 
    private:
     friend class RobotTreeChecker;
+    // Whose it is: kept, so that no later checker's is at its address.
+    std::shared_ptr<const MechanismCheck> check_;
     MechanismCheck::Scratch memory_;
     std::vector<Pose> world_from_link_;
     std::vector<MechanismPair> unconfirmed_;  // spheres touch, but no triangles do
@@ -156,6 +162,10 @@ class RobotTreeChecker {
   std::vector<TestedBody> tested_bodies() const;
   std::optional<Contact> contact_of(const TestedBody& tested, const Pose& world_from_link) const;
 
+  void require_own(const Scratch& scratch) const {
+    if (scratch.check_ != check_) throw Error("scratch", "it was made for another checker");
+  }
+
   enum class Finding { kApart, kSpheres, kTouch };
   Finding find(const MechanismContact& contact, Scratch& scratch) const;
   bool touches_still(const Touch& touch, Scratch& scratch) const;
@@ -185,7 +195,7 @@ class RobotTreeChecker {
   std::vector<Standing> standing_;  // pairs that no variable moves
   double pose_error_ = 0.0;
   bool always_ = false;  // a link that stands with the root touches
-  std::optional<MechanismCheck> check_;
+  std::shared_ptr<const MechanismCheck> check_;
 };
 
 }  // namespace spherule

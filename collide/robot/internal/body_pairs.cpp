@@ -116,8 +116,7 @@ void BodyPairs::place(std::span<const double> configuration, Memory& memory) con
     const Sphere ball = pieces_[i].tree->ball(0);
     memory.placed[i] = {pose_of(pieces_[i], memory) * ball.center, ball.radius};
   }
-  memory.pad = MechanismCheck::is_in_range(configuration) ? kBallPad * size_
-                                                          : std::numeric_limits<double>::infinity();
+  memory.pad = is_usual(configuration) ? kBallPad * size_ : std::numeric_limits<double>::infinity();
 }
 
 // True only if the canonical test for this clearance would say no.

@@ -2,6 +2,7 @@
 // The validity of states and motions for OMPL, against trigonometry, and a planner that uses them.
 #include "collide/ompl/motion_validator.h"
 #include "collide/ompl/state_validity_checker.h"
+#include "collide/robot/robot_scene.h"
 #include "spheretree/error.h"
 #include "tests/collide/ompl/planar_arm.h"
 #include "tests/support/effort.h"
@@ -22,6 +23,7 @@
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -265,6 +267,38 @@ TEST(OmplStates, SpacesThatAreNotTheRobotsAreErrors) {
   expect_error(Planning::joints(2) + std::make_shared<ob::SO3StateSpace>());
   const auto information = std::make_shared<ob::SpaceInformation>(Planning::joints(3));
   EXPECT_THROW(MotionValidator(information, arm, {.resolution = 0.0}), Error);
+}
+
+// One turn more of an SO2 variable is the same pose only where every joint that it moves turns, by
+// a whole multiple.
+TEST(OmplStates, WhatHasNoPeriodOfATurnIsNotOfSO2) {
+  const auto refuses = [](JointType leader, JointType follower, double multiplier) {
+    RobotModel robot("base");
+    robot.add_link("wheel", "base", {.name = "lead", .type = leader, .lower = -3.0, .upper = 3.0});
+    robot.add_link("arm", "base",
+                   {.name = "follow", .type = follower, .lower = -3.0, .upper = 3.0});
+    robot.mimic("follow", "lead", multiplier, 0.25);
+    const RobotChecker checker = RobotScene(robot).snapshot();
+    const auto real = std::make_shared<ob::SpaceInformation>(Planning::joints(1));
+    EXPECT_NO_THROW(MotionValidator(real, checker));
+    const auto information =
+        std::make_shared<ob::SpaceInformation>(std::make_shared<ob::SO2StateSpace>());
+    try {
+      MotionValidator(information, checker);
+      return false;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("joint"), std::string::npos);
+    }
+    EXPECT_THROW(StateValidityChecker(information, checker), Error);
+    return true;
+  };
+  constexpr JointType kTurns = JointType::kContinuous, kSlides = JointType::kPrismatic;
+  EXPECT_FALSE(refuses(kTurns, kTurns, -2.0));
+  EXPECT_FALSE(refuses(kTurns, JointType::kRevolute, 1.0));
+  EXPECT_TRUE(refuses(kTurns, kTurns, 0.5));
+  EXPECT_TRUE(refuses(kTurns, JointType::kRevolute, 2.0 + 1e-15));
+  EXPECT_TRUE(refuses(kTurns, kSlides, 1.0));
+  EXPECT_TRUE(refuses(kSlides, kTurns, 1.0));
 }
 
 }  // namespace

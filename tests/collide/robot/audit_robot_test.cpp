@@ -203,5 +203,15 @@ TEST_F(AuditRobot, BadInput) {
   EXPECT_THROW(repair_robot(robot_, good, {.max_error = -1.0}), Error);
 }
 
+// What a joint mimics may be near where the joint itself is far out.
+TEST_F(AuditRobot, PositionsOfMimicsAreLimited) {
+  robot_.model.add_link("far", "arm", {.name = "follow", .type = JointType::kContinuous});
+  robot_.model.mimic("follow", "turn", 200.0);
+  robot_.links.push_back({.name = "far", .visual = {}, .collision = {}});
+  const std::vector<LinkSpheres> good = {{"base", {{{0, 0, 0}, 0.2}}}};
+  EXPECT_NO_THROW(audit_robot(robot_, good, {.configurations = {{0.5}}}));
+  EXPECT_THROW(audit_robot(robot_, good, {.configurations = {{0.6}}}), Error);
+}
+
 }  // namespace
 }  // namespace spherule

@@ -3,7 +3,9 @@
 
 #include "collide/robot/robot_scene.h"
 
+#include "collide/collide.h"
 #include "collide/point_cloud.h"
+#include "collide/robot/kinematics.h"
 #include "collide/solid_mesh.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
@@ -12,6 +14,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace spherule::test {
 namespace {
@@ -303,6 +307,131 @@ TEST(RobotScene, RefusesBadConfigurations) {
     // A large position is answered all the same.
     EXPECT_EQ(checker.check_config(Configuration{1.0, 150.0}, scratch), !enforce);
     EXPECT_EQ(checker.check_config(Configuration{1.5, 0.0}, scratch), !enforce);
+  }
+}
+
+// Of a robot whose links carried no spheres yet, base and tool are adjacent.
+TEST(RobotScene, AdjacencyIsThatOfItsOwnSpheres) {
+  const auto robot = [](bool has_spheres) {
+    RobotModel model("base");
+    model.add_link("arm", "base",
+                   {.name = "turn", .type = JointType::kRevolute, .lower = -3.0, .upper = 3.0});
+    model.add_link("tool", "arm", {.parent_from_joint = Pose::from_translation({1, 0, 0})});
+    if (!has_spheres) return model;
+    model.attach("base", ball({-1, 0, 0}, 0.3));
+    model.attach("arm", ball({0.5, 0, 0}, 0.1));
+    model.attach("tool", ball({0, 0, 0}, 0.1));
+    return model;
+  };
+  RobotScene scene(robot(true));
+  AllowedCollisions bare(robot(false));
+  ASSERT_EQ(bare.reason(0, 2), AllowedReason::kAdjacent);
+  scene.set_allowed_collisions(bare);
+  EXPECT_EQ(scene.allowed_collisions().reason(0, 2), AllowedReason::kTested);
+  EXPECT_EQ(scene.allowed_collisions().reason(0, 1), AllowedReason::kAdjacent);
+  EXPECT_EQ(scene.allowed_collisions().reason(1, 2), AllowedReason::kRigid);
+  const RobotChecker checker = scene.snapshot();
+  RobotChecker::Scratch scratch(checker);
+  EXPECT_FALSE(checker.check_config(Configuration{3.1}, scratch));
+  bare.forbid("base", "tool");
+  bare.allow("base", "tool");
+  scene.set_allowed_collisions(bare);
+  EXPECT_EQ(scene.allowed_collisions().reason(0, 2), AllowedReason::kGiven);
+}
+
+// The far end of a mimic rounds by more than the bounds for the usual range allow for.
+TEST(RobotScene, FarMimicsAreMetToTheLastDigits) {
+  RobotModel robot("base");
+  robot.add_link("slide", "base",
+                 {.name = "lead",
+                  .type = JointType::kPrismatic,
+                  .axis = {1, 0, 0},
+                  .lower = -1.0,
+                  .upper = 1.0});
+  robot.add_link("a", "slide",
+                 {.name = "far",
+                  .type = JointType::kPrismatic,
+                  .axis = {1, 2, 3},
+                  .lower = -1.0,
+                  .upper = 1.0});
+  robot.mimic("far", "lead", 1e8);
+  robot.add_link("b", "a",
+                 {.name = "turn",
+                  .type = JointType::kContinuous,
+                  .parent_from_joint = Pose::from_translation({0.3, 0.1, 0.2}),
+                  .axis = {0.3, 0.5, 0.8}});
+  robot.attach("a", ball({0.1234, 0.2345, 0.345}, 0.1));
+  robot.attach("b", ball({0.3, -0.2, 0.1}, 0.1));
+  const Pose root(Eigen::Quaterniond(0.3, 0.5, 0.1, 0.7), {0.1, 0.2, 0.3});
+  RobotScene scene(robot, root);
+  AllowedCollisions allowed(robot);
+  allowed.forbid("a", "b");
+  scene.set_allowed_collisions(allowed);
+  Asked asked(scene);
+  std::vector<Pose> poses;
+  const auto touches = [&](double lead, double turn) {
+    forward_kinematics(robot, Configuration{lead, turn}, poses, root);
+    return collides(*robot.links()[2].trees[0], poses[2], *robot.links()[3].trees[0], poses[3]);
+  };
+  int touching = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double lead = 0.5 + 0.0024681357 * i;
+    for (double turn = -3.1; turn < 3.1; turn += 0.15) {
+      double in = turn;
+      double out = turn + 0.15;
+      if (touches(lead, in) == touches(lead, out)) continue;
+      if (!touches(lead, in)) std::swap(in, out);
+      for (int halving = 0; halving < 60; ++halving) {
+        const double middle = 0.5 * (in + out);
+        (touches(lead, middle) ? in : out) = middle;
+      }
+      ++touching;
+      EXPECT_FALSE(asked.free(lead, in)) << lead << ' ' << in;
+      EXPECT_EQ(asked.checker.clearance(Configuration{lead, in}, asked.scratch).lower, 0.0);
+    }
+  }
+  EXPECT_GT(touching, 100);
+}
+
+TEST(RobotScene, PaddingsAddUpToNoLess) {
+  RobotScene scene(welder());
+  scene.add("board", Primitive(Box{{1, 1, 1}}));
+  scene.set_padding("slide", 1.0);
+  scene.set_padding("slide", "board", 1e-17);
+  const Asked asked(scene);
+  RobotChecker::Scratch scratch(asked.checker);
+  bool is_found = false;
+  for (const CheckedContact& contact : asked.checker.explain(Configuration{0.0, 0.0}, scratch)) {
+    if (contact.first.name != "slide" || contact.second.name != "board") continue;
+    is_found = true;
+    EXPECT_GT(contact.padding, 1.0);
+  }
+  EXPECT_TRUE(is_found);
+}
+
+// The scene has changed: what a scratch remembers of the old one is of no use.
+TEST(RobotScene, RefusesTheScratchOfAnotherSnapshot) {
+  RobotScene scene(welder());
+  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({5, 0, 0}));
+  std::optional<RobotChecker> before(scene.snapshot());
+  std::vector<RobotChecker::Scratch> old;
+  old.emplace_back(*before);
+  const RobotChecker copy = *before;
+  const Configuration q = {1.0, 0.0};
+  EXPECT_TRUE(copy.check_config(q, old[0]));
+  scene.move("post", Pose::from_translation({0.3, 0, 1}));
+  std::vector<std::uint8_t> answers(1);
+  for (int i = 0; i < 2; ++i) {
+    const RobotChecker checker = scene.snapshot();
+    EXPECT_THROW((void)checker.check_config(q, old[0]), Error);
+    EXPECT_THROW(checker.check_configs(q, old[0], answers), Error);
+    EXPECT_THROW(checker.check_configs(q, old, answers), Error);
+    EXPECT_THROW((void)checker.check_edge(q, q, old[0]), Error);
+    EXPECT_THROW((void)checker.check_edges(q, q, old), Error);
+    EXPECT_THROW((void)checker.measure_edge(q, q, old[0]), Error);
+    EXPECT_THROW((void)checker.clearance(q, old[0]), Error);
+    EXPECT_THROW((void)checker.explain(q, old[0]), Error);
+    before.reset();  // the next may lie where it lay
   }
 }
 

@@ -150,6 +150,21 @@ TEST(RobotThreads, RefusesWhatDoesNotFit) {
   checker.collides({}, two, {});
 }
 
+TEST(RobotThreads, RefusesTheScratchOfAnother) {
+  const RobotTreeChecker checker = slide();
+  std::vector<RobotTreeChecker::Scratch> own = scratches(checker, 1);
+  std::vector<RobotTreeChecker::Scratch> other = scratches(slide(), 2);
+  const std::vector<double> q = {0.0};
+  std::vector<std::uint8_t> verdicts(1);
+  EXPECT_NO_THROW((void)checker.explain(q, own[0]));
+  EXPECT_THROW((void)checker.collides(q, other[0]), Error);
+  EXPECT_THROW((void)checker.within(q, 0.1, other[0]), Error);
+  EXPECT_THROW((void)checker.explain(q, other[0]), Error);
+  EXPECT_THROW((void)checker.check_edge(q, q, other[0]), Error);
+  EXPECT_THROW(checker.collides(q, other[0], verdicts), Error);
+  EXPECT_THROW(checker.collides(q, other, verdicts), Error);
+}
+
 TEST(SharedWork, DoesEachPieceOnceAndLetsNoTwoShareAWorker) {
   for (const std::size_t pieces : {0, 1, 2, 5, 1000}) {
     for (const std::size_t workers : {1, 2, 3, 7}) {
