@@ -17,9 +17,8 @@ struct FclSolid::Model : FclModel<fcl::OBBRSSd> {
 };
 
 FclSolid::FclSolid(const TriangleMesh& mesh)
-    : mesh_(mesh),
-      closed_(is_closed(mesh)),
-      components_(component_points(mesh)),
+    : components_(is_closed(mesh) ? components(mesh) : std::vector<TriangleMesh>()),
+      points_(component_points(mesh)),
       model_(std::make_unique<Model>(mesh)) {}
 
 FclSolid::FclSolid(FclSolid&&) noexcept = default;
@@ -31,13 +30,16 @@ const Eigen::AlignedBox3d& FclSolid::box() const {
 }
 
 bool FclSolid::contains(const Eigen::Vector3d& point) const {
-  return closed_ && box().contains(point) && std::abs(winding_number(mesh_, point)) > 0.5;
+  return box().contains(point) &&
+         std::any_of(components_.begin(), components_.end(), [&](const TriangleMesh& component) {
+           return std::abs(winding_number(component, point)) > 0.5;
+         });
 }
 
 bool FclSolid::contains_a_component_of(const FclSolid& other, const Pose& this_from_other) const {
-  return std::any_of(
-      other.components_.begin(), other.components_.end(),
-      [&](const Eigen::Vector3d& point) { return contains(this_from_other * point); });
+  return std::any_of(other.points_.begin(), other.points_.end(), [&](const Eigen::Vector3d& point) {
+    return contains(this_from_other * point);
+  });
 }
 
 bool touch(const FclSolid& a, const Pose& world_from_a, const FclSolid& b,

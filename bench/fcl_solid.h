@@ -13,8 +13,8 @@ namespace spherule {
 
 // Ground truth: a mesh as FCL sees it (OBBRSS, double), with what FCL lacks. Its bounding volume
 // hierarchies are surfaces, so that one closed mesh wholly inside another is "free" to FCL. Here a
-// mesh is its triangles with their inside (points of winding number other than zero; none if the
-// mesh is not closed).
+// mesh is its triangles with their inside (points about which the winding number of a connected
+// component is not zero, so also sealed hollows; none if the mesh is not closed).
 class FclSolid {
  public:
   explicit FclSolid(const TriangleMesh& mesh);
@@ -23,7 +23,7 @@ class FclSolid {
   ~FclSolid();
 
   const Eigen::AlignedBox3d& box() const;
-  // By the winding number, a sum over all triangles.
+  // By the winding numbers, sums over all triangles.
   bool contains(const Eigen::Vector3d& point) const;
 
   // Whether the two have a point in common: two triangles do, or a point of a connected component
@@ -39,9 +39,8 @@ class FclSolid {
 
   bool contains_a_component_of(const FclSolid& other, const Pose& this_from_other) const;
 
-  TriangleMesh mesh_;
-  bool closed_;
-  std::vector<Eigen::Vector3d> components_;  // a point of each
+  std::vector<TriangleMesh> components_;  // none if the mesh is not closed
+  std::vector<Eigen::Vector3d> points_;   // one of each component
   std::unique_ptr<const Model> model_;
 };
 

@@ -25,10 +25,12 @@ class PatchTrees;
 // A mesh and spheres that cover it, with the triangles shared out among the spheres. Immutable;
 // threads may share it. The mesh is judged as stored, as by MeshTree.
 //
-// Inside. A mesh without a boundary (every directed edge, by positions, is met by as many in the
-// other direction) has an inside: the points of winding number other than zero. Each connected
-// component is judged by itself: one that is open, or whose triangles are not turned consistently,
-// has no inside. What lies within such a one without touching it is free.
+// Inside. A shell, triangles connected by shared edges, that has no boundary (every directed edge,
+// by positions, is met by as many in the other direction) has an inside: the points about which its
+// winding number is not zero. Each shell is judged by itself, so that a sealed hollow is inside,
+// and a double-sided one (every triangle in both orientations) has the inside of one of its sides.
+// One that is open, or whose triangles are not turned consistently, has no inside. What lies within
+// such a one without touching it is free.
 class CoveredMesh {
  public:
   // Proves that the spheres cover every triangle, and throws Error, naming one, where that fails.
@@ -46,7 +48,7 @@ class CoveredMesh {
     const auto first = static_cast<std::size_t>(first_[i]);
     return std::span(triangles_).subspan(first, static_cast<std::size_t>(first_[i + 1]) - first);
   }
-  // Whether all components have an inside.
+  // Whether all shells have an inside.
   bool is_closed() const;
 
   // For queries.

@@ -19,11 +19,14 @@ class MeshInside;
 
 // A mesh with its inside, as an obstacle. Immutable; threads may share it.
 //
-// The solid is the closed set of the points within growth() of a triangle or of the inside, where
-// the inside are the points of winding number other than zero. It contains the mesh of the file and
-// its inside, because growth() is TriangleMesh::vertex_error. Each connected component is judged by
-// itself: one that has a boundary, or whose triangles are not turned consistently, has no inside,
-// and what lies within it without touching it is free.
+// The solid is the closed set of the points within growth() of a triangle or of the inside. The
+// inside are the points about which the winding number of a closed shell is not zero, a shell being
+// triangles connected by shared edges. It contains the mesh of the file and its inside, because
+// growth() is TriangleMesh::vertex_error. Each shell is judged by itself: overlapping ones take
+// nothing from each other, whichever way they are turned, and a sealed hollow is inside, as is what
+// it holds. A double-sided shell (every triangle in both orientations) has the inside of one of its
+// sides. A shell that has a boundary, or whose triangles are not turned consistently, has no
+// inside, and what lies within it without touching it is free.
 class SolidMesh {
  public:
   // Throws Error for a mesh that validate() refuses.
@@ -31,7 +34,7 @@ class SolidMesh {
 
   const MeshTree& mesh() const { return mesh_; }
   double growth() const { return growth_; }
-  // Whether all components have an inside, and whether any has.
+  // Whether all shells have an inside, and whether any has.
   bool is_closed() const;
   bool has_inside() const;
 
@@ -47,7 +50,7 @@ class SolidMesh {
 // Whether a set of balls and a solid, rigidly placed, overlap.
 //
 // G4: if a ball and the solid have a point in common in exact arithmetic under exactly the given
-// poses, the answer is true; so a ball wholly inside collides, whatever component it is in. G5: as
+// poses, the answer is true; so a ball wholly inside collides, whatever shell it is in. G5: as
 // for collides() of a MeshTree (mesh_tree.h), with growth() beside the radius; a point that is
 // nearer to the surface than rounding tells counts as inside. Allocates as collides() of two trees
 // does.

@@ -18,6 +18,29 @@ const Vector3d& corner(const TriangleMesh& mesh, const Vector3i& triangle, int i
   return mesh.vertices[static_cast<std::size_t>(triangle[i])];
 }
 
+// Of every vertex, the first one of its component.
+std::vector<int> component_leaders(const TriangleMesh& mesh) {
+  std::vector<int> root(mesh.vertices.size());
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int v) {
+    while (root[static_cast<std::size_t>(v)] != v) {
+      int& up = root[static_cast<std::size_t>(v)];
+      up = root[static_cast<std::size_t>(up)];
+      v = up;
+    }
+    return v;
+  };
+  for (const Vector3i& t : mesh.triangles) {
+    for (int i = 1; i < 3; ++i) {
+      // The smaller index leads, so that a component is named by its first vertex.
+      const auto [small, large] = std::minmax({find(t[0]), find(t[i])});
+      root[static_cast<std::size_t>(large)] = small;
+    }
+  }
+  for (std::size_t v = 0; v < root.size(); ++v) root[v] = find(static_cast<int>(v));
+  return root;
+}
+
 }  // namespace
 
 bool is_closed(const TriangleMesh& mesh) {
@@ -48,31 +71,38 @@ Eigen::AlignedBox3d bounding_box(const TriangleMesh& mesh) {
 }
 
 std::vector<Vector3d> component_points(const TriangleMesh& mesh) {
-  std::vector<int> root(mesh.vertices.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int v) {
-    while (root[static_cast<std::size_t>(v)] != v) {
-      int& up = root[static_cast<std::size_t>(v)];
-      up = root[static_cast<std::size_t>(up)];
-      v = up;
-    }
-    return v;
-  };
-  for (const Vector3i& t : mesh.triangles) {
-    for (int i = 1; i < 3; ++i) {
-      // The smaller index leads, so that a component is named by its first vertex.
-      const auto [small, large] = std::minmax({find(t[0]), find(t[i])});
-      root[static_cast<std::size_t>(large)] = small;
-    }
-  }
+  const std::vector<int> leaders = component_leaders(mesh);
   std::vector<Vector3d> points;
   std::vector<char> seen(mesh.vertices.size(), 0);
   for (const Vector3i& t : mesh.triangles) {
-    const auto leader = static_cast<std::size_t>(find(t[0]));
+    const auto leader = static_cast<std::size_t>(leaders[static_cast<std::size_t>(t[0])]);
     if (seen[leader] == 0) points.push_back(mesh.vertices[leader]);
     seen[leader] = 1;
   }
   return points;
+}
+
+std::vector<TriangleMesh> components(const TriangleMesh& mesh) {
+  const std::vector<int> leaders = component_leaders(mesh);
+  std::vector<TriangleMesh> parts;
+  std::vector<int> part_of(mesh.vertices.size(), -1), moved_to(mesh.vertices.size(), -1);
+  for (const Vector3i& t : mesh.triangles) {
+    int& index = part_of[static_cast<std::size_t>(leaders[static_cast<std::size_t>(t[0])])];
+    if (index < 0) {
+      index = static_cast<int>(parts.size());
+      parts.emplace_back();
+    }
+    TriangleMesh& part = parts[static_cast<std::size_t>(index)];
+    for (const int v : t) {
+      int& to = moved_to[static_cast<std::size_t>(v)];
+      if (to >= 0) continue;
+      to = static_cast<int>(part.vertices.size());
+      part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+    }
+    const auto corner = [&](int k) { return moved_to[static_cast<std::size_t>(t[k])]; };
+    part.triangles.emplace_back(corner(0), corner(1), corner(2));
+  }
+  return parts;
 }
 
 double winding_number(const TriangleMesh& mesh, const Vector3d& point) {

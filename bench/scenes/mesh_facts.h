@@ -21,6 +21,9 @@ Eigen::AlignedBox3d bounding_box(const TriangleMesh& mesh);
 // One vertex of every connected component (triangles that share vertices by index).
 std::vector<Eigen::Vector3d> component_points(const TriangleMesh& mesh);
 
+// The connected components, each as a mesh of its own.
+std::vector<TriangleMesh> components(const TriangleMesh& mesh);
+
 // Winding number of the mesh about a point off its surface: a whole number, up to rounding, for a
 // closed mesh (Van Oosterom and Strackee, 1983).
 double winding_number(const TriangleMesh& mesh, const Eigen::Vector3d& point);

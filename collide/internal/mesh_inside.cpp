@@ -2,14 +2,17 @@
 #include "collide/internal/mesh_inside.h"
 
 #include "collide/internal/ray.h"
+#include "collide/internal/turned_sets.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 namespace spherule::internal {
 namespace {
@@ -40,69 +43,57 @@ std::vector<std::array<int, 3>> corners_by_position(const TriangleMesh& mesh) {
   return result;
 }
 
-// Which vertex stands for the component of a vertex.
-class Components {
+// The winding numbers of the closed surfaces that a ray meets, as far as there is room: of those
+// with the lowest numbers from `first` on.
+class WindingNumbers {
  public:
-  explicit Components(std::size_t count) : up_(count) { std::iota(up_.begin(), up_.end(), 0); }
+  explicit WindingNumbers(std::int32_t first) : first_(first) {}
 
-  int find(int v) {
-    while (up(v) != v) {
-      up(v) = up(up(v));
-      v = up(v);
+  void add(std::int32_t surface, int crossing) {
+    if (surface < first_ || surface >= end_) return;
+    const auto known = entries_.begin() + static_cast<std::ptrdiff_t>(size_);
+    const auto entry =
+        std::find_if(entries_.begin(), known, [&](const Entry& e) { return e.surface == surface; });
+    if (entry != known) {
+      entry->sum += crossing;
+    } else if (size_ < entries_.size()) {
+      entries_[size_++] = {surface, crossing};
+    } else {
+      const auto last =
+          std::max_element(entries_.begin(), known,
+                           [](const Entry& a, const Entry& b) { return a.surface < b.surface; });
+      end_ = std::max(surface, last->surface);
+      if (surface < last->surface) *last = {surface, crossing};
     }
-    return v;
   }
-  void join(int a, int b) { up(find(a)) = find(b); }
+  bool any() const {
+    return std::any_of(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(size_),
+                       [](const Entry& e) { return e.sum != 0; });
+  }
+  // Which surface is the first that had no room; the largest number if all had.
+  std::int32_t end() const { return end_; }
 
  private:
-  int& up(int v) { return up_[static_cast<std::size_t>(v)]; }
+  struct Entry {
+    std::int32_t surface;
+    int sum;
+  };
 
-  std::vector<int> up_;
+  std::array<Entry, 64> entries_;
+  std::size_t size_ = 0;
+  std::int32_t first_;
+  std::int32_t end_ = std::numeric_limits<std::int32_t>::max();
 };
 
-struct Edge {
-  int low, high;  // corners
-  int turn;       // +1 from low to high, -1 back
-};
-
-// Of every vertex that stands for a component: 1 if the triangles pass each edge as often in both
-// directions.
-std::vector<char> closed_components(const std::vector<std::array<int, 3>>& triangles,
-                                    Components& components, std::size_t vertices) {
-  std::vector<Edge> edges;
-  edges.reserve(3 * triangles.size());
-  for (const std::array<int, 3>& t : triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int from = t[k], to = t[(k + 1) % 3];
-      if (from < to) edges.push_back({from, to, 1});
-      if (to < from) edges.push_back({to, from, -1});
-    }
-  }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return std::tie(a.low, a.high) < std::tie(b.low, b.high);
-  });
-  std::vector<char> closed(vertices, 1);
-  for (std::size_t i = 0; i < edges.size();) {
-    const Edge& edge = edges[i];
-    int surplus = 0;
-    for (; i < edges.size() && edges[i].low == edge.low && edges[i].high == edge.high; ++i) {
-      surplus += edges[i].turn;
-    }
-    if (surplus != 0) closed[static_cast<std::size_t>(components.find(edge.low))] = 0;
-  }
-  return closed;
-}
-
-// The winding number, if this ray can tell.
-std::optional<int> crossings(const MeshTree& mesh, const std::vector<char>& counts,
-                             const Ray& ray) {
+// Adds the crossings of the ray; false if it cannot tell.
+bool count_crossings(const MeshTree& mesh, const std::vector<TriangleRole>& roles, const Ray& ray,
+                     WindingNumbers& numbers) {
   // build_tree makes no more than 3 * 30 + 9 levels of 8 children, and each level leaves at most 7
   // of them waiting.
   std::array<std::int32_t, 99 * 7 + 1> stack;
   const SphereTree& tree = mesh.tree();
   std::size_t top = 0;
   stack[top++] = 0;
-  int sum = 0;
   while (top > 0) {
     const auto node = static_cast<std::size_t>(stack[--top]);
     if (!ray.may_meet(tree.ball(node))) continue;
@@ -114,35 +105,51 @@ std::optional<int> crossings(const MeshTree& mesh, const std::vector<char>& coun
       continue;
     }
     const std::int32_t index = tree.sphere_index(node);
-    if (counts[static_cast<std::size_t>(index)] == 0) continue;
+    const TriangleRole& role = roles[static_cast<std::size_t>(index)];
+    if (!role.counts()) continue;
     const std::optional<int> crossing = ray.crossing(mesh.triangle(index));
-    if (!crossing) return std::nullopt;
-    sum += *crossing;
+    if (!crossing) return false;
+    if (*crossing == 0) continue;
+    numbers.add(role.shell, *crossing);
+    numbers.add(role.patch, *crossing * role.turn);
   }
-  return sum;
+  return true;
+}
+
+// Whether a winding number is not zero, if this ray can tell.
+std::optional<bool> winds(const MeshTree& mesh, const std::vector<TriangleRole>& roles,
+                          const Ray& ray) {
+  std::int32_t next = 0;
+  while (next < std::numeric_limits<std::int32_t>::max()) {
+    WindingNumbers numbers(next);
+    if (!count_crossings(mesh, roles, ray, numbers)) return std::nullopt;
+    if (numbers.any()) return true;
+    next = numbers.end();
+  }
+  return false;
 }
 
 }  // namespace
 
 MeshInside::MeshInside(const TriangleMesh& mesh) {
   const std::vector<std::array<int, 3>> triangles = corners_by_position(mesh);
-  Components components(mesh.vertices.size());
+  TurnedSets components(mesh.vertices.size());
   for (const std::array<int, 3>& t : triangles) {
     components.join(t[0], t[1]);
     components.join(t[1], t[2]);
   }
-  const std::vector<char> closed = closed_components(triangles, components, mesh.vertices.size());
+  MeshShells shells = find_shells(triangles);
+  is_closed_ = shells.are_closed;
+  roles_ = std::move(shells.roles);
   Eigen::AlignedBox3d around;
   for (const Vector3d& vertex : mesh.vertices) around.extend(vertex);
   const Vector3d middle = around.center();
   std::vector<int> point_of(mesh.vertices.size(), -1);
-  is_solid_.reserve(triangles.size());
-  for (const std::array<int, 3>& t : triangles) {
-    const auto component = static_cast<std::size_t>(components.find(t[0]));
-    const bool solid = closed[component] != 0;
-    is_solid_.push_back(solid ? 1 : 0);
-    has_inside_ = has_inside_ || solid;
-    is_closed_ = is_closed_ && solid;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::array<int, 3>& t = triangles[i];
+    const auto component = static_cast<std::size_t>(components.find(t[0]).root);
+    const bool counts = roles_[i].counts();
+    has_inside_ = has_inside_ || counts;
     if (point_of[component] < 0) {
       point_of[component] = static_cast<int>(points_.size());
       points_.push_back(mesh.vertices[static_cast<std::size_t>(t[0])]);
@@ -151,7 +158,7 @@ MeshInside::MeshInside(const TriangleMesh& mesh) {
     for (const int corner : t) {
       const Vector3d& vertex = mesh.vertices[static_cast<std::size_t>(corner)];
       if ((vertex - middle).squaredNorm() > (point - middle).squaredNorm()) point = vertex;
-      if (solid) box_.extend(vertex);
+      if (counts) box_.extend(vertex);
     }
   }
 }
@@ -165,8 +172,8 @@ std::optional<bool> MeshInside::find(const MeshTree& tree, const Vector3d& point
     }
   }
   for (const Vector3d& direction : kRayDirections) {
-    const std::optional<int> winding = crossings(tree, is_solid_, Ray(point, error, direction));
-    if (winding) return *winding != 0;
+    const std::optional<bool> found = winds(tree, roles_, Ray(point, error, direction));
+    if (found) return found;
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/internal/mesh_shells.h"
 #include "collide/mesh_tree.h"
 #include "spheretree/triangle_mesh.h"
 
@@ -25,10 +26,11 @@ inline const std::array<Eigen::Vector3d, 8> kRayDirections = {
      {-0.9012347, 0.1765432, -0.3876543},
      {-0.2109876, -0.6543213, -0.7198765}}};
 
-// The inside of a mesh and its connected parts. Triangles are connected where they share a vertex
-// position. A component is closed if every directed edge, by positions, is met by as many in the
-// other direction. The inside is where the winding number of the closed components is not zero;
-// open components, and those whose triangles are not turned consistently, have none.
+// The inside of a mesh and its connected components. Triangles are connected where they share a
+// vertex position. The inside is where the winding number of any closed shell or patch
+// (mesh_shells.h) is not zero, whatever others count there: so where closed parts overlap that are
+// turned differently, and in a sealed hollow. Open shells, and those whose triangles are not turned
+// consistently, have none.
 class MeshInside {
  public:
   explicit MeshInside(const TriangleMesh& mesh);
@@ -36,18 +38,20 @@ class MeshInside {
   // One vertex of every component: the farthest from the middle of the mesh, as most often it is
   // far from what the mesh touches.
   std::span<const Eigen::Vector3d> component_points() const { return points_; }
+  // Whether any shell or patch is closed, and whether all shells are.
   bool has_inside() const { return has_inside_; }
   bool is_closed() const { return is_closed_; }
-  // Around the closed components, and so around the inside; empty where there are none.
+  // Around the closed surfaces, and so around the inside; empty where there are none.
   const Eigen::AlignedBox3d& box() const { return box_; }
 
   // Whether a point is inside; `tree` is of the same mesh. The point may be off by `error`: never
   // false if the exact one is inside; true also if it cannot be told apart from a point of the
   // surface.
   //
-  // The winding number is the sum of the signed crossings of a ray with the triangles. Each
-  // crossing is decided with the error of the point counted, so that the sum is that of the ray
-  // from the exact point; a ray that passes an edge too near is given up for another one.
+  // A winding number is the sum of the signed crossings of a ray with the triangles of a surface.
+  // Each crossing is decided with the error of the point counted, so that the sum is that of the
+  // ray from the exact point; a ray that passes an edge too near is given up for another one. One
+  // ray serves all surfaces, unless it meets more than 64. Does not allocate.
   bool contains(const MeshTree& tree, const Eigen::Vector3d& point, double error) const {
     return find(tree, point, error).value_or(true);
   }
@@ -55,8 +59,8 @@ class MeshInside {
   std::optional<bool> find(const MeshTree& tree, const Eigen::Vector3d& point, double error) const;
 
  private:
-  std::vector<char> is_solid_;  // of each triangle: whether its component is closed
-  Eigen::AlignedBox3d box_;     // of these
+  std::vector<TriangleRole> roles_;  // of each triangle
+  Eigen::AlignedBox3d box_;          // of those that count
   std::vector<Eigen::Vector3d> points_;
   bool has_inside_ = false;
   bool is_closed_ = true;

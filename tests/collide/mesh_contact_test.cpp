@@ -296,20 +296,23 @@ TEST(MeshContact, EachComponentIsLookedFor) {
   EXPECT_FALSE(collides(outer, Pose(), inner, Pose::from_translation({-2.5, 0, 0})));
 }
 
-TEST(MeshContact, AHollowIsFreeAndItsWallIsNot) {
+TEST(MeshContact, ASealedHollowIsInside) {
   const Vector3d large = Vector3d::Constant(1.0);
   TriangleMesh shell = box_mesh(large);
   add_box(shell, Vector3d::Constant(0.6), true);
   const CoveredMesh outer = solid_covered(shell, large, 3);
   EXPECT_TRUE(outer.is_closed());
   const CoveredMesh inner = surface_covered(box_mesh(Vector3d::Constant(0.1)), 0);
-  EXPECT_FALSE(collides(outer, Pose(), inner, Pose()));
+  EXPECT_TRUE(collides(outer, Pose(), inner, Pose()));
   EXPECT_TRUE(collides(outer, Pose(), inner, Pose::from_translation({0.8, 0, 0})));
   EXPECT_TRUE(collides(outer, Pose(), inner, Pose::from_translation({0.6, 0, 0})));
-  // The other way round the outer box is the hollow of an inverted shell, which is still a wall.
-  TriangleMesh inverted;
-  add_box(inverted, large, true);
-  EXPECT_TRUE(collides(solid_covered(inverted, large, 3), Pose(), inner, Pose()));
+  // An inverted shell, and a double-sided one.
+  for (const bool twice : {false, true}) {
+    TriangleMesh inverted;
+    add_box(inverted, large, true);
+    if (twice) add_box(inverted, large);
+    EXPECT_TRUE(collides(solid_covered(inverted, large, 3), Pose(), inner, Pose()));
+  }
 }
 
 TEST(MeshContact, AnOpenMeshHasNoInside) {
