@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/audit_robot_report.h"
 
+#include "cli/units.h"
+
 #include <algorithm>
 #include <iomanip>
 #include <sstream>
@@ -8,12 +10,10 @@
 namespace spherule {
 namespace {
 
-constexpr double kMillimetres = 1000.0;
-
 std::string in_mm(double metres) {
   std::ostringstream out;
-  out << std::fixed << std::setprecision(metres * kMillimetres < 0.1 ? 4 : 1)
-      << metres * kMillimetres;
+  out << std::fixed << std::setprecision(metres * kMillimetresPerMetre < 0.1 ? 4 : 1)
+      << metres * kMillimetresPerMetre;
   return metres == 0.0 ? "0" : out.str();
 }
 

@@ -2,6 +2,7 @@
 #include "cli/check_report.h"
 
 #include "cli/json.h"
+#include "cli/units.h"
 
 #include <algorithm>
 #include <iomanip>
@@ -9,8 +10,6 @@
 
 namespace spherule {
 namespace {
-
-constexpr double kMillimetres = 1000.0;
 
 const char* kind_of(const CheckedBody& body) {
   switch (body.kind) {
@@ -126,7 +125,7 @@ std::string check_table(const CheckReport& report) {
     for (const TouchingPair& pair : report.pairs) {
       const CheckedContact& worst = pair.worst.contact;
       std::ostringstream depth;
-      depth << std::fixed << std::setprecision(2) << worst.overlap_depth * kMillimetres;
+      depth << std::fixed << std::setprecision(2) << worst.overlap_depth * kMillimetresPerMetre;
       rows.push_back({worst.first.name, worst.second.name, std::to_string(pair.count),
                       text_of(pair.first.at), text_of(pair.worst.at), depth.str(),
                       text_of(worst.world_point)});

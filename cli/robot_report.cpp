@@ -2,6 +2,7 @@
 #include "cli/robot_report.h"
 
 #include "cli/robot_options.h"
+#include "cli/units.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -12,8 +13,6 @@
 
 namespace spherule {
 namespace {
-
-constexpr double kMillimetresPerMetre = 1000.0;
 
 // Over all links.
 struct Totals {
