@@ -82,6 +82,9 @@ SurfaceDistance MeshDistance::operator()(const Vector3d& point, double limit) co
     if (node.right < 0) {
       for (auto i = node.begin; i < node.end; ++i) {
         const Corners& t = corners_[static_cast<std::size_t>(i)];
+        const Vector3d low = t.a.cwiseMin(t.b).cwiseMin(t.c);
+        const Vector3d high = t.a.cwiseMax(t.b).cwiseMax(t.c);
+        if (squared_distance(low, high, point) * kRelativeDown >= reach_squared) continue;
         const TriangleDistance d = point_triangle_distance(point, t.a, t.b, t.c);
         best.lower = std::min(best.lower, d.lower);
         if (d.upper < reach) {

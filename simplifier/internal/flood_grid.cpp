@@ -84,11 +84,8 @@ Eigen::Vector3d FloodGrid::center(const Entry& cell) const {
 void FloodGrid::examine(const MeshDistance& distance, int level) {
   // Half the diagonal, with room for the rounding of centres and faces.
   const double half_diagonal = 0.8660254037844387 * edge(level) * (1.0 + 1e-9) + rounding();
-  const auto begin = level_begin_[static_cast<std::size_t>(level)];
-  tbb::parallel_for(begin, cells_.size(), [&](std::size_t i) {
-    Entry& cell = cells_[i];
-    const Eigen::Vector3d middle = center(cell);
-    const SurfaceDistance d = distance(middle);
+  const auto examine_cell = [&](Entry& cell, const Eigen::Vector3d& middle,
+                                const SurfaceDistance& d) {
     cell.clearance = std::max(0.0, sub_down(d.lower, padding_));
     // What no zone can change is known without looking for zones.
     if (level < shape_.levels) {
@@ -114,6 +111,18 @@ void FloodGrid::examine(const MeshDistance& distance, int level) {
       cell.state = State::kBlocked;
     } else {
       cell.state = State::kRefined;
+    }
+  };
+  // Children of one cell: what is near to one is not much further from the others.
+  const auto begin = level_begin_[static_cast<std::size_t>(level)];
+  const double apart = 4.0 * half_diagonal;
+  tbb::parallel_for(begin, cells_.size(), std::size_t{8}, [&](std::size_t first) {
+    double limit = std::numeric_limits<double>::infinity();
+    for (std::size_t i = first; i < std::min(first + 8, cells_.size()); ++i) {
+      const Eigen::Vector3d middle = center(cells_[i]);
+      const SurfaceDistance d = distance(middle, limit);
+      limit = d.upper + apart;
+      examine_cell(cells_[i], middle, d);
     }
   });
 }
