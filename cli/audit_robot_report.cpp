@@ -50,15 +50,14 @@ void put_links(std::ostream& out, const std::vector<LinkAudit>& links) {
                        const std::string& covered) {
     out << std::left << std::setw(static_cast<int>(width)) << name << std::right << std::setw(8)
         << spheres << std::setw(18) << surface << std::setw(18) << inside << std::setw(11) << share
-        << std::setw(12) << protrusion << std::setw(9) << covered << "\n";
+        << std::setw(18) << protrusion << std::setw(9) << covered << "\n";
   };
   row("link", "spheres", "leak surface", "leak inside", "uncovered", "protrusion", "covered");
   std::size_t spheres = 0;
-  Bounds surface, inside;
-  double protrusion = 0.0;
+  Bounds surface, inside, protrusion;
   bool covered = true;
-  const auto worsen = [](Bounds& worst, const Bounds& depth) {
-    worst = {std::max(worst.lower, depth.lower), std::max(worst.upper, depth.upper)};
+  const auto worsen = [](Bounds& worst, const Bounds& other) {
+    worst = {std::max(worst.lower, other.lower), std::max(worst.upper, other.upper)};
   };
   for (const LinkAudit& link : links) {
     if (!link.certificate) {
@@ -71,12 +70,12 @@ void put_links(std::ostream& out, const std::vector<LinkAudit>& links) {
     std::ostringstream share;
     share << std::fixed << std::setprecision(1) << link.uncovered_share * 100.0 << " %";
     row(link.link, std::to_string(link.spheres), in_mm(certificate.surface_depth),
-        in_mm(certificate.solid_depth), share.str(), in_mm(certificate.protrusion_over_mesh->upper),
+        in_mm(certificate.solid_depth), share.str(), in_mm(*certificate.protrusion_over_mesh),
         yes(certificate.covered));
     spheres += link.spheres;
     worsen(surface, certificate.surface_depth);
     worsen(inside, certificate.solid_depth);
-    protrusion = std::max(protrusion, certificate.protrusion_over_mesh->upper);
+    worsen(protrusion, *certificate.protrusion_over_mesh);
     covered = covered && certificate.covered;
   }
   row("all", std::to_string(spheres), in_mm(surface), in_mm(inside), "", in_mm(protrusion),

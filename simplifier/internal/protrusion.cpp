@@ -89,16 +89,22 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
   std::vector<Cell> heap{
       {BoxCell::around(box_of(balls.balls)), std::numeric_limits<double>::infinity(), false}};
   // The greatest distance met in the balls at a point that is not known to be inside: where the
-  // search may stop. Only points outside of S count as witnesses.
+  // search for the upper bound may stop. It goes on for the lower one, whose witnesses are outside
+  // of S, while the inside of an open mesh has been looked at by then.
   double met = 0.0;
+  bool is_bounded = false;
+  const auto is_near = [tolerance](double upper, double lower) {
+    return upper <= lower + std::max(tolerance, kRelativeTolerance * lower);
+  };
   while (!heap.empty()) {
     std::pop_heap(heap.begin(), heap.end(), below);
     Cell cell = heap.back();
     heap.pop_back();
-    if (cell.upper <= met + std::max(tolerance, kRelativeTolerance * met)) {
-      result.upper = std::max({result.upper, cell.upper, 0.0});
-      break;
+    if (!is_bounded && is_near(cell.upper, met)) {
+      result.upper = std::max(cell.upper, 0.0);
+      is_bounded = true;
     }
+    if (is_bounded && is_near(cell.upper, result.lower)) break;
     const Vector3d& q = cell.box.center;
     const double reach = cell.box.reach();
     const NearestBall gap = balls.hierarchy.nearest(q);
@@ -109,10 +115,12 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
       cell.outside = true;
     }
     cell.upper = std::min(cell.upper, add_up(d.upper, reach));
-    if (gap.upper <= 0.0 && d.lower > met && (cell.outside || !shells.contain(q))) {
-      met = d.lower;
-      if (clearance(q).upper < 0.0) result.lower = std::max(result.lower, d.lower);
+    if (gap.upper <= 0.0) {
+      if (d.lower > met && (cell.outside || !shells.contain(q))) met = d.lower;
+      if (d.lower > result.lower && clearance(q).upper < 0.0) result.lower = d.lower;
     }
+    // Small cells are left as they are: S may come to a point that no centre gets beyond.
+    if (is_bounded && (reach <= tolerance / 2.0 || clearance(q).lower >= reach)) continue;
     for (const BoxCell& half : cell.box.halves()) {
       heap.push_back({half, cell.upper, cell.outside});
       std::push_heap(heap.begin(), heap.end(), below);

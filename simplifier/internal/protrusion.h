@@ -27,7 +27,8 @@ double greatest_in(const Zone& zone, std::span<const Sphere> balls,
 // searched best-first until they are `tolerance` (or 2 % of their value) apart. The upper bound is
 // proved: it counts a point as inside only where a closed shell says so, and measures from the
 // surface elsewhere, so open meshes, and hollows that several parts seal together, can make it too
-// large. The lower bound is witnessed by points outside of S.
+// large. The lower bound is witnessed by points outside of S; where the upper one is too large, the
+// two bracket what is inside and cannot be proved to be so.
 Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& shells,
                             const Clearance& clearance, const BallsToProve& balls,
                             double tolerance);

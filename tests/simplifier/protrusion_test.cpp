@@ -76,6 +76,22 @@ TEST_P(Protrusion, NothingProtrudesHoweverExternalSpheresArePlaced) {
   }
 }
 
+// The inside of an open mesh counts for the upper bound and is further from the mesh than what is
+// seen to protrude, which that does not hide.
+TEST(ProtrusionOverMesh, IsWitnessedBeyondAnOpenMeshToo) {
+  const TriangleMesh loosely_shut =
+      joined(open_box(), box_mesh({0.0, 0.0, 1.001}, {1.0, 1.0, 1.01}));
+  const std::vector<Sphere> ball{{Vector3d::Constant(0.5), 0.7}};
+  const ExternalSpheres box =
+      place_external_spheres(loosely_shut, {.placement = ExternalPlacement::kNone});
+  CertifyOptions options;
+  options.external = &box;
+  const Bounds protrusion = certify(loosely_shut, ball, options).protrusion_over_mesh.value();
+  EXPECT_GE(protrusion.upper, 0.5);
+  EXPECT_GE(protrusion.lower, 0.19);
+  EXPECT_LE(protrusion.lower, 0.2);
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, Protrusion,
                          testing::Values(CoverMethod::kCover, CoverMethod::kPaper),
                          [](const auto& tested) { return name_of(tested.param); });
