@@ -3,6 +3,7 @@
 
 #include "simplifier/internal/raw_mesh.h"
 #include "simplifier/internal/scene_file.h"
+#include "simplifier/internal/weld_within.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
@@ -60,6 +61,12 @@ TriangleMesh read_by_extension(const std::filesystem::path& path) {
   throw Error(subject, "not a mesh format that can be read (STL, OBJ, PLY, OFF, DAE, 3MF, glTF)");
 }
 
+void check_weld(double tolerance) {
+  if (!(tolerance >= 0.0 && tolerance <= kMaxCoordinate)) {
+    throw Error("weld", "must be finite and not negative, not " + std::to_string(tolerance));
+  }
+}
+
 void apply_scale(TriangleMesh& mesh, double scale) {
   if (scale == 1.0) return;
   for (Eigen::Vector3d& v : mesh.vertices) v *= scale;
@@ -84,12 +91,13 @@ void append(std::string& bytes, const Eigen::Vector3f& v) {
 
 TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options) {
   check_scale(options.scale);
+  check_weld(options.weld);
   TriangleMesh mesh = read_by_extension(path);
   if (mesh.triangles.empty()) throw Error(path.string(), "the file holds no triangles");
   apply_scale(mesh, options.scale);
   mesh = internal::weld(mesh);
   validate(mesh, path.string());
-  return mesh;
+  return options.weld > 0.0 ? internal::weld_within(mesh, options.weld) : mesh;
 }
 
 void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path) {

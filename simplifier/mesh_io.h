@@ -10,6 +10,10 @@ namespace spherule {
 struct MeshReadOptions {
   // Factor from the unit of the file to the unit of the model (1000 turns metres into millimetres).
   double scale = 1.0;
+  // Vertices that are no further apart than this, in units of the model, become one: it shuts the
+  // cracks that are left where a file stores a vertex twice with other roundings, which make a mesh
+  // open. `vertex_error` grows by it. 0: only equal vertices are joined.
+  double weld = 0.0;
 };
 
 // Reads STL (text and binary), OBJ, PLY, OFF, DAE, 3MF, glTF and GLB, told apart by the extension.
@@ -25,8 +29,8 @@ struct MeshReadOptions {
 // `vertex_error` bounds what reading cost: nothing for binary STL and PLY and for glTF without node
 // transforms; 2^-53 of the largest coordinate for numbers in text, which are read as doubles, and
 // some 2^-50 of it where 3MF transforms them; some 2^-21 of it for DAE, whose reader works in
-// 32-bit floats, and for the node transforms of glTF; and the rounding of the scale. (Per
-// coordinate; the bound itself is of the distance.)
+// 32-bit floats, and for the node transforms of glTF; and the rounding of the scale (per
+// coordinate; the bound itself is of the distance); and `weld`.
 //
 // Throws Error, naming file and reason: no such file, not a mesh, cut short, no triangles, a
 // coordinate that is not finite or beyond kMaxCoordinate after scaling, an index out of range, a

@@ -74,6 +74,15 @@ class SettingSearch {
   Point last_;
 };
 
+// Some files store a vertex several times with other roundings. Of an open mesh no proof says what
+// is inside, so that cracks would decide what protrudes.
+TriangleMesh read_shut(const std::filesystem::path& file) {
+  constexpr double kCrack = 1e-6;  // of the diagonal
+  const TriangleMesh mesh = read_mesh(file);
+  const MeshReport report = mesh_report(mesh, {.self_intersections = false});
+  return report.closed ? mesh : read_mesh(file, {.weld = kCrack * report.box.diagonal().norm()});
+}
+
 }  // namespace
 
 CountEntry fewest_spheres(const TriangleMesh& mesh, const SphereMethod& method,
@@ -133,7 +142,7 @@ std::vector<NamedMesh> real_parts(const std::filesystem::path& models) {
   if (files.empty()) throw Error(folder.string(), "no meshes there");
   std::sort(files.begin(), files.end());
   std::vector<NamedMesh> parts;
-  for (const auto& file : files) parts.push_back({file.stem().string(), read_mesh(file)});
+  for (const auto& file : files) parts.push_back({file.stem().string(), read_shut(file)});
   return parts;
 }
 
