@@ -4,6 +4,7 @@
 #include "spheretree/error.h"
 #include "tests/support/temp_dir.h"
 
+#include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,6 +60,49 @@ TEST_F(PointCloudFileTest, ScalesAndSaysWhatThatCosts) {
   EXPECT_GE(cloud.point_error, 0.003 * 0x1p-52);
 }
 
+using Integer = boost::multiprecision::cpp_int;
+using Rational = boost::multiprecision::cpp_rational;
+
+const Rational kShift = Rational(pow(Integer(10), 40));
+
+// A decimal between a number and the middle to the next one, so that it is read as that number,
+// with nearly the largest error.
+std::string just_below_the_middle(double number) {
+  const Rational next(std::nextafter(number, 2.0 * number));
+  const Rational value = number + (next - number) * Rational(499'999, 1'000'000);
+  const Rational scaled = value * kShift;
+  return Integer(numerator(scaled) / denominator(scaled)).str() + "e-40";
+}
+
+Rational exactly(const std::string& decimal) {
+  return Rational(Integer(decimal.substr(0, decimal.find('e')))) / kShift;
+}
+
+// The bound against exact numbers, where all roundings go the same way.
+TEST_F(PointCloudFileTest, TheErrorIsBoundedWhereRoundingsAddUp) {
+  double worst_read = 0.0, worst_scaled = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    // Of (1 + k u') (1 + j u'), where u' = 2 u, the product k j u'^2 is just below u and rounded
+    // off.
+    const double k = 0x1p25 + 1e6 * i;
+    const double j = std::floor(0x1p51 / k);
+    const std::string x = just_below_the_middle(1.0 + k * 0x1p-52);
+    const std::string factor = just_below_the_middle(1.0 + j * 0x1p-52);
+    for (const bool is_scaled : {false, true}) {
+      const double scale = is_scaled ? std::stod(factor) : 1.0;
+      const PointCloudFile cloud = read("scan.txt", x + " " + x + " " + x + "\n", scale);
+      const Rational off =
+          exactly(x) * (is_scaled ? exactly(factor) : Rational(1)) - Rational(cloud.points[0].x());
+      const Rational error(cloud.point_error);
+      ASSERT_LE(Rational(3 * off * off), Rational(error * error)) << i << ' ' << is_scaled;
+      double& worst = is_scaled ? worst_scaled : worst_read;
+      worst = std::max(worst, Rational(3 * off * off / (error * error)).convert_to<double>());
+    }
+  }
+  EXPECT_GT(worst_read, 0.7);  // of a bound of 3 / 4
+  EXPECT_GT(worst_scaled, 0.7);
+}
+
 TEST_F(PointCloudFileTest, PlyInText) {
   EXPECT_EQ(
       read("a.ply",
@@ -103,6 +147,8 @@ TEST_F(PointCloudFileTest, Refuses) {
   EXPECT_EQ(fault("a.xyz", "1 2 3\n1 2e15 3\n"), "point 1 is beyond 1e15 or not finite");
   EXPECT_NE(fault("a.stl", "1 2 3\n"), "none");
   EXPECT_NE(fault("a.xyz", "1 2 3\n", 0.0), "none");
+  EXPECT_NE(fault("a.xyz", "1 2 3\n", 1e-310), "none");
+  EXPECT_NE(fault("a.xyz", "1 2 3\n", 2e15), "none");
   EXPECT_NE(fault("a.xyz", "1 2 3\n", std::nan("")), "none");
   const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\n";
   const std::string axes = "property float x\nproperty float y\n";
