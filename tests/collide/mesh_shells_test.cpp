@@ -5,6 +5,7 @@
 
 #include "collide/internal/mesh_inside.h"
 #include "tests/collide/trees.h"
+#include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
 namespace spherule::test {
 namespace {
@@ -134,7 +136,7 @@ TriangleMesh randomly_turned(TriangleMesh mesh, unsigned seed) {
 }
 
 TEST(MeshShells, TrianglesThatAreTurnedAnyWayHaveTheirInside) {
-  for (unsigned seed = 1; seed <= 5; ++seed) {
+  for (unsigned seed = 1; seed <= static_cast<unsigned>(effort(5, 1)); ++seed) {
     expect_solid(randomly_turned(cube_mesh(), seed));
     expect_nothing_inside(randomly_turned(open_box(), seed));
     expect_nothing_inside(randomly_turned(klein_bottle(16, 24), seed));
@@ -162,7 +164,8 @@ TriangleMesh rooms(int x, int y, int z) {
 }
 
 TEST(MeshShells, RoomsWithWallsBetweenThemAreInside) {
-  for (const auto& [x, y, z] : {std::array{2, 1, 1}, {3, 1, 1}, {2, 2, 1}, {2, 3, 2}}) {
+  const std::vector<std::array<int, 3>> sizes = {{2, 1, 1}, {2, 2, 1}, {3, 1, 1}, {2, 3, 2}};
+  for (const auto& [x, y, z] : effort(sizes, 2)) {
     const TriangleMesh mesh = rooms(x, y, z);
     const TriangleMesh with_flap = joined(mesh, double_sided(flap_on_cube()));
     EXPECT_FALSE(MeshInside(with_flap).is_closed());

@@ -104,15 +104,42 @@ TEST_F(PointCloudFileTest, TheErrorIsBoundedWhereRoundingsAddUp) {
 }
 
 TEST_F(PointCloudFileTest, PlyInText) {
-  EXPECT_EQ(
+  const PointCloudFile cloud =
       read("a.ply",
            "ply\r\nformat ascii 1.0\ncomment made by hand\nelement camera 1\nproperty float f\n"
            "element vertex 2\nproperty list uchar int seen\nproperty uchar red\n"
            "property double z\nproperty float y\nproperty float x\n"
            "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-           "7\n2 5 6 255 3 2 1\n0 0 1e6 0.25 -0.5\n3 0 1 0\n")
-          .points,
-      kPoints);
+           "7\n2 5 6 255 3 2 1\n0 0 1e6 0.25 -0.5\n3 0 1 0\n");
+  EXPECT_EQ(cloud.points, kPoints);
+  EXPECT_GE(cloud.point_error, 1e6 * 0x1p-53);
+}
+
+TEST_F(PointCloudFileTest, PlyOfWholeNumbers) {
+  for (const bool big_endian : {false, true}) {
+    const auto point = [&](const std::string& type, auto x, auto y, auto z) {
+      std::string bytes = std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
+                          "_endian 1.0\nelement vertex 1\n";
+      for (const char axis : {'x', 'y', 'z'}) bytes += "property " + type + " " + axis + "\n";
+      bytes += "end_header\n";
+      append(bytes, x, big_endian);
+      append(bytes, y, big_endian);
+      append(bytes, z, big_endian);
+      const PointCloudFile cloud = read("a.ply", bytes);
+      EXPECT_EQ(cloud.points, (std::vector{Vector3d(x, y, z)})) << type;
+      EXPECT_EQ(cloud.point_error, 0.0);
+    };
+    using I8 = std::int8_t;
+    using U8 = std::uint8_t;
+    using I16 = std::int16_t;
+    using U16 = std::uint16_t;
+    for (const char* type : {"char", "int8"}) point(type, I8{-128}, I8{127}, I8{-1});
+    for (const char* type : {"uchar", "uint8"}) point(type, U8{0}, U8{127}, U8{255});
+    for (const char* type : {"short", "int16"}) point(type, I16{-32768}, I16{258}, I16{-1});
+    for (const char* type : {"ushort", "uint16"}) point(type, U16{1}, U16{258}, U16{65535});
+    for (const char* type : {"int", "int32"}) point(type, -2147483647, 66051, -1);
+    for (const char* type : {"uint", "uint32"}) point(type, 1u, 66051u, 4294967295u);
+  }
 }
 
 TEST_F(PointCloudFileTest, PlyInBytes) {
@@ -147,8 +174,9 @@ TEST_F(PointCloudFileTest, Refuses) {
   EXPECT_EQ(fault("a.xyz", "1 2 3\n1 2e15 3\n"), "point 1 is beyond 1e15 or not finite");
   EXPECT_NE(fault("a.stl", "1 2 3\n"), "none");
   EXPECT_NE(fault("a.xyz", "1 2 3\n", 0.0), "none");
-  EXPECT_NE(fault("a.xyz", "1 2 3\n", 1e-310), "none");
-  EXPECT_NE(fault("a.xyz", "1 2 3\n", 2e15), "none");
+  for (const double scale : {1e-310, 2e15}) {
+    EXPECT_EQ(fault("a.xyz", "0 0 0\n", scale), "the scale is not a number from 1e-300 to 1e15");
+  }
   EXPECT_NE(fault("a.xyz", "1 2 3\n", std::nan("")), "none");
   const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\n";
   const std::string axes = "property float x\nproperty float y\n";
@@ -160,8 +188,15 @@ TEST_F(PointCloudFileTest, Refuses) {
             "vertex 0 has too few numbers");
   EXPECT_EQ(fault("a.ply", head + axes + "property float z\nend_header\n1 2 x\n"),
             "line 8: \"x\" is not a finite number");
-  EXPECT_EQ(fault("a.ply", head + "property quad x\nend_header\n"),
-            "line 4: is no line of a PLY header");
+  for (const std::string property : {"quad x", "list quad int x", "list int quad x", "int"}) {
+    EXPECT_EQ(fault("a.ply", head + "property " + property + "\nend_header\n"),
+              "line 4: is no line of a PLY header");
+  }
+  for (const std::string line : {"element face -1", "element face 2e12", "element face x",
+                                 "property int x", "format ascii 2.0", "format other 1.0"}) {
+    EXPECT_EQ(fault("a.ply", "ply\n" + line + "\nend_header\n"),
+              "line 2: is no line of a PLY header");
+  }
   EXPECT_EQ(fault("a.ply", "ply\nelement face 0\nproperty int x\nend_header\n"),
             "its header has no format");
   EXPECT_EQ(fault("a.ply", "ply\nformat ascii 1.0\nelement face 0\nproperty int x\nend_header\n"),
