@@ -4,6 +4,7 @@
 #include "collide/internal/mechanism_parts.h"
 #include "collide/internal/single_precision.h"
 #include "collide/within.h"
+#include "spheretree/error.h"
 
 #include <algorithm>
 #include <cassert>
@@ -26,7 +27,7 @@ MechanismCheck& MechanismCheck::operator=(MechanismCheck&&) noexcept = default;
 MechanismCheck::Scratch::Scratch(const MechanismCheck& check)
     : memory_(std::make_unique<Memory>()) {
   const Parts& parts = *check.parts_;
-  memory_->owner = &parts;
+  memory_->owner = check.parts_;
   const auto variables = static_cast<std::size_t>(filled_up(parts.problem.variable_count));
   memory_->variables.resize(variables);
   memory_->sines.resize(variables);
@@ -61,6 +62,12 @@ MechanismCheck::Scratch::~Scratch() = default;
 MechanismCheck::Scratch::Scratch(Scratch&&) noexcept = default;
 MechanismCheck::Scratch& MechanismCheck::Scratch::operator=(Scratch&&) noexcept = default;
 
+void MechanismCheck::require_own(const Scratch& scratch) const {
+  if (!scratch.memory_ || scratch.memory_->owner != parts_) {
+    throw Error("scratch", "it was made for another check");
+  }
+}
+
 bool MechanismCheck::is_in_range(std::span<const double> variables) {
   return std::all_of(variables.begin(), variables.end(),
                      [](double v) { return std::abs(v) <= MechanismCheck::kLargestVariable; });
@@ -76,7 +83,7 @@ bool MechanismCheck::within(std::span<const double> variables, double clearance,
   constexpr float kDoubt = 0x1p-18F;
   assert(is_in_range(variables));
   assert(variables.size() >= static_cast<std::size_t>(parts_->problem.variable_count));
-  assert(scratch.memory_->owner == parts_.get());
+  require_own(scratch);
   require_clearance(clearance);
   Translator translator{parts_->scene, ask, context};
   Scratch::Memory& memory = *scratch.memory_;
@@ -90,12 +97,13 @@ bool MechanismCheck::within(std::span<const double> variables, double clearance,
 }
 
 bool MechanismCheck::is_following(const Scratch& scratch) const {
+  require_own(scratch);
   return scratch.memory_->motion->is_following();
 }
 
 void MechanismCheck::remember_contact(int frame, const Sphere& ball, double depth,
                                       Scratch& scratch) const {
-  assert(scratch.memory_->owner == parts_.get());
+  require_own(scratch);
   scratch.memory_->motion->remember_contact(frame, ball, depth, scratch.memory_->view);
 }
 
@@ -103,7 +111,7 @@ MechanismCheck::BlockAnswer MechanismCheck::collides(
     std::span<const double* const, kBlock> configurations, Scratch& scratch, Ask ask,
     void* context) const {
   static_assert(kBlock == internal::kLanes && kLargestVariable == internal::kLargestKernelVariable);
-  assert(scratch.memory_->owner == parts_.get());
+  require_own(scratch);
   Translator translator{parts_->scene, ask, context};
   const auto [hits, refused] =
       parts_->kernels->check_block(parts_->problem, configurations.data(), scratch.memory_->view,

@@ -73,7 +73,7 @@ class MechanismCheck {
   MechanismCheck(MechanismCheck&&) noexcept;
   MechanismCheck& operator=(MechanismCheck&&) noexcept;
 
-  // What a query writes to: made for one check, which must outlive its use.
+  // What a query writes to: made for one check; with that of another one every query throws Error.
   class Scratch {
    public:
     explicit Scratch(const MechanismCheck& check);
@@ -169,10 +169,12 @@ class MechanismCheck {
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
                         const EdgeRequest& request, AskAt ask, void* context) const;
 
+  void require_own(const Scratch& scratch) const;
+
   struct Parts;
   struct Translator;
   class EdgeMotion;
-  std::unique_ptr<const Parts> parts_;
+  std::shared_ptr<const Parts> parts_;
 };
 
 }  // namespace spherule

@@ -164,7 +164,7 @@ EdgeResult MechanismCheck::check_edge(std::span<const double> from, std::span<co
                                       Scratch& scratch, const EdgeRequest& request, AskAt ask,
                                       void* context) const {
   assert(is_in_range(from) && is_in_range(to));
-  assert(scratch.memory_->owner == parts_.get());
+  require_own(scratch);
   require_resolution(request.resolution);
   Scratch::Memory& memory = *scratch.memory_;
   using Halving = EdgeHalving<EdgeMotion>;

@@ -25,12 +25,15 @@ class PatchTrees;
 // A mesh and spheres that cover it, with the triangles shared out among the spheres. Immutable;
 // threads may share it. The mesh is judged as stored, as by MeshTree.
 //
-// Inside. A shell, triangles connected by shared edges, that has no boundary (every directed edge,
-// by positions, is met by as many in the other direction) has an inside: the points about which its
-// winding number is not zero. Each shell is judged by itself, so that a sealed hollow is inside,
-// and a double-sided one (every triangle in both orientations) has the inside of one of its sides.
-// One that is open, or whose triangles are not turned consistently, has no inside. What lies within
-// such a one without touching it is free.
+// Inside. A closed surface, triangles in which every directed edge, by positions, is met by as many
+// in the other direction, has an inside: the points about which its winding number is not zero. The
+// surfaces looked at are those of internal/mesh_shells.h, each by itself: all triangles that are
+// connected by shared edges, as they are turned; the parts of these that are connected where no
+// more than two triangles meet, all turned alike; and what bounds one room where more meet. So a
+// sealed hollow is inside, a double-sided part has the inside of one of its sides, and so have the
+// rooms on both sides of a wall. A part with a boundary, or which cannot be turned alike, has no
+// inside: what lies within such a one without touching it is free. So is what only several parts
+// enclose that share no edges, as halves that are not welded do.
 class CoveredMesh {
  public:
   // Proves that the spheres cover every triangle, and throws Error, naming one, where that fails.
@@ -48,7 +51,7 @@ class CoveredMesh {
     const auto first = static_cast<std::size_t>(first_[i]);
     return std::span(triangles_).subspan(first, static_cast<std::size_t>(first_[i + 1]) - first);
   }
-  // Whether all shells have an inside.
+  // Whether every triangle is of a closed surface.
   bool is_closed() const;
 
   // For queries.

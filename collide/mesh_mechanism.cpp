@@ -36,7 +36,7 @@ struct MeshMechanismCheck::Parts {
 };
 
 struct MeshMechanismCheck::Scratch::Memory {
-  const Parts* owner = nullptr;
+  std::shared_ptr<const Parts> owner;  // kept, so that no later check is at its address
   std::vector<double> sines;
   std::vector<double> cosines;
   std::vector<internal::KernelPose> poses;
@@ -210,7 +210,7 @@ MeshMechanismCheck::Scratch::Scratch(const MeshMechanismCheck& check)
     : memory_(std::make_unique<Memory>()) {
   const Parts& parts = *check.parts_;
   const auto variables = static_cast<std::size_t>((parts.kinematics.variable_count + 3) / 4 * 4);
-  memory_->owner = &parts;
+  memory_->owner = check.parts_;
   memory_->sines.resize(variables);
   memory_->cosines.resize(variables);
   memory_->poses.resize(parts.frames.size());
@@ -228,9 +228,11 @@ MeshMechanismCheck::Scratch& MeshMechanismCheck::Scratch::operator=(Scratch&&) n
 bool MeshMechanismCheck::collides(std::span<const double> variables, Scratch& scratch, Ask ask,
                                   void* context) const {
   const Parts& parts = *parts_;
+  if (!scratch.memory_ || scratch.memory_->owner != parts_) {
+    throw Error("scratch", "it was made for another check");
+  }
   assert(MechanismCheck::is_in_range(variables));
   assert(variables.size() >= static_cast<std::size_t>(parts.kinematics.variable_count));
-  assert(scratch.memory_->owner == parts_.get());
   Scratch::Memory& memory = *scratch.memory_;
   parts.kernels->place(parts.kinematics, variables.data(), memory.view);
   Translator translator{parts, ask, context};

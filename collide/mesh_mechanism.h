@@ -41,7 +41,7 @@ class MeshMechanismCheck {
   MeshMechanismCheck(MeshMechanismCheck&&) noexcept;
   MeshMechanismCheck& operator=(MeshMechanismCheck&&) noexcept;
 
-  // What a query writes to: made for one check, which must outlive its use.
+  // What a query writes to: made for one check; with that of another one every query throws Error.
   class Scratch {
    public:
     explicit Scratch(const MeshMechanismCheck& check);
@@ -72,7 +72,7 @@ class MeshMechanismCheck {
 
   struct Parts;
   struct Translator;
-  std::unique_ptr<const Parts> parts_;
+  std::shared_ptr<const Parts> parts_;
 };
 
 }  // namespace spherule

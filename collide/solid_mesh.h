@@ -19,14 +19,13 @@ class MeshInside;
 
 // A mesh with its inside, as an obstacle. Immutable; threads may share it.
 //
-// The solid is the closed set of the points within growth() of a triangle or of the inside. The
-// inside are the points about which the winding number of a closed shell is not zero, a shell being
-// triangles connected by shared edges. It contains the mesh of the file and its inside, because
-// growth() is TriangleMesh::vertex_error. Each shell is judged by itself: overlapping ones take
-// nothing from each other, whichever way they are turned, and a sealed hollow is inside, as is what
-// it holds. A double-sided shell (every triangle in both orientations) has the inside of one of its
-// sides. A shell that has a boundary, or whose triangles are not turned consistently, has no
-// inside, and what lies within it without touching it is free.
+// The solid is the closed set of the points within growth() of a triangle or of the inside, which
+// is that of CoveredMesh (mesh_contact.h): the points about which the winding number of a closed
+// surface is not zero. It contains the mesh of the file and its inside, because growth() is
+// TriangleMesh::vertex_error. Each surface is judged by itself: overlapping ones take nothing from
+// each other, whichever way they are turned, and a sealed hollow is inside, as is what it holds.
+// A part with a boundary, or which cannot be turned alike, has no inside, and what lies within it
+// without touching it is free.
 class SolidMesh {
  public:
   // Throws Error for a mesh that validate() refuses.
@@ -34,7 +33,7 @@ class SolidMesh {
 
   const MeshTree& mesh() const { return mesh_; }
   double growth() const { return growth_; }
-  // Whether all shells have an inside, and whether any has.
+  // Whether every triangle is of a closed surface, and whether any is.
   bool is_closed() const;
   bool has_inside() const;
 

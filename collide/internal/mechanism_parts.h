@@ -37,8 +37,8 @@ struct MechanismCheck::Parts {
 };
 
 struct MechanismCheck::Scratch::Memory {
-  const Parts* owner = nullptr;
-  std::vector<double> variables;  // of a configuration on an edge
+  std::shared_ptr<const Parts> owner;  // kept, so that no later check is at its address
+  std::vector<double> variables;       // of a configuration on an edge
   std::vector<double> sines;
   std::vector<double> cosines;
   std::vector<internal::KernelPose> poses;

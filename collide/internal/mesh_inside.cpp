@@ -112,6 +112,8 @@ bool count_crossings(const MeshTree& mesh, const std::vector<TriangleRole>& role
     if (*crossing == 0) continue;
     numbers.add(role.shell, *crossing);
     numbers.add(role.patch, *crossing * role.turn);
+    numbers.add(role.front, *crossing);
+    numbers.add(role.back, -*crossing);
   }
   return true;
 }
@@ -138,7 +140,7 @@ MeshInside::MeshInside(const TriangleMesh& mesh) {
     components.join(t[0], t[1]);
     components.join(t[1], t[2]);
   }
-  MeshShells shells = find_shells(triangles);
+  MeshShells shells = find_shells(triangles, mesh.vertices);
   is_closed_ = shells.are_closed;
   roles_ = std::move(shells.roles);
   Eigen::AlignedBox3d around;

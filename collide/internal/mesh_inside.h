@@ -27,10 +27,9 @@ inline const std::array<Eigen::Vector3d, 8> kRayDirections = {
      {-0.2109876, -0.6543213, -0.7198765}}};
 
 // The inside of a mesh and its connected components. Triangles are connected where they share a
-// vertex position. The inside is where the winding number of any closed shell or patch
+// vertex position. The inside is where the winding number of any closed surface
 // (mesh_shells.h) is not zero, whatever others count there: so where closed parts overlap that are
-// turned differently, and in a sealed hollow. Open shells, and those whose triangles are not turned
-// consistently, have none.
+// turned differently, and in a sealed hollow.
 class MeshInside {
  public:
   explicit MeshInside(const TriangleMesh& mesh);
@@ -38,7 +37,7 @@ class MeshInside {
   // One vertex of every component: the farthest from the middle of the mesh, as most often it is
   // far from what the mesh touches.
   std::span<const Eigen::Vector3d> component_points() const { return points_; }
-  // Whether any shell or patch is closed, and whether all shells are.
+  // Whether any triangle is of a closed surface, and whether all are.
   bool has_inside() const { return has_inside_; }
   bool is_closed() const { return is_closed_; }
   // Around the closed surfaces, and so around the inside; empty where there are none.

@@ -19,6 +19,19 @@ namespace {
 
 using Eigen::Vector3d;
 
+// So that the scale is off by no more than u = 2^-53 of itself: no subnormal number.
+constexpr double kLeastScale = 1e-300;
+
+// Reading a coordinate from decimals rounds it once. Scaling rounds twice: the scale itself, which
+// was decimals, too, and the product. Each is by u of what comes out, so n of them move a
+// coordinate as stored by no more than n u (1 + 4 u) `largest`, and the point by sqrt(3) times
+// that, which is less than 2 n u `largest`; that product is exact. What underflows is off by
+// 2^-1075, times a scale of up to 1e15.
+double point_error(bool is_rounded, bool is_scaled, double largest) {
+  const int roundings = (is_rounded ? 1 : 0) + (is_scaled ? 2 : 0);
+  return roundings == 0 ? 0.0 : 2.0 * roundings * kUnitRoundoff * largest + kUnderflow;
+}
+
 std::vector<Vector3d> text_points(std::string_view text, const std::string& file) {
   std::vector<Vector3d> points;
   internal::TextLines lines(text);
@@ -44,8 +57,8 @@ PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale)
   static constexpr std::array<std::string_view, 5> kTextExtensions = {".xyz", ".txt", ".csv",
                                                                       ".asc", ".pts"};
   const std::string file = path.string();
-  if (!(scale > 0.0 && scale <= kMaxCoordinate)) {
-    throw Error(file, "the scale is not a number above 0 and up to 1e15");
+  if (!(scale >= kLeastScale && scale <= kMaxCoordinate)) {
+    throw Error(file, "the scale is not a number from 1e-300 to 1e15");
   }
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -75,9 +88,7 @@ PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale)
     }
     largest = std::max(largest, point.lpNorm<Eigen::Infinity>());
   }
-  // Reading a decimal and scaling round once each, by 2^-53 of a coordinate.
-  const int roundings = (is_rounded ? 1 : 0) + (scale != 1.0 ? 1 : 0);
-  if (roundings > 0) cloud.point_error = 2.0 * roundings * kUnitRoundoff * largest + kUnderflow;
+  cloud.point_error = point_error(is_rounded, scale != 1.0, largest);
   return cloud;
 }
 

@@ -10,8 +10,8 @@ namespace spherule {
 
 struct PointCloudFile {
   std::vector<Eigen::Vector3d> points{};
-  // Bound of the distance between a point as stored here and as written in the file, scaled
-  // exactly.
+  // Bound of the distance between a point as stored here and as written in the file, scaled exactly
+  // by any number that rounds to `scale`; a scale of 1 is meant as such.
   double point_error = 0.0;
 };
 
@@ -23,7 +23,7 @@ struct PointCloudFile {
 // Throws Error, whose subject is the file and whose reason names the line or the point: for a file
 // that cannot be read, another extension, a PLY header that is malformed or has no x, y and z, a
 // file that is cut short, what is no number or beyond kMaxCoordinate, a file without points, and a
-// scale that is not positive.
+// scale that is not from 1e-300 to 1e15.
 PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale = 1.0);
 
 }  // namespace spherule

@@ -69,7 +69,7 @@ RobotMeshChecker::RobotMeshChecker(RobotModel robot, std::vector<LinkMesh> meshe
     placed.push_back({root_from_world * obstacle.world_from_tree, obstacle.tree});
     scene = std::max(scene, obstacle.tree->reach() + obstacle.world_from_tree.translation().norm());
   }
-  check_.emplace(
+  check_ = std::make_shared<const MeshMechanismCheck>(
       frames.frames, bodies, placed, pairs,
       internal::moving_pose_error(robot_, reach, scene, world_from_root_.translation().norm()),
       options.instructions);
@@ -83,6 +83,7 @@ bool RobotMeshChecker::meets(const Pair& pair, const std::vector<Pose>& world_fr
 }
 
 bool RobotMeshChecker::collides(std::span<const double> configuration, Scratch& scratch) const {
+  if (scratch.check_ != check_) throw Error("scratch", "it was made for another checker");
   const bool has_size = configuration.size() == static_cast<std::size_t>(robot_.variable_count());
   const std::span<const double> positions =
       has_size ? positions_.of(configuration, scratch.room_) : configuration;

@@ -6,7 +6,6 @@
 #include "collide/robot/robot_tree_checker.h"
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,15 +38,17 @@ class RobotMeshChecker {
   RobotMeshChecker(RobotModel robot, std::vector<LinkMesh> meshes,
                    std::vector<PlacedTree> obstacles, const RobotMeshCheckerOptions& options = {});
 
-  // What a query writes to: made for one checker, which must outlive its use. No query allocates
-  // once its scratch is warm.
+  // What a query writes to: made for one checker, which must outlive its use; with that of another
+  // one collides() throws Error. No query allocates once its scratch is warm.
   class Scratch {
    public:
     explicit Scratch(const RobotMeshChecker& checker)
-        : memory_(*checker.check_), room_(checker.positions_.room_for(1)) {}
+        : check_(checker.check_), memory_(*check_), room_(checker.positions_.room_for(1)) {}
 
    private:
     friend class RobotMeshChecker;
+    // Whose it is: kept, so that no later checker's is at its address.
+    std::shared_ptr<const MeshMechanismCheck> check_;
     MeshMechanismCheck::Scratch memory_;
     std::vector<Pose> world_from_link_;
     JointPositions::Room room_;
@@ -74,7 +75,7 @@ class RobotMeshChecker {
   std::vector<Pair> pairs_;          // that are tested
   std::vector<std::size_t> moving_;  // the meshes that variables move
   bool always_ = false;              // a mesh that stands with the root meets an obstacle
-  std::optional<MeshMechanismCheck> check_;
+  std::shared_ptr<const MeshMechanismCheck> check_;
 };
 
 }  // namespace spherule

@@ -24,7 +24,11 @@ class ClosedShells {
   explicit ClosedShells(const TriangleMesh& mesh);
 
   // Whether the winding number of a shell says that the point, which is not on the surface, is in
-  // |M|. Of a closed mesh, |M| has no other points but those of hollows that no single shell seals.
+  // |M|. Never true of a point outside, but not of all points of |M|: false in hollows that no
+  // single shell seals, in shells that are double-sided, not turned alike, or have a wall between
+  // rooms, and where parts that share an edge are turned against each other. So it may witness that
+  // a point has to be covered, and must not prove that one need not be: certify() has the flood for
+  // that, which knows no orientation.
   bool contain(const Eigen::Vector3d& point) const;
 
  private:

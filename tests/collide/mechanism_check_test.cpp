@@ -170,5 +170,25 @@ TEST(MechanismCheck, RefusesBadInputByName) {
   EXPECT_TRUE(says(refused(frames, {{2, Pose(), bodies[0].tree}}, obstacles, pairs), "too far"));
 }
 
+TEST(MechanismCheck, RefusesTheScratchOfAnother) {
+  const std::vector<MechanismBody> bodies = {{0, Pose(), ball({1, 0, 0}, 0.1)}};
+  const std::vector<MechanismObstacle> obstacles = {{Pose(), ball({3, 0, 0}, 0.1)}};
+  const std::vector<MechanismPair> pairs(1);
+  const MechanismCheck other(kArm, bodies, obstacles, pairs, 0.0);
+  MechanismCheck::Scratch scratch(other);
+  const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0);
+  const std::array<double, 1> q = {0.0};
+  std::array<const double*, MechanismCheck::kBlock> block;
+  block.fill(q.data());
+  const auto none = [](const auto&...) { return false; };
+  EXPECT_FALSE(other.collides(q, scratch, none));
+  EXPECT_THROW((void)check.collides(q, scratch, none), Error);
+  EXPECT_THROW((void)check.within(q, 0.1, scratch, none), Error);
+  EXPECT_THROW((void)check.collides(block, scratch, none), Error);
+  EXPECT_THROW((void)check.check_edge(q, q, scratch, {}, none), Error);
+  EXPECT_THROW((void)check.is_following(scratch), Error);
+  EXPECT_THROW(check.remember_contact(0, {{1, 0, 0}, 0.1}, 0.1, scratch), Error);
+}
+
 }  // namespace
 }  // namespace spherule::test

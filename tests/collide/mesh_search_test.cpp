@@ -325,5 +325,24 @@ TEST(MeshMechanism, RefusesWhatItCannotUse) {
   EXPECT_THROW(make({0, Pose::from_translation({1e15, 0, 0}), mesh}, {0, 0}, 0.0), Error);
 }
 
+TEST(MeshMechanism, RefusesTheScratchOfAnother) {
+  const auto mesh = std::make_shared<const MeshTree>(
+      mesh_of({{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}}));
+  const std::vector<MechanismFrame> frames(1);
+  const MechanismMesh body{0, Pose(), mesh};
+  const std::vector<MechanismObstacle> obstacles = {{Pose(), ball({9, 0, 0}, 1.0)}};
+  const MechanismPair pair;
+  const auto make = [&] {
+    return MeshMechanismCheck(frames, std::span(&body, 1), obstacles, std::span(&pair, 1), 0.0);
+  };
+  const MeshMechanismCheck check = make();
+  const MeshMechanismCheck other = make();
+  MeshMechanismCheck::Scratch scratch(other);
+  const std::array<double, 1> q = {0.0};
+  const auto none = [](const MeshContactInDoubt&) { return false; };
+  EXPECT_FALSE(other.collides(q, scratch, none));
+  EXPECT_THROW((void)check.collides(q, scratch, none), Error);
+}
+
 }  // namespace
 }  // namespace spherule::test

@@ -4,11 +4,16 @@
 #include "collide/internal/mesh_shells.h"
 
 #include "collide/internal/mesh_inside.h"
+#include "tests/collide/trees.h"
+#include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
 
 namespace spherule::test {
 namespace {
@@ -104,6 +109,8 @@ TEST(MeshShells, NorDoPartsThatShareAVertexOrAnEdge) {
   }
   for (const TriangleMesh& other : {at_edge, inverted(at_edge)}) {
     ASSERT_TRUE(contains(other, in_both));
+    EXPECT_TRUE(contains(joined(cube, other), in_both));
+    EXPECT_TRUE(contains(joined(other, inverted(cube)), in_both));
     EXPECT_TRUE(contains(joined(double_sided(cube), double_sided(other)), in_both));
     EXPECT_TRUE(contains(joined(double_sided(other), double_sided(cube)), in_both));
   }
@@ -117,6 +124,74 @@ TEST(MeshShells, HollowsAndWhatIsInThemAreInside) {
       EXPECT_TRUE(contains(mesh, {0.05, 0.5, 0.45}));
       EXPECT_TRUE(contains(mesh, {0.22, 0.5, 0.45}));
     }
+  }
+}
+
+TriangleMesh randomly_turned(TriangleMesh mesh, unsigned seed) {
+  SceneRandom random(seed);
+  for (Eigen::Vector3i& t : mesh.triangles) {
+    if (random.whole(0, 1) == 0) std::swap(t[0], t[1]);
+  }
+  return mesh;
+}
+
+TEST(MeshShells, TrianglesThatAreTurnedAnyWayHaveTheirInside) {
+  for (unsigned seed = 1; seed <= static_cast<unsigned>(effort(5, 1)); ++seed) {
+    expect_solid(randomly_turned(cube_mesh(), seed));
+    expect_nothing_inside(randomly_turned(open_box(), seed));
+    expect_nothing_inside(randomly_turned(klein_bottle(16, 24), seed));
+  }
+}
+
+// A box of unit cubes, four walls to an edge; each wall is drawn once, by the first of the two.
+TriangleMesh rooms(int x, int y, int z) {
+  TriangleMesh mesh;
+  for (int i = 0; i < x * y * z; ++i) {
+    const Vector3d low(i % x, i / x % y, i / x / y);
+    TriangleMesh room = box_mesh(low, low + Vector3d::Ones());
+    std::erase_if(room.triangles, [&](const Eigen::Vector3i& t) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto is_on_wall = [&](int v) {
+          return room.vertices[static_cast<std::size_t>(v)][axis] == low[axis];
+        };
+        if (low[axis] > 0.0 && std::all_of(t.begin(), t.end(), is_on_wall)) return true;
+      }
+      return false;
+    });
+    mesh = joined(mesh, room);
+  }
+  return mesh;
+}
+
+TEST(MeshShells, RoomsWithWallsBetweenThemAreInside) {
+  const std::vector<std::array<int, 3>> sizes = {{2, 1, 1}, {2, 2, 1}, {3, 1, 1}, {2, 3, 2}};
+  for (const auto& [x, y, z] : effort(sizes, 2)) {
+    const TriangleMesh mesh = rooms(x, y, z);
+    const TriangleMesh with_flap = joined(mesh, double_sided(flap_on_cube()));
+    EXPECT_FALSE(MeshInside(with_flap).is_closed());
+    for (const TriangleMesh& drawn :
+         {mesh, inverted(mesh), double_sided(mesh), randomly_turned(mesh, 1),
+          joined(mesh, randomly_turned(mesh, 2)), with_flap}) {
+      EXPECT_TRUE(MeshInside(drawn).is_closed() || drawn.vertices == with_flap.vertices);
+      for (int i = 0; i < x * y * z; ++i) {
+        const Vector3d middle = kMiddle + Vector3d(i % x, i / x % y, i / x / y);
+        EXPECT_TRUE(contains(drawn, middle)) << middle.transpose();
+      }
+      for (const Vector3d& outside :
+           {Vector3d(-0.2, 0.5, 0.4), Vector3d(x + 0.2, 0.5, 0.4), Vector3d(0.5, 0.4, z + 0.2)}) {
+        EXPECT_FALSE(contains(drawn, outside)) << outside.transpose();
+      }
+    }
+    // Without its end wall, the last room is open to the outside, and only that one.
+    TriangleMesh open = mesh;
+    std::erase_if(open.triangles, [&, end = x](const Eigen::Vector3i& t) {
+      return std::all_of(t.begin(), t.end(), [&](int v) {
+        return open.vertices[static_cast<std::size_t>(v)].x() == end;
+      });
+    });
+    EXPECT_EQ(contains(open, kMiddle), x > 1);
+    EXPECT_FALSE(contains(open, kMiddle + Vector3d(x - 1, 0, 0)));
+    EXPECT_EQ(MeshInside(open).is_closed(), false);
   }
 }
 

@@ -208,6 +208,12 @@ TEST(Certificate, AHollowSetIsNotACoverEvenWithoutExternalSpheres) {
     EXPECT_NEAR(certificate.solid_depth.upper, 0.38, 0.01);
     EXPECT_NEAR((certificate.deepest_leak - kMiddle).norm(), 0.0, 0.01);
   }
+  // Of a double-sided one nothing says that the middle is inside, but it cannot be reached.
+  for (const TriangleMesh& mesh : effort(std::vector{with_duplicates(cube_mesh())}, 0)) {
+    const Certificate certificate = certify(joined(mesh, inverted(mesh)), balls, flooded());
+    EXPECT_FALSE(certificate.covered);
+    EXPECT_NEAR(certificate.solid_depth.upper, 0.38, 0.01);
+  }
   // An open box has no inside that its witness could be in, but what cannot be reached counts.
   for (const TriangleMesh& mesh : effort(std::vector{open_box()}, 0)) {
     EXPECT_EQ(certify(mesh, balls, flooded()).surface_depth.upper, 0.0);

@@ -15,6 +15,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace spherule::test {
@@ -113,6 +115,25 @@ TEST(RobotMeshChecker, RefusesWhatItCannotUse) {
     q[0] = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(checker.collides(q, scratch), Error);
   }
+}
+
+// Also one in the place of that which the scratch was made for.
+TEST(RobotMeshChecker, RefusesTheScratchOfAnother) {
+  SceneRandom random(73);
+  const RobotModel robot = random_robot(random, 2, false);
+  const std::vector<LinkMesh> meshes = {{1, random_mesh(random, 0.2)}};
+  const std::vector<PlacedTree> obstacles = random_obstacles(random);
+  const std::vector<double> q(static_cast<std::size_t>(robot.variable_count()), 0.0);
+  std::optional<RobotMeshChecker> checker(std::in_place, robot, meshes, obstacles);
+  RobotMeshChecker::Scratch scratch(*checker);
+  EXPECT_NO_THROW((void)checker->collides(q, scratch));
+  for (int i = 0; i < 3; ++i) {
+    checker.emplace(robot, meshes, obstacles);
+    EXPECT_THROW((void)checker->collides(q, scratch), Error);
+  }
+  RobotMeshChecker::Scratch own(*checker);
+  const RobotMeshChecker moved = *std::move(checker);
+  EXPECT_NO_THROW((void)moved.collides(q, own));
 }
 
 }  // namespace

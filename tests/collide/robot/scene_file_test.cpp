@@ -98,6 +98,7 @@ TEST_F(SceneFileTest, Everything) {
   EXPECT_EQ(std::get<SpheresSource>(obstacles[7].shape).path, folder_.path() / "rack.spheres.json");
   EXPECT_EQ(std::get<TreeSource>(obstacles[8].shape).path, folder_.path() / "cell.tree");
   const auto& scan = std::get<PointsSource>(obstacles[9].shape);
+  EXPECT_EQ(scan.path, folder_.path() / "scan.ply");
   EXPECT_EQ(scan.radius, 0.01);
   EXPECT_EQ(scan.voxel, 0.02);
   EXPECT_EQ(scan.scale, 2.0);
@@ -187,6 +188,52 @@ TEST_F(SceneFileTest, RefusesFaultyRest) {
                                      {"body": "b", "other": "a", "distance": 0}])"),
                "the padding of \"b\" is given twice");
   expect_fault(scene(R"("robot": {"urdf": "a"})"), "robot: the key \"urdf\"");
+}
+
+// A misspelt word must not place an obstacle elsewhere than it was meant.
+TEST_F(SceneFileTest, RefusesUnknownKeysAtEveryPlace) {
+  for (const std::string object :
+       {R"("mesh": {"file": "a.stl", "odd": 1})",
+        R"("points": {"file": "a", "radius": 1, "odd": 1})",
+        R"("box": {"size": [1, 1, 1], "odd": 1})", R"("half_space": {"odd": 1})",
+        R"("cylinder": {"radius": 1, "length": 1, "odd": 1})", R"("tree": {"file": "a", "odd": 1})",
+        R"("capsule": {"radius": 1, "length": 1, "odd": 1})", R"("half_space": {}, "odd": 1)",
+        R"("spheres": {"file": "a", "odd": 1})", R"("half_space": {}, "pose": {"odd": 1})"}) {
+    expect_fault(obstacle(object), "the key \"odd\" is not known here");
+  }
+  for (const std::string list :
+       {R"("attached": [{"name": "a", "link": "b", "tree": {"file": "c"}, "odd": 1}])",
+        R"("regions": [{"body": "a", "name": "b", "ball": {"center": [0, 0, 0], "radius": 1},
+                        "odd": 1}])",
+        R"("regions": [{"body": "a", "name": "b", "ball": {"center": [0, 0, 0], "radius": 1,
+                        "odd": 1}}])",
+        R"("allowed_contacts": [{"body": "a", "other": "b", "odd": 1}])",
+        R"("padding": [{"body": "a", "distance": 1, "odd": 1}])", R"("robot": {"odd": 1})"}) {
+    expect_fault(scene(list), "the key \"odd\" is not known here");
+  }
+}
+
+TEST_F(SceneFileTest, RefusesFaultyValues) {
+  expect_fault(obstacle(R"("points": {"file": "a", "radius": 1, "voxel": -1})"),
+               "voxel: is below 0");
+  expect_fault(obstacle(R"("points": {"file": "a", "radius": 1, "scale": 0})"),
+               "scale: is not above 0");
+  expect_fault(obstacle(R"("mesh": {"file": "a", "scale": [1, 0, 1]})"), "scale: is 0");
+  expect_fault(obstacle(R"("mesh": {"file": "a", "scale": [1, 1]})"), "is not a list of 3");
+  expect_fault(obstacle(R"("mesh": {"file": 1})"), "file: is not a text");
+  expect_fault(obstacle(R"("mesh": {"file": ""})"), "file: is empty");
+  expect_fault(obstacle(R"("box": {"size": [1, 2, 3, 4]})"), "is not a list of 3 numbers");
+  expect_fault(obstacle(R"("half_space": {}, "pose": {"quaternion": [0, 0, 1]})"),
+               "is not a list of 4 numbers");
+  expect_fault(R"({"format": "spherule-scene", "version": 1.0})", "is not a whole number");
+  const std::string region = R"({"body": "a", "name": "tip", "ball": {"center": [0, 0, 0], )";
+  expect_fault(scene(R"("regions": [)" + region + R"("radius": 0}}])"), "radius: is not above 0");
+  expect_fault(
+      scene(R"("regions": [)" + region + R"("radius": 1}}, )" + region + R"("radius": 2}}])"),
+      "the region \"tip\" of \"a\" is there twice");
+  expect_fault(scene(R"("attached": [{"name": "a", "link": "b", "mesh": {"file": "c"},
+                                      "max_error": 0}])"),
+               "max_error: is not above 0");
 }
 
 }  // namespace

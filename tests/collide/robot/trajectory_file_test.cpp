@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 namespace spherule::test {
 namespace {
@@ -66,6 +67,14 @@ TEST_F(TrajectoryFileTest, WithAHeaderInAnyOrder) {
   EXPECT_EQ(path.lines, (std::vector<std::size_t>{2, 3}));
 }
 
+// A column of that name is of the joint where there is one.
+TEST_F(TrajectoryFileTest, AJointMayBeCalledTime) {
+  RobotModel robot("base");
+  robot.add_link("hand", "base", {.name = "time", .type = JointType::kContinuous});
+  const Trajectory path = read_trajectory(folder_.write("path.csv", "time\n0.5\n"), robot);
+  EXPECT_EQ(path.positions, std::vector<double>{0.5});
+}
+
 TEST_F(TrajectoryFileTest, RefusesWithTheLine) {
   EXPECT_EQ(fault(""), "it has no configuration");
   EXPECT_EQ(fault("a,c\n"), "it has no configuration");
@@ -83,7 +92,13 @@ TEST_F(TrajectoryFileTest, RefusesWithTheLine) {
   EXPECT_EQ(fault("a\n1\n"), "line 1: joint \"c\" is missing");
   EXPECT_EQ(fault("a,c\n1,2\na,c\n"), "line 3: \"a\" is not a finite number");
   EXPECT_THROW(read_trajectory(folder_.path() / "none.csv", robot_), Error);
-  EXPECT_THROW(read_trajectory(folder_.write("path.csv", "1\n"), RobotModel()), Error);
+  EXPECT_EQ(fault("time,a,c\n0,1,2\nnan,1,2\n"), "line 3: \"nan\" is not a finite number");
+  try {
+    read_trajectory(folder_.write("path.csv", "1\n"), RobotModel());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.reason(), "the robot has no joint that moves");
+  }
 }
 
 }  // namespace
