@@ -240,6 +240,8 @@ class BodyPairs::EdgeMotion {
     };
     const MovingBall& root_a = memory_.balls[first].front();
     const MovingBall& root_b = memory_.balls[second].front();
+    const double reach = root_a.radius + root_b.radius + part.way + part.pad;
+    if ((root_a.center - root_b.center).squaredNorm() > reach * reach) return PartFinding::kApart;
     PartSearch search(part);
     if (search.opens(plane(root_a, root_b), root_a.radius + root_b.radius,
                      std::max(root_a.radius, root_b.radius), a.is_leaf(0) && b.is_leaf(0))) {
