@@ -10,11 +10,12 @@ namespace spherule {
 
 // How to check a straight motion in the space of a mechanism's variables.
 struct EdgeRequest {
-  // Parts of the motion in which no point of the mechanism moves further than this are not halved
-  // any more, in the unit of the trees: what passes closer than about half of it is not proved
-  // free.
+  // What comes closer than about half of this, in the unit of the trees, is not kept apart any
+  // more: it is not proved free. All else is proved free, or a contact found, unless the budget
+  // ends before.
   double resolution = 1e-4;
-  // Look for the first contact; otherwise any will do, which is faster.
+  // Look for the first contact, and prove as much before it as can be; otherwise any contact will
+  // do, which is faster.
   bool first = false;
   // Look at no more configurations than this, with the verdict kUnknown unless a contact was found.
   std::uint64_t max_configurations = std::numeric_limits<std::uint64_t>::max();
@@ -25,11 +26,12 @@ void require_resolution(double resolution);
 
 struct EdgeResult {
   // kFree: proved at every point of the motion (G6). kCollision: at `contact_at` the canonical test
-  // finds a contact. kUnknown: neither was found at the resolution, or within the budget; count it
-  // as a collision.
+  // finds a contact. kUnknown: something comes closer than the resolution tells apart, without a
+  // contact that was found, or the budget was spent; count it as a collision.
   Verdict verdict = Verdict::kUnknown;
   // Every point of the motion before this fraction is proved free; 1 for kFree (then its end is,
-  // too). Nothing is proved if it is 0.
+  // too). Nothing is proved if it is 0. As far as the resolution lets it, if the first contact was
+  // asked for; otherwise it may be less.
   double free_until = 0.0;
   double contact_at = std::numeric_limits<double>::infinity();
   std::uint64_t configurations = 0;  // looked at

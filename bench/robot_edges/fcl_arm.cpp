@@ -8,6 +8,7 @@
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
+#include <fcl/math/bv/OBB.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
 
@@ -48,6 +49,7 @@ struct FclObstacle {
 struct FclArm::Parts {
   const RobotModel& robot;
   std::vector<std::unique_ptr<FclModel<fcl::OBBRSSd>>> links{};
+  std::vector<Geometry> geometries{};  // of these, with the volumes that are asked for
   std::vector<std::pair<std::size_t, std::size_t>> pairs{};
   std::vector<std::size_t> moving{};  // links with a mesh that a variable moves
   std::vector<FclObstacle> obstacles{};
@@ -63,11 +65,19 @@ struct FclArm::Parts {
   }
 };
 
-FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const PrimitiveScene& scene)
+FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const PrimitiveScene& scene,
+               FclVolume volume)
     : parts_(std::make_unique<Parts>(Parts{arm.model})) {
   for (const TriangleMesh& mesh : arm.meshes) {
     parts_->links.push_back(
         mesh.triangles.empty() ? nullptr : std::make_unique<FclModel<fcl::OBBRSSd>>(mesh));
+    Geometry geometry;
+    if (!mesh.triangles.empty() && volume == FclVolume::kObb) {
+      geometry = FclModel<fcl::OBBd>(mesh).geometry;
+    } else if (!mesh.triangles.empty()) {
+      geometry = parts_->links.back()->geometry;
+    }
+    parts_->geometries.push_back(std::move(geometry));
   }
   const std::size_t count = parts_->links.size();
   for (std::size_t i = count; i-- > 0;) {
@@ -106,7 +116,7 @@ bool FclArm::collides(std::span<const double> configuration) {
   for (const std::size_t link : in.moving) {
     for (const FclObstacle& obstacle : in.obstacles) {
       if (!in.boxes[link].intersects(obstacle.box)) continue;
-      if (in.touch(in.links[link]->geometry.get(), in.poses[link], obstacle.geometry.get(),
+      if (in.touch(in.geometries[link].get(), in.poses[link], obstacle.geometry.get(),
                    obstacle.pose)) {
         return true;
       }
@@ -114,8 +124,7 @@ bool FclArm::collides(std::span<const double> configuration) {
   }
   for (const auto& [a, b] : in.pairs) {
     if (!in.boxes[a].intersects(in.boxes[b])) continue;
-    if (in.touch(in.links[a]->geometry.get(), in.poses[a], in.links[b]->geometry.get(),
-                 in.poses[b])) {
+    if (in.touch(in.geometries[a].get(), in.poses[a], in.geometries[b].get(), in.poses[b])) {
       return true;
     }
   }

@@ -10,12 +10,16 @@
 
 namespace spherule {
 
-// The arm's meshes among primitives, and against each other where this is not allowed, by FCL:
-// oriented boxes with swept spheres in double, with a test of the boxes along the world's axes in
-// front. What tells a link inside another one is not asked; primitives are solid to FCL.
+// FCL's volumes around triangles that are fast on moving meshes.
+enum class FclVolume { kObb, kObbRss };
+
+// The arm's meshes among primitives, and against each other where this is not allowed, by FCL in
+// double, with a test of boxes along the world's axes in front. What tells a link inside another
+// one is not asked; primitives are solid to FCL.
 class FclArm {
  public:
-  FclArm(const Arm& arm, const AllowedCollisions& allowed, const PrimitiveScene& scene);
+  FclArm(const Arm& arm, const AllowedCollisions& allowed, const PrimitiveScene& scene,
+         FclVolume volume);
   ~FclArm();
 
   bool collides(std::span<const double> configuration);

@@ -43,13 +43,14 @@ struct CheckedContact {
   // How much is missing, at least, for the two named spheres (or the sphere and the solid) to keep
   // the padding that is asked for; rounded downward. Below zero only by rounding.
   double overlap_depth = 0.0;
-  double padding = 0.0;  // asked for, of both bodies and the pair together
+  double padding = 0.0;  // asked for, of both bodies and the pair together; rounded upward
   Eigen::Vector3d world_point = Eigen::Vector3d::Zero();  // between the two, up to rounding
 };
 
 struct RobotClearance {
   // No two of the spheres and solids that are tested against each other come nearer than this to
-  // touching, in exact arithmetic; 0 where they touch or nearly. Infinite if nothing is tested.
+  // touching, in exact arithmetic; 0 where they touch or nearly, and where a joint's position is
+  // beyond 100 in magnitude, for which no error is known. Infinite if nothing is tested.
   double lower = std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();  // the nearest two are not further apart
   CheckedBody first;  // the pair that attains `upper`, empty names if nothing is tested

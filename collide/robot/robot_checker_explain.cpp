@@ -29,8 +29,9 @@ CheckedBody RobotChecker::other_of(std::size_t index, std::int32_t sphere) const
 double RobotChecker::padding_of(std::size_t index) const {
   const internal::CheckedPair& pair = parts_->pairs.pairs()[index];
   const auto& pieces = parts_->pairs.pieces();
-  return pieces[static_cast<std::size_t>(pair.piece)].padding +
-         (pair.is_obstacle ? 0.0 : pieces[static_cast<std::size_t>(pair.other)].padding);
+  const double first = pieces[static_cast<std::size_t>(pair.piece)].padding;
+  if (pair.is_obstacle) return first;
+  return internal::padding_sum(first, pieces[static_cast<std::size_t>(pair.other)].padding);
 }
 
 std::vector<CheckedContact> RobotChecker::explain(std::span<const double> configuration,
@@ -62,7 +63,7 @@ std::vector<CheckedContact> RobotChecker::explain(std::span<const double> config
 
 // The pairs that may be nearest come first; a search ends where its pair cannot be nearer than the
 // nearest so far. What is apart under the computed poses is apart by no less than twice the error
-// of a pose under those of the exact mechanism.
+// of a pose under those of the exact mechanism, a bound that holds for usual positions alone.
 RobotClearance RobotChecker::clearance(std::span<const double> configuration,
                                        Scratch& scratch) const {
   require_own(scratch);
@@ -89,7 +90,9 @@ RobotClearance RobotChecker::clearance(std::span<const double> configuration,
     result.second = other_of(i, is_tree ? found.nearest.b : -1);
   }
   if (std::isfinite(result.lower)) {
-    result.lower = std::max(0.0, sub_down(result.lower, 2.0 * pairs.pose_error()));
+    result.lower = pairs.is_usual(configuration)
+                       ? std::max(0.0, sub_down(result.lower, 2.0 * pairs.pose_error()))
+                       : 0.0;
   }
   return result;
 }

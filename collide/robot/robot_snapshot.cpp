@@ -22,11 +22,6 @@ std::vector<Sphere> grown(std::span<const Sphere> spheres, double padding) {
   return result;
 }
 
-// Of both together; no less than that.
-double padding_sum(double first, double second) {
-  return first == 0.0 || second == 0.0 ? first + second : add_up(first, second);
-}
-
 std::string unused_name(const RobotModel& robot, std::string name) {
   while (robot.find_link(name) >= 0) name += '\'';
   return name;
@@ -163,7 +158,8 @@ class RobotScene::Snapshot {
     if (!left_out) return;
     const bool is_tree = std::holds_alternative<Tree>(shapes_[obstacle].shape);
     for (const int piece :
-         pieces_of(body, *left_out, padding_sum(padding_of(name), padding_between(name, other)))) {
+         pieces_of(body, *left_out,
+                   internal::padding_sum(padding_of(name), padding_between(name, other)))) {
       (is_tree ? standing_pairs_ : pairs_).push_back({piece, static_cast<int>(obstacle), true});
     }
   }
@@ -177,7 +173,7 @@ class RobotScene::Snapshot {
     if (!of_first || !of_second) return;
     const double between = padding_between(first.name, second.name);
     const std::vector<int> seconds = pieces_of(other, *of_second, padding_of(second.name));
-    const double padding = padding_sum(padding_of(first.name), between);
+    const double padding = internal::padding_sum(padding_of(first.name), between);
     for (const int a : pieces_of(body, *of_first, padding)) {
       for (const int b : seconds) pairs_.push_back({a, b, false});
     }

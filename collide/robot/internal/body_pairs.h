@@ -8,6 +8,9 @@
 #include "collide/contact.h"
 #include "collide/distance.h"
 #include "collide/edge.h"
+#include "collide/internal/tree_pair.h"
+#include "collide/robot/internal/part_search.h"
+#include "collide/robot/internal/path_reach.h"
 #include "collide/robot/robot_model.h"
 #include "collide/robot/robot_scene.h"
 
@@ -52,6 +55,16 @@ struct PairContact {
   Eigen::Vector3d world_point = Eigen::Vector3d::Zero();
 };
 
+// A velocity: the one of a point p is at_origin + turning x p.
+struct Twist {
+  Eigen::Vector3d turning = Eigen::Vector3d::Zero();
+  Eigen::Vector3d at_origin = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d of(const Eigen::Vector3d& point) const {
+    return at_origin + turning.cross(point);
+  }
+};
+
 class BodyPairs {
  public:
   // Only the first `tested` pairs are asked by any_touches() and check_edge(). Indices must be in
@@ -64,11 +77,20 @@ class BodyPairs {
     std::vector<Sphere> placed{};  // root balls of the pieces, in the world, up to pad
     double pad = 0.0;
     std::size_t last = 0;  // the pair that touched last
-    // Of a motion: what changes, a configuration on it, the axes of the joints there.
-    std::vector<double> changes{};
-    std::vector<double> variables{};
-    std::vector<Eigen::Vector3d> axes{};
+    // Of a motion: how fast joints move, how far they shift, bounds for each path.
+    std::vector<double> rates{};
+    std::vector<double> speeds{};
+    std::vector<double> shifts{};
+    std::vector<PathBounds> bounds{};
+    std::vector<PathBounds> work{};
     std::vector<std::int32_t> open_pairs{};
+    // Of a configuration on it: the velocities of links, and the balls of the trees of pieces; of
+    // these only the first where the number is not the configuration's.
+    std::vector<double> variables{};
+    std::vector<Twist> twists{};
+    std::vector<std::vector<MovingBall>> balls{};
+    std::vector<std::uint64_t> balls_of{};
+    std::vector<NodePair> stack{};
   };
 
   const std::vector<CheckedPiece>& pieces() const { return pieces_; }
@@ -108,10 +130,18 @@ class BodyPairs {
   const Pose& pose_of(const CheckedPiece& piece, const Memory& memory) const {
     return memory.world_from_link[static_cast<std::size_t>(piece.link)];
   }
+  double signed_distance(const CheckedPair& pair, const Memory& memory) const;
   bool balls_apart(const CheckedPair& pair, double clearance, const Memory& memory) const;
   bool is_near(const CheckedPair& pair, double clearance, const Memory& memory) const;
-  double growth(std::size_t pair, double half, const Memory& memory) const;
-  double turning_radius(const Sphere& ball, int joint, const Memory& memory) const;
+  // True only if the solid is farther than `reach` from the ball's centre in the world; the pad is
+  // in it.
+  bool is_beyond(std::size_t obstacle, const Eigen::Vector3d& center, double reach) const {
+    const Sphere& ball = solid_balls_[obstacle];
+    const double limit = ball.radius + reach;
+    return (center - ball.center).squaredNorm() > limit * limit;
+  }
+  // Fills paths_ and path_of_; what stands still hangs on the root.
+  void make_paths();
 
   RobotModel robot_;
   Pose world_from_root_;
@@ -119,10 +149,12 @@ class BodyPairs {
   std::vector<PlacedShape> obstacles_;
   std::vector<CheckedPair> pairs_;
   std::size_t tested_;
-  std::vector<std::vector<int>> paths_;  // of each tested pair: the joints that move one of the two
-                                         // against the other, from the first to the second
-  double size_ = 0.0;                    // bounds all coordinates within the usual range
+  std::vector<Sphere> solid_balls_;  // in the world, around each primitive; else of infinite size
+  double size_ = 0.0;                // bounds all coordinates within the usual range
   double pose_error_ = 0.0;
+  std::vector<PathReach> paths_;      // a piece and all that stands still share one
+  std::vector<std::size_t> path_of_;  // of each tested pair
+  std::size_t stack_size_ = 0;        // that searches of the tested pairs need
 };
 
 }  // namespace spherule::internal

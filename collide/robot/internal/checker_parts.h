@@ -6,6 +6,7 @@
 #include "collide/robot/internal/body_pairs.h"
 #include "collide/robot/robot_checker.h"
 #include "collide/robot/robot_tree_checker.h"
+#include "spheretree/rounding.h"
 
 #include <memory>
 #include <optional>
@@ -13,6 +14,15 @@
 #include <vector>
 
 namespace spherule {
+
+namespace internal {
+
+// Of both together; no less than that.
+inline double padding_sum(double first, double second) {
+  return first == 0.0 || second == 0.0 ? first + second : add_up(first, second);
+}
+
+}  // namespace internal
 
 struct RobotChecker::Parts {
   struct Named {

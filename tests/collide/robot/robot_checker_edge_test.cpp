@@ -6,6 +6,7 @@
 #include "collide/solid_mesh.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
+#include "tests/collide/robot/edge_oracle.h"
 #include "tests/collide/robot/robots.h"
 #include "tests/collide/robot/scene_oracle.h"
 #include "tests/collide/trees.h"
@@ -23,33 +24,11 @@ namespace {
 
 using Configuration = std::vector<double>;
 
-Configuration on_the_way(const Configuration& from, const Configuration& to, double t) {
-  Configuration at;
-  for (std::size_t i = 0; i < from.size(); ++i) at.push_back((1.0 - t) * from[i] + t * to[i]);
-  return at;
-}
-
-// What a result says has to be so at every one of `steps` configurations, and where it ends.
 void expect_so(const RobotChecker& checker, const Configuration& from, const Configuration& to,
                const EdgeResult& result, int steps) {
   RobotChecker::Scratch scratch(checker);
-  const auto hits = [&](double t) {
-    return !checker.check_config(on_the_way(from, to, t), scratch);
-  };
-  if (result.verdict == Verdict::kFree) {
-    EXPECT_EQ(result.free_until, 1.0);
-    EXPECT_FALSE(hits(1.0));
-  }
-  for (int i = 0; i < steps && result.free_until > 0.0; ++i) {
-    const double t = result.free_until * (static_cast<double>(i) / steps);
-    ASSERT_FALSE(hits(t)) << t << " of " << result.free_until;
-  }
-  if (result.verdict == Verdict::kCollision) {
-    EXPECT_TRUE(hits(result.contact_at)) << result.contact_at;
-    EXPECT_LE(result.free_until, result.contact_at);
-  } else {
-    EXPECT_EQ(result.contact_at, std::numeric_limits<double>::infinity());
-  }
+  const auto hits = [&](const Configuration& at) { return !checker.check_config(at, scratch); };
+  test::expect_so(hits, from, to, result, steps);
 }
 
 struct Counts {

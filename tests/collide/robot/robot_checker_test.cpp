@@ -280,5 +280,38 @@ TEST(RobotChecker, ManyAndThreadsAnswerAsOne) {
   }
 }
 
+// Two balls at the ends of arms that turn about the same axis.
+RobotScene two_arms() {
+  RobotModel robot("base");
+  robot.add_link("a", "base", {.type = JointType::kContinuous});
+  robot.add_link("b", "base", {.type = JointType::kContinuous});
+  robot.attach("a", ball({1, 0, 0}, 0.1));
+  robot.attach("b", ball({1, 0, 0}, 0.1));
+  return RobotScene(robot);
+}
+
+TEST(RobotChecker, TellsNoLessPaddingThanIsAskedFor) {
+  RobotScene scene = two_arms();
+  scene.set_padding("a", 0.1);
+  scene.set_padding("b", 0.7);
+  ASSERT_LT(static_cast<long double>(0.1 + 0.7), 0.1L + 0.7L - 1e-18L);
+  const RobotChecker checker = scene.snapshot();
+  RobotChecker::Scratch scratch(checker);
+  const auto told = checker.explain(std::vector<double>{0.0, 0.5}, scratch);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_GE(static_cast<long double>(told[0].padding),
+            static_cast<long double>(0.1) + static_cast<long double>(0.7));
+}
+
+TEST(RobotChecker, NoClearanceIsPromisedWhereNoErrorIsKnown) {
+  const RobotChecker checker = two_arms().snapshot();
+  RobotChecker::Scratch scratch(checker);
+  const RobotClearance usual = checker.clearance(std::vector<double>{99.0, 97.0}, scratch);
+  EXPECT_GT(usual.lower, 1.0);
+  const RobotClearance beyond = checker.clearance(std::vector<double>{101.0, 99.0}, scratch);
+  EXPECT_EQ(beyond.lower, 0.0);
+  EXPECT_NEAR(beyond.upper, usual.upper, 1e-9);
+}
+
 }  // namespace
 }  // namespace spherule::test

@@ -4,6 +4,7 @@
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "tests/collide/robot/checked_scene.h"
+#include "tests/collide/robot/edge_oracle.h"
 #include "tests/collide/robot/robots.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"
@@ -17,32 +18,11 @@
 namespace spherule::test {
 namespace {
 
-std::vector<double> between(const std::vector<double>& from, const std::vector<double>& to,
-                            double t) {
-  std::vector<double> at;
-  for (std::size_t i = 0; i < from.size(); ++i) at.push_back((1.0 - t) * from[i] + t * to[i]);
-  return at;
-}
-
-// What a result says has to be so at every one of `steps` configurations, and where it ends.
 void expect_true(const RobotTreeChecker& checker, const std::vector<double>& from,
                  const std::vector<double>& to, const EdgeResult& result, int steps) {
   RobotTreeChecker::Scratch scratch(checker);
-  const auto hits = [&](double t) { return checker.collides(between(from, to, t), scratch); };
-  if (result.verdict == Verdict::kFree) {
-    EXPECT_EQ(result.free_until, 1.0);
-    EXPECT_FALSE(hits(1.0));
-  }
-  for (int i = 0; i < steps && result.free_until > 0.0; ++i) {
-    const double t = result.free_until * (static_cast<double>(i) / steps);
-    ASSERT_FALSE(hits(t)) << t << " of " << result.free_until;
-  }
-  if (result.verdict == Verdict::kCollision) {
-    EXPECT_TRUE(hits(result.contact_at)) << result.contact_at;
-    EXPECT_LE(result.free_until, result.contact_at);
-  } else {
-    EXPECT_EQ(result.contact_at, std::numeric_limits<double>::infinity());
-  }
+  const auto hits = [&](const std::vector<double>& at) { return checker.collides(at, scratch); };
+  expect_so(hits, from, to, result, steps);
 }
 
 TEST(RobotEdge, WhatIsProvedFreeIsFree) {
