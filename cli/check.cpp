@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cli/check_length.h"
 #include "cli/check_report.h"
 #include "cli/command.h"
+#include "cli/help.h"
+#include "cli/outline.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "collide/robot/robot_checker.h"
@@ -209,31 +212,51 @@ void add_check(CLI::App& app, int& exit_code) {
       "check",
       "Check a robot along a trajectory in a scene; exit 0 free, 1 collision or not proved");
   auto arguments = std::make_shared<CheckArguments>();
-  command->add_option("urdf", arguments->urdf, "URDF of the robot")->required();
-  command->add_option("scene", arguments->scene, "Scene, JSON (docs/scene-file.md)")->required();
+  command->add_option("urdf", arguments->urdf, "URDF of the robot")->required()->type_name(kFile);
+  command->add_option("scene", arguments->scene, "Scene, JSON (docs/scene-file.md)")
+      ->required()
+      ->type_name(kFile);
   command
       ->add_option("trajectory", arguments->trajectory,
                    "Configurations, one a line, with or without a line of joint names")
-      ->required();
+      ->required()
+      ->type_name(kFile);
   command->add_flag("--edges", arguments->edges,
                     "Prove every motion from one configuration to the next");
   command->add_option("--resolution", arguments->resolution,
                       "With --edges: how closely motions are looked at, in metres (default 1e-4)");
-  command->add_option("--spheres", arguments->spheres,
-                      "Spheres of the robot, in any format that audit-robot reads (default: cover "
-                      "the robot first)");
-  command->add_option("--max-error", arguments->cover.max_error,
-                      "Without --spheres: how far spheres may protrude, in metres (default 0.01)");
-  command->add_option("--effort", arguments->cover.effort,
-                      "Without --spheres: how long to look for fewer spheres, as fit has it");
-  command->add_option("--geometry", arguments->geometry, "Which shapes: collision or visual");
-  command->add_option("--package", arguments->packages, "NAME=DIR, a root of package:// paths");
-  command->add_option("--threads", arguments->cover.threads, "0: all (default)");
+  command
+      ->add_option("--spheres", arguments->spheres,
+                   "Spheres of the robot, in any format that audit-robot reads (default: cover "
+                   "the robot first)")
+      ->type_name(kFile);
+  command
+      ->add_option("--max-error", arguments->cover.max_error,
+                   "Without --spheres: how far spheres may protrude, in metres (default 0.01)")
+      ->check(CLI::PositiveNumber)
+      ->check(check_length);
+  command
+      ->add_option("--effort", arguments->cover.effort,
+                   "Without --spheres: how long to look for fewer spheres, as fit has it")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--geometry", arguments->geometry,
+                   "Which of the robot's geometries stands for it (default: collision)")
+      ->check(CLI::IsMember(geometry_names()));
+  command
+      ->add_option("--package", arguments->packages,
+                   "Where package://NAME/ leads to; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name(kNamedFolder);
+  command->add_option("--threads", arguments->cover.threads, "Threads, 0: all (default)")
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", arguments->json, "Print the result as JSON");
   command->footer(
-      "Examples:\n"
-      "  spherule check robot.urdf cell.json path.csv\n"
-      "  spherule check robot.urdf cell.json path.csv --edges --spheres robot.spheres.json --json");
+      to_text({.text = "",
+               .exit_codes = "0 free; 1 a collision, not proved, or a link without spheres",
+               .examples = {"spherule check robot.urdf cell.json path.csv",
+                            "spherule check robot.urdf cell.json path.csv --edges --spheres "
+                            "robot.spheres.json --json"}}));
   command->callback([arguments, &exit_code] { exit_code = check(*arguments); });
 }
 
