@@ -165,9 +165,10 @@ int audit(const AuditArguments& arguments) {
   const double scale = arguments.scale
                            ? *arguments.scale
                            : blaming_file(arguments, [&] { return stored_scale(file); });
+  ProgressBar bar;
+  bar.announce("reading");
   const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = scale});
 
-  ProgressBar bar;
   options.progress = bar.callback();
   CertifyOptions certify_options;
   certify_options.padding = options.padding;
@@ -202,6 +203,7 @@ int audit(const AuditArguments& arguments) {
     mended = repaired(arguments, mesh, scale, file, options, certificate, certify_options);
     write_uninterrupted([&] { save_spheres(mended->file, arguments.repaired); });
   }
+  bar.clear();
   print(arguments, mesh, file, certificate, external, mended);
   return (mended ? mended->certificate : certificate).covered ? kYes : kNo;
 }

@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/mesh_output.h"
 #include "cli/output.h"
+#include "cli/progress.h"
 #include "simplifier/baseline/convex_decomposition.h"
 #include "simplifier/baseline/convex_hull.h"
 #include "simplifier/baseline/decimation.h"
@@ -128,8 +129,11 @@ int run_method(const Method& method, const MeshArguments& arguments) {
     check_outputs({arguments.output}, {arguments.mesh});
   }
   check_mesh_output(arguments.output);
+  ProgressBar bar;
+  bar.announce(method.text.name);
   const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
   const BaselineMeshes result = method.run(mesh, arguments);
+  bar.clear();
   write_uninterrupted([&] { write_meshes(result.meshes, arguments.output); });
 
   double volume = 0.0;

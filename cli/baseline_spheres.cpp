@@ -68,6 +68,7 @@ int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
   ConservativeSpheres result;
   {
     ProgressBar bar;
+    bar.announce(method.text.name);
     made = timed(making, [&] { return method.run(mesh, arguments, bar.callback()); });
     result = timed(certifying, [&] {
       return certified(mesh, std::move(made.spheres), arguments, bar.callback());

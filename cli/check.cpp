@@ -114,8 +114,9 @@ void require_provable(const Trajectory& trajectory, const std::string& file) {
 
 class TrajectoryCheck {
  public:
-  TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory, int threads)
-      : checker_(checker), trajectory_(trajectory) {
+  TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory, int threads,
+                  Progress progress)
+      : checker_(checker), trajectory_(trajectory), progress_(std::move(progress)) {
     const unsigned count = threads > 0 ? static_cast<unsigned>(threads)
                                        : std::max(1u, std::thread::hardware_concurrency());
     for (unsigned i = 0; i < count; ++i) scratches_.emplace_back(checker);
@@ -124,7 +125,11 @@ class TrajectoryCheck {
 
   CheckReport configurations() && {
     std::vector<std::uint8_t> free(trajectory_.size());
-    checker_.check_configs(trajectory_.positions, scratches_, free);
+    const std::span all(trajectory_.positions);
+    in_blocks(free.size(), [&](std::size_t first, std::size_t count) {
+      checker_.check_configs(all.subspan(first * trajectory_.width, count * trajectory_.width),
+                             scratches_, std::span(free).subspan(first, count));
+    });
     for (std::size_t i = 0; i < free.size(); ++i) {
       if (free[i] != 0) continue;
       ++report_.colliding;
@@ -136,10 +141,15 @@ class TrajectoryCheck {
   CheckReport motions(double resolution) && {
     const std::size_t count = trajectory_.size() - 1;
     const std::span all(trajectory_.positions);
-    const std::size_t numbers = count * trajectory_.width;
-    const std::vector<EdgeResult> results =
-        checker_.check_edges(all.first(numbers), all.last(numbers), scratches_,
-                             {.resolution = resolution, .first = true});
+    const std::size_t width = trajectory_.width;
+    std::vector<EdgeResult> results;
+    in_blocks(count, [&](std::size_t first, std::size_t edges) {
+      const std::vector<EdgeResult> some =
+          checker_.check_edges(all.subspan(first * width, edges * width),
+                               all.subspan((first + 1) * width, edges * width), scratches_,
+                               {.resolution = resolution, .first = true});
+      results.insert(results.end(), some.begin(), some.end());
+    });
     report_.motions = count;
     for (std::size_t i = 0; i < count; ++i) {
       TrajectoryPoint at{.line = trajectory_.lines[i], .to_line = trajectory_.lines[i + 1]};
@@ -156,6 +166,18 @@ class TrajectoryCheck {
   }
 
  private:
+  // So many at a time that the bar moves and the threads have enough to do.
+  template <typename Check>
+  void in_blocks(std::size_t count, Check check) const {
+    const std::size_t block = std::max<std::size_t>(count / 50, 256);
+    for (std::size_t first = 0; first < count; first += block) {
+      if (progress_) {
+        progress_(static_cast<double>(first) / static_cast<double>(count), "checking");
+      }
+      check(first, std::min(block, count - first));
+    }
+  }
+
   std::vector<double> between(std::size_t index, double fraction) const {
     const std::span<const double> from = trajectory_.configuration(index);
     const std::span<const double> to = trajectory_.configuration(index + 1);
@@ -172,6 +194,7 @@ class TrajectoryCheck {
 
   const RobotChecker& checker_;
   const Trajectory& trajectory_;
+  Progress progress_;
   std::vector<RobotChecker::Scratch> scratches_;
   CheckReport report_;
 };
@@ -189,17 +212,21 @@ int check(const CheckArguments& arguments) {
       arguments.spheres.empty() ? cover(arguments, robot, options) : read_spheres(arguments, robot);
   const bool is_whole =
       has_no_bare_links(robot, spheres.model, options.geometry) && spheres.is_whole;
+  ProgressBar bar;
+  options.progress = bar.callback();
   PreparedScene prepared = prepare_scene(std::move(spheres.model), scene, options);
+  bar.clear();
   for (const std::string& warning : prepared.warnings) warn(warning);
   AllowedCollisions allowed = prepared.scene.allowed_collisions();
   for (const DisabledPair& pair : spheres.ignored) allowed.allow(pair.link_a, pair.link_b);
   prepared.scene.set_allowed_collisions(std::move(allowed));
 
   const RobotChecker checker = prepared.scene.snapshot();
-  TrajectoryCheck trajectory_check(checker, trajectory, options.threads);
+  TrajectoryCheck trajectory_check(checker, trajectory, options.threads, bar.callback());
   CheckReport report = arguments.edges && trajectory.size() > 1
                            ? std::move(trajectory_check).motions(arguments.resolution)
                            : std::move(trajectory_check).configurations();
+  bar.clear();
   report.is_whole = is_whole;
   std::cout << (arguments.json ? check_json(report) : check_table(report));
   return report.is_free() ? kYes : kNo;

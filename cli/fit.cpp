@@ -126,8 +126,11 @@ int fit(const FitArguments& arguments) {
         blaming_file(arguments.tool, "tool", [&] { return tool_diameter(tool.spheres); });
   }
 
+  ProgressBar reading;
+  reading.announce("reading");
   const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
   const MeshReport report = mesh_report(mesh);
+  reading.clear();
   std::cout << describe(report) << std::endl;
 
   Simplification result = [&] {
