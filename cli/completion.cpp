@@ -3,6 +3,8 @@
 
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/output.h"
+#include "spheretree/atomic_file.h"
 
 #include <CLI/CLI.hpp>
 
@@ -28,6 +30,9 @@ void add_completion(CLI::App& app, int& exit_code) {
   command->add_option("shell", *shell, "Which shell is to complete")
       ->required()
       ->check(CLI::IsMember(shells()));
+  auto file = std::make_shared<std::string>();
+  command->add_option("-o,--output", *file, "Where the script goes (default: standard output)")
+      ->type_name(kFile);
   command->footer(to_text(
       {.text = "An installed spherule has the scripts where bash, fish and zsh look for them.",
        .exit_codes = "0 done",
@@ -35,8 +40,14 @@ void add_completion(CLI::App& app, int& exit_code) {
            "spherule completion bash > ~/.local/share/bash-completion/completions/spherule",
            "spherule completion fish > ~/.config/fish/completions/spherule.fish",
            "spherule completion zsh > ~/.zfunc/_spherule    # a folder of $fpath"}}));
-  command->callback([&app, shell, &exit_code] {
-    std::cout << shells().at(*shell)(outline(app));
+  command->callback([&app, shell, file, &exit_code] {
+    const std::string script = shells().at(*shell)(outline(app));
+    if (file->empty()) {
+      std::cout << script;
+    } else {
+      check_outputs({*file}, {});
+      write_file_atomically(*file, script);
+    }
     exit_code = kYes;
   });
 }
