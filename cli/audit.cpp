@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_length.h"
 #include "cli/command.h"
+#include "cli/help.h"
 #include "cli/json.h"
+#include "cli/next_step.h"
+#include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"
@@ -22,6 +25,7 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -114,6 +118,15 @@ Json json_of(std::span<const LeakPoint> leaks) {
   return list;
 }
 
+std::vector<NextStep> steps_after_leak(const AuditArguments& arguments) {
+  return {{{"audit", arguments.mesh, arguments.spheres, "--repair",
+            beside(arguments.spheres, ".mended.json")},
+           "make them cover"},
+          {{"view", arguments.mesh, arguments.spheres, "--leaks", "-o",
+            beside(arguments.spheres, ".html")},
+           "see where they leak"}};
+}
+
 void print(const AuditArguments& arguments, const TriangleMesh& mesh, const SphereFile& file,
            const Certificate& certificate, const std::optional<ExternalSpheres>& external,
            const std::optional<Repaired>& mended) {
@@ -133,7 +146,10 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
     return;
   }
   std::cout << describe(certificate, name_of(external));
-  if (!mended) return;
+  if (!mended) {
+    if (!certificate.covered) std::cout << describe(steps_after_leak(arguments));
+    return;
+  }
   std::cout << "repair: " << mended->repair.grown << " spheres grown, by at most "
             << mended->repair.largest_growth << ", and " << mended->repair.added
             << " added; allowed to protrude by " << mended->max_error << "\n"
@@ -149,9 +165,10 @@ int audit(const AuditArguments& arguments) {
   const double scale = arguments.scale
                            ? *arguments.scale
                            : blaming_file(arguments, [&] { return stored_scale(file); });
+  ProgressBar bar;
+  bar.announce("reading");
   const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = scale});
 
-  ProgressBar bar;
   options.progress = bar.callback();
   CertifyOptions certify_options;
   certify_options.padding = options.padding;
@@ -186,6 +203,7 @@ int audit(const AuditArguments& arguments) {
     mended = repaired(arguments, mesh, scale, file, options, certificate, certify_options);
     write_uninterrupted([&] { save_spheres(mended->file, arguments.repaired); });
   }
+  bar.clear();
   print(arguments, mesh, file, certificate, external, mended);
   return (mended ? mended->certificate : certificate).covered ? kYes : kNo;
 }
@@ -196,18 +214,22 @@ void add_audit(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("audit", "Prove whether spheres cover a mesh; exit 0 covered, 1 leaks");
   auto arguments = std::make_shared<AuditArguments>();
-  command->add_option("mesh", arguments->mesh, "The mesh")->required();
-  command->add_option("spheres", arguments->spheres, "Spheres (JSON), of any origin")->required();
+  command->add_option("mesh", arguments->mesh, "The mesh")->required()->type_name(kFile);
+  command->add_option("spheres", arguments->spheres, "Spheres (JSON), of any origin")
+      ->required()
+      ->type_name(kFile);
   command->add_option("--scale", arguments->scale,
                       "Output units per mesh unit (default: as the spheres were fitted)");
   command->add_option("--min-external", arguments->min_external,
                       "D, against which simplified solid (default: as the spheres were fitted)");
   command->add_flag("--json", arguments->json, "Print the certificate as JSON");
   CLI::Option* repair =
-      command->add_option("--repair", arguments->repaired,
-                          "Where the spheres go (JSON), grown and with others added so that they "
-                          "cover; exit 0 then says that these do. Without D anywhere it is 4 E, E "
-                          "being --max-error or 1 % of the box diagonal");
+      command
+          ->add_option("--repair", arguments->repaired,
+                       "Where the spheres go (JSON), grown and with others added so that they "
+                       "cover; exit 0 then says that these do. Without D anywhere it is 4 E, E "
+                       "being --max-error or 1 % of the box diagonal")
+          ->type_name(kFile);
   command
       ->add_option("--max-error", arguments->max_error,
                    "How far a repaired sphere may protrude (default: E as the spheres were fitted, "
@@ -215,6 +237,13 @@ void add_audit(CLI::App& app, int& exit_code) {
       ->check(CLI::PositiveNumber)
       ->check(check_length)
       ->needs(repair);
+  command->footer(to_text(
+      {.text = "Any spheres will do: {\"format\": \"spherule-spheres\", \"version\": 1, "
+               "\"options\": {}, \"spheres\": [{\"center\": [x, y, z], \"radius\": r}]}.",
+       .exit_codes = "0 proved to cover (with --repair: the repaired ones); 1 leaks, or not proved",
+       .examples = {"spherule audit part.stl part.json",
+                    "spherule audit part.stl others.json --repair mended.json --max-error 2",
+                    "spherule audit part.stl part.json --json"}}));
   command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
 }
 

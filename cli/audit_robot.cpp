@@ -4,6 +4,9 @@
 #include "cli/audit_robot_report.h"
 #include "cli/check_length.h"
 #include "cli/command.h"
+#include "cli/help.h"
+#include "cli/next_step.h"
+#include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
@@ -15,6 +18,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -91,6 +95,24 @@ void write_repaired(const AuditRobotArguments& arguments, const SphereFormatFile
                       arguments.repaired);
 }
 
+std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, SphereFormat format) {
+  std::vector<std::string> view = {"view",       arguments.urdf,     arguments.spheres,
+                                   "--geometry", arguments.geometry, "--leaks"};
+  std::vector<std::string> mend = {"audit-robot", arguments.urdf, arguments.spheres, "--geometry",
+                                   arguments.geometry};
+  for (const std::string& package : arguments.packages) {
+    for (std::vector<std::string>* step : {&view, &mend}) {
+      step->insert(step->end(), {"--package", package});
+    }
+  }
+  view.insert(view.end(), {"-o", beside(arguments.spheres, ".html")});
+  const std::string ending = std::filesystem::path(arguments.spheres).extension().string();
+  mend.insert(mend.end(), {"--repair", beside(arguments.spheres, ".mended" + ending)});
+  std::vector<NextStep> steps = {{std::move(view), "see where they leak"}};
+  if (is_written(format)) steps.push_back({std::move(mend), "make them cover"});
+  return steps;
+}
+
 int audit(const AuditRobotArguments& arguments) {
   const bool mend = !arguments.repaired.empty();
   check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses});
@@ -137,8 +159,9 @@ int audit(const AuditRobotArguments& arguments) {
                : kNo;
   }
   const RobotAudit& result = report.audit;
-  return (arguments.poses.empty() ? result.links_covered : result.configurations_covered) ? kYes
-                                                                                          : kNo;
+  if (arguments.poses.empty() ? result.links_covered : result.configurations_covered) return kYes;
+  if (!arguments.json) std::cout << describe(steps_after_leak(arguments, report.file.format));
+  return kNo;
 }
 
 }  // namespace
@@ -148,29 +171,39 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
       "audit-robot",
       "Prove whether a file's spheres cover a robot, link by link; exit 0 covered, 1 leaks");
   auto arguments = std::make_shared<AuditRobotArguments>();
-  command->add_option("urdf", arguments->urdf, "The robot, with its meshes")->required();
+  command->add_option("urdf", arguments->urdf, "The robot, with its meshes")
+      ->required()
+      ->type_name(kFile);
   command
       ->add_option("spheres", arguments->spheres,
                    "Its spheres: spherized URDF, SRDF, cuRobo yml, XRDF, or JSON of foam, MorphIt, "
                    "ballpark or spherule; told apart by content")
-      ->required();
+      ->required()
+      ->type_name(kFile);
   command
       ->add_option("--geometry", arguments->geometry,
                    "Which of the robot's geometries is to be covered")
       ->check(CLI::IsMember(geometry_names()));
-  command->add_option("--package", arguments->packages, "Where a package is: NAME=DIR");
-  command->add_option("--poses", arguments->poses,
-                      "Configurations (CSV) in which spheres of other links may cover too; the "
-                      "exit code is then about these");
+  command
+      ->add_option("--package", arguments->packages,
+                   "Where package://NAME/ leads to; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name(kNamedFolder);
+  command
+      ->add_option("--poses", arguments->poses,
+                   "Configurations (CSV) in which spheres of other links may cover too; the "
+                   "exit code is then about these")
+      ->type_name(kFile);
   command->add_option("--link", arguments->link,
                       "Whose spheres they are, if the file names no link");
   command->add_option("--level", arguments->level,
                       "Which level of a file with levels, 0 the coarsest (default: the finest)");
   command->add_flag("--json", arguments->json, "Print the certificates as JSON");
-  command->add_option(
-      "--repair", arguments->repaired,
-      "Where the file goes with spheres grown and added so that they cover every link; exit 0 then "
-      "says that these do");
+  command
+      ->add_option("--repair", arguments->repaired,
+                   "Where the file goes with spheres grown and added so that they cover every "
+                   "link; exit 0 then says that these do")
+      ->type_name(kFile);
   command
       ->add_option("--max-error", arguments->max_error,
                    "E, metres: for which the spheres were made (default 0.01), and how far a "
@@ -183,6 +216,15 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
                    "D, metres, for which the spheres were made (default: 4 E)")
       ->check(CLI::PositiveNumber)
       ->check(check_length);
+  command->footer(
+      to_text({.text = "Lengths are in metres, as in the URDF; the table is in millimetres.",
+               .exit_codes = "0 every link is proved to be covered (with --poses: in these; with "
+                             "--repair: by the repaired spheres); 1 leaks, or not proved",
+               .examples = {"spherule audit-robot robot.urdf robot.curobo.yml",
+                            "spherule audit-robot robot.urdf robot.spheres.urdf --geometry visual "
+                            "--poses path.csv",
+                            "spherule audit-robot robot.urdf robot.curobo.yml --repair "
+                            "mended.yml --json"}}));
   command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
 }
 

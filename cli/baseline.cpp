@@ -2,6 +2,8 @@
 #include "cli/baseline.h"
 
 #include "cli/command.h"
+#include "cli/help.h"
+#include "cli/outline.h"
 
 #include <CLI/CLI.hpp>
 
@@ -9,20 +11,19 @@
 
 namespace spherule {
 
-std::string example_line(const BaselineText& text) {
-  return std::string("  ") + text.example + "\n";
-}
-
 CLI::App* add_baseline_method(CLI::App& baseline, const BaselineText& text,
                               BaselineArguments& arguments, const char* output_help,
-                              const char* figures) {
+                              const HelpFooter& footer) {
   CLI::App* command = baseline.add_subcommand(text.name, text.summary);
   command->add_option("mesh", arguments.mesh, "STL, OBJ, PLY, OFF, DAE, 3MF, glTF or GLB")
-      ->required();
-  command->add_option("-o,--output", arguments.output, output_help)->required();
+      ->required()
+      ->type_name(kFile);
+  command->add_option("-o,--output", arguments.output, output_help)->required()->type_name(kFile);
   command->add_option("--scale", arguments.scale, "Output units per mesh unit (default: 1)");
   command->add_flag("--json", arguments.json, "Print the figures as JSON");
-  command->footer("Example:\n" + example_line(text) + figures);
+  HelpFooter end = footer;
+  end.examples = {text.example};
+  command->footer(to_text(end));
   return command;
 }
 
@@ -34,9 +35,13 @@ void add_baseline(CLI::App& app, int& exit_code) {
   CLI::App* baseline =
       app.add_subcommand("baseline", "Make what other methods make of a mesh, and measure it");
   baseline->require_subcommand(1);
-  std::string examples = add_mesh_baselines(*baseline, exit_code);
-  examples += add_sphere_baselines(*baseline, exit_code);
-  baseline->footer("Examples:\n" + examples);
+  HelpFooter footer{.text = "`spherule baseline METHOD --help` lists the options of a method.",
+                    .exit_codes = "0 done, spheres proved to cover; 1 spheres not proved to cover",
+                    .examples = add_mesh_baselines(*baseline, exit_code)};
+  for (const std::string& example : add_sphere_baselines(*baseline, exit_code)) {
+    footer.examples.push_back(example);
+  }
+  baseline->footer(to_text(footer));
 }
 
 }  // namespace spherule

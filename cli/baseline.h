@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/help.h"
 #include "cli/json.h"
 
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -26,21 +28,17 @@ struct BaselineText {
   const char* example;  // a line
 };
 
-// Each adds the commands of the methods that make meshes, or spheres; returns the lines of their
-// examples.
-std::string add_mesh_baselines(CLI::App& baseline, int& exit_code);
-std::string add_sphere_baselines(CLI::App& baseline, int& exit_code);
+// Each adds the commands of the methods that make meshes, or spheres; returns their examples.
+std::vector<std::string> add_mesh_baselines(CLI::App& baseline, int& exit_code);
+std::vector<std::string> add_sphere_baselines(CLI::App& baseline, int& exit_code);
 
-// Adds the command of one method with what every method takes. `figures` explains, below the
-// example, what it prints.
+// Adds the command of one method with what every method takes. Its help ends with `footer` and the
+// method's example.
 CLI::App* add_baseline_method(CLI::App& baseline, const BaselineText& text,
                               BaselineArguments& arguments, const char* output_help,
-                              const char* figures);
+                              const HelpFooter& footer);
 
 // A line for every figure: its name, and its value as JSON.
 void print_figures(const Json& figures);
-
-// The line of an example, as the help of a method and of all methods shows it.
-std::string example_line(const BaselineText& text);
 
 }  // namespace spherule

@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/mesh_output.h"
 #include "cli/output.h"
+#include "cli/progress.h"
 #include "simplifier/baseline/convex_decomposition.h"
 #include "simplifier/baseline/convex_hull.h"
 #include "simplifier/baseline/decimation.h"
@@ -128,8 +129,11 @@ int run_method(const Method& method, const MeshArguments& arguments) {
     check_outputs({arguments.output}, {arguments.mesh});
   }
   check_mesh_output(arguments.output);
+  ProgressBar bar;
+  bar.announce(method.text.name);
   const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
   const BaselineMeshes result = method.run(mesh, arguments);
+  bar.clear();
   write_uninterrupted([&] { write_meshes(result.meshes, arguments.output); });
 
   double volume = 0.0;
@@ -152,17 +156,18 @@ int run_method(const Method& method, const MeshArguments& arguments) {
 
 }  // namespace
 
-std::string add_mesh_baselines(CLI::App& baseline, int& exit_code) {
-  std::string examples;
+std::vector<std::string> add_mesh_baselines(CLI::App& baseline, int& exit_code) {
+  std::vector<std::string> examples;
   for (const Method& method : methods()) {
     auto arguments = std::make_shared<MeshArguments>();
     CLI::App* command = add_baseline_method(
         baseline, method.text, *arguments,
         "Where the result goes: STL, OBJ or PLY, or a folder for a file a part",
-        "Figures: `loss` is how far the surface of the mesh gets from the result, `excess` how far "
-        "the result sticks out: lower and upper bound, measured.");
+        {.text = "Figures: `loss` is how far the surface of the mesh gets from the result, "
+                 "`excess` how far the result sticks out: lower and upper bound, measured.",
+         .exit_codes = "0 done"});
     method.add_options(*command, *arguments);
-    examples += example_line(method.text);
+    examples.emplace_back(method.text.example);
     command->callback(
         [&method, arguments, &exit_code] { exit_code = run_method(method, *arguments); });
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/baseline_spheres.h"
 #include "cli/check_length.h"
+#include "cli/outline.h"
 #include "spheretree/error.h"
 #include "spheretree/refit.h"
 
@@ -36,7 +37,7 @@ void add_surface(CLI::App& command, SphereArguments& arguments) {
 }
 
 CLI::Option* add_tree_file(CLI::App& command, SphereArguments& arguments, const char* help) {
-  return command.add_option("--tree-file", arguments.tree_file, help);
+  return command.add_option("--tree-file", arguments.tree_file, help)->type_name(kFile);
 }
 
 void require_one(CLI::App& command, CLI::Option* a, CLI::Option* b) {

@@ -68,6 +68,7 @@ int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
   ConservativeSpheres result;
   {
     ProgressBar bar;
+    bar.announce(method.text.name);
     made = timed(making, [&] { return method.run(mesh, arguments, bar.callback()); });
     result = timed(certifying, [&] {
       return certified(mesh, std::move(made.spheres), arguments, bar.callback());
@@ -100,14 +101,15 @@ int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
 
 }  // namespace
 
-std::string add_sphere_baselines(CLI::App& baseline, int& exit_code) {
-  std::string examples;
+std::vector<std::string> add_sphere_baselines(CLI::App& baseline, int& exit_code) {
+  std::vector<std::string> examples;
   for (const SphereBaseline& method : sphere_baselines()) {
     auto arguments = std::make_shared<SphereArguments>();
     CLI::App* command = add_baseline_method(
         baseline, method.text, *arguments, "Where the spheres go (JSON), covering or not",
-        "Lengths are in output units. Exit code 0: the spheres are proved to cover the mesh and "
-        "its inside, as `spherule audit` proves it; 1: they are not.");
+        {.text = "Lengths are in output units.",
+         .exit_codes = "0 the spheres are proved to cover the mesh and its inside, as `spherule "
+                       "audit` proves it; 1 they are not"});
     method.add_options(*command, *arguments);
     command
         ->add_option("--padding", arguments->padding,
@@ -117,7 +119,7 @@ std::string add_sphere_baselines(CLI::App& baseline, int& exit_code) {
                       "Grow every sphere by the proved uncovered depth, so that they cover");
     command->add_option("--threads", arguments->threads, "Threads, 0: all; the result is the same")
         ->check(CLI::NonNegativeNumber);
-    examples += example_line(method.text);
+    examples.emplace_back(method.text.example);
     command->callback(
         [&method, arguments, &exit_code] { exit_code = run_method(method, *arguments); });
   }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cli/check_length.h"
 #include "cli/check_report.h"
 #include "cli/command.h"
+#include "cli/help.h"
+#include "cli/outline.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "collide/robot/robot_checker.h"
@@ -111,8 +114,9 @@ void require_provable(const Trajectory& trajectory, const std::string& file) {
 
 class TrajectoryCheck {
  public:
-  TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory, int threads)
-      : checker_(checker), trajectory_(trajectory) {
+  TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory, int threads,
+                  Progress progress)
+      : checker_(checker), trajectory_(trajectory), progress_(std::move(progress)) {
     const unsigned count = threads > 0 ? static_cast<unsigned>(threads)
                                        : std::max(1u, std::thread::hardware_concurrency());
     for (unsigned i = 0; i < count; ++i) scratches_.emplace_back(checker);
@@ -121,7 +125,11 @@ class TrajectoryCheck {
 
   CheckReport configurations() && {
     std::vector<std::uint8_t> free(trajectory_.size());
-    checker_.check_configs(trajectory_.positions, scratches_, free);
+    const std::span all(trajectory_.positions);
+    in_blocks(free.size(), [&](std::size_t first, std::size_t count) {
+      checker_.check_configs(all.subspan(first * trajectory_.width, count * trajectory_.width),
+                             scratches_, std::span(free).subspan(first, count));
+    });
     for (std::size_t i = 0; i < free.size(); ++i) {
       if (free[i] != 0) continue;
       ++report_.colliding;
@@ -133,10 +141,15 @@ class TrajectoryCheck {
   CheckReport motions(double resolution) && {
     const std::size_t count = trajectory_.size() - 1;
     const std::span all(trajectory_.positions);
-    const std::size_t numbers = count * trajectory_.width;
-    const std::vector<EdgeResult> results =
-        checker_.check_edges(all.first(numbers), all.last(numbers), scratches_,
-                             {.resolution = resolution, .first = true});
+    const std::size_t width = trajectory_.width;
+    std::vector<EdgeResult> results;
+    in_blocks(count, [&](std::size_t first, std::size_t edges) {
+      const std::vector<EdgeResult> some =
+          checker_.check_edges(all.subspan(first * width, edges * width),
+                               all.subspan((first + 1) * width, edges * width), scratches_,
+                               {.resolution = resolution, .first = true});
+      results.insert(results.end(), some.begin(), some.end());
+    });
     report_.motions = count;
     for (std::size_t i = 0; i < count; ++i) {
       TrajectoryPoint at{.line = trajectory_.lines[i], .to_line = trajectory_.lines[i + 1]};
@@ -153,6 +166,18 @@ class TrajectoryCheck {
   }
 
  private:
+  // So many at a time that the bar moves and the threads have enough to do.
+  template <typename Check>
+  void in_blocks(std::size_t count, Check check) const {
+    const std::size_t block = std::max<std::size_t>(count / 50, 256);
+    for (std::size_t first = 0; first < count; first += block) {
+      if (progress_) {
+        progress_(static_cast<double>(first) / static_cast<double>(count), "checking");
+      }
+      check(first, std::min(block, count - first));
+    }
+  }
+
   std::vector<double> between(std::size_t index, double fraction) const {
     const std::span<const double> from = trajectory_.configuration(index);
     const std::span<const double> to = trajectory_.configuration(index + 1);
@@ -169,6 +194,7 @@ class TrajectoryCheck {
 
   const RobotChecker& checker_;
   const Trajectory& trajectory_;
+  Progress progress_;
   std::vector<RobotChecker::Scratch> scratches_;
   CheckReport report_;
 };
@@ -186,17 +212,21 @@ int check(const CheckArguments& arguments) {
       arguments.spheres.empty() ? cover(arguments, robot, options) : read_spheres(arguments, robot);
   const bool is_whole =
       has_no_bare_links(robot, spheres.model, options.geometry) && spheres.is_whole;
+  ProgressBar bar;
+  options.progress = bar.callback();
   PreparedScene prepared = prepare_scene(std::move(spheres.model), scene, options);
+  bar.clear();
   for (const std::string& warning : prepared.warnings) warn(warning);
   AllowedCollisions allowed = prepared.scene.allowed_collisions();
   for (const DisabledPair& pair : spheres.ignored) allowed.allow(pair.link_a, pair.link_b);
   prepared.scene.set_allowed_collisions(std::move(allowed));
 
   const RobotChecker checker = prepared.scene.snapshot();
-  TrajectoryCheck trajectory_check(checker, trajectory, options.threads);
+  TrajectoryCheck trajectory_check(checker, trajectory, options.threads, bar.callback());
   CheckReport report = arguments.edges && trajectory.size() > 1
                            ? std::move(trajectory_check).motions(arguments.resolution)
                            : std::move(trajectory_check).configurations();
+  bar.clear();
   report.is_whole = is_whole;
   std::cout << (arguments.json ? check_json(report) : check_table(report));
   return report.is_free() ? kYes : kNo;
@@ -209,31 +239,51 @@ void add_check(CLI::App& app, int& exit_code) {
       "check",
       "Check a robot along a trajectory in a scene; exit 0 free, 1 collision or not proved");
   auto arguments = std::make_shared<CheckArguments>();
-  command->add_option("urdf", arguments->urdf, "URDF of the robot")->required();
-  command->add_option("scene", arguments->scene, "Scene, JSON (docs/scene-file.md)")->required();
+  command->add_option("urdf", arguments->urdf, "URDF of the robot")->required()->type_name(kFile);
+  command->add_option("scene", arguments->scene, "Scene, JSON (docs/scene-file.md)")
+      ->required()
+      ->type_name(kFile);
   command
       ->add_option("trajectory", arguments->trajectory,
                    "Configurations, one a line, with or without a line of joint names")
-      ->required();
+      ->required()
+      ->type_name(kFile);
   command->add_flag("--edges", arguments->edges,
                     "Prove every motion from one configuration to the next");
   command->add_option("--resolution", arguments->resolution,
                       "With --edges: how closely motions are looked at, in metres (default 1e-4)");
-  command->add_option("--spheres", arguments->spheres,
-                      "Spheres of the robot, in any format that audit-robot reads (default: cover "
-                      "the robot first)");
-  command->add_option("--max-error", arguments->cover.max_error,
-                      "Without --spheres: how far spheres may protrude, in metres (default 0.01)");
-  command->add_option("--effort", arguments->cover.effort,
-                      "Without --spheres: how long to look for fewer spheres, as fit has it");
-  command->add_option("--geometry", arguments->geometry, "Which shapes: collision or visual");
-  command->add_option("--package", arguments->packages, "NAME=DIR, a root of package:// paths");
-  command->add_option("--threads", arguments->cover.threads, "0: all (default)");
+  command
+      ->add_option("--spheres", arguments->spheres,
+                   "Spheres of the robot, in any format that audit-robot reads (default: cover "
+                   "the robot first)")
+      ->type_name(kFile);
+  command
+      ->add_option("--max-error", arguments->cover.max_error,
+                   "Without --spheres: how far spheres may protrude, in metres (default 0.01)")
+      ->check(CLI::PositiveNumber)
+      ->check(check_length);
+  command
+      ->add_option("--effort", arguments->cover.effort,
+                   "Without --spheres: how long to look for fewer spheres, as fit has it")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--geometry", arguments->geometry,
+                   "Which of the robot's geometries stands for it (default: collision)")
+      ->check(CLI::IsMember(geometry_names()));
+  command
+      ->add_option("--package", arguments->packages,
+                   "Where package://NAME/ leads to; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name(kNamedFolder);
+  command->add_option("--threads", arguments->cover.threads, "Threads, 0: all (default)")
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", arguments->json, "Print the result as JSON");
   command->footer(
-      "Examples:\n"
-      "  spherule check robot.urdf cell.json path.csv\n"
-      "  spherule check robot.urdf cell.json path.csv --edges --spheres robot.spheres.json --json");
+      to_text({.text = "",
+               .exit_codes = "0 free; 1 a collision, not proved, or a link without spheres",
+               .examples = {"spherule check robot.urdf cell.json path.csv",
+                            "spherule check robot.urdf cell.json path.csv --edges --spheres "
+                            "robot.spheres.json --json"}}));
   command->callback([arguments, &exit_code] { exit_code = check(*arguments); });
 }
 

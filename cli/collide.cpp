@@ -2,7 +2,9 @@
 #include "collide/collide.h"
 
 #include "cli/command.h"
+#include "cli/help.h"
 #include "cli/json.h"
+#include "cli/outline.h"
 #include "collide/distance.h"
 #include "spheretree/error.h"
 #include "spheretree/tree_file.h"
@@ -125,13 +127,20 @@ void add_collide(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("collide", "Check two placed trees; exit 0 free, 1 collision");
   auto arguments = std::make_shared<CollideArguments>();
-  command->add_option("a", arguments->tree_a, "First tree")->required();
-  command->add_option("b", arguments->tree_b, "Second tree")->required();
+  command->add_option("a", arguments->tree_a, "First tree")->required()->type_name(kFile);
+  command->add_option("b", arguments->tree_b, "Second tree")->required()->type_name(kFile);
   const char* pose_help = "\"x y z qx qy qz qw\" (default: the identity)";
   command->add_option("--pose-a", arguments->pose_a, pose_help);
   command->add_option("--pose-b", arguments->pose_b, pose_help);
   command->add_flag("--distance", arguments->distance, "Bound the separation distance too");
   command->add_flag("--json", arguments->json, "Print the result as JSON");
+  command->footer(to_text(
+      {.text = "Trees are made by `spherule tree` and by `spherule fit --tree`. Without poses both "
+               "parts stand where their meshes do.",
+       .exit_codes = "0 free; 1 collision",
+       .examples = {
+           "spherule collide part.tree tool.tree --pose-b \"0 0 120 0 0 0 1\" --distance",
+           "spherule collide part.tree tool.tree --pose-b \"60 0 0 0 0 0.7 0.7\" --json"}}));
   command->callback([arguments, &exit_code] { exit_code = run_collide(*arguments); });
 }
 

@@ -3,6 +3,9 @@
 #include "cli/command.h"
 #include "cli/cover_analysis.h"
 #include "cli/fit_report.h"
+#include "cli/help.h"
+#include "cli/next_step.h"
+#include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"
@@ -26,6 +29,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -85,6 +90,25 @@ void warn_of_thin_parts(const FitArguments& arguments, const TriangleMesh& mesh,
             << 2.0 * max_error << "\n";
 }
 
+std::vector<NextStep> next_steps(const FitArguments& arguments, bool is_covered) {
+  std::vector<NextStep> steps;
+  if (!is_covered) {
+    steps.push_back({{"audit", arguments.mesh, arguments.spheres, "--repair",
+                      beside(arguments.spheres, ".mended.json")},
+                     "make them cover"});
+  }
+  if (arguments.view.empty()) {
+    steps.push_back(
+        {{"view", arguments.mesh, arguments.spheres, "-o", beside(arguments.spheres, ".html")},
+         "look at them"});
+  }
+  if (arguments.tree.empty()) {
+    steps.push_back({{"tree", arguments.spheres, "-o", beside(arguments.spheres, ".tree")},
+                     "for collision checks"});
+  }
+  return steps;
+}
+
 // Fails (kNo) if a promise about the spheres is not proved; the files are written nevertheless and
 // say so.
 int fit(const FitArguments& arguments) {
@@ -102,8 +126,11 @@ int fit(const FitArguments& arguments) {
         blaming_file(arguments.tool, "tool", [&] { return tool_diameter(tool.spheres); });
   }
 
+  ProgressBar reading;
+  reading.announce("reading");
   const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
   const MeshReport report = mesh_report(mesh);
+  reading.clear();
   std::cout << describe(report) << std::endl;
 
   Simplification result = [&] {
@@ -147,6 +174,7 @@ int fit(const FitArguments& arguments) {
             << result.times.levels << ", certify " << result.times.certify << "\n";
   warn_of_thin_parts(arguments, mesh, result);
   const std::string broken = broken_promises(result);
+  std::cout << describe(next_steps(arguments, result.certificate.covered));
   if (broken.empty()) return kYes;
   std::cerr << "spherule: " << arguments.spheres << ": " << broken << "\n";
   return kNo;
@@ -159,8 +187,11 @@ void add_fit(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<FitArguments>();
   SimplifyOptions& options = arguments->options;
   command->add_option("mesh", arguments->mesh, "STL, OBJ, PLY, OFF, DAE, 3MF, glTF or GLB")
-      ->required();
-  command->add_option("-o,--output", arguments->spheres, "Where the spheres go (JSON)")->required();
+      ->required()
+      ->type_name(kFile);
+  command->add_option("-o,--output", arguments->spheres, "Where the spheres go (JSON)")
+      ->required()
+      ->type_name(kFile);
   command->add_option("--scale", arguments->scale, "Output units per mesh unit");
   auto* diameter = command->add_option(
       "--min-external", options.min_external_diameter,
@@ -170,9 +201,12 @@ void add_fit(CLI::App& app, int& exit_code) {
   command
       ->add_option("--tool", arguments->tool,
                    "D from the tool that will meet the model: the smallest of these spheres (JSON)")
+      ->type_name(kFile)
       ->excludes(diameter);
-  command->add_option("--zones", arguments->zones,
-                      "Where E and D are smaller: balls, boxes and capsules (JSON)");
+  command
+      ->add_option("--zones", arguments->zones,
+                   "Where E and D are smaller: balls, boxes and capsules (JSON)")
+      ->type_name(kFile);
   command->add_flag("--keep-concave-edges", options.keep_concave_edges,
                     "A smaller D along sharp concave edges, so that they are not filled");
   command
@@ -199,9 +233,11 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->add_option("--min-internal", options.min_internal_diameter,
                    "Diameter at which paper and packing seed a sphere (default: E / 2)")
       ->check(check_length);
-  command->add_option("--levels", arguments->levels,
-                      "E1,E2,...: fit coarser levels of detail too and join all in one tree; the "
-                      "finest is E");
+  command
+      ->add_option("--levels", arguments->levels,
+                   "Fit coarser levels of detail too and join all in one tree; the "
+                   "finest is E")
+      ->type_name("E1,E2,...");
   // Without the check CLI11 takes -1 for the largest number; files store 63 bits.
   command->add_option("--seed", options.seed, "Seed of everything random")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
@@ -223,10 +259,25 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->excludes(effort);
   command->add_option("--threads", options.threads, "Threads, 0: all; the result is the same")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--report", arguments->report,
-                      "Where the full report goes (JSON): external spheres, history, times");
-  command->add_option("--tree", arguments->tree, "Where the sphere tree goes");
-  command->add_option("--view", arguments->view, "Where a page to look at goes (HTML)");
+  command
+      ->add_option("--report", arguments->report,
+                   "Where the full report goes (JSON): external spheres, history, times")
+      ->type_name(kFile);
+  command->add_option("--tree", arguments->tree, "Where the sphere tree goes")->type_name(kFile);
+  command->add_option("--view", arguments->view, "Where a page to look at goes (HTML)")
+      ->type_name(kFile);
+  command->footer(to_text(
+      {.text = "Lengths are in output units: mesh units times --scale. Smaller errors need more "
+               "spheres, about three times as many for half of E.",
+       .exit_codes = "0 proved to cover and to protrude by at most E; 1 not proved (the files are "
+                     "written and say so)",
+       .examples = {"spherule fit part.stl -o part.json --max-error 1",
+                    "spherule fit part.stl -o part.json --max-error 2 --min-external 10 --view "
+                    "part.html",
+                    "spherule fit part.stl -o part.json --tool tool.json --levels 4,2,1 --tree "
+                    "part.tree",
+                    "spherule fit part.stl -o part.json --method packing --max-error 2 --report "
+                    "report.json"}}));
   command->callback([arguments, &exit_code] { exit_code = fit(*arguments); });
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
+#include "cli/help.h"
+#include "cli/outline.h"
 #include "cli/recognize.h"
 #include "simplifier/mesh_io.h"
 #include "simplifier/mesh_report.h"
@@ -85,7 +87,13 @@ int info(const std::string& file) {
 void add_info(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("info", "Say what is in a mesh, spheres or tree file");
   auto file = std::make_shared<std::string>();
-  command->add_option("file", *file, "The file; its content tells what it is")->required();
+  command->add_option("file", *file, "The file; its content tells what it is")
+      ->required()
+      ->type_name(kFile);
+  command->footer(to_text({.text = "",
+                           .exit_codes = "0 done",
+                           .examples = {"spherule info part.stl", "spherule info part.json",
+                                        "spherule info part.tree"}}));
   command->callback([file, &exit_code] { exit_code = info(*file); });
 }
 

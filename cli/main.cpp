@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
+#include "cli/help.h"
+#include "cli/usage_error.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
@@ -17,19 +19,12 @@ int bad_input(const std::string& message) {
   return kBadInput;
 }
 
-// CLI11 lists what is left over in an order of its own; name the first option among it.
-std::string describe_extras(const CLI::App& app) {
-  const auto extras = app.remaining(true);
-  for (const std::string& extra : extras) {
-    if (extra.starts_with('-')) return "unexpected option: " + extra;
-  }
-  return "unexpected argument: " + (extras.empty() ? std::string() : extras.front());
-}
-
 int run(int argc, char** argv) {
   CLI::App app("Proved sphere covers of meshes, sphere trees, and collision checking on them.",
                "spherule");
-  app.set_version_flag("--version", "spherule " SPHERULE_VERSION);
+  app.formatter(help_layout());
+  app.set_help_flag("-h,--help", "Print this help");
+  app.set_version_flag("--version", "spherule " SPHERULE_VERSION, "Print the version");
   app.require_subcommand(1);
   int exit_code = kYes;
   add_fit(app, exit_code);
@@ -46,22 +41,20 @@ int run(int argc, char** argv) {
 #ifdef SPHERULE_HAS_BASELINES
   add_baseline(app, exit_code);
 #endif
-  app.footer(
-      "Exit codes: 0 done; 1 a leak (fit, audit, robot, baseline) or a collision (collide, "
-      "check); 2 bad input.");
+  add_completion(app, exit_code);
+  add_manual(app, exit_code);
+  app.footer(to_text(
+      {.text = "`spherule COMMAND --help` lists the options of a command, with examples.",
+       .exit_codes = "0 done; 1 not proved to cover (fit, robot, baseline), a leak (audit, "
+                     "audit-robot), or a collision (collide, check)",
+       .examples = {"spherule fit part.stl -o part.json --max-error 1",
+                    "spherule audit part.stl part.json", "spherule robot robot.urdf -o spheres"}}));
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version
     return app.exit(request);
-  } catch (const CLI::ExtrasError&) {
-    return bad_input(describe_extras(app));
-  } catch (const CLI::RequiredError& error) {
-    if (!app.get_subcommands().empty()) return bad_input(error.what());
-    const auto extras = app.remaining();
-    return bad_input(extras.empty() ? "a command is required (see --help)"
-                                    : "unknown command: " + extras.front());
   } catch (const CLI::ParseError& error) {
-    return bad_input(error.what());
+    return bad_input(describe_usage_error(app, error));
   }
   if (!std::cout.flush()) return bad_input("standard output: cannot be written");
   return exit_code;

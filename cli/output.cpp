@@ -64,7 +64,8 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
     if (output.empty()) continue;
     std::error_code error;
     const fs::path folder = fs::absolute(output).parent_path();
-    if (!fs::is_directory(folder, error)) throw Error(output.string(), "no such folder");
+    if (!fs::is_directory(folder, error))
+      throw Error(output.string(), "no such folder; make it first");
     if (fs::is_directory(output, error)) throw Error(output.string(), "is a folder");
     if (!taken.insert(place_of(output)).second) {
       throw Error(output.string(), "is named twice, as input or output");

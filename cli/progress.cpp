@@ -18,7 +18,17 @@ constexpr const char* kEraseLine = "\r\x1b[K";
 ProgressBar::ProgressBar() : on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
+  clear();
+}
+
+void ProgressBar::clear() {
+  const std::lock_guard lock(mutex_);
   if (drawn_) std::fputs(kEraseLine, stderr);
+  drawn_ = false;
+}
+
+void ProgressBar::announce(const char* what) {
+  if (on_terminal_) show(-1.0, what);
 }
 
 Progress ProgressBar::callback() {

@@ -21,6 +21,12 @@ class ProgressBar {
   // and may be called from any thread.
   Progress callback();
 
+  // Shows work of which no share is known.
+  void announce(const char* what);
+
+  // Takes the bar from the terminal, before something else is printed there.
+  void clear();
+
  private:
   void show(double share, const char* what);
 

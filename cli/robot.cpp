@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_length.h"
 #include "cli/command.h"
+#include "cli/help.h"
+#include "cli/next_step.h"
+#include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/robot_files.h"
@@ -23,6 +26,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -95,6 +99,26 @@ std::vector<std::string> links_to_cover(const RobotDescription& robot, LinkGeome
   return names;
 }
 
+// With the file of all links that the other commands read, if it was asked for.
+std::vector<NextStep> next_steps(const RobotArguments& arguments,
+                                 const std::vector<fs::path>& written) {
+  const auto spheres = std::find_if(written.begin(), written.end(), [](const fs::path& file) {
+    return file.string().ends_with(".spheres.json");
+  });
+  if (spheres == written.end()) return {};
+  std::vector<std::string> view = {"view", arguments.urdf, spheres->string(), "-o",
+                                   beside(spheres->string(), ".html")};
+  std::vector<std::string> check = {"check",    arguments.urdf, "SCENE.json",
+                                    "PATH.csv", "--spheres",    spheres->string()};
+  for (std::vector<std::string>* step : {&view, &check}) {
+    step->insert(step->end(), {"--geometry", arguments.geometry});
+    for (const std::string& package : arguments.packages) {
+      step->insert(step->end(), {"--package", package});
+    }
+  }
+  return {{std::move(view), "look at them"}, {std::move(check), "check a program"}};
+}
+
 // Fails (kNo), naming the links, if something promised of a link is not proved; the files are
 // written nevertheless and say so.
 int cover_links(const RobotArguments& arguments) {
@@ -133,6 +157,7 @@ int cover_links(const RobotArguments& arguments) {
       std::cerr << "spherule: warning: link " << link.link << ": " << warning << "\n";
     }
   }
+  if (!arguments.json) std::cout << describe(next_steps(arguments, plan.all(robot, links)));
   const std::vector<std::string> open = links_not_proved(result);
   if (open.empty()) return kYes;
   std::cerr << "spherule: " << arguments.urdf << ": not proved for";
@@ -173,11 +198,12 @@ void add_robot(CLI::App& app, int& exit_code) {
       app.add_subcommand("robot", "Cover every link of a robot with spheres, with a proof");
   auto arguments = std::make_shared<RobotArguments>();
   RobotCoverOptions& options = arguments->options;
-  command->add_option("urdf", arguments->urdf, "The robot (URDF)")->required();
+  command->add_option("urdf", arguments->urdf, "The robot (URDF)")->required()->type_name(kFile);
   command
       ->add_option("-o,--output", arguments->folder,
                    "Folder for what is written; it is made if it is not there")
-      ->required();
+      ->required()
+      ->type_name(kFolder);
   command
       ->add_option("--max-error", options.max_error,
                    "E in metres, how far the spheres may protrude (default: 0.01)")
@@ -196,37 +222,54 @@ void add_robot(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember(geometry_names()));
   command
       ->add_option("--package", arguments->packages,
-                   "NAME=DIR: where package://NAME/ leads to; may be repeated")
-      ->allow_extra_args(false);
+                   "Where package://NAME/ leads to; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name(kNamedFolder);
   command
-      ->add_option("--link", arguments->links,
-                   "NAME:max-error=E,min-external=D,padding=T,zones=FILE: what is other for one "
-                   "link; may be repeated")
-      ->allow_extra_args(false);
+      ->add_option(
+          "--link", arguments->links,
+          "What is other for one link, of max-error=E,min-external=D,padding=T,zones=FILE; "
+          "may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("NAME:max-error=E,...");
   command
       ->add_option("--format", arguments->formats,
-                   "urdf,srdf,curobo,xrdf,foam,json,tree: what is written (default: all)")
+                   "What is written, with commas between (default: all)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(robot_format_names()));
-  command->add_option("--srdf", arguments->srdf,
-                      "The robot's SRDF: its disabled pairs are ignored, and all but its spheres "
-                      "is kept");
-  command->add_option("--curobo", arguments->curobo,
-                      "The robot's cuRobo file, of which all but the spheres is kept");
-  command->add_option("--xrdf", arguments->xrdf,
-                      "The robot's XRDF, of which all but the spheres is kept");
-  command->add_option("--tool-link", arguments->tool_link,
-                      "The tool's link in new cuRobo and XRDF files (default: where the chain of "
-                      "joints ends or branches)");
+  command
+      ->add_option("--srdf", arguments->srdf,
+                   "The robot's SRDF: its disabled pairs are ignored, and all but its spheres "
+                   "is kept")
+      ->type_name(kFile);
+  command
+      ->add_option("--curobo", arguments->curobo,
+                   "The robot's cuRobo file, of which all but the spheres is kept")
+      ->type_name(kFile);
+  command
+      ->add_option("--xrdf", arguments->xrdf,
+                   "The robot's XRDF, of which all but the spheres is kept")
+      ->type_name(kFile);
+  command
+      ->add_option("--tool-link", arguments->tool_link,
+                   "The tool's link in new cuRobo and XRDF files (default: where the chain of "
+                   "joints ends or branches)")
+      ->type_name("LINK");
   add_search_options(*command, arguments);
   command->add_flag("--json", arguments->json, "Print the summary as JSON, lengths in metres");
-  command->footer(
-      "Writes NAME.spheres.urdf, NAME.srdf, NAME.curobo.yml, NAME.xrdf, NAME.foam.json,\n"
-      "NAME.spheres.json, NAME.LINK.tree and NAME.report.json, NAME being the robot's name.\n"
-      "Example: spherule robot panda.urdf -o spheres --max-error 0.02 --geometry visual\n"
-      "         --package franka_description=../franka_description --link "
-      "panda_hand:max-error=0.005");
+  command->footer(to_text(
+      {.text = "Writes NAME.spheres.urdf, NAME.srdf, NAME.curobo.yml, NAME.xrdf, NAME.foam.json, "
+               "NAME.spheres.json, NAME.LINK.tree and NAME.report.json, NAME being the robot's "
+               "name.",
+       .exit_codes = "0 proved for every link; 1 not proved for links that are named (the files "
+                     "are written and say so)",
+       .examples = {"spherule robot robot.urdf -o spheres",
+                    "spherule robot robot.urdf -o spheres --max-error 0.02 --format curobo,tree",
+                    "spherule robot robot.urdf -o spheres --geometry visual --link "
+                    "hand:max-error=0.005",
+                    "spherule robot robot.urdf -o spheres --package parts=../parts --srdf "
+                    "robot.srdf"}}));
   command->callback([arguments, &exit_code] { exit_code = cover_links(*arguments); });
 }
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
+#include "cli/help.h"
+#include "cli/next_step.h"
+#include "cli/outline.h"
 #include "cli/output.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
@@ -27,7 +30,10 @@ int make_tree(const TreeArguments& arguments) {
   const SphereTree tree = build_tree(file.spheres);
   write_uninterrupted([&] { save_tree(tree, arguments.tree); });
   std::cout << "tree: " << tree.spheres().size() << " spheres, " << tree.node_count()
-            << " nodes, depth " << tree.depth() << ", branching " << tree.branching() << "\n";
+            << " nodes, depth " << tree.depth() << ", branching " << tree.branching() << "\n"
+            << describe(
+                   {{{"collide", arguments.tree, "OTHER.tree", "--pose-b", "x y z qx qy qz qw"},
+                     "does it touch another part?"}});
   return kYes;
 }
 
@@ -36,8 +42,16 @@ int make_tree(const TreeArguments& arguments) {
 void add_tree(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("tree", "Build the sphere tree of a set of spheres");
   auto arguments = std::make_shared<TreeArguments>();
-  command->add_option("spheres", arguments->spheres, "Spheres (JSON)")->required();
-  command->add_option("-o,--output", arguments->tree, "Where the tree goes")->required();
+  command->add_option("spheres", arguments->spheres, "Spheres (JSON)")
+      ->required()
+      ->type_name(kFile);
+  command->add_option("-o,--output", arguments->tree, "Where the tree goes")
+      ->required()
+      ->type_name(kFile);
+  command->footer(
+      to_text({.text = "A tree is what `spherule collide` checks, and load_tree() loads.",
+               .exit_codes = "0 done",
+               .examples = {"spherule tree part.json -o part.tree"}}));
   command->callback([arguments, &exit_code] { exit_code = make_tree(*arguments); });
 }
 

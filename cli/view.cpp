@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
+#include "cli/help.h"
+#include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/view_files.h"
 #include "cli/view_page.h"
@@ -55,7 +57,8 @@ int view(const ViewArguments& arguments) {
   for (const std::string& file : arguments.files) check_outputs({arguments.page}, {file});
   const std::string page = make_view_page(load_scene(arguments));
   write_uninterrupted([&] { write_file_atomically(arguments.page, page); });
-  std::cout << "page: " << arguments.page << " (" << page.size() / 1024 << " KiB)\n";
+  std::cout << "page: " << arguments.page << " (" << page.size() / 1024
+            << " KiB); open it in a browser\n";
   return kYes;
 }
 
@@ -70,8 +73,11 @@ void add_view(CLI::App& app, int& exit_code) {
           "files", arguments->files,
           "Meshes, spheres (JSON), trees, reports of `fit`, what `audit --json` printed, in "
           "one unit; a robot's URDF and files of its spheres")
-      ->required();
-  command->add_option("-o,--output", arguments->page, "Where the page goes (HTML)")->required();
+      ->required()
+      ->type_name(kFile);
+  command->add_option("-o,--output", arguments->page, "Where the page goes (HTML)")
+      ->required()
+      ->type_name(kFile);
   command->add_flag("--leaks", arguments->leaks,
                     "Mark where samples of the meshes lie outside of the spheres; `audit` proves");
 #ifdef SPHERULE_HAS_ROBOT
@@ -85,8 +91,17 @@ void add_view(CLI::App& app, int& exit_code) {
   command
       ->add_option("--package", arguments->robot.packages,
                    "NAME=DIR: where the robot's package NAME is; may be given again")
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->type_name(kNamedFolder);
 #endif
+  command->footer(
+      to_text({.text = "The page is one file, which any browser opens, without network or server.",
+               .exit_codes = "0 done",
+               .examples = {"spherule view part.stl part.json part.tree -o part.html",
+#ifdef SPHERULE_HAS_ROBOT
+                            "spherule view robot.urdf robot.curobo.yml -o robot.html --leaks",
+#endif
+                            "spherule view part.stl others.json --leaks -o leaks.html"}}));
   command->callback([arguments, &exit_code] { exit_code = view(*arguments); });
 }
 

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/completion.h"
+
+#include <CLI/CLI.hpp>
+
+namespace spherule {
+namespace {
+
+std::string fish_quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\\' || c == '\'') result += '\\';
+    result += c;
+  }
+  return result + "'";
+}
+
+// What fish is told of a value: whether files are offered, and which words.
+std::string fish_value(const OptionOutline& option) {
+  if (option.value == kFile) return " -F";
+  if (option.value == kFolder) return " -f -a '(__fish_complete_directories)'";
+  if (option.choices.empty()) return " -f";
+  const std::string words = CLI::detail::join(option.choices, " ");
+  return " -f -a " + fish_quoted(option.is_list ? "(__fish_append , " + words + ")" : words);
+}
+
+std::string fish_lines(const CommandOutline& command, const std::string& seen) {
+  std::vector<std::string> inner;
+  for (const CommandOutline& one : command.commands) inner.push_back(one.name);
+  const std::string start = "complete -c spherule";
+  const std::string here = inner.empty()
+                               ? seen
+                               : seen + (seen.empty() ? "not " : "; and not ") +
+                                     "__fish_seen_subcommand_from " + CLI::detail::join(inner, " ");
+  const std::string when = start + " -n " + fish_quoted(here);
+  std::string text;
+  for (const CommandOutline& one : command.commands) {
+    text += when + " -f -a " + one.name + " -d " + fish_quoted(one.summary) + "\n";
+  }
+  if (!command.arguments.empty()) text += when + fish_value(command.arguments.front()) + "\n";
+  for (const OptionOutline& option : command.options) {
+    text += when;
+    for (const std::string& name : option.names) {
+      const bool is_long = name.starts_with("--");
+      text += (is_long ? " -l " : " -s ") + name.substr(is_long ? 2 : 1);
+    }
+    if (!option.value.empty()) text += " -r" + fish_value(option);
+    text += " -d " + fish_quoted(option.description) + "\n";
+  }
+  for (const CommandOutline& one : command.commands) {
+    text += fish_lines(
+        one, seen + (seen.empty() ? "" : "; and ") + "__fish_seen_subcommand_from " + one.name);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string fish_completion(const CommandOutline& command) {
+  return "# Completion of spherule for fish, made by `spherule completion fish`.\n" +
+         fish_lines(command, "");
+}
+
+}  // namespace spherule

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/help.h"
+
+#include "cli/outline.h"
+
+#include <CLI/CLI.hpp>
+
+#include <sstream>
+
+namespace spherule {
+namespace {
+
+constexpr std::size_t kNameColumns = 32;
+constexpr std::size_t kTextColumns = 66;
+constexpr std::size_t kFooterColumns = kNameColumns + kTextColumns;
+
+std::string names_of(const std::set<CLI::Option*>& options) {
+  std::string names;
+  for (const CLI::Option* option : options) {
+    names += (names.empty() ? "" : ", ") + option->get_name();
+  }
+  return names;
+}
+
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() { column_width(kNameColumns); }
+
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const OptionOutline shown = outline(*option);
+    return (shown.value.empty() ? "" : " " + shown.value) + (shown.is_repeatable ? " ..." : "");
+  }
+
+  std::string make_option_desc(const CLI::Option* option) const override {
+    std::string text = option->get_description();
+    if (option->get_required()) text += " (required)";
+    if (!option->get_needs().empty()) text += " (needs " + names_of(option->get_needs()) + ")";
+    if (!option->get_excludes().empty()) {
+      text += " (not with " + names_of(option->get_excludes()) + ")";
+    }
+    return wrapped(text, kTextColumns);
+  }
+
+  std::string make_subcommand(const CLI::App* command) const override {
+    std::ostringstream out;
+    CLI::detail::format_help(out, command->get_name(),
+                             wrapped(command->get_description(), kTextColumns + kNameColumns / 2),
+                             kNameColumns / 2);
+    return out.str();
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<CLI::FormatterBase> help_layout() {
+  return std::make_shared<HelpFormatter>();
+}
+
+std::string to_text(const HelpFooter& footer) {
+  std::string text;
+  const auto add = [&](const std::string& paragraph) {
+    if (!paragraph.empty()) text += wrapped(paragraph, kFooterColumns) + "\n";
+  };
+  add(footer.text);
+  if (!footer.exit_codes.empty()) {
+    add(std::string(kExitCodes) + " " + footer.exit_codes + "; 2 bad input.");
+  }
+  if (footer.examples.empty()) return text;
+  text += std::string(kExamples) + "\n";
+  for (const std::string& example : footer.examples) text += "  " + example + "\n";
+  return text;
+}
+
+std::string wrapped(const std::string& text, std::size_t width) {
+  std::istringstream words(text);
+  std::string result;
+  std::size_t column = 0;
+  for (std::string word; words >> word;) {
+    if (column > 0) {
+      const bool fits = column + 1 + word.size() <= width;
+      result += fits ? ' ' : '\n';
+      column = fits ? column + 1 : 0;
+    }
+    result += word;
+    column += word.size();
+  }
+  return result;
+}
+
+}  // namespace spherule

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/outline.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+
+namespace spherule {
+namespace {
+
+// CLI11 joins the type and what its validators say: "TEXT:{cover,paper}", "FLOAT:POSITIVE".
+std::vector<std::string> choices_in(const std::string& type) {
+  const std::size_t open = type.find('{');
+  const std::size_t close = type.find('}', open);
+  if (open == std::string::npos || close == std::string::npos) return {};
+  return CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
+}
+
+std::string plain_type(const std::string& type) {
+  const std::string name = type.substr(0, type.find(':'));
+  if (name == "FLOAT") return "NUMBER";
+  if (name == "INT" || name == "UINT") return "N";
+  return name;
+}
+
+void collect_options(const CLI::App& app, CommandOutline& command) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;
+    (option->get_positional() ? command.arguments : command.options).push_back(outline(*option));
+  }
+  // Groups of options are commands without a name.
+  for (const CLI::App* inner : app.get_subcommands({})) {
+    if (inner->get_name().empty()) collect_options(*inner, command);
+  }
+}
+
+// Options that stand in a group stand in the command around it as well.
+void drop_repeated(std::vector<OptionOutline>& options) {
+  std::vector<OptionOutline> kept;
+  for (OptionOutline& option : options) {
+    const bool there = std::any_of(kept.begin(), kept.end(), [&](const OptionOutline& other) {
+      return other.names == option.names;
+    });
+    if (!there) kept.push_back(std::move(option));
+  }
+  options = std::move(kept);
+}
+
+}  // namespace
+
+OptionOutline outline(const CLI::Option& option) {
+  OptionOutline result;
+  if (option.get_positional()) {
+    result.names = {option.get_name(true, false)};
+  } else {
+    for (const std::string& name : option.get_snames()) result.names.push_back("-" + name);
+    for (const std::string& name : option.get_lnames()) result.names.push_back("--" + name);
+  }
+  if (option.get_type_size() != 0) {
+    const std::string type = option.get_type_name();
+    result.choices = choices_in(type);
+    result.value =
+        result.choices.empty() ? plain_type(type) : CLI::detail::join(result.choices, "|");
+    result.is_list = option.get_delimiter() != '\0';
+    result.is_repeatable = option.get_expected_max() >= CLI::detail::expected_max_vector_size;
+  }
+  result.is_required = option.get_required();
+  result.description = option.get_description();
+  return result;
+}
+
+CommandOutline outline(const CLI::App& app) {
+  CommandOutline result{.name = app.get_name(),
+                        .summary = app.get_description(),
+                        .footer = app.get_footer(),
+                        .arguments = {},
+                        .options = {},
+                        .commands = {}};
+  collect_options(app, result);
+  drop_repeated(result.options);
+  for (const CLI::App* inner : app.get_subcommands({})) {
+    if (!inner->get_name().empty()) result.commands.push_back(outline(*inner));
+  }
+  return result;
+}
+
+std::vector<std::string> option_names(const CommandOutline& command) {
+  std::vector<std::string> names;
+  for (const OptionOutline& option : command.options) {
+    names.insert(names.end(), option.names.begin(), option.names.end());
+  }
+  return names;
+}
+
+const CommandOutline* find_command(const CommandOutline& around, const std::string& name) {
+  const auto found = std::find_if(around.commands.begin(), around.commands.end(),
+                                  [&](const CommandOutline& one) { return one.name == name; });
+  return found == around.commands.end() ? nullptr : &*found;
+}
+
+}  // namespace spherule

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace spherule {
+
+// What options and arguments say of the values that they take, as their type_name(). Completion
+// goes by it: of what is marked otherwise nothing is known.
+inline constexpr const char* kFile = "FILE";
+inline constexpr const char* kFolder = "DIR";
+inline constexpr const char* kNamedFolder = "NAME=DIR";
+
+// An option of a command, or an argument without a name of its own (positional).
+struct OptionOutline {
+  std::vector<std::string> names;    // "-o", "--output"; of an argument its one name: "mesh"
+  std::string value;                 // "FILE", "NUMBER", "cover|paper"; empty for a flag
+  std::vector<std::string> choices;  // the words that it takes, where these are few
+  bool is_list = false;              // it takes several of them with commas between
+  bool is_repeatable = false;
+  bool is_required = false;
+  std::string description;
+};
+
+// A command as its help describes it: the one source of completion and manual pages.
+struct CommandOutline {
+  std::string name;  // without those of the commands around it
+  std::string summary;
+  std::string footer;
+  std::vector<OptionOutline> arguments;
+  std::vector<OptionOutline> options;
+  std::vector<CommandOutline> commands;
+};
+
+OptionOutline outline(const CLI::Option& option);
+CommandOutline outline(const CLI::App& app);
+
+// The names of all options of a command.
+std::vector<std::string> option_names(const CommandOutline& command);
+
+// The command with this name among those of `around`, or null.
+const CommandOutline* find_command(const CommandOutline& around, const std::string& name);
+
+}  // namespace spherule

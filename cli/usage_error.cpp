@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/usage_error.h"
+
+#include "cli/outline.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+// How many letters have to be put in, taken out or replaced (Levenshtein's distance).
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+// The command that the command line has got to, the application itself at first.
+const CLI::App& command_reached(const CLI::App& app) {
+  const CLI::App* command = &app;
+  while (true) {
+    const auto inner = command->get_subcommands();
+    const auto named = std::find_if(inner.begin(), inner.end(),
+                                    [](const CLI::App* one) { return !one->get_name().empty(); });
+    if (named == inner.end()) return *command;
+    command = *named;
+  }
+}
+
+std::string full_name(const CLI::App& command) {
+  std::string name = command.get_name();
+  for (const CLI::App* around = command.get_parent(); around; around = around->get_parent()) {
+    name = around->get_name() + " " + name;
+  }
+  return name;
+}
+
+std::string meant(const std::string& name) {
+  return name.empty() ? "" : "; did you mean " + name + "?";
+}
+
+// CLI11 lists what is left over in an order of its own; the first option among it is named.
+std::string describe_extras(const CLI::App& app, const CommandOutline& command) {
+  const std::vector<std::string> extras = app.remaining(true);
+  const auto option = std::find_if(extras.begin(), extras.end(),
+                                   [](const std::string& extra) { return extra.starts_with('-'); });
+  if (option != extras.end()) {
+    const std::string name = option->substr(0, option->find('='));
+    return "unexpected option: " + *option + meant(nearest_name(name, option_names(command)));
+  }
+  if (extras.empty()) return {};
+  if (command.commands.empty()) return "unexpected argument: " + extras.front();
+  std::vector<std::string> names;
+  for (const CommandOutline& inner : command.commands) names.push_back(inner.name);
+  return "unknown command: " + extras.front() + meant(nearest_name(extras.front(), names));
+}
+
+bool names_option(const std::string& text) {
+  return text.starts_with("unexpected option") || text.starts_with("unknown command");
+}
+
+}  // namespace
+
+std::string describe_usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& reached = command_reached(app);
+  const CommandOutline command = outline(reached);
+  std::string text;
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    text = describe_extras(app, command);
+  } else if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    // What looks missing may be there under a wrong name.
+    text = describe_extras(app, command);
+    if (!names_option(text)) {
+      text = command.commands.empty() ? error.what() : "a command is required";
+    }
+  } else {
+    text = error.what();
+  }
+  return text + " (see " + full_name(reached) + " --help)";
+}
+
+std::string nearest_name(const std::string& word, std::span<const std::string> known) {
+  std::string best;
+  std::size_t least = word.size() / 3 + 1;
+  for (const std::string& name : known) {
+    const std::size_t distance = edit_distance(word, name);
+    if (distance < least) {
+      least = distance;
+      best = name;
+    }
+  }
+  if (!best.empty() || word.size() < 2) return best;
+  const auto longer = std::find_if(known.begin(), known.end(), [&](const std::string& name) {
+    return word != "--" && name.starts_with(word);
+  });
+  return longer == known.end() ? std::string() : *longer;
+}
+
+}  // namespace spherule

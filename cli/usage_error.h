@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace CLI {
+class App;
+class ParseError;
+}  // namespace CLI
+
+namespace spherule {
+
+// What is wrong with a command line, in one line: what is not known comes first, with the name that
+// may have been meant, then what is missing; and where the help is.
+std::string describe_usage_error(const CLI::App& app, const CLI::ParseError& error);
+
+// The one of `known` that differs least from `word`, if only a few letters do: one in three, or if
+// `word` begins it. Otherwise empty.
+std::string nearest_name(const std::string& word, std::span<const std::string> known);
+
+}  // namespace spherule

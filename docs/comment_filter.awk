@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Turns the comments of a header into those that Doxygen reads; the lines keep their numbers. A
+# comment stands for the declaration below it and, above a function, for those that follow without an
+# empty line between. One with an empty line below it is about several and stands for none.
+
+function escaped(text) {
+  gsub(/\\/, "\\\\", text)
+  gsub(/@/, "\\@", text)
+  gsub(/</, "\\<", text)
+  gsub(/>/, "\\>", text)
+  return text
+}
+
+# How many more braces a line of code opens than it closes.
+function opened(code,   text) {
+  text = code
+  gsub(/'.'|"[^"]*"/, "", text)
+  return gsub(/\{/, "", text) - gsub(/\}/, "", text)
+}
+
+function flush_comment(marker,   i) {
+  for (i = 1; i <= pending; ++i) {
+    print marker == "///" ? substr(comment[i], 1, indent[i] - 1) "///" \
+                            escaped(substr(comment[i], indent[i] + 2)) : ""
+  }
+  pending = 0
+}
+
+# Whether code starts a function that the comment above the one before it stands for, too.
+function declares(code) {
+  return code ~ /\(/ && code !~ /^ *(#|\}|\)|friend |static_assert)/
+}
+
+/^ *\/\// && body == 0 {
+  if (index($0, "SPDX-License-Identifier") > 0) {
+    print ""
+    next
+  }
+  if (trailing > 0 && match($0, /\/\//) == trailing && pending == 0) {
+    print substr($0, 1, trailing - 1) "///<" escaped(substr($0, trailing + 2))
+    next
+  }
+  trailing = 0
+  ++pending
+  comment[pending] = $0
+  match($0, /\/\//)
+  indent[pending] = RSTART
+  next
+}
+
+/^ *$/ {
+  flush_comment("")
+  shared = ""
+  trailing = 0
+  print ""
+  next
+}
+
+{
+  code = $0
+  note = ""
+  trailing = 0
+  # "://" is part of an address.
+  if (body == 0 && match(code, /[;,{})] +\/\/ /)) {
+    at = RSTART + RLENGTH - 3
+    trailing = at
+    note = "///<" escaped(substr(code, at + 2))
+    code = substr(code, 1, at - 1)
+  }
+  change = opened(code)
+  if (body > 0) {
+    body += change
+    print $0
+    next
+  }
+  if (pending > 0) {
+    shared = ""
+    if (code ~ /\(/) {
+      for (i = 1; i <= pending; ++i) shared = shared escaped(substr(comment[i], indent[i] + 2))
+    }
+    flush_comment("///")
+  } else if (!continued && shared != "" && note == "" && declares(code)) {
+    match(code, /^ */)
+    code = substr(code, 1, RLENGTH) "/**" shared " */ " substr(code, RLENGTH + 1)
+  }
+  is_scope = code ~ /(^| )(struct|class|enum|union|namespace) [^;()]*\{ *$/ || code ~ /^extern "C"/
+  if (change > 0 && !is_scope) body = change
+  if (is_scope || code ~ /^ *(public|protected|private): *$/ || code ~ /^ *\};? *$/) shared = ""
+  continued = code !~ /[;{}:] *$/ && code !~ /^ *#/
+  print code note
+}
+
+END { flush_comment("") }

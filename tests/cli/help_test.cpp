@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/cli/command_test_support.h"
+#include "tests/cli/help_pages.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace spherule {
+namespace {
+
+constexpr std::size_t kColumns = 100;
+
+// A robot of one finger with what the examples name.
+constexpr const char* kRobot = R"(<?xml version="1.0"?>
+<robot name="robot">
+  <link name="base">
+    <visual><geometry><sphere radius="0.02"/></geometry></visual>
+    <collision><geometry><sphere radius="0.02"/></geometry></collision>
+  </link>
+  <link name="hand">
+    <visual><geometry><sphere radius="0.02"/></geometry></visual>
+    <collision><geometry><sphere radius="0.02"/></geometry></collision>
+  </link>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
+    <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+</robot>
+)";
+
+class HelpTest : public CommandTest {
+ protected:
+  // A line as a user types it, in the folder, with the built command as `spherule`.
+  Outcome type(const std::string& line) {
+    std::filesystem::create_directories(folder_ / ".bin");
+    std::error_code there;
+    std::filesystem::create_symlink(SPHERULE_COMMAND, folder_ / ".bin/spherule", there);
+    write(".line",
+          "cd '" + folder_.string() + "'\nHOME=$PWD\nPATH=\"$PWD/.bin:$PATH\"\n" + line + "\n");
+    const int status = std::system(
+        ("sh '" + (folder_ / ".line").string() + "' >'" + (folder_ / ".typed").string() + "' 2>&1")
+            .c_str());
+    return {.exit_code = WEXITSTATUS(status), .out = read(".typed"), .err = ""};
+  }
+
+  // All files that the examples start from.
+  void write_files() {
+    write_box("part.stl", {6, 5, 4});
+    write_spheres("tool.json", {{0, 0, 0, 2}});
+    write_spheres("others.json", {{3, 2.5, 2, 4}});
+    write("robot.urdf", kRobot);
+    write("path.csv", "0.2\n0.3\n");
+    write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+      {"name": "floor", "half_space": {}, "pose": {"position": [0, 0, -1]}}]})");
+    for (const char* folder :
+         {".zfunc", ".config/fish/completions", ".local/share/bash-completion/completions"}) {
+      std::filesystem::create_directories(folder_ / folder);
+    }
+    ASSERT_EQ(type("spherule tree tool.json -o tool.tree").exit_code, 0);
+#ifdef SPHERULE_HAS_ROBOT
+    ASSERT_EQ(type("spherule robot robot.urdf -o . --effort 0").exit_code, 0);
+#endif
+  }
+};
+
+TEST_F(HelpTest, EveryCommandTellsExitCodesAndExamples) {
+  const auto pages = help_pages([this](const auto& line) { return run(line); });
+  EXPECT_GE(pages.size(), 8u);
+  for (const auto& [command, text] : pages) {
+    EXPECT_NE(text.find("\nExit codes: 0 "), std::string::npos) << command;
+    EXPECT_FALSE(examples_in(text).empty()) << command;
+    for (const std::string& line : lines_of(text)) EXPECT_LE(line.size(), kColumns) << line;
+  }
+}
+
+TEST_F(HelpTest, ExamplesRun) {
+  write_files();
+  std::size_t count = 0;
+  for (const auto& [command, text] : help_pages([this](const auto& line) { return run(line); })) {
+    for (const std::string& example : examples_in(text)) {
+      const Outcome outcome = type(example);
+      EXPECT_EQ(outcome.exit_code, 0) << command << ": " << example << "\n" << outcome.out;
+      ++count;
+    }
+  }
+  EXPECT_GE(count, 15u);
+}
+
+TEST_F(HelpTest, NamesThatMayHaveBeenMeant) {
+  write_box("part.stl", {6, 5, 4});
+  expect_refusal({"fitt"}, "unknown command: fitt; did you mean fit? (see spherule --help)");
+  expect_refusal({"frobnicate"}, "unknown command: frobnicate (see spherule --help)");
+  expect_refusal({"fit", "part.stl", "-o", "out.json", "--max-eror", "1"},
+                 "unexpected option: --max-eror; did you mean --max-error? (see spherule fit");
+  expect_refusal({"fit", "part.stl", "--max-eror=1"}, "did you mean --max-error?");
+  expect_refusal({"fit", "part.stl", "-o", "out.json", "--frobnicate"},
+                 "unexpected option: --frobnicate (see");
+  expect_refusal({"fit", "part.stl"}, "--output is required (see spherule fit --help)");
+  expect_refusal({}, "a command is required (see spherule --help)");
+}
+
+TEST_F(HelpTest, ReportsSayWhatToDoNext) {
+  write_box("a part.stl", {6, 5, 4});
+  write_spheres("others.json", {{3, 2.5, 2, 4}});
+  const Outcome fit = run({"fit", "a part.stl", "-o", "out.json", "--max-error", "2"});
+  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_NE(fit.out.find("next: spherule view 'a part.stl' out.json -o out.html"),
+            std::string::npos)
+      << fit.out;
+  EXPECT_EQ(type("spherule view 'a part.stl' out.json -o out.html").exit_code, 0);
+  const Outcome audit = run({"audit", "a part.stl", "others.json"});
+  EXPECT_EQ(audit.exit_code, 1);
+  const std::string mend = "spherule audit 'a part.stl' others.json --repair others.mended.json";
+  EXPECT_NE(audit.out.find("next: " + mend), std::string::npos) << audit.out;
+  EXPECT_EQ(type(mend).exit_code, 0);
+  EXPECT_EQ(run({"audit", "a part.stl", "others.json", "--json"}).out.find("next:"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace spherule
