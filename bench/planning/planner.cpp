@@ -107,6 +107,9 @@ Plan plan(const PlanningEngines& engines, Validity validity, const PlanningProbl
   ompl::geometric::RRTConnect planner(information);
   planner.setProblemDefinition(definition);
   planner.setup();
+  // The first query makes the memory that all others write to.
+  information->checkMotion(start.get(), start.get());
+  information->getMotionValidator()->resetMotionCounter();
   states->forget();
   const double begin = processor_seconds();
   std::uint64_t iterations = 0;

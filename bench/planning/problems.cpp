@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/planning/problems.h"
 
+#include "bench/planning/path_check.h"
 #include "bench/planning/planning_cell.h"
-#include "bench/scenes/program.h"
 #include "bench/studies/random_numbers.h"
 #include "spheretree/error.h"
 
@@ -13,31 +13,34 @@ namespace spherule {
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
-constexpr int kTries = 1000;  // for one place that is free
+constexpr int kTries = 1000;    // for one problem
+constexpr double kStep = 0.01;  // radians
+
+bool needs_a_plan(const PlanningProblem& problem, Checker& meshes) {
+  return !collides(meshes, problem.start) && !collides(meshes, problem.goal) &&
+         check_path({problem.start, problem.goal}, meshes, kStep).contacts > 0;
+}
 
 }  // namespace
 
 std::vector<PlanningProblem> make_problems(const Workload& workload, Checker& meshes,
                                            std::span<const ArmPositions> places,
                                            std::size_t count) {
-  const ArmPositions& home = workload.program.front();
-  if (collides(meshes, home) || collides(meshes, kStation)) {
-    throw Error(workload.name, "the home position or the station is in contact");
-  }
+  if (places.empty()) throw Error(workload.name, "there is no place to start from");
   RandomNumbers random(kSeed);
-  const auto free_place = [&] {
-    for (int i = 0; i < kTries && !places.empty(); ++i) {
-      const double drawn = random.between(0.0, static_cast<double>(places.size()));
-      const ArmPositions& place =
-          places[std::min(places.size() - 1, static_cast<std::size_t>(drawn))];
-      if (!collides(meshes, place)) return place;
-    }
-    throw Error(workload.name, "no place to start from is free");
+  const auto place = [&] {
+    const double drawn = random.between(0.0, static_cast<double>(places.size()));
+    return places[std::min(places.size() - 1, static_cast<std::size_t>(drawn))];
   };
   std::vector<PlanningProblem> problems;
-  for (std::size_t i = 0; i < count; ++i) {
-    const ArmPositions start = free_place();
-    problems.push_back({start, i % 3 == 0 ? home : i % 3 == 1 ? kStation : free_place()});
+  for (int tries = 0; problems.size() < count; ++tries) {
+    if (tries == kTries) throw Error(workload.name, "hardly any motion needs a plan");
+    const ArmPositions start = place();
+    const bool goes_home = problems.size() % 2 == 0;
+    const PlanningProblem problem{start, goes_home ? workload.program.front() : place()};
+    if (!needs_a_plan(problem, meshes)) continue;
+    problems.push_back(problem);
+    tries = 0;
   }
   return problems;
 }

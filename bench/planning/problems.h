@@ -14,11 +14,10 @@ struct PlanningProblem {
   ArmPositions goal;
 };
 
-// What the robot does between welds: the first, fourth, ... leads from one of the `places` to the
-// home position (the program's first), the next ones to the station behind the fixture post, the
-// third, sixth, ... to another of the places. These are drawn from the places that are free for
-// `meshes`; always the same. Throws Error if hardly any place is free, or one of the two goals is
-// not.
+// What the robot does between welds: the first, third, ... leads from one of the `places` to the
+// home position (the program's first), the others to another of the places. These are drawn; the
+// ends are free for `meshes` and the straight motion between them is not, at configurations that it
+// is asked about. Always the same. Throws Error if hardly any two ends are so.
 std::vector<PlanningProblem> make_problems(const Workload& workload, Checker& meshes,
                                            std::span<const ArmPositions> places, std::size_t count);
 

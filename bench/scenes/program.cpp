@@ -19,7 +19,8 @@ constexpr double kTableDistance = 1.55;
 constexpr double kWorkpieceYaw = 0.2;  // radians
 
 constexpr ArmPositions kHome{0.0, -0.15, 0.1, 0.0, 1.1, 0.0};
-// A clear way round to the station.
+// Behind the fixture post, and a clear way round to it.
+constexpr ArmPositions kStation{0.52, 0.32, 0.18, 0.0, 0.6, 0.0};
 constexpr ArmPositions kAboveStation{0.52, -0.2, -0.2, 0.0, 0.9, 0.0};
 
 // Configurations of one pass: home to above the seam, down, weld, up, home.

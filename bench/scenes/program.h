@@ -16,9 +16,6 @@ inline constexpr std::size_t kProgramSize = 15178;  // collision checks of the p
 Pose world_from_table();
 Pose world_from_workpiece();
 
-// A place of the torch behind the fixture post.
-inline constexpr ArmPositions kStation{0.52, 0.32, 0.18, 0.0, 0.6, 0.0};
-
 struct Program {
   std::vector<ArmPositions> configurations;
   // 1 for those in which the wire is at the metal, on a pass: the paper's critical section.

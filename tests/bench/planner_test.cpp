@@ -22,12 +22,12 @@ constexpr ArmPositions kLeft{0.6, 0.0, 0.0, 0.0, 0.5, 0.0};
 constexpr ArmPositions kAtPost{0.0, 0.0, 0.0, 0.0, 0.5, 0.0};
 constexpr ArmPositions kRight{-0.6, 0.0, 0.0, 0.0, 0.5, 0.0};
 
-// The post stands where the wrist is in kAtPost.
+// A side of the post goes through the tool in kAtPost.
 Workload make_post_cell() {
   Workload cell{.name = "post", .robot = make_robot()};
   cell.bodies.push_back({{.name = "tool", .mesh = make_cube(0.1)}, kJoints});
   cell.obstacles.push_back({{.name = "post", .mesh = make_box({0.3, 0.3, 0.8})},
-                            Pose::from_translation({1.6, 0.0, 1.7})});
+                            Pose::from_translation({1.73, 0.0, 1.7})});
   test::add_surface_balls(cell);
   return cell;
 }
@@ -55,7 +55,9 @@ TEST(Planner, FindsAWayAroundThePost) {
       EXPECT_EQ(plan.path.back(), kRight);
       EXPECT_GT(plan.path.size(), 2u);
       EXPECT_GT(plan.motion_checks, 0u);
-      EXPECT_EQ(plan.state_checks > plan.motion_checks, validity != Validity::kProved);
+      if (validity != Validity::kProved) {
+        EXPECT_GT(plan.state_checks, 10 * plan.motion_checks);
+      }
       EXPECT_EQ(check_path(plan.path, *post.meshes, 0.002).contacts, 0u) << name_of(validity);
     }
   }
@@ -96,6 +98,8 @@ TEST(Planner, SaysWhyItHasNoPath) {
 
 TEST(PlanningCell, AnswersAsTheTreeEngine) {
   Workload cell = make_paper_cell();
+  // Such balls are so large that the lower links are always in contact.
+  std::erase_if(cell.bodies, [](const Body& body) { return body.link < 4; });
   test::add_surface_balls(cell);
   const RobotChecker checker = make_robot_checker(cell);
   RobotChecker::Scratch scratch(checker);
