@@ -23,14 +23,11 @@ void check_promises(const Simplification& fit, const std::string& part) {
 
 namespace {
 
-// Rounds of the search: fewer than by default, since the workpiece is large for its E.
-constexpr int kEffort = 30;
-
-FitRecord fit(Part& part) {
+FitRecord fit(Part& part, int effort) {
   SimplifyOptions options;
   options.max_error = part.max_error;
   options.min_external_diameter = part.min_external_diameter;
-  options.effort = kEffort;
+  options.effort = effort;
   const auto start = std::chrono::steady_clock::now();
   const Simplification result = simplify(part.mesh, options);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
@@ -48,10 +45,10 @@ FitRecord fit(Part& part) {
 }  // namespace
 
 std::vector<FitRecord> fit_parts(Workload& workload,
-                                 const std::function<void(const FitRecord&)>& done) {
+                                 const std::function<void(const FitRecord&)>& done, int effort) {
   std::vector<FitRecord> records;
   const auto add = [&](Part& part) {
-    records.push_back(fit(part));
+    records.push_back(fit(part, effort));
     done(records.back());
   };
   for (Body& body : workload.bodies) add(body.part);

@@ -28,9 +28,13 @@ void print_fit(const FitRecord& fit);
 // such a set is worth having.
 void check_promises(const Simplification& fit, const std::string& part);
 
+// Rounds of the search: fewer than by default, since the workpiece is large for its E.
+inline constexpr int kFitEffort = 30;
+
 // simplify() and build_tree() for every part of the workload; `done` is told of each. Throws Error
 // as check_promises() does.
 std::vector<FitRecord> fit_parts(Workload& workload,
-                                 const std::function<void(const FitRecord&)>& done);
+                                 const std::function<void(const FitRecord&)>& done,
+                                 int effort = kFitEffort);
 
 }  // namespace spherule

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scenes/weld_pass.h"
 
-#include "bench/scenes/workpiece.h"
-
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -31,11 +29,10 @@ using Path = std::function<SeamPoint(double)>;
 
 // Up one seam to the top of the joint and down another one.
 Path across_joint(int up, int down) {
-  constexpr double kLowest = 0.35;  // angle above the crotch, where the nozzle still has room
   return [=](double share) {
     const bool rising = share < 0.5;
     const double climb = rising ? 2.0 * share : 2.0 - 2.0 * share;
-    return seam_point(rising ? up : down, kLowest + climb * (0.5 * pi - kLowest));
+    return seam_point(rising ? up : down, kLowestSeamAngle + climb * (0.5 * pi - kLowestSeamAngle));
   };
 }
 
@@ -96,11 +93,8 @@ std::vector<WireTarget> follow(const Path& path, std::size_t length, std::mt1993
     const Vector3d away = (normal + 2.0 * Vector3d::UnitZ() + kTilt * tilt_along(share) * along +
                            kTilt * tilt_across(share) * across)
                               .normalized();
-    // The sharper the corner between the pipes, the smaller the sum of their normals.
-    const double sharpness = 1.0 - point.normal_a.dot(point.normal_b);
-    const double off = kStandoff + 2.0 * kCrotchStandoff * sharpness;
     const double pushed = tack(share, first, second);
-    const double height = (1.0 - pushed) * off - pushed * kTackDepth;
+    const double height = (1.0 - pushed) * standoff(point) - pushed * kTackDepth;
     const double weave = (1.0 - pushed) * kWeave * std::sin(2.0 * pi * kWeaves * share);
     targets.push_back({point.point + height * normal + weave * across, -away});
   }
@@ -108,6 +102,12 @@ std::vector<WireTarget> follow(const Path& path, std::size_t length, std::mt1993
 }
 
 }  // namespace
+
+double standoff(const SeamPoint& point) {
+  // The sharper the corner between the pipes, the smaller the sum of their normals.
+  const double sharpness = 1.0 - point.normal_a.dot(point.normal_b);
+  return kStandoff + 2.0 * kCrotchStandoff * sharpness;
+}
 
 std::vector<std::vector<WireTarget>> make_weld_passes(std::size_t length) {
   std::vector<Path> paths;

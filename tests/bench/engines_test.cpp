@@ -5,7 +5,7 @@
 #include "bench/scenes/shapes.h"
 #include "bench/scenes/solids.h"
 #include "bench/tree_checker.h"
-#include "spheretree/build.h"
+#include "tests/bench/surface_balls.h"
 
 #include <gtest/gtest.h>
 
@@ -17,24 +17,6 @@
 
 namespace spherule {
 namespace {
-
-// A ball about the box of every triangle: covers the surface, which is all that these tests need.
-std::shared_ptr<const SphereTree> surface_balls(const TriangleMesh& mesh) {
-  std::vector<Sphere> balls;
-  for (const Eigen::Vector3i& t : mesh.triangles) {
-    Eigen::AlignedBox3d box;
-    for (int i = 0; i < 3; ++i) box.extend(mesh.vertices[static_cast<std::size_t>(t[i])]);
-    balls.push_back({box.center(), 0.5 * box.diagonal().norm() * (1.0 + 1e-12)});
-  }
-  return std::make_shared<const SphereTree>(build_tree(balls));
-}
-
-void add_balls(Workload& cell) {
-  for (Body& body : cell.bodies) body.part.tree = surface_balls(body.part.mesh);
-  for (Obstacle& obstacle : cell.obstacles) {
-    obstacle.part.tree = surface_balls(obstacle.part.mesh);
-  }
-}
 
 std::vector<ArmPositions> every(const Workload& cell, std::size_t stride) {
   std::vector<ArmPositions> sample;
@@ -65,7 +47,7 @@ TEST(Engines, FclAgreesWithTheOracleInEverySetting) {
 
 TEST(Engines, SphereEnginesAgreeAndMissNothing) {
   Workload cell = make_paper_cell();
-  add_balls(cell);
+  test::add_surface_balls(cell);
   const auto sample = every(cell, 601);
   const auto touching = Oracle(cell).touching_bodies(sample);
   const auto by_tree = verdicts(*make_tree_checker(cell, TreeMode::kSingle), sample);

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/planning/arguments.h"
+
+#include "spheretree/error.h"
+
+#include <charconv>
+#include <string>
+#include <string_view>
+
+namespace spherule {
+namespace {
+
+int number_of(const std::string& option, std::string_view text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 1) {
+    throw Error(option, "needs a whole number above zero");
+  }
+  return value;
+}
+
+}  // namespace
+
+PlanningArguments parse_planning_arguments(int count, char** values) {
+  PlanningArguments arguments;
+  for (int i = 1; i < count; ++i) {
+    const std::string option = values[i];
+    if (i + 1 == count) throw Error(option, "unknown option, or its value is lacking");
+    const char* const value = values[++i];
+    if (option == "--out") {
+      arguments.out = value;
+    } else if (option == "--effort") {
+      arguments.effort = number_of(option, value);
+    } else if (option == "--problems") {
+      arguments.problems = static_cast<std::size_t>(number_of(option, value));
+    } else {
+      throw Error(option, "unknown option (--out DIR, --effort N and --problems N are known)");
+    }
+  }
+  return arguments;
+}
+
+}  // namespace spherule

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+namespace spherule {
+
+struct PlanningArguments {
+  std::filesystem::path out = "bench/out";
+  int effort = 3;  // of the fits
+  std::size_t problems = 200;
+};
+
+// --out DIR --effort N --problems N. Throws Error for anything else and for numbers below 1.
+PlanningArguments parse_planning_arguments(int count, char** values);
+
+}  // namespace spherule

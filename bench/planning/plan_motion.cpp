@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An example: a motion of the IRB 4400 with its weld torch, from a seam of the pipes to the home
+// position, planned by OMPL with motions that are proved free, and looked at again by FCL on the
+// meshes. In the cell of bench/scenes, or with the real robot and torch where SPHERULE_MODELS names
+// a folder of models.
+//   spherule_plan_motion [--out DIR] [--effort N]
+#include "bench/fcl_mesh_checker.h"
+#include "bench/fit_parts.h"
+#include "bench/planning/arguments.h"
+#include "bench/planning/path_check.h"
+#include "bench/planning/planner.h"
+#include "bench/planning/planning_cell.h"
+#include "bench/real_models.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+namespace spherule {
+namespace {
+
+constexpr double kRecheckStep = 1e-4;  // radians: about a quarter of a millimetre at full reach
+
+// A configuration a line, in radians, as `spherule check` reads them.
+void write_path(const std::vector<ArmPositions>& path, const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::setprecision(std::numeric_limits<double>::max_digits10);
+  for (const ArmPositions& positions : path) {
+    for (std::size_t i = 0; i < positions.size(); ++i) text << (i == 0 ? "" : ",") << positions[i];
+    text << '\n';
+  }
+  write_file_atomically(file, text.str());
+}
+
+Workload make_example_cell() {
+  const char* const models = std::getenv("SPHERULE_MODELS");
+  return models != nullptr && *models != '\0' ? make_real_cell(models) : make_paper_cell();
+}
+
+void run(const PlanningArguments& arguments) {
+  std::filesystem::create_directories(arguments.out);
+  Workload cell = make_example_cell();
+  std::printf("%s: fitting\n", cell.name.c_str());
+  fit_parts(cell, &print_fit, arguments.effort);
+  const RobotChecker checker = make_robot_checker(cell);
+  const auto meshes = make_fcl_mesh_checker(cell, {});
+  // The first of them ends at home.
+  const PlanningProblem problem = make_problems(cell, *meshes, places_at_metal(cell), 1).front();
+  const Plan found = plan({checker, *meshes}, Validity::kProved, problem);
+  if (!found.is_solved()) throw Error(cell.name, "no motion was found");
+  const auto file = arguments.out / "motion.csv";
+  write_path(found.path, file);
+  const PathCheck again = check_path(found.path, *meshes, kRecheckStep);
+  std::printf(
+      "from a seam to home in %.2f ms (%zu motions proved or refused), %zu configurations: %s\n"
+      "FCL on the meshes at %zu configurations of it: %zu in contact\n",
+      1e3 * found.seconds, found.motion_checks, found.path.size(), file.c_str(),
+      again.configurations, again.contacts);
+  if (again.contacts > 0) throw Error(cell.name, "the path is in contact");
+}
+
+}  // namespace
+}  // namespace spherule
+
+int main(int count, char** values) {
+  try {
+    spherule::run(spherule::parse_planning_arguments(count, values));
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "spherule_plan_motion: %s\n", error.what());
+    return 1;
+  }
+}

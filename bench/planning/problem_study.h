@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/planning/planner.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace spherule {
+
+// A way of checking, over all problems.
+struct ProblemRow {
+  Validity validity = Validity::kProved;
+  std::vector<Plan> plans = {};            // of each problem
+  std::vector<std::size_t> contacts = {};  // on each path, for FCL on the meshes in double
+  std::size_t looked_at = 0;               // configurations of all paths, for these contacts
+
+  std::size_t ended(PlanEnd end) const;
+  std::size_t paths_in_contact() const;
+};
+
+// How another row compares with the last one, FCL's.
+struct ProblemComparison {
+  std::size_t both = 0;         // problems that both solve
+  std::size_t mesh_only = 0;    // that FCL solves and it does not
+  std::size_t refused = 0;      // of these, those whose start or goal it does not find free
+  std::size_t sphere_only = 0;  // the reverse
+  double median_ratio = 0.0;    // of the times of a problem that both solve
+  double total_ratio = 0.0;     // of the sums of these times
+};
+
+struct ProblemStudy {
+  PlanOptions options = {};
+  double recheck_step = 0.0;
+  std::vector<ProblemRow> rows = {};  // proved, sampled, FCL
+};
+
+// Plans all problems with each way of checking, the same seed for the same problem, and looks at
+// every path again at steps of `recheck_step` radians (check_path()).
+ProblemStudy study_problems(const Workload& workload, const RobotChecker& checker,
+                            const std::vector<PlanningProblem>& problems,
+                            const PlanOptions& options, double recheck_step);
+
+ProblemComparison compare(const ProblemRow& row, const ProblemRow& meshes);
+
+// Milliseconds of the solved ones.
+double median_milliseconds(const ProblemRow& row);
+
+}  // namespace spherule

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/planning/problems.h"
+
+#include "bench/planning/path_check.h"
+#include "bench/planning/planning_cell.h"
+#include "bench/studies/random_numbers.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace spherule {
+namespace {
+
+constexpr std::uint64_t kSeed = 11;
+constexpr int kTries = 1000;    // for one problem
+constexpr double kStep = 0.01;  // radians
+
+bool needs_a_plan(const PlanningProblem& problem, Checker& meshes) {
+  return !collides(meshes, problem.start) && !collides(meshes, problem.goal) &&
+         check_path({problem.start, problem.goal}, meshes, kStep).contacts > 0;
+}
+
+}  // namespace
+
+std::vector<PlanningProblem> make_problems(const Workload& workload, Checker& meshes,
+                                           std::span<const ArmPositions> places,
+                                           std::size_t count) {
+  if (places.empty()) throw Error(workload.name, "there is no place to start from");
+  RandomNumbers random(kSeed);
+  const auto place = [&] {
+    const double drawn = random.between(0.0, static_cast<double>(places.size()));
+    return places[std::min(places.size() - 1, static_cast<std::size_t>(drawn))];
+  };
+  std::vector<PlanningProblem> problems;
+  for (int tries = 0; problems.size() < count; ++tries) {
+    if (tries == kTries) throw Error(workload.name, "hardly any motion needs a plan");
+    const ArmPositions start = place();
+    const bool goes_home = problems.size() % 2 == 0;
+    const PlanningProblem problem{start, goes_home ? workload.program.front() : place()};
+    if (!needs_a_plan(problem, meshes)) continue;
+    problems.push_back(problem);
+    tries = 0;
+  }
+  return problems;
+}
+
+std::vector<ArmPositions> places_at_metal(const Workload& workload) {
+  std::vector<ArmPositions> places;
+  for (std::size_t i = 0; i < workload.program.size(); ++i) {
+    if (workload.is_critical[i] != 0) places.push_back(workload.program[i]);
+  }
+  return places;
+}
+
+}  // namespace spherule

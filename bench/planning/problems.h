@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/workload.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+struct PlanningProblem {
+  ArmPositions start;
+  ArmPositions goal;
+};
+
+// What the robot does between welds: the first, third, ... leads from one of the `places` to the
+// home position (the program's first), the others to another of the places. These are drawn; the
+// ends are free for `meshes` and the straight motion between them is not, at configurations that it
+// is asked about. Always the same. Throws Error if hardly any two ends are so.
+std::vector<PlanningProblem> make_problems(const Workload& workload, Checker& meshes,
+                                           std::span<const ArmPositions> places, std::size_t count);
+
+// Of the weld program, those in which the wire is at the metal.
+std::vector<ArmPositions> places_at_metal(const Workload& workload);
+
+}  // namespace spherule

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What planners are given, how their paths are looked at again, and how they are compared.
+#include "bench/fcl_mesh_checker.h"
+#include "bench/oracle.h"
+#include "bench/planning/path_check.h"
+#include "bench/planning/planning_cell.h"
+#include "bench/planning/problem_study.h"
+#include "bench/planning/problems.h"
+#include "spheretree/error.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+TEST(PlanningProblems, EndsAreFreeAndTheStraightMotionIsNot) {
+  const Workload cell = make_paper_cell();
+  const auto meshes = make_fcl_mesh_checker(cell, {});
+  const auto places = places_at_metal(cell);
+  const auto problems = make_problems(cell, *meshes, places, 10);
+  ASSERT_EQ(problems.size(), 10u);
+  const auto is_place = [&](const ArmPositions& positions) {
+    return std::find(places.begin(), places.end(), positions) != places.end();
+  };
+  std::vector<ArmPositions> ends;
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    const auto& [start, goal] = problems[i];
+    EXPECT_TRUE(is_place(start));
+    EXPECT_EQ(goal == cell.program.front(), i % 2 == 0);
+    EXPECT_EQ(is_place(goal), i % 2 == 1);
+    ends.push_back(start);
+    ends.push_back(goal);
+    EXPECT_GT(check_path({start, goal}, *meshes, 0.001).contacts, 0u);
+    for (std::size_t k = 0; k < i; ++k) EXPECT_NE(problems[k].start, start);
+  }
+  for (const std::uint32_t bits : Oracle(cell).touching_bodies(ends)) EXPECT_EQ(bits, 0u);
+  // Places in contact were there to be drawn.
+  std::size_t in_contact = 0;
+  for (std::size_t i = 0; i < places.size(); i += 10) in_contact += collides(*meshes, places[i]);
+  EXPECT_GT(in_contact, places.size() / 200);
+  EXPECT_THROW(make_problems(cell, *meshes, {}, 1), Error);
+}
+
+// In contact where the second joint is in a thin slab; keeps what it is asked.
+class Slab : public Checker {
+ public:
+  void check(std::span<const ArmPositions> configurations,
+             std::span<std::uint8_t> verdicts) override {
+    asked.assign(configurations.begin(), configurations.end());
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      verdicts[i] = asked[i][1] > 0.5 && asked[i][1] < 0.502 ? 1 : 0;
+    }
+  }
+  std::vector<ArmPositions> asked;
+};
+
+TEST(PathCheck, StepsFinelyOverEveryCorner) {
+  const std::vector<ArmPositions> path = {{},
+                                          {0.0, 1.0, 0.0, 0.0, 0.0, 0.0},
+                                          {0.0, 1.0, 0.0, 0.0, 0.0, 0.0},
+                                          {-0.3, 1.0, 0.2, 0.0, 0.0, 0.05}};
+  Slab slab;
+  const PathCheck check = check_path(path, slab, 1e-3);
+  EXPECT_EQ(check.configurations, slab.asked.size());
+  EXPECT_NEAR(static_cast<double>(check.configurations), 1302.0, 2.0);
+  EXPECT_GE(check.contacts, 1u);
+  EXPECT_LE(check.contacts, 2u);
+  for (const ArmPositions& corner : path) {
+    EXPECT_NE(std::find(slab.asked.begin(), slab.asked.end(), corner), slab.asked.end());
+  }
+  for (std::size_t i = 1; i < slab.asked.size(); ++i) {
+    for (std::size_t k = 0; k < kJoints; ++k) {
+      EXPECT_LE(std::abs(slab.asked[i][k] - slab.asked[i - 1][k]), 1e-3 + 1e-12);
+    }
+  }
+  EXPECT_EQ(check_path({}, slab, 1e-3).configurations, 0u);
+  EXPECT_EQ(check_path({ArmPositions{0.0, 0.501}}, slab, 1e-3).contacts, 1u);
+}
+
+TEST(ProblemStudy, ComparesWhatBothSolve) {
+  const auto solved = [](double seconds) {
+    return Plan{.end = PlanEnd::kSolved, .seconds = seconds};
+  };
+  const Plan refused{.end = PlanEnd::kEndsRefused};
+  const Plan lost{.end = PlanEnd::kIterations, .seconds = 9.0};
+  const ProblemRow ours{
+      .plans = {solved(1.0), solved(2.0), refused, lost, solved(1.0), lost, solved(4.0)}};
+  const ProblemRow meshes{
+      .plans = {solved(10.0), solved(60.0), solved(1.0), solved(1.0), lost, lost, solved(4.0)}};
+  const ProblemComparison found = compare(ours, meshes);
+  EXPECT_EQ(found.both, 3u);
+  EXPECT_EQ(found.mesh_only, 2u);
+  EXPECT_EQ(found.refused, 1u);
+  EXPECT_EQ(found.sphere_only, 1u);
+  EXPECT_EQ(found.median_ratio, 10.0);
+  EXPECT_EQ(found.total_ratio, 74.0 / 7.0);
+  EXPECT_EQ(median_milliseconds(meshes), 4000.0);
+  EXPECT_EQ(ours.ended(PlanEnd::kIterations), 2u);
+  EXPECT_EQ(compare({}, {}).both, 0u);
+}
+
+}  // namespace
+}  // namespace spherule
