@@ -14,8 +14,7 @@ struct EdgeRequest {
   // more: it is not proved free. All else is proved free, or a contact found, unless the budget
   // ends before.
   double resolution = 1e-4;
-  // Look for the first contact, and prove as much before it as can be; otherwise any contact will
-  // do, which is faster.
+  // Look for the first contact, and prove all before it; otherwise any will do, which is faster.
   bool first = false;
   // Look at no more configurations than this, with the verdict kUnknown unless a contact was found.
   std::uint64_t max_configurations = std::numeric_limits<std::uint64_t>::max();
@@ -30,8 +29,7 @@ struct EdgeResult {
   // contact that was found, or the budget was spent; count it as a collision.
   Verdict verdict = Verdict::kUnknown;
   // Every point of the motion before this fraction is proved free; 1 for kFree (then its end is,
-  // too). Nothing is proved if it is 0. As far as the resolution lets it, if the first contact was
-  // asked for; otherwise it may be less.
+  // too). Nothing is proved if it is 0. More may be free unless the first contact was asked for.
   double free_until = 0.0;
   double contact_at = std::numeric_limits<double>::infinity();
   std::uint64_t configurations = 0;  // looked at

@@ -18,7 +18,7 @@
 // Squares that underflow are below kUnderflow, as there.
 
 #include "collide/internal/relative_pose.h"
-#include "collide/internal/solid_fields.h"
+#include "collide/solid_fields.h"
 
 #include <cmath>
 

@@ -34,9 +34,9 @@
 // than kRelative.
 
 #include "collide/edge_halving.h"
-#include "collide/internal/solid_fields.h"
 #include "collide/robot/internal/body_pairs.h"
 #include "collide/robot/internal/link_paths.h"
+#include "collide/solid_fields.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>

@@ -2,11 +2,10 @@
 #include "collide/robot/internal/body_pairs.h"
 
 #include "collide/collide.h"
-#include "collide/internal/solid_fields.h"
-#include "collide/internal/traversal.h"
 #include "collide/mechanism_check.h"
 #include "collide/robot/internal/moving_frames.h"
 #include "collide/robot/kinematics.h"
+#include "collide/solid_fields.h"
 #include "collide/solid_mesh.h"
 #include "collide/within.h"
 #include "spheretree/rounding.h"
@@ -116,11 +115,14 @@ BodyPairs::BodyPairs(RobotModel robot, const Pose& world_from_root,
   make_paths();
   for (std::size_t i = 0; i < tested_; ++i) {
     const SphereTree& tree = *pieces_[static_cast<std::size_t>(pairs_[i].piece)].tree;
-    const std::size_t bound =
-        pairs_[i].is_obstacle
-            ? PartSearch::stack_bound(tree)
-            : traversal_stack_bound(tree, *pieces_[static_cast<std::size_t>(pairs_[i].other)].tree);
-    stack_size_ = std::max(stack_size_, bound);
+    int height = tree.depth();
+    int branching = tree.branching();
+    if (!pairs_[i].is_obstacle) {
+      const SphereTree& other = *pieces_[static_cast<std::size_t>(pairs_[i].other)].tree;
+      height += other.depth();
+      branching = std::max(branching, other.branching());
+    }
+    stack_size_ = std::max(stack_size_, PartSearch::stack_bound(height, branching));
   }
 }
 

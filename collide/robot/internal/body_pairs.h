@@ -8,7 +8,6 @@
 #include "collide/contact.h"
 #include "collide/distance.h"
 #include "collide/edge.h"
-#include "collide/internal/tree_pair.h"
 #include "collide/robot/internal/part_search.h"
 #include "collide/robot/internal/path_reach.h"
 #include "collide/robot/robot_model.h"
@@ -90,7 +89,7 @@ class BodyPairs {
     std::vector<Twist> twists{};
     std::vector<std::vector<MovingBall>> balls{};
     std::vector<std::uint64_t> balls_of{};
-    std::vector<NodePair> stack{};
+    std::vector<PartNodes> stack{};
   };
 
   const std::vector<CheckedPiece>& pieces() const { return pieces_; }

@@ -4,7 +4,6 @@
 // Do moving balls stay apart from a solid, or from each other, all along a part of a motion? The
 // proof is in body_edge.cpp.
 
-#include "collide/internal/tree_pair.h"
 #include "spheretree/sphere_tree.h"
 
 #include <Eigen/Core>
@@ -40,6 +39,12 @@ struct SeparatingPlane {
   double approach;  // the centre's velocity along the normal
 };
 
+// A node of each of two trees.
+struct PartNodes {
+  std::int32_t a;
+  std::int32_t b;
+};
+
 // What was found of the balls so far.
 class PartSearch {
  public:
@@ -72,52 +77,63 @@ class PartSearch {
     return false;
   }
 
-  // `plane(ball)` is that of a ball and the solid. The stack has room for as many as stack_bound().
-  template <class Plane>
-  void run(const SphereTree& tree, std::span<const MovingBall> balls, const Plane& plane,
-           std::span<NodePair> stack) {
-    std::size_t top = 0;
-    stack[top++] = NodePair(0, 0);
-    while (top > 0 && !may_touch_) {
-      const NodePair pair = stack[--top];
-      const MovingBall& ball = balls[pair.index(0)];
-      const bool is_leaf = tree.is_leaf(pair.index(0));
-      if (!opens(plane(ball), ball.radius, ball.radius, is_leaf)) continue;
-      top = push_children(tree, pair, 0, stack, top);
-    }
-  }
-
-  // Two trees, `plane(a, b)` being that of two balls. The same, with traversal_stack_bound().
+  // Of two trees, whose balls are given, in a depth-first search: `plane(a, b)` is that of two
+  // balls. The stack has room for as many as stack_bound() says.
   template <class Plane>
   void run(const SphereTree& a, std::span<const MovingBall> balls_a, const SphereTree& b,
-           std::span<const MovingBall> balls_b, const Plane& plane, std::span<NodePair> stack) {
+           std::span<const MovingBall> balls_b, const Plane& plane, std::span<PartNodes> stack) {
     std::size_t top = 0;
-    stack[top++] = NodePair(0, 0);
+    stack[top++] = {0, 0};
     while (top > 0 && !may_touch_) {
-      const NodePair pair = stack[--top];
-      const MovingBall& ball_a = balls_a[pair.index(0)];
-      const MovingBall& ball_b = balls_b[pair.index(1)];
-      const bool leaf_a = a.is_leaf(pair.index(0));
-      const bool leaf_b = b.is_leaf(pair.index(1));
+      const PartNodes nodes = stack[--top];
+      const auto node_a = static_cast<std::size_t>(nodes.a);
+      const auto node_b = static_cast<std::size_t>(nodes.b);
+      const MovingBall& ball_a = balls_a[node_a];
+      const MovingBall& ball_b = balls_b[node_b];
+      const bool leaf_a = a.is_leaf(node_a);
+      const bool leaf_b = b.is_leaf(node_b);
       if (!opens(plane(ball_a, ball_b), ball_a.radius + ball_b.radius,
                  std::max(ball_a.radius, ball_b.radius), leaf_a && leaf_b)) {
         continue;
       }
-      const int side = leaf_a || (!leaf_b && ball_a.radius < ball_b.radius) ? 1 : 0;
-      top = push_children(side == 0 ? a : b, pair, side, stack, top);
+      if (leaf_a || (!leaf_b && ball_a.radius < ball_b.radius)) {
+        const std::int32_t first = b.first_child(node_b);
+        const std::int32_t end = first + b.child_count(node_b);
+        for (std::int32_t child = first; child < end; ++child) stack[top++] = {nodes.a, child};
+      } else {
+        top = push_children(a, nodes, stack, top);
+      }
     }
   }
 
-  static std::size_t stack_bound(const SphereTree& tree) {
-    return static_cast<std::size_t>(tree.depth()) * static_cast<std::size_t>(tree.branching()) + 1;
+  // The same of a tree and a solid, `plane(ball)` being that of a ball and the solid.
+  template <class Plane>
+  void run(const SphereTree& tree, std::span<const MovingBall> balls, const Plane& plane,
+           std::span<PartNodes> stack) {
+    std::size_t top = 0;
+    stack[top++] = {0, 0};
+    while (top > 0 && !may_touch_) {
+      const PartNodes nodes = stack[--top];
+      const auto node = static_cast<std::size_t>(nodes.a);
+      const MovingBall& ball = balls[node];
+      if (!opens(plane(ball), ball.radius, ball.radius, tree.is_leaf(node))) continue;
+      top = push_children(tree, nodes, stack, top);
+    }
+  }
+
+  // To open a node puts at most so many children in its place, each of a smaller height, of which
+  // all but one wait while that one is finished.
+  static std::size_t stack_bound(int height, int branching) {
+    return static_cast<std::size_t>(height) * static_cast<std::size_t>(branching) + 1;
   }
 
  private:
-  static std::size_t push_children(const SphereTree& tree, NodePair pair, int side,
-                                   std::span<NodePair> stack, std::size_t top) {
-    const std::int32_t first = tree.first_child(pair.index(side));
-    const std::int32_t count = tree.child_count(pair.index(side));
-    for (std::int32_t i = 0; i < count; ++i) stack[top++] = pair.with(side, first + i);
+  static std::size_t push_children(const SphereTree& tree, PartNodes nodes,
+                                   std::span<PartNodes> stack, std::size_t top) {
+    const auto node = static_cast<std::size_t>(nodes.a);
+    const std::int32_t first = tree.first_child(node);
+    const std::int32_t end = first + tree.child_count(node);
+    for (std::int32_t child = first; child < end; ++child) stack[top++] = {child, nodes.b};
     return top;
   }
 

@@ -102,5 +102,31 @@ TEST(PathReach, BoundsHowDistancesChange) {
   EXPECT_GT(near_bend, effort(100, 10));
 }
 
+// A stretched arm of two links of length one, seen from far behind: the two turns add up, and the
+// bound of what its velocity bends by is reached.
+TEST(PathReach, CountsTurnsThatAddUp) {
+  RobotModel robot("base");
+  robot.add_link("upper", "base", {.type = JointType::kContinuous});
+  robot.add_link(
+      "lower", "upper",
+      {.type = JointType::kContinuous, .parent_from_joint = Pose::from_translation({1, 0, 0})});
+  const std::vector<int> joints = {1, 0};
+  const internal::PathReach reach(robot, poses_at_zero(robot), 1e-15, joints, 2, {{1, 0, 0}, 0.0});
+  std::vector<internal::PathBounds> work;
+  const internal::PathBounds bounds =
+      reach.bounds(std::vector<double>{1.0, 1.0}, std::vector<double>{0.0, 0.0}, work);
+  EXPECT_NEAR(bounds.speed, 3.0, 1e-6);
+  EXPECT_NEAR(bounds.bend, 2.5, 1e-6);
+  std::vector<Pose> placed;
+  const auto distance = [&](double angle) {
+    forward_kinematics(robot, Configuration{angle, angle}, placed);
+    return (placed[2] * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(-1e4, 0, 0)).norm();
+  };
+  const double h = 0.1;
+  const double lost = distance(0.0) - distance(h);
+  EXPECT_LE(lost, bounds.bend * h * h);
+  EXPECT_GT(lost, 0.99 * bounds.bend * h * h);
+}
+
 }  // namespace
 }  // namespace spherule::test
