@@ -17,7 +17,7 @@ constexpr double kTorchScale = 0.01;
 constexpr double kRimPlane = 0.276;  // metres, a millimetre inside of the rim
 
 // The middle of the nozzle's rim stands for the wire's end, which the file does not have.
-Pose real_flange_from_wire(const TriangleMesh& torch) {
+Pose middle_of_rim(const TriangleMesh& torch) {
   Eigen::AlignedBox3d rim;
   for (const Eigen::Vector3d& vertex : torch.vertices) {
     if (vertex.x() - vertex.z() > kRimPlane) rim.extend(vertex);
@@ -25,6 +25,10 @@ Pose real_flange_from_wire(const TriangleMesh& torch) {
   return Pose(
       Eigen::Quaterniond(Eigen::AngleAxisd(0.75 * std::numbers::pi, Eigen::Vector3d::UnitY())),
       rim.center());
+}
+
+TriangleMesh read_torch(const std::filesystem::path& models) {
+  return read_mesh(models / "torch" / "torch.stl", {.scale = kTorchScale});
 }
 
 }  // namespace
@@ -36,8 +40,12 @@ Workload make_real_cell(const std::filesystem::path& models) {
   for (const Link& link : robot.links()) {
     links.push_back(read_mesh(visual / (link.name + ".stl")));
   }
-  const TriangleMesh torch = read_mesh(models / "torch" / "torch.stl", {.scale = kTorchScale});
-  return make_cell("real-irb4400", links, torch, real_flange_from_wire(torch));
+  const TriangleMesh torch = read_torch(models);
+  return make_cell("real-irb4400", links, torch, middle_of_rim(torch));
+}
+
+Pose real_flange_from_wire(const std::filesystem::path& models) {
+  return middle_of_rim(read_torch(models));
 }
 
 }  // namespace spherule

@@ -10,7 +10,9 @@
 #include "bench/planning/path_check.h"
 #include "bench/planning/planner.h"
 #include "bench/planning/planning_cell.h"
+#include "bench/planning/process_points.h"
 #include "bench/real_models.h"
+#include "bench/scenes/torch.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 
@@ -27,6 +29,10 @@ namespace {
 
 constexpr double kRecheckStep = 1e-4;  // radians: about a quarter of a millimetre at full reach
 
+// Places at the seams to draw the start from.
+constexpr std::size_t kPoints = 60;
+constexpr std::size_t kAngles = 12;
+
 // A configuration a line, in radians, as `spherule check` reads them.
 void write_path(const std::vector<ArmPositions>& path, const std::filesystem::path& file) {
   std::ostringstream text;
@@ -38,20 +44,27 @@ void write_path(const std::vector<ArmPositions>& path, const std::filesystem::pa
   write_file_atomically(file, text.str());
 }
 
-Workload make_example_cell() {
+struct Example {
+  Workload cell;
+  Pose flange_from_wire;
+};
+
+Example make_example() {
   const char* const models = std::getenv("SPHERULE_MODELS");
-  return models != nullptr && *models != '\0' ? make_real_cell(models) : make_paper_cell();
+  if (models == nullptr || *models == '\0') return {make_paper_cell(), flange_from_wire()};
+  return {make_real_cell(models), real_flange_from_wire(models)};
 }
 
 void run(const PlanningArguments& arguments) {
   std::filesystem::create_directories(arguments.out);
-  Workload cell = make_example_cell();
+  auto [cell, flange_from_wire] = make_example();
   std::printf("%s: fitting\n", cell.name.c_str());
   fit_parts(cell, &print_fit, arguments.effort);
   const RobotChecker checker = make_robot_checker(cell);
   const auto meshes = make_fcl_mesh_checker(cell, {});
+  const auto places = make_process_points(cell.robot, flange_from_wire, kPoints, kAngles);
   // The first of them ends at home.
-  const PlanningProblem problem = make_problems(cell, *meshes, places_at_metal(cell), 1).front();
+  const PlanningProblem problem = make_problems(cell, *meshes, places.configurations, 1).front();
   const Plan found = plan({checker, *meshes}, Validity::kProved, problem);
   if (!found.is_solved()) throw Error(cell.name, "no motion was found");
   const auto file = arguments.out / "motion.csv";

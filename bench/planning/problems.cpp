@@ -45,12 +45,4 @@ std::vector<PlanningProblem> make_problems(const Workload& workload, Checker& me
   return problems;
 }
 
-std::vector<ArmPositions> places_at_metal(const Workload& workload) {
-  std::vector<ArmPositions> places;
-  for (std::size_t i = 0; i < workload.program.size(); ++i) {
-    if (workload.is_critical[i] != 0) places.push_back(workload.program[i]);
-  }
-  return places;
-}
-
 }  // namespace spherule

@@ -21,7 +21,4 @@ struct PlanningProblem {
 std::vector<PlanningProblem> make_problems(const Workload& workload, Checker& meshes,
                                            std::span<const ArmPositions> places, std::size_t count);
 
-// Of the weld program, those in which the wire is at the metal.
-std::vector<ArmPositions> places_at_metal(const Workload& workload);
-
 }  // namespace spherule

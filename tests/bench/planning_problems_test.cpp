@@ -6,12 +6,16 @@
 #include "bench/planning/planning_cell.h"
 #include "bench/planning/problem_study.h"
 #include "bench/planning/problems.h"
+#include "bench/planning/process_points.h"
+#include "bench/scenes/torch.h"
 #include "spheretree/error.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <set>
 #include <vector>
 
 namespace spherule {
@@ -20,13 +24,21 @@ namespace {
 TEST(PlanningProblems, EndsAreFreeAndTheStraightMotionIsNot) {
   const Workload cell = make_paper_cell();
   const auto meshes = make_fcl_mesh_checker(cell, {});
-  const auto places = places_at_metal(cell);
+  std::vector<ArmPositions> places =
+      make_process_points(cell.robot, flange_from_wire(), 30, 12).configurations;
+  // As many places in contact are there to be drawn.
+  const auto in_contact =
+      std::find_if(cell.program.begin(), cell.program.end(),
+                   [&](const ArmPositions& positions) { return collides(*meshes, positions); });
+  ASSERT_NE(in_contact, cell.program.end());
+  places.insert(places.end(), places.size(), *in_contact);
   const auto problems = make_problems(cell, *meshes, places, 10);
   ASSERT_EQ(problems.size(), 10u);
   const auto is_place = [&](const ArmPositions& positions) {
     return std::find(places.begin(), places.end(), positions) != places.end();
   };
   std::vector<ArmPositions> ends;
+  std::set<ArmPositions> starts;
   for (std::size_t i = 0; i < problems.size(); ++i) {
     const auto& [start, goal] = problems[i];
     EXPECT_TRUE(is_place(start));
@@ -35,14 +47,12 @@ TEST(PlanningProblems, EndsAreFreeAndTheStraightMotionIsNot) {
     ends.push_back(start);
     ends.push_back(goal);
     EXPECT_GT(check_path({start, goal}, *meshes, 0.001).contacts, 0u);
-    for (std::size_t k = 0; k < i; ++k) EXPECT_NE(problems[k].start, start);
+    starts.insert(start);
   }
+  EXPECT_GT(starts.size(), problems.size() / 2);
   for (const std::uint32_t bits : Oracle(cell).touching_bodies(ends)) EXPECT_EQ(bits, 0u);
-  // Places in contact were there to be drawn.
-  std::size_t in_contact = 0;
-  for (std::size_t i = 0; i < places.size(); i += 10) in_contact += collides(*meshes, places[i]);
-  EXPECT_GT(in_contact, places.size() / 200);
   EXPECT_THROW(make_problems(cell, *meshes, {}, 1), Error);
+  EXPECT_THROW(make_problems(cell, *meshes, {&*in_contact, 1}, 1), Error);
 }
 
 // In contact where the second joint is in a thin slab; keeps what it is asked.
