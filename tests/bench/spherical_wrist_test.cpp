@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 namespace spherule {
@@ -94,10 +95,11 @@ TEST(SphericalWrist, FindsNothingOutOfReach) {
 
 TEST(SphericalWrist, RefusesOtherRobots) {
   EXPECT_THROW(inverse_kinematics_branches(RobotModel(), Pose()), Error);
+  const RobotModel usual = make_robot();
   RobotModel robot("base");
   std::string parent = "base";
   for (int i = 0; i < kJoints; ++i) {
-    const Joint& joint = make_robot().joints()[static_cast<std::size_t>(i)];
+    const Joint& joint = usual.joints()[static_cast<std::size_t>(i)];
     Joint moved{.name = joint.name,
                 .type = joint.type,
                 .parent_from_joint = joint.parent_from_joint,
