@@ -105,6 +105,13 @@ TEST_F(CheckTest, GrazingIsNotProved) {
   EXPECT_EQ(coarse["not_proved"][0]["line"], 1);
   EXPECT_EQ(coarse["not_proved"][0]["to_line"], 2);
   EXPECT_EQ(coarse["not_proved"][0]["free_until"], 0.0);
+  // Only where x is 0.5, at three quarters of the way.
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "post", "ball": {"radius": 0.1}, "pose": {"position": [0.5, 0.150001, 0]}}]})");
+  const json later = checked(1, {"--edges", "--resolution", "0.01"})["not_proved"];
+  ASSERT_EQ(later.size(), 1u);
+  EXPECT_GT(later[0]["free_until"], 0.5);
+  EXPECT_LT(later[0]["free_until"], 0.75);
   EXPECT_EQ(coarse["colliding"], 0);
 }
 
