@@ -28,6 +28,7 @@ class Reader {
     while (lines.next()) {
       line_ = lines.number();
       if (first && is_header(lines.words())) {
+        has_header_ = true;
         take_header(lines.words());
       } else {
         if (first) number_columns();
@@ -61,6 +62,14 @@ class Reader {
   std::string name_of_variable(std::size_t variable) const {
     const auto joint = static_cast<std::size_t>(robot_.variable_joints()[variable]);
     return robot_.joints()[joint].name;
+  }
+
+  std::string all_names() const {
+    std::string names;
+    for (std::size_t i = 0; i < trajectory_.width; ++i) {
+      names += (i == 0 ? "" : ", ") + name_of_variable(i);
+    }
+    return names;
   }
 
   int variable_of(std::string_view word) const {
@@ -99,7 +108,7 @@ class Reader {
   void take_configuration(const std::vector<std::string_view>& words) {
     if (words.size() != columns_.size()) {
       refuse("has " + std::to_string(words.size()) + " numbers instead of " +
-             std::to_string(columns_.size()));
+             std::to_string(columns_.size()) + (has_header_ ? "" : ": " + all_names()));
     }
     const std::size_t at = trajectory_.positions.size();
     trajectory_.positions.resize(at + trajectory_.width);
@@ -116,6 +125,7 @@ class Reader {
   const RobotModel& robot_;
   std::vector<int> columns_;  // the variable in each, or kPassedOver
   std::size_t line_ = 0;
+  bool has_header_ = false;
   Trajectory trajectory_;
 };
 

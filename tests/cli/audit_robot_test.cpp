@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/sphere_formats.h"
 #include "tests/cli/command_test_support.h"
+#include "tests/support/effort.h"
 
 #include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -64,6 +68,48 @@ TEST_F(AuditRobotCommand, Json) {
   EXPECT_EQ(report.at("links").at(1).at("certificate").at("covered"), true);
 }
 
+TEST_F(AuditRobotCommand, TableSaysWhatWasLeftOut) {
+  write("two.yml", balls(0.12, 0.05) +
+                       "      ghost:\n      - {center: [0, 0, 0], radius: 1}\n"
+                       "      - {center: [0, 0, 0], radius: -1}\n");
+  const std::string table = run({"audit-robot", "two.urdf", "two.yml"}).out;
+  EXPECT_NE(table.find("left out: 1 spheres that the file switches off"), table.npos) << table;
+  EXPECT_NE(table.find("left out: the spheres of ghost"), table.npos) << table;
+  write("two.spheres.urdf", R"(<robot name="two"><link name="base">
+    <collision><geometry><sphere radius="0.12"/></geometry></collision>
+    <collision><geometry><box size="1 1 1"/></geometry></collision></link><link name="arm">
+    <collision><geometry><sphere radius="0.05"/></geometry></collision></link></robot>)");
+  const Outcome shapes = run({"audit-robot", "two.urdf", "two.spheres.urdf"});
+  EXPECT_EQ(shapes.exit_code, 0) << shapes.err;
+  EXPECT_NE(shapes.out.find("left out: 1 collision shapes"), table.npos) << shapes.out;
+}
+
+// A leak of 11 mm in the first link, none in the second; the last row is of both.
+TEST_F(AuditRobotCommand, TheLastRowIsOfAllLinks) {
+  write("leaks.yml", balls(0.09, 0.05));
+  const std::string table = run({"audit-robot", "two.urdf", "leaks.yml"}).out;
+  const std::size_t last = table.find("\nall ");
+  ASSERT_NE(last, table.npos) << table;
+  std::istringstream row(table.substr(last + 5));
+  std::string spheres, leak, to, upper, rest;
+  row >> spheres >> leak >> to >> upper;
+  std::getline(row, rest);
+  EXPECT_EQ(spheres, "2");
+  EXPECT_EQ(leak + to, "11.0to");
+  EXPECT_EQ(rest.substr(rest.find_last_of(' ')), " NO");
+}
+
+TEST_F(AuditRobotCommand, LevelsAreChosen) {
+  const auto level = [](const char* radius) {
+    return std::string(R"({"spheres": [{"origin": [0, 0, 0], "radius": )") + radius + "}]}";
+  };
+  write("levels.json", R"({"base": [)" + level("0.09") + "," + level("0.12") + R"(], "arm": [)" +
+                           level("0.05") + "," + level("0.05") + "]}");
+  EXPECT_EQ(run({"audit-robot", "two.urdf", "levels.json"}).exit_code, 0);
+  EXPECT_EQ(run({"audit-robot", "two.urdf", "levels.json", "--level", "0"}).exit_code, 1);
+  expect_refusal({"audit-robot", "two.urdf", "levels.json", "--level", "2"}, "has only 2 levels");
+}
+
 TEST_F(AuditRobotCommand, PosesDecide) {
   write("arm.json",
         "{\"base\": {\"centers\": [], \"radii\": []}, \"arm\": {\"centers\": [[0, 0, 0], [0.3, 0, "
@@ -84,9 +130,10 @@ TEST_F(AuditRobotCommand, PosesDecide) {
 TEST_F(AuditRobotCommand, RepairKeepsTheFormat) {
   const RobotSpheres leaky{.robot = "two",
                            .links = {{"base", {{{0, 0, 0}, 0.09}}}, {"arm", {{{0, 0, 0}, 0.05}}}}};
-  for (const SphereFormat format :
-       {SphereFormat::kUrdf, SphereFormat::kSrdf, SphereFormat::kCurobo, SphereFormat::kXrdf,
-        SphereFormat::kFoam, SphereFormat::kSpherule}) {
+  const std::vector<SphereFormat> formats = {SphereFormat::kCurobo, SphereFormat::kUrdf,
+                                             SphereFormat::kXrdf,   SphereFormat::kSrdf,
+                                             SphereFormat::kFoam,   SphereFormat::kSpherule};
+  for (const SphereFormat format : test::effort(formats, 2)) {
     SCOPED_TRACE(std::string(name_of(format)));
     write_robot_spheres(leaky, format, {.urdf = folder_ / "two.urdf"}, folder_ / "leaky");
     EXPECT_EQ(run({"audit-robot", "two.urdf", "leaky"}).exit_code, 1);
@@ -103,6 +150,10 @@ TEST_F(AuditRobotCommand, BuffersBelowZeroShrink) {
   const Outcome result = run({"audit-robot", "two.urdf", "shrunk.yml"});
   EXPECT_EQ(result.exit_code, 1) << result.err;
   EXPECT_NE(result.err.find("shrink"), std::string::npos);
+  write("one.yml", balls(0.12, 0.05) + "    collision_sphere_buffer: {base: -0.02}\n");
+  const Outcome one = run({"audit-robot", "two.urdf", "one.yml"});
+  EXPECT_EQ(one.exit_code, 1) << one.err;
+  EXPECT_NE(one.err.find("shrink"), std::string::npos);
   expect_refusal({"audit-robot", "two.urdf", "shrunk.yml", "--repair", "out.yml"},
                  "buffer below 0");
 }

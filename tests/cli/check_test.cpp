@@ -103,6 +103,15 @@ TEST_F(CheckTest, GrazingIsNotProved) {
   EXPECT_EQ(coarse["verdict"], "not proved");
   ASSERT_EQ(coarse["not_proved"].size(), 1u);
   EXPECT_EQ(coarse["not_proved"][0]["line"], 1);
+  EXPECT_EQ(coarse["not_proved"][0]["to_line"], 2);
+  EXPECT_EQ(coarse["not_proved"][0]["free_until"], 0.0);
+  // Only where x is 0.5, at three quarters of the way.
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "post", "ball": {"radius": 0.1}, "pose": {"position": [0.5, 0.150001, 0]}}]})");
+  const json later = checked(1, {"--edges", "--resolution", "0.01"})["not_proved"];
+  ASSERT_EQ(later.size(), 1u);
+  EXPECT_GT(later[0]["free_until"], 0.5);
+  EXPECT_LT(later[0]["free_until"], 0.75);
   EXPECT_EQ(coarse["colliding"], 0);
 }
 
@@ -179,6 +188,99 @@ TEST_F(CheckTest, CoversTheRobotAndAToolWhereThereAreNoSpheres) {
   EXPECT_EQ(report["colliding"], 2);
   EXPECT_EQ(report["first_contact"]["first"]["name"], "tool");
   EXPECT_EQ(report["first_contact"]["line"], 2);
+}
+
+TEST_F(CheckTest, OneConfigurationHasNoMotion) {
+  write("path.csv", "0.5 0\n");
+  const json report = checked(0, {"--edges"});
+  EXPECT_EQ(report["configurations"], 1);
+  EXPECT_FALSE(report.contains("motions"));
+}
+
+TEST_F(CheckTest, TheLastMotionIsProvedToo) {
+  write("path.csv", "-1 0\n-0.9 0\n1 0\n");
+  const json report = checked(1, {"--edges"});
+  EXPECT_EQ(report["motions"], 2);
+  EXPECT_EQ(report["first_contact"]["line"], 2);
+  EXPECT_EQ(report["first_contact"]["to_line"], 3);
+  EXPECT_NEAR(report["first_contact"]["fraction"].get<double>(), (0.9 - 0.0505) / 1.9, 2e-4);
+}
+
+// Of several pairs, each has its own count, first and deepest contact.
+TEST_F(CheckTest, PairsAreToldApart) {
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "wall", "box": {"size": [0.001, 1, 1]}},
+    {"name": "post", "ball": {"radius": 0.1}, "pose": {"position": [0.5, 0, 0]}}]})");
+  write("path.csv", "0.04 0\n0.4 0\n0.45 0\n");
+  const json report = checked(1);
+  ASSERT_EQ(report["pairs"].size(), 2u);
+  EXPECT_EQ(report["first_contact"]["second"]["name"], "wall");
+  EXPECT_EQ(report["worst_contact"]["second"]["name"], "post");
+  EXPECT_EQ(report["pairs"][1]["count"], 2);
+  EXPECT_EQ(report["pairs"][1]["first_contact"]["line"], 2);
+  EXPECT_EQ(report["pairs"][1]["worst_contact"]["line"], 3);
+}
+
+// Links that touch each other; files of spheres and SRDF files name pairs that may.
+TEST_F(CheckTest, PairsThatAreLeftOut) {
+  write("three.urdf", R"(<robot name="three"><link name="a"/><link name="b"/><link name="c"/>
+    <joint name="j" type="prismatic"><parent link="a"/><child link="b"/><axis xyz="1 0 0"/>
+      <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+    <joint name="k" type="prismatic"><parent link="b"/><child link="c"/><axis xyz="1 0 0"/>
+      <limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
+  const std::string balls =
+      "collision_spheres:\n  a: [{center: [0, 0, 0], radius: 0.1}]\n"
+      "  b: [{center: [0, 5, 0], radius: 0.1}]\n  c: [{center: [0, 0, 0], radius: 0.1}]\n";
+  const std::string scene = R"({"format": "spherule-scene", "version": 1)";
+  write("three.yml", balls);
+  write("cell.json", scene + "}");
+  write("path.csv", "0 0\n");
+  const std::vector<std::string> line = {"check",    "three.urdf", "cell.json",
+                                         "path.csv", "--spheres",  "three.yml"};
+  EXPECT_EQ(run(line).exit_code, 1);
+  write("three.yml", balls + "self_collision_ignore: {a: [c]}\ncollision_sphere_buffer: 0.01\n");
+  const Outcome ignored = run(line);
+  EXPECT_EQ(ignored.exit_code, 0) << ignored.out;
+  EXPECT_NE(ignored.err.find("1 pairs of links are not tested"), std::string::npos) << ignored.err;
+  EXPECT_NE(ignored.err.find("its buffers are not added"), std::string::npos) << ignored.err;
+  write("three.yml", balls);
+  write("cell.json", scene + R"(, "robot": {"srdf": "three.srdf"}})");
+  write("three.srdf", R"(<robot name="three"><disable_collisions link1="a" link2="gone"/>
+    <disable_collisions link1="gone" link2="c"/></robot>)");
+  EXPECT_EQ(run(line).exit_code, 1);
+  write("three.srdf", R"(<robot name="three"><disable_collisions link1="a" link2="gone"/>
+    <disable_collisions link1="c" link2="a"/></robot>)");
+  EXPECT_EQ(run(line).exit_code, 0);
+}
+
+TEST_F(CheckTest, PointsAreScaledAndThinnedOut) {
+  const auto scene = [this](const std::string& more) {
+    write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+      {"name": "scan", "points": {"file": "scan.xyz", "radius": 0.01)" +
+                           more + "}}]}");
+  };
+  write("scan.xyz", "1000 0 0\n1300 0 0\n");
+  write("path.csv", "1.15 0\n");
+  scene("");
+  EXPECT_EQ(checked(0)["verdict"], "free");
+  scene(R"(, "scale": 0.001)");
+  EXPECT_EQ(checked(0)["verdict"], "free");
+  scene(R"(, "scale": 0.001, "voxel": 2)");  // one ball around both
+  EXPECT_EQ(checked(1)["verdict"], "collision");
+  write("path.csv", "1.3 0\n");
+  scene(R"(, "scale": 0.001)");
+  EXPECT_EQ(checked(1)["verdict"], "collision");
+}
+
+TEST_F(CheckTest, WarnsOfWhatIsNotChecked) {
+  write("cup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "cup", "mesh": {"file": "cup.obj"}, "pose": {"position": [0, 0, 5]}}]})");
+  write("slider.json", R"({"hand": {"centers": [[0, 0, 0], [0, 0, 0]], "radii": [0.05, -1]}})");
+  const Outcome outcome = run(command({}));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_NE(outcome.err.find("cup: the mesh is open"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("1 spheres are switched off"), std::string::npos) << outcome.err;
 }
 
 TEST_F(CheckTest, RefusesBadInput) {

@@ -331,9 +331,14 @@ TEST(PrimitiveTest, DeepestContact) {
     ASSERT_LE((PlacedBalls{sphere, point, scene.world_from_tree, Pose()}.gap()), error);
   }
   EXPECT_GT(found, effort(150, 20));
+  // Of equally deep ones the first.
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<Sphere> spheres = {{{0.0, 0.0, 9.0}, 1.0}};
+    for (int i = 0; i < 9; ++i) spheres.push_back({{side * i, 0.0, 0.5}, 1.0});
+    EXPECT_EQ(deepest_contact(build_tree(spheres), Pose(), HalfSpace{}, Pose())->sphere, 1);
+  }
 }
 
-// A ball between two far faces of a huge solid, and one that a tiny solid is in.
 TEST(PrimitiveTest, OneWhollyInsideTheOther) {
   const auto ball = [](double radius) {
     return build_tree(std::vector<Sphere>{{{0.1, 0.2, 0.3}, radius}});

@@ -109,8 +109,9 @@ TEST_F(AuditRobot, NeighboursCoverInSomeConfigurations) {
   const std::vector<LinkSpheres> spheres = {{"base", {}},
                                             {"arm", {{center, radius}, {{0, 0, 0}, 0.045}}}};
   RobotAuditOptions options;
-  for (const double q : {std::numbers::pi, 3.15, 3.5, 0.0, -99.0})
+  for (const double q : test::effort(std::vector{std::numbers::pi, 0.0, 3.15, 3.5, -99.0}, 2)) {
     options.configurations.push_back({q});
+  }
   const RobotAudit audit = audit_robot(robot_, spheres, options);
   ASSERT_EQ(audit.configurations.size(), options.configurations.size());
   EXPECT_FALSE(audit.links_covered);
@@ -138,7 +139,7 @@ TEST_F(AuditRobot, NeighboursCoverInSomeConfigurations) {
     EXPECT_GE(found.uncovered_depth.upper, least - 1e-12) << q;
   }
   EXPECT_EQ(audit.configurations[0].uncovered_depth.upper, 0.0);  // both kinds are there
-  EXPECT_GT(audit.configurations[3].uncovered_depth.lower, 0.0);
+  EXPECT_GT(audit.configurations[1].uncovered_depth.lower, 0.0);
   const RobotAudit good = audit_robot(robot_, spheres, {.configurations = {{std::numbers::pi}}});
   EXPECT_TRUE(good.configurations_covered);
 }

@@ -147,9 +147,15 @@ TEST(RobotSpheres, OptionsOfALinkAreForThatLink) {
     p += Wide(0.004) * random.direction().cast<Wide>();
     ASSERT_LE(outside_of(own.links[2].spheres, p), 0);
   }
+}
 
-  // The robot's D counts where the link has none of its own, whatever its E.
+// The robot's D counts where the link has none of its own, whatever its E.
+TEST(RobotSpheres, ZonesOfALinkAreForThatLink) {
+  Random random(13);
+  const RobotDescription robot = boxes_of(random_robot(random, 3));
+  RobotCoverOptions options = quick(0.05);
   options.min_external_diameter = 0.15;
+  options.links["link2"] = {.max_error = 0.025, .padding = 0.004};
   Zone zone{.shape = Eigen::AlignedBox3d(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1)),
             .max_error = 0.04};
   options.links["link0"].min_external_diameter = 0.08;

@@ -78,8 +78,9 @@ TEST_F(TrajectoryFileTest, AJointMayBeCalledTime) {
 TEST_F(TrajectoryFileTest, RefusesWithTheLine) {
   EXPECT_EQ(fault(""), "it has no configuration");
   EXPECT_EQ(fault("a,c\n"), "it has no configuration");
-  EXPECT_EQ(fault("1,2\n3\n"), "line 2: has 1 numbers instead of 2");
-  EXPECT_EQ(fault("1,2\n\n3,4,5\n"), "line 3: has 3 numbers instead of 2");
+  EXPECT_EQ(fault("1,2\n3\n"), "line 2: has 1 numbers instead of 2: a, c");
+  EXPECT_EQ(fault("1,2\n\n3,4,5\n"), "line 3: has 3 numbers instead of 2: a, c");
+  EXPECT_EQ(fault("time,a,c\n1,2\n"), "line 2: has 2 numbers instead of 3");
   EXPECT_EQ(fault("1,2\n3,x\n"), "line 2: \"x\" is not a finite number");
   EXPECT_EQ(fault("1,2\n3,\n"), "line 2: \"\" is not a finite number");
   EXPECT_EQ(fault("1,nan\n"), "line 1: \"nan\" is not a finite number");
