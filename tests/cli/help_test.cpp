@@ -107,8 +107,8 @@ TEST_F(HelpTest, NamesThatMayHaveBeenMeant) {
 }
 
 TEST_F(HelpTest, ReportsSayWhatToDoNext) {
-  write_box("a part.stl", {6, 5, 4});
-  write_spheres("others.json", {{3, 2.5, 2, 4}});
+  write_box("a part.stl", {2, 2, 1});
+  write_spheres("others.json", {{1, 1, 0.5, 1.2}});
   const Outcome fit = run({"fit", "a part.stl", "-o", "out.json", "--max-error", "2"});
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_NE(fit.out.find("next: spherule view 'a part.stl' out.json -o out.html"),
