@@ -318,7 +318,7 @@ const std::vector<SphereBaseline>& sphere_baselines() {
        add_medial,
        run_medial},
       {{"octree", "The octree of Liu, Palmer and Grimsdale; the balls around cubes cover",
-        "spherule baseline octree part.stl -o octree.json --depth 5 --tree-file part.tree"},
+        "spherule baseline octree part.stl -o octree.json --depth 5 --conservative"},
        add_octree,
        run_octree},
       {{"hubbard", "Hubbard's medial spheres, merged to levels; not conservative",

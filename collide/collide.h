@@ -12,6 +12,7 @@
 
 namespace spherule {
 
+// What a query found; kUnknown where a limit ended it: to be taken for a collision.
 enum class Verdict { kFree, kCollision, kUnknown };
 
 // What a query cost.
@@ -20,6 +21,7 @@ struct QueryCost {
   std::uint64_t leaf_tests = 0;  // pairs of leaves among them
 };
 
+// When a query may stop.
 struct CollisionRequest {
   // Stop after this many pairs (1 finds whether there is a collision and one witness).
   std::size_t max_pairs = std::numeric_limits<std::size_t>::max();
@@ -33,9 +35,11 @@ struct CollisionRequest {
 struct SpherePair {
   std::int32_t a = -1;
   std::int32_t b = -1;
+  // By the index in a, then by that in b.
   friend auto operator<=>(const SpherePair&, const SpherePair&) = default;
 };
 
+// What collide() found.
 struct CollisionResult {
   Verdict verdict = Verdict::kUnknown;
   // Sorted; all overlapping pairs unless a limit was reached.

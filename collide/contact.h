@@ -20,6 +20,7 @@ enum class ContactKind {
   kInside,     // no triangles touch, but a component of one mesh lies inside the other
 };
 
+// One contact of two bodies.
 struct Contact {
   ContactKind kind = ContactKind::kSpheres;
   // Indices of two spheres that touch into SphereTree::spheres() of a and of b.

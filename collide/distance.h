@@ -7,6 +7,7 @@
 
 namespace spherule {
 
+// How closely a distance is to be known.
 struct DistanceRequest {
   // Stop when upper - lower is at most this, or when lower exceeds `enough`.
   double tolerance = 0.0;
@@ -16,6 +17,7 @@ struct DistanceRequest {
   std::chrono::nanoseconds max_time = std::chrono::nanoseconds::max();
 };
 
+// What distance() found.
 struct DistanceResult {
   // Bounds of the separation distance of the two sets in exact arithmetic; both 0 where they
   // overlap (lower is 0 wherever rounding cannot tell).

@@ -23,6 +23,7 @@ struct EdgeRequest {
 // Throws Error for a resolution that is not above zero.
 void require_resolution(double resolution);
 
+// What is proved of a motion.
 struct EdgeResult {
   // kFree: proved at every point of the motion (G6). kCollision: at `contact_at` the canonical test
   // finds a contact. kUnknown: something comes closer than the resolution tells apart, without a

@@ -76,6 +76,7 @@ class MechanismCheck {
   // What a query writes to: made for one check; with that of another one every query throws Error.
   class Scratch {
    public:
+    // For this check.
     explicit Scratch(const MechanismCheck& check);
     ~Scratch();
     Scratch(Scratch&&) noexcept;
@@ -90,6 +91,7 @@ class MechanismCheck {
   // Whether the variables are such that collides() can be asked: none larger than this in
   // magnitude.
   static constexpr double kLargestVariable = 100.0;
+  // Whether none is larger than that or not finite.
   static bool is_in_range(std::span<const double> variables);
 
   // True if two spheres of a pair touch for sure or `confirm`, given a MechanismContact, says so of
@@ -140,6 +142,7 @@ class MechanismCheck {
   // Configurations that are asked for side by side; answers are bits, the first configuration's is
   // the lowest.
   static constexpr std::size_t kBlock = 16;
+  // A bit for every configuration of a block.
   struct BlockAnswer {
     std::uint32_t collides;
     std::uint32_t out_of_range;  // is_in_range() does not hold: no answer

@@ -42,6 +42,7 @@ class CoveredMesh {
   // Throws Error too for a mesh that validate() refuses and if `cover` is missing.
   CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereTree> cover);
 
+  // What it was made of.
   const SphereTree& cover() const { return *cover_; }
   const MeshTree& mesh() const { return mesh_; }
   // Those that a sphere of cover().spheres() stands for, at least in part, sorted. Every point of

@@ -44,6 +44,7 @@ class MeshMechanismCheck {
   // What a query writes to: made for one check; with that of another one every query throws Error.
   class Scratch {
    public:
+    // For this check.
     explicit Scratch(const MeshMechanismCheck& check);
     ~Scratch();
     Scratch(Scratch&&) noexcept;

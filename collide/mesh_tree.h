@@ -23,6 +23,7 @@ class MeshTree {
   // Throws Error for a mesh that validate() refuses.
   explicit MeshTree(const TriangleMesh& mesh);
 
+  // Sphere `index` of tree() is the ball of triangle(index).
   const SphereTree& tree() const { return tree_; }
   const std::array<Eigen::Vector3d, 3>& triangle(std::int32_t index) const {
     return triangles_[static_cast<std::size_t>(index)];

@@ -16,8 +16,10 @@ namespace spherule {
 // Not to be shared between threads. The trees must outlive it.
 class PairCache {
  public:
+  // Both trees must outlive it.
   PairCache(const SphereTree& a, const SphereTree& b);
 
+  // Exactly what collides() answers for the two trees.
   bool collides(const Pose& world_from_a, const Pose& world_from_b);
 
   // What has been asked, and how many of the answers came from memory.
@@ -26,6 +28,7 @@ class PairCache {
     std::uint64_t free_from_memory = 0;
     std::uint64_t collisions_from_memory = 0;
   };
+  // Since the cache was made.
   const Counts& counts() const { return counts_; }
 
  private:

@@ -12,6 +12,7 @@
 
 namespace spherule {
 
+// How points become spheres.
 struct PointCloudOptions {
   // Side of the cubic cells of which each is left one sphere, in the unit of the points; 0 keeps
   // every point.

@@ -43,6 +43,7 @@ struct Capsule {
 // z <= 0.
 struct HalfSpace {};
 
+// A solid of simple shape.
 using Primitive = std::variant<Box, Ball, Cylinder, Capsule, HalfSpace>;
 
 // Throws Error(subject, ...) unless every size is finite, above 0 and at most kMaxCoordinate; the

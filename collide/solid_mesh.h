@@ -31,6 +31,7 @@ class SolidMesh {
   // Throws Error for a mesh that validate() refuses.
   explicit SolidMesh(const TriangleMesh& mesh);
 
+  // The triangles, and by how much they are grown.
   const MeshTree& mesh() const { return mesh_; }
   double growth() const { return growth_; }
   // Whether every triangle is of a closed surface, and whether any is.

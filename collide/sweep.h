@@ -9,6 +9,7 @@
 
 namespace spherule {
 
+// How closely a motion is looked at.
 struct SweepRequest {
   // What comes this close counts as contact.
   double clearance = 0.0;
@@ -23,6 +24,7 @@ struct SweepRequest {
   std::chrono::nanoseconds max_time = std::chrono::nanoseconds::max();
 };
 
+// What is proved of a motion.
 struct SweepResult {
   // kFree: proved free at every t in [0, 1]. kCollision: in contact at `contact_at`. kUnknown
   // counts as a collision.

@@ -83,7 +83,7 @@ function declares(code) {
     match(code, /^ */)
     code = substr(code, 1, RLENGTH) "/**" shared " */ " substr(code, RLENGTH + 1)
   }
-  is_scope = code ~ /(^| )(struct|class|enum|union|namespace) [^;()]*\{ *$/ || code ~ /^extern "C"/
+  is_scope = code ~ /(^| )(struct|class|enum|union|namespace) (alignas\([0-9]+\) )?[^;()]*\{ *$/ || code ~ /^extern "C"/
   if (change > 0 && !is_scope) body = change
   if (is_scope || code ~ /^ *(public|protected|private): *$/ || code ~ /^ *\};? *$/) shared = ""
   continued = code !~ /[;{}:] *$/ && code !~ /^ *#/

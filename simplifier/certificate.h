@@ -14,6 +14,7 @@
 
 namespace spherule {
 
+// What spheres are certified against, and how closely.
 struct CertifyOptions {
   // The simplified solid to certify against. Without it |M| itself is certified: its complement is
   // flooded with cells of size `resolution`, and what the flood does not reach counts as inside.

@@ -8,6 +8,7 @@
 
 namespace spherule {
 
+// The lengths of a fit, on which it depends which edges matter.
 struct ConcaveEdgeOptions {
   double min_external_diameter = 0.0;  // D
   double max_error = 0.0;              // E

@@ -12,11 +12,13 @@
 
 namespace spherule {
 
+// How S is covered.
 enum class CoverMethod {
   kCover,  // few spheres, two-sided guarantee (default)
   kPaper   // the paper's Algorithm 1, second loop
 };
 
+// How the second stage covers, and how long it may look.
 struct CoverOptions {
   CoverMethod method = CoverMethod::kCover;
   // E: how far the balls may protrude from S. Positive.

@@ -19,6 +19,7 @@ enum class BallRole {
   kInside  // no point of the boundary: the deep inside, or nothing
 };
 
+// What the balls of a cover stand for, and how many of each.
 struct CoverBreakdown {
   std::vector<BallRole> roles;  // of each ball: the first in the order above that fits
   std::size_t edges = 0;

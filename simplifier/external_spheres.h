@@ -14,6 +14,7 @@
 
 namespace spherule {
 
+// How external balls are placed.
 enum class ExternalPlacement {
   kReachable,  // deterministic flood from outside (default)
   kRandom,     // the paper's Algorithm 1
@@ -24,6 +25,7 @@ enum class ExternalPlacement {
 // what is being done.
 using Progress = std::function<void(double share, const char* what)>;
 
+// What the first stage simplifies away.
 struct ExternalOptions {
   ExternalPlacement placement = ExternalPlacement::kReachable;
   // D, the diameter of the smallest thing that will meet the model (the paper's min_ext_size).

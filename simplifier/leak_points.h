@@ -18,6 +18,7 @@ struct LeakPoint {
   double depth = 0.0;                               // positive: no ball is nearer to `point`
 };
 
+// How closely leaks are looked for.
 struct LeakPointOptions {
   // How far the samples are apart and how far those returned, as shares of the diagonal of the
   // mesh's box; positive.

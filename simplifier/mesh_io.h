@@ -7,6 +7,7 @@
 
 namespace spherule {
 
+// How a file is read.
 struct MeshReadOptions {
   // Factor from the unit of the file to the unit of the model (1000 turns metres into millimetres).
   double scale = 1.0;

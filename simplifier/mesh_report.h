@@ -35,11 +35,13 @@ struct MeshReport {
   double volume = 0.0;  // signed; meaningful if closed
 };
 
+// What is looked at.
 struct MeshReportOptions {
   // Pairs of meeting triangles are by far the most work to count.
   bool self_intersections = true;
 };
 
+// Looks at a mesh as a whole; it changes nothing.
 MeshReport mesh_report(const TriangleMesh& mesh, const MeshReportOptions& options = {});
 
 // The report in a few lines for a person: counts, size, and a sentence for everything unusual.

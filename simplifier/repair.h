@@ -14,6 +14,7 @@
 
 namespace spherule {
 
+// How far a repair may go.
 struct RepairOptions {
   // How far a ball that is grown or added may protrude from S. Positive. The natural choice is the
   // larger of the E the balls were made for and the certified protrusion of the balls as they are.
@@ -26,6 +27,7 @@ struct RepairOptions {
   Progress progress = {};
 };
 
+// The spheres, repaired, and what that took.
 struct Repair {
   // The balls of the input in their order, none moved and none smaller than it was; then those
   // added.

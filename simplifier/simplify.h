@@ -29,6 +29,7 @@ struct SecondPhase {
       {};
 };
 
+// What is asked of simplify().
 struct SimplifyOptions {
   // E: how far the result may protrude from the simplified solid; 0 chooses 1 % of the box
   // diagonal.
@@ -69,6 +70,7 @@ struct SimplifyTimes {
   double certify = 0.0;
 };
 
+// What simplify() returns.
 struct Simplification {
   ExternalSpheres external;
   SphereCover cover;

@@ -22,6 +22,7 @@ struct ZoneCapsule {
   double radius = 0.0;
 };
 
+// Equal numbers, not equal sets.
 inline bool operator==(const ZoneCapsule& a, const ZoneCapsule& b) {
   return a.from == b.from && a.to == b.to && a.radius == b.radius;
 }
@@ -43,6 +44,7 @@ struct Zone {
   std::optional<double> min_external_diameter = std::nullopt;
 };
 
+// Equal numbers, not equal sets.
 bool operator==(const Zone& a, const Zone& b);
 
 // Never more than the distance of `point` to the shape, and 0 in it.

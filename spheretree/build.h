@@ -7,6 +7,7 @@
 
 namespace spherule {
 
+// The shape of the tree.
 struct BuildOptions {
   // Children of a wide node, 2 to SphereTree::kMaxBranching.
   int branching = 8;

@@ -13,6 +13,8 @@ namespace spherule {
 template <class Json>
 class DuplicateKeys {
  public:
+  // For nlohmann's parser to call at every event. Throws what is thrown for a key that is there
+  // twice.
   void see(int depth, typename Json::parse_event_t event, const Json& parsed) {
     const auto level = static_cast<std::size_t>(depth);
     if (event == Json::parse_event_t::object_start) {

@@ -11,9 +11,11 @@ namespace spherule {
 // where the subject names the file, the option or the argument.
 class Error : public std::runtime_error {
  public:
+  // What cannot be used, and why.
   Error(const std::string& subject, const std::string& reason)
       : std::runtime_error(subject + ": " + reason), subject_(subject), reason_(reason) {}
 
+  // The two parts of what().
   const std::string& subject() const noexcept { return subject_; }
   const std::string& reason() const noexcept { return reason_; }
 

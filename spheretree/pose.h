@@ -34,16 +34,19 @@ class Pose {
   // rounding.
   static Pose from_isometry(const Eigen::Isometry3d& target_from_source);
 
+  // A shift without a turn.
   static Pose from_translation(const Eigen::Vector3d& translation) {
     return Pose(Eigen::Quaterniond::Identity(), translation);
   }
 
+  // What is stored, exactly.
   Eigen::Quaterniond rotation() const { return Eigen::Quaterniond(rotation_); }
   const Eigen::Vector3d& translation() const { return translation_; }
 
   // The rotation matrix, each entry within kRotationEntryError of the exact one.
   const Eigen::Matrix3d& matrix() const { return matrix_; }
 
+  // The same motion as Eigen has it, with the rounded matrix().
   Eigen::Isometry3d isometry() const;
 
   // The error of a mapped point is at most 40 u (|p| + |t|). Proof: of the matrix's error, what

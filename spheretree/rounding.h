@@ -35,6 +35,7 @@ inline constexpr double kUnderflow = 0x1p-530;
 inline constexpr double kRelativeUp = 1.0 + 8.0 * kUnitRoundoff;
 inline constexpr double kRelativeDown = 1.0 - 8.0 * kUnitRoundoff;
 
+// The neighbouring double above, and below.
 inline double next_up(double x) {
   return std::nextafter(x, std::numeric_limits<double>::infinity());
 }
@@ -75,6 +76,7 @@ inline double distance_lower(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
   return norm_lower(a - b);
 }
 
+// Whether numbers are finite and within kMaxCoordinate.
 inline bool is_usable_coordinate(double x) {
   return std::abs(x) <= kMaxCoordinate;
 }

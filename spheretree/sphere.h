@@ -14,6 +14,7 @@ struct Sphere {
   double radius = 0.0;
 };
 
+// Equal numbers.
 inline bool operator==(const Sphere& a, const Sphere& b) {
   return a.center == b.center && a.radius == b.radius;
 }

@@ -31,6 +31,7 @@ struct CertificateRecord {
   std::optional<double> volume_ratio = std::nullopt;
 };
 
+// What an option in a file may be.
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
 
 // The content of a SPHERES.json file. Infinite values cannot be stored in JSON; they are written as

@@ -44,9 +44,11 @@ class SphereTree {
   // Makes the tree that `data` describes. Throws Error, naming the node, if an invariant fails.
   explicit SphereTree(SphereTreeData data);
 
+  // The balls of the leaves as they were given, and the number of all nodes.
   std::span<const Sphere> spheres() const { return data_.spheres; }
   std::size_t node_count() const { return data_.radius.size(); }
 
+  // Of one node: its ball, and its children, which stand side by side from the first on.
   Sphere ball(std::size_t node) const {
     return {{data_.x[node], data_.y[node], data_.z[node]}, data_.radius[node]};
   }
@@ -72,6 +74,7 @@ class SphereTree {
   // themselves.
   std::vector<Sphere> level(int level) const;
 
+  // As it is stored in files.
   const SphereTreeData& data() const { return data_; }
 
  private:

@@ -2,6 +2,7 @@
 #include "bench/paper/page.h"
 
 #include "bench/paper/machine.h"
+#include "collide/robot/internal/xml_file.h"
 #include "spheretree/atomic_file.h"
 
 #include <cstddef>
@@ -39,26 +40,6 @@ Collision Detection in Offline Programming</i>: its table, its figures and what 
 computed anew. In brackets: the paper's own numbers.</p>
 )";
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
-
 std::string number(double value, int digits) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
@@ -82,7 +63,7 @@ class Table {
   void write(const std::vector<std::string>& cells, const std::string& tag) {
     out_ << "<tr>";
     for (const std::string& cell : cells) {
-      out_ << '<' << tag << '>' << escaped(cell) << "</" << tag << '>';
+      out_ << '<' << tag << '>' << internal::xml_escaped(cell) << "</" << tag << '>';
     }
     out_ << "</tr>\n";
   }
@@ -91,8 +72,8 @@ class Table {
 };
 
 void image(std::ostream& out, const std::string& file, const std::string& caption) {
-  out << "<figure><img src=\"" << file << "\" alt=\"" << escaped(caption) << "\"><figcaption>"
-      << escaped(caption) << "</figcaption></figure>\n";
+  out << "<figure><img src=\"" << file << "\" alt=\"" << internal::xml_escaped(caption)
+      << "\"><figcaption>" << internal::xml_escaped(caption) << "</figcaption></figure>\n";
 }
 
 void write_table1(const std::vector<Table1Row>& rows, std::ostream& out) {

@@ -15,6 +15,7 @@
 
 namespace spherule::fcl_api {
 
+// How sphere_model() makes spheres of a model.
 struct ModelOptions {
   // Of simplify(): E is `fit.max_error`, in the unit of the model; 0 chooses 1 % of its diagonal.
   SimplifyOptions fit = {};
@@ -59,11 +60,13 @@ class SphereModel final : public fcl::CollisionGeometry<S> {
   explicit SphereModel(std::shared_ptr<const SphereTree> spheres)
       : SphereModel(CoveredPart{.spheres = std::move(spheres)}) {}
 
+  // What the queries of spherule::fcl_api ask.
   const CoveredPart& part() const { return part_; }
 
   // Done when made: FCL calls it for every object.
   void computeLocalAABB() override {}
 
+  // Throws Error: with it FCL's own queries would take the model for free.
   fcl::OBJECT_TYPE getObjectType() const override {
     throw Error("sphere model", "FCL's own queries do not know it; ask those of spherule::fcl_api");
   }

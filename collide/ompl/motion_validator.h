@@ -27,6 +27,7 @@ class MotionValidator : public ompl::base::MotionValidator {
     require_resolution(request.resolution);
   }
 
+  // True if the motion is proved free and its end lies within the bounds.
   bool checkMotion(const ompl::base::State* s1, const ompl::base::State* s2) const override {
     return count(si_->satisfiesBounds(s2) && check(s1, s2, request_).verdict == Verdict::kFree);
   }

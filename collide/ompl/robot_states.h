@@ -52,10 +52,12 @@ class RobotStates {
     }
   }
 
+  // The snapshot that the states are checked with.
   const RobotChecker& checker() const { return checker_; }
 
   // What one query writes to.
   struct Memory {
+    // For this checker and its copies.
     explicit Memory(const RobotChecker& checker) : scratch(checker) {}
 
     RobotChecker::Scratch scratch;
@@ -67,11 +69,13 @@ class RobotStates {
   // that a lone thread keeps what its scratch remembers.
   class Loan {
    public:
+    // Takes memory that is free, or makes some, and gives it back at the end.
     explicit Loan(const RobotStates& lender) : lender_(lender), memory_(lender.take()) {}
     ~Loan() { lender_.give_back(std::move(memory_)); }
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
 
+    // The memory lent.
     Memory& operator*() const { return *memory_; }
 
    private:
@@ -79,6 +83,7 @@ class RobotStates {
     std::unique_ptr<Memory> memory_;
   };
 
+  // The configuration of a state, in the order of the robot's variables.
   void read(const ompl::base::State* state, std::vector<double>& configuration) const {
     configuration.clear();
     append(*space_, state, configuration);

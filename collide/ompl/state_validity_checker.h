@@ -24,6 +24,7 @@ class StateValidityChecker : public ompl::base::StateValidityChecker {
   using ompl::base::StateValidityChecker::clearance;
   using ompl::base::StateValidityChecker::isValid;
 
+  // True if the state lies within the bounds and is free.
   bool isValid(const ompl::base::State* state) const override {
     if (!si_->satisfiesBounds(state)) return false;
     const RobotStates::Loan loan(states_);

@@ -23,6 +23,7 @@ enum class AllowedReason : std::uint8_t {
   kAlways,    // touched in all of the sampled configurations
 };
 
+// For people: what stands in tables and files.
 std::string_view name_of(AllowedReason reason);
 
 // Which pairs of a robot's links may touch each other, and why: a symmetric matrix, of which a
@@ -35,6 +36,7 @@ class AllowedCollisions {
   // move.
   explicit AllowedCollisions(const RobotModel& robot);
 
+  // The links, in the order of their indices.
   const std::vector<std::string>& link_names() const { return names_; }
 
   // What is allowed already keeps its reason. Throws Error for names that are no links, or indices
@@ -57,6 +59,7 @@ class AllowedCollisions {
     return reasons_[index(first, second)];
   }
 
+  // Two links, and why they are allowed to touch.
   struct Pair {
     int first = 0;  // the smaller index
     int second = 0;
@@ -77,6 +80,7 @@ class AllowedCollisions {
   std::vector<AllowedReason> reasons_;
 };
 
+// How configurations are sampled.
 struct SampleCollisionsOptions {
   std::size_t configurations = 10000;  // drawn evenly between the joint limits
   std::uint64_t seed = 1;
@@ -90,6 +94,7 @@ struct SampledPair {
   AllowedReason reason = AllowedReason::kTested;  // kNever, kAlways, or neither
 };
 
+// What sampling found.
 struct SampledCollisions {
   std::size_t configurations = 0;
   std::vector<SampledPair> pairs;  // all that were tested, in order

@@ -16,6 +16,7 @@
 
 namespace spherule {
 
+// How a robot's spheres are certified.
 struct RobotAuditOptions {
   LinkGeometry geometry = LinkGeometry::kCollision;
   // Spheres that cover a simplified solid S with little to spare need not cover everything that
@@ -48,6 +49,7 @@ struct ConfigurationAudit {
   std::string deepest_link;  // by the lower bound, else by the upper; empty if all are covered
 };
 
+// What is proved of a robot's spheres.
 struct RobotAudit {
   std::vector<LinkAudit> links;  // of every link, in the order of the description
   std::vector<ConfigurationAudit> configurations;
@@ -70,6 +72,7 @@ struct RobotAudit {
 RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
                        const RobotAuditOptions& options = {});
 
+// How a robot's spheres are repaired.
 struct RobotRepairOptions {
   LinkGeometry geometry = LinkGeometry::kCollision;
   // E: how far a sphere that is grown or added may protrude, metres; 0 chooses, for each link, 1 %
@@ -79,6 +82,7 @@ struct RobotRepairOptions {
   Progress progress = {};  // the word on what is being done is a link's name
 };
 
+// The repair of one link's spheres.
 struct LinkRepair {
   std::string link;
   double max_error = 0.0;   // as used
@@ -86,6 +90,7 @@ struct LinkRepair {
   Certificate certificate;  // of these, against the simplified solid with D = 4 E
 };
 
+// A robot's spheres, repaired.
 struct RobotRepair {
   // Of all links of the input in their order, then of those that had none and needed some.
   std::vector<LinkSpheres> spheres;

@@ -14,6 +14,7 @@ namespace spherule {
 // is done.
 class JointPositions {
  public:
+  // Of the joints of this robot.
   explicit JointPositions(const RobotModel& robot);
 
   // What is written to: the positions of several configurations, and a configuration.
@@ -21,6 +22,7 @@ class JointPositions {
     std::vector<double> positions{};
     std::vector<double> configuration{};
   };
+  // Room for so many configurations.
   Room room_for(std::size_t configurations) const;
 
   // The positions in a configuration of as many numbers as the robot has variables, kept at a

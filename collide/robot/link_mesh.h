@@ -15,6 +15,7 @@ enum class LinkGeometry {
   kVisual      // mostly the exact shape
 };
 
+// How the shapes of a link become one mesh.
 struct LinkMeshOptions {
   LinkGeometry geometry = LinkGeometry::kCollision;
   // How far triangles for a ball, cylinder or capsule may lie outside of it; positive, in metres.

@@ -8,6 +8,7 @@
 
 namespace spherule {
 
+// The points of a file, and how exactly they are held.
 struct PointCloudFile {
   std::vector<Eigen::Vector3d> points{};
   // Bound of the distance between a point as stored here and as written in the file, scaled exactly

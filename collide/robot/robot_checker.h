@@ -20,6 +20,7 @@
 
 namespace spherule {
 
+// How a RobotChecker answers.
 struct RobotCheckerOptions {
   // A configuration with a joint outside its limits counts as a collision.
   bool enforce_limits = false;
@@ -28,6 +29,7 @@ struct RobotCheckerOptions {
 
 // One side of a pair that is tested: a link, an attached object or an obstacle.
 struct CheckedBody {
+  // What the body is.
   enum class Kind { kLink, kAttached, kObstacle };
   Kind kind = Kind::kLink;
   std::string name;
@@ -47,6 +49,7 @@ struct CheckedContact {
   Eigen::Vector3d world_point = Eigen::Vector3d::Zero();  // between the two, up to rounding
 };
 
+// How far a robot is from the nearest contact, between two bounds.
 struct RobotClearance {
   // No two of the spheres and solids that are tested against each other come nearer than this to
   // touching, in exact arithmetic; 0 where they touch or nearly, and where a joint's position is
@@ -66,12 +69,14 @@ struct RobotClearance {
 // (G5), collision_slack() for spheres.
 class RobotChecker {
  public:
+  // The robot that is checked.
   const RobotModel& robot() const;
 
   // What a query writes to: made for one snapshot and its copies; with that of another one every
   // query throws Error. Unless it says so, no query allocates once its scratch is warm.
   class Scratch {
    public:
+    // For this checker and its copies.
     explicit Scratch(const RobotChecker& checker);
     ~Scratch();
     Scratch(Scratch&&) noexcept;

@@ -16,6 +16,7 @@ struct RobotContact {
   Contact contact;           // a is the link's tree, b the obstacle's; metres
 };
 
+// When an explanation may stop.
 struct ExplainRequest {
   // Stop after this many links and obstacles that touch (1: the first).
   std::size_t max_contacts = std::numeric_limits<std::size_t>::max();

@@ -17,6 +17,7 @@ struct LinkMesh {
   std::shared_ptr<const MeshTree> mesh;
 };
 
+// Where the robot stands, and which pairs are left out.
 struct RobotMeshCheckerOptions {
   Pose world_from_root{};
   std::vector<UntestedPair> untested{};
@@ -42,6 +43,7 @@ class RobotMeshChecker {
   // one collides() throws Error. No query allocates once its scratch is warm.
   class Scratch {
    public:
+    // For this checker.
     explicit Scratch(const RobotMeshChecker& checker)
         : check_(checker.check_), memory_(*check_), room_(checker.positions_.room_for(1)) {}
 

@@ -37,6 +37,7 @@ struct Joint {
   double offset = 0.0;
   int mimics = -1;  // the joint that it was told to follow, by its index; -1 if none
 
+  // Whether a number of the configuration moves it, and whether it turns by that.
   bool moves() const { return variable >= 0; }
   bool turns() const { return type == JointType::kRevolute || type == JointType::kContinuous; }
   // In a configuration of variable_count() numbers, product and sum rounded; 0 if it is fixed.
@@ -59,6 +60,7 @@ struct Link {
 // for each joint that moves and mimics no other, in the order of these joints.
 class RobotModel {
  public:
+  // A robot of one link.
   explicit RobotModel(std::string root_link = "base_link");
 
   // Adds a link below `parent_link` through `joint` and returns its index. What is set here: the
@@ -79,6 +81,7 @@ class RobotModel {
   // Attaches a tree to a link; throws Error for an unknown link or a null tree.
   void attach(std::string_view link, std::shared_ptr<const SphereTree> tree);
 
+  // In the order in which they were added, the root link first.
   const std::vector<Link>& links() const { return links_; }
   const std::vector<Joint>& joints() const { return joints_; }
   int variable_count() const { return static_cast<int>(variable_joints_.size()); }

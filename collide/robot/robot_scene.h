@@ -34,6 +34,7 @@ using ObstacleShape =
 struct BodySphere {
   std::size_t tree = 0;     // among the link's; 0 for an attached object
   std::int32_t sphere = 0;  // index into the tree's spheres()
+  // In the order of the members.
   friend auto operator<=>(const BodySphere&, const BodySphere&) = default;
 };
 
@@ -59,6 +60,7 @@ class RobotScene {
   // allows by itself.
   explicit RobotScene(RobotModel robot, const Pose& world_from_root = {});
 
+  // What the scene was made with and what was set last.
   const RobotModel& robot() const { return robot_; }
   const AllowedCollisions& allowed_collisions() const { return allowed_; }
   // What they allow as rigid or adjacent, though it is not so by this robot's own joints and

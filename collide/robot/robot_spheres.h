@@ -56,6 +56,7 @@ struct LinkCover {
   std::vector<std::string> warnings = {};
 };
 
+// A robot's links with their spheres.
 struct RobotCover {
   std::string robot;             // its name
   std::vector<LinkCover> links;  // of every link, in the order of the description

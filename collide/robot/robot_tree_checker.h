@@ -30,6 +30,7 @@ struct PlacedTree {
   Pose world_from_tree;
 };
 
+// How a RobotTreeChecker answers.
 struct RobotTreeCheckerOptions {
   Pose world_from_root{};
   // Confirmation on the triangles (opt-in): contacts of two trees that are both the cover() of one
@@ -64,6 +65,7 @@ class RobotTreeChecker {
   };
 
  public:
+  // The robot that is checked.
   const RobotModel& robot() const { return robot_; }
 
   // What a query writes to: made for one checker, which must outlive its use; with that of another
@@ -71,6 +73,7 @@ class RobotTreeChecker {
   // Those of several threads share no cache line.
   class alignas(64) Scratch {
    public:
+    // For this checker.
     explicit Scratch(const RobotTreeChecker& checker)
         : check_(checker.check_),
           memory_(*check_),

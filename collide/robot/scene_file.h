@@ -34,6 +34,7 @@ struct PointsSource {
   double scale = 1.0;
 };
 
+// An obstacle as the file describes it.
 struct SceneObstacle {
   std::string name;
   std::variant<Primitive, MeshFile, SpheresSource, TreeSource, PointsSource> shape;

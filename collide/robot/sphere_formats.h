@@ -63,6 +63,7 @@ std::optional<SphereFormat> sphere_format_named(std::string_view name);
 // written.
 std::string sphere_file_name(std::string_view robot, SphereFormat format);
 
+// What a file does not say itself.
 struct SphereReadOptions {
   // Formats of one mesh, and levels of it: to which link the balls belong.
   std::string link = {};
@@ -70,6 +71,7 @@ struct SphereReadOptions {
   std::optional<std::size_t> level = std::nullopt;
 };
 
+// What was read, and the format it was found to have.
 struct SphereFormatFile {
   SphereFormat format = SphereFormat::kSpherule;
   RobotSpheres spheres;

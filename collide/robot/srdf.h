@@ -46,6 +46,7 @@ struct GroupState {
   std::vector<JointState> joints{};
 };
 
+// A tool of the robot.
 struct EndEffector {
   std::string name;
   std::string group;

@@ -16,6 +16,7 @@ struct Trajectory {
   std::vector<double> positions{};   // one configuration behind the other
   std::vector<std::size_t> lines{};  // of the file, for each configuration; the first line is 1
 
+  // How many configurations there are, and one of them.
   std::size_t size() const { return lines.size(); }
   std::span<const double> configuration(std::size_t index) const {
     return std::span(positions).subspan(index * width, width);

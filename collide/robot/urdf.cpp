@@ -3,6 +3,7 @@
 
 #include "collide/robot/internal/mesh_path.h"
 #include "collide/robot/internal/urdf_text.h"
+#include "collide/robot/internal/xml_file.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -61,10 +62,6 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& 
   if (!messages.errors().empty()) throw Error(file, messages.errors());
   if (!model) throw Error(file, "urdfdom cannot read it and does not say why");
   return model;
-}
-
-std::string in_quotes(const std::string& name) {
-  return "'" + name + "'";
 }
 
 Pose pose_of(const urdf::Pose& pose) {
@@ -150,7 +147,7 @@ class Reader {
     try {
       robot.add_link(joint.child_link_name, joint.parent_link_name, joint_of(joint));
     } catch (const Error& error) {
-      throw Error("joint " + in_quotes(joint.name), error.what());
+      throw Error("joint " + internal::in_quotes(joint.name), error.what());
     }
   }
 
@@ -164,7 +161,7 @@ class Reader {
         result.collision.push_back(shape_of(*collision, true));
       }
     } catch (const Error& error) {
-      throw Error("link " + in_quotes(link.name), error.what());
+      throw Error("link " + internal::in_quotes(link.name), error.what());
     }
     return result;
   }

@@ -9,6 +9,7 @@
 
 namespace spherule {
 
+// Where a URDF finds its files.
 struct UrdfOptions {
   // Roots of packages: package://NAME/REST is the file REST below packages[NAME]. A package that is
   // not given is looked for upwards from the URDF file: a folder with a package.xml of that name,

@@ -12,6 +12,7 @@
 
 namespace spherule {
 
+// How far a mesh is taken apart.
 struct ConvexDecompositionOptions {
   // Concavity at which parts are no longer joined, as the library measures it: distance of the
   // surface of a part from its hull, in the unit of the mesh; 0: 1 % of the box diagonal.
@@ -22,6 +23,7 @@ struct ConvexDecompositionOptions {
   std::optional<DeviationOptions> measure = DeviationOptions{};
 };
 
+// The parts, and how far they are from the mesh.
 struct ConvexDecomposition {
   // Closed, convex up to rounding, facing outwards. polygon_list() (convex_hull.h) turns the
   // triangles into the faces that FCL's Convex takes, beside the vertices.

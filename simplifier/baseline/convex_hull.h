@@ -16,6 +16,7 @@ namespace spherule {
 // has no inside that rounding leaves intact.
 inline constexpr double kFlatShare = 1e-9;
 
+// What the hull is to hold beside the mesh.
 struct ConvexHullOptions {
   // Every ball of this radius about a vertex of the mesh is inside too (the mesh's vertex_error is
   // added). It moves flat and long hulls more at their far ends than across; for larger distances
@@ -26,6 +27,7 @@ struct ConvexHullOptions {
   double max_expansion = 1e-6;
 };
 
+// The hull, and how far it is from convex.
 struct ConvexHull {
   // Closed, each edge used once in either direction, facing outwards; convex up to `expansion`: no
   // vertex is farther than that beyond the plane of a triangle.

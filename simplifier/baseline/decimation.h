@@ -12,6 +12,7 @@
 
 namespace spherule {
 
+// How far a mesh is reduced.
 struct DecimationOptions {
   // How many triangles are wanted; the result has more where no collapse of an edge is allowed or
   // the error would pass max_error.
@@ -22,6 +23,7 @@ struct DecimationOptions {
   std::optional<DeviationOptions> measure = DeviationOptions{};
 };
 
+// The reduced mesh, and how far it is from the original.
 struct Decimation {
   TriangleMesh mesh;  // its vertices are vertices of the original, bit for bit
   // The library's estimate: root of the mean square distance to the planes that met in a vertex.

@@ -10,6 +10,7 @@
 
 namespace spherule {
 
+// How many balls there are to be, and of how many samples.
 struct HubbardOptions {
   // Balls of each level, the coarsest first, ascending, the first at least 1.
   std::vector<std::size_t> counts = {1, 8, 64, 512};

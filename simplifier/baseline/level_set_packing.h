@@ -9,6 +9,7 @@
 
 namespace spherule {
 
+// How finely and how far the solid is filled.
 struct LevelSetPackingOptions {
   // Edge of a voxel of the level set, in the unit of the mesh. Positive.
   double step = 0.0;

@@ -34,6 +34,7 @@ struct MedialSampling {
   std::uint64_t seed = 1;
 };
 
+// What is wanted: a number of balls, or a protrusion.
 struct MedialAxisOptions {
   // Wanted number of balls; not looked at if there is a wanted protrusion.
   std::size_t spheres = 512;
@@ -44,6 +45,7 @@ struct MedialAxisOptions {
   int threads = 0;  // 0: all
 };
 
+// The balls, and what they were chosen from.
 struct MedialAxisSpheres {
   std::vector<Sphere> spheres;
   // Upper bound, up to rounding, of the largest distance from a point of the balls to the solid:
@@ -69,6 +71,7 @@ struct MedialAxisSpheres {
 // area, and for options out of range.
 MedialAxisSpheres medial_axis(const TriangleMesh& mesh, const MedialAxisOptions& options = {});
 
+// The shape of the tree.
 struct MedialTreeOptions {
   int branching = 8;  // 2 to 64
   int depth = 3;      // levels below the root: at most branching^depth leaves. 1 to 8

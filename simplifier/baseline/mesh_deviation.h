@@ -8,6 +8,7 @@
 
 namespace spherule {
 
+// How closely a deviation is measured.
 struct DeviationOptions {
   // How far apart lower and upper bound may be at the end, as a share of the box diagonal of both
   // meshes; from 1e-6 to 1.

@@ -7,6 +7,7 @@
 
 namespace spherule {
 
+// How far cubes are halved.
 struct OctreeSpheresOptions {
   // Halvings of the cube around the mesh; or 0, and max_error says how far to go.
   int depth = 0;
@@ -18,6 +19,7 @@ struct OctreeSpheresOptions {
   double padding = 0.0;
 };
 
+// The balls, as a tree.
 struct OctreeSpheres {
   // Its spheres() are the balls around the cubes without halves; its inner nodes are the balls
   // around the others, and nothing else.

@@ -12,6 +12,7 @@
 
 namespace spherule {
 
+// How densely the solid is packed.
 struct SpherePackingOptions {
   // E: balls are added until no point of the solid is further than this from them, in the unit of
   // the mesh. Positive.
@@ -28,6 +29,7 @@ struct SpherePackingOptions {
   Progress progress = {};
 };
 
+// The packing, and what is proved of it.
 struct SpherePacking {
   std::vector<Sphere> spheres;   // inside of `solid`
   std::vector<Sphere> inflated;  // every radius larger by `error`: these contain `solid`

@@ -18,6 +18,7 @@ enum class VoxelBall {
   kInscribed       // of the cube's width, as the paper has it: leaves its corners out
 };
 
+// How fine voxels are, and what stands for one.
 struct VoxelisationOptions {
   // Edge of a voxel, in the unit of the mesh; or 0, and max_error says how large it may be.
   double step = 0.0;
@@ -30,6 +31,7 @@ struct VoxelisationOptions {
   double padding = 0.0;
 };
 
+// The balls, and how many voxels there are.
 struct Voxelisation {
   std::vector<Sphere> spheres;  // one a voxel, along the Morton curve
   double step = 0.0;            // edge of the voxels

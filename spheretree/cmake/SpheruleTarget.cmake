@@ -2,6 +2,7 @@
 # What every target of the project shares: the include roots, the warnings, the floating-point
 # model, and how a library is installed.
 include(GNUInstallDirs)
+include(SpherulePkgConfig)
 if(SPHERULE_PRECOMPILE)
   include(SpherulePrecompiled)
 endif()
@@ -64,5 +65,6 @@ function(spherule_library name)
             FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/spherule)
     install(EXPORT spherule-${name} NAMESPACE spherule:: FILE spherule-${name}.cmake
             DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/spherule)
+    cmake_language(EVAL CODE "cmake_language(DEFER CALL spherule_pkgconfig ${name})")
   endif()
 endfunction()

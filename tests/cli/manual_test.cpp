@@ -40,6 +40,7 @@ TEST_F(ManualTest, EveryCommandHasAPageWithAllOfItsOptions) {
     EXPECT_EQ(run(names).out, page);
     std::erase(page, '\\');
     for (const std::string& option : names_below(help, "Options:")) {
+      if (option.find("--") == std::string::npos) continue;  // the head of a group
       EXPECT_NE(page.find(option.substr(option.find("--"))), std::string::npos) << name << option;
     }
     for (const std::string& example : examples_in(help)) {

@@ -44,8 +44,9 @@ fs::path MeshPaths::package_root(const std::string& package) const {
     if (at == at.parent_path()) break;
   }
   throw Error("package://" + package,
-              "the folder of this package is not given, and no package.xml of that name stands in "
-              "a folder above the URDF file or beside one of them");
+              "the folder of this package is not given (--package " + package +
+                  "=FOLDER, UrdfOptions::packages), and no package.xml of that name stands in a "
+                  "folder above the URDF file or beside one of them");
 }
 
 fs::path MeshPaths::find(const std::string& name) {

@@ -16,12 +16,6 @@ namespace {
 constexpr std::string_view kSpace = " \t\r\n";
 constexpr std::size_t kQuotedLength = 60;
 
-std::string in_quotes(std::string_view text) {
-  std::string result("'");
-  result.append(text.substr(0, kQuotedLength));
-  return result.append(text.size() > kQuotedLength ? "...'" : "'");
-}
-
 std::vector<std::string_view> words_of(std::string_view text) {
   std::vector<std::string_view> words;
   for (std::size_t at = text.find_first_not_of(kSpace); at != std::string_view::npos;) {
@@ -194,6 +188,12 @@ XmlFile::~XmlFile() = default;
 
 XmlElement XmlFile::root() const {
   return {*document_->RootElement(), name_};
+}
+
+std::string in_quotes(std::string_view text) {
+  std::string result("'");
+  result.append(text.substr(0, kQuotedLength));
+  return result.append(text.size() > kQuotedLength ? "...'" : "'");
 }
 
 std::string xml_escaped(std::string_view text) {

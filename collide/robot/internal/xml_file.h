@@ -70,7 +70,10 @@ class XmlFile {
   std::unique_ptr<tinyxml2::XMLDocument> document_;
 };
 
-// As the value of an attribute.
+// For messages; what is long is cut.
+std::string in_quotes(std::string_view text);
+
+// As text, or as the value of an attribute.
 std::string xml_escaped(std::string_view text);
 
 }  // namespace spherule::internal
