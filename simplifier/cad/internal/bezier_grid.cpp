@@ -187,9 +187,12 @@ BezierGrid::BezierGrid(std::vector<double> u_knots, std::vector<double> v_knots,
       v_knots_(std::move(v_knots)),
       u_periodic_(u_periodic),
       v_periodic_(v_periodic) {
-  constexpr int kRefinements = 2;
+  // Control points are far from the curve where the degree is high, and halving brings them near.
   const bool is_curve = patches.front().columns == 1;
-  for (int k = 0; k < kRefinements && is_rational(patches); ++k) {
+  const bool is_plain =
+      !is_rational(patches) && patches.front().rows <= 4 && patches.front().columns <= 4;
+  const int refinements = is_plain ? 0 : is_curve ? 4 : patches.size() < 64 ? 3 : 2;
+  for (int k = 0; k < refinements; ++k) {
     refine_u(u_knots_, patches);
     if (is_curve) continue;
     patches = transposed(patches, u_knots_.size() - 1);

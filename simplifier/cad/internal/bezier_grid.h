@@ -24,9 +24,9 @@ struct BezierNet {
 // A (rational) B-spline surface as its Bezier patches, or a curve, whose patches have one column.
 // Derivatives are bounded by the control points of the derivative: a Bezier patch lies in the
 // convex hull of its control points, and its derivatives are Bezier patches (Piegl and Tiller, The
-// NURBS Book, 1997, 1.3 and 4.5, for the quotients of rational ones, which are split before: the
-// quotients of bounds are tight on small patches only). Knots at which the surface
-// is only continuous are found by the jump of the derivative across them.
+// NURBS Book, 1997, 1.3 and 4.5, for the quotients of rational ones). These and those of a
+// degree above three are split first: the bounds are tight on small patches only. Knots at which
+// the surface is only continuous are found by the jump of the derivative across them.
 class BezierGrid {
  public:
   // Patch (i, j) over [u_knots[i], u_knots[i + 1]] x [v_knots[j], v_knots[j + 1]] stands at

@@ -256,7 +256,7 @@ std::string SurfaceDeviation::add(const TessellatedFace& face) {
 }
 
 double sampled_deviation(const TessellatedFace& face) {
-  constexpr int kSteps = 12;
+  constexpr int kSteps = 6;
   const MeshDistance distance(mesh_of(face));
   double largest = 0.0;
   const auto sample = [&](const Parameters& p) {

@@ -13,6 +13,7 @@
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
+#include <STEPControl_Controller.hxx>
 #include <STEPControl_Writer.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -40,9 +41,10 @@ void hush() {
 void write_step(const TopoDS_Shape& shape, const std::filesystem::path& path,
                 const std::string& unit) {
   hush();
+  STEPControl_Controller::Init();
+  Interface_Static::SetCVal("write.step.unit", unit.c_str());  // read when a writer is made
+  Interface_Static::SetIVal("write.step.assembly", 2);         // where the shape is a compound
   STEPControl_Writer writer;
-  Interface_Static::SetCVal("write.step.unit", unit.c_str());
-  Interface_Static::SetIVal("write.step.assembly", 2);  // where the shape is a compound
   const bool done = writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone &&
                     writer.Write(path.c_str()) == IFSelect_RetDone;
   if (!done) throw std::runtime_error("cannot write " + path.string());
