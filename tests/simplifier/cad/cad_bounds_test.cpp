@@ -101,13 +101,13 @@ TEST_F(CadBounds, IgesKeepsThePromise) {
 
 TEST_F(CadBounds, WhatIsNotProvedSaysSo) {
   const TopoDS_Shape shape = offset_face();
-  const CadPart part = read(shape, 1.0);
+  const CadPart part = read(shape, 2.0);
   EXPECT_FALSE(part.proved);
   ASSERT_EQ(part.unproved.size(), 1u);
   EXPECT_NE(part.unproved[0].name.find("face 1 (OffsetSurface)"), std::string::npos)
       << part.unproved[0].name;
   EXPECT_GE(part.chord_error, 2.0 * part.reached);
-  EXPECT_LE(farthest(part.mesh, points_of(shape, effort(800, 200))), part.chord_error);
+  EXPECT_LE(farthest(part.mesh, points_of(shape, effort(300, 100))), part.chord_error);
 }
 
 }  // namespace
