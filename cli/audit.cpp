@@ -3,13 +3,13 @@
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/json.h"
+#include "cli/model_file.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"
 #include "simplifier/leak_points.h"
-#include "simplifier/mesh_io.h"
 #include "simplifier/repair.h"
 #include "simplifier/simplify.h"
 #include "spheretree/error.h"
@@ -63,6 +63,17 @@ double stored_scale(const SphereFile& file) {
     throw Error("scale", "must be a positive finite number");
   }
   return scale;
+}
+
+// The chord error that a CAD file was read with; 0 where the file does not say.
+double stored_chord_error(const SphereFile& file) {
+  const auto found = file.options.find("chord-error");
+  if (found == file.options.end()) return 0.0;
+  const double* length = std::get_if<double>(&found->second);
+  if (length == nullptr || !(*length >= 0.0)) {
+    throw Error("chord-error", "must be a number, not negative");
+  }
+  return *length;
 }
 
 std::string name_of(const std::optional<ExternalSpheres>& external) {
@@ -165,9 +176,13 @@ int audit(const AuditArguments& arguments) {
   const double scale = arguments.scale
                            ? *arguments.scale
                            : blaming_file(arguments, [&] { return stored_scale(file); });
+  // The length is in output units, so that it suits no other scale.
+  const double chord_error =
+      arguments.scale ? 0.0 : blaming_file(arguments, [&] { return stored_chord_error(file); });
   ProgressBar bar;
   bar.announce("reading");
-  const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = scale});
+  const ModelFile model = read_model(arguments.mesh, scale, chord_error);
+  const TriangleMesh& mesh = model.mesh;
 
   options.progress = bar.callback();
   CertifyOptions certify_options;
@@ -205,7 +220,8 @@ int audit(const AuditArguments& arguments) {
   }
   bar.clear();
   print(arguments, mesh, file, certificate, external, mended);
-  return (mended ? mended->certificate : certificate).covered ? kYes : kNo;
+  const bool covered = (mended ? mended->certificate : certificate).covered;
+  return covered && !(model.cad && !model.cad->proved) ? kYes : kNo;
 }
 
 }  // namespace
@@ -214,7 +230,9 @@ void add_audit(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("audit", "Prove whether spheres cover a mesh; exit 0 covered, 1 leaks");
   auto arguments = std::make_shared<AuditArguments>();
-  command->add_option("mesh", arguments->mesh, "The mesh")->required()->type_name(kFile);
+  command->add_option("mesh", arguments->mesh, "The mesh, or STEP or IGES")
+      ->required()
+      ->type_name(kFile);
   command->add_option("spheres", arguments->spheres, "Spheres (JSON), of any origin")
       ->required()
       ->type_name(kFile);

@@ -4,6 +4,7 @@
 #include "cli/cover_analysis.h"
 #include "cli/fit_report.h"
 #include "cli/help.h"
+#include "cli/model_file.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
@@ -12,7 +13,6 @@
 #include "cli/second_phase.h"
 #include "cli/view_page.h"
 #include "simplifier/cover_breakdown.h"
-#include "simplifier/mesh_io.h"
 #include "simplifier/simplify.h"
 #include "simplifier/zones.h"
 #include "spheretree/atomic_file.h"
@@ -47,6 +47,7 @@ struct FitArguments {
   std::string method = fit_method_names().front();
   std::string external = placement_names().front();
   double scale = 1.0;
+  double chord_error = 0.0;
   SimplifyOptions options;
 };
 
@@ -128,9 +129,11 @@ int fit(const FitArguments& arguments) {
 
   ProgressBar reading;
   reading.announce("reading");
-  const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
+  const ModelFile model = read_model(arguments.mesh, arguments.scale, arguments.chord_error);
+  const TriangleMesh& mesh = model.mesh;
   const MeshReport report = mesh_report(mesh);
   reading.clear();
+  if (model.cad) std::cout << describe(*model.cad);
   std::cout << describe(report) << std::endl;
 
   Simplification result = [&] {
@@ -140,8 +143,11 @@ int fit(const FitArguments& arguments) {
   }();
 
   // First of all what was asked for and is proved.
-  write_uninterrupted(
-      [&] { save_spheres(sphere_file(result, arguments.scale), arguments.spheres); });
+  write_uninterrupted([&] {
+    SphereFile file = sphere_file(result, arguments.scale);
+    if (model.cad) file.options["chord-error"] = model.cad->asked;
+    save_spheres(file, arguments.spheres);
+  });
   std::optional<CoverAnalysis> analysis;
   if (!arguments.report.empty()) {
     ProgressBar bar;
@@ -150,7 +156,7 @@ int fit(const FitArguments& arguments) {
 
   write_uninterrupted([&] {
     if (analysis) {
-      write_file_atomically(arguments.report, fit_report(arguments.mesh, mesh, report, result,
+      write_file_atomically(arguments.report, fit_report(arguments.mesh, model, report, result,
                                                          *analysis, arguments.scale));
     }
     std::optional<SphereTree> tree;
@@ -161,7 +167,8 @@ int fit(const FitArguments& arguments) {
 
   std::cout << "options: max error " << result.options.max_error << ", min external diameter "
             << result.options.min_external_diameter << ", padding " << result.external.padding
-            << " (rounding of the file included)\n"
+            << (model.cad ? " (chord error and rounding" : " (rounding")
+            << " of the file included)\n"
             << "external spheres: " << result.external.balls.size() << "\n";
   if (options.keep_concave_edges) {
     std::cout << "zones along sharp concave edges: " << result.external.concave_edges.size()
@@ -175,7 +182,7 @@ int fit(const FitArguments& arguments) {
   warn_of_thin_parts(arguments, mesh, result);
   const std::string broken = broken_promises(result);
   std::cout << describe(next_steps(arguments, result.certificate.covered));
-  if (broken.empty()) return kYes;
+  if (broken.empty()) return model.cad && !model.cad->proved ? kNo : kYes;
   std::cerr << "spherule: " << arguments.spheres << ": " << broken << "\n";
   return kNo;
 }
@@ -186,13 +193,21 @@ void add_fit(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("fit", "Cover a mesh with few spheres, with a proof");
   auto arguments = std::make_shared<FitArguments>();
   SimplifyOptions& options = arguments->options;
-  command->add_option("mesh", arguments->mesh, "STL, OBJ, PLY, OFF, DAE, 3MF, glTF or GLB")
+  command
+      ->add_option("mesh", arguments->mesh, "STL, OBJ, PLY, OFF, DAE, 3MF, glTF, GLB; STEP or IGES")
       ->required()
       ->type_name(kFile);
   command->add_option("-o,--output", arguments->spheres, "Where the spheres go (JSON)")
       ->required()
       ->type_name(kFile);
-  command->add_option("--scale", arguments->scale, "Output units per mesh unit");
+  command->add_option("--scale", arguments->scale,
+                      "Output units per mesh unit (of STEP and IGES: per millimetre)");
+  command
+      ->add_option(
+          "--chord-error", arguments->chord_error,
+          "STEP and IGES: how far the part may be from its triangles; what is proved of it "
+          "is added to the padding (default: a two-thousandth of the box diagonal)")
+      ->check(check_length);
   auto* diameter = command->add_option(
       "--min-external", options.min_external_diameter,
       "D, diameter of the smallest thing that will meet the model (default: 4 E). With E / 2 "

@@ -65,13 +65,14 @@ Json to_json(std::span<const CoverLevel> levels) {
 
 }  // namespace
 
-std::string fit_report(const std::string& mesh_file, const TriangleMesh& mesh,
+std::string fit_report(const std::string& mesh_file, const ModelFile& model,
                        const MeshReport& report, const Simplification& result,
                        const CoverAnalysis& analysis, double scale) {
   Json json;
   json["format"] = "spherule-report";
   json["version"] = 1;
-  json["mesh"] = to_json(mesh_file, mesh, report);
+  json["mesh"] = to_json(mesh_file, model.mesh, report);
+  if (model.cad) json["cad"] = to_json(*model.cad);
   json["options"] = spherule::to_json(option_record(result.options, scale));
   json["seconds"] = {{"external", result.times.external},
                      {"cover", result.times.cover},

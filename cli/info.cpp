@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/model_file.h"
 #include "cli/outline.h"
 #include "cli/recognize.h"
-#include "simplifier/mesh_io.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/check.h"
 #include "spheretree/enclosing_sphere.h"
@@ -69,9 +69,12 @@ void print_tree(const SphereTree& tree) {
 
 int info(const std::string& file) {
   switch (recognize(file)) {
-    case FileKind::kMesh:
-      std::cout << describe(mesh_report(read_mesh(file))) << "\n";
+    case FileKind::kMesh: {
+      const ModelFile model = read_model(file);
+      if (model.cad) std::cout << describe(*model.cad);
+      std::cout << describe(mesh_report(model.mesh)) << "\n";
       break;
+    }
     case FileKind::kSpheres:
       print_spheres(load_spheres(file));
       break;
@@ -85,7 +88,8 @@ int info(const std::string& file) {
 }  // namespace
 
 void add_info(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("info", "Say what is in a mesh, spheres or tree file");
+  CLI::App* command =
+      app.add_subcommand("info", "Say what is in a mesh, CAD, spheres or tree file");
   auto file = std::make_shared<std::string>();
   command->add_option("file", *file, "The file; its content tells what it is")
       ->required()

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/view_files.h"
 
+#include "cli/model_file.h"
 #include "cli/recognize.h"
-#include "simplifier/mesh_io.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "spheretree/sphere_file.h"
@@ -133,7 +133,7 @@ std::vector<ViewItem> view_items(const std::string& file) {
       return report_items(json, file);
     }
     if (json.is_object() && json.contains("deepest_leak")) return {leak_item(json, file)};
-    return {{.name = file, .parts = {{read_mesh(file)}}}};
+    return {{.name = file, .parts = {{read_model(file).mesh}}}};
   });
 }
 

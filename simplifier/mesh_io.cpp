@@ -11,8 +11,6 @@
 
 #include <Eigen/Geometry>
 
-#include <cctype>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -20,36 +18,10 @@
 namespace spherule {
 namespace {
 
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  if (!extension.empty()) extension.erase(0, 1);
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
-void check_scale(double scale) {
-  if (!(scale > 0.0) || !std::isfinite(scale)) {
-    throw Error("scale", "must be a positive finite number, not " + std::to_string(scale));
-  }
-}
-
-std::string read_regular_file(const std::filesystem::path& path) {
-  const std::string subject = path.string();
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::not_found) throw Error(subject, "no such file");
-  if (error) throw Error(subject, error.message());
-  if (std::filesystem::is_directory(status)) throw Error(subject, "is a directory");
-  if (!std::filesystem::is_regular_file(status)) throw Error(subject, "is not a regular file");
-  std::string bytes = read_file(path);
-  if (bytes.empty()) throw Error(subject, "the file is empty");
-  return bytes;
-}
-
 TriangleMesh read_by_extension(const std::filesystem::path& path) {
   const std::string subject = path.string();
-  const std::string extension = lower_extension(path);
-  const std::string bytes = read_regular_file(path);
+  const std::string extension = internal::lower_extension(path);
+  const std::string bytes = internal::read_regular_file(path);
   if (extension == "stl") return internal::read_stl(bytes, subject);
   if (extension == "obj") return internal::read_obj(bytes, subject);
   if (extension == "ply") return internal::read_ply(bytes, subject);
@@ -58,6 +30,7 @@ TriangleMesh read_by_extension(const std::filesystem::path& path) {
   if (extension == "dae" || extension == "gltf" || extension == "glb") {
     return internal::read_scene(path, bytes, extension);
   }
+  if (is_cad_file(path)) throw Error(subject, "is a CAD file, not a mesh (read_cad() reads it)");
   throw Error(subject, "not a mesh format that can be read (STL, OBJ, PLY, OFF, DAE, 3MF, glTF)");
 }
 
@@ -65,14 +38,6 @@ void check_weld(double tolerance) {
   if (!(tolerance >= 0.0 && tolerance <= kMaxCoordinate)) {
     throw Error("weld", "must be finite and not negative, not " + std::to_string(tolerance));
   }
-}
-
-void apply_scale(TriangleMesh& mesh, double scale) {
-  if (scale == 1.0) return;
-  for (Eigen::Vector3d& v : mesh.vertices) v *= scale;
-  mesh.vertex_error =
-      add_up(mul_up(mesh.vertex_error, scale),
-             internal::rounding_distance(internal::largest_coordinate(mesh), 2.0 * kUnitRoundoff));
 }
 
 // Little-endian image of a number, appended.
@@ -89,12 +54,17 @@ void append(std::string& bytes, const Eigen::Vector3f& v) {
 
 }  // namespace
 
+bool is_cad_file(const std::filesystem::path& path) {
+  const std::string extension = internal::lower_extension(path);
+  return extension == "step" || extension == "stp" || extension == "iges" || extension == "igs";
+}
+
 TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options) {
-  check_scale(options.scale);
+  internal::check_scale(options.scale);
   check_weld(options.weld);
   TriangleMesh mesh = read_by_extension(path);
   if (mesh.triangles.empty()) throw Error(path.string(), "the file holds no triangles");
-  apply_scale(mesh, options.scale);
+  internal::apply_scale(mesh, options.scale);
   mesh = internal::weld(mesh);
   validate(mesh, path.string());
   return options.weld > 0.0 ? internal::weld_within(mesh, options.weld) : mesh;

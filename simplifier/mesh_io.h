@@ -38,6 +38,10 @@ struct MeshReadOptions {
 // bad option.
 TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
+// Whether the name ends as those of STEP and IGES files do (step, stp, iges, igs). read_mesh()
+// refuses these; read_cad() of the component `cad` reads them.
+bool is_cad_file(const std::filesystem::path& path);
+
 // Writes binary STL; the coordinates are rounded to 32-bit floats. The file appears whole or not at
 // all. Throws Error.
 void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path);

@@ -15,8 +15,9 @@ struct TriangleMesh {
   std::vector<Eigen::Vector3i> triangles;
 
   // Bound on the distance between a vertex as stored here and as written in the file it was read
-  // from (a reader that rounds to 32-bit floats, node transforms, scale). Zero for meshes made in
-  // memory. The simplifier adds it to the padding, so that its promises hold for the file's mesh.
+  // from (a reader that rounds to 32-bit floats, node transforms, scale); of a CAD file, on the
+  // distance from its faces to the triangles. Zero for meshes made in memory. The simplifier adds
+  // it to the padding, so that its promises hold for what the file describes.
   double vertex_error = 0.0;
 };
 

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/raw_mesh.h"
 
+#include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <system_error>
 #include <unordered_map>
 
 namespace spherule::internal {
@@ -28,6 +32,32 @@ struct KeyHash {
 };
 
 }  // namespace
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+void check_scale(double scale) {
+  if (!(scale > 0.0) || !std::isfinite(scale)) {
+    throw Error("scale", "must be a positive finite number, not " + std::to_string(scale));
+  }
+}
+
+std::string read_regular_file(const std::filesystem::path& path) {
+  const std::string subject = path.string();
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) throw Error(subject, "no such file");
+  if (error) throw Error(subject, error.message());
+  if (std::filesystem::is_directory(status)) throw Error(subject, "is a directory");
+  if (!std::filesystem::is_regular_file(status)) throw Error(subject, "is not a regular file");
+  std::string bytes = read_file(path);
+  if (bytes.empty()) throw Error(subject, "the file is empty");
+  return bytes;
+}
 
 void add_polygon(TriangleMesh& mesh, std::span<const std::int64_t> corners,
                  std::size_t vertex_count, const std::string& subject) {
@@ -60,6 +90,13 @@ double largest_coordinate(const TriangleMesh& mesh) {
 double rounding_distance(double largest, double relative) {
   constexpr double kRootOfThree = 1.7320508075688774;  // rounded up
   return kRootOfThree * largest * relative * (1.0 + 0x1p-50);
+}
+
+void apply_scale(TriangleMesh& mesh, double scale) {
+  if (scale == 1.0) return;
+  for (Eigen::Vector3d& v : mesh.vertices) v *= scale;
+  mesh.vertex_error = add_up(mul_up(mesh.vertex_error, scale),
+                             rounding_distance(largest_coordinate(mesh), 2.0 * kUnitRoundoff));
 }
 
 TriangleMesh weld(const TriangleMesh& mesh) {

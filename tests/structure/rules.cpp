@@ -30,8 +30,9 @@ struct Room {
 
 const std::vector<Room>& rooms() {
   static const Names kCores = {"spheretree", "simplifier", "collide"};
-  static const Names kLibraries = {"spheretree",    "simplifier",  "simplifier/baseline", "collide",
-                                   "collide/robot", "collide/fcl", "collide/ompl"};
+  static const Names kLibraries = {"spheretree",     "simplifier",  "simplifier/baseline",
+                                   "simplifier/cad", "collide",     "collide/robot",
+                                   "collide/fcl",    "collide/ompl"};
   static const std::vector<Room> kRooms = {
       {"spheretree", {}, {"Eigen"}, {{"nlohmann", "spheretree/sphere_file.cpp"}}},
       {"simplifier",
@@ -52,6 +53,11 @@ const std::vector<Room>& rooms() {
         {"qhull", "simplifier/baseline/convex_hull.cpp"},
         {"qhull", "simplifier/baseline/internal/voronoi.cpp"},
         {"bullet", "simplifier/baseline/convex_decomposition.cpp"}}},
+      {"simplifier/cad",
+       {"spheretree", "simplifier"},
+       {"Eigen"},
+       {{"opencascade", "simplifier/cad/internal/cad_shape.cpp"},
+        {"opencascade", "simplifier/cad/internal/occt_geometry.cpp"}}},
       {"collide", {"spheretree"}, {"Eigen"}, {}},
       {"collide/robot",
        kCores,
@@ -73,10 +79,10 @@ const std::vector<Room>& rooms() {
        {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann", "ompl"},
        {{"boost", "bench/scale/exact_oracle.cpp"}}},
       {"tests",
-       {"spheretree", "simplifier", "simplifier/baseline", "collide", "collide/robot",
-        "collide/fcl", "collide/ompl", "bench"},
+       {"spheretree", "simplifier", "simplifier/baseline", "simplifier/cad", "collide",
+        "collide/robot", "collide/fcl", "collide/ompl", "bench"},
        {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "ompl", "tbb",
-        "tinyxml2", "urdfdom", "zlib"},
+        "tinyxml2", "urdfdom", "zlib", "opencascade"},
        {}},
       // Users of the installed package: they see the library from outside.
       {"tests/consumer", {}, {"Eigen", "fcl", "ompl", "spherule"}, {}},
@@ -84,8 +90,9 @@ const std::vector<Room>& rooms() {
   return kRooms;
 }
 
-// The first part of an include in angle brackets, and the third party it stands for. What is not
-// listed and has a slash or ends in .h is unknown, and so refused.
+// The first part of an include in angle brackets (its end, for what begins with a dot), and the
+// third party it stands for. What is not listed and has a slash or ends in .h is unknown, and so
+// refused.
 struct Prefix {
   std::string_view start;
   std::string_view third_party;
@@ -120,6 +127,7 @@ constexpr Prefix kPrefixes[] = {{"Eigen/", "Eigen"},
                                 {"OpenMesh/", "OpenMesh"},
                                 {"openvdb/", "openvdb"},
                                 {"libqhull", "qhull"},
+                                {".hxx", "opencascade"},
                                 {"spherule/", "spherule"}};
 
 // Of the machine rather than of the language: allowed everywhere, or in one folder only.
@@ -152,8 +160,8 @@ std::string check_own_include(const Room& room, std::string_view target) {
     return "points the wrong way: " + std::string(room.folder) + " may not include " +
            std::string(included->folder);
   }
-  const bool looks_inside =
-      room.folder == "tests" || room.folder == "bench" || room.folder == "simplifier/baseline";
+  const bool looks_inside = room.folder == "tests" || room.folder == "bench" ||
+                            room.folder == "simplifier/baseline" || room.folder == "simplifier/cad";
   if (included != &room && target.find("/internal/") != std::string_view::npos && !looks_inside) {
     return "is private to " + std::string(included->folder);
   }
@@ -167,7 +175,7 @@ std::string check_foreign_include(const std::string& path, const Room& room,
     return path.starts_with(kSimdFolder) ? "" : "is for " + std::string(kSimdFolder) + " only";
   }
   for (const auto& [start, third_party] : kPrefixes) {
-    if (!target.starts_with(start)) continue;
+    if (!(start.starts_with('.') ? target.ends_with(start) : target.starts_with(start))) continue;
     if (contains(room.third_parties, third_party)) return {};
     std::string files;
     for (const auto& [name, file] : room.files_that_see) {

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/model_file.h"
+
+#include "simplifier/mesh_io.h"
+#include "spheretree/error.h"
+
+#include <iostream>
+#include <sstream>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+CadPart read_part(const std::filesystem::path& path, const CadReadOptions& options) {
+#ifdef SPHERULE_HAS_CAD
+  CadPart part = read_cad(path, options);
+  if (!part.proved) {
+    std::cerr << "spherule: warning: " << path.string() << ": the chord error is measured, not "
+              << "proved, on " << part.unproved.size() << " of " << part.faces
+              << " faces: " << part.unproved.front().name << ": " << part.unproved.front().reason
+              << "\n";
+  }
+  return part;
+#else
+  static_cast<void>(options);
+  throw Error(path.string(),
+              "is a CAD file, which this build cannot read: install libocct-data-exchange-dev and "
+              "build with -DSPHERULE_CAD=ON");
+#endif
+}
+
+}  // namespace
+
+ModelFile read_model(const std::filesystem::path& path, double scale, double chord_error) {
+  ModelFile model;
+  if (!is_cad_file(path)) {
+    model.mesh = read_mesh(path, {.scale = scale});
+    return model;
+  }
+  model.cad = read_part(path, {.scale = scale, .chord_error = chord_error});
+  model.mesh = std::move(model.cad->mesh);
+  return model;
+}
+
+std::string describe(const CadPart& part) {
+  std::ostringstream text;
+  text << "CAD part: " << part.faces << " faces, chord error "
+       << (part.proved ? "proved to be at most " : "measured, not proved: ") << part.chord_error
+       << " (asked " << part.asked << ", found " << part.reached << "), added to the padding";
+  if (part.free_edges > 0) text << "; " << part.free_edges << " edges of no face left out";
+  text << "\n";
+  return text.str();
+}
+
+Json to_json(const CadPart& part) {
+  Json unproved = Json::array();
+  for (const UnprovedFace& face : part.unproved) {
+    unproved.push_back({{"face", face.name}, {"reason", face.reason}});
+  }
+  return {{"faces", part.faces},
+          {"free_edges", part.free_edges},
+          {"chord_error", part.chord_error},
+          {"chord_error_asked", part.asked},
+          {"chord_error_found", part.reached},
+          {"tolerance", part.tolerance},
+          {"proved", part.proved},
+          {"unproved_faces", unproved}};
+}
+
+}  // namespace spherule

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/json.h"
+#include "simplifier/cad/cad_file.h"
+#include "spheretree/triangle_mesh.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace spherule {
+
+// A mesh from a mesh file or from the faces of a CAD file, with what is known of the latter (its
+// own mesh is moved out).
+struct ModelFile {
+  TriangleMesh mesh;
+  std::optional<CadPart> cad;
+};
+
+// Reads either kind. `chord_error` (0: the default) is for CAD files only. Warns on standard error
+// of faces whose deviation is not proved. Throws Error, also for a CAD file in a build that reads
+// none.
+ModelFile read_model(const std::filesystem::path& path, double scale = 1.0,
+                     double chord_error = 0.0);
+
+// What a CAD file came to, in a line for a person.
+std::string describe(const CadPart& part);
+
+Json to_json(const CadPart& part);
+
+}  // namespace spherule

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "spheretree/triangle_mesh.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+struct CadReadOptions {
+  // Factor from millimetres to the unit of the model (0.001 for metres).
+  double scale = 1.0;
+  // How far the part may be from its mesh, in the unit of the model: an aim, which is met where up
+  // to four tessellations, each finer, can. 0: a two-thousandth of the diagonal of the part's box.
+  double chord_error = 0.0;
+  // Largest turn between neighbouring pieces of a curve, in radians, for features smaller than the
+  // chord error.
+  double angle = 0.5;
+};
+
+// A face of which the bound is measured, not proved.
+struct UnprovedFace {
+  std::string name;  // its number in the file's order and its kind
+  std::string reason;
+};
+
+// A part as triangles, and how far it is from them.
+//
+// Promise, if `proved`: every point of every face of the part is within chord_error of the mesh,
+// and mesh.vertex_error is chord_error plus the rounding of coordinates. The faces are taken as
+// OpenCASCADE built them from the file: each surface within the boundary curves in its parameters.
+// What the file leaves open between faces, the largest tolerance of their edges and vertices, is
+// part of chord_error. Evaluating a surface is taken to err by less than 2^-40 of the largest
+// coordinate, which is charged too. So what the simplifier promises for the mesh grown by
+// vertex_error holds for the part (docs/cad.md has the proof).
+//
+// Faces in `unproved` were sampled instead; chord_error then holds twice the largest deviation
+// found on them, which is no proof.
+struct CadPart {
+  TriangleMesh mesh;
+  double chord_error = 0.0;  // in the unit of the model, as the next three
+  double asked = 0.0;        // the aim
+  double reached = 0.0;      // deviation found at some point: no bound below it is possible
+  double tolerance = 0.0;    // of the edges and vertices; in chord_error
+  bool proved = true;
+  std::vector<UnprovedFace> unproved;
+  std::size_t faces = 0;
+  std::size_t free_edges = 0;  // of no face: left out, as lines are in mesh files
+};
+
+// Reads STEP (AP203, AP214, AP242) and IGES, told apart by the extension (step, stp, iges, igs).
+// Lengths come out in millimetres times `scale`,
+// whatever the unit of the file, assemblies with their parts in place. Equal input gives equal
+// output.
+//
+// Throws Error, naming file and reason: no such file, not a file of its kind, no faces, a face that
+// was not translated or could not be tessellated (named), tessellated shapes (which are not read),
+// coordinates beyond kMaxCoordinate, a bad option. Nothing is left out silently.
+CadPart read_cad(const std::filesystem::path& path, const CadReadOptions& options = {});
+
+}  // namespace spherule
