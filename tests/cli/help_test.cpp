@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/cli/command_test_support.h"
 #include "tests/cli/help_pages.h"
+#include "tests/support/effort.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -72,6 +73,7 @@ TEST_F(HelpTest, EveryCommandTellsExitCodesAndExamples) {
 }
 
 TEST_F(HelpTest, ExamplesRun) {
+  if (test::kSanitized) GTEST_SKIP() << "takes long; the release run does it";
   write_files();
   std::size_t count = 0;
   for (const auto& [command, text] : help_pages([this](const auto& line) { return run(line); })) {
