@@ -65,13 +65,13 @@ double stored_scale(const SphereFile& file) {
   return scale;
 }
 
-// The chord error that a CAD file was read with; 0 where the file does not say.
-double stored_chord_error(const SphereFile& file) {
-  const auto found = file.options.find("chord-error");
+// A length that the model was read with; 0 where the file does not say.
+double stored_length(const SphereFile& file, const char* option) {
+  const auto found = file.options.find(option);
   if (found == file.options.end()) return 0.0;
   const double* length = std::get_if<double>(&found->second);
   if (length == nullptr || !(*length >= 0.0)) {
-    throw Error("chord-error", "must be a number, not negative");
+    throw Error(option, "must be a number, not negative");
   }
   return *length;
 }
@@ -101,20 +101,23 @@ struct Repaired {
   Certificate certificate;
 };
 
-Repaired repaired(const AuditArguments& arguments, const TriangleMesh& mesh, double scale,
-                  const SphereFile& file, const SimplifyOptions& options, const Certificate& before,
+Repaired repaired(const AuditArguments& arguments, const ModelFile& model,
+                  const ModelReadOptions& reading, const SphereFile& file,
+                  const SimplifyOptions& options, const Certificate& before,
                   const CertifyOptions& certify_options) {
   Repaired result;
   result.max_error = arguments.max_error.value_or(
       std::max(options.max_error, before.protrusion_over_simplified_max.value_or(0.0)));
-  result.repair = repair(mesh, *certify_options.external, file.spheres,
+  result.repair = repair(model.mesh, *certify_options.external, file.spheres,
                          {.max_error = result.max_error,
                           .zones = options.zones,
                           .seed = options.seed,
                           .effort = std::min(options.effort, SimplifyOptions{}.effort),
                           .progress = options.progress});
-  result.certificate = certify(mesh, result.repair.spheres, certify_options);
-  result.file = {result.repair.spheres, record(result.certificate), option_record(options, scale)};
+  result.certificate = certify(model.mesh, result.repair.spheres, certify_options);
+  result.file = {result.repair.spheres, record(result.certificate),
+                 option_record(options, reading.scale)};
+  store_reading(reading, model, result.file);
   result.file.options.erase("levels");
   result.file.options["repair-max-error"] = result.max_error;
   return result;
@@ -173,15 +176,16 @@ int audit(const AuditArguments& arguments) {
   const SphereFile file = load_spheres(arguments.spheres);
   SimplifyOptions options =
       blaming_file(arguments, [&] { return options_from_record(file.options); });
-  const double scale = arguments.scale
-                           ? *arguments.scale
-                           : blaming_file(arguments, [&] { return stored_scale(file); });
-  // The length is in output units, so that it suits no other scale.
-  const double chord_error =
-      arguments.scale ? 0.0 : blaming_file(arguments, [&] { return stored_chord_error(file); });
+  // Lengths are in output units, so that they suit no other scale.
+  const ModelReadOptions reading =
+      arguments.scale ? ModelReadOptions{.scale = *arguments.scale} : blaming_file(arguments, [&] {
+        return ModelReadOptions{.scale = stored_scale(file),
+                                .chord_error = stored_length(file, "chord-error"),
+                                .weld = stored_length(file, "weld")};
+      });
   ProgressBar bar;
   bar.announce("reading");
-  const ModelFile model = read_model(arguments.mesh, scale, chord_error);
+  const ModelFile model = read_model(arguments.mesh, reading);
   const TriangleMesh& mesh = model.mesh;
 
   options.progress = bar.callback();
@@ -215,7 +219,7 @@ int audit(const AuditArguments& arguments) {
   const Certificate certificate = certify(mesh, file.spheres, certify_options);
   std::optional<Repaired> mended;
   if (mend) {
-    mended = repaired(arguments, mesh, scale, file, options, certificate, certify_options);
+    mended = repaired(arguments, model, reading, file, options, certificate, certify_options);
     write_uninterrupted([&] { save_spheres(mended->file, arguments.repaired); });
   }
   bar.clear();

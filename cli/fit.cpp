@@ -35,6 +35,9 @@
 namespace spherule {
 namespace {
 
+// Of the box diagonal: how far apart rounding leaves what was one vertex.
+constexpr double kCrack = 1e-6;
+
 struct FitArguments {
   std::string mesh;
   std::string spheres;
@@ -46,8 +49,7 @@ struct FitArguments {
   std::string levels;
   std::string method = fit_method_names().front();
   std::string external = placement_names().front();
-  double scale = 1.0;
-  double chord_error = 0.0;
+  ModelReadOptions reading;
   SimplifyOptions options;
 };
 
@@ -129,12 +131,16 @@ int fit(const FitArguments& arguments) {
 
   ProgressBar reading;
   reading.announce("reading");
-  const ModelFile model = read_model(arguments.mesh, arguments.scale, arguments.chord_error);
+  const ModelFile model = read_model(arguments.mesh, arguments.reading);
   const TriangleMesh& mesh = model.mesh;
   const MeshReport report = mesh_report(mesh);
   reading.clear();
   if (model.cad) std::cout << describe(*model.cad);
   std::cout << describe(report) << std::endl;
+  if (report.boundary_edges > 0 && !model.cad && arguments.reading.weld == 0.0) {
+    std::cerr << "spherule: if rounding has left cracks in " << arguments.mesh << ", --weld "
+              << kCrack * report.box.diagonal().norm() << " shuts them\n";
+  }
 
   Simplification result = [&] {
     ProgressBar bar;
@@ -144,8 +150,8 @@ int fit(const FitArguments& arguments) {
 
   // First of all what was asked for and is proved.
   write_uninterrupted([&] {
-    SphereFile file = sphere_file(result, arguments.scale);
-    if (model.cad) file.options["chord-error"] = model.cad->asked;
+    SphereFile file = sphere_file(result, arguments.reading.scale);
+    store_reading(arguments.reading, model, file);
     save_spheres(file, arguments.spheres);
   });
   std::optional<CoverAnalysis> analysis;
@@ -157,7 +163,7 @@ int fit(const FitArguments& arguments) {
   write_uninterrupted([&] {
     if (analysis) {
       write_file_atomically(arguments.report, fit_report(arguments.mesh, model, report, result,
-                                                         *analysis, arguments.scale));
+                                                         *analysis, arguments.reading.scale));
     }
     std::optional<SphereTree> tree;
     if (!arguments.tree.empty() || !arguments.view.empty()) tree = sphere_tree(result);
@@ -200,11 +206,17 @@ void add_fit(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", arguments->spheres, "Where the spheres go (JSON)")
       ->required()
       ->type_name(kFile);
-  command->add_option("--scale", arguments->scale,
+  command->add_option("--scale", arguments->reading.scale,
                       "Output units per mesh unit (of STEP and IGES: per millimetre)");
   command
       ->add_option(
-          "--chord-error", arguments->chord_error,
+          "--weld", arguments->reading.weld,
+          "Join vertices that are no further apart, so that cracks which rounding has left "
+          "do not open the mesh; added to the padding")
+      ->check(check_length);
+  command
+      ->add_option(
+          "--chord-error", arguments->reading.chord_error,
           "STEP and IGES: how far the part may be from its triangles; what is proved of it "
           "is added to the padding (default: a two-thousandth of the box diagonal)")
       ->check(check_length);

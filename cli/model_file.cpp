@@ -31,15 +31,21 @@ CadPart read_part(const std::filesystem::path& path, const CadReadOptions& optio
 
 }  // namespace
 
-ModelFile read_model(const std::filesystem::path& path, double scale, double chord_error) {
+ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& options) {
   ModelFile model;
   if (!is_cad_file(path)) {
-    model.mesh = read_mesh(path, {.scale = scale});
+    model.mesh = read_mesh(path, {.scale = options.scale, .weld = options.weld});
     return model;
   }
-  model.cad = read_part(path, {.scale = scale, .chord_error = chord_error});
+  if (options.weld > 0.0) throw Error(path.string(), "is a CAD file; only meshes are welded");
+  model.cad = read_part(path, {.scale = options.scale, .chord_error = options.chord_error});
   model.mesh = std::move(model.cad->mesh);
   return model;
+}
+
+void store_reading(const ModelReadOptions& options, const ModelFile& model, SphereFile& file) {
+  if (model.cad) file.options["chord-error"] = model.cad->asked;
+  if (options.weld > 0.0) file.options["weld"] = options.weld;
 }
 
 std::string describe(const CadPart& part) {

@@ -3,6 +3,7 @@
 
 #include "cli/json.h"
 #include "simplifier/cad/cad_file.h"
+#include "spheretree/sphere_file.h"
 #include "spheretree/triangle_mesh.h"
 
 #include <filesystem>
@@ -18,11 +19,18 @@ struct ModelFile {
   std::optional<CadPart> cad;
 };
 
-// Reads either kind. `chord_error` (0: the default) is for CAD files only. Warns on standard error
-// of faces whose deviation is not proved. Throws Error, also for a CAD file in a build that reads
-// none.
-ModelFile read_model(const std::filesystem::path& path, double scale = 1.0,
-                     double chord_error = 0.0);
+struct ModelReadOptions {
+  double scale = 1.0;
+  double chord_error = 0.0;  // CAD files only; 0: the default
+  double weld = 0.0;         // mesh files only: as MeshReadOptions has it
+};
+
+// Reads either kind. Warns on standard error of faces whose deviation is not proved. Throws Error,
+// also for a CAD file in a build that reads none, or one that is to be welded.
+ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& options = {});
+
+// Stores in a file of spheres what it takes to read their model in the same way again.
+void store_reading(const ModelReadOptions& options, const ModelFile& model, SphereFile& file);
 
 // What a CAD file came to, in a line for a person.
 std::string describe(const CadPart& part);

@@ -54,6 +54,33 @@ TEST_F(FitTest, ChainFromMeshToCollision) {
   EXPECT_EQ(run({"collide", "box.tree", "box.tree", "--pose-b", "45 0 0 0 0 0 1"}).exit_code, 0);
 }
 
+// A corner that one triangle has elsewhere opens the mesh, and takes its volume away.
+TEST_F(FitTest, WeldingShutsACrack) {
+  std::string text = read("box.stl");
+  const std::string corner = "vertex 40 20 10";
+  text.replace(text.find(corner), corner.size(), "vertex 40.00001 20 10");
+  write("box.stl", text);
+  const std::vector<std::string> fit{"fit",         "box.stl", "-o",       "box.json",
+                                     "--max-error", "2",       "--effort", "0"};
+  const Outcome open = run(fit);
+  EXPECT_NE(open.out.find("not closed"), std::string::npos) << open.out;
+  EXPECT_NE(open.err.find("--weld 4.58258e-05 shuts"), std::string::npos) << open.err;
+
+  std::vector<std::string> welding = fit;
+  welding.insert(welding.end(), {"--weld", "5e-05"});
+  const Outcome shut = run(welding);
+  EXPECT_EQ(shut.exit_code, 0) << shut.err;
+  EXPECT_EQ(shut.err, "");
+  EXPECT_NE(shut.out.find("\nclosed"), std::string::npos) << shut.out;
+  EXPECT_EQ(read_json("box.json").at("options").at("weld"), 5e-05);
+  const Outcome audit = run({"audit", "box.stl", "box.json", "--json"});
+  EXPECT_EQ(audit.exit_code, 0) << audit.err;
+  EXPECT_TRUE(json::parse(audit.out).at("volume_ratio").is_number()) << audit.out;
+
+  welding.back() = "-1";
+  expect_refusal(welding, "--weld");
+}
+
 // Where spheres lose to the mesh, the user is told; the result is as good as any.
 TEST_F(FitTest, WarnsOfThinPlates) {
   write_box("plate.stl", {40, 30, 0.5});
