@@ -36,7 +36,7 @@ TriangleMesh read_by_extension(const std::filesystem::path& path) {
 
 void check_weld(double tolerance) {
   if (!(tolerance >= 0.0 && tolerance <= kMaxCoordinate)) {
-    throw Error("weld", "must be finite and not negative, not " + std::to_string(tolerance));
+    throw Error("weld", "must be a coordinate and not negative, not " + std::to_string(tolerance));
   }
 }
 

@@ -21,20 +21,22 @@ int number_of(const std::string& option, std::string_view text) {
 
 }  // namespace
 
-PlanningArguments parse_planning_arguments(int count, char** values) {
+PlanningArguments parse_planning_arguments(int count, char** values, bool many) {
+  const std::string known = many ? "--out DIR, --effort N and --problems N are known"
+                                 : "--out DIR and --effort N are known";
   PlanningArguments arguments;
   for (int i = 1; i < count; ++i) {
     const std::string option = values[i];
-    if (i + 1 == count) throw Error(option, "unknown option, or its value is lacking");
+    if (i + 1 == count) throw Error(option, "unknown option, or its value is lacking; " + known);
     const char* const value = values[++i];
     if (option == "--out") {
       arguments.out = value;
     } else if (option == "--effort") {
       arguments.effort = number_of(option, value);
-    } else if (option == "--problems") {
+    } else if (many && option == "--problems") {
       arguments.problems = static_cast<std::size_t>(number_of(option, value));
     } else {
-      throw Error(option, "unknown option (--out DIR, --effort N and --problems N are known)");
+      throw Error(option, "unknown option; " + known);
     }
   }
   return arguments;

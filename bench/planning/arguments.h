@@ -12,7 +12,8 @@ struct PlanningArguments {
   std::size_t problems = 200;
 };
 
-// --out DIR --effort N --problems N. Throws Error for anything else and for numbers below 1.
-PlanningArguments parse_planning_arguments(int count, char** values);
+// --out DIR --effort N, and --problems N for who studies `many`. Throws Error for anything else and
+// for numbers below 1.
+PlanningArguments parse_planning_arguments(int count, char** values, bool many);
 
 }  // namespace spherule

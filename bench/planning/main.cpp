@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <ompl/util/Console.h>
 
 namespace spherule {
 namespace {
@@ -36,6 +37,7 @@ class Phases {
 };
 
 void run(const PlanningArguments& arguments) {
+  ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
   Phases phases;
   std::filesystem::create_directories(arguments.out);
   Workload cell = make_paper_cell();
@@ -72,7 +74,7 @@ void run(const PlanningArguments& arguments) {
 
 int main(int count, char** values) {
   try {
-    spherule::run(spherule::parse_planning_arguments(count, values));
+    spherule::run(spherule::parse_planning_arguments(count, values, true));
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "spherule_planning: %s\n", error.what());

@@ -22,6 +22,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <limits>
+#include <ompl/util/Console.h>
 #include <sstream>
 
 namespace spherule {
@@ -56,6 +57,7 @@ Example make_example() {
 }
 
 void run(const PlanningArguments& arguments) {
+  ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
   std::filesystem::create_directories(arguments.out);
   auto [cell, flange_from_wire] = make_example();
   std::printf("%s: fitting\n", cell.name.c_str());
@@ -83,7 +85,7 @@ void run(const PlanningArguments& arguments) {
 
 int main(int count, char** values) {
   try {
-    spherule::run(spherule::parse_planning_arguments(count, values));
+    spherule::run(spherule::parse_planning_arguments(count, values, false));
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "spherule_plan_motion: %s\n", error.what());

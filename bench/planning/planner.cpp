@@ -12,7 +12,6 @@
 #include <ompl/base/ScopedState.h>
 #include <ompl/geometric/PathGeometric.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
-#include <ompl/util/Console.h>
 #include <utility>
 
 namespace spherule {
@@ -91,7 +90,6 @@ std::string name_of(Validity validity) {
 
 Plan plan(const PlanningEngines& engines, Validity validity, const PlanningProblem& problem,
           const PlanOptions& options) {
-  ompl::msg::noOutputHandler();
   const ob::StateSpacePtr space =
       make_joint_space(engines.checker.robot(), options.seed, options.step);
   const auto information = std::make_shared<ob::SpaceInformation>(space);

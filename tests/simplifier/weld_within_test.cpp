@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -34,7 +35,7 @@ TriangleMesh cracked(const TriangleMesh& mesh, double crack, unsigned seed) {
   return result;
 }
 
-double edge_of_most_moved(const TriangleMesh& a, const TriangleMesh& b) {
+double greatest_move(const TriangleMesh& a, const TriangleMesh& b) {
   double most = 0.0;
   for (std::size_t i = 0; i < a.triangles.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
@@ -59,7 +60,7 @@ TEST(WeldWithin, ShutsCracksAndMovesNoCornerFurtherThanItSays) {
     EXPECT_TRUE(mesh_report(shut).closed);
     EXPECT_EQ(shut.vertices.size(), whole.vertices.size());
     ASSERT_EQ(shut.triangles.size(), broken.triangles.size());
-    EXPECT_LE(edge_of_most_moved(broken, shut), tolerance);
+    EXPECT_LE(greatest_move(broken, shut), tolerance);
     EXPECT_GE(shut.vertex_error, tolerance);
     EXPECT_LE(shut.vertex_error, 1.001 * tolerance);
   }
@@ -76,7 +77,7 @@ TEST(WeldWithin, AChainIsNotDrawnTogether) {
   }
   const TriangleMesh welded = internal::weld_within(fan, 1.0);
   ASSERT_EQ(welded.triangles.size(), fan.triangles.size());
-  EXPECT_LE(edge_of_most_moved(fan, welded), 1.0);
+  EXPECT_LE(greatest_move(fan, welded), 1.0);
   EXPECT_EQ(welded.vertices.size(), 20U + 2U);
 }
 

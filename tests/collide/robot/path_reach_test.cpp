@@ -34,11 +34,9 @@ Body random_body(SceneRandom& random, const RobotModel& robot) {
 }
 
 std::vector<Pose> poses_at_zero(const RobotModel& robot) {
-  std::vector<Pose> poses(robot.links().size());
-  for (const Joint& joint : robot.joints()) {
-    poses[static_cast<std::size_t>(joint.child_link)] =
-        poses[static_cast<std::size_t>(joint.parent_link)] * joint.parent_from_joint;
-  }
+  std::vector<Pose> poses;
+  forward_kinematics(robot, std::vector<double>(static_cast<std::size_t>(robot.variable_count())),
+                     poses);
   return poses;
 }
 
