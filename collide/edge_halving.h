@@ -147,7 +147,7 @@ class EdgeHalving {
     for (std::size_t i = first_; i < last_; ++i) {
       unproved_from_ = std::min(unproved_from_, parts_[i].begin);
     }
-    result_.free_until = std::min(unproved_from_, end_);
+    result_.free_until = std::min({unproved_from_, result_.contact_at, end_});
     result_.verdict = result_.contact_at <= 1.0 ? Verdict::kCollision
                       : unproved_from_ <= end_  ? Verdict::kUnknown
                                                 : Verdict::kFree;

@@ -183,7 +183,8 @@ EdgeResult RobotChecker::check_within_limits(std::span<const double> from,
   EdgeResult standing{.verdict = Verdict::kFree, .free_until = end};
   if (parts_->standing) {
     standing = parts_->standing->check_edge(from, to, *scratch.memory_->standing, request);
-    if (standing.free_until >= end && standing.verdict != Verdict::kFree) {
+    const bool is_free_so_far = standing.free_until >= end && standing.contact_at > end;
+    if (is_free_so_far && standing.verdict != Verdict::kFree) {
       standing = {.verdict = Verdict::kFree, .configurations = standing.configurations};
     }
     standing.free_until = std::min(standing.free_until, end);

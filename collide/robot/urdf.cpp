@@ -147,7 +147,7 @@ class Reader {
     try {
       robot.add_link(joint.child_link_name, joint.parent_link_name, joint_of(joint));
     } catch (const Error& error) {
-      throw Error("joint " + internal::in_quotes(joint.name), error.what());
+      throw Error("joint " + internal::name_in_quotes(joint.name), error.what());
     }
   }
 
@@ -161,7 +161,7 @@ class Reader {
         result.collision.push_back(shape_of(*collision, true));
       }
     } catch (const Error& error) {
-      throw Error("link " + internal::in_quotes(link.name), error.what());
+      throw Error("link " + internal::name_in_quotes(link.name), error.what());
     }
     return result;
   }

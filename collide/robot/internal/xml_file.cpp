@@ -113,7 +113,7 @@ std::optional<std::vector<double>> XmlElement::numbers(std::string_view name) co
   std::vector<double> result;
   for (const std::string_view word : words_of(*text)) {
     const auto number = number_of(word);
-    if (!number) refuse(std::string(name) + ": " + in_quotes(word) + " is no finite number");
+    if (!number) refuse(std::string(name) + ": " + name_in_quotes(word) + " is no finite number");
     result.push_back(*number);
   }
   return result;
@@ -150,7 +150,7 @@ Eigen::Vector3d XmlElement::needed_vector(std::string_view name) const {
 void XmlElement::require_attributes(std::initializer_list<std::string_view> known) const {
   for (const auto* a = element_->FirstAttribute(); a != nullptr; a = a->Next()) {
     if (std::find(known.begin(), known.end(), a->Name()) == known.end()) {
-      refuse("it has an attribute " + in_quotes(a->Name()) + " of unknown meaning");
+      refuse("it has an attribute " + name_in_quotes(a->Name()) + " of unknown meaning");
     }
   }
 }
@@ -163,7 +163,7 @@ void XmlElement::refuse(const std::string& reason) const {
     const bool is_root = node->Parent()->ToDocument() != nullptr;
     const char* const name = around && !is_root ? around->Attribute("name") : nullptr;
     if (name == nullptr || *name == '\0') continue;
-    place += std::string(around->Name()) + " " + in_quotes(name) + ": ";
+    place += std::string(around->Name()) + " " + name_in_quotes(name) + ": ";
     break;
   }
   throw Error(*file_, place + "<" + element_->Name() + ">: " + reason);
@@ -190,7 +190,7 @@ XmlElement XmlFile::root() const {
   return {*document_->RootElement(), name_};
 }
 
-std::string in_quotes(std::string_view text) {
+std::string name_in_quotes(std::string_view text) {
   std::string result("'");
   result.append(text.substr(0, kQuotedLength));
   return result.append(text.size() > kQuotedLength ? "...'" : "'");

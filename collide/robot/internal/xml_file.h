@@ -71,7 +71,7 @@ class XmlFile {
 };
 
 // For messages; what is long is cut.
-std::string in_quotes(std::string_view text);
+std::string name_in_quotes(std::string_view text);
 
 // As text, or as the value of an attribute.
 std::string xml_escaped(std::string_view text);
