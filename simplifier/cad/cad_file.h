@@ -10,6 +10,7 @@
 
 namespace spherule {
 
+// How a CAD file becomes triangles.
 struct CadReadOptions {
   // Factor from millimetres to the unit of the model (0.001 for metres).
   double scale = 1.0;

@@ -73,8 +73,9 @@ TEST(ReadMesh, RefusesWhatIsNoFile) {
   EXPECT_TRUE(refused(dir.path(), "is a directory"));
   EXPECT_TRUE(refused(dir.write("empty.stl", ""), "empty"));
   EXPECT_TRUE(refused("/dev/null", "not a regular file"));
-  EXPECT_TRUE(refused(dir.write("part.step", "ISO-10303-21;"), "not a mesh format"));
+  EXPECT_TRUE(refused(dir.write("part.step", "ISO-10303-21;"), "a CAD file, not a mesh"));
   EXPECT_TRUE(refused(dir.write("part", "solid"), "not a mesh format"));
+  EXPECT_TRUE(refused(dir.write("part.txt", "solid"), "not a mesh format"));
 }
 
 TEST(ReadMesh, RefusesWhatIsNoMesh) {
