@@ -25,6 +25,7 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -132,18 +133,25 @@ Json json_of(std::span<const LeakPoint> leaks) {
   return list;
 }
 
-std::vector<NextStep> steps_after_leak(const AuditArguments& arguments) {
-  return {{{"audit", arguments.mesh, arguments.spheres, "--repair",
-            beside(arguments.spheres, ".mended.json")},
-           "make them cover"},
-          {{"view", arguments.mesh, arguments.spheres, "--leaks", "-o",
-            beside(arguments.spheres, ".html")},
-           "see where they leak"}};
+// --max-error is not among the options to repeat: it comes with --repair only.
+std::vector<NextStep> steps_after_leak(const AuditArguments& arguments, double scale) {
+  std::vector<std::string> mend = {"audit", arguments.mesh, arguments.spheres};
+  repeat("--scale", arguments.scale, mend);
+  repeat("--min-external", arguments.min_external, mend);
+  repeat("--repair", beside(arguments.spheres, ".mended.json"), mend);
+  std::vector<NextStep> steps = {{std::move(mend), "make them cover"}};
+  // `view` has no scale: its page would mix units.
+  if (scale == 1.0) {
+    steps.push_back({{"view", arguments.mesh, arguments.spheres, "--leaks", "-o",
+                      beside(arguments.spheres, ".html")},
+                     "see where they leak"});
+  }
+  return steps;
 }
 
 void print(const AuditArguments& arguments, const TriangleMesh& mesh, const SphereFile& file,
-           const Certificate& certificate, const std::optional<ExternalSpheres>& external,
-           const std::optional<Repaired>& mended) {
+           double scale, const Certificate& certificate,
+           const std::optional<ExternalSpheres>& external, const std::optional<Repaired>& mended) {
   if (arguments.json) {
     Json json = json_of(certificate, external);
     if (!certificate.covered) json["leaks"] = json_of(leak_points(mesh, file.spheres));
@@ -161,7 +169,7 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
   }
   std::cout << describe(certificate, name_of(external));
   if (!mended) {
-    if (!certificate.covered) std::cout << describe(steps_after_leak(arguments));
+    if (!certificate.covered) std::cout << describe(steps_after_leak(arguments, scale));
     return;
   }
   std::cout << "repair: " << mended->repair.grown << " spheres grown, by at most "
@@ -223,7 +231,7 @@ int audit(const AuditArguments& arguments) {
     write_uninterrupted([&] { save_spheres(mended->file, arguments.repaired); });
   }
   bar.clear();
-  print(arguments, mesh, file, certificate, external, mended);
+  print(arguments, mesh, file, reading.scale, certificate, external, mended);
   const bool covered = (mended ? mended->certificate : certificate).covered;
   return covered && !(model.cad && !model.cad->proved) ? kYes : kNo;
 }

@@ -39,7 +39,7 @@ struct AuditRobotArguments {
   std::optional<std::size_t> level;
   std::string repaired;
   std::optional<double> max_error;
-  double min_external = 0.0;
+  std::optional<double> min_external;
   bool json = false;
 };
 
@@ -95,21 +95,27 @@ void write_repaired(const AuditRobotArguments& arguments, const SphereFormatFile
                       arguments.repaired);
 }
 
-std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, SphereFormat format) {
-  std::vector<std::string> view = {"view",       arguments.urdf,     arguments.spheres,
-                                   "--geometry", arguments.geometry, "--leaks"};
-  std::vector<std::string> mend = {"audit-robot", arguments.urdf, arguments.spheres, "--geometry",
-                                   arguments.geometry};
-  for (const std::string& package : arguments.packages) {
-    for (std::vector<std::string>* step : {&view, &mend}) {
-      step->insert(step->end(), {"--package", package});
-    }
+// `view` knows neither --link nor --level, and --repair makes the links cover, not the
+// configurations.
+std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, bool is_mendable) {
+  std::vector<NextStep> steps;
+  if (arguments.link.empty() && !arguments.level) {
+    std::vector<std::string> view = {"view", arguments.urdf, arguments.spheres};
+    repeat_robot_options(arguments.geometry, arguments.packages, view);
+    view.insert(view.end(), {"--leaks", "-o", beside(arguments.spheres, ".html")});
+    steps.push_back({std::move(view), "see where they leak"});
   }
-  view.insert(view.end(), {"-o", beside(arguments.spheres, ".html")});
-  const std::string ending = std::filesystem::path(arguments.spheres).extension().string();
-  mend.insert(mend.end(), {"--repair", beside(arguments.spheres, ".mended" + ending)});
-  std::vector<NextStep> steps = {{std::move(view), "see where they leak"}};
-  if (is_written(format)) steps.push_back({std::move(mend), "make them cover"});
+  if (is_mendable && arguments.poses.empty()) {
+    std::vector<std::string> mend = {"audit-robot", arguments.urdf, arguments.spheres};
+    repeat_robot_options(arguments.geometry, arguments.packages, mend);
+    repeat("--link", arguments.link, mend);
+    if (arguments.level) repeat("--level", std::to_string(*arguments.level), mend);
+    repeat("--max-error", arguments.max_error, mend);
+    repeat("--min-external", arguments.min_external, mend);
+    const std::string ending = std::filesystem::path(arguments.spheres).extension().string();
+    repeat("--repair", beside(arguments.spheres, ".mended" + ending), mend);
+    steps.push_back({std::move(mend), "make them cover"});
+  }
   return steps;
 }
 
@@ -129,7 +135,7 @@ int audit(const AuditRobotArguments& arguments) {
                   [](const auto& buffer) { return buffer.second < 0.0; });
   if (mend) check_repair(arguments, report.file, is_shrunk);
   RobotAuditOptions options{.geometry = geometry,
-                            .min_external_diameter = arguments.min_external,
+                            .min_external_diameter = arguments.min_external.value_or(0.0),
                             .configurations = configurations_of(arguments.poses, robot.model)};
   if (arguments.max_error) options.max_error = *arguments.max_error;
   {
@@ -160,7 +166,10 @@ int audit(const AuditRobotArguments& arguments) {
   }
   const RobotAudit& result = report.audit;
   if (arguments.poses.empty() ? result.links_covered : result.configurations_covered) return kYes;
-  if (!arguments.json) std::cout << describe(steps_after_leak(arguments, report.file.format));
+  if (!arguments.json) {
+    const bool is_mendable = is_written(report.file.format) && !is_shrunk;
+    std::cout << describe(steps_after_leak(arguments, is_mendable));
+  }
   return kNo;
 }
 
@@ -180,15 +189,9 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
                    "ballpark or spherule; told apart by content")
       ->required()
       ->type_name(kFile);
-  command
-      ->add_option("--geometry", arguments->geometry,
-                   "Which of the robot's geometries is to be covered")
-      ->check(CLI::IsMember(geometry_names()));
-  command
-      ->add_option("--package", arguments->packages,
-                   "Where package://NAME/ leads to; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name(kNamedFolder);
+  add_geometry_option(*command, "Which of the robot's geometries is to be covered",
+                      arguments->geometry);
+  add_package_option(*command, arguments->packages);
   command
       ->add_option("--poses", arguments->poses,
                    "Configurations (CSV) in which spheres of other links may cover too; the "

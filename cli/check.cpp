@@ -266,15 +266,10 @@ void add_check(CLI::App& app, int& exit_code) {
       ->add_option("--effort", arguments->cover.effort,
                    "Without --spheres: how long to look for fewer spheres, as fit has it")
       ->check(CLI::NonNegativeNumber);
-  command
-      ->add_option("--geometry", arguments->geometry,
-                   "Which of the robot's geometries stands for it (default: collision)")
-      ->check(CLI::IsMember(geometry_names()));
-  command
-      ->add_option("--package", arguments->packages,
-                   "Where package://NAME/ leads to; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name(kNamedFolder);
+  add_geometry_option(*command,
+                      "Which of the robot's geometries stands for it (default: collision)",
+                      arguments->geometry);
+  add_package_option(*command, arguments->packages);
   command->add_option("--threads", arguments->cover.threads, "Threads, 0: all (default)")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", arguments->json, "Print the result as JSON");

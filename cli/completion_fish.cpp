@@ -24,15 +24,37 @@ std::string fish_value(const OptionOutline& option) {
   return " -f -a " + fish_quoted(option.is_list ? "(__fish_append , " + words + ")" : words);
 }
 
-std::string fish_lines(const CommandOutline& command, const std::string& seen) {
-  std::vector<std::string> inner;
-  for (const CommandOutline& one : command.commands) inner.push_back(one.name);
-  const std::string start = "complete -c spherule";
-  const std::string here = inner.empty()
-                               ? seen
-                               : seen + (seen.empty() ? "not " : "; and not ") +
-                                     "__fish_seen_subcommand_from " + CLI::detail::join(inner, " ");
-  const std::string when = start + " -n " + fish_quoted(here);
+// The paths of all commands below one: 'baseline', 'baseline hull'.
+std::string fish_paths(const CommandOutline& command, const std::string& path) {
+  std::string text;
+  for (const CommandOutline& one : command.commands) {
+    const std::string inner = path.empty() ? one.name : path + " " + one.name;
+    text += " " + fish_quoted(inner) + fish_paths(one, inner);
+  }
+  return text;
+}
+
+// Which command a line has got to, by the words that name one where they stand: in `manual fit`,
+// `fit` is an argument.
+std::string fish_function(const CommandOutline& command) {
+  return R"(function __spherule_at
+    set -l command
+    set -l words (commandline -opc)
+    set -e words[1]
+    for word in $words
+        if contains -- (string join -- ' ' $command $word))" +
+         fish_paths(command, "") + R"(
+            set command $command $word
+        end
+    end
+    test "$command" = "$argv"
+end
+)";
+}
+
+std::string fish_lines(const CommandOutline& command, const std::string& path) {
+  const std::string when =
+      "complete -c spherule -n '__spherule_at" + (path.empty() ? "" : " " + path) + "'";
   std::string text;
   for (const CommandOutline& one : command.commands) {
     text += when + " -f -a " + one.name + " -d " + fish_quoted(one.summary) + "\n";
@@ -48,8 +70,7 @@ std::string fish_lines(const CommandOutline& command, const std::string& seen) {
     text += " -d " + fish_quoted(option.description) + "\n";
   }
   for (const CommandOutline& one : command.commands) {
-    text += fish_lines(
-        one, seen + (seen.empty() ? "" : "; and ") + "__fish_seen_subcommand_from " + one.name);
+    text += fish_lines(one, path.empty() ? one.name : path + " " + one.name);
   }
   return text;
 }
@@ -58,7 +79,7 @@ std::string fish_lines(const CommandOutline& command, const std::string& seen) {
 
 std::string fish_completion(const CommandOutline& command) {
   return "# Completion of spherule for fish, made by `spherule completion fish`.\n" +
-         fish_lines(command, "");
+         fish_function(command) + fish_lines(command, "");
 }
 
 }  // namespace spherule

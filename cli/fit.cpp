@@ -100,7 +100,11 @@ std::vector<NextStep> next_steps(const FitArguments& arguments, bool is_covered)
                       beside(arguments.spheres, ".mended.json")},
                      "make them cover"});
   }
-  if (arguments.view.empty()) {
+  // `view` reads the mesh as it is: the page would hold it in another unit, or other triangles.
+  const ModelReadOptions& reading = arguments.reading;
+  const bool is_read_plainly =
+      reading.scale == 1.0 && reading.chord_error == 0.0 && reading.weld == 0.0;
+  if (arguments.view.empty() && is_read_plainly) {
     steps.push_back(
         {{"view", arguments.mesh, arguments.spheres, "-o", beside(arguments.spheres, ".html")},
          "look at them"});

@@ -14,17 +14,12 @@ constexpr std::size_t kNameColumns = 32;
 constexpr std::size_t kTextColumns = 66;
 constexpr std::size_t kFooterColumns = kNameColumns + kTextColumns;
 
-std::string names_of(const std::set<CLI::Option*>& options) {
-  std::string names;
-  for (const CLI::Option* option : options) {
-    names += (names.empty() ? "" : ", ") + option->get_name();
-  }
-  return names;
-}
-
 class HelpFormatter : public CLI::Formatter {
  public:
-  HelpFormatter() { column_width(kNameColumns); }
+  HelpFormatter() {
+    column_width(kNameColumns);
+    label("SUBCOMMAND", "COMMAND");
+  }
 
   std::string make_option_opts(const CLI::Option* option) const override {
     const OptionOutline shown = outline(*option);
@@ -32,13 +27,7 @@ class HelpFormatter : public CLI::Formatter {
   }
 
   std::string make_option_desc(const CLI::Option* option) const override {
-    std::string text = option->get_description();
-    if (option->get_required()) text += " (required)";
-    if (!option->get_needs().empty()) text += " (needs " + names_of(option->get_needs()) + ")";
-    if (!option->get_excludes().empty()) {
-      text += " (not with " + names_of(option->get_excludes()) + ")";
-    }
-    return wrapped(text, kTextColumns);
+    return wrapped(full_description(outline(*option)), kTextColumns);
   }
 
   std::string make_subcommand(const CLI::App* command) const override {

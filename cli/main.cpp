@@ -23,6 +23,7 @@ int run(int argc, char** argv) {
   CLI::App app("Proved sphere covers of meshes, sphere trees, and collision checking on them.",
                "spherule");
   app.formatter(help_layout());
+  app.group("Commands");  // of the commands too, which begin as a copy
   app.set_help_flag("-h,--help", "Print this help");
   app.set_version_flag("--version", "spherule " SPHERULE_VERSION, "Print the version");
   app.require_subcommand(1);
@@ -45,8 +46,9 @@ int run(int argc, char** argv) {
   add_manual(app, exit_code);
   app.footer(to_text(
       {.text = "`spherule COMMAND --help` lists the options of a command, with examples.",
-       .exit_codes = "0 done; 1 not proved to cover (fit, robot, baseline), a leak (audit, "
-                     "audit-robot), or a collision (collide, check)",
+       .exit_codes = "0 done; 1 not proved to cover (fit, robot, baseline), a leak or not proved "
+                     "(audit, audit-robot), a collision (collide), a collision or not proved "
+                     "(check)",
        .examples = {"spherule fit part.stl -o part.json --max-error 1",
                     "spherule audit part.stl part.json", "spherule robot robot.urdf -o spheres"}}));
   try {

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -19,6 +20,7 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace spherule {
@@ -79,9 +81,19 @@ std::string with_blanks(const std::vector<std::string>& path, char blank) {
 // The day that the page is of; builds that are to be repeatable set SOURCE_DATE_EPOCH.
 std::string today() {
   const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
-  const std::time_t now = epoch != nullptr ? std::atoll(epoch) : std::time(nullptr);
-  std::array<char, 16> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%d", std::gmtime(&now));
+  std::time_t now = std::time(nullptr);
+  if (epoch != nullptr) {
+    const std::string_view seconds = epoch;
+    const char* end = seconds.data() + seconds.size();
+    const auto [stop, fault] = std::from_chars(seconds.data(), end, now);
+    if (fault != std::errc() || stop != end) {
+      throw Error("SOURCE_DATE_EPOCH", "'" + std::string(seconds) + "' is no number of seconds");
+    }
+  }
+  const std::tm* day = std::gmtime(&now);
+  if (day == nullptr) throw Error("SOURCE_DATE_EPOCH", "is not in a year that can be written");
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d", day);
   return text.data();
 }
 
@@ -103,7 +115,7 @@ std::string item(const OptionOutline& option, bool is_argument) {
   }
   if (!option.value.empty()) text += " " + italic(option.value);
   if (option.is_repeatable) text += " ...";
-  return text + "\n" + paragraph(option.description + (option.is_required ? " (required)" : ""));
+  return text + "\n" + paragraph(full_description(option));
 }
 
 std::string items(const char* section, const std::vector<OptionOutline>& options,
@@ -196,7 +208,8 @@ void add_manual(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("manual", "Print or write manual pages, for man");
   auto names = std::make_shared<std::vector<std::string>>();
   auto folder = std::make_shared<std::string>();
-  command->add_option("command", *names, "Whose page is printed (default: that of all)");
+  command->add_option("command", *names, "Whose page is printed (default: the overview)")
+      ->type_name(kCommand);
   command->add_option("-o,--output", *folder, "Folder into which all pages are written instead")
       ->type_name(kFolder);
   command->footer(to_text({.text = "",

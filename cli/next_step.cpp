@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/next_step.h"
 
+#include <array>
 #include <cctype>
+#include <charconv>
 #include <filesystem>
 #include <string_view>
 
@@ -35,6 +37,18 @@ std::string describe(const std::vector<NextStep>& steps) {
 
 std::string beside(const std::string& path, const std::string& ending) {
   return std::filesystem::path(path).replace_extension(ending).string();
+}
+
+void repeat(const std::string& option, const std::string& value, std::vector<std::string>& words) {
+  if (!value.empty()) words.insert(words.end(), {option, value});
+}
+
+void repeat(const std::string& option, std::optional<double> value,
+            std::vector<std::string>& words) {
+  if (!value) return;
+  std::array<char, 32> text{};  // the longest double takes 24
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), *value).ptr;
+  repeat(option, std::string(text.data(), end), words);
 }
 
 }  // namespace spherule

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <set>
 
 namespace spherule {
 namespace {
@@ -23,10 +24,31 @@ std::string plain_type(const std::string& type) {
   return name;
 }
 
+// Sorted: CLI11 has them in the order of their addresses.
+std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : options) names.push_back(option->get_name());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// The commands of the program that a command is of.
+std::vector<std::string> all_commands(const CLI::App& app) {
+  const CLI::App* program = &app;
+  while (program->get_parent() != nullptr) program = program->get_parent();
+  std::vector<std::string> names;
+  for (const CLI::App* one : program->get_subcommands({})) {
+    if (!one->get_name().empty()) names.push_back(one->get_name());
+  }
+  return names;
+}
+
 void collect_options(const CLI::App& app, CommandOutline& command) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_group().empty()) continue;
-    (option->get_positional() ? command.arguments : command.options).push_back(outline(*option));
+    auto& list = option->get_positional() ? command.arguments : command.options;
+    list.push_back(outline(*option));
+    if (list.back().value == kCommand) list.back().choices = all_commands(app);
   }
   // Groups of options are commands without a name.
   for (const CLI::App* inner : app.get_subcommands({})) {
@@ -65,6 +87,8 @@ OptionOutline outline(const CLI::Option& option) {
     result.is_repeatable = option.get_expected_max() >= CLI::detail::expected_max_vector_size;
   }
   result.is_required = option.get_required();
+  result.needs = names_of(option.get_needs());
+  result.excludes = names_of(option.get_excludes());
   result.description = option.get_description();
   return result;
 }
@@ -82,6 +106,14 @@ CommandOutline outline(const CLI::App& app) {
     if (!inner->get_name().empty()) result.commands.push_back(outline(*inner));
   }
   return result;
+}
+
+std::string full_description(const OptionOutline& option) {
+  const auto note = [](const char* word, const std::vector<std::string>& names) {
+    return names.empty() ? "" : std::string(" (") + word + CLI::detail::join(names, ", ") + ")";
+  };
+  return option.description + (option.is_required ? " (required)" : "") +
+         note("needs ", option.needs) + note("not with ", option.excludes);
 }
 
 std::vector<std::string> option_names(const CommandOutline& command) {

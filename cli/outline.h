@@ -16,6 +16,7 @@ namespace spherule {
 inline constexpr const char* kFile = "FILE";
 inline constexpr const char* kFolder = "DIR";
 inline constexpr const char* kNamedFolder = "NAME=DIR";
+inline constexpr const char* kCommand = "COMMAND";
 
 // An option of a command, or an argument without a name of its own (positional).
 struct OptionOutline {
@@ -25,6 +26,8 @@ struct OptionOutline {
   bool is_list = false;              // it takes several of them with commas between
   bool is_repeatable = false;
   bool is_required = false;
+  std::vector<std::string> needs;     // names of options without which it is refused
+  std::vector<std::string> excludes;  // with which
   std::string description;
 };
 
@@ -40,6 +43,9 @@ struct CommandOutline {
 
 OptionOutline outline(const CLI::Option& option);
 CommandOutline outline(const CLI::App& app);
+
+// The description, and whether the option is required, what it needs and what it excludes.
+std::string full_description(const OptionOutline& option);
 
 // The names of all options of a command.
 std::vector<std::string> option_names(const CommandOutline& command);

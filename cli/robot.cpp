@@ -111,10 +111,7 @@ std::vector<NextStep> next_steps(const RobotArguments& arguments,
   std::vector<std::string> check = {"check",    arguments.urdf, "SCENE.json",
                                     "PATH.csv", "--spheres",    spheres->string()};
   for (std::vector<std::string>* step : {&view, &check}) {
-    step->insert(step->end(), {"--geometry", arguments.geometry});
-    for (const std::string& package : arguments.packages) {
-      step->insert(step->end(), {"--package", package});
-    }
+    repeat_robot_options(arguments.geometry, arguments.packages, *step);
   }
   return {{std::move(view), "look at them"}, {std::move(check), "check a program"}};
 }
@@ -216,15 +213,9 @@ void add_robot(CLI::App& app, int& exit_code) {
       ->check(check_length);
   command->add_option("--padding", options.padding, "Grow every link by so many metres")
       ->check(check_length);
-  command
-      ->add_option("--geometry", arguments->geometry,
-                   "What is covered: collision (default) or visual geometry")
-      ->check(CLI::IsMember(geometry_names()));
-  command
-      ->add_option("--package", arguments->packages,
-                   "Where package://NAME/ leads to; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name(kNamedFolder);
+  add_geometry_option(*command, "What is covered: collision (default) or visual geometry",
+                      arguments->geometry);
+  add_package_option(*command, arguments->packages);
   command
       ->add_option(
           "--link", arguments->links,

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robot_options.h"
 
+#include "cli/next_step.h"
+#include "cli/outline.h"
 #include "spheretree/error.h"
+
+#include <CLI/CLI.hpp>
 
 #include <charconv>
 #include <optional>
@@ -59,6 +63,22 @@ void set(LinkCoverOptions& options, const std::string& setting, const std::strin
 }
 
 }  // namespace
+
+void add_package_option(CLI::App& command, std::vector<std::string>& packages) {
+  command.add_option("--package", packages, "Where package://NAME/ leads to; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name(kNamedFolder);
+}
+
+void add_geometry_option(CLI::App& command, const std::string& description, std::string& geometry) {
+  command.add_option("--geometry", geometry, description)->check(CLI::IsMember(geometry_names()));
+}
+
+void repeat_robot_options(const std::string& geometry, const std::vector<std::string>& packages,
+                          std::vector<std::string>& words) {
+  repeat("--geometry", geometry, words);
+  for (const std::string& package : packages) repeat("--package", package, words);
+}
 
 UrdfOptions urdf_options(const std::vector<std::string>& packages) {
   UrdfOptions options;

@@ -8,7 +8,21 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace spherule {
+
+// Adds --package, which may be given several times, to a command.
+void add_package_option(CLI::App& command, std::vector<std::string>& packages);
+
+// Adds --geometry, of which a command takes one, with what it means there.
+void add_geometry_option(CLI::App& command, const std::string& description, std::string& geometry);
+
+// Adds both to the words of another command, as they were given to this one.
+void repeat_robot_options(const std::string& geometry, const std::vector<std::string>& packages,
+                          std::vector<std::string>& words);
 
 // The packages of texts NAME=DIR. Throws Error for other texts and a name given twice.
 UrdfOptions urdf_options(const std::vector<std::string>& packages);

@@ -15,8 +15,9 @@ namespace spherule {
 // may have been meant, then what is missing; and where the help is.
 std::string describe_usage_error(const CLI::App& app, const CLI::ParseError& error);
 
-// The one of `known` that differs least from `word`, if only a few letters do: one in three, or if
-// `word` begins it. Otherwise empty.
+// The one of `known` that differs least from `word`, if only a few letters do: one in three, one
+// of two in a name of two, neighbours that are swapped counting as one; or if `word` begins it.
+// Otherwise empty.
 std::string nearest_name(const std::string& word, std::span<const std::string> known);
 
 }  // namespace spherule

@@ -88,11 +88,7 @@ void add_view(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember(geometry_names()))
       ->delimiter(',')
       ->allow_extra_args(false);
-  command
-      ->add_option("--package", arguments->robot.packages,
-                   "NAME=DIR: where the robot's package NAME is; may be given again")
-      ->allow_extra_args(false)
-      ->type_name(kNamedFolder);
+  add_package_option(*command, arguments->robot.packages);
 #endif
   command->footer(
       to_text({.text = "The page is one file, which any browser opens, without network or server.",

@@ -127,6 +127,32 @@ TEST_F(AuditRobotCommand, PosesDecide) {
   EXPECT_EQ(poses.at(1).at("deepest_link"), "base");
 }
 
+TEST_F(AuditRobotCommand, WhatIsOfferedRepeatsTheOptions) {
+  const auto level = [](const char* radius) {
+    return std::string(R"([{"spheres": [{"origin": [0, 0, 0], "radius": )") + radius + "}]}]";
+  };
+  write("leaks.json", R"({"base": )" + level("0.09") + R"(, "arm": )" + level("0.05") + "}");
+  write("path.csv", "0\n");
+  std::vector<std::string> line = {"audit-robot", "two.urdf", "leaks.json",     "--package", "x=.",
+                                   "--max-error", "0.03",     "--min-external", "0.1"};
+  const std::string given = "two.urdf leaks.json --geometry collision --package x=. ";
+  const std::string table = run(line).out;
+  EXPECT_NE(table.find("next: spherule view " + given + "--leaks -o leaks.html"), table.npos)
+      << table;
+  EXPECT_NE(table.find("spherule audit-robot " + given +
+                       "--max-error 0.03 --min-external 0.1 --repair leaks.mended.json"),
+            table.npos)
+      << table;
+  line.insert(line.end(), {"--level", "0"});
+  const std::string of_level = run(line).out;
+  EXPECT_EQ(of_level.find("spherule view"), table.npos) << of_level;
+  EXPECT_NE(of_level.find("--level 0 --max-error 0.03"), table.npos) << of_level;
+  const Outcome posed = run({"audit-robot", "two.urdf", "leaks.json", "--poses", "path.csv"});
+  EXPECT_EQ(posed.exit_code, 1) << posed.err;
+  EXPECT_EQ(posed.out.find("--repair"), table.npos) << posed.out;
+  EXPECT_NE(posed.out.find("next: spherule view"), table.npos) << posed.out;
+}
+
 TEST_F(AuditRobotCommand, RepairKeepsTheFormat) {
   const RobotSpheres leaky{.robot = "two",
                            .links = {{"base", {{{0, 0, 0}, 0.09}}}, {"arm", {{{0, 0, 0}, 0.05}}}}};

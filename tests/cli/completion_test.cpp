@@ -59,7 +59,7 @@ TEST_F(CompletionTest, BashCompletesCommandsAndTheirOptions) {
       line.push_back(command.substr(at, end - at));
       at = end + 1;
     }
-    const Words commands = names_below(help, "Subcommands:");
+    const Words commands = names_below(help, "Commands:");
     line.emplace_back();
     if (!commands.empty()) {
       Words sorted = commands;
@@ -94,6 +94,7 @@ TEST_F(CompletionTest, BashCompletesValuesAndFiles) {
   EXPECT_EQ(offered({"spherule", "fit", "--seed", ""}), Words{});
   EXPECT_EQ(offered({"spherule", "fit", "--keep-concave-edges", "pa"}), files);
   EXPECT_EQ(offered({"spherule", "completion", ""}), (Words{"bash", "fish", "zsh"}));
+  EXPECT_EQ(offered({"spherule", "manual", "fi"}), Words{"fit"});
 #ifdef SPHERULE_HAS_ROBOT
   EXPECT_EQ(offered({"spherule", "robot", "r.urdf", "--format", "urdf,cu"}), Words{"urdf,curobo"});
   EXPECT_EQ(offered({"spherule", "robot", "r.urdf", "-o", "pa"}), Words{"parts"});
@@ -117,11 +118,14 @@ TEST_F(CompletionTest, FishCompletes) {
   EXPECT_EQ(offers("spherule fit --method "), (Words{"cover", "medial", "packing", "paper"}));
   EXPECT_EQ(offers("spherule fit --zones pa"), (Words{"part.stl", "parts/"}));
   EXPECT_EQ(offers("spherule completion "), (Words{"bash", "fish", "zsh"}));
+  EXPECT_EQ(offers("spherule manual fi"), Words{"fit"});
+  EXPECT_EQ(offers("spherule manual fit --meth"), Words{});
 }
 
 TEST_F(CompletionTest, ZshReadsItsScript) {
   if (!has("zsh")) GTEST_SKIP() << "zsh is not installed";
   EXPECT_EQ(shell("zsh -f -n", read(".completion.zsh")), Words{});
+  EXPECT_NE(read(".completion.zsh").find("'*:command:(fit audit "), std::string::npos);
 }
 
 }  // namespace

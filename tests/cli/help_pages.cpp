@@ -13,7 +13,7 @@ void add_pages(const RunCommand& run, const std::vector<std::string>& names, Pag
   line.push_back("--help");
   const Outcome outcome = run(line);
   EXPECT_EQ(outcome.exit_code, 0);
-  for (const std::string& inner : names_below(outcome.out, "Subcommands:")) {
+  for (const std::string& inner : names_below(outcome.out, "Commands:")) {
     line.back() = inner;
     add_pages(run, line, pages);
   }

@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 namespace spherule {
 namespace {
@@ -98,6 +99,11 @@ TEST_F(HelpTest, ExamplesRun) {
 TEST_F(HelpTest, NamesThatMayHaveBeenMeant) {
   write_box("part.stl", {6, 5, 4});
   expect_refusal({"fitt"}, "unknown command: fitt; did you mean fit? (see spherule --help)");
+  for (const char* typed : {"ft", "fti", "fot"}) {
+    expect_refusal({typed}, std::string(typed) + "; did you mean fit?");
+  }
+  expect_refusal({"veiw"}, "unknown command: veiw; did you mean view?");
+  expect_refusal({"fit", "part.stl", "-o", "out.json", "-x"}, "unexpected option: -x (see");
   expect_refusal({"frobnicate"}, "unknown command: frobnicate (see spherule --help)");
   expect_refusal({"fit", "part.stl", "-o", "out.json", "--max-eror", "1"},
                  "unexpected option: --max-eror; did you mean --max-error? (see spherule fit");
@@ -124,6 +130,26 @@ TEST_F(HelpTest, ReportsSayWhatToDoNext) {
   EXPECT_EQ(type(mend).exit_code, 0);
   EXPECT_EQ(run({"audit", "a part.stl", "others.json", "--json"}).out.find("next:"),
             std::string::npos);
+}
+
+// What is offered is about the same model, in the same unit.
+TEST_F(HelpTest, NextStepsRepeatWhatWasGiven) {
+  write_box("part.stl", {2, 2, 1});
+  for (const auto& [option, value] : {std::pair("--scale", "0.1"), std::pair("--weld", "0.001")}) {
+    const Outcome fit =
+        run({"fit", "part.stl", "-o", "out.json", "--max-error", "0.2", option, value});
+    EXPECT_NE(fit.out.find("next: spherule tree out.json"), std::string::npos) << fit.out;
+    EXPECT_EQ(fit.out.find("spherule view"), std::string::npos) << fit.out;
+  }
+  write_spheres("others.json", {{0.1, 0.1, 0.05, 0.12}});
+  const Outcome audit =
+      run({"audit", "part.stl", "others.json", "--scale", "0.1", "--min-external", "0.08"});
+  const std::string mend =
+      "spherule audit part.stl others.json --scale 0.1 --min-external 0.08 --repair "
+      "others.mended.json";
+  EXPECT_NE(audit.out.find("next: " + mend), std::string::npos) << audit.out;
+  EXPECT_EQ(audit.out.find("spherule view"), std::string::npos) << audit.out;
+  EXPECT_EQ(type(mend).exit_code, 0);
 }
 
 }  // namespace

@@ -10,6 +10,16 @@ namespace {
 
 class ManualTest : public CommandTest {
  protected:
+  // Pages that are made before and after midnight are to be equal.
+  void SetUp() override {
+    CommandTest::SetUp();
+    setenv("SOURCE_DATE_EPOCH", "86400", 1);
+  }
+  void TearDown() override {
+    unsetenv("SOURCE_DATE_EPOCH");
+    CommandTest::TearDown();
+  }
+
   // What a program that is not there, or says nothing, prints of all pages.
   std::string said_of_pages(const std::string& program) {
     const std::string line =
@@ -50,6 +60,23 @@ TEST_F(ManualTest, EveryCommandHasAPageWithAllOfItsOptions) {
     EXPECT_NE(page.find(".SH EXIT STATUS\n0 "), std::string::npos) << name;
   }
   expect_refusal({"manual", "frobnicate"}, "there is no command 'frobnicate'");
+}
+
+TEST_F(ManualTest, TheDayIsThatOfSourceDateEpoch) {
+  EXPECT_NE(run({"manual"}).out.find(" 1 \"1970-01-02\" "), std::string::npos);
+  for (const char* epoch : {"", "soon", "12x", "9223372036854775807", "99999999999999999999"}) {
+    setenv("SOURCE_DATE_EPOCH", epoch, 1);
+    expect_refusal({"manual"}, "SOURCE_DATE_EPOCH: ");
+  }
+}
+
+TEST_F(ManualTest, PagesSayWhatOptionsNeedAndExclude) {
+  std::string page = run({"manual", "fit"}).out;
+  std::erase(page, '\\');
+  EXPECT_NE(page.find("(not with --tool)"), std::string::npos) << page;
+  page = run({"manual", "audit"}).out;
+  std::erase(page, '\\');
+  EXPECT_NE(page.find("(needs --repair)"), std::string::npos) << page;
 }
 
 TEST_F(ManualTest, FormattersFindNoFault) {
