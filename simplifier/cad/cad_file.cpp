@@ -22,7 +22,7 @@ using internal::TessellatedFace;
 constexpr double kDefaultChordError = 1.0 / 2000.0;  // of the diagonal
 constexpr int kTessellations = 4;
 constexpr double kSampleMargin = 2.0;
-// What evaluating a surface in doubles may cost, relative to the largest coordinate.
+// What evaluating a surface in doubles may cost, relative to the largest number that goes into it.
 constexpr double kEvaluation = 0x1p-40;
 // Deviations below this share of the aim are not told apart: a finer proof would cost more than the
 // padding that it saves.
@@ -43,8 +43,15 @@ struct Tessellation {
   TriangleMesh mesh;
   double reached = 0.0;
   double bound = 0.0;
+  double largest = 0.0;  // of the numbers that the faces are evaluated from
   std::vector<UnprovedFace> unproved;
 };
+
+// A proof counts more than a smaller number.
+bool is_better(const Tessellation& a, const Tessellation& b) {
+  if (a.unproved.empty() != b.unproved.empty()) return a.unproved.empty();
+  return a.bound < b.bound;
+}
 
 void append(TriangleMesh& mesh, const internal::CadFace& face) {
   const auto first = static_cast<int>(mesh.vertices.size());
@@ -62,6 +69,7 @@ Tessellation tessellate(CadShape& shape, double deflection, double angle, double
   double sampled = 0.0;
   shape.tessellate(deflection, angle, [&](const internal::CadFace& face) {
     append(result.mesh, face);
+    result.largest = std::max(result.largest, face.largest);
     std::string reason = face.fault.empty() ? deviation.add(face.tessellation) : face.fault;
     if (reason.empty()) return;
     result.unproved.push_back({face.name, std::move(reason)});
@@ -86,12 +94,13 @@ CadPart read_cad(const std::filesystem::path& path, const CadReadOptions& option
   Tessellation best;
   for (int round = 0; round < kTessellations; ++round) {
     Tessellation next = tessellate(shape, deflection, options.angle, kFloor * aim);
-    if (round == 0 || next.bound < best.bound) best = std::move(next);
+    if (round == 0 || is_better(next, best)) best = std::move(next);
     if (best.bound + spent <= aim) break;
     deflection *= std::clamp(0.8 * (aim - spent) / best.bound, 0.2, 0.7);
   }
 
-  const double evaluation = internal::largest_coordinate(best.mesh) * kEvaluation;
+  const double evaluation =
+      std::max(best.largest, internal::largest_coordinate(best.mesh)) * kEvaluation;
   CadPart part;
   part.chord_error = mul_up(add_up(best.bound, add_up(spent, evaluation)), options.scale);
   part.asked = aim * options.scale;

@@ -33,9 +33,10 @@ struct UnprovedFace {
 // Promise, if `proved`: every point of every face of the part is within chord_error of the mesh,
 // and mesh.vertex_error is chord_error plus the rounding of coordinates. The faces are taken as
 // OpenCASCADE built them from the file: each surface within the boundary curves in its parameters.
-// What the file leaves open between faces, the largest tolerance of their edges and vertices, is
-// part of chord_error. Evaluating a surface is taken to err by less than 2^-40 of the largest
-// coordinate, which is charged too. So what the simplifier promises for the mesh grown by
+// What the file leaves open between faces, the largest tolerance of their edges and vertices as
+// OpenCASCADE stores or measures it, is part of chord_error. Evaluating a surface is taken to err by
+// less than 2^-40 of the largest coordinate of mesh, poles and locations or radius, which is charged
+// too. So what the simplifier promises for the mesh grown by
 // vertex_error holds for the part (docs/cad.md has the proof).
 //
 // Faces in `unproved` were sampled instead; chord_error then holds twice the largest deviation
@@ -58,8 +59,9 @@ struct CadPart {
 // output.
 //
 // Throws Error, naming file and reason: no such file, not a file of its kind, no faces, a face that
-// was not translated or could not be tessellated (named), tessellated shapes (which are not read),
-// coordinates beyond kMaxCoordinate, a bad option. Nothing is left out silently.
+// was not translated or could not be tessellated (named), an entity that is broken, of an unknown
+// type or not read (named: solids other than breps, tessellations, documents, scaled copies and all
+// that docs/cad.md lists), coordinates beyond kMaxCoordinate, a bad option.
 CadPart read_cad(const std::filesystem::path& path, const CadReadOptions& options = {});
 
 }  // namespace spherule

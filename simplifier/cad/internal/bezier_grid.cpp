@@ -149,9 +149,10 @@ std::vector<double> binomials(int n) {
 
 // How much S_u jumps from the last row of `before` to the first of `after`, which are the same
 // curve A / w. The jump is (dA_u w - dw_u A) / w^2, whose numerator is a Bezier curve of twice
-// the degree.
-double jump_u(const BezierNet& before, double before_length, const BezierNet& after,
-              double after_length) {
+// the degree. The two may have weights of different scale.
+double jump_u(BezierNet before, double before_length, const BezierNet& after, double after_length) {
+  const double scale = after.at(0, 0)[3] / before.at(before.rows - 1, 0)[3];
+  for (Vector4d& p : before.points) p *= scale;
   const BezierNet from = derivative_u(before, before_length);
   const BezierNet to = derivative_u(after, after_length);
   const int degree = after.columns - 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cad/internal/cad_shape.h"
 
+#include "simplifier/cad/internal/cad_entities.h"
 #include "simplifier/cad/internal/occt_geometry.h"
 #include "simplifier/internal/raw_mesh.h"
 #include "spheretree/error.h"
@@ -13,7 +14,6 @@
 #include <Geom2d_Curve.hxx>
 #include <Geom_Surface.hxx>
 #include <IGESControl_Reader.hxx>
-#include <IGESData_IGESEntity.hxx>
 #include <Interface_InterfaceModel.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
@@ -22,19 +22,19 @@
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
-#include <StepShape_FaceSurface.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
+#include <TopoDS_TShape.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <gp_Trsf.hxx>
 #include <limits>
 #include <mutex>
 #include <set>
@@ -66,6 +66,17 @@ double mismatch(const Poly_Triangulation& mesh, const Handle(Poly_PolygonOnTrian
   return sum;
 }
 
+// Whether the nodes of a side run along the whole of its curve, in order.
+bool spans(const Poly_PolygonOnTriangulation& side, double first, double last) {
+  const double slack = 1e-9 * (last - first);
+  const int count = side.NbNodes();
+  for (int i = 1; i < count; ++i) {
+    if (!(side.Parameter(i) < side.Parameter(i + 1))) return false;
+  }
+  return count > 1 && std::abs(side.Parameter(1) - first) <= slack &&
+         std::abs(side.Parameter(count) - last) <= slack;
+}
+
 // Adds the sides of the mesh along the edge. Returns what is wrong.
 std::string add_edge(const TopoDS_Edge& edge, const TopoDS_Face& face,
                      const Handle(Poly_Triangulation) & mesh, TessellatedFace& result) {
@@ -83,6 +94,7 @@ std::string add_edge(const TopoDS_Edge& edge, const TopoDS_Face& face,
       BRep_Tool::PolygonOnTriangulation(TopoDS::Edge(edge.Reversed()), mesh, location);
   if (side.IsNull() || !side->HasParameters()) return "an edge of it has no nodes";
   if (mismatch(*mesh, other, curve) < mismatch(*mesh, side, curve)) side = other;
+  if (!spans(*side, first, last)) return "the nodes of an edge of it do not run along its curve";
   const bool backwards = edge.Orientation() == TopAbs_REVERSED;
   for (int i = 1; i < side->NbNodes(); ++i) {
     const int a = backwards ? i + 1 : i;
@@ -106,6 +118,7 @@ CadFace face_of(const TopoDS_Face& oriented, std::string name, const std::string
   result.reversed = oriented.Orientation() == TopAbs_REVERSED;
   TessellatedFace& part = result.tessellation;
   part.surface = surface_of(face);
+  result.largest = largest_length(face);
   if (!mesh->HasUVNodes()) throw Error(subject, result.name + " has no parameters");
   for (int i = 1; i <= mesh->NbNodes(); ++i) {
     const gp_Pnt2d uv = mesh->UVNode(i);
@@ -146,18 +159,30 @@ std::mutex& readers() {
   return mutex;
 }
 
-// Whether a part would lack something without a shape of this entity. Surfaces of IGES (by their
-// type numbers) count where nothing trims them.
-bool is_needed(const Handle(Standard_Transient) & entity, bool is_root) {
-  if (entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface))) return true;
-  const auto iges = Handle(IGESData_IGESEntity)::DownCast(entity);
-  if (iges.IsNull()) return false;
-  constexpr int kFaces[] = {143, 144, 510};
-  constexpr int kSurfaces[] = {108, 114, 118, 120, 122, 128, 140, 186, 190, 192, 194, 196, 198};
-  const auto is_one_of = [type = iges->TypeNumber()](const auto& types) {
-    return std::find(std::begin(types), std::end(types), type) != std::end(types);
-  };
-  return is_one_of(kFaces) || (is_root && is_one_of(kSurfaces));
+// Refuses a shape that lacks a face of something that is needed, or holds a scaled part.
+void check_shape(const TopoDS_Shape& shape, XSControl_Reader& reader, const std::string& subject) {
+  std::set<const TopoDS_TShape*> faces;
+  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
+    faces.insert(face.Current().TShape().get());
+    constexpr double kRounding = 1e-12;
+    const gp_Trsf placed = face.Current().Location().Transformation();
+    if (!(std::abs(placed.ScaleFactor() - 1.0) <= kRounding)) {
+      throw Error(subject, "holds a part that is scaled or mirrored in place, which is not read");
+    }
+  }
+  const Handle(Interface_InterfaceModel) model = reader.Model();
+  const Handle(Transfer_TransientProcess) process =
+      reader.WS()->TransferReader()->TransientProcess();
+  for (const Handle(Standard_Transient) & entity : needed_entities(model)) {
+    const TopoDS_Shape result = TransferBRep::ShapeResult(process, entity);
+    bool is_there = !result.IsNull();
+    for (TopExp_Explorer face(result, TopAbs_FACE); face.More(); face.Next()) {
+      is_there = is_there && faces.contains(face.Current().TShape().get());
+    }
+    if (!is_there) {
+      throw Error(subject, "entity " + entity_name(model, entity) + " could not be translated");
+    }
+  }
 }
 
 TopoDS_Shape translated(XSControl_Reader& reader, const std::filesystem::path& path,
@@ -167,23 +192,11 @@ TopoDS_Shape translated(XSControl_Reader& reader, const std::filesystem::path& p
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) {
     throw Error(subject, "is not a " + kind + " file that can be read");
   }
-  std::set<const Standard_Transient*> roots;
-  for (int i = 1; i <= reader.NbRootsForTransfer(); ++i) {
-    roots.insert(reader.RootForTransfer(i).get());
-  }
+  check_entities(reader.Model(), subject);
   reader.TransferRoots();
-  const Handle(Interface_InterfaceModel) model = reader.Model();
-  const Handle(Transfer_TransientProcess) process =
-      reader.WS()->TransferReader()->TransientProcess();
-  for (int i = 1; i <= model->NbEntities(); ++i) {
-    const Handle(Standard_Transient) entity = model->Value(i);
-    if (is_needed(entity, roots.contains(entity.get())) &&
-        TransferBRep::ShapeResult(process, entity).IsNull()) {
-      throw Error(subject, "entity " + std::string(model->StringLabel(entity)->ToCString()) +
-                               " could not be translated");
-    }
-  }
-  return reader.OneShape();
+  const TopoDS_Shape shape = reader.OneShape();
+  check_shape(shape, reader, subject);
+  return shape;
 }
 
 std::size_t count(TopExp_Explorer found) {
@@ -205,11 +218,7 @@ CadShape::CadShape(const std::filesystem::path& path, std::string_view bytes)
   try {
     const std::string extension = lower_extension(path);
     if (extension == "step" || extension == "stp") {
-      for (const char* kind : {"TESSELLATED_SOLID", "TESSELLATED_SHELL"}) {
-        if (bytes.find(kind) != std::string_view::npos) {
-          throw Error(subject_, "holds a " + std::string(kind) + ", which is not read");
-        }
-      }
+      check_step_text(bytes, subject_);
       STEPControl_Reader reader;
       shape_->shape = translated(reader, path, "STEP");
     } else {

@@ -16,6 +16,7 @@ struct CadFace {
   std::string name;
   TessellatedFace tessellation;
   bool reversed = false;  // its triangles turn the other way in the part
+  double largest = 0.0;   // of the numbers its surface is evaluated from: coordinates and radii
   std::string fault;      // why the boundary in `tessellation` is not whole; empty if it is
 };
 

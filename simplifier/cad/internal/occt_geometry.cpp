@@ -14,6 +14,7 @@
 #include <Geom_Circle.hxx>
 #include <Geom_ConicalSurface.hxx>
 #include <Geom_CylindricalSurface.hxx>
+#include <Geom_ElementarySurface.hxx>
 #include <Geom_Ellipse.hxx>
 #include <Geom_Line.hxx>
 #include <Geom_Plane.hxx>
@@ -21,9 +22,12 @@
 #include <Geom_SphericalSurface.hxx>
 #include <Geom_SurfaceOfLinearExtrusion.hxx>
 #include <Geom_SurfaceOfRevolution.hxx>
+#include <Geom_SweptSurface.hxx>
 #include <Geom_ToroidalSurface.hxx>
 #include <Geom_TrimmedCurve.hxx>
+#include <TopLoc_Location.hxx>
 #include <TopoDS_Face.hxx>
+#include <algorithm>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -161,7 +165,72 @@ void set_bound(const Handle(Geom_Surface) & any, ParametricSurface& surface) {
   }
 }
 
+double largest_of(const gp_Pnt& p) {
+  return vector(p).cwiseAbs().maxCoeff();
+}
+
+double largest_length(const Handle(Geom_Curve) & any) {
+  if (const auto trimmed = Handle(Geom_TrimmedCurve)::DownCast(any); !trimmed.IsNull()) {
+    return largest_length(trimmed->BasisCurve());
+  }
+  if (const auto line = Handle(Geom_Line)::DownCast(any); !line.IsNull()) {
+    return largest_of(line->Position().Location());
+  }
+  if (const auto circle = Handle(Geom_Circle)::DownCast(any); !circle.IsNull()) {
+    return std::max(largest_of(circle->Location()), circle->Radius());
+  }
+  if (const auto ellipse = Handle(Geom_Ellipse)::DownCast(any); !ellipse.IsNull()) {
+    return std::max(largest_of(ellipse->Location()), ellipse->MajorRadius());
+  }
+  double largest = 0.0;
+  if (const auto bezier = Handle(Geom_BezierCurve)::DownCast(any); !bezier.IsNull()) {
+    for (const gp_Pnt& p : bezier->Poles()) largest = std::max(largest, largest_of(p));
+  } else if (const auto spline = Handle(Geom_BSplineCurve)::DownCast(any); !spline.IsNull()) {
+    for (const gp_Pnt& p : spline->Poles()) largest = std::max(largest, largest_of(p));
+  }
+  return largest;
+}
+
+double largest_length(const Handle(Geom_Surface) & any) {
+  if (const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(any);
+      !trimmed.IsNull()) {
+    return largest_length(trimmed->BasisSurface());
+  }
+  if (const auto swept = Handle(Geom_SweptSurface)::DownCast(any); !swept.IsNull()) {
+    const auto turned = Handle(Geom_SurfaceOfRevolution)::DownCast(any);
+    return std::max(largest_length(swept->BasisCurve()),
+                    turned.IsNull() ? 0.0 : largest_of(turned->Location()));
+  }
+  double largest = 0.0;
+  if (const auto plain = Handle(Geom_ElementarySurface)::DownCast(any); !plain.IsNull()) {
+    largest = largest_of(plain->Location());
+  }
+  if (const auto cylinder = Handle(Geom_CylindricalSurface)::DownCast(any); !cylinder.IsNull()) {
+    largest = std::max(largest, cylinder->Radius());
+  } else if (const auto cone = Handle(Geom_ConicalSurface)::DownCast(any); !cone.IsNull()) {
+    largest = std::max({largest, cone->RefRadius(), largest_of(cone->Apex())});
+  } else if (const auto sphere = Handle(Geom_SphericalSurface)::DownCast(any); !sphere.IsNull()) {
+    largest = std::max(largest, sphere->Radius());
+  } else if (const auto torus = Handle(Geom_ToroidalSurface)::DownCast(any); !torus.IsNull()) {
+    largest = std::max({largest, torus->MajorRadius(), torus->MinorRadius()});
+  } else if (const auto bezier = Handle(Geom_BezierSurface)::DownCast(any); !bezier.IsNull()) {
+    for (const gp_Pnt& p : bezier->Poles()) largest = std::max(largest, largest_of(p));
+  } else if (const auto spline = Handle(Geom_BSplineSurface)::DownCast(any); !spline.IsNull()) {
+    for (const gp_Pnt& p : spline->Poles()) largest = std::max(largest, largest_of(p));
+  }
+  return largest;
+}
+
 }  // namespace
+
+// Both where the face is placed and before: it is evaluated from either.
+double largest_length(const TopoDS_Face& face) {
+  TopLoc_Location location;
+  const Handle(Geom_Surface) unplaced = BRep_Tool::Surface(face, location);
+  const gp_XYZ moved = location.Transformation().TranslationPart();
+  return std::max({largest_length(BRep_Tool::Surface(face)), largest_length(unplaced),
+                   vector(moved).cwiseAbs().maxCoeff()});
+}
 
 ParametricSurface surface_of(const TopoDS_Face& face) {
   const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);

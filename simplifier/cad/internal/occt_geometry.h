@@ -19,6 +19,10 @@ namespace spherule::internal {
 // sweeps of curves that have none.
 ParametricSurface surface_of(const TopoDS_Face& face);
 
+// The largest coordinate, of poles and locations, and radius that the face's surface is evaluated
+// from. These may be far larger than the face.
+double largest_length(const TopoDS_Face& face);
+
 // Without a bound for offset curves, parabolas and hyperbolas.
 ParameterCurve curve_of(const opencascade::handle<Geom2d_Curve>& curve);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cad/cad_file.h"
+#include "simplifier/cad/internal/occt_geometry.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/mesh_report.h"
 #include "tests/simplifier/cad/cad_parts.h"
@@ -78,6 +79,23 @@ INSTANTIATE_TEST_SUITE_P(Shapes, CadBoundsOf, ::testing::ValuesIn([] {
                            return names;
                          }()),
                          [](const auto& shape) { return shape.param; });
+
+// The piece whose weights are all equal comes from OpenCASCADE without them.
+TEST(CadJump, IsBoundedBetweenPiecesOfDifferentWeight) {
+  for (const double weight : {1.0, 1000.0, 0.001}) {
+    const BentSheet sheet = bent_sheet(weight);
+    const internal::Interval across{0.0, 11.0};
+    const internal::Interval along{0.0, 1.0};
+    const double u_jump = internal::surface_of(sheet.extruded).bound(across, along).jump_u;
+    EXPECT_GE(u_jump, 1.0 - 1e-9) << weight;
+    EXPECT_LE(u_jump, 1.1 * sheet.jump) << weight;
+    EXPECT_GE(u_jump, sheet.jump * (1.0 - 1e-9)) << weight;
+    EXPECT_GE(internal::surface_of(sheet.bent_along_u).bound(across, along).jump_u,
+              sheet.jump * (1.0 - 1e-9));
+    EXPECT_GE(internal::surface_of(sheet.bent_along_v).bound(along, across).jump_v,
+              sheet.jump * (1.0 - 1e-9));
+  }
+}
 
 TEST_F(CadBounds, SolidsComeOutClosed) {
   for (const char* name : {"box", "cylinder", "cone", "sphere", "torus", "plate", "spline_torus"}) {
