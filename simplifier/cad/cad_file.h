@@ -34,10 +34,10 @@ struct UnprovedFace {
 // and mesh.vertex_error is chord_error plus the rounding of coordinates. The faces are taken as
 // OpenCASCADE built them from the file: each surface within the boundary curves in its parameters.
 // What the file leaves open between faces, the largest tolerance of their edges and vertices as
-// OpenCASCADE stores or measures it, is part of chord_error. Evaluating a surface is taken to err by
-// less than 2^-40 of the largest coordinate of mesh, poles and locations or radius, which is charged
-// too. So what the simplifier promises for the mesh grown by
-// vertex_error holds for the part (docs/cad.md has the proof).
+// OpenCASCADE stores or measures it, is part of chord_error. Evaluating a surface is taken to err
+// by less than 2^-40 of the largest coordinate of mesh, poles and locations or radius, which is
+// charged too. So what the simplifier promises for the mesh grown by vertex_error holds for the
+// part (docs/cad.md has the proof).
 //
 // Faces in `unproved` were sampled instead; chord_error then holds twice the largest deviation
 // found on them, which is no proof.
