@@ -36,6 +36,7 @@ enum class PartFinding {
 //   PartFinding look(std::int32_t pair, double half, double& growth)
 //                                              at the configuration that was set, for the part
 //                                              within `half` of it; says by how much was grown
+//   bool touches()                             whether any pair touches there, without doubt
 template <class Motion>
 class EdgeHalving {
  public:
@@ -139,8 +140,20 @@ class EdgeHalving {
     }
     if (!gives_up) return end;
     unproved_from_ = std::min(unproved_from_, part.begin);
-    if (++given_up_ == kMostGivenUp) return std::nullopt;
+    settle(part);
+    const bool is_enough = result_.contact_at <= 1.0 && !request_.first;
+    if (is_enough || ++given_up_ == kMostGivenUp) return std::nullopt;
     return end;
+  }
+
+  // A part in which bodies nearly touch: whether they do, where that can be told.
+  void settle(const Part& part) {
+    for (const double at : {part.begin, middle_of(part), part.end}) {
+      if (at >= result_.contact_at) return;
+      if (result_.configurations >= request_.max_configurations) return;
+      motion_.set(at, ++result_.configurations);
+      if (motion_.touches()) result_.contact_at = at;
+    }
   }
 
   EdgeResult concluded() {

@@ -92,6 +92,12 @@ class MechanismCheck::EdgeMotion {
     }
   }
 
+  bool touches() {
+    is_placed_ = false;
+    return parts_.kernels->check(parts_.problem, memory_.variables.data(), 0.0F, 0.0F, memory_.view,
+                                 &Translator::confirm, &translator_);
+  }
+
  private:
   // An upper bound of how far any point of a body, as placed, is from there while no variable
   // changes by more than `half` of what it does in all.

@@ -139,8 +139,8 @@ Contact random_contact(SceneRandom& random, double size) {
   }
 }
 
-// A ball `gap` away from a solid, and smaller ones that are nearer by no more than rounding; tree and
-// solid are placed anywhere, far from the origin of the world and of their frames at times.
+// A ball `gap` away from a solid, and smaller ones that are nearer by no more than rounding; tree
+// and solid are placed anywhere, far from the origin of the world and of their frames at times.
 Scene near_contact(SceneRandom& random, double size, double gap) {
   const Contact contact = random_contact(random, size);
   const double radius = random.whole(0, 4) == 0 ? 0.0 : size * random.uniform(0.01, 2.0);

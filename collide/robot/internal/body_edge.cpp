@@ -184,6 +184,8 @@ class BodyPairs::EdgeMotion {
     return pairs_.touches(index, memory_) ? PartFinding::kTouch : PartFinding::kNear;
   }
 
+  bool touches() { return pairs_.any_touches(memory_); }
+
  private:
   const Twist& twist_of(std::size_t piece) const {
     return memory_.twists[static_cast<std::size_t>(pairs_.pieces_[piece].link)];
