@@ -191,6 +191,16 @@ double largest_length(const Handle(Geom_Curve) & any) {
   return largest;
 }
 
+double largest_of(const TColgp_Array2OfPnt& poles) {
+  double largest = 0.0;
+  for (int i = poles.LowerRow(); i <= poles.UpperRow(); ++i) {
+    for (int k = poles.LowerCol(); k <= poles.UpperCol(); ++k) {
+      largest = std::max(largest, largest_of(poles.Value(i, k)));
+    }
+  }
+  return largest;
+}
+
 double largest_length(const Handle(Geom_Surface) & any) {
   if (const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(any);
       !trimmed.IsNull()) {
@@ -214,9 +224,9 @@ double largest_length(const Handle(Geom_Surface) & any) {
   } else if (const auto torus = Handle(Geom_ToroidalSurface)::DownCast(any); !torus.IsNull()) {
     largest = std::max({largest, torus->MajorRadius(), torus->MinorRadius()});
   } else if (const auto bezier = Handle(Geom_BezierSurface)::DownCast(any); !bezier.IsNull()) {
-    for (const gp_Pnt& p : bezier->Poles()) largest = std::max(largest, largest_of(p));
+    largest = largest_of(bezier->Poles());
   } else if (const auto spline = Handle(Geom_BSplineSurface)::DownCast(any); !spline.IsNull()) {
-    for (const gp_Pnt& p : spline->Poles()) largest = std::max(largest, largest_of(p));
+    largest = largest_of(spline->Poles());
   }
   return largest;
 }
