@@ -72,7 +72,7 @@ TEST_F(BaselineTest, BadInputIsRefused) {
   expect_refusal({"baseline", "hull", "box.stl", "-o", "a.obj", "--triangles", "3"}, "--triangles");
   expect_refusal({"baseline", "decimate", "box.stl", "-o", "a.obj"}, "--max-error");
   expect_refusal({"baseline", "shrink", "box.stl", "-o", "a.obj"}, "");
-  expect_refusal({"baseline"}, "subcommand");
+  expect_refusal({"baseline"}, "a command is required");
   EXPECT_FALSE(exists("a.obj"));
 }
 

@@ -62,7 +62,7 @@ TEST_P(CadRefusal, NothingIsLeftOutOfTheShape) {
 
 const Lost kLost[] = {
     {"CsgSolid", "#9001=BLOCK('',$AXIS,100.,100.,100.);\n#9002=CSG_SOLID('',#9001);\n", "#9002",
-     "#9001 (Block)"},
+     "#9002 (CsgSolid)"},
     {"CsgRepresentation",
      "#9001=BLOCK('',$AXIS,100.,100.,100.);\n#9002=CSG_SOLID('',#9001);\n"
      "#9003=CSG_SHAPE_REPRESENTATION('',(#9002),$CONTEXT);\n"
@@ -80,7 +80,7 @@ const Lost kLost[] = {
     {"SweptDisk",
      "#9020=CARTESIAN_POINT('',(0.,0.,0.));\n#9021=CARTESIAN_POINT('',(0.,0.,100.));\n"
      "#9022=POLYLINE('',(#9020,#9021));\n#9023=SWEPT_DISK_SOLID('',#9022,5.,$,0.,1.);\n",
-     "#9023", "#9023 (SWEPT_DISK_SOLID)"},
+     "#9023", "illegal type"},
     {"Triangulated",
      "#9010=COORDINATES_LIST('',4,((0.,0.,0.),(90.,0.,0.),(0.,90.,0.),(0.,0.,90.)));\n"
      "#9011=TRIANGULATED_SURFACE_SET('',#9010,4,(),(),((1,2,3),(1,2,4),(1,3,4),(2,3,4)));\n"
@@ -98,7 +98,7 @@ const Lost kLost[] = {
      "", "CARTESIAN_TRANSFORMATION_OPERATOR"},
     // Fewer parameters than the entity has.
     {"BrokenEntity", "#9001=CARTESIAN_POINT('');\n#9002=LINE('',#9001);\n", "#9002", "#900"},
-    {"NoSuchEntity", "#9001=GEOMETRIC_SET('',(#9999));\n", "#9001", "#9001"}};
+    {"NoSuchEntity", "#9001=GEOMETRIC_SET('',(#9999));\n", "#9001", "#9999"}};
 
 INSTANTIATE_TEST_SUITE_P(Kinds, CadRefusal, ::testing::ValuesIn(kLost),
                          [](const auto& lost) { return lost.param.name; });
