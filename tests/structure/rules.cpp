@@ -57,6 +57,7 @@ const std::vector<Room>& rooms() {
        {"spheretree", "simplifier"},
        {"Eigen"},
        {{"opencascade", "simplifier/cad/internal/cad_entities.cpp"},
+        {"opencascade", "simplifier/cad/internal/cad_entities.h"},
         {"opencascade", "simplifier/cad/internal/cad_shape.cpp"},
         {"opencascade", "simplifier/cad/internal/occt_geometry.cpp"}}},
       {"collide", {"spheretree"}, {"Eigen"}, {}},
