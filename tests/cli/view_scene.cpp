@@ -30,7 +30,7 @@ std::vector<float> floats_of(const std::string& text) {
     if (count >= 8) bytes += static_cast<char>(bits >> (count -= 8) & 255u);
   }
   std::vector<float> numbers(bytes.size() / 4);
-  std::memcpy(numbers.data(), bytes.data(), numbers.size() * 4);
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), numbers.size() * 4);
   return numbers;
 }
 
