@@ -29,11 +29,11 @@ TEST_F(CheckTest, CoversTheRobotAndAToolWhereThereAreNoSpheres) {
 // Which of a link's geometries stands for it: what is covered, and what must stand in spheres.
 TEST_F(CheckTest, GeometryIsWhatIsAskedFor) {
   write("two.urdf", R"(<robot name="two"><link name="base"/><link name="hand">
-    <visual><geometry><sphere radius="0.02"/></geometry></visual>
-    <collision><geometry><sphere radius="0.2"/></geometry></collision></link>
+    <visual><geometry><box size="0.02 0.02 0.02"/></geometry></visual>
+    <collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
     <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
       <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
-  write("path.csv", "-0.1\n");
+  write("path.csv", "-0.045\n");
   std::vector<std::string> line = {"check",       "two.urdf", "cell.json", "path.csv",
                                    "--max-error", "0.02",     "--effort",  "0"};
   EXPECT_EQ(run(line).exit_code, 1);
@@ -44,6 +44,7 @@ TEST_F(CheckTest, GeometryIsWhatIsAskedFor) {
     <sphere radius="0.02"/></geometry></visual></link><link name="hand"/>
     <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
       <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
+  write("path.csv", "-0.1\n");
   line = {"check", "seen.urdf", "cell.json", "path.csv", "--spheres", "slider.json"};
   EXPECT_EQ(run(line).exit_code, 0);
   line.insert(line.end(), {"--geometry", "visual"});
@@ -105,11 +106,14 @@ TEST_F(CheckTest, BodiesThatAlwaysTouchGetAdvice) {
     {"name": "wall", "box": {"size": [0.1, 1, 1]}, "pose": {"position": [-0.09, 0, 0]}}],
     "allowed_contacts": [{"body": "c", "other": "wall"}]})");
   const auto checked_with = [this](const std::vector<std::string>& more) {
-    std::vector<std::string> line = {"check",       "cubes.urdf", "cell.json", "path.csv",
-                                     "--max-error", "0.04",       "--effort",  "0"};
+    std::vector<std::string> line = {"check",     "cubes.urdf", "cell.json",   "path.csv",
+                                     "--spheres", "cubes.json", "--max-error", "0.04",
+                                     "--effort",  "0"};
     line.insert(line.end(), more.begin(), more.end());
     return run(line);
   };
+  write("cubes.json", R"({"a": {"centers": [[0, 0, 0]], "radii": [0.087]},
+                          "c": {"centers": [[0, 0, 0]], "radii": [0.087]}})");
   write("path.csv", "0 0\n0 0.001\n0.001 0\n");
   const std::string advice = "c and a touch all the time\n";
   const std::string table = checked_with({}).out;
