@@ -51,32 +51,6 @@ auto blaming_file(const AuditArguments& arguments, Use use) {
   }
 }
 
-// The scale the file was fitted at.
-double stored_scale(const SphereFile& file) {
-  const auto found = file.options.find("scale");
-  if (found == file.options.end()) return 1.0;
-  double scale = 0.0;
-  if (const double* real = std::get_if<double>(&found->second)) scale = *real;
-  if (const auto* whole = std::get_if<std::int64_t>(&found->second)) {
-    scale = static_cast<double>(*whole);
-  }
-  if (!(scale > 0.0) || !std::isfinite(scale)) {
-    throw Error("scale", "must be a positive finite number");
-  }
-  return scale;
-}
-
-// A length that the model was read with; 0 where the file does not say.
-double stored_length(const SphereFile& file, const char* option) {
-  const auto found = file.options.find(option);
-  if (found == file.options.end()) return 0.0;
-  const double* length = std::get_if<double>(&found->second);
-  if (length == nullptr || !(*length >= 0.0)) {
-    throw Error(option, "must be a number, not negative");
-  }
-  return *length;
-}
-
 std::string name_of(const std::optional<ExternalSpheres>& external) {
   if (!external) return "the mesh and its inside";
   std::ostringstream solid;
@@ -186,11 +160,8 @@ int audit(const AuditArguments& arguments) {
       blaming_file(arguments, [&] { return options_from_record(file.options); });
   // Lengths are in output units, so that they suit no other scale.
   const ModelReadOptions reading =
-      arguments.scale ? ModelReadOptions{.scale = *arguments.scale} : blaming_file(arguments, [&] {
-        return ModelReadOptions{.scale = stored_scale(file),
-                                .chord_error = stored_length(file, "chord-error"),
-                                .weld = stored_length(file, "weld")};
-      });
+      arguments.scale ? ModelReadOptions{.scale = *arguments.scale}
+                      : blaming_file(arguments, [&] { return stored_reading(file); });
   ProgressBar bar;
   bar.announce("reading");
   const ModelFile model = read_model(arguments.mesh, reading);

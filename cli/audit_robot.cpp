@@ -54,14 +54,20 @@ std::string only_link(const RobotDescription& robot, LinkGeometry geometry,
   return names.front();
 }
 
-SphereFormatFile read(const AuditRobotArguments& arguments, const RobotDescription& robot,
-                      LinkGeometry geometry) {
-  SphereFormatFile file =
-      read_robot_spheres(arguments.spheres, {.link = arguments.link, .level = arguments.level});
-  if (is_of_one_mesh(file)) {
-    file.spheres.links.front().link = only_link(robot, geometry, arguments.spheres);
+struct ReadSpheres {
+  SphereFormatFile file;
+  bool names_links = true;  // itself
+};
+
+ReadSpheres read(const AuditRobotArguments& arguments, const RobotDescription& robot,
+                 LinkGeometry geometry) {
+  ReadSpheres result{
+      read_robot_spheres(arguments.spheres, {.link = arguments.link, .level = arguments.level})};
+  if (is_of_one_mesh(result.file)) {
+    result.file.spheres.links.front().link = only_link(robot, geometry, arguments.spheres);
+    result.names_links = false;
   }
-  return file;
+  return result;
 }
 
 std::vector<std::vector<double>> configurations_of(const std::string& file,
@@ -95,11 +101,12 @@ void write_repaired(const AuditRobotArguments& arguments, const SphereFormatFile
                       arguments.repaired);
 }
 
-// `view` knows neither --link nor --level, and --repair makes the links cover, not the
-// configurations.
-std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, bool is_mendable) {
+// `view` knows neither --link nor --level, nor on which link a file's spheres belong that does not
+// say it, and --repair makes the links cover, not the configurations.
+std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, bool names_links,
+                                       bool is_mendable) {
   std::vector<NextStep> steps;
-  if (arguments.link.empty() && !arguments.level) {
+  if (names_links && arguments.link.empty() && !arguments.level) {
     std::vector<std::string> view = {"view", arguments.urdf, arguments.spheres};
     repeat_robot_options(arguments.geometry, arguments.packages, view);
     view.insert(view.end(), {"--leaks", "-o", beside(arguments.spheres, ".html")});
@@ -124,7 +131,8 @@ int audit(const AuditRobotArguments& arguments) {
   check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses});
   const LinkGeometry geometry = geometry_named(arguments.geometry);
   const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
-  RobotAuditReport report{.file = read(arguments, robot, geometry),
+  ReadSpheres given = read(arguments, robot, geometry);
+  RobotAuditReport report{.file = std::move(given.file),
                           .audit = {},
                           .repaired_file = arguments.repaired,
                           .repair = std::nullopt};
@@ -168,7 +176,7 @@ int audit(const AuditRobotArguments& arguments) {
   if (arguments.poses.empty() ? result.links_covered : result.configurations_covered) return kYes;
   if (!arguments.json) {
     const bool is_mendable = is_written(report.file.format) && !is_shrunk;
-    std::cout << describe(steps_after_leak(arguments, is_mendable));
+    std::cout << describe(steps_after_leak(arguments, given.names_links, is_mendable));
   }
   return kNo;
 }

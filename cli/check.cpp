@@ -3,6 +3,7 @@
 #include "cli/check_report.h"
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
@@ -22,6 +23,7 @@
 #include <span>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -199,6 +201,30 @@ class TrajectoryCheck {
   CheckReport report_;
 };
 
+// Where bodies of the robot touch all the time: what to do about it, for a person.
+std::string advice(const CheckArguments& arguments, const CheckReport& report) {
+  const std::vector<TouchingPair> pairs = always_touching(report);
+  if (pairs.empty()) return {};
+  std::string text;
+  for (const TouchingPair& pair : pairs) {
+    text += pair.first.contact.first.name + " and " + pair.first.contact.second.name +
+            " touch all the time\n";
+  }
+  text += "where they may, name them under \"allowed_contacts\" in " + arguments.scene + "\n";
+  const CheckArguments defaults;
+  std::vector<std::string> finer = {"check", arguments.urdf, arguments.scene, arguments.trajectory};
+  if (arguments.edges) finer.push_back("--edges");
+  if (arguments.resolution != defaults.resolution) {
+    repeat("--resolution", arguments.resolution, finer);
+  }
+  repeat("--max-error", 0.5 * arguments.cover.max_error, finer);
+  if (arguments.cover.effort != defaults.cover.effort) {
+    repeat("--effort", std::to_string(arguments.cover.effort), finer);
+  }
+  repeat_robot_options(arguments.geometry, arguments.packages, finer);
+  return text + describe({{std::move(finer), "finer spheres may part them"}});
+}
+
 int check(const CheckArguments& arguments) {
   RobotCoverOptions options = arguments.cover;
   options.geometry = geometry_named(arguments.geometry);
@@ -228,7 +254,8 @@ int check(const CheckArguments& arguments) {
                            : std::move(trajectory_check).configurations();
   bar.clear();
   report.is_whole = is_whole;
-  std::cout << (arguments.json ? check_json(report) : check_table(report));
+  std::cout << (arguments.json ? check_json(report)
+                               : check_table(report) + advice(arguments, report));
   return report.is_free() ? kYes : kNo;
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <iomanip>
+#include <iterator>
 #include <sstream>
 
 namespace spherule {
@@ -108,6 +109,17 @@ void CheckReport::add(const FoundContact& found) {
   }
   ++known->count;
   if (found.contact.overlap_depth > known->worst.contact.overlap_depth) known->worst = found;
+}
+
+std::vector<TouchingPair> always_touching(const CheckReport& report) {
+  const std::size_t all = report.motions.value_or(report.configurations);
+  std::vector<TouchingPair> result;
+  std::copy_if(report.pairs.begin(), report.pairs.end(), std::back_inserter(result),
+               [&](const TouchingPair& pair) {
+                 return all > 1 && pair.count == all &&
+                        pair.first.contact.second.kind != CheckedBody::Kind::kObstacle;
+               });
+  return result;
 }
 
 std::string check_table(const CheckReport& report) {

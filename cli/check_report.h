@@ -43,6 +43,10 @@ struct CheckReport {
   void add(const FoundContact& found);
 };
 
+// Pairs of the robot's own bodies that touch in every configuration, or on every motion, of two or
+// more: their spheres may be too coarse, or they are meant to touch.
+std::vector<TouchingPair> always_touching(const CheckReport& report);
+
 // For a person, a few lines and a table, and as JSON.
 std::string check_table(const CheckReport& report);
 std::string check_json(const CheckReport& report);

@@ -4,9 +4,13 @@
 #include "simplifier/mesh_io.h"
 #include "spheretree/error.h"
 
+#include <cmath>
+#include <cstdint>
 #include <iostream>
+#include <limits>
 #include <sstream>
 #include <utility>
+#include <variant>
 
 namespace spherule {
 namespace {
@@ -29,6 +33,20 @@ CadPart read_part(const std::filesystem::path& path, const CadReadOptions& optio
 #endif
 }
 
+// Whole numbers are numbers, too: a program that writes 1 for 1.0 means the same.
+double stored_number(const SphereFile& file, const char* option, double by_default) {
+  const auto found = file.options.find(option);
+  if (found == file.options.end()) return by_default;
+  double number = std::numeric_limits<double>::quiet_NaN();
+  if (const auto* whole = std::get_if<std::int64_t>(&found->second)) {
+    number = static_cast<double>(*whole);
+  } else if (const double* real = std::get_if<double>(&found->second)) {
+    number = *real;
+  }
+  if (!std::isfinite(number)) throw Error(option, "must be a finite number");
+  return number;
+}
+
 }  // namespace
 
 ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& options) {
@@ -46,6 +64,17 @@ ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& 
 void store_reading(const ModelReadOptions& options, const ModelFile& model, SphereFile& file) {
   if (model.cad) file.options["chord-error"] = model.cad->asked;
   if (options.weld > 0.0) file.options["weld"] = options.weld;
+}
+
+ModelReadOptions stored_reading(const SphereFile& file) {
+  ModelReadOptions options;
+  options.scale = stored_number(file, "scale", options.scale);
+  options.chord_error = stored_number(file, "chord-error", options.chord_error);
+  options.weld = stored_number(file, "weld", options.weld);
+  if (!(options.scale > 0.0)) throw Error("scale", "must be positive");
+  if (options.chord_error < 0.0) throw Error("chord-error", "must not be negative");
+  if (options.weld < 0.0) throw Error("weld", "must not be negative");
+  return options;
 }
 
 std::string describe(const CadPart& part) {

@@ -32,6 +32,11 @@ ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& 
 // Stores in a file of spheres what it takes to read their model in the same way again.
 void store_reading(const ModelReadOptions& options, const ModelFile& model, SphereFile& file);
 
+// How the model of a file of spheres was read, as its options say; as by default where they do not.
+// Throws Error, naming the option, for one that is no number, a scale that is not above zero and a
+// length below zero.
+ModelReadOptions stored_reading(const SphereFile& file);
+
 // What a CAD file came to, in a line for a person.
 std::string describe(const CadPart& part);
 

@@ -4,7 +4,9 @@
 #include "spheretree/error.h"
 
 #include <charconv>
-#include <string>
+#include <cstdio>
+#include <exception>
+#include <ompl/util/Console.h>
 #include <string_view>
 
 namespace spherule {
@@ -19,9 +21,7 @@ int number_of(const std::string& option, std::string_view text) {
   return value;
 }
 
-}  // namespace
-
-PlanningArguments parse_planning_arguments(int count, char** values, bool many) {
+PlanningArguments parsed(int count, char** values, bool many) {
   const std::string known = many ? "--out DIR, --effort N and --problems N are known"
                                  : "--out DIR and --effort N are known";
   PlanningArguments arguments;
@@ -40,6 +40,22 @@ PlanningArguments parse_planning_arguments(int count, char** values, bool many) 
     }
   }
   return arguments;
+}
+
+}  // namespace
+
+int run_planning_program(const std::string& name, int count, char** values, bool many,
+                         const std::function<void(const PlanningArguments&)>& run) {
+  try {
+    const PlanningArguments arguments = parsed(count, values, many);
+    std::filesystem::create_directories(arguments.out);
+    ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
+    run(arguments);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), error.what());
+    return 1;
+  }
 }
 
 }  // namespace spherule

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <string>
 
 namespace spherule {
 
@@ -12,8 +14,11 @@ struct PlanningArguments {
   std::size_t problems = 200;
 };
 
-// --out DIR --effort N, and --problems N for who studies `many`. Throws Error for anything else and
-// for numbers below 1.
-PlanningArguments parse_planning_arguments(int count, char** values, bool many);
+// What main() of a program of that name does and returns: reads --out DIR --effort N, and
+// --problems N for who studies `many`, makes that folder, keeps OMPL quiet but for errors, and
+// runs. Says on standard error what went wrong, arguments that are not known and numbers below 1
+// included; the exit code is 1 then, otherwise 0.
+int run_planning_program(const std::string& name, int count, char** values, bool many,
+                         const std::function<void(const PlanningArguments&)>& run);
 
 }  // namespace spherule

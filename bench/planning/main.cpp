@@ -12,9 +12,6 @@
 #include "spheretree/error.h"
 
 #include <cstdio>
-#include <exception>
-#include <filesystem>
-#include <ompl/util/Console.h>
 
 namespace spherule {
 namespace {
@@ -37,9 +34,7 @@ class Phases {
 };
 
 void run(const PlanningArguments& arguments) {
-  ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
   Phases phases;
-  std::filesystem::create_directories(arguments.out);
   Workload cell = make_paper_cell();
   PlanningResult result{.name = cell.name};
   result.fits = fit_parts(cell, &print_fit, arguments.effort);
@@ -73,11 +68,5 @@ void run(const PlanningArguments& arguments) {
 }  // namespace spherule
 
 int main(int count, char** values) {
-  try {
-    spherule::run(spherule::parse_planning_arguments(count, values, true));
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "spherule_planning: %s\n", error.what());
-    return 1;
-  }
+  return spherule::run_planning_program("spherule_planning", count, values, true, &spherule::run);
 }

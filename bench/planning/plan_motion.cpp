@@ -18,11 +18,9 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <iomanip>
 #include <limits>
-#include <ompl/util/Console.h>
 #include <sstream>
 
 namespace spherule {
@@ -57,8 +55,6 @@ Example make_example() {
 }
 
 void run(const PlanningArguments& arguments) {
-  ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
-  std::filesystem::create_directories(arguments.out);
   auto [cell, flange_from_wire] = make_example();
   std::printf("%s: fitting\n", cell.name.c_str());
   fit_parts(cell, &print_fit, arguments.effort);
@@ -84,11 +80,6 @@ void run(const PlanningArguments& arguments) {
 }  // namespace spherule
 
 int main(int count, char** values) {
-  try {
-    spherule::run(spherule::parse_planning_arguments(count, values, false));
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "spherule_plan_motion: %s\n", error.what());
-    return 1;
-  }
+  return spherule::run_planning_program("spherule_plan_motion", count, values, false,
+                                        &spherule::run);
 }

@@ -1,52 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/robot/internal/shared_work.h"
+#include "collide/robot/internal/configuration_batch.h"
 #include "collide/robot/robot_tree_checker.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <array>
-#include <string>
 #include <utility>
 
 namespace spherule {
-
-// Returns the number of variables.
-std::size_t RobotTreeChecker::require_sizes(std::span<const double> configurations,
-                                            std::span<const std::uint8_t> verdicts) const {
-  const auto variables = static_cast<std::size_t>(robot_.variable_count());
-  if (configurations.size() != verdicts.size() * variables) {
-    throw Error("configurations", std::to_string(configurations.size()) + " numbers for " +
-                                      std::to_string(verdicts.size()) +
-                                      " verdicts on a robot with " + std::to_string(variables) +
-                                      " variables");
-  }
-  return variables;
-}
 
 void RobotTreeChecker::collides(std::span<const double> configurations,
                                 std::span<Scratch> scratches,
                                 std::span<std::uint8_t> verdicts) const {
   static_assert(kPiece % MechanismCheck::kBlock == 0);
-  const std::size_t variables = require_sizes(configurations, verdicts);
-  if (scratches.empty()) throw Error("configurations", "there is no scratch to judge them with");
-  if (scratches.size() == 1 || verdicts.size() < kFewestShared) {
-    return collides(configurations, scratches.front(), verdicts);  // to share out would allocate
-  }
+  const std::size_t variables = internal::require_sizes(robot_, configurations, verdicts);
   for (const Scratch& scratch : scratches) require_own(scratch);
-  const std::size_t pieces = (verdicts.size() + kPiece - 1) / kPiece;
-  internal::share_work(pieces, scratches.size(), [&](std::size_t worker, std::size_t piece) {
-    const std::size_t first = piece * kPiece;
-    const std::size_t count = std::min(kPiece, verdicts.size() - first);
-    collides(configurations.subspan(first * variables, count * variables), scratches[worker],
-             verdicts.subspan(first, count));
-  });
+  internal::share_configurations(
+      configurations, variables, {.piece = kPiece, .fewest = kFewestShared}, scratches, verdicts,
+      [&](std::span<const double> piece, Scratch& scratch, std::span<std::uint8_t> its_verdicts) {
+        collides(piece, scratch, its_verdicts);
+      });
 }
 
 void RobotTreeChecker::collides(std::span<const double> configurations, Scratch& scratch,
                                 std::span<std::uint8_t> verdicts) const {
   constexpr std::size_t kBlock = MechanismCheck::kBlock;
   require_own(scratch);
-  const std::size_t variables = require_sizes(configurations, verdicts);
+  const std::size_t variables = internal::require_sizes(robot_, configurations, verdicts);
   const auto configuration = [&](std::size_t i) {
     return configurations.subspan(i * variables, variables);
   };

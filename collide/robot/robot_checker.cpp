@@ -3,6 +3,7 @@
 
 #include "collide/mechanism_check.h"
 #include "collide/robot/internal/checker_parts.h"
+#include "collide/robot/internal/configuration_batch.h"
 #include "collide/robot/internal/shared_work.h"
 #include "spheretree/error.h"
 
@@ -13,9 +14,11 @@
 namespace spherule {
 namespace {
 
-// Edges that a thread takes at a time, and configurations.
+// Edges that a thread takes at a time, and configurations: more than one piece of these, which take
+// longer than for a RobotTreeChecker alone, are worth a thread.
 constexpr std::size_t kEdgesAPiece = 16;
-constexpr std::size_t kConfigurationsAPiece = RobotTreeChecker::kPiece;
+constexpr internal::Sharing kConfigurations{.piece = RobotTreeChecker::kPiece,
+                                            .fewest = RobotTreeChecker::kPiece + 1};
 
 void require_configuration(const RobotModel& robot, std::span<const double> configuration) {
   if (configuration.size() != static_cast<std::size_t>(robot.variable_count())) {
@@ -63,16 +66,6 @@ double leaves_limits_at(const RobotModel& robot, std::span<const double> from,
   return first;
 }
 
-std::size_t require_sizes(const RobotModel& robot, std::size_t numbers, std::size_t answers) {
-  const auto variables = static_cast<std::size_t>(robot.variable_count());
-  if (numbers != answers * variables) {
-    throw Error("configurations", std::to_string(numbers) + " numbers for " +
-                                      std::to_string(answers) + " answers on a robot with " +
-                                      std::to_string(variables) + " variables");
-  }
-  return variables;
-}
-
 }  // namespace
 
 RobotChecker::RobotChecker(std::shared_ptr<const Parts> parts) : parts_(std::move(parts)) {}
@@ -116,7 +109,7 @@ bool RobotChecker::is_free_of_itself(std::span<const double> configuration,
 void RobotChecker::check_configs(std::span<const double> configurations, Scratch& scratch,
                                  std::span<std::uint8_t> free) const {
   require_own(scratch);
-  const std::size_t variables = require_sizes(parts_->robot, configurations.size(), free.size());
+  const std::size_t variables = internal::require_sizes(parts_->robot, configurations, free);
   const auto configuration = [&](std::size_t i) {
     return configurations.subspan(i * variables, variables);
   };
@@ -139,16 +132,13 @@ void RobotChecker::check_configs(std::span<const double> configurations, Scratch
 
 void RobotChecker::check_configs(std::span<const double> configurations,
                                  std::span<Scratch> scratches, std::span<std::uint8_t> free) const {
-  const std::size_t variables = require_sizes(parts_->robot, configurations.size(), free.size());
-  if (scratches.empty()) throw Error("configurations", "there is no scratch to judge them with");
+  const std::size_t variables = internal::require_sizes(parts_->robot, configurations, free);
   for (const Scratch& scratch : scratches) require_own(scratch);
-  const std::size_t pieces = (free.size() + kConfigurationsAPiece - 1) / kConfigurationsAPiece;
-  internal::share_work(pieces, scratches.size(), [&](std::size_t worker, std::size_t piece) {
-    const std::size_t first = piece * kConfigurationsAPiece;
-    const std::size_t count = std::min(kConfigurationsAPiece, free.size() - first);
-    check_configs(configurations.subspan(first * variables, count * variables), scratches[worker],
-                  free.subspan(first, count));
-  });
+  internal::share_configurations(
+      configurations, variables, kConfigurations, scratches, free,
+      [&](std::span<const double> piece, Scratch& scratch, std::span<std::uint8_t> its_answers) {
+        check_configs(piece, scratch, its_answers);
+      });
 }
 
 EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<const double> to,

@@ -179,8 +179,6 @@ class RobotTreeChecker {
   std::optional<std::span<const double>> usual_positions(std::span<const double> configuration,
                                                          Scratch& scratch,
                                                          std::size_t place = 0) const;
-  std::size_t require_sizes(std::span<const double> configurations,
-                            std::span<const std::uint8_t> verdicts) const;
   bool contains_component(Scratch& scratch) const;
   const CoveredMesh* mesh_of(const SphereTree& tree) const;
   bool body_collides(const Body& body, const Pose& world_from_link, std::size_t obstacle) const;

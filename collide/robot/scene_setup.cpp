@@ -89,9 +89,7 @@ class Preparation {
     return solid;
   }
   ObstacleShape shape_of(const std::string&, const PointsSource& source) {
-    const PointCloudFile cloud = read_point_cloud(source.path, source.scale);
-    return shared(point_cloud_tree(cloud.points, add_up(source.radius, cloud.point_error),
-                                   {.voxel = source.voxel}));
+    return shared(build_tree(point_balls(source)));
   }
   ObstacleShape shape_of(const std::string&, const SpheresSource& source) {
     return read_spheres(source);
@@ -146,6 +144,12 @@ RobotModel with_spheres(RobotModel robot, std::span<const LinkSpheres> spheres) 
     if (!link.spheres.empty()) robot.attach(link.link, shared(build_tree(link.spheres)));
   }
   return robot;
+}
+
+std::vector<Sphere> point_balls(const PointsSource& source) {
+  const PointCloudFile cloud = read_point_cloud(source.path, source.scale);
+  return point_cloud_spheres(cloud.points, add_up(source.radius, cloud.point_error),
+                             {.voxel = source.voxel});
 }
 
 PreparedScene prepare_scene(RobotModel robot, const SceneDescription& scene,

@@ -6,6 +6,7 @@
 #include "collide/robot/robot_scene.h"
 #include "collide/robot/robot_spheres.h"
 #include "collide/robot/scene_file.h"
+#include "spheretree/sphere.h"
 
 #include <span>
 #include <string>
@@ -16,6 +17,11 @@ namespace spherule {
 // The robot with a sphere tree on every link that has spheres. Throws Error for spheres of a link
 // that it has not got, or that build_tree() refuses.
 RobotModel with_spheres(RobotModel robot, std::span<const LinkSpheres> spheres);
+
+// What stands for a cloud of points: balls of which one contains the ball of the source's radius
+// about each point as it is written in the file, scaled exactly; with cells one for those of a
+// cell. Throws Error as read_point_cloud() and point_cloud_spheres().
+std::vector<Sphere> point_balls(const PointsSource& source);
 
 // A scene, and what a person should know of it.
 struct PreparedScene {

@@ -153,6 +153,26 @@ TEST_F(AuditRobotCommand, WhatIsOfferedRepeatsTheOptions) {
   EXPECT_NE(posed.out.find("next: spherule view"), table.npos) << posed.out;
 }
 
+// The spheres of one mesh are those of the only link; `view` would not know whose they are.
+TEST_F(AuditRobotCommand, WhatIsOfferedForOneMeshWorks) {
+  write("one.urdf", R"(<robot name="one"><link name="flange"/><link name="tool">
+    <collision><geometry><box size="0.2 0.02 0.02"/></geometry></collision></link>
+    <joint name="fix" type="fixed"><parent link="flange"/><child link="tool"/></joint></robot>)");
+  write("leaks.json", R"([{"spheres": [{"origin": [0, 0, 0], "radius": 0.09}]}])");
+  const Outcome leaks = run({"audit-robot", "one.urdf", "leaks.json", "--max-error", "0.03"});
+  EXPECT_EQ(leaks.exit_code, 1) << leaks.err;
+  EXPECT_EQ(leaks.out.find("spherule view"), leaks.out.npos) << leaks.out;
+  EXPECT_NE(leaks.out.find("next: spherule audit-robot one.urdf leaks.json --geometry collision "
+                           "--max-error 0.03 --repair leaks.mended.json "),
+            leaks.out.npos)
+      << leaks.out;
+  const Outcome mended = run({"audit-robot", "one.urdf", "leaks.json", "--geometry", "collision",
+                              "--max-error", "0.03", "--repair", "leaks.mended.json"});
+  EXPECT_EQ(mended.exit_code, 0) << mended.err;
+  // What it wrote names the link, so that it can be looked at.
+  EXPECT_EQ(run({"view", "one.urdf", "leaks.mended.json", "-o", "page.html"}).exit_code, 0);
+}
+
 TEST_F(AuditRobotCommand, RepairKeepsTheFormat) {
   const RobotSpheres leaky{.robot = "two",
                            .links = {{"base", {{{0, 0, 0}, 0.09}}}, {"arm", {{{0, 0, 0}, 0.05}}}}};

@@ -102,6 +102,26 @@ TEST_F(AuditTest, BadOptionsInTheFileAreRefusedWithItsName) {
   refuse(R"("scale":-1)", "scale: ");
   refuse(R"("scale":0)", "scale: ");
   refuse(R"("scale":"wide")", "scale: ");
+  refuse(R"("scale":true)", "scale: must be a finite number");
+  refuse(R"("scale":"inf")", "scale: must be a finite number");
+  refuse(R"("weld":-1)", "weld: ");
+  refuse(R"("weld":"wide")", "weld: must be a finite number");
+  refuse(R"("chord-error":false)", "chord-error: must be a finite number");
+  refuse(R"("chord-error":-0.5)", "chord-error: ");
+}
+
+// Other programs write whole numbers without a point.
+TEST_F(AuditTest, OptionsOfReadingMayBeWholeNumbers) {
+  const auto exit_code_with = [&](const std::string& options) {
+    write("whole.json", R"({"format":"spherule-spheres","version":1,)"
+                        R"("spheres":[{"center":[1,0.125,0.125],"radius":1.03}],"options":{)" +
+                            options + "}}");
+    const Outcome result = run({"audit", "bar.stl", "whole.json"});
+    EXPECT_EQ(result.err, "");
+    return result.exit_code;
+  };
+  EXPECT_EQ(exit_code_with(R"("scale":1,"weld":0,"chord-error":1)"), 0);
+  EXPECT_EQ(exit_code_with(R"("scale":2)"), 1);
 }
 
 TEST_F(AuditTest, RepairMakesALeakingSetCover) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/cli/command_test_support.h"
+#include "tests/cli/check_fixture.h"
 
 #include <string>
 #include <vector>
@@ -8,53 +8,6 @@ namespace spherule {
 namespace {
 
 using nlohmann::json;
-
-// A ball of radius 0.05 that slides along x and turns about z.
-constexpr const char* kRobot = R"(<?xml version="1.0"?>
-<robot name="slider">
-  <link name="base"/>
-  <link name="hand">
-    <collision><geometry><sphere radius="0.05"/></geometry></collision>
-  </link>
-  <link name="wrist"/>
-  <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
-    <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
-  <joint name="turn" type="continuous"><parent link="hand"/><child link="wrist"/>
-    <axis xyz="0 0 1"/></joint>
-</robot>
-)";
-
-// A wall of a millimetre at x = 0, and what else is given.
-std::string wall_and(const std::string& keys) {
-  return R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "wall", "box": {"size": [0.001, 1, 1]}}])" +
-         (keys.empty() ? "" : ", " + keys) + "}";
-}
-
-class CheckTest : public CommandTest {
- protected:
-  void SetUp() override {
-    CommandTest::SetUp();
-    write("slider.urdf", kRobot);
-    write("slider.json", R"({"hand": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
-    write("cell.json", wall_and(""));
-    write("path.csv", "-1 0\n1 0\n");
-  }
-
-  std::vector<std::string> command(const std::vector<std::string>& more) const {
-    std::vector<std::string> line = {"check",    "slider.urdf", "cell.json",
-                                     "path.csv", "--spheres",   "slider.json"};
-    line.insert(line.end(), more.begin(), more.end());
-    return line;
-  }
-  json checked(int exit_code, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> line = command(more);
-    line.push_back("--json");
-    const Outcome outcome = run(line);
-    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
-    return json::parse(outcome.out);
-  }
-};
 
 TEST_F(CheckTest, ConfigurationsOrMotions) {
   const json configurations = checked(0);
@@ -175,21 +128,6 @@ TEST_F(CheckTest, AddsPadding) {
   EXPECT_NEAR(contact["padding"].get<double>(), 0.02, 1e-12);
 }
 
-TEST_F(CheckTest, CoversTheRobotAndAToolWhereThereAreNoSpheres) {
-  write_box("tool.stl", {0.1, 0.02, 0.02});
-  write("cell.json", wall_and(R"("attached": [{"name": "tool", "link": "wrist",
-    "mesh": {"file": "tool.stl"}, "pose": {"position": [0.05, -0.01, -0.01]}}],
-    "allowed_contacts": [{"body": "tool", "other": "hand"}])"));
-  write("path.csv", "-0.3 0\n-0.1 0\n0.03 0\n");
-  const Outcome outcome = run({"check", "slider.urdf", "cell.json", "path.csv", "--max-error",
-                               "0.04", "--effort", "0", "--json"});
-  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
-  const json report = json::parse(outcome.out);
-  EXPECT_EQ(report["colliding"], 2);
-  EXPECT_EQ(report["first_contact"]["first"]["name"], "tool");
-  EXPECT_EQ(report["first_contact"]["line"], 2);
-}
-
 TEST_F(CheckTest, OneConfigurationHasNoMotion) {
   write("path.csv", "0.5 0\n");
   const json report = checked(0, {"--edges"});
@@ -305,6 +243,29 @@ TEST_F(CheckTest, RefusesBadInput) {
   refused("the robot has no such link");
   expect_refusal({"check", "none.urdf", "cell.json", "path.csv"}, "none.urdf");
   expect_refusal({"check", "slider.urdf"}, "scene");
+}
+
+TEST_F(CheckTest, ALongListOfMotionsIsCut) {
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "post", "ball": {"radius": 0.1}, "pose": {"position": [0.47, 0.150000001, 0]}}]})");
+  const auto table_of = [this](int motions) {
+    std::string path = "-1 0\n";
+    for (int i = 0; i < motions; ++i) path += i % 2 == 0 ? "1 0\n" : "-1 0\n";
+    write("path.csv", path);
+    return run(command({"--edges", "--resolution", "0.01"})).out;
+  };
+  const auto rows_of = [](const std::string& table) {
+    std::size_t rows = 0;
+    const std::string row = "not proved beyond line ";
+    for (std::size_t at = table.find(row); at != table.npos; at = table.find(row, at + 1)) ++rows;
+    return rows;
+  };
+  const std::string whole = table_of(20);
+  EXPECT_EQ(rows_of(whole), 20U) << whole;
+  EXPECT_EQ(whole.find(" more\n"), whole.npos) << whole;
+  const std::string cut = table_of(23);
+  EXPECT_EQ(rows_of(cut), 20U) << cut;
+  EXPECT_TRUE(cut.ends_with("\nand 3 more\n")) << cut;
 }
 
 // What stands in no spheres is not checked, so that nothing is called free.

@@ -28,10 +28,17 @@
 // Velocities are sums of rate times (axis x offset), where axes err by 60 u (n + 2) and offsets by
 // 2 e, both taken from the world's origin, at most W away: by less than 3 e times the rate for each
 // joint. And where w is off by 2 e, what the world turns with is not quite at right angles to it: 2
-// e times the rate. For both bodies, times h <= 1/2, 4 e. The middle itself, made of rounded
-// fractions of positions up to 100, errs by less than 9 u times 100 < kMiddleError, which moves a
-// point by at most that times its distance from the axis, which is below 2 W. Sums err by far less
-// than kRelative.
+// e times the rate. For both bodies, times h <= 1/2, 4 e.
+//
+// The middle itself, made of rounded fractions of positions up to 100, errs by less than 9 u times
+// 100 < kMiddleError / 9 for each variable. So what is looked at is the exact middle of a motion
+// beside the one that is asked for, with the same rates. At no time is a point further from where
+// it is on that one than the sum over the joints of this error times its distance from the axis,
+// which is below 2 W: pad_ has more than twice that, for both bodies. Velocities are those of the
+// motion beside, so that they err by nothing more, and the bounds hold for it as well: prismatic
+// joints, with which W is above 100, are beyond `shifts` on it by less than e, which PathReach
+// allows. (Of joints that mimic others e has all errors of positions.) Sums err by less than
+// kRelativeSlack of themselves (path_reach.h).
 
 #include "collide/edge_halving.h"
 #include "collide/robot/internal/body_pairs.h"
@@ -47,7 +54,6 @@ namespace spherule::internal {
 namespace {
 
 constexpr double kMiddleError = 1e-12;
-constexpr double kRelative = 1e-9;
 
 // With all joints at zero; the root at the origin.
 std::vector<Pose> poses_at_zero(const RobotModel& robot) {
@@ -109,10 +115,10 @@ class BodyPairs::EdgeMotion {
       if (!joints[j].moves()) continue;
       const auto variable = static_cast<std::size_t>(joints[j].variable);
       memory_.rates[j] = joints[j].multiplier * (to_[variable] - from_[variable]);
-      memory_.speeds[j] = std::abs(memory_.rates[j]) * (1.0 + kRelative);
+      memory_.speeds[j] = std::abs(memory_.rates[j]) * (1.0 + kRelativeSlack);
       memory_.shifts[j] =
           std::max(std::abs(joints[j].position(from_)), std::abs(joints[j].position(to_))) *
-          (1.0 + kRelative);
+          (1.0 + kRelativeSlack);
       rates += memory_.speeds[j];
       factors += std::abs(joints[j].multiplier);
     }

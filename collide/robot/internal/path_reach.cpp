@@ -25,8 +25,9 @@
 // the same. What of this is no shift is computed once, with all positions at zero.
 //
 // Rounding. Points and, times their distances, directions are off by `error` at most; a distance
-// of two, or of one from an axis, by less than 4 times as much. Sums err by far less than
-// kRelative of them.
+// of two, from which the next one is counted, by less than 3 times as much, and one from an axis by
+// less than 4 times. 4 are added to each, so that there is room for positions of prismatic joints
+// that are larger by `error` than is said. Sums err by less than kRelativeSlack of them.
 
 #include "collide/robot/internal/path_reach.h"
 
@@ -37,8 +38,6 @@
 
 namespace spherule::internal {
 namespace {
-
-constexpr double kRelative = 1e-9;
 
 // Of all points of a ball from the axes of joints, the nearest joint first.
 std::vector<double> reaches(const RobotModel& robot, std::span<const Pose> link_poses, double error,
@@ -111,7 +110,7 @@ PathBounds PathReach::bounds(std::span<const double> rates, std::span<const doub
     }
     if (s < count) pass(steps_[s], steps_[s].first, shifted, first);
   }
-  return {best.speed * (1.0 + kRelative), best.bend * (1.0 + kRelative)};
+  return {best.speed * (1.0 + kRelativeSlack), best.bend * (1.0 + kRelativeSlack)};
 }
 
 }  // namespace spherule::internal

@@ -20,6 +20,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace spherule::test {
@@ -163,6 +164,9 @@ TEST(RobotThreads, RefusesTheScratchOfAnother) {
   EXPECT_THROW((void)checker.check_edge(q, q, other[0]), Error);
   EXPECT_THROW(checker.collides(q, other[0], verdicts), Error);
   EXPECT_THROW(checker.collides(q, other, verdicts), Error);
+  // Also where so few are not shared out, so that only the first scratch is used.
+  own.push_back(std::move(other[1]));
+  EXPECT_THROW(checker.collides(q, own, verdicts), Error);
 }
 
 TEST(SharedWork, DoesEachPieceOnceAndLetsNoTwoShareAWorker) {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/robot_edges/times.h"
+#include "collide/edge.h"
+
+#include <cstddef>
+
+namespace spherule {
+
+// What was found at usual steps.
+struct Met {
+  bool spheres = false;
+  bool meshes = false;  // by FCL
+};
+
+// What was said of edges, and how long it took.
+struct Counts {
+  std::size_t edges = 0;
+  std::size_t contact = 0;     // at fine steps
+  std::size_t proved = 0;      // free
+  std::size_t collision = 0;   // of the spheres
+  std::size_t unknown = 0;     // neither
+  std::size_t missed = 0;      // proved free, in contact at fine steps
+  std::size_t extra = 0;       // not proved free, no contact at fine steps
+  std::size_t fcl_missed = 0;  // no contact at usual steps, but at fine ones
+  std::size_t own_missed = 0;  // spheres that meet, but not at usual steps
+  std::size_t looks = 0;       // configurations that the proofs looked at
+  Times proof, own, obbrss, obb;
+
+  // Of one more edge.
+  void judge(const EdgeResult& result, const Met& sampled, bool in_contact);
+  void add(const Counts& other);
+
+  // A row of the table of verdicts, and of the one of times.
+  void print_verdicts(const char* name) const;
+  void print_times(const char* name) const;
+};
+
+}  // namespace spherule

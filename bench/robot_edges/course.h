@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/robot_edges/arm.h"
+#include "bench/robot_edges/counts.h"
+#include "bench/robot_edges/edges.h"
+#include "bench/robot_edges/fcl_arm.h"
+#include "bench/robot_edges/primitive_scenes.h"
+#include "bench/studies/random_numbers.h"
+#include "collide/robot/robot_checker.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// What is asked of one scene.
+class Course {
+ public:
+  Course(const Arm& arm, const AllowedCollisions& allowed, const PrimitiveScene& primitives);
+
+  // Whose ends are free to both.
+  std::vector<Edge> draw(std::size_t count, RandomNumbers& random);
+
+  // The methods take turns at runs of edges; each sees an edge as often as there are rounds.
+  Counts measure(std::span<const Edge> edges);
+
+ private:
+  bool is_free(const Configuration& at) { return checker_.check_config(at, scratch_); }
+
+  RobotChecker checker_;
+  RobotChecker::Scratch scratch_;
+  FclArm obbrss_;
+  FclArm obb_;
+};
+
+}  // namespace spherule
