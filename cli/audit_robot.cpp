@@ -10,6 +10,7 @@
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
+#include "cli/sphere_input.h"
 #include "collide/robot/sphere_formats.h"
 #include "collide/robot/trajectory_file.h"
 #include "collide/robot/urdf.h"
@@ -42,33 +43,6 @@ struct AuditRobotArguments {
   std::optional<double> min_external;
   bool json = false;
 };
-
-// The only link with geometry.
-std::string only_link(const RobotDescription& robot, LinkGeometry geometry,
-                      const std::string& file) {
-  std::vector<std::string> names;
-  for (const LinkDescription& link : robot.links) {
-    if (!link_shapes(link, geometry).empty()) names.push_back(link.name);
-  }
-  if (names.size() != 1) throw Error(file, "holds the spheres of one mesh: name its link (--link)");
-  return names.front();
-}
-
-struct ReadSpheres {
-  SphereFormatFile file;
-  bool names_links = true;  // itself
-};
-
-ReadSpheres read(const AuditRobotArguments& arguments, const RobotDescription& robot,
-                 LinkGeometry geometry) {
-  ReadSpheres result{
-      read_robot_spheres(arguments.spheres, {.link = arguments.link, .level = arguments.level})};
-  if (is_of_one_mesh(result.file)) {
-    result.file.spheres.links.front().link = only_link(robot, geometry, arguments.spheres);
-    result.names_links = false;
-  }
-  return result;
-}
 
 std::vector<std::vector<double>> configurations_of(const std::string& file,
                                                    const RobotModel& model) {
@@ -131,7 +105,8 @@ int audit(const AuditRobotArguments& arguments) {
   check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses});
   const LinkGeometry geometry = geometry_named(arguments.geometry);
   const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
-  ReadSpheres given = read(arguments, robot, geometry);
+  SphereInput given = read_spheres_of(robot, geometry, arguments.spheres,
+                                      {.link = arguments.link, .level = arguments.level});
   RobotAuditReport report{.file = std::move(given.file),
                           .audit = {},
                           .repaired_file = arguments.repaired,

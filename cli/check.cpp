@@ -7,6 +7,7 @@
 #include "cli/outline.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
+#include "cli/sphere_input.h"
 #include "collide/robot/robot_checker.h"
 #include "collide/robot/scene_setup.h"
 #include "collide/robot/sphere_formats.h"
@@ -66,8 +67,9 @@ bool has_no_bare_links(const RobotDescription& robot, const RobotModel& model,
   return none;
 }
 
-SphereRobot read_spheres(const CheckArguments& arguments, const RobotDescription& robot) {
-  RobotSpheres read = read_robot_spheres(arguments.spheres).spheres;
+SphereRobot read_spheres(const CheckArguments& arguments, const RobotDescription& robot,
+                         LinkGeometry geometry) {
+  RobotSpheres read = read_spheres_of(robot, geometry, arguments.spheres).file.spheres;
   const auto warn_of = [&](std::size_t count, const char* what) {
     if (count > 0) warn(arguments.spheres + ": " + std::to_string(count) + what);
   };
@@ -234,8 +236,9 @@ int check(const CheckArguments& arguments) {
   if (arguments.edges) require_provable(trajectory, arguments.trajectory);
   require_resolution(arguments.resolution);
 
-  SphereRobot spheres =
-      arguments.spheres.empty() ? cover(arguments, robot, options) : read_spheres(arguments, robot);
+  SphereRobot spheres = arguments.spheres.empty()
+                            ? cover(arguments, robot, options)
+                            : read_spheres(arguments, robot, options.geometry);
   const bool is_whole =
       has_no_bare_links(robot, spheres.model, options.geometry) && spheres.is_whole;
   ProgressBar bar;

@@ -2,6 +2,7 @@
 #include "cli/view_robot.h"
 
 #include "cli/robot_options.h"
+#include "cli/sphere_input.h"
 #include "cli/view_files.h"
 #include "collide/robot/link_mesh.h"
 #include "collide/robot/sphere_formats.h"
@@ -205,7 +206,9 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
       }
       continue;
     }
-    scene.items.push_back(sphere_item(robot, read_robot_spheres(file).spheres, file));
+    const LinkGeometry geometry = geometry_named(options.geometry.front());
+    const SphereInput spheres = read_spheres_of(robot, geometry, file);
+    scene.items.push_back(sphere_item(robot, spheres.file.spheres, file));
   }
 }
 

@@ -53,6 +53,27 @@ TEST_F(CheckTest, GeometryIsWhatIsAskedFor) {
   EXPECT_NE(seen.err.find("link base has a shape but no spheres"), std::string::npos) << seen.err;
 }
 
+// A file that names no link speaks of the only one that has a shape.
+TEST_F(CheckTest, SpheresOfOneMeshAreThoseOfTheOnlyShape) {
+  write("one.json", R"({"format": "spherule-spheres", "version": 1, "options": {},
+    "spheres": [{"center": [0, 0, 0], "radius": 0.05}]})");
+  write("path.csv", "-0.06 0\n-0.04 0\n");
+  const Outcome outcome =
+      run({"check", "slider.urdf", "cell.json", "path.csv", "--spheres", "one.json", "--json"});
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  const json report = json::parse(outcome.out);
+  EXPECT_EQ(report["colliding"], 1);
+  EXPECT_EQ(report["first_contact"]["line"], 2);
+  write("two.urdf", R"(<robot name="two"><link name="base"><collision><geometry>
+    <sphere radius="0.01"/></geometry></collision></link><link name="hand"><collision><geometry>
+    <sphere radius="0.05"/></geometry></collision></link>
+    <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
+      <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
+  write("path.csv", "-0.06\n");
+  expect_refusal({"check", "two.urdf", "cell.json", "path.csv", "--spheres", "one.json"},
+                 "one.json: holds the spheres of one mesh");
+}
+
 TEST_F(CheckTest, WarnsOfLinksAndToolsWhoseMeshesAreOpen) {
   write("sheet.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nf 1 2 3\n");
   write("sheet.urdf", R"(<robot name="sheet"><link name="base"/><link name="hand"><collision>
