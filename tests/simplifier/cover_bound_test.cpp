@@ -18,7 +18,7 @@ SphereCover bounded_cover(const TriangleMesh& mesh, double max_error, double dia
 }
 
 TEST(CoverBound, IsAboveWhatIsEasyAndNeverAboveACover) {
-  const SphereCover cube = bounded_cover(cube_mesh(), 0.1, 1.0);
+  const SphereCover cube = bounded_cover(cube_mesh(), 0.1, 1.0, effort(4, 1));
   // Any cover needs a ball for each of the eight corners and more along the edges: a ball reaches
   // 2.83 E along an edge of 10 E.
   EXPECT_GE(cube.lower_bound, 20U);

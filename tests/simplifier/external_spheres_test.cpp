@@ -89,7 +89,7 @@ TEST(ExternalSpheres, AGapNarrowerThanTheDiameterIsFilled) {
   const double gap = 2.0;
   const Vector3d middle(5, 5, 1 + gap / 2);
   for (const ExternalPlacement placement : kPlacements) {
-    for (const double diameter : {2.0001, 2.2, 3.0}) {
+    for (const double diameter : effort(std::vector{2.0001, 2.2, 3.0}, 1)) {
       ExternalOptions options = options_for(placement, diameter);
       options.limit = static_cast<std::size_t>(effort(20000, 4000));
       EXPECT_TRUE(is_in_solid(middle, place_external_spheres(two_plates(gap), options)));

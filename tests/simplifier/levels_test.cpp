@@ -114,7 +114,7 @@ TEST(Levels, AreEqualInEveryRunOnAnyNumberOfThreads) {
 
 TEST(Levels, TheFinestIsTheErrorOfTheCover) {
   const TriangleMesh mesh = cube_mesh();
-  constexpr double kFine = kSanitized ? 0.2 : 0.1;
+  constexpr double kFine = kSanitized ? 0.35 : 0.1;
   constexpr double kCoarse = 2.0 * kFine;
   const auto levels = [&](double max_error, std::vector<double> asked) {
     return simplify(mesh, {.max_error = max_error, .levels = std::move(asked), .effort = 0});
