@@ -10,6 +10,9 @@ namespace {
 
 using nlohmann::json;
 
+// As short a search as the test bears.
+constexpr const char* kEffort = test::kSanitized ? "0" : "1";
+
 class FitTest : public CommandTest {
  protected:
   void SetUp() override {
@@ -19,8 +22,9 @@ class FitTest : public CommandTest {
 };
 
 TEST_F(FitTest, ChainFromMeshToCollision) {
-  const Outcome fit = run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--effort", "1",
-                           "--report", "report.json", "--tree", "fit.tree", "--view", "fit.html"});
+  const Outcome fit =
+      run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--effort", kEffort, "--report",
+           "report.json", "--tree", "fit.tree", "--view", "fit.html"});
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_EQ(fit.err, "");  // no progress bar: not a terminal
   EXPECT_EQ(files(), (std::vector<std::string>{"box.json", "box.stl", "fit.html", "fit.tree",
@@ -181,7 +185,7 @@ TEST_F(FitTest, EffortOrSecondsSayHowLongToLook) {
 
 // The levels stand in the tree and in the report, and no verdict depends on them.
 TEST_F(FitTest, LevelsAreJoinedInTheTree) {
-  ASSERT_EQ(run({"fit", "box.stl", "-o", "box.json", "--levels", "8,2,4", "--effort", "1",
+  ASSERT_EQ(run({"fit", "box.stl", "-o", "box.json", "--levels", "8,2,4", "--effort", kEffort,
                  "--report", "report.json", "--tree", "levels.tree"})
                 .exit_code,
             0);
@@ -233,8 +237,8 @@ TEST_F(FitTest, OptionsArriveInTheFile) {
 
 TEST_F(FitTest, TheToolMakesD) {
   write_spheres("tool.json", {{0, 0, 0, 3}, {1, 0, 0, 2.5}, {5, 0, 0, 4}});
-  const Outcome fit = run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--effort", "1",
-                           "--tool", "tool.json"});
+  const Outcome fit = run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--effort",
+                           kEffort, "--tool", "tool.json"});
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_EQ(read_json("box.json").at("options").at("min-external"), 5.0);
 
@@ -259,7 +263,7 @@ TEST_F(FitTest, ZonesAreKeptProvedAndAudited) {
     {"shape":"box","min":[-5,-5,-5],"max":[10,25,15],"min_external":4}]})");
   const std::vector<std::string> arguments = {
       "fit",      "box.stl", "-o",      "box.json",   "--max-error",         "2",
-      "--effort", "1",       "--zones", "zones.json", "--keep-concave-edges"};
+      "--effort", kEffort,   "--zones", "zones.json", "--keep-concave-edges"};
   const Outcome fit = run(arguments);
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_NE(fit.out.find("zones along sharp concave edges: 0"), std::string::npos);
