@@ -75,7 +75,7 @@ TEST_F(HelpTest, EveryCommandTellsExitCodesAndExamples) {
 }
 
 TEST_F(HelpTest, ExamplesRun) {
-  if (test::kSanitized) GTEST_SKIP() << "takes long; the release run does it";
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   write_files();
   std::size_t count = 0;
   for (const auto& [command, text] : help_pages([this](const auto& line) { return run(line); })) {
