@@ -16,12 +16,12 @@ constexpr std::size_t kColumns = 100;
 constexpr const char* kRobot = R"(<?xml version="1.0"?>
 <robot name="robot">
   <link name="base">
-    <visual><geometry><sphere radius="0.004"/></geometry></visual>
-    <collision><geometry><sphere radius="0.004"/></geometry></collision>
+    <visual><geometry><box size="0.008 0.001 0.001"/></geometry></visual>
+    <collision><geometry><box size="0.008 0.001 0.001"/></geometry></collision>
   </link>
   <link name="hand">
-    <visual><geometry><sphere radius="0.004"/></geometry></visual>
-    <collision><geometry><sphere radius="0.004"/></geometry></collision>
+    <visual><geometry><box size="0.008 0.001 0.001"/></geometry></visual>
+    <collision><geometry><box size="0.008 0.001 0.001"/></geometry></collision>
   </link>
   <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
     <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>

@@ -105,7 +105,7 @@ TEST_F(ProgressTest, LongCommandsShowABarOnATerminalOnly) {
 #ifdef SPHERULE_HAS_ROBOT
 TEST_F(ProgressTest, CheckShowsABarOnATerminalOnly) {
   write("robot.urdf", R"(<robot name="robot"><link name="base"/><link name="hand">
-    <collision><geometry><sphere radius="0.004"/></geometry></collision></link>
+    <collision><geometry><box size="0.008 0.001 0.001"/></geometry></collision></link>
     <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
     <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
   write("cell.json", R"({"format": "spherule-scene", "version": 1})");
