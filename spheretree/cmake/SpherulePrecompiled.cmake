@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Headers of others that most sources include, compiled once, and the sources of a program or a test
-# joined to few (option SPHERULE_PRECOMPILE). Both hide a missing include, so they are for a build that
-# only has to run (the preset `sanitize`); the strict build goes without them. GCC lets sources share
-# such a header only where they have the same code model and the same macros that it looks at, hence
-# one for each KIND: library, program, test. What defines objects in each source stays out (CLI11).
+# joined to few (option SPHERULE_PRECOMPILE). Both hide a missing include, so the strict build goes
+# without them where users read the sources' headers: in the libraries. GCC lets sources share such a
+# header only where they have the same code model and the same macros that it looks at, hence one for
+# each KIND: library, program, test. What defines objects in each source stays out (CLI11).
 
 function(spherule_declare_precompiled kind)
   set(headers <algorithm> <array> <cmath> <cstddef> <cstdint> <filesystem> <functional> <limits>

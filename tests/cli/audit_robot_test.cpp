@@ -13,10 +13,11 @@ namespace {
 
 using nlohmann::json;
 
+// Bars: without external spheres what is inside is found by a flood, which is quick there.
 constexpr const char* kRobot = R"(<robot name="two"><link name="base">
-  <visual><geometry><box size="0.15 0.01 0.01"/></geometry></visual>
-  <collision><geometry><box size="0.2 0.02 0.02"/></geometry></collision></link>
-<link name="arm"><collision><geometry><box size="0.08 0.01 0.01"/></geometry></collision></link>
+  <visual><geometry><box size="0.15 0.004 0.004"/></geometry></visual>
+  <collision><geometry><box size="0.2 0.006 0.006"/></geometry></collision></link>
+<link name="arm"><collision><geometry><box size="0.08 0.003 0.003"/></geometry></collision></link>
 <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
   <origin xyz="0.3 0 0"/><axis xyz="0 0 1"/><limit lower="-4" upper="4" effort="1" velocity="1"/>
 </joint></robot>)";
@@ -62,7 +63,7 @@ TEST_F(AuditRobotCommand, Json) {
   EXPECT_EQ(report.at("unknown_links"), json({"ghost"}));
   const json& base = report.at("links").at(0);
   EXPECT_EQ(base.at("sphere_count"), 1);
-  const double depth = std::sqrt(0.01 + 0.0001 + 0.0001) - 0.09;
+  const double depth = std::sqrt(0.01 + 2 * 0.000009) - 0.09;
   EXPECT_LE(base.at("certificate").at("uncovered_depth_surface").at(0), depth + 1e-9);
   EXPECT_GE(base.at("certificate").at("uncovered_depth_surface").at(1), depth - 1e-9);
   EXPECT_EQ(report.at("links").at(1).at("certificate").at("covered"), true);
@@ -84,7 +85,7 @@ TEST_F(AuditRobotCommand, TableSaysWhatWasLeftOut) {
   EXPECT_NE(shapes.out.find("left out: 1 collision shapes"), table.npos) << shapes.out;
 }
 
-// A leak of 11 mm in the first link, none in the second; the last row is of both.
+// A leak of 10.1 mm in the first link, none in the second; the last row is of both.
 TEST_F(AuditRobotCommand, TheLastRowIsOfAllLinks) {
   write("leaks.yml", balls(0.09, 0.05));
   const std::string table = run({"audit-robot", "two.urdf", "leaks.yml"}).out;
@@ -95,7 +96,7 @@ TEST_F(AuditRobotCommand, TheLastRowIsOfAllLinks) {
   row >> spheres >> leak >> to >> upper;
   std::getline(row, rest);
   EXPECT_EQ(spheres, "2");
-  EXPECT_EQ(leak + to, "11.0to");
+  EXPECT_EQ(leak + to, "10.1to");
   EXPECT_EQ(rest.substr(rest.find_last_of(' ')), " NO");
 }
 

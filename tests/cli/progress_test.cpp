@@ -87,7 +87,7 @@ class ProgressTest : public CommandTest {
 };
 
 TEST_F(ProgressTest, LongCommandsShowABarOnATerminalOnly) {
-  write_box("part.stl", {2, 2, 1});
+  write_box("part.stl", {2, 0.1, 0.1});
   expect_progress({"fit", "part.stl", "-o", "part.json", "--max-error", "2"});
   expect_progress({"audit", "part.stl", "part.json"});
 #ifdef SPHERULE_HAS_BASELINES
@@ -96,7 +96,7 @@ TEST_F(ProgressTest, LongCommandsShowABarOnATerminalOnly) {
 #endif
 #ifdef SPHERULE_HAS_ROBOT
   write("robot.urdf", R"(<robot name="robot"><link name="hand">
-    <collision><geometry><sphere radius="0.004"/></geometry></collision></link></robot>)");
+    <collision><geometry><box size="0.02 0.001 0.001"/></geometry></collision></link></robot>)");
   expect_progress({"robot", "robot.urdf", "-o", "."});
   expect_progress({"audit-robot", "robot.urdf", "robot.curobo.yml"});
 #endif
@@ -105,7 +105,7 @@ TEST_F(ProgressTest, LongCommandsShowABarOnATerminalOnly) {
 #ifdef SPHERULE_HAS_ROBOT
 TEST_F(ProgressTest, CheckShowsABarOnATerminalOnly) {
   write("robot.urdf", R"(<robot name="robot"><link name="base"/><link name="hand">
-    <collision><geometry><sphere radius="0.004"/></geometry></collision></link>
+    <collision><geometry><box size="0.008 0.001 0.001"/></geometry></collision></link>
     <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
     <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
   write("cell.json", R"({"format": "spherule-scene", "version": 1})");

@@ -49,14 +49,15 @@ TEST_F(ViewTest, PageHoldsAllFiles) {
 }
 
 TEST_F(ViewTest, LeaksOfAnAudit) {
-  write_box("box.stl", {4, 2, 1});
-  write_spheres("two.json", {{1, 1, 0.5, 1.2}, {2, 1, 0.5, 1.2}});
+  // Without external spheres what is inside is found by a flood: quick in a bar.
+  write_box("box.stl", {4, 0.4, 0.2});
+  write_spheres("two.json", {{1, 0.2, 0.1, 1.2}, {2, 0.2, 0.1, 1.2}});
   const Outcome audit = run({"audit", "box.stl", "two.json", "--json"});
   ASSERT_EQ(audit.exit_code, 1);
   const json certificate = json::parse(audit.out);
   ASSERT_GT(certificate.at("leaks").size(), 10u);
-  // The corners at x = 4 are the furthest: sqrt(2^2 + 1^2 + 0.5^2) from a centre.
-  const double deepest = std::sqrt(5.25) - 1.2;
+  // The corners at x = 4 are the furthest: sqrt(2^2 + 0.2^2 + 0.1^2) from a centre.
+  const double deepest = std::sqrt(4.05) - 1.2;
   EXPECT_NEAR(certificate.at("leaks").at(0).at("depth").get<double>(), deepest, 1e-12);
 
   write("audit.json", audit.out);
@@ -73,7 +74,7 @@ TEST_F(ViewTest, LeaksOfAnAudit) {
     EXPECT_NEAR(numbers[axis] + scene.at("middle").at(axis).get<double>(), place, 1e-5);
   }
   // What covers has none, and says so.
-  write_spheres("ball.json", {{2, 1, 0.5, 2.5}});
+  write_spheres("ball.json", {{2, 0.2, 0.1, 2.5}});
   const Outcome covered = run({"audit", "box.stl", "ball.json", "--json"});
   ASSERT_EQ(covered.exit_code, 0);
   EXPECT_FALSE(json::parse(covered.out).contains("leaks"));

@@ -119,7 +119,7 @@ TEST_P(ShapeTruth, NothingMissedAndExtrasAreNear) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(, ShapeTruth, ::testing::Range<std::size_t>(0, 7));
+INSTANTIATE_TEST_SUITE_P(, ShapeTruth, ::testing::Range<std::size_t>(0, test::effort(7, 3)));
 
 struct RealModel {
   std::string file;

@@ -150,11 +150,12 @@ TEST(CoverEffort, MoreOfItNeverTakesMoreSpheresAndIsProved) {
 
 // Until cells and rows have become finer, with what was learned before.
 TEST(CoverEffort, ALongSearchTakesFewerSpheresAndIsProved) {
-  for (const char* name : effort(std::vector{"cube", "l-bracket"}, 1)) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
+  for (const char* name : {"cube", "l-bracket"}) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = mesh_named(name);
     const Fit quick = fit(mesh, {}, {.max_error = 0.06, .effort = 0});
-    const Fit thorough = fit(mesh, {}, {.max_error = 0.06, .effort = effort(30, 8)});
+    const Fit thorough = fit(mesh, {}, {.max_error = 0.06, .effort = 30});
     EXPECT_LT(thorough.cover.spheres.size(), quick.cover.spheres.size());
     EXPECT_TRUE(certificate_of(mesh, thorough, thorough.cover.spheres).covered);
   }

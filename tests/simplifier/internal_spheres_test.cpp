@@ -161,8 +161,9 @@ TEST(InternalSpheres, AnErrorBelowTheRoundingOfTheCoordinatesIsRefused) {
 }
 
 TEST(InternalSpheres, ASmallerErrorAsksForMoreBallsAndGivesLessExcess) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   std::size_t last = 0;
-  for (const double error : effort(std::vector{0.12, 0.08, 0.05}, 2)) {
+  for (const double error : {0.12, 0.08, 0.05}) {
     FitShares shares;
     shares.max_error = error;
     shares.diameter = 0.5 / error;  // D stays

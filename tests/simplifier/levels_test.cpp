@@ -87,6 +87,7 @@ TEST(Levels, StandAboveThePapersSpheresAndAboveALeastRadius) {
 // With an error so small that no level is a single ball: a ball around a cube is as good as
 // another.
 TEST(Levels, AreFewerAndCloserThanPlainClustering) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const TriangleMesh mesh = cube_mesh();
   const double finest = 0.06 * diagonal_of(mesh);
   const Simplification result = simplify(mesh, {.levels = {finest, 2.0 * finest, 4.0 * finest},
@@ -101,8 +102,9 @@ TEST(Levels, AreFewerAndCloserThanPlainClustering) {
 }
 
 TEST(Levels, AreEqualInEveryRunOnAnyNumberOfThreads) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const Simplification first = fitted_levels(l_bracket());
-  for (const int threads : effort(std::vector{1, 2}, 1)) {
+  for (const int threads : {1, 2}) {
     const Simplification again = fitted_levels(l_bracket(), CoverMethod::kCover, 0.0, threads);
     for (std::size_t k = 0; k < first.levels.size(); ++k) {
       EXPECT_EQ(first.levels[k].balls.spheres, again.levels[k].balls.spheres);
@@ -114,7 +116,7 @@ TEST(Levels, AreEqualInEveryRunOnAnyNumberOfThreads) {
 
 TEST(Levels, TheFinestIsTheErrorOfTheCover) {
   const TriangleMesh mesh = cube_mesh();
-  constexpr double kFine = kSanitized ? 0.2 : 0.1;
+  constexpr double kFine = kSanitized ? 0.35 : 0.1;
   constexpr double kCoarse = 2.0 * kFine;
   const auto levels = [&](double max_error, std::vector<double> asked) {
     return simplify(mesh, {.max_error = max_error, .levels = std::move(asked), .effort = 0});

@@ -159,6 +159,7 @@ TEST(RepairOf, BallsBesideTheSolid) {
 }
 
 TEST(RepairOf, IsEqualInEveryRunOnAnyNumberOfThreads) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const TriangleMesh mesh = l_bracket();
   const Fit fitted = fit_of(mesh);
   std::vector<Sphere> leaking = fitted.cover.spheres;

@@ -24,6 +24,9 @@ constexpr int effort(int cases, int under_sanitizers) {
   return kSanitized ? under_sanitizers : cases;
 }
 
+// Why a test is skipped under them whose code others run too: it compares runs, or counts.
+inline constexpr const char* kLeftToRelease = "takes long; the release run does it";
+
 // The same of a list of them, the most telling first.
 template <class Case>
 std::vector<Case> effort(std::vector<Case> cases, std::size_t under_sanitizers) {

@@ -243,7 +243,7 @@ std::vector<NamedMesh> mesh_zoo() {
 }
 
 std::vector<NamedMesh> zoo_to_fit() {
-  return effort(mesh_zoo(), 5);
+  return effort(mesh_zoo(), 3);
 }
 
 TriangleMesh mesh_named(const std::string& name) {

@@ -2,6 +2,7 @@
 #include "collide/fcl/broadphase_callback.h"
 #include "spheretree/error.h"
 #include "tests/collide/fcl/models.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 
 #include <fcl/broadphase/broadphase_SSaP.h>
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace spherule {
@@ -38,9 +40,10 @@ class FclBroadphase : public ::testing::Test {
   Manager manager;
 };
 
-using Managers =
+using Managers = std::conditional_t<
+    test::kSanitized, ::testing::Types<fcl::DynamicAABBTreeCollisionManagerd>,
     ::testing::Types<fcl::NaiveCollisionManagerd, fcl::SaPCollisionManagerd,
-                     fcl::SSaPCollisionManagerd, fcl::DynamicAABBTreeCollisionManagerd>;
+                     fcl::SSaPCollisionManagerd, fcl::DynamicAABBTreeCollisionManagerd>>;
 TYPED_TEST_SUITE(FclBroadphase, Managers);
 
 // One object against all that are managed: as asking each.

@@ -25,14 +25,14 @@ using Eigen::Vector3d;
 // nothing. (What is inside is found by a flood whose cells are a share of the diagonal: quick in a
 // bar.)
 constexpr const char* kRobot = R"(<robot name="two"><link name="base">
-  <collision><geometry><box size="0.2 0.02 0.02"/></geometry></collision></link>
-<link name="arm"><collision><geometry><box size="0.08 0.01 0.01"/></geometry></collision></link>
+  <collision><geometry><box size="0.2 0.006 0.006"/></geometry></collision></link>
+<link name="arm"><collision><geometry><box size="0.08 0.003 0.003"/></geometry></collision></link>
 <link name="bare"/>
 <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/>
   <origin xyz="0.3 0 0"/><axis xyz="0 0 1"/></joint>
 <joint name="fixed" type="fixed"><parent link="arm"/><child link="bare"/></joint></robot>)";
 
-const Vector3d kBaseHalf(0.1, 0.01, 0.01);
+const Vector3d kBaseHalf(0.1, 0.003, 0.003);
 
 class AuditRobot : public ::testing::Test {
  protected:
