@@ -11,6 +11,7 @@
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
+#include "cli/view_robot.h"
 #include "collide/robot/sphere_formats.h"
 #include "collide/robot/trajectory_file.h"
 #include "collide/robot/urdf.h"
@@ -75,12 +76,13 @@ void write_repaired(const AuditRobotArguments& arguments, const SphereFormatFile
                       arguments.repaired);
 }
 
-// `view` knows neither --link nor --level, nor on which link a file's spheres belong that does not
-// say it, and --repair makes the links cover, not the configurations.
+// `view` knows neither --link nor --level, and of files that name no link only those that cannot be
+// a part's; --repair makes the links cover, not the configurations.
 std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, bool names_links,
                                        bool is_mendable) {
   std::vector<NextStep> steps;
-  if (names_links && arguments.link.empty() && !arguments.level) {
+  const bool is_shown = names_links || is_robot_file(arguments.spheres);
+  if (is_shown && arguments.link.empty() && !arguments.level) {
     std::vector<std::string> view = {"view", arguments.urdf, arguments.spheres};
     repeat_robot_options(arguments.geometry, arguments.packages, view);
     view.insert(view.end(), {"--leaks", "-o", beside(arguments.spheres, ".html")});

@@ -67,9 +67,11 @@ bool has_no_bare_links(const RobotDescription& robot, const RobotModel& model,
   return none;
 }
 
-SphereRobot read_spheres(const CheckArguments& arguments, const RobotDescription& robot,
-                         LinkGeometry geometry) {
-  RobotSpheres read = read_spheres_of(robot, geometry, arguments.spheres).file.spheres;
+SphereRobot read_spheres(const CheckArguments& arguments, const RobotDescription& robot) {
+  SphereFormatFile file = read_robot_spheres(arguments.spheres);
+  // In which frame they are nobody says, and here nothing proves that they cover.
+  if (is_of_one_mesh(file)) throw Error(arguments.spheres, kNameItsLink);
+  RobotSpheres read = std::move(file.spheres);
   const auto warn_of = [&](std::size_t count, const char* what) {
     if (count > 0) warn(arguments.spheres + ": " + std::to_string(count) + what);
   };
@@ -213,6 +215,7 @@ std::string advice(const CheckArguments& arguments, const CheckReport& report) {
             " touch all the time\n";
   }
   text += "where they may, name them under \"allowed_contacts\" in " + arguments.scene + "\n";
+  if (!arguments.spheres.empty()) return text;  // how coarse they are is not known
   const CheckArguments defaults;
   std::vector<std::string> finer = {"check", arguments.urdf, arguments.scene, arguments.trajectory};
   if (arguments.edges) finer.push_back("--edges");
@@ -236,9 +239,8 @@ int check(const CheckArguments& arguments) {
   if (arguments.edges) require_provable(trajectory, arguments.trajectory);
   require_resolution(arguments.resolution);
 
-  SphereRobot spheres = arguments.spheres.empty()
-                            ? cover(arguments, robot, options)
-                            : read_spheres(arguments, robot, options.geometry);
+  SphereRobot spheres =
+      arguments.spheres.empty() ? cover(arguments, robot, options) : read_spheres(arguments, robot);
   const bool is_whole =
       has_no_bare_links(robot, spheres.model, options.geometry) && spheres.is_whole;
   ProgressBar bar;

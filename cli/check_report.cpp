@@ -103,11 +103,13 @@ void CheckReport::add(const FoundContact& found) {
     return pair.first.contact.first.name == found.contact.first.name &&
            pair.first.contact.second.name == found.contact.second.name;
   });
+  const std::size_t at_start = found.at.fraction == 0.0 ? 1 : 0;
   if (known == pairs.end()) {
-    pairs.push_back({1, found, found});
+    pairs.push_back({1, at_start, found, found});
     return;
   }
   ++known->count;
+  known->at_start += at_start;
   if (found.contact.overlap_depth > known->worst.contact.overlap_depth) known->worst = found;
 }
 
@@ -116,7 +118,7 @@ std::vector<TouchingPair> always_touching(const CheckReport& report) {
   std::vector<TouchingPair> result;
   std::copy_if(report.pairs.begin(), report.pairs.end(), std::back_inserter(result),
                [&](const TouchingPair& pair) {
-                 return all > 1 && pair.count == all &&
+                 return all > 1 && pair.at_start == all &&
                         pair.first.contact.second.kind != CheckedBody::Kind::kObstacle;
                });
   return result;

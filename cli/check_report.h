@@ -24,9 +24,10 @@ struct FoundContact {
 
 // Two bodies, or a body and an obstacle, that touch somewhere.
 struct TouchingPair {
-  std::size_t count = 0;  // of configurations or motions
-  FoundContact first;     // on the trajectory
-  FoundContact worst;     // the deepest
+  std::size_t count = 0;     // of configurations or motions
+  std::size_t at_start = 0;  // of these, where nothing before the contact is free
+  FoundContact first;        // on the trajectory
+  FoundContact worst;        // the deepest
 };
 
 // What a check of a trajectory found.
@@ -43,8 +44,8 @@ struct CheckReport {
   void add(const FoundContact& found);
 };
 
-// Pairs of the robot's own bodies that touch in every configuration, or on every motion, of two or
-// more: their spheres may be too coarse, or they are meant to touch.
+// Pairs of the robot's own bodies that touch in every configuration, or at the start of every
+// motion, of two or more: their spheres may be too coarse, or they are meant to touch.
 std::vector<TouchingPair> always_touching(const CheckReport& report);
 
 // For a person, a few lines and a table, and as JSON.

@@ -14,9 +14,7 @@ std::string only_link(const RobotDescription& robot, LinkGeometry geometry,
   for (const LinkDescription& link : robot.links) {
     if (!link_shapes(link, geometry).empty()) names.push_back(link.name);
   }
-  if (names.size() != 1) {
-    throw Error(file, "holds the spheres of one mesh: name its link (audit-robot --link)");
-  }
+  if (names.size() != 1) throw Error(file, kNameItsLink);
   return names.front();
 }
 

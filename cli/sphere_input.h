@@ -8,7 +8,13 @@
 
 namespace spherule {
 
-// A robot's spheres from a file, as a command takes them.
+// What is wrong with spheres of one mesh where more than one link may be meant.
+inline constexpr const char* kNameItsLink =
+    "holds the spheres of one mesh: spherule audit-robot --link NAME --repair OUT writes them "
+    "under "
+    "the name of their link";
+
+// A robot's spheres from a file, as a command that proves nothing by them alone takes them.
 struct SphereInput {
   SphereFormatFile file;
   bool names_links = true;  // the file does, itself

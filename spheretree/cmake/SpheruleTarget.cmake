@@ -19,7 +19,7 @@ function(spherule_compile_settings target kind)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -ffp-contract=off
                          $<$<BOOL:${SPHERULE_STRICT}>:-Werror>)
-  if(SPHERULE_PRECOMPILE AND NOT (SPHERULE_PRECOMPILE STREQUAL PROGRAMS AND kind STREQUAL library))
+  if(SPHERULE_PRECOMPILE AND NOT ("${SPHERULE_PRECOMPILE}" STREQUAL "PROGRAMS" AND "${kind}" STREQUAL "library"))
     spherule_precompile(${target} ${kind})
   endif()
 endfunction()

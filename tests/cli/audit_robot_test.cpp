@@ -154,7 +154,7 @@ TEST_F(AuditRobotCommand, WhatIsOfferedRepeatsTheOptions) {
   EXPECT_NE(posed.out.find("next: spherule view"), table.npos) << posed.out;
 }
 
-// The spheres of one mesh are those of the only link; `view` would not know whose they are.
+// The spheres of one mesh are those of the only link; `view` would take our own for a part's.
 TEST_F(AuditRobotCommand, WhatIsOfferedForOneMeshWorks) {
   write("one.urdf", R"(<robot name="one"><link name="flange"/><link name="tool">
     <collision><geometry><box size="0.2 0.02 0.02"/></geometry></collision></link>
@@ -162,8 +162,15 @@ TEST_F(AuditRobotCommand, WhatIsOfferedForOneMeshWorks) {
   write("leaks.json", R"([{"spheres": [{"origin": [0, 0, 0], "radius": 0.09}]}])");
   const Outcome leaks = run({"audit-robot", "one.urdf", "leaks.json", "--max-error", "0.03"});
   EXPECT_EQ(leaks.exit_code, 1) << leaks.err;
-  EXPECT_EQ(leaks.out.find("spherule view"), leaks.out.npos) << leaks.out;
-  EXPECT_NE(leaks.out.find("next: spherule audit-robot one.urdf leaks.json --geometry collision "
+  EXPECT_NE(leaks.out.find("next: spherule view one.urdf leaks.json --geometry collision "
+                           "--leaks -o leaks.html "),
+            leaks.out.npos)
+      << leaks.out;
+  EXPECT_EQ(run({"view", "one.urdf", "leaks.json", "--geometry", "collision", "--leaks", "-o",
+                 "leaks.html"})
+                .exit_code,
+            0);
+  EXPECT_NE(leaks.out.find("      spherule audit-robot one.urdf leaks.json --geometry collision "
                            "--max-error 0.03 --repair leaks.mended.json "),
             leaks.out.npos)
       << leaks.out;
@@ -172,6 +179,11 @@ TEST_F(AuditRobotCommand, WhatIsOfferedForOneMeshWorks) {
   EXPECT_EQ(mended.exit_code, 0) << mended.err;
   // What it wrote names the link, so that it can be looked at.
   EXPECT_EQ(run({"view", "one.urdf", "leaks.mended.json", "-o", "page.html"}).exit_code, 0);
+  write("ours.json", R"({"format": "spherule-spheres", "version": 1, "options": {},
+    "spheres": [{"center": [0, 0, 0], "radius": 0.09}]})");
+  const Outcome ours = run({"audit-robot", "one.urdf", "ours.json", "--max-error", "0.03"});
+  EXPECT_EQ(ours.exit_code, 1) << ours.err;
+  EXPECT_EQ(ours.out.find("spherule view"), ours.out.npos) << ours.out;
 }
 
 TEST_F(AuditRobotCommand, RepairKeepsTheFormat) {
@@ -213,7 +225,7 @@ TEST_F(AuditRobotCommand, BadInput) {
   expect_refusal({"audit-robot", "missing.urdf", "good.yml"}, "missing.urdf: ");
   expect_refusal({"audit-robot", "two.urdf", "missing.yml"}, "missing.yml: ");
   expect_refusal({"audit-robot", "two.urdf", "two.urdf"}, "holds no spheres");
-  expect_refusal({"audit-robot", "two.urdf", "one.json"}, "name its link");
+  expect_refusal({"audit-robot", "two.urdf", "one.json"}, "the name of their link");
   expect_refusal({"audit-robot", "two.urdf", "columns.json", "--repair", "out"}, "is read only");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--poses", "poses.csv"}, "poses.csv: ");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--geometry", "other"}, "--geometry");

@@ -53,24 +53,11 @@ TEST_F(CheckTest, GeometryIsWhatIsAskedFor) {
   EXPECT_NE(seen.err.find("link base has a shape but no spheres"), std::string::npos) << seen.err;
 }
 
-// A file that names no link speaks of the only one that has a shape.
-TEST_F(CheckTest, SpheresOfOneMeshAreThoseOfTheOnlyShape) {
+// In which frame they are nobody says.
+TEST_F(CheckTest, SpheresOfOneMeshAreRefused) {
   write("one.json", R"({"format": "spherule-spheres", "version": 1, "options": {},
     "spheres": [{"center": [0, 0, 0], "radius": 0.05}]})");
-  write("path.csv", "-0.06 0\n-0.04 0\n");
-  const Outcome outcome =
-      run({"check", "slider.urdf", "cell.json", "path.csv", "--spheres", "one.json", "--json"});
-  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
-  const json report = json::parse(outcome.out);
-  EXPECT_EQ(report["colliding"], 1);
-  EXPECT_EQ(report["first_contact"]["line"], 2);
-  write("two.urdf", R"(<robot name="two"><link name="base"><collision><geometry>
-    <sphere radius="0.01"/></geometry></collision></link><link name="hand"><collision><geometry>
-    <sphere radius="0.05"/></geometry></collision></link>
-    <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
-      <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
-  write("path.csv", "-0.06\n");
-  expect_refusal({"check", "two.urdf", "cell.json", "path.csv", "--spheres", "one.json"},
+  expect_refusal({"check", "slider.urdf", "cell.json", "path.csv", "--spheres", "one.json"},
                  "one.json: holds the spheres of one mesh");
 }
 
@@ -127,14 +114,11 @@ TEST_F(CheckTest, BodiesThatAlwaysTouchGetAdvice) {
     {"name": "wall", "box": {"size": [0.1, 1, 1]}, "pose": {"position": [-0.09, 0, 0]}}],
     "allowed_contacts": [{"body": "c", "other": "wall"}]})");
   const auto checked_with = [this](const std::vector<std::string>& more) {
-    std::vector<std::string> line = {"check",     "cubes.urdf", "cell.json",   "path.csv",
-                                     "--spheres", "cubes.json", "--max-error", "0.04",
-                                     "--effort",  "0"};
+    std::vector<std::string> line = {"check",       "cubes.urdf", "cell.json", "path.csv",
+                                     "--max-error", "0.04",       "--effort",  "0"};
     line.insert(line.end(), more.begin(), more.end());
     return run(line);
   };
-  write("cubes.json", R"({"a": {"centers": [[0, 0, 0]], "radii": [0.087]},
-                          "c": {"centers": [[0, 0, 0]], "radii": [0.087]}})");
   write("path.csv", "0 0\n0 0.001\n0.001 0\n");
   const std::string advice = "c and a touch all the time\n";
   const std::string table = checked_with({}).out;
@@ -155,7 +139,16 @@ TEST_F(CheckTest, BodiesThatAlwaysTouchGetAdvice) {
   EXPECT_TRUE(json::accept(checked_with({"--json"}).out));
   const Outcome finer = run({"check", "cubes.urdf", "cell.json", "path.csv", "--max-error", "0.02",
                              "--effort", "0", "--json"});
-  for (const json& pair : json::parse(finer.out)["pairs"]) EXPECT_EQ(pair["second"], "wall");
+  EXPECT_EQ(finer.exit_code, 1) << finer.err;
+  const json pairs = json::parse(finer.out)["pairs"];
+  ASSERT_EQ(pairs.size(), 1U) << pairs;
+  EXPECT_EQ(pairs[0]["second"], "wall");
+  // Spheres that were given may be finer than anything that is asked for.
+  write("cubes.json", R"({"a": {"centers": [[0, 0, 0]], "radii": [0.087]},
+                          "c": {"centers": [[0, 0, 0]], "radii": [0.087]}})");
+  const std::string given = checked_with({"--spheres", "cubes.json"}).out;
+  EXPECT_NE(given.find(advice), given.npos) << given;
+  EXPECT_EQ(given.find("next:"), given.npos) << given;
   // Not all the time: once apart; or only once looked at.
   for (const std::string path : {"0 0\n0 1\n", "0 0\n"}) {
     write("path.csv", path);
@@ -163,6 +156,14 @@ TEST_F(CheckTest, BodiesThatAlwaysTouchGetAdvice) {
     EXPECT_NE(other.find("collision"), other.npos) << other;
     EXPECT_EQ(other.find("all the time"), other.npos) << other;
   }
+  // On every motion, but each of them starts free.
+  write("empty.json", R"({"format": "spherule-scene", "version": 1, "obstacles": []})");
+  write("path.csv", "0 1\n0 -1\n0 1\n");
+  const std::string through = run({"check", "cubes.urdf", "empty.json", "path.csv", "--edges",
+                                   "--max-error", "0.04", "--effort", "0"})
+                                  .out;
+  EXPECT_NE(through.find("2 of them collide"), through.npos) << through;
+  EXPECT_EQ(through.find("all the time"), through.npos) << through;
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ constexpr int effort(int cases, int under_sanitizers) {
   return kSanitized ? under_sanitizers : cases;
 }
 
-// Why a test is skipped under them whose code others run too: it compares runs, or counts.
+// Why a test is skipped under them: it takes too long there, and others run the same code.
 inline constexpr const char* kLeftToRelease = "takes long; the release run does it";
 
 // The same of a list of them, the most telling first.

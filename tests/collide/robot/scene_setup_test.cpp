@@ -29,8 +29,6 @@ bool contains(const Sphere& ball, const Rational (&point)[3], double radius) {
   return room >= 0 && squared <= room * room;
 }
 
-// Decimals are rounded when they are read and again when they are scaled: by less than one part in
-// 10^15, but a ball that does not grow by it is too small.
 // A closed box as the next eight corners of an OBJ file; `first` is the number of the first.
 void put_box(const Eigen::AlignedBox3d& box, int first, std::ostream& obj) {
   for (int corner = 0; corner < 8; ++corner) {
@@ -76,6 +74,8 @@ TEST(PrepareScene, AttachedMeshesHaveTheirOwnErrorAndD) {
   EXPECT_TRUE(is_free());
 }
 
+// Decimals are rounded when they are read and again when they are scaled: by less than one part in
+// 10^15, but a ball that does not grow by it is too small.
 TEST(PointBalls, ContainThoseAboutThePointsAsWritten) {
   const TempDir folder;
   constexpr double kRadius = 0.01;
