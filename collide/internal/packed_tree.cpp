@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/packed_tree.h"
 
+#include "collide/internal/culling_spheres.h"
 #include "collide/internal/single_precision.h"
-#include "spheretree/enclosing_sphere.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <span>
 
 namespace spherule::internal {
 namespace {
@@ -18,8 +17,6 @@ namespace {
 // Far from everything, with a square that does not overflow.
 constexpr float kNowhere = 3e18F;
 constexpr double kAbsolute = 0x1p-60;
-// Around more spheres than these, the ball of the tree is good enough.
-constexpr std::size_t kManySpheres = 4096;
 
 Sphere packed(const Sphere& ball, double inflation) {
   const Eigen::Vector3d center(in_single_precision(ball.center.x()),
@@ -30,36 +27,6 @@ Sphere packed(const Sphere& ball, double inflation) {
       mul_up(add_up(add_up(ball.radius, moved), inflation), 1.0 + 8.0 * kFloatRoundoff);
   return {center, static_cast<double>(rounded_up_to_single(add_up(radius, kAbsolute)))};
 }
-
-// The tree's nodes with the smaller of the two balls that each may have.
-class CullingBalls {
- public:
-  explicit CullingBalls(const SphereTree& tree) : tree_(tree), balls_(tree.node_count()) {
-    visit(0);
-  }
-  const Sphere& operator[](std::size_t node) const { return balls_[node]; }
-
- private:
-  // As deep as the tree: 3 log2 n + 9 at most for those of build_tree().
-  void visit(std::size_t node) {
-    balls_[node] = tree_.ball(node);
-    if (tree_.is_leaf(node)) {
-      spheres_.push_back(balls_[node]);
-      return;
-    }
-    const std::size_t first = spheres_.size();
-    for (std::int32_t i = 0; i < tree_.child_count(node); ++i) {
-      visit(static_cast<std::size_t>(tree_.first_child(node) + i));
-    }
-    if (spheres_.size() - first > kManySpheres) return;
-    const Sphere around = enclosing_sphere(std::span<const Sphere>(spheres_).subspan(first));
-    if (around.radius < balls_[node].radius) balls_[node] = around;
-  }
-
-  const SphereTree& tree_;
-  std::vector<Sphere> balls_;
-  std::vector<Sphere> spheres_;  // of the leaves visited so far
-};
 
 PackedNode empty_node() {
   PackedNode node;
@@ -83,7 +50,7 @@ void set_lane(PackedNode& node, int lane, const Sphere& ball, std::int32_t child
 
 PackedTree::PackedTree(const SphereTree& tree, double inflation) {
   assert(tree.branching() <= PackedNode::kWidth);
-  const CullingBalls balls(tree);
+  const CullingSpheres balls(tree);
   root_ = packed(balls[0], inflation);
   depth_ = std::max(1, tree.depth());
   for (const Sphere& sphere : tree.spheres()) {

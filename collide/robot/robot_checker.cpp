@@ -8,6 +8,7 @@
 #include "spheretree/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -75,7 +76,7 @@ const RobotModel& RobotChecker::robot() const {
 }
 
 RobotChecker::Scratch::Scratch(const RobotChecker& checker)
-    : memory_(std::make_unique<Memory>(Memory{.owner = checker.parts_})) {
+    : memory_(std::make_unique<Memory>(checker.parts_, checker.parts_->lanes)) {
   if (checker.parts_->standing) memory_->standing.emplace(*checker.parts_->standing);
 }
 RobotChecker::Scratch::~Scratch() = default;
@@ -98,12 +99,16 @@ bool RobotChecker::check_config(std::span<const double> configuration, Scratch& 
   return is_free_of_itself(configuration, scratch);
 }
 
-// Of itself, and of all that is not a standing tree.
+// Of itself, and of all that is not a static tree.
 bool RobotChecker::is_free_of_itself(std::span<const double> configuration,
                                      Scratch& scratch) const {
   if (parts_->pairs.tested() == 0) return true;
-  parts_->pairs.place(configuration, scratch.memory_->pairs);
-  return !parts_->pairs.any_touches(scratch.memory_->pairs);
+  Scratch::Memory& memory = *scratch.memory_;
+  if (parts_->pairs.is_usual(configuration)) {
+    return parts_->lanes.contacts({&configuration, 1}, memory.lanes, memory.pairs) == 0;
+  }
+  parts_->pairs.place(configuration, memory.pairs);
+  return !parts_->pairs.any_touches(memory.pairs);
 }
 
 void RobotChecker::check_configs(std::span<const double> configurations, Scratch& scratch,
@@ -116,18 +121,40 @@ void RobotChecker::check_configs(std::span<const double> configurations, Scratch
   for (std::size_t i = 0; i < free.size(); ++i) {
     require_configuration(parts_->robot, configuration(i));
   }
+  Scratch::Memory& memory = *scratch.memory_;
   if (parts_->standing) {
-    parts_->standing->collides(configurations, *scratch.memory_->standing, free);
+    parts_->standing->collides(configurations, *memory.standing, free);
   } else {
     std::fill(free.begin(), free.end(), std::uint8_t{0});
   }
+  // Those that are left wait until the lanes are full.
+  constexpr std::size_t kLanes = internal::LaneCheck::kLanes;
+  std::array<std::span<const double>, kLanes> waiting;
+  std::array<std::size_t, kLanes> index{};
+  std::size_t count = 0;
+  const auto settle = [&] {
+    if (count == 0) return;
+    const unsigned contacts =
+        parts_->lanes.contacts({waiting.data(), count}, memory.lanes, memory.pairs);
+    for (std::size_t i = 0; i < count; ++i) {
+      free[index[i]] = (contacts >> i & 1U) == 0 ? std::uint8_t{1} : std::uint8_t{0};
+    }
+    count = 0;
+  };
   for (std::size_t i = 0; i < free.size(); ++i) {
-    const bool is_outside =
-        parts_->enforces_limits && !is_within_limits(parts_->robot, configuration(i));
-    const bool is_free =
-        free[i] == 0 && !is_outside && is_free_of_itself(configuration(i), scratch);
-    free[i] = is_free ? 1 : 0;
+    const bool collides = free[i] != 0;
+    free[i] = 0;
+    if (collides) continue;
+    if (parts_->enforces_limits && !is_within_limits(parts_->robot, configuration(i))) continue;
+    if (!parts_->pairs.is_usual(configuration(i))) {
+      free[i] = is_free_of_itself(configuration(i), scratch) ? 1 : 0;
+      continue;
+    }
+    waiting[count] = configuration(i);
+    index[count] = i;
+    if (++count == kLanes) settle();
   }
+  settle();
 }
 
 void RobotChecker::check_configs(std::span<const double> configurations,
@@ -165,36 +192,12 @@ EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<cons
   return result;
 }
 
-// The motion up to the fraction `end`, whatever the limits: obstacles that are trees first, because
-// they take the least time; then, as far as these leave it free, all others.
+// The motion up to the fraction `end`, whatever the limits.
 EdgeResult RobotChecker::check_within_limits(std::span<const double> from,
                                              std::span<const double> to, double end,
                                              Scratch& scratch, const EdgeRequest& request) const {
-  EdgeResult standing{.verdict = Verdict::kFree, .free_until = end};
-  if (parts_->standing) {
-    standing = parts_->standing->check_edge(from, to, *scratch.memory_->standing, request);
-    const bool is_free_so_far = standing.free_until >= end && standing.contact_at > end;
-    if (is_free_so_far && standing.verdict != Verdict::kFree) {
-      standing = {.verdict = Verdict::kFree, .configurations = standing.configurations};
-    }
-    standing.free_until = std::min(standing.free_until, end);
-    if (standing.verdict == Verdict::kCollision && !request.first) {
-      standing.free_until = 0.0;
-      return standing;
-    }
-    if (standing.verdict == Verdict::kFree) standing.free_until = end;
-  }
-  if (parts_->pairs.tested() == 0 || standing.free_until == 0.0) return standing;
-  EdgeRequest rest = request;
-  rest.max_configurations -= std::min(rest.max_configurations, standing.configurations);
-  EdgeResult own =
-      parts_->pairs.check_edge(from, to, standing.free_until, rest, scratch.memory_->pairs);
-  own.configurations += standing.configurations;
-  if (own.verdict == Verdict::kFree || standing.verdict == Verdict::kCollision) {
-    own.verdict = standing.verdict == Verdict::kFree ? own.verdict : standing.verdict;
-    own.contact_at = std::min(own.contact_at, standing.contact_at);
-  }
-  return own;
+  Scratch::Memory& memory = *scratch.memory_;
+  return parts_->lanes.check_edge(from, to, end, request, memory.lanes, memory.pairs);
 }
 
 std::vector<EdgeResult> RobotChecker::check_edges(std::span<const double> from,

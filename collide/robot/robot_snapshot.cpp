@@ -73,11 +73,11 @@ class RobotScene::Snapshot {
     for (const Body& body : bodies_) names.push_back({body.kind, body.name});
     const std::size_t tested = pairs_.size();
     pairs_.insert(pairs_.end(), standing_pairs_.begin(), standing_pairs_.end());
-    return std::make_shared<const RobotChecker::Parts>(RobotChecker::Parts{
-        scene_.robot_, options_.enforce_limits,
+    return std::make_shared<const RobotChecker::Parts>(
+        scene_.robot_, options_,
         internal::BodyPairs(carrier_, scene_.world_from_root_, std::move(pieces_),
                             std::move(shapes_), std::move(pairs_), tested),
-        std::move(standing), std::move(names), std::move(obstacle_names_)});
+        std::move(standing), std::move(names), std::move(obstacle_names_));
   }
 
  private:

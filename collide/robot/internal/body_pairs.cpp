@@ -3,6 +3,7 @@
 
 #include "collide/collide.h"
 #include "collide/mechanism_check.h"
+#include "collide/robot/internal/link_paths.h"
 #include "collide/robot/internal/moving_frames.h"
 #include "collide/robot/kinematics.h"
 #include "collide/solid_fields.h"
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 // Root balls. Let W bound |p| + |t| of the centre p of a root ball in its frame and the pose's
@@ -90,6 +92,20 @@ double largest_reach(const RobotModel& robot, std::span<const CheckedPiece> piec
   return reach;
 }
 
+// Of a position in the middle of a part: rounded fractions of positions up to 100 err by less than
+// 9 u times 100.
+constexpr double kMiddleError = 1e-12;
+
+// With all joints at zero; the root at the origin.
+std::vector<Pose> poses_at_zero(const RobotModel& robot) {
+  std::vector<Pose> poses(robot.links().size());
+  for (const Joint& joint : robot.joints()) {
+    poses[static_cast<std::size_t>(joint.child_link)] =
+        poses[static_cast<std::size_t>(joint.parent_link)] * joint.parent_from_joint;
+  }
+  return poses;
+}
+
 }  // namespace
 
 BodyPairs::BodyPairs(RobotModel robot, const Pose& world_from_root,
@@ -112,17 +128,38 @@ BodyPairs::BodyPairs(RobotModel robot, const Pose& world_from_root,
   const double root = world_from_root_.translation().norm();
   pose_error_ = moving_pose_error(robot_, reach, scene, root);
   size_ = pose_error_ / (360.0 * kUnitRoundoff);
+  double factors = 0.0;
+  for (const Joint& joint : robot_.joints()) {
+    if (joint.moves()) factors += std::abs(joint.multiplier);
+  }
+  middle_error_ = factors * kMiddleError * std::max(2.0 * size_, 1.0);
   make_paths();
-  for (std::size_t i = 0; i < tested_; ++i) {
-    const SphereTree& tree = *pieces_[static_cast<std::size_t>(pairs_[i].piece)].tree;
-    int height = tree.depth();
-    int branching = tree.branching();
-    if (!pairs_[i].is_obstacle) {
-      const SphereTree& other = *pieces_[static_cast<std::size_t>(pairs_[i].other)].tree;
-      height += other.depth();
-      branching = std::max(branching, other.branching());
+}
+
+void BodyPairs::make_paths() {
+  const std::vector<Pose> poses = poses_at_zero(robot_);
+  std::map<int, std::size_t> to_root;  // of pieces
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const CheckedPair& pair = pairs_[i];
+    path_of_.push_back(paths_.size());
+    if (pair.is_obstacle) {
+      const auto [known, is_new] = to_root.try_emplace(pair.piece, paths_.size());
+      path_of_.back() = known->second;
+      if (!is_new) continue;
     }
-    stack_size_ = std::max(stack_size_, PartSearch::stack_bound(height, branching));
+    const CheckedPiece& first = pieces_[static_cast<std::size_t>(pair.piece)];
+    const CheckedPiece* const second =
+        pair.is_obstacle ? nullptr : &pieces_[static_cast<std::size_t>(pair.other)];
+    std::vector<int> joints;
+    for (const int j : joints_between(robot_, first.link, second == nullptr ? 0 : second->link)) {
+      if (robot_.joints()[static_cast<std::size_t>(j)].moves()) joints.push_back(j);
+    }
+    if (second == nullptr) {
+      paths_.emplace_back(robot_, poses, pose_error_, joints, first.link, first.tree->ball(0));
+    } else {
+      paths_.emplace_back(robot_, poses, pose_error_, joints, first.link, first.tree->ball(0),
+                          second->link, second->tree->ball(0));
+    }
   }
 }
 
@@ -194,7 +231,8 @@ bool BodyPairs::any_touches(Memory& memory) const {
   return false;
 }
 
-bool BodyPairs::is_near(const CheckedPair& pair, double clearance, const Memory& memory) const {
+bool BodyPairs::is_near(std::size_t index, double clearance, const Memory& memory) const {
+  const CheckedPair& pair = pairs_[index];
   if (!(clearance <= kMaxCoordinate)) return true;
   if (balls_apart(pair, clearance, memory)) return false;
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];

@@ -2,13 +2,10 @@
 #pragma once
 
 // Pairs of spheres on links, and of spheres and standing solids, in double precision: what a
-// RobotChecker tests itself. Its proofs are in body_pairs.cpp (one configuration, growth) and
-// body_edge.cpp (motions).
+// canonical tests of a RobotChecker. Its proofs are in body_pairs.cpp.
 
 #include "collide/contact.h"
 #include "collide/distance.h"
-#include "collide/edge.h"
-#include "collide/robot/internal/part_search.h"
 #include "collide/robot/internal/path_reach.h"
 #include "collide/robot/robot_model.h"
 #include "collide/robot/robot_scene.h"
@@ -54,16 +51,6 @@ struct PairContact {
   Eigen::Vector3d world_point = Eigen::Vector3d::Zero();
 };
 
-// A velocity: the one of a point p is at_origin + turning x p.
-struct Twist {
-  Eigen::Vector3d turning = Eigen::Vector3d::Zero();
-  Eigen::Vector3d at_origin = Eigen::Vector3d::Zero();
-
-  Eigen::Vector3d of(const Eigen::Vector3d& point) const {
-    return at_origin + turning.cross(point);
-  }
-};
-
 class BodyPairs {
  public:
   // Only the first `tested` pairs are asked by any_touches() and check_edge(). Indices must be in
@@ -76,26 +63,16 @@ class BodyPairs {
     std::vector<Sphere> placed{};  // root balls of the pieces, in the world, up to pad
     double pad = 0.0;
     std::size_t last = 0;  // the pair that touched last
-    // Of a motion: how fast joints move, how far they shift, bounds for each path.
-    std::vector<double> rates{};
-    std::vector<double> speeds{};
-    std::vector<double> shifts{};
-    std::vector<PathBounds> bounds{};
-    std::vector<PathBounds> work{};
-    std::vector<std::int32_t> open_pairs{};
-    // Of a configuration on it: the velocities of links, and the balls of the trees of pieces; of
-    // these only the first where the number is not the configuration's.
-    std::vector<double> variables{};
-    std::vector<Twist> twists{};
-    std::vector<std::vector<MovingBall>> balls{};
-    std::vector<std::uint64_t> balls_of{};
-    std::vector<PartNodes> stack{};
   };
 
   const std::vector<CheckedPiece>& pieces() const { return pieces_; }
   const std::vector<PlacedShape>& obstacles() const { return obstacles_; }
   const std::vector<CheckedPair>& pairs() const { return pairs_; }
   std::size_t tested() const { return tested_; }
+  const RobotModel& robot() const { return robot_; }
+  const Pose& world_from_root() const { return world_from_root_; }
+  // Of a pair: the joints between its two sides.
+  const PathReach& path(std::size_t pair) const { return paths_[path_of_[pair]]; }
 
   // Whether the bounds of errors hold: no joint's position is beyond
   // MechanismCheck::kLargestVariable. For a configuration of the right size.
@@ -108,6 +85,9 @@ class BodyPairs {
   bool touches(std::size_t pair, const Memory& memory) const;
   bool any_touches(Memory& memory) const;
 
+  // Never false if the canonical test finds the two within the clearance of each other.
+  bool is_near(std::size_t pair, double clearance, const Memory& memory) const;
+
   // A lower bound of the exact gap of a pair, found at once; -infinity if there is none.
   double gap_bound(std::size_t pair, const Memory& memory) const;
   DistanceResult distance(std::size_t pair, const Memory& memory,
@@ -117,21 +97,16 @@ class BodyPairs {
 
   // How far any point of a link may be from where the exact mechanism has it.
   double pose_error() const { return pose_error_; }
-
-  // A straight motion up to the fraction `end`, as EdgeHalving says. Both ends must be is_usual(),
-  // the resolution above zero.
-  EdgeResult check_edge(std::span<const double> from, std::span<const double> to, double end,
-                        const EdgeRequest& request, Memory& memory) const;
+  // How far any point may be from where it is at the middle of a part of a motion, because that
+  // configuration is rounded.
+  double middle_error() const { return middle_error_; }
 
  private:
-  class EdgeMotion;
-
   const Pose& pose_of(const CheckedPiece& piece, const Memory& memory) const {
     return memory.world_from_link[static_cast<std::size_t>(piece.link)];
   }
   double signed_distance(const CheckedPair& pair, const Memory& memory) const;
   bool balls_apart(const CheckedPair& pair, double clearance, const Memory& memory) const;
-  bool is_near(const CheckedPair& pair, double clearance, const Memory& memory) const;
   // True only if the solid is farther than `reach` from the ball's centre in the world; the pad is
   // in it.
   bool is_beyond(std::size_t obstacle, const Eigen::Vector3d& center, double reach) const {
@@ -151,9 +126,9 @@ class BodyPairs {
   std::vector<Sphere> solid_balls_;  // in the world, around each primitive; else of infinite size
   double size_ = 0.0;                // bounds all coordinates within the usual range
   double pose_error_ = 0.0;
+  double middle_error_ = 0.0;
   std::vector<PathReach> paths_;      // a piece and all that stands still share one
-  std::vector<std::size_t> path_of_;  // of each tested pair
-  std::size_t stack_size_ = 0;        // that searches of the tested pairs need
+  std::vector<std::size_t> path_of_;  // of each pair
 };
 
 }  // namespace spherule::internal

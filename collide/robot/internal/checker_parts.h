@@ -4,6 +4,7 @@
 // What a RobotChecker and its scratch consist of.
 
 #include "collide/robot/internal/body_pairs.h"
+#include "collide/robot/internal/lane_check.h"
 #include "collide/robot/robot_checker.h"
 #include "collide/robot/robot_tree_checker.h"
 #include "spheretree/rounding.h"
@@ -11,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -30,17 +32,37 @@ struct RobotChecker::Parts {
     std::string name;
   };
 
+  Parts(RobotModel model, const RobotCheckerOptions& options, internal::BodyPairs all,
+        std::optional<RobotTreeChecker> static_trees, std::vector<Named> body_names,
+        std::vector<Named> obstacle_names)
+      : robot(std::move(model)),
+        enforces_limits(options.enforce_limits),
+        pairs(std::move(all)),
+        lanes(pairs, options.instructions),
+        standing(std::move(static_trees)),
+        bodies(std::move(body_names)),
+        obstacles(std::move(obstacle_names)) {}
+  // `lanes` refers to `pairs`.
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+
   RobotModel robot;
-  bool enforces_limits = false;
-  // All pairs; those behind pairs.tested() are of standing trees, and tested by `standing`.
+  bool enforces_limits;
+  // All pairs. Those behind pairs.tested() are of static trees: `standing` tests them in
+  // configurations.
   internal::BodyPairs pairs;
-  std::optional<RobotTreeChecker> standing{};
-  std::vector<Named> bodies{};     // of CheckedPiece::body
-  std::vector<Named> obstacles{};  // of pairs.obstacles()
+  internal::LaneCheck lanes;  // of these
+  std::optional<RobotTreeChecker> standing;
+  std::vector<Named> bodies;     // of CheckedPiece::body
+  std::vector<Named> obstacles;  // of pairs.obstacles()
 };
 
 struct RobotChecker::Scratch::Memory {
+  Memory(std::shared_ptr<const Parts> parts, const internal::LaneCheck& check)
+      : owner(std::move(parts)), lanes(check) {}
+
   std::shared_ptr<const Parts> owner;
+  internal::LaneCheck::Memory lanes;
   internal::BodyPairs::Memory pairs{};
   std::optional<RobotTreeChecker::Scratch> standing{};
 };

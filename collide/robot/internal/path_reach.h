@@ -24,6 +24,13 @@ struct PathBounds {
 // what follows for motions. The proof is in path_reach.cpp.
 class PathReach {
  public:
+  struct Step {
+    int joint = 0;
+    bool turns = false;
+    double first = 0.0;   // how far points of the first body are from the axis, without shifts
+    double second = 0.0;  // of the second one
+  };
+
   // The joints that move one of the two against the other, from the first body to the second; the
   // first body is in a ball of the frame of its link, the second in another one, or else it stands
   // still. `link_poses` are those of the robot with all joints at zero; a point mapped by them, or
@@ -34,6 +41,9 @@ class PathReach {
             std::span<const int> joints, int first_link, const Sphere& first, int second_link,
             const Sphere& second);
 
+  // One for each joint, from the first body on.
+  const std::vector<Step>& steps() const { return steps_; }
+
   // On a motion on which no joint's position changes by more than `rates` in all, and no prismatic
   // joint's magnitude exceeds `shifts` by more than the `error` above. Both are indexed by the
   // robot's joints.
@@ -41,13 +51,6 @@ class PathReach {
                     std::vector<PathBounds>& work) const;
 
  private:
-  struct Step {
-    int joint = 0;
-    bool turns = false;
-    double first = 0.0;   // how far points of the first body are from the axis, without shifts
-    double second = 0.0;  // of the second one
-  };
-
   std::vector<Step> steps_;
   bool second_moves_ = false;
 };

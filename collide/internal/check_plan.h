@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// A compiled check of a jointed mechanism as plain data, and the kernels that evaluate it in lanes:
+// eight configurations, or the middles of eight parts of a motion, side by side. `Real` is float
+// for the fast evaluation and double for what that leaves undecided. All lengths are in the frame
+// of the mechanism's root. Bounds and error budgets: plan_search.h, check_plan_builder.cpp.
+
+#include <cstdint>
+
+namespace spherule::internal {
+
+// Configurations that are evaluated side by side.
+inline constexpr int kPlanLanes = 8;
+
+// A number for each lane.
+template <class Real>
+struct alignas(sizeof(Real) * kPlanLanes) PlanNumbers {
+  Real lane[kPlanLanes];
+};
+
+// A frame that a position moves: `rotation` and `origin` lead from the parent to it at position
+// zero, then it turns about its z axis by the position (or is shifted along it). Frame 0 is the
+// root, which nothing moves.
+template <class Real>
+struct PlanFrame {
+  Real rotation[3][3];  // columns
+  Real origin[3];
+  std::int32_t parent;  // an earlier frame
+  std::int32_t position;
+  bool prismatic;
+};
+
+// A node of a sphere tree in depth-first order: its descendants follow it, up to `next`. The sphere
+// is inflated by its share of the error budget.
+template <class Real>
+struct PlanNode {
+  Real center[3];
+  Real radius;
+  std::int32_t next;
+  std::int32_t sphere;  // -1: an inner node
+};
+
+// Obstacles against which a body is tested, eight at a time: their bounding boxes, rounded outward.
+// Where there are fewer than eight the rest is empty.
+template <class Real>
+struct alignas(64) PlanBoxes {
+  Real lower[3][kPlanLanes];
+  Real upper[3][kPlanLanes];
+  std::int32_t obstacle[kPlanLanes];
+};
+
+// Spheres that move with a frame.
+template <class Real>
+struct PlanBody {
+  const PlanNode<Real>* nodes;
+  std::int32_t node_count;
+  std::int32_t frame;
+  std::int32_t first_center;  // of its nodes, among the placed centres
+  std::int32_t first_group;   // of its obstacles
+  std::int32_t group_count;
+  Real error;   // of placed centres
+  Real margin;  // leaves that overlap by this and the other side's margin are certain to touch
+};
+
+enum class PlanShape : std::int32_t { kBox, kSegment, kCylinder, kHalfSpace, kTree, kOpaque };
+
+// A static obstacle. Coordinates of a point p in its frame are `rotation` (rows) times p - center.
+template <class Real>
+struct PlanObstacle {
+  PlanShape shape;
+  Real rotation[3][3];
+  Real center[3];
+  Real half[3];  // of a box; {radius, -, half length} of a cylinder; {-, -, half length} of a segment
+  Real radius;   // of a ball or capsule, about its segment; with the inflation
+  Real error;    // of the offset of a point from the solid
+  Real margin;
+  const PlanNode<Real>* nodes;  // of a tree
+};
+
+// Two bodies that are tested against each other.
+struct PlanPair {
+  std::int32_t first;
+  std::int32_t second;
+};
+
+// The k-th joint on eight paths, each from one body to another (or to the root): how far points of
+// the first, and of the second body, are at most from its axis. Zeros behind the last joint.
+template <class Real>
+struct alignas(64) PlanPathStep {
+  Real first[kPlanLanes];
+  Real second[kPlanLanes];
+  Real turns[kPlanLanes];   // 1 if it turns, otherwise 0
+  Real slides[kPlanLanes];  // 1 if it is prismatic, otherwise 0
+  std::int32_t position[kPlanLanes];
+};
+
+// Eight paths.
+struct PlanPathGroup {
+  std::int32_t first_step;
+  std::int32_t step_count;
+};
+
+// Tests are numbered: those of bodies and obstacles first (eight times the group, and the lane in
+// it), then the pairs.
+template <class Real>
+struct CheckPlan {
+  const PlanFrame<Real>* frames;
+  std::int32_t frame_count;
+  std::int32_t position_count;
+  const PlanBody<Real>* bodies;
+  std::int32_t body_count;
+  const PlanBoxes<Real>* groups;
+  std::int32_t group_count;
+  const PlanObstacle<Real>* obstacles;
+  const PlanPair* pairs;
+  std::int32_t pair_count;
+  const PlanPathGroup* body_paths;
+  const PlanPathGroup* pair_paths;
+  const PlanPathStep<Real>* steps;
+  Real bound_slack;     // factor by which sums of bounds are inflated for rounding
+  Real velocity_error;  // of velocities, for each unit of the sum of all rates
+
+  std::int32_t first_pair() const { return group_count * kPlanLanes; }
+  std::int32_t test_count() const { return first_pair() + pair_count; }
+  // Words of a set of tests, one bit each.
+  std::int32_t word_count() const { return (test_count() + 63) / 64; }
+};
+
+template <class Real>
+struct alignas(64) PlanPose {
+  Real columns[4][3][kPlanLanes];  // three of the rotation, and the origin
+};
+
+// A velocity of a frame: that of a point p is at_origin + turning x p.
+template <class Real>
+struct alignas(64) PlanTwist {
+  Real turning[3][kPlanLanes];
+  Real at_origin[3][kPlanLanes];
+};
+
+template <class Real>
+struct alignas(64) PlanCenter {
+  Real at[3][kPlanLanes];
+};
+
+// How far a body moves, or one body against another, per unit of the motion's time.
+template <class Real>
+struct PlanMotionBound {
+  Real speed;  // of any point
+  Real bend;   // half of the acceleration of any point
+};
+
+// A test of which some lanes are not found apart by the spheres around all.
+struct PlanCandidate {
+  std::int32_t test;
+  std::int32_t body;
+  unsigned near;
+  unsigned overlap;  // as placed, without the motion
+};
+
+// Two nodes, in lanes, that wait in a search.
+struct PlanTask {
+  std::int32_t a;
+  std::int32_t b;
+  unsigned lanes;
+};
+
+// Memory of one caller, enough of it for the plan.
+template <class Real>
+struct PlanScratch {
+  PlanNumbers<double>* positions;  // in: of each joint, in every lane
+  PlanPose<Real>* poses;
+  PlanTwist<Real>* twists;
+  PlanCenter<Real>* centers;  // of all nodes of all bodies
+  std::uint64_t* placed;      // of each: the evaluation that has placed it
+  std::uint64_t* evaluation;  // the number of the last
+  PlanCandidate* candidates;
+  PlanTask* tasks;
+  // Of a motion.
+  Real* rates;   // in: by how much each position changes, signed
+  Real* speeds;  // in: its magnitude, rounded up
+  Real* shifts;  // in: the largest magnitude of the position, rounded up
+  PlanMotionBound<Real>* body_bounds;
+  PlanMotionBound<Real>* pair_bounds;
+  PlanNumbers<Real>* path_work;  // twice the longest path and four
+  Real* total_speed;             // the sum of all speeds
+};
+
+// What the caller decides.
+struct PlanClient {
+  // Whether the test's sides touch in the lane's configuration, by the canonical test.
+  bool (*touches)(void* context, int lane, std::int32_t test);
+  // Whether the canonical test finds them within `clearance` of each other (opaque obstacles).
+  bool (*within)(void* context, int lane, std::int32_t test, double clearance);
+  void* context;
+};
+
+// Parts of a motion, one in each lane, evaluated at their middles (the positions in the scratch).
+struct PlanParts {
+  double half[kPlanLanes];             // in: half the length of each
+  unsigned lanes = 0;                  // in: those that count
+  const std::uint64_t* open = nullptr; // in: a set of tests for each lane; null: all tests
+  double enough = 0.0;       // in: what is inflated by no more than this is not split any more
+  std::uint64_t* near;       // out: a set for each lane: tests that are not proved apart
+  unsigned any_near = 0;     // out: lanes whose set is not empty
+  unsigned given_up = 0;     // out: lanes with a test that was not inflated by more than `enough`
+  unsigned contacts = 0;     // out: lanes in whose middles there is a contact
+  bool all_contacts = false; // in: go on after a contact, in the lanes before it
+};
+
+template <class Real>
+struct PlanKernels {
+  // Lanes in whose configurations some test touches.
+  unsigned (*check)(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, unsigned lanes,
+                    const PlanClient& client);
+  // Bounds of the motion given by rates, speeds and shifts.
+  void (*bound_motion)(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch);
+  // After bound_motion().
+  void (*evaluate)(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, PlanParts& parts,
+                   const PlanClient& client);
+};
+
+struct PlanKernelSet {
+  PlanKernels<float> single;
+  PlanKernels<double> exact;
+};
+
+const PlanKernelSet& portable_plan_kernels();
+#if defined(SPHERULE_X86_KERNELS)
+const PlanKernelSet& avx2_plan_kernels();
+const PlanKernelSet& avx512_plan_kernels();
+#endif
+
+}  // namespace spherule::internal

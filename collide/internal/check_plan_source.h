@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// What a CheckPlan is compiled from, in double precision and in the frame of the mechanism's root.
+
+#include "collide/mechanism_check.h"
+#include "collide/primitive.h"
+#include "spheretree/pose.h"
+#include "spheretree/sphere.h"
+
+#include <Eigen/Core>
+
+#include <variant>
+#include <vector>
+
+namespace spherule::internal {
+
+struct PlanSource {
+  // Spheres, in the coordinates of a frame; -1: of the root.
+  struct Body {
+    int frame = -1;
+    std::vector<Sphere> spheres{};
+  };
+
+  // What only the caller can test: nothing of it is outside of the box.
+  struct Opaque {
+    Eigen::Vector3d lower;
+    Eigen::Vector3d upper;
+  };
+  // Spheres are in the root's coordinates.
+  using Shape = std::variant<Primitive, std::vector<Sphere>, Opaque>;
+  struct Obstacle {
+    Shape shape;
+    Pose root_from_shape{};  // of a primitive
+  };
+
+  struct Test {
+    int body = 0;
+    int other = 0;  // an obstacle, or another body
+    bool is_obstacle = false;
+  };
+
+  // Of the joints between two bodies, or a body and the root, from the first body on: how far
+  // points of the two are at most from its axis (PathReach).
+  struct PathStep {
+    int position = 0;
+    bool turns = false;
+    double first = 0.0;
+    double second = 0.0;
+  };
+  using Path = std::vector<PathStep>;
+
+  std::vector<MechanismFrame> frames{};  // `variable` is the index of a position
+  std::vector<Body> bodies{};
+  std::vector<Obstacle> obstacles{};
+  // In the order in which they are made, as far as those of one body stay together.
+  std::vector<Test> tests{};
+  std::vector<Path> body_paths{};  // of each body, to the root
+  std::vector<Path> pair_paths{};  // of each test of two bodies, in their order
+  // The answers hold for any poses of the bodies that are within this of the exact mechanism's: the
+  // largest distance of a point.
+  double pose_error = 0.0;
+};
+
+}  // namespace spherule::internal

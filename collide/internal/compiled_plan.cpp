@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/internal/compiled_plan.h"
+
+#include "collide/internal/culling_spheres.h"
+#include "collide/internal/mechanism_input.h"
+#include "collide/internal/plan_shapes.h"
+#include "collide/internal/single_precision.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// Error budget, v being the unit roundoff of Real (2^-24 or 2^-53); n frames lie between the root
+// and a body. No point of the body, and no centre of a node of its tree, is further from the root
+// than W: the lengths of the chain, kLargestVariable for each shift, and how far the tree reaches in
+// its frame. X bounds W for all bodies, and how far obstacles reach that are trees.
+//   placed centres (`error` of a body): 38 v n W and 12 v W of plan_poses.h, and in double what its
+//     sines err by, less than 5e-11 n W;
+//   the middles of parts: positions err by less than 9 u times 100 < 1e-12, which moves a point by
+//     less than 1e-12 times 2 W a joint (1e-12 for a shift);
+//   poses for which the answer holds: `pose_error` for each of the two ends between which a motion is
+//     compared (from the middle to the exact mechanism, and from there to the computed poses of any
+//     other configuration), of both bodies, with the slack of the canonical test: 4 pose_error;
+//   centres were moved to their frame in double: 1e-12 X.
+// The first is counted twice (plan_search.h).
+
+namespace spherule::internal {
+namespace {
+
+// Wide nodes cost the lanes that are apart from some of their children; narrow ones more levels.
+// Measured on proofs of motions of an arm, from 2 to 8.
+constexpr int kBranching = 4;
+
+constexpr double kMiddleError = 1e-12;
+constexpr double kPerScene = 1e-12;
+constexpr double kAbsolute = 0x1p-60;
+constexpr double kVelocityErrors = 16.0;
+// What is below this is an axis at a right angle, and costs less as zero: far below the budget of
+// rotations in single precision.
+constexpr double kNegligible = 0x1p-40;
+
+template <class Real>
+constexpr double kSineErrors = 0.0;
+template <>
+constexpr double kSineErrors<double> = 5e-11;
+
+template <class Real>
+PlanFrame<Real> root_frame() {
+  return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}, 0, 0, false};
+}
+
+}  // namespace
+
+template <class Real>
+struct CompiledPlan<Real>::Reach {
+  std::vector<Chain> chains;
+  std::vector<double> reach;   // W of each body
+  std::vector<double> error;   // of its placed centres
+  std::vector<double> joints;  // n
+  double largest = 0.0;        // the largest W
+  double largest_error = 0.0;
+  double scene = 0.0;          // X
+};
+
+template <class Real>
+CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
+  constexpr double v = kRoundoff<Real>;
+  Reach reach;
+  reach.chains = chains_of(source.frames);
+  for (const PlanSource::Body& body : source.bodies) {
+    const Chain chain = body.frame < 0 ? Chain() : reach.chains[static_cast<std::size_t>(body.frame)];
+    double size = 0.0;
+    for (const Sphere& sphere : body.spheres) {
+      size = std::max(size, sphere.center.norm() + sphere.radius);
+    }
+    // Spheres around others reach no further than twice as far.
+    const double length = chain.length + 2.0 * size;
+    reach.joints.push_back(chain.frames);
+    reach.reach.push_back(length);
+    reach.error.push_back(((38.0 * v + kSineErrors<Real>)*chain.frames + 12.0 * v) * length);
+    reach.largest = std::max(reach.largest, length);
+    reach.largest_error = std::max(reach.largest_error, reach.error.back());
+  }
+  reach.scene = reach.largest;
+  for (const PlanSource::Obstacle& obstacle : source.obstacles) {
+    reach.scene = std::max(reach.scene, reach_of(obstacle));
+  }
+  if (!(reach.scene <= kMaxCoordinate)) throw Error("robot", "it or an obstacle reaches too far");
+  compile_frames(source);
+  compile_bodies(source, reach);
+  compile_obstacles(source, reach);
+  compile_tests(source, reach);
+  compile_paths(source.body_paths, body_paths_);
+  compile_paths(source.pair_paths, pair_paths_);
+  plan_.frames = frames_.data();
+  plan_.frame_count = static_cast<std::int32_t>(frames_.size());
+  plan_.position_count = variable_count(source.frames);
+  plan_.bodies = bodies_.data();
+  plan_.body_count = static_cast<std::int32_t>(bodies_.size());
+  plan_.groups = groups_.data();
+  plan_.group_count = static_cast<std::int32_t>(groups_.size());
+  plan_.obstacles = obstacles_.data();
+  plan_.pairs = pairs_.data();
+  plan_.pair_count = static_cast<std::int32_t>(pairs_.size());
+  plan_.body_paths = body_paths_.data();
+  plan_.pair_paths = pair_paths_.data();
+  plan_.steps = steps_.data();
+  plan_.bound_slack =
+      rounded_up<Real>(1.0 + (4.0 * static_cast<double>(longest_path_) + 32.0) * v);
+  plan_.velocity_error = rounded_up<Real>(kVelocityErrors * reach.largest_error);
+}
+
+template <class Real>
+void CompiledPlan<Real>::compile_frames(const PlanSource& source) {
+  frames_.push_back(root_frame<Real>());
+  for (const MechanismFrame& frame : source.frames) {
+    PlanFrame<Real> compiled = root_frame<Real>();
+    const Eigen::Matrix3d& rotation = frame.parent_from_frame.matrix();
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const double entry = rotation(i, j);
+        compiled.rotation[j][i] = static_cast<Real>(std::abs(entry) < kNegligible ? 0.0 : entry);
+      }
+      compiled.origin[i] = static_cast<Real>(frame.parent_from_frame.translation()[i]);
+    }
+    compiled.parent = frame.parent + 1;
+    compiled.position = frame.variable;
+    compiled.prismatic = frame.prismatic;
+    frames_.push_back(compiled);
+  }
+}
+
+// Appends the tree over the spheres to the nodes; returns where it begins. `largest` is the most
+// that was added to the radius of a leaf.
+template <class Real>
+std::int32_t CompiledPlan<Real>::add_tree(const std::vector<Sphere>& spheres, double inflation,
+                                          double& largest) {
+  const SphereTree tree = build_tree(spheres, {.branching = kBranching});
+  const CullingSpheres culling(tree);
+  const auto first = static_cast<std::int32_t>(nodes_.size());
+  // Depth first; a node's end is known once what is below it is there.
+  const auto visit = [&](const auto& self, std::size_t node) -> void {
+    const std::size_t place = nodes_.size();
+    PlanNode<Real>& added = nodes_.emplace_back();
+    const Sphere& sphere = culling[node];
+    for (int i = 0; i < 3; ++i) added.center[i] = static_cast<Real>(sphere.center[i]);
+    added.radius = inflated_radius<Real>(sphere.radius, inflation);
+    added.sphere = tree.is_leaf(node) ? tree.sphere_index(node) : -1;
+    if (tree.is_leaf(node)) {
+      largest = std::max(largest, sub_up(static_cast<double>(added.radius), sphere.radius));
+    } else {
+      for (std::int32_t i = 0; i < tree.child_count(node); ++i) {
+        self(self, static_cast<std::size_t>(tree.first_child(node) + i));
+      }
+    }
+    nodes_[place].next = static_cast<std::int32_t>(nodes_.size()) - first;
+  };
+  visit(visit, 0);
+  // Opening a node of either tree puts at most so many tasks in the place of one, a level deeper.
+  height_ = std::max(height_, static_cast<std::size_t>(tree.depth()) + 1);
+  task_count_ = kBranching * (2 * height_ + 1) + 2;
+  return first;
+}
+
+template <class Real>
+void CompiledPlan<Real>::compile_bodies(const PlanSource& source, const Reach& reach) {
+  std::vector<std::int32_t> firsts;
+  for (std::size_t i = 0; i < source.bodies.size(); ++i) {
+    const double middle =
+        reach.joints[i] * kMiddleError * std::max(2.0 * reach.reach[i], 1.0);
+    const double inflation = 2.0 * reach.error[i] + 4.0 * source.pose_error + middle +
+                             kPerScene * reach.scene;
+    double largest = 0.0;
+    firsts.push_back(add_tree(source.bodies[i].spheres, inflation, largest));
+    PlanBody<Real>& body = bodies_.emplace_back();
+    body.frame = source.bodies[i].frame + 1;
+    body.node_count = static_cast<std::int32_t>(nodes_.size()) - firsts.back();
+    body.first_center = static_cast<std::int32_t>(center_count_);
+    body.error = rounded_up<Real>(reach.error[i]);
+    body.margin = rounded_up<Real>(3.0 * largest);
+    center_count_ += static_cast<std::size_t>(body.node_count);
+  }
+  // Obstacles that are trees follow: no more nodes after them, so that these stay where they are.
+  std::vector<std::int32_t> tree_firsts(source.obstacles.size(), 0);
+  for (std::size_t i = 0; i < source.obstacles.size(); ++i) {
+    PlanObstacle<Real>& obstacle = obstacles_.emplace_back();
+    const auto* const spheres = std::get_if<std::vector<Sphere>>(&source.obstacles[i].shape);
+    if (spheres == nullptr) continue;
+    const double error = 2.0 * kRoundoff<Real> * reach_of(source.obstacles[i]);
+    double largest = 0.0;
+    tree_firsts[i] = add_tree(*spheres, 2.0 * error + kPerScene * reach.scene, largest);
+    obstacle.shape = PlanShape::kTree;
+    obstacle.error = rounded_up<Real>(error);
+    obstacle.margin = rounded_up<Real>(3.0 * largest);
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].nodes = nodes_.data() + firsts[i];
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    if (obstacles_[i].shape == PlanShape::kTree) obstacles_[i].nodes = nodes_.data() + tree_firsts[i];
+  }
+}
+
+template <class Real>
+void CompiledPlan<Real>::compile_obstacles(const PlanSource& source, const Reach& reach) {
+  for (std::size_t i = 0; i < source.obstacles.size(); ++i) {
+    const PlanSource::Obstacle& obstacle = source.obstacles[i];
+    if (obstacles_[i].shape != PlanShape::kTree) {
+      obstacles_[i] = compiled_solid<Real>(obstacle, reach.largest);
+    }
+    obstacle_boxes_.push_back(compiled_box<Real>(obstacle, reach.largest));
+  }
+}
+
+// Obstacles that a body never gets to are left out: all its points stay within the lengths of its
+// chain behind the first joint (and its own) of where that joint is.
+template <class Real>
+void CompiledPlan<Real>::compile_tests(const PlanSource& source, const Reach& reach) {
+  constexpr double kLonger = 1.0 + 1e-6;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Sphere around = reachable(source, static_cast<int>(b), reach.reach[b]);
+    bodies_[b].first_group = static_cast<std::int32_t>(groups_.size());
+    int lane = kPlanLanes;
+    for (std::size_t t = 0; t < source.tests.size(); ++t) {
+      const PlanSource::Test& test = source.tests[t];
+      if (!test.is_obstacle || test.body != static_cast<int>(b)) continue;
+      const PlanBoxes<Real>& box = obstacle_boxes_[static_cast<std::size_t>(test.other)];
+      if (distance_from_box(around.center, box) > kLonger * around.radius) continue;
+      if (lane == kPlanLanes) {
+        groups_.push_back(empty_boxes<Real>());
+        source_tests_.resize(source_tests_.size() + kPlanLanes, -1);
+        lane = 0;
+      }
+      PlanBoxes<Real>& group = groups_.back();
+      for (int i = 0; i < 3; ++i) {
+        group.lower[i][lane] = box.lower[i][0];
+        group.upper[i][lane] = box.upper[i][0];
+      }
+      group.obstacle[lane] = test.other;
+      source_tests_[source_tests_.size() - kPlanLanes + static_cast<std::size_t>(lane)] =
+          static_cast<std::int32_t>(t);
+      ++lane;
+    }
+    bodies_[b].group_count = static_cast<std::int32_t>(groups_.size()) - bodies_[b].first_group;
+  }
+  for (std::size_t t = 0; t < source.tests.size(); ++t) {
+    const PlanSource::Test& test = source.tests[t];
+    if (test.is_obstacle) continue;
+    pairs_.push_back({test.body, test.other});
+    source_tests_.push_back(static_cast<std::int32_t>(t));
+  }
+}
+
+template <class Real>
+void CompiledPlan<Real>::compile_paths(const std::vector<PlanSource::Path>& paths,
+                                       std::vector<PlanPathGroup>& groups) {
+  for (std::size_t first = 0; first < paths.size(); first += kPlanLanes) {
+    const std::size_t count = std::min<std::size_t>(kPlanLanes, paths.size() - first);
+    std::size_t longest = 0;
+    for (std::size_t i = 0; i < count; ++i) longest = std::max(longest, paths[first + i].size());
+    longest_path_ = std::max(longest_path_, longest);
+    groups.push_back(
+        {static_cast<std::int32_t>(steps_.size()), static_cast<std::int32_t>(longest)});
+    for (std::size_t k = 0; k < longest; ++k) {
+      PlanPathStep<Real>& step = steps_.emplace_back();
+      step = {};
+      for (std::size_t i = 0; i < count; ++i) {
+        const PlanSource::Path& path = paths[first + i];
+        if (k >= path.size()) continue;
+        step.first[i] = rounded_up<Real>(path[k].first);
+        step.second[i] = rounded_up<Real>(path[k].second);
+        step.turns[i] = path[k].turns ? Real(1) : Real(0);
+        step.slides[i] = path[k].turns ? Real(0) : Real(1);
+        step.position[i] = path[k].position;
+      }
+    }
+  }
+}
+
+template class CompiledPlan<float>;
+template class CompiledPlan<double>;
+
+}  // namespace spherule::internal

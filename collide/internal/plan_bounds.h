@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Bounds of the speed and the acceleration of bodies against the root and against each other, eight
+// at a time: what PathReach::bounds() computes (the proof is with it), in lanes. Part of the
+// kernels, see plan_kernel_impl.h.
+
+#include "collide/internal/plan_vectors.h"
+
+namespace spherule::internal::SPHERULE_KERNEL {
+namespace {
+
+template <class Real>
+struct PathSum {
+  Vector<Real> speed{};
+  Vector<Real> bend{};
+  Vector<Real> shifted{};
+
+  // One more joint is passed.
+  SPHERULE_INLINE void pass(const PlanPathStep<Real>& step, const Real* reach,
+                            const PlanScratch<Real>& scratch) {
+    alignas(64) Real speeds[kPlanLanes];
+    alignas(64) Real shifts[kPlanLanes];
+#pragma GCC unroll 8
+    for (int lane = 0; lane < kPlanLanes; ++lane) {
+      speeds[lane] = scratch.speeds[step.position[lane]];
+      shifts[lane] = scratch.shifts[step.position[lane]];
+    }
+    const Vector<Real> turns = load(step.turns);
+    const Vector<Real> rate = load(speeds);
+    const Vector<Real> travel = rate * (load(reach) + turns * shifted);
+    bend += turns * rate * (Real(0.5) * travel + speed);
+    speed += travel;
+    shifted += load(step.slides) * load(shifts);
+  }
+};
+
+// To the root: as seen from there.
+template <class Real>
+SPHERULE_INLINE void bound_bodies(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch) {
+  for (std::int32_t first = 0, g = 0; first < plan.body_count; first += kPlanLanes, ++g) {
+    const PlanPathGroup& group = plan.body_paths[g];
+    PathSum<Real> sum;
+    for (std::int32_t k = 0; k < group.step_count; ++k) {
+      const PlanPathStep<Real>& step = plan.steps[group.first_step + k];
+      sum.pass(step, step.first, scratch);
+    }
+    const std::int32_t count = plan.body_count - first;
+    for (std::int32_t lane = 0; lane < kPlanLanes && lane < count; ++lane) {
+      scratch.body_bounds[first + lane] = {sum.speed[lane] * plan.bound_slack,
+                                           sum.bend[lane] * plan.bound_slack};
+    }
+  }
+}
+
+// From one body to the other, seen from whichever link between gives the least.
+template <class Real>
+SPHERULE_INLINE void bound_pairs(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch) {
+  for (std::int32_t first = 0, g = 0; first < plan.pair_count; first += kPlanLanes, ++g) {
+    const PlanPathGroup& group = plan.pair_paths[g];
+    PathSum<Real> second;
+    PlanNumbers<Real>* const work = scratch.path_work;  // of the second body, behind each joint
+    store(second.speed, work[2 * group.step_count].lane);
+    store(second.bend, work[2 * group.step_count + 1].lane);
+    for (std::int32_t k = group.step_count; k-- > 0;) {
+      const PlanPathStep<Real>& step = plan.steps[group.first_step + k];
+      second.pass(step, step.second, scratch);
+      store(second.speed, work[2 * k].lane);
+      store(second.bend, work[2 * k + 1].lane);
+    }
+    Vector<Real> speed = load(work[0].lane);
+    Vector<Real> bend = load(work[1].lane);
+    PathSum<Real> sum;
+    for (std::int32_t k = 0; k < group.step_count; ++k) {
+      const PlanPathStep<Real>& step = plan.steps[group.first_step + k];
+      sum.pass(step, step.first, scratch);
+      speed = smaller(speed, sum.speed + load(work[2 * k + 2].lane));
+      bend = smaller(bend, sum.bend + load(work[2 * k + 3].lane));
+    }
+    const std::int32_t count = plan.pair_count - first;
+    for (std::int32_t lane = 0; lane < kPlanLanes && lane < count; ++lane) {
+      scratch.pair_bounds[first + lane] = {speed[lane] * plan.bound_slack,
+                                           bend[lane] * plan.bound_slack};
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spherule::internal::SPHERULE_KERNEL

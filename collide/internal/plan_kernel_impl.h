@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// The kernels of compiled checks, compiled once for each instruction set: the including file
+// defines SPHERULE_KERNEL, a namespace of its own. Vectors are those of the compiler, which makes of
+// them what the machine has. Nothing here comes from a header with inline functions, which the
+// linker could share between files that were compiled for different machines.
+//
+// Which instructions and which order of operations are used changes the rounding, and so what is
+// found apart, but not the answer: what is neither certainly apart nor certainly in contact is
+// decided by the caller.
+
+// Every function with vectors is inlined or local: none crosses a boundary between files.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+#include "collide/internal/plan_bounds.h"
+#include "collide/internal/plan_search.h"
+
+namespace spherule::internal::SPHERULE_KERNEL {
+namespace {
+
+// One evaluation of eight configurations, or of eight parts at their middles.
+template <class Real, bool kMoves>
+class Evaluation {
+ public:
+  // `parts` only if it moves.
+  Evaluation(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, unsigned lanes,
+             const PlanClient& client, PlanParts* parts)
+      : plan_(plan),
+        scratch_(scratch),
+        parts_(parts),
+        lanes_(lanes),
+        context_{plan, scratch, client, {}, {}, Real(0)} {
+    if constexpr (kMoves) {
+      for (int lane = 0; lane < kPlanLanes; ++lane) {
+        context_.half[lane] = static_cast<Real>(parts->half[lane] * (1.0 + 0x1p-16));
+      }
+      context_.half_squared = context_.half * context_.half;
+      context_.enough = static_cast<Real>(parts->enough);
+    }
+    ++*scratch.evaluation;
+    place_frames(plan, scratch);
+    if constexpr (kMoves) place_twists(plan, scratch);
+  }
+
+  // Lanes in which there is a contact.
+  unsigned run() {
+    for (std::int32_t b = 0; b < plan_.body_count && !is_done(); ++b) test_obstacles(b);
+    for (std::int32_t p = 0; p < plan_.pair_count && !is_done(); ++p) test_pair(p);
+    if constexpr (kMoves) {
+      // What overlaps as placed is likely to touch: it is searched first.
+      search_candidates(true);
+      search_candidates(false);
+    }
+    return contacts_;
+  }
+
+ private:
+  bool is_done() const {
+    if constexpr (kMoves) return contacts_ != 0 && !parts_->all_contacts;
+    return lanes_ == 0;
+  }
+
+  void search_candidates(bool overlaps) {
+    for (std::int32_t i = 0; i < candidate_count_ && !is_done(); ++i) {
+      const PlanCandidate& candidate = scratch_.candidates[i];
+      if ((candidate.overlap != 0) == overlaps) search(candidate);
+    }
+  }
+
+  // The lanes in which a test has to be made.
+  SPHERULE_INLINE unsigned open_lanes(std::int32_t test) const {
+    if constexpr (!kMoves) return lanes_;
+    if (parts_->open == nullptr) return lanes_;
+    unsigned open = 0;
+    for (unsigned left = lanes_; left != 0; left &= left - 1) {
+      const int lane = __builtin_ctz(left);
+      const std::uint64_t word = parts_->open[lane * plan_.word_count() + test / 64];
+      open |= static_cast<unsigned>(word >> (test % 64) & 1U) << lane;
+    }
+    return open;
+  }
+
+  // The tests of a group that have to be made in some lane, a bit each.
+  SPHERULE_INLINE unsigned open_tests(std::int32_t group) const {
+    if constexpr (!kMoves) return kAllLanes;
+    if (parts_->open == nullptr) return kAllLanes;
+    std::uint64_t bits = 0;
+    for (unsigned left = lanes_; left != 0; left &= left - 1) {
+      bits |= parts_->open[__builtin_ctz(left) * plan_.word_count() + group / 8];
+    }
+    return static_cast<unsigned>(bits >> (group % 8 * 8)) & kAllLanes;
+  }
+
+  // Obstacles whose boxes are clear of all lanes' spheres are not tested at all.
+  void test_obstacles(std::int32_t index) {
+    const PlanBody<Real>& body = plan_.bodies[index];
+    bool has_box = false;
+    Vector<Real> lower[3];
+    Vector<Real> upper[3];
+    for (std::int32_t g = body.first_group; g < body.first_group + body.group_count; ++g) {
+      unsigned tests = open_tests(g);
+      if (tests == 0) continue;
+      if (!has_box) bound_lanes(index, lower, upper);
+      has_box = true;
+      const PlanBoxes<Real>& boxes = plan_.groups[g];
+      Vector<Real> gap = all(Real(-1));
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) {
+        gap = larger(gap, larger(load(boxes.lower[i]) - upper[i], lower[i] - load(boxes.upper[i])));
+      }
+      tests &= ~above(gap, Vector<Real>{});
+      for (; tests != 0; tests &= tests - 1) {
+        const int lane = __builtin_ctz(tests);
+        test_obstacle(index, g * kPlanLanes + lane, boxes.obstacle[lane]);
+        if (is_done()) return;
+      }
+    }
+  }
+
+  SPHERULE_INLINE void bound_lanes(std::int32_t index, Vector<Real>* lower,
+                                   Vector<Real>* upper) const {
+    const PlanBody<Real>& body = plan_.bodies[index];
+    const Point<Real> p = center_of(scratch_, body, 0);
+    Vector<Real> reach = all(body.nodes[0].radius);
+    if constexpr (kMoves) reach += context_.half * scratch_.body_bounds[index].speed;
+    lower[0] = all(lowest(p.x - reach));
+    lower[1] = all(lowest(p.y - reach));
+    lower[2] = all(lowest(p.z - reach));
+    upper[0] = all(highest(p.x + reach));
+    upper[1] = all(highest(p.y + reach));
+    upper[2] = all(highest(p.z + reach));
+  }
+
+  LaneMotion<Real> motion_against(std::int32_t body, const PlanObstacle<Real>& obstacle) const {
+    return motion_of(context_, scratch_.body_bounds[body],
+                     plan_.bodies[body].error + obstacle.error);
+  }
+
+  LaneMotion<Real> motion_of_pair(std::int32_t pair) const {
+    const PlanPair& both = plan_.pairs[pair];
+    return motion_of(context_, scratch_.pair_bounds[pair],
+                     plan_.bodies[both.first].error + plan_.bodies[both.second].error);
+  }
+
+  void test_obstacle(std::int32_t index, std::int32_t test, std::int32_t obstacle_index) {
+    const unsigned open = open_lanes(test);
+    if (open == 0) return;
+    const PlanBody<Real>& body = plan_.bodies[index];
+    const PlanObstacle<Real>& obstacle = plan_.obstacles[obstacle_index];
+    const LaneMotion<Real> motion = motion_against(index, obstacle);
+    const auto solid = [&](auto shape) {
+      return from_solid<decltype(shape), Real, kMoves>(context_, motion, body, 0, obstacle, open);
+    };
+    Separation<Real> found;
+    switch (obstacle.shape) {
+      case PlanShape::kOpaque:
+      case PlanShape::kBox:
+        found = solid(BoxShape());
+        break;
+      case PlanShape::kSegment:
+        found = solid(SegmentShape());
+        break;
+      case PlanShape::kCylinder:
+        found = solid(CylinderShape());
+        break;
+      case PlanShape::kHalfSpace:
+        found = solid(HalfSpaceShape());
+        break;
+      case PlanShape::kTree:
+        found = from_side<Real, kMoves>(context_, motion, body, 0, StaticSide<Real>{obstacle}, 0,
+                                        open);
+        break;
+    }
+    add({test, index, found.near, found.overlap});
+  }
+
+  void test_pair(std::int32_t pair) {
+    const std::int32_t test = plan_.first_pair() + pair;
+    const unsigned open = open_lanes(test);
+    if (open == 0) return;
+    const PlanPair& both = plan_.pairs[pair];
+    const LaneMotion<Real> motion = motion_of_pair(pair);
+    const Separation<Real> found =
+        from_side<Real, kMoves>(context_, motion, plan_.bodies[both.first], 0,
+                                MovingSide<Real>{plan_.bodies[both.second]}, 0, open);
+    add({test, both.first, found.near, found.overlap});
+  }
+
+  SPHERULE_INLINE void add(const PlanCandidate& candidate) {
+    if (candidate.near == 0) return;
+    if constexpr (kMoves) {
+      scratch_.candidates[candidate_count_++] = candidate;
+    } else {
+      search(candidate);
+    }
+  }
+
+  void search(const PlanCandidate& candidate) {
+    const std::int32_t test = candidate.test;
+    TestSearch<Real, kMoves> search(context_, test, candidate.near);
+    if (test >= plan_.first_pair()) {
+      const std::int32_t pair = test - plan_.first_pair();
+      const PlanPair& both = plan_.pairs[pair];
+      search_side<Real, kMoves>(context_, motion_of_pair(pair), plan_.bodies[both.first],
+                                MovingSide<Real>{plan_.bodies[both.second]}, search);
+    } else {
+      const std::int32_t index =
+          plan_.groups[test / kPlanLanes].obstacle[test % kPlanLanes];
+      search_obstacle(candidate.body, plan_.obstacles[index], search);
+    }
+    contacts_ |= search.contacts();
+    if constexpr (kMoves) {
+      conclude(test, search);
+    } else {
+      lanes_ &= ~search.contacts();
+    }
+  }
+
+  void search_obstacle(std::int32_t index, const PlanObstacle<Real>& obstacle,
+                       TestSearch<Real, kMoves>& search) {
+    const PlanBody<Real>& body = plan_.bodies[index];
+    const LaneMotion<Real> motion = motion_against(index, obstacle);
+    switch (obstacle.shape) {
+      case PlanShape::kBox:
+        return search_solid<BoxShape>(context_, motion, body, obstacle, search);
+      case PlanShape::kSegment:
+        return search_solid<SegmentShape>(context_, motion, body, obstacle, search);
+      case PlanShape::kCylinder:
+        return search_solid<CylinderShape>(context_, motion, body, obstacle, search);
+      case PlanShape::kHalfSpace:
+        return search_solid<HalfSpaceShape>(context_, motion, body, obstacle, search);
+      case PlanShape::kTree:
+        return search_side<Real, kMoves>(context_, motion, body, StaticSide<Real>{obstacle},
+                                         search);
+      case PlanShape::kOpaque:
+        return search.ask(search.active(), motion.speed);
+    }
+  }
+
+  // Notes the lanes in which the test is not proved apart.
+  void conclude(std::int32_t test, const TestSearch<Real, kMoves>& search) {
+    const unsigned near = search.near() | search.contacts();
+    parts_->any_near |= near;
+    for (unsigned left = near; left != 0; left &= left - 1) {
+      const int lane = __builtin_ctz(left);
+      parts_->near[lane * plan_.word_count() + test / 64] |= std::uint64_t{1} << (test % 64);
+      if (!(static_cast<double>(search.inflation(lane)) > parts_->enough)) {
+        parts_->given_up |= 1U << lane;
+      }
+    }
+  }
+
+  const CheckPlan<Real>& plan_;
+  const PlanScratch<Real>& scratch_;
+  PlanParts* parts_;
+  unsigned lanes_;
+  unsigned contacts_ = 0;
+  std::int32_t candidate_count_ = 0;
+  SearchContext<Real, kMoves> context_;
+};
+
+template <class Real>
+unsigned check(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, unsigned lanes,
+               const PlanClient& client) {
+  return Evaluation<Real, false>(plan, scratch, lanes, client, nullptr).run();
+}
+
+template <class Real>
+void bound_motion(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch) {
+  bound_bodies(plan, scratch);
+  bound_pairs(plan, scratch);
+}
+
+template <class Real>
+void evaluate(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, PlanParts& parts,
+              const PlanClient& client) {
+  parts.any_near = parts.given_up = parts.contacts = 0;
+  for (std::int32_t i = 0; i < kPlanLanes * plan.word_count(); ++i) parts.near[i] = 0;
+  parts.contacts = Evaluation<Real, true>(plan, scratch, parts.lanes, client, &parts).run();
+}
+
+template <class Real>
+constexpr PlanKernels<Real> kKernelsOf = {&check<Real>, &bound_motion<Real>, &evaluate<Real>};
+
+constexpr PlanKernelSet kPlanKernels = {kKernelsOf<float>, kKernelsOf<double>};
+
+}  // namespace
+}  // namespace spherule::internal::SPHERULE_KERNEL

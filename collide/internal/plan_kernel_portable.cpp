@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// For any processor.
+#include "collide/internal/check_plan.h"
+
+#define SPHERULE_KERNEL portable
+#include "collide/internal/plan_kernel_impl.h"
+
+namespace spherule::internal {
+
+const PlanKernelSet& portable_plan_kernels() {
+  return portable::kPlanKernels;
+}
+
+}  // namespace spherule::internal

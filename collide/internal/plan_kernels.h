@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/instruction_set.h"
+#include "collide/internal/check_plan.h"
+
+namespace spherule::internal {
+
+// Throws Error for instructions that this machine has not got.
+const PlanKernelSet& plan_kernels_for(InstructionSet instructions);
+
+}  // namespace spherule::internal

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Kinematics of eight configurations side by side: poses, velocities, centres of nodes. Part of the
+// kernels, see plan_kernel_impl.h.
+//
+// Error budget of poses, v being the unit roundoff (2^-24 or 2^-53). Angles are reduced in double:
+// of an angle x with |x| <= 100, k = x 2 / pi rounded is at most 64, and x - k pi / 2 in two steps
+// errs by less than 2e-14; the remainder lies within pi / 4 + 1e-13.
+//   Single: rounding the remainder costs 0.8 v. The sine's series up to r^9 errs by r^11 / 11! <
+//   0.03 v, the cosine's up to r^8 by r^10 / 10! < 0.42 v, their evaluation by less than 3 v: the
+//   pair by less than 6 v.
+//   Double: the sine's series up to r^11 errs by r^13 / 13! < 7.0e-12, the cosine's up to r^12 by
+//   r^14 / 14! < 4e-13, roundings by 1e-15: the pair by less than 2e-11.
+// Of a frame in its parent's, over all nine entries of a rotation (Frobenius), besides the sines:
+//   the frame's rotation rounded           2 v
+//   product with the parent's              9 v   three terms an entry, 3 v by Cauchy, nine entries
+//   turn by the position                   4 v   two terms an entry, 2 v, of two columns
+// and of its origin, where W bounds the lengths of the chain together: rounded v W (twice for a
+// shift, the position rounded v W more), product and sum 7 v W. A point that the frame carries, at
+// no more than W from it, moves by less than 15 v W and 10 v W: 25 v W a frame and the sines' 6 v W
+// (2e-11 W), and a fifth more for what the norms of rounded rotations grow by in long chains.
+// A centre c in the frame: rounded v |c|, products and sums 7 v (|c| + |t|): less than 12 v W.
+//
+// Velocities. With rates w_k, axes z_k and origins o_k, that of p is the sum of w_k z_k x (p -
+// o_k), summed as at_origin + turning x p. Axes err by the above over W, p and o_k by it: together
+// by less than 4 of it for each rate. Rounding of the n + 2 sums and of two products adds less than
+// (4 n + 16) v W for each rate, which is below the above, 38 n v W, too: 5 times that in all.
+
+#include "collide/internal/plan_vectors.h"
+
+namespace spherule::internal::SPHERULE_KERNEL {
+namespace {
+
+// Adding 1.5 2^52 rounds to an integer only where double is not computed with more bits.
+static_assert(__FLT_EVAL_METHOD__ == 0);
+constexpr double kRound = 0x1.8p52;
+constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
+constexpr double kHalfPi = 0x1.921fb54442d18p+0;
+constexpr double kHalfPiRest = 0x1.1a62633145c07p-54;
+
+struct Reduced {
+  Double8 remainder;
+  Double8 quarter;  // a whole number
+};
+
+SPHERULE_INLINE Reduced reduce(const Double8& angle) {
+  const Double8 k = (angle * kTwoOverPi + kRound) - kRound;
+  return {(angle - k * kHalfPi) - k * kHalfPiRest, k};
+}
+
+// Exchanges and signs sine and cosine for the quarter of the turn.
+template <class Real>
+SPHERULE_INLINE void turn_quarters(const Vector<Real>& sine, const Vector<Real>& cosine,
+                                   const Bits<Real>& quarter, Vector<Real>& turned_sine,
+                                   Vector<Real>& turned_cosine) {
+  constexpr int kShift = sizeof(Real) * 8 - 2;
+  const Bits<Real> odd = -(quarter & 1);
+  const auto& s = reinterpret_cast<const Bits<Real>&>(sine);
+  const auto& c = reinterpret_cast<const Bits<Real>&>(cosine);
+  const Bits<Real> new_sine = ((s & ~odd) | (c & odd)) ^ ((quarter & 2) << kShift);
+  const Bits<Real> new_cosine = ((c & ~odd) | (s & odd)) ^ (((quarter + 1) & 2) << kShift);
+  turned_sine = reinterpret_cast<const Vector<Real>&>(new_sine);
+  turned_cosine = reinterpret_cast<const Vector<Real>&>(new_cosine);
+}
+
+SPHERULE_INLINE void sine_and_cosine(const Double8& angle, Float8& sine, Float8& cosine) {
+  const Reduced reduced = reduce(angle);
+  const Float8 r = __builtin_convertvector(reduced.remainder, Float8);
+  const Int8 quarter = __builtin_convertvector(reduced.quarter, Int8);
+  const Float8 r2 = r * r;
+  const Float8 s =
+      r + r * r2 * (-1.0F / 6 + r2 * (1.0F / 120 + r2 * (-1.0F / 5040 + r2 * (1.0F / 362880))));
+  const Float8 c =
+      1.0F - 0.5F * r2 + r2 * r2 * (1.0F / 24 + r2 * (-1.0F / 720 + r2 * (1.0F / 40320)));
+  turn_quarters<float>(s, c, quarter, sine, cosine);
+}
+
+SPHERULE_INLINE void sine_and_cosine(const Double8& angle, Double8& sine, Double8& cosine) {
+  const Reduced reduced = reduce(angle);
+  const Double8& r = reduced.remainder;
+  const Long8 quarter = __builtin_convertvector(reduced.quarter, Long8);
+  const Double8 r2 = r * r;
+  const Double8 s =
+      r + r * r2 *
+              (-1.0 / 6 +
+               r2 * (1.0 / 120 +
+                     r2 * (-1.0 / 5040 + r2 * (1.0 / 362880 + r2 * (-1.0 / 39916800)))));
+  const Double8 c =
+      1.0 - 0.5 * r2 +
+      r2 * r2 *
+          (1.0 / 24 +
+           r2 * (-1.0 / 720 + r2 * (1.0 / 40320 + r2 * (-1.0 / 3628800 + r2 * (1.0 / 479001600)))));
+  turn_quarters<double>(s, c, quarter, sine, cosine);
+}
+
+SPHERULE_INLINE Float8 rounded(const Double8& x, float) {
+  return __builtin_convertvector(x, Float8);
+}
+SPHERULE_INLINE Double8 rounded(const Double8& x, double) {
+  return x;
+}
+
+template <class Real>
+SPHERULE_INLINE Point<Real> column(const PlanPose<Real>& pose, int which) {
+  return load_point(pose.columns[which]);
+}
+
+// The image of a vector's coordinates under the columns of a pose, without its origin. Most
+// coordinates of most frames are zero.
+template <class Real>
+SPHERULE_INLINE Point<Real> combined(const PlanPose<Real>& pose, const Real* by) {
+  Point<Real> sum;
+  bool is_empty = true;
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i) {
+    if (by[i] == Real(0)) continue;
+    const Point<Real> term = by[i] * column(pose, i);
+    sum = is_empty ? term : sum + term;
+    is_empty = false;
+  }
+  if (is_empty) sum = {all(Real(0)), all(Real(0)), all(Real(0))};
+  return sum;
+}
+
+// The poses of all frames.
+template <class Real>
+SPHERULE_INLINE void place_frames(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch) {
+  PlanPose<Real>& base = scratch.poses[0];
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 3; ++j) store(all(i == j ? Real(1) : Real(0)), base.columns[i][j]);
+  }
+  for (std::int32_t f = 1; f < plan.frame_count; ++f) {
+    const PlanFrame<Real>& frame = plan.frames[f];
+    const PlanPose<Real>& parent = scratch.poses[frame.parent];
+    PlanPose<Real>& pose = scratch.poses[f];
+    const Point<Real> m0 = combined(parent, frame.rotation[0]);
+    const Point<Real> m1 = combined(parent, frame.rotation[1]);
+    const Point<Real> m2 = combined(parent, frame.rotation[2]);
+    const Point<Real> origin = combined(parent, frame.origin) + column(parent, 3);
+    const Double8 position = load(scratch.positions[frame.position].lane);
+    store_point(m2, pose.columns[2]);
+    if (frame.prismatic) {
+      const Vector<Real> shift = rounded(position, Real());
+      store_point(m0, pose.columns[0]);
+      store_point(m1, pose.columns[1]);
+      store_point<Real>(
+          {origin.x + shift * m2.x, origin.y + shift * m2.y, origin.z + shift * m2.z},
+          pose.columns[3]);
+      continue;
+    }
+    Vector<Real> s, c;
+    sine_and_cosine(position, s, c);
+    store_point<Real>({c * m0.x + s * m1.x, c * m0.y + s * m1.y, c * m0.z + s * m1.z},
+                      pose.columns[0]);
+    store_point<Real>({c * m1.x - s * m0.x, c * m1.y - s * m0.y, c * m1.z - s * m0.z},
+                      pose.columns[1]);
+    store_point(origin, pose.columns[3]);
+  }
+}
+
+// The velocities of all frames.
+template <class Real>
+SPHERULE_INLINE void place_twists(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch) {
+  for (int i = 0; i < 3; ++i) {
+    store(all(Real(0)), scratch.twists[0].turning[i]);
+    store(all(Real(0)), scratch.twists[0].at_origin[i]);
+  }
+  for (std::int32_t f = 1; f < plan.frame_count; ++f) {
+    const PlanFrame<Real>& frame = plan.frames[f];
+    const PlanTwist<Real>& parent = scratch.twists[frame.parent];
+    PlanTwist<Real>& twist = scratch.twists[f];
+    const Point<Real> rate = scratch.rates[frame.position] * column(scratch.poses[f], 2);
+    const Point<Real> turning = load_point(parent.turning);
+    const Point<Real> at_origin = load_point(parent.at_origin);
+    if (frame.prismatic) {
+      store_point(turning, twist.turning);
+      store_point(at_origin + rate, twist.at_origin);
+    } else {
+      store_point(turning + rate, twist.turning);
+      store_point(at_origin + cross(column(scratch.poses[f], 3), rate), twist.at_origin);
+    }
+  }
+}
+
+// The centre of a body's node; computed once an evaluation.
+template <class Real>
+SPHERULE_INLINE Point<Real> center_of(const PlanScratch<Real>& scratch, const PlanBody<Real>& body,
+                                      std::int32_t node) {
+  const std::int32_t index = body.first_center + node;
+  PlanCenter<Real>& center = scratch.centers[index];
+  if (scratch.placed[index] == *scratch.evaluation) return load_point(center.at);
+  scratch.placed[index] = *scratch.evaluation;
+  const PlanPose<Real>& pose = scratch.poses[body.frame];
+  const Real* const c = body.nodes[node].center;
+  const Point<Real> at =
+      c[0] * column(pose, 0) + (c[1] * column(pose, 1) + (c[2] * column(pose, 2) + column(pose, 3)));
+  store_point(at, center.at);
+  return at;
+}
+
+template <class Real>
+SPHERULE_INLINE Point<Real> velocity_of(const PlanTwist<Real>& twist, const Point<Real>& p) {
+  return load_point(twist.at_origin) + cross(load_point(twist.turning), p);
+}
+
+}  // namespace
+}  // namespace spherule::internal::SPHERULE_KERNEL

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Eight numbers side by side, in single or double precision. Part of the kernels, see
+// plan_kernel_impl.h.
+
+#include "collide/internal/check_plan.h"
+
+#ifdef __x86_64__
+#include <immintrin.h>
+#endif
+
+namespace spherule::internal::SPHERULE_KERNEL {
+namespace {
+
+#define SPHERULE_INLINE inline __attribute__((always_inline))
+
+typedef float Float8 __attribute__((vector_size(32), may_alias));
+typedef std::int32_t Int8 __attribute__((vector_size(32), may_alias));
+typedef double Double8 __attribute__((vector_size(64), may_alias));
+typedef std::int64_t Long8 __attribute__((vector_size(64), may_alias));
+
+template <class Real>
+struct VectorOf;
+template <>
+struct VectorOf<float> {
+  using Type = Float8;
+  using Bits = Int8;
+};
+template <>
+struct VectorOf<double> {
+  using Type = Double8;
+  using Bits = Long8;
+};
+template <class Real>
+using Vector = typename VectorOf<Real>::Type;
+template <class Real>
+using Bits = typename VectorOf<Real>::Bits;
+
+constexpr unsigned kAllLanes = (1U << kPlanLanes) - 1;
+
+template <class Real>
+SPHERULE_INLINE Vector<Real> load(const Real* p) {
+  return *reinterpret_cast<const Vector<Real>*>(p);
+}
+
+template <class Real>
+SPHERULE_INLINE void store(const Vector<Real>& x, Real* p) {
+  *reinterpret_cast<Vector<Real>*>(p) = x;
+}
+
+template <class Real>
+SPHERULE_INLINE Vector<Real> all(Real x) {
+  return x - Vector<Real>{};
+}
+
+// A bit for every lane of a that is above that of b.
+SPHERULE_INLINE unsigned above(const Float8& a, const Float8& b) {
+#if defined(__AVX512VL__)
+  return _mm256_cmp_ps_mask(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b), _CMP_GT_OQ);
+#elif defined(__AVX__)
+  return static_cast<unsigned>(_mm256_movemask_ps(
+      _mm256_cmp_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b), _CMP_GT_OQ)));
+#elif defined(__SSE2__)
+  const Int8 set = a > b;
+  __m128 halves[2];
+  __builtin_memcpy(halves, &set, sizeof halves);
+  return static_cast<unsigned>(_mm_movemask_ps(halves[0]) | _mm_movemask_ps(halves[1]) << 4);
+#else
+  const Int8 set = a > b;
+  unsigned mask = 0;
+  for (int lane = 0; lane < kPlanLanes; ++lane) mask |= (set[lane] != 0 ? 1U : 0U) << lane;
+  return mask;
+#endif
+}
+
+SPHERULE_INLINE unsigned above(const Double8& a, const Double8& b) {
+#if defined(__AVX512F__)
+  return _mm512_cmp_pd_mask(reinterpret_cast<__m512d>(a), reinterpret_cast<__m512d>(b),
+                            _CMP_GT_OQ);
+#else
+  const Long8 set = a > b;
+  unsigned mask = 0;
+  for (int lane = 0; lane < kPlanLanes; ++lane) mask |= (set[lane] != 0 ? 1U : 0U) << lane;
+  return mask;
+#endif
+}
+
+#if defined(__AVX__)
+SPHERULE_INLINE Float8 larger(const Float8& a, const Float8& b) {
+  return reinterpret_cast<Float8>(
+      _mm256_max_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
+}
+SPHERULE_INLINE Float8 smaller(const Float8& a, const Float8& b) {
+  return reinterpret_cast<Float8>(
+      _mm256_min_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
+}
+SPHERULE_INLINE Float8 root(const Float8& a) {
+  return reinterpret_cast<Float8>(_mm256_sqrt_ps(reinterpret_cast<__m256>(a)));
+}
+#else
+SPHERULE_INLINE Float8 larger(const Float8& a, const Float8& b) {
+  return a > b ? a : b;
+}
+SPHERULE_INLINE Float8 smaller(const Float8& a, const Float8& b) {
+  return a < b ? a : b;
+}
+SPHERULE_INLINE Float8 root(const Float8& a) {
+  Float8 result = {};
+  for (int lane = 0; lane < kPlanLanes; ++lane) result[lane] = __builtin_sqrtf(a[lane]);
+  return result;
+}
+#endif
+SPHERULE_INLINE Double8 larger(const Double8& a, const Double8& b) {
+  return a > b ? a : b;
+}
+SPHERULE_INLINE Double8 smaller(const Double8& a, const Double8& b) {
+  return a < b ? a : b;
+}
+SPHERULE_INLINE Double8 root(const Double8& a) {
+  Double8 result = {};
+  for (int lane = 0; lane < kPlanLanes; ++lane) result[lane] = __builtin_sqrt(a[lane]);
+  return result;
+}
+
+template <class V>
+SPHERULE_INLINE V magnitude(const V& a) {
+  return larger(a, -a);
+}
+
+// The magnitude of a with the sign of b.
+SPHERULE_INLINE Float8 with_sign(const Float8& a, const Float8& b) {
+  const Int8 sign = reinterpret_cast<const Int8&>(b) & static_cast<std::int32_t>(0x80000000U);
+  const Int8 bits = reinterpret_cast<const Int8&>(a) | sign;
+  return reinterpret_cast<const Float8&>(bits);
+}
+SPHERULE_INLINE Double8 with_sign(const Double8& a, const Double8& b) {
+  const Long8 sign =
+      reinterpret_cast<const Long8&>(b) & static_cast<std::int64_t>(0x8000000000000000U);
+  const Long8 bits = reinterpret_cast<const Long8&>(a) | sign;
+  return reinterpret_cast<const Double8&>(bits);
+}
+
+SPHERULE_INLINE float lowest(const Float8& a) {
+#if defined(__AVX__)
+  const auto x = reinterpret_cast<__m256>(a);
+  __m128 m = _mm_min_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
+  m = _mm_min_ps(m, _mm_movehl_ps(m, m));
+  return _mm_cvtss_f32(_mm_min_ss(m, _mm_movehdup_ps(m)));
+#else
+  float result = a[0];
+  for (int lane = 1; lane < kPlanLanes; ++lane) result = a[lane] < result ? a[lane] : result;
+  return result;
+#endif
+}
+SPHERULE_INLINE double lowest(const Double8& a) {
+  double result = a[0];
+  for (int lane = 1; lane < kPlanLanes; ++lane) result = a[lane] < result ? a[lane] : result;
+  return result;
+}
+template <class V>
+SPHERULE_INLINE auto highest(const V& a) {
+  return -lowest(-a);
+}
+
+// Three coordinates.
+template <class Real>
+struct Point {
+  Vector<Real> x, y, z;
+};
+
+template <class Real>
+SPHERULE_INLINE Point<Real> load_point(const Real (*at)[kPlanLanes]) {
+  return {load(at[0]), load(at[1]), load(at[2])};
+}
+
+template <class Real>
+SPHERULE_INLINE void store_point(const Point<Real>& p, Real (*at)[kPlanLanes]) {
+  store(p.x, at[0]);
+  store(p.y, at[1]);
+  store(p.z, at[2]);
+}
+
+template <class Real>
+SPHERULE_INLINE Vector<Real> dot(const Point<Real>& a, const Point<Real>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+template <class Real>
+SPHERULE_INLINE Point<Real> operator-(const Point<Real>& a, const Point<Real>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+template <class Real>
+SPHERULE_INLINE Point<Real> operator+(const Point<Real>& a, const Point<Real>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+template <class Real>
+SPHERULE_INLINE Point<Real> operator*(Real a, const Point<Real>& p) {
+  return {a * p.x, a * p.y, a * p.z};
+}
+
+template <class Real>
+SPHERULE_INLINE Point<Real> constant(const Real* p) {
+  return {all(p[0]), all(p[1]), all(p[2])};
+}
+
+template <class Real>
+SPHERULE_INLINE Point<Real> cross(const Point<Real>& a, const Point<Real>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+}  // namespace
+}  // namespace spherule::internal::SPHERULE_KERNEL

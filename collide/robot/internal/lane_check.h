@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// The fast check of all pairs of a RobotChecker: configurations and motions in lanes, in single
+// precision, with the canonical tests of BodyPairs where that leaves something undecided.
+
+#include "collide/instruction_set.h"
+#include "collide/internal/compiled_plan.h"
+#include "collide/robot/internal/body_pairs.h"
+#include "collide/robot/joint_positions.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace spherule::internal {
+
+// Parts of a motion that wait, the one to be evaluated next on top, each with the tests that are
+// open in it.
+class PartStack {
+ public:
+  struct Part {
+    double begin;
+    double end;
+  };
+
+  bool empty() const { return parts_.empty(); }
+  void clear(std::size_t words);
+  // `open` is a set of tests; null: all.
+  void push(const Part& part, const std::uint64_t* open);
+  // Into `open`; false if all tests are open, which it is then not filled with.
+  bool pop(Part& part, std::uint64_t* open);
+  // The earliest begin of those that wait; infinite if there is none.
+  double earliest() const;
+
+ private:
+  std::size_t words_ = 0;
+  std::vector<Part> parts_;
+  std::vector<std::uint8_t> is_all_;
+  std::vector<std::uint64_t> open_;
+};
+
+class LaneCheck {
+ public:
+  // `pairs` must outlive it. Throws Error for instructions that this machine has not got, and for
+  // what reaches too far.
+  LaneCheck(const BodyPairs& pairs, InstructionSet instructions);
+
+  // What a query writes to.
+  class Memory {
+   public:
+    explicit Memory(const LaneCheck& check);
+
+   private:
+    friend class LaneCheck;
+    // Of motions, evaluated in Real.
+    template <class Real>
+    struct Stage {
+      explicit Stage(const CompiledPlan<Real>& plan);
+      PlanMemory<Real> plan;
+      PartStack waiting;
+      std::vector<std::uint64_t> open;
+      std::vector<std::uint64_t> near;
+    };
+    PlanMemory<float> configurations_;
+    Stage<float> single_;
+    Stage<double> exact_;
+    JointPositions::Room room_;
+    std::vector<double> from_;  // positions
+    std::vector<double> to_;
+    std::vector<double> variables_;
+    std::vector<std::uint64_t> undecided_;
+  };
+
+  // Configurations that are checked side by side.
+  static constexpr std::size_t kLanes = kPlanLanes;
+
+  // A bit for each of up to kLanes configurations in which any of the first `tested()` pairs of
+  // BodyPairs touches, by the canonical tests. Each must be is_usual().
+  unsigned contacts(std::span<const std::span<const double>> configurations, Memory& memory,
+                    BodyPairs::Memory& exact) const;
+
+  // The straight motion up to the fraction `end`, all pairs of BodyPairs, as RobotChecker says of
+  // check_edge(). Both ends must be is_usual(), the resolution above zero.
+  EdgeResult check_edge(std::span<const double> from, std::span<const double> to, double end,
+                        const EdgeRequest& request, Memory& memory, BodyPairs::Memory& exact) const;
+
+ private:
+  class Edge;
+
+  const BodyPairs& pairs_;
+  JointPositions positions_;
+  const PlanKernelSet& kernels_;
+  std::vector<std::size_t> fixed_pairs_;  // that no joint moves
+  std::vector<std::size_t> pair_of_test_;  // of the source
+  std::unique_ptr<const CompiledPlan<float>> configurations_;
+  std::unique_ptr<const CompiledPlan<float>> single_;
+  std::unique_ptr<const CompiledPlan<double>> exact_;
+  double single_error_ = 0.0;  // of placed centres
+  bool always_tested_ = false; // a fixed pair among the first tested() touches
+  bool always_ = false;        // any fixed pair does
+};
+
+}  // namespace spherule::internal

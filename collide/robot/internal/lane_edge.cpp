@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A straight motion in joint space, proved by adaptive bisection in lanes (dynamic collision
+// checking: Schwarzer, Saha, Latombe): the parts that wait are evaluated eight at a time at their
+// middles; tests that are not proved apart all along a part are open in the parts that it is split
+// into, so that the lanes stay full. A part in which a test is open though it was inflated by no
+// more than half the resolution (in single precision: or than rounding allows to tell) is given up
+// there: single precision leaves it to double precision, and that settles it by the canonical tests
+// at three configurations.
+
+#include "collide/robot/internal/lane_check.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+// Where so many parts are given up, no contact is looked for any more.
+constexpr int kMostGivenUp = 32;
+// Single precision gives up what is inflated by no more than this many times the error of centres.
+constexpr double kUndecided = 4.0;
+
+}  // namespace
+
+void PartStack::clear(std::size_t words) {
+  words_ = words;
+  parts_.clear();
+  is_all_.clear();
+  open_.clear();
+}
+
+void PartStack::push(const Part& part, const std::uint64_t* open) {
+  parts_.push_back(part);
+  is_all_.push_back(open == nullptr ? 1 : 0);
+  if (open != nullptr) open_.insert(open_.end(), open, open + words_);
+}
+
+bool PartStack::pop(Part& part, std::uint64_t* open) {
+  part = parts_.back();
+  parts_.pop_back();
+  const bool is_all = is_all_.back() != 0;
+  is_all_.pop_back();
+  if (is_all) return false;
+  std::copy(open_.end() - static_cast<std::ptrdiff_t>(words_), open_.end(), open);
+  open_.resize(open_.size() - words_);
+  return true;
+}
+
+double PartStack::earliest() const {
+  double result = std::numeric_limits<double>::infinity();
+  for (const Part& part : parts_) result = std::min(result, part.begin);
+  return result;
+}
+
+class LaneCheck::Edge {
+ public:
+  Edge(const LaneCheck& check, std::span<const double> from, std::span<const double> to, double end,
+       const EdgeRequest& request, Memory& memory, BodyPairs::Memory& exact)
+      : check_(check),
+        pairs_(check.pairs_),
+        from_(from),
+        to_(to),
+        end_(end),
+        request_(request),
+        memory_(memory),
+        exact_(exact) {
+    const std::span<const double> start = check_.positions_.of(from, memory.room_, 0);
+    const std::span<const double> finish = check_.positions_.of(to, memory.room_, 1);
+    std::copy(start.begin(), start.end(), memory.from_.begin());
+    std::copy(finish.begin(), finish.end(), memory.to_.begin());
+  }
+
+  EdgeResult run() {
+    if (check_.always_) {
+      result_ = {.verdict = Verdict::kCollision, .contact_at = 0.0};
+      return result_;
+    }
+    if (check_.single_->plan().test_count() > 0) prove<float>({0.0, end_}, nullptr);
+    result_.free_until = std::min({unproved_from_, result_.contact_at, end_});
+    result_.verdict = result_.contact_at <= 1.0 ? Verdict::kCollision
+                      : unproved_from_ <= end_  ? Verdict::kUnknown
+                                                : Verdict::kFree;
+    return result_;
+  }
+
+ private:
+  using Part = PartStack::Part;
+
+  static double middle_of(const Part& part) { return 0.5 * part.begin + 0.5 * part.end; }
+
+  template <class Real>
+  Memory::Stage<Real>& stage() {
+    if constexpr (std::is_same_v<Real, float>) {
+      return memory_.single_;
+    } else {
+      return memory_.exact_;
+    }
+  }
+  template <class Real>
+  const CompiledPlan<Real>& compiled() const {
+    if constexpr (std::is_same_v<Real, float>) {
+      return *check_.single_;
+    } else {
+      return *check_.exact_;
+    }
+  }
+  template <class Real>
+  const PlanKernels<Real>& kernels() const {
+    if constexpr (std::is_same_v<Real, float>) {
+      return check_.kernels_.single;
+    } else {
+      return check_.kernels_.exact;
+    }
+  }
+
+  // The rates of the motion, once for each precision.
+  template <class Real>
+  void bound_motion() {
+    bool& is_bounded = std::is_same_v<Real, float> ? is_bounded_[0] : is_bounded_[1];
+    if (std::exchange(is_bounded, true)) return;
+    constexpr double kLonger = 1.0 + 0x1p-20;  // above the roundings of differences and of Real
+    const PlanScratch<Real>& scratch = stage<Real>().plan.view();
+    double total = 0.0;
+    for (std::size_t p = 0; p < memory_.from_.size(); ++p) {
+      const double rate = memory_.to_[p] - memory_.from_[p];
+      const double largest = std::max(std::abs(memory_.from_[p]), std::abs(memory_.to_[p]));
+      scratch.rates[p] = static_cast<Real>(rate);
+      scratch.speeds[p] = static_cast<Real>(std::abs(rate) * kLonger);
+      scratch.shifts[p] = static_cast<Real>(largest * kLonger);
+      total += std::abs(rate);
+    }
+    *scratch.total_speed = static_cast<Real>(total * kLonger);
+    pad_ = (4.0 + 4.0 * total) * pairs_.pose_error() + pairs_.middle_error();
+    kernels<Real>().bound_motion(compiled<Real>().plan(), scratch);
+  }
+
+  // A part of the motion with the tests that are open in it (null: all). False once there is no
+  // more to be found.
+  template <class Real>
+  bool prove(const Part& whole, const std::uint64_t* open) {
+    bound_motion<Real>();
+    PartStack& waiting = stage<Real>().waiting;
+    const CheckPlan<Real>& plan = compiled<Real>().plan();
+    waiting.clear(static_cast<std::size_t>(plan.word_count()));
+    split(waiting, whole, kPlanLanes, open);
+    while (!waiting.empty()) {
+      if (!evaluate<Real>()) {
+        unproved_from_ = std::min(unproved_from_, waiting.earliest());
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // The leftmost piece on top.
+  static void split(PartStack& waiting, const Part& part, int pieces, const std::uint64_t* open) {
+    const double length = part.end - part.begin;
+    double end = part.end;
+    for (int i = pieces - 1; i >= 0; --i) {
+      const double begin = i == 0 ? part.begin : part.begin + length * (1.0 * i / pieces);
+      if (begin < end) waiting.push({begin, end}, open);
+      end = begin;
+    }
+  }
+
+  // Up to eight parts from the top of the stack.
+  template <class Real>
+  bool evaluate() {
+    Memory::Stage<Real>& stage = this->stage<Real>();
+    const CheckPlan<Real>& plan = compiled<Real>().plan();
+    const auto words = static_cast<std::size_t>(plan.word_count());
+    std::array<Part, kPlanLanes> parts;
+    std::size_t count = 0;
+    bool is_all = true;
+    std::array<bool, kPlanLanes> all_open{};
+    while (count < kPlanLanes && !stage.waiting.empty()) {
+      const bool has_set = stage.waiting.pop(parts[count], stage.open.data() + count * words);
+      if (parts[count].begin >= result_.contact_at) continue;
+      all_open[count] = !has_set;
+      is_all = is_all && !has_set;
+      ++count;
+    }
+    if (count == 0) return true;
+    const auto stop = [&] {
+      for (std::size_t i = 0; i < count; ++i) {
+        unproved_from_ = std::min(unproved_from_, parts[i].begin);
+      }
+      return false;
+    };
+    if (result_.configurations + count > request_.max_configurations) return stop();
+    result_.configurations += count;
+    for (std::size_t i = 0; !is_all && i < count; ++i) {
+      if (all_open[i]) std::fill_n(stage.open.data() + i * words, words, ~std::uint64_t{0});
+    }
+    PlanParts batch;
+    batch.lanes = (1U << count) - 1;
+    batch.open = is_all ? nullptr : stage.open.data();
+    batch.near = stage.near.data();
+    batch.all_contacts = request_.first;
+    batch.enough = 0.5 * request_.resolution;
+    if constexpr (std::is_same_v<Real, float>) {
+      batch.enough = std::max(batch.enough, kUndecided * check_.single_error_);
+    }
+    place(stage.plan.view(), {parts.data(), count}, batch);
+    Client<Real> client{*this};
+    kernels<Real>().evaluate(plan, stage.plan.view(), batch,
+                             {&Client<Real>::touches, &Client<Real>::within, &client});
+    if (batch.contacts != 0) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if ((batch.contacts >> i & 1U) != 0) {
+          result_.contact_at = std::min(result_.contact_at, times_[i]);
+        }
+      }
+      if (!request_.first) return stop();
+    }
+    const auto open = static_cast<std::size_t>(std::popcount(batch.any_near));
+    const int pieces = std::max(2, static_cast<int>(kPlanLanes / std::max<std::size_t>(open, 1)));
+    for (std::size_t i = count; i-- > 0;) {
+      if ((batch.any_near >> i & 1U) == 0 || parts[i].begin >= result_.contact_at) continue;
+      const std::uint64_t* const near = stage.near.data() + i * words;
+      const bool is_shortest = !(parts[i].begin < times_[i] && times_[i] < parts[i].end);
+      if (!is_shortest && (batch.given_up >> i & 1U) == 0) {
+        split(stage.waiting, parts[i], pieces, near);
+      } else if (!give_up<Real>(parts[i], near)) {
+        return stop();
+      }
+    }
+    return true;
+  }
+
+  // The middles of the parts; the lanes that are left over repeat the last.
+  template <class Real>
+  void place(const PlanScratch<Real>& scratch, std::span<const Part> parts, PlanParts& batch) {
+    for (std::size_t lane = 0; lane < kPlanLanes; ++lane) {
+      const Part& part = parts[std::min(lane, parts.size() - 1)];
+      times_[lane] = middle_of(part);
+      batch.half[lane] = std::max(part.end - times_[lane], times_[lane] - part.begin);
+    }
+    for (std::size_t p = 0; p < memory_.from_.size(); ++p) {
+      for (std::size_t lane = 0; lane < kPlanLanes; ++lane) {
+        scratch.positions[p].lane[lane] =
+            (1.0 - times_[lane]) * memory_.from_[p] + times_[lane] * memory_.to_[p];
+      }
+    }
+    placed_ = -1.0;
+  }
+
+  template <class Real>
+  bool give_up(const Part& part, const std::uint64_t* open) {
+    if constexpr (std::is_same_v<Real, float>) {
+      memory_.undecided_.assign(open, open + check_.single_->plan().word_count());
+      const auto times = times_;
+      const bool goes_on = prove<double>(part, memory_.undecided_.data());
+      times_ = times;
+      return goes_on;
+    } else {
+      unproved_from_ = std::min(unproved_from_, part.begin);
+      settle(part, open);
+      const bool is_enough = result_.contact_at <= 1.0 && !request_.first;
+      return !is_enough && ++given_up_ < kMostGivenUp;
+    }
+  }
+
+  // A part in which bodies nearly touch: whether they do, where that can be told.
+  void settle(const Part& part, const std::uint64_t* open) {
+    for (const double at : {part.begin, middle_of(part), part.end}) {
+      if (at >= result_.contact_at) return;
+      if (result_.configurations >= request_.max_configurations) return;
+      ++result_.configurations;
+      const CheckPlan<double>& plan = check_.exact_->plan();
+      for (std::int32_t test = 0; test < plan.test_count(); ++test) {
+        if ((open[test / 64] >> (test % 64) & 1U) == 0) continue;
+        if (check_.exact_->source_test(test) < 0 || !touches(at, *check_.exact_, test)) continue;
+        result_.contact_at = at;
+        return;
+      }
+    }
+  }
+
+  // By the canonical tests.
+  template <class Real>
+  std::size_t pair_at(double at, const CompiledPlan<Real>& plan, std::int32_t test) {
+    if (std::exchange(placed_, at) != at) {
+      for (std::size_t i = 0; i < from_.size(); ++i) {
+        memory_.variables_[i] = (1.0 - at) * from_[i] + at * to_[i];
+      }
+      pairs_.place(memory_.variables_, exact_);
+    }
+    return check_.pair_of_test_[static_cast<std::size_t>(plan.source_test(test))];
+  }
+  template <class Real>
+  bool touches(double at, const CompiledPlan<Real>& plan, std::int32_t test) {
+    return pairs_.touches(pair_at(at, plan, test), exact_);
+  }
+
+  template <class Real>
+  struct Client {
+    Edge& edge;
+
+    static bool touches(void* context, int lane, std::int32_t test) {
+      Edge& edge = static_cast<Client*>(context)->edge;
+      return edge.touches(edge.times_[static_cast<std::size_t>(lane)], edge.compiled<Real>(), test);
+    }
+    static bool within(void* context, int lane, std::int32_t test, double clearance) {
+      Edge& edge = static_cast<Client*>(context)->edge;
+      const std::size_t pair =
+          edge.pair_at(edge.times_[static_cast<std::size_t>(lane)], edge.compiled<Real>(), test);
+      return edge.pairs_.is_near(pair, clearance + edge.pad_, edge.exact_);
+    }
+  };
+
+  const LaneCheck& check_;
+  const BodyPairs& pairs_;
+  std::span<const double> from_;
+  std::span<const double> to_;
+  const double end_;
+  const EdgeRequest& request_;
+  Memory& memory_;
+  BodyPairs::Memory& exact_;
+  EdgeResult result_;
+  std::array<bool, 2> is_bounded_{};
+  std::array<double, kPlanLanes> times_{};
+  double placed_ = -1.0;  // the time whose configuration `exact_` has
+  double pad_ = 0.0;
+  double unproved_from_ = std::numeric_limits<double>::infinity();
+  int given_up_ = 0;
+};
+
+EdgeResult LaneCheck::check_edge(std::span<const double> from, std::span<const double> to,
+                                 double end, const EdgeRequest& request, Memory& memory,
+                                 BodyPairs::Memory& exact) const {
+  return Edge(*this, from, to, end, request, memory, exact).run();
+}
+
+}  // namespace spherule::internal

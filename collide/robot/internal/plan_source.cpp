@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/internal/plan_source.h"
+
+#include "collide/robot/internal/moving_frames.h"
+#include "collide/solid_mesh.h"
+
+#include <memory>
+#include <variant>
+
+namespace spherule::internal {
+namespace {
+
+std::vector<Sphere> placed(std::span<const Sphere> spheres, const Pose& pose) {
+  std::vector<Sphere> result;
+  result.reserve(spheres.size());
+  for (const Sphere& sphere : spheres) result.push_back({pose * sphere.center, sphere.radius});
+  return result;
+}
+
+// The box of the spheres around the triangles, with what rounding may take of it.
+PlanSource::Opaque box_of(const SolidMesh& mesh, const Pose& root_from_mesh) {
+  PlanSource::Opaque box{Eigen::Vector3d::Constant(kMaxCoordinate),
+                         Eigen::Vector3d::Constant(-kMaxCoordinate)};
+  for (const Sphere& sphere : mesh.mesh().tree().spheres()) {
+    const Eigen::Vector3d center = root_from_mesh * sphere.center;
+    const double reach =
+        (sphere.radius + mesh.growth()) * (1.0 + 1e-9) + 1e-12 * (1.0 + center.norm());
+    box.lower = box.lower.cwiseMin((center.array() - reach).matrix());
+    box.upper = box.upper.cwiseMax((center.array() + reach).matrix());
+  }
+  return box;
+}
+
+struct ShapeOf {
+  const Pose& root_from_shape;
+
+  PlanSource::Shape operator()(const std::shared_ptr<const SphereTree>& tree) const {
+    return placed(tree->spheres(), root_from_shape);
+  }
+  PlanSource::Shape operator()(const std::shared_ptr<const SolidMesh>& mesh) const {
+    return box_of(*mesh, root_from_shape);
+  }
+  PlanSource::Shape operator()(const Primitive& primitive) const { return primitive; }
+};
+
+PlanSource::Path steps_of(const PathReach& reach, const RobotModel& robot,
+                          const MovingFrames& frames) {
+  PlanSource::Path path;
+  for (const PathReach::Step& step : reach.steps()) {
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(step.joint)];
+    path.push_back({frames.frame_of_link[static_cast<std::size_t>(joint.child_link)], step.turns,
+                    step.first, step.second});
+  }
+  return path;
+}
+
+}  // namespace
+
+RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
+  const MovingFrames frames(pairs.robot());
+  RobotPlanSource result;
+  PlanSource& source = result.source;
+  source.frames = frames.frames;
+  source.pose_error = pairs.pose_error();
+  for (const CheckedPiece& piece : pairs.pieces()) {
+    const auto link = static_cast<std::size_t>(piece.link);
+    source.bodies.push_back({frames.frame_of_link[link],
+                             placed(piece.tree->spheres(), frames.frame_from_link[link])});
+  }
+  const Pose root_from_world = pairs.world_from_root().inverse();
+  for (const PlacedShape& obstacle : pairs.obstacles()) {
+    const Pose root_from_shape = root_from_world * obstacle.world_from_shape;
+    source.obstacles.push_back({std::visit(ShapeOf{root_from_shape}, obstacle.shape),
+                                root_from_shape});
+  }
+  source.body_paths.resize(source.bodies.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const CheckedPair& pair = pairs.pairs()[i];
+    PlanSource::Path path = steps_of(pairs.path(i), pairs.robot(), frames);
+    if (path.empty()) {
+      result.fixed_pairs.push_back(i);
+      continue;
+    }
+    source.tests.push_back({pair.piece, pair.other, pair.is_obstacle});
+    result.pair_of_test.push_back(i);
+    if (pair.is_obstacle) {
+      source.body_paths[static_cast<std::size_t>(pair.piece)] = std::move(path);
+    } else {
+      source.pair_paths.push_back(std::move(path));
+    }
+  }
+  return result;
+}
+
+}  // namespace spherule::internal
