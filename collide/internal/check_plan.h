@@ -48,6 +48,7 @@ struct alignas(64) PlanBoxes {
   Real lower[3][kPlanLanes];
   Real upper[3][kPlanLanes];
   std::int32_t obstacle[kPlanLanes];
+  std::int32_t body;
 };
 
 // Spheres that move with a frame.
@@ -85,7 +86,8 @@ struct PlanPair {
 };
 
 // The k-th joint on eight paths, each from one body to another (or to the root): how far points of
-// the first, and of the second body, are at most from its axis. Zeros behind the last joint.
+// the first, and of the second body, are at most from its axis. Behind the last joint zeros, and a
+// position behind all, which never changes.
 template <class Real>
 struct alignas(64) PlanPathStep {
   Real first[kPlanLanes];
@@ -118,6 +120,7 @@ struct CheckPlan {
   const PlanPathGroup* body_paths;
   const PlanPathGroup* pair_paths;
   const PlanPathStep<Real>* steps;
+  bool slides;          // whether any joint is prismatic
   Real bound_slack;     // factor by which sums of bounds are inflated for rounding
   Real velocity_error;  // of velocities, for each unit of the sum of all rates
 
@@ -166,6 +169,14 @@ struct PlanTask {
   unsigned lanes;
 };
 
+// Tests in which there was a contact in an earlier evaluation, the last one first: likely to touch
+// again.
+struct PlanRecent {
+  static constexpr std::int32_t kMost = 8;
+  std::int32_t tests[kMost];
+  std::int32_t count = 0;
+};
+
 // Memory of one caller, enough of it for the plan.
 template <class Real>
 struct PlanScratch {
@@ -179,12 +190,14 @@ struct PlanScratch {
   PlanTask* tasks;
   // Of a motion.
   Real* rates;   // in: by how much each position changes, signed
-  Real* speeds;  // in: its magnitude, rounded up
-  Real* shifts;  // in: the largest magnitude of the position, rounded up
+  Real* speeds;  // in: its magnitude, rounded up; one more, which is zero
+  Real* shifts;  // in: the largest magnitude of the position, rounded up; one more, zero
   PlanMotionBound<Real>* body_bounds;
   PlanMotionBound<Real>* pair_bounds;
   PlanNumbers<Real>* path_work;  // twice the longest path and four
-  Real* total_speed;             // the sum of all speeds
+  Real* total_speed;             // in: the sum of all speeds
+  PlanRecent* recent;
+  bool* has_bounds;  // in: false for a new motion; of bodies, and of pairs
 };
 
 // What the caller decides.
@@ -214,9 +227,7 @@ struct PlanKernels {
   // Lanes in whose configurations some test touches.
   unsigned (*check)(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, unsigned lanes,
                     const PlanClient& client);
-  // Bounds of the motion given by rates, speeds and shifts.
-  void (*bound_motion)(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch);
-  // After bound_motion().
+  // Of the motion given by rates, speeds and shifts.
   void (*evaluate)(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, PlanParts& parts,
                    const PlanClient& client);
 };

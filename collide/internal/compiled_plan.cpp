@@ -89,6 +89,7 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
     reach.scene = std::max(reach.scene, reach_of(obstacle));
   }
   if (!(reach.scene <= kMaxCoordinate)) throw Error("robot", "it or an obstacle reaches too far");
+  plan_.position_count = std::max(1, variable_count(source.frames));
   compile_frames(source);
   compile_bodies(source, reach);
   compile_obstacles(source, reach);
@@ -97,7 +98,6 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   compile_paths(source.pair_paths, pair_paths_);
   plan_.frames = frames_.data();
   plan_.frame_count = static_cast<std::int32_t>(frames_.size());
-  plan_.position_count = variable_count(source.frames);
   plan_.bodies = bodies_.data();
   plan_.body_count = static_cast<std::int32_t>(bodies_.size());
   plan_.groups = groups_.data();
@@ -108,6 +108,8 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   plan_.body_paths = body_paths_.data();
   plan_.pair_paths = pair_paths_.data();
   plan_.steps = steps_.data();
+  plan_.slides = std::any_of(source.frames.begin(), source.frames.end(),
+                             [](const MechanismFrame& frame) { return frame.prismatic; });
   plan_.bound_slack =
       rounded_up<Real>(1.0 + (4.0 * static_cast<double>(longest_path_) + 32.0) * v);
   plan_.velocity_error = rounded_up<Real>(kVelocityErrors * reach.largest_error);
@@ -229,6 +231,7 @@ void CompiledPlan<Real>::compile_tests(const PlanSource& source, const Reach& re
       if (distance_from_box(around.center, box) > kLonger * around.radius) continue;
       if (lane == kPlanLanes) {
         groups_.push_back(empty_boxes<Real>());
+        groups_.back().body = static_cast<std::int32_t>(b);
         source_tests_.resize(source_tests_.size() + kPlanLanes, -1);
         lane = 0;
       }
@@ -265,6 +268,7 @@ void CompiledPlan<Real>::compile_paths(const std::vector<PlanSource::Path>& path
     for (std::size_t k = 0; k < longest; ++k) {
       PlanPathStep<Real>& step = steps_.emplace_back();
       step = {};
+      std::fill_n(step.position, kPlanLanes, plan_.position_count);
       for (std::size_t i = 0; i < count; ++i) {
         const PlanSource::Path& path = paths[first + i];
         if (k >= path.size()) continue;

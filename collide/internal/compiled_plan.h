@@ -86,6 +86,8 @@ class PlanMemory {
   std::vector<PlanMotionBound<Real>> pair_bounds_;
   std::vector<PlanNumbers<Real>> path_work_;
   Real total_speed_ = 0;
+  PlanRecent recent_{};
+  bool has_bounds_[2] = {};
   PlanScratch<Real> view_{};
 };
 

@@ -10,6 +10,20 @@
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 
+SPHERULE_INLINE Float8 gathered(const float* from, const std::int32_t* index) {
+#if defined(__AVX2__)
+  return reinterpret_cast<Float8>(
+      _mm256_i32gather_ps(from, *reinterpret_cast<const __m256i*>(index), 4));
+#else
+  return Float8{from[index[0]], from[index[1]], from[index[2]], from[index[3]],
+                from[index[4]], from[index[5]], from[index[6]], from[index[7]]};
+#endif
+}
+SPHERULE_INLINE Double8 gathered(const double* from, const std::int32_t* index) {
+  return Double8{from[index[0]], from[index[1]], from[index[2]], from[index[3]],
+                 from[index[4]], from[index[5]], from[index[6]], from[index[7]]};
+}
+
 template <class Real>
 struct PathSum {
   Vector<Real> speed{};
@@ -18,20 +32,19 @@ struct PathSum {
 
   // One more joint is passed.
   SPHERULE_INLINE void pass(const PlanPathStep<Real>& step, const Real* reach,
-                            const PlanScratch<Real>& scratch) {
-    alignas(64) Real speeds[kPlanLanes];
-    alignas(64) Real shifts[kPlanLanes];
-#pragma GCC unroll 8
-    for (int lane = 0; lane < kPlanLanes; ++lane) {
-      speeds[lane] = scratch.speeds[step.position[lane]];
-      shifts[lane] = scratch.shifts[step.position[lane]];
+                            const PlanScratch<Real>& scratch, bool slides) {
+    const Vector<Real> rate = gathered(scratch.speeds, step.position);
+    if (!slides) {
+      const Vector<Real> travel = rate * load(reach);
+      bend += rate * (Real(0.5) * travel + speed);
+      speed += travel;
+      return;
     }
     const Vector<Real> turns = load(step.turns);
-    const Vector<Real> rate = load(speeds);
     const Vector<Real> travel = rate * (load(reach) + turns * shifted);
     bend += turns * rate * (Real(0.5) * travel + speed);
     speed += travel;
-    shifted += load(step.slides) * load(shifts);
+    shifted += load(step.slides) * gathered(scratch.shifts, step.position);
   }
 };
 
@@ -43,7 +56,7 @@ SPHERULE_INLINE void bound_bodies(const CheckPlan<Real>& plan, const PlanScratch
     PathSum<Real> sum;
     for (std::int32_t k = 0; k < group.step_count; ++k) {
       const PlanPathStep<Real>& step = plan.steps[group.first_step + k];
-      sum.pass(step, step.first, scratch);
+      sum.pass(step, step.first, scratch, plan.slides);
     }
     const std::int32_t count = plan.body_count - first;
     for (std::int32_t lane = 0; lane < kPlanLanes && lane < count; ++lane) {
@@ -64,7 +77,7 @@ SPHERULE_INLINE void bound_pairs(const CheckPlan<Real>& plan, const PlanScratch<
     store(second.bend, work[2 * group.step_count + 1].lane);
     for (std::int32_t k = group.step_count; k-- > 0;) {
       const PlanPathStep<Real>& step = plan.steps[group.first_step + k];
-      second.pass(step, step.second, scratch);
+      second.pass(step, step.second, scratch, plan.slides);
       store(second.speed, work[2 * k].lane);
       store(second.bend, work[2 * k + 1].lane);
     }
@@ -73,7 +86,7 @@ SPHERULE_INLINE void bound_pairs(const CheckPlan<Real>& plan, const PlanScratch<
     PathSum<Real> sum;
     for (std::int32_t k = 0; k < group.step_count; ++k) {
       const PlanPathStep<Real>& step = plan.steps[group.first_step + k];
-      sum.pass(step, step.first, scratch);
+      sum.pass(step, step.first, scratch, plan.slides);
       speed = smaller(speed, sum.speed + load(work[2 * k + 2].lane));
       bend = smaller(bend, sum.bend + load(work[2 * k + 3].lane));
     }

@@ -40,32 +40,109 @@ class Evaluation {
     }
     ++*scratch.evaluation;
     place_frames(plan, scratch);
-    if constexpr (kMoves) place_twists(plan, scratch);
   }
+
+  // The same as placed, without the motion.
+  explicit Evaluation(const Evaluation<Real, true>& other)
+      : plan_(other.plan_),
+        scratch_(other.scratch_),
+        parts_(nullptr),
+        lanes_(other.lanes_),
+        context_{plan_, scratch_, other.context_.client, {}, {}, Real(0)} {}
 
   // Lanes in which there is a contact.
   unsigned run() {
-    for (std::int32_t b = 0; b < plan_.body_count && !is_done(); ++b) test_obstacles(b);
-    for (std::int32_t p = 0; p < plan_.pair_count && !is_done(); ++p) test_pair(p);
     if constexpr (kMoves) {
-      // What overlaps as placed is likely to touch: it is searched first.
-      search_candidates(true);
-      search_candidates(false);
+      if (has_recent_contact()) return contacts_;
+      place_twists(plan_, scratch_);
+      require_bounds(0);
     }
+    for (std::int32_t b = 0; b < plan_.body_count && !is_done(); ++b) {
+      test_obstacles(b);
+      search_candidates(true);
+    }
+    if constexpr (kMoves) {
+      if (is_done()) return contacts_;
+      require_bounds(1);
+    }
+    for (std::int32_t p = 0; p < plan_.pair_count && !is_done(); ++p) test_pair(p);
+    search_candidates(true);
+    search_candidates(false);
     return contacts_;
   }
 
  private:
+  friend class Evaluation<Real, !kMoves>;
+
   bool is_done() const {
     if constexpr (kMoves) return contacts_ != 0 && !parts_->all_contacts;
     return lanes_ == 0;
   }
 
-  void search_candidates(bool overlaps) {
-    for (std::int32_t i = 0; i < candidate_count_ && !is_done(); ++i) {
-      const PlanCandidate& candidate = scratch_.candidates[i];
-      if ((candidate.overlap != 0) == overlaps) search(candidate);
+  // Of bodies (0) or pairs (1), computed once a motion.
+  void require_bounds(int which) {
+    if (scratch_.has_bounds[which]) return;
+    scratch_.has_bounds[which] = true;
+    if (which == 0) {
+      bound_bodies(plan_, scratch_);
+    } else {
+      bound_pairs(plan_, scratch_);
     }
+  }
+
+  // Whether one of the tests that touched last touches in the middle of any part, which is found
+  // without the bounds of the motion.
+  bool has_recent_contact() {
+    if (parts_->all_contacts || parts_->open != nullptr) return false;
+    const PlanRecent& recent = *scratch_.recent;
+    Evaluation<Real, false> still(*this);
+    for (std::int32_t i = 0; i < recent.count; ++i) {
+      contacts_ = still.test_alone(recent.tests[i]);
+      if (contacts_ == 0) continue;
+      remember(recent.tests[i]);
+      return true;
+    }
+    return false;
+  }
+
+  // To the front of the list.
+  void remember(std::int32_t test) {
+    PlanRecent& recent = *scratch_.recent;
+    std::int32_t place = 0;
+    while (place < recent.count && recent.tests[place] != test) ++place;
+    if (place == recent.count) {
+      if (recent.count < PlanRecent::kMost) ++recent.count;
+      place = recent.count - 1;
+    }
+    for (; place > 0; --place) recent.tests[place] = recent.tests[place - 1];
+    recent.tests[0] = test;
+  }
+
+  // Of all lanes as they are placed; the lanes that touch.
+  unsigned test_alone(std::int32_t test) {
+    if (test >= plan_.first_pair()) {
+      test_pair(test - plan_.first_pair());
+    } else {
+      const PlanBoxes<Real>& boxes = plan_.groups[test / kPlanLanes];
+      test_obstacle(boxes.body, test, boxes.obstacle[test % kPlanLanes]);
+    }
+    return contacts_;
+  }
+
+  // What overlaps as placed is likely to touch: it is searched at once, the rest when nothing else
+  // is left.
+  void search_candidates(bool overlaps) {
+    if constexpr (!kMoves) return;
+    std::int32_t left = 0;
+    for (std::int32_t i = 0; i < candidate_count_; ++i) {
+      const PlanCandidate candidate = scratch_.candidates[i];
+      if (is_done() || (overlaps && candidate.overlap == 0)) {
+        scratch_.candidates[left++] = candidate;
+      } else {
+        search(candidate);
+      }
+    }
+    candidate_count_ = left;
   }
 
   // The lanes in which a test has to be made.
@@ -211,6 +288,7 @@ class Evaluation {
     }
     contacts_ |= search.contacts();
     if constexpr (kMoves) {
+      if (search.contacts() != 0) remember(test);
       conclude(test, search);
     } else {
       lanes_ &= ~search.contacts();
@@ -267,12 +345,6 @@ unsigned check(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, un
 }
 
 template <class Real>
-void bound_motion(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch) {
-  bound_bodies(plan, scratch);
-  bound_pairs(plan, scratch);
-}
-
-template <class Real>
 void evaluate(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, PlanParts& parts,
               const PlanClient& client) {
   parts.any_near = parts.given_up = parts.contacts = 0;
@@ -281,7 +353,7 @@ void evaluate(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, Pla
 }
 
 template <class Real>
-constexpr PlanKernels<Real> kKernelsOf = {&check<Real>, &bound_motion<Real>, &evaluate<Real>};
+constexpr PlanKernels<Real> kKernelsOf = {&check<Real>, &evaluate<Real>};
 
 constexpr PlanKernelSet kPlanKernels = {kKernelsOf<float>, kKernelsOf<double>};
 

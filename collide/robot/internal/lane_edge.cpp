@@ -120,7 +120,7 @@ class LaneCheck::Edge {
 
   // The rates of the motion, once for each precision.
   template <class Real>
-  void bound_motion() {
+  void set_motion() {
     bool& is_bounded = std::is_same_v<Real, float> ? is_bounded_[0] : is_bounded_[1];
     if (std::exchange(is_bounded, true)) return;
     constexpr double kLonger = 1.0 + 0x1p-20;  // above the roundings of differences and of Real
@@ -136,14 +136,14 @@ class LaneCheck::Edge {
     }
     *scratch.total_speed = static_cast<Real>(total * kLonger);
     pad_ = (4.0 + 4.0 * total) * pairs_.pose_error() + pairs_.middle_error();
-    kernels<Real>().bound_motion(compiled<Real>().plan(), scratch);
+    scratch.has_bounds[0] = scratch.has_bounds[1] = false;
   }
 
   // A part of the motion with the tests that are open in it (null: all). False once there is no
   // more to be found.
   template <class Real>
   bool prove(const Part& whole, const std::uint64_t* open) {
-    bound_motion<Real>();
+    set_motion<Real>();
     PartStack& waiting = stage<Real>().waiting;
     const CheckPlan<Real>& plan = compiled<Real>().plan();
     waiting.clear(static_cast<std::size_t>(plan.word_count()));
