@@ -72,7 +72,8 @@ struct PlanObstacle {
   PlanShape shape;
   Real rotation[3][3];
   Real center[3];
-  Real half[3];  // of a box; {radius, -, half length} of a cylinder; {-, -, half length} of a segment
+  Real half[3];  // of a box; {radius, -, half length} of a cylinder; {-, -, half length} of a
+                 // segment
   Real radius;   // of a ball or capsule, about its segment; with the inflation
   Real error;    // of the offset of a point from the solid
   Real margin;
@@ -180,7 +181,7 @@ struct PlanRecent {
 // Memory of one caller, enough of it for the plan.
 template <class Real>
 struct PlanScratch {
-  PlanNumbers<double>* positions;  // in: of each joint, in every lane
+  PlanNumbers<double>* positions;  // of each joint, in every lane; in, for configurations
   PlanPose<Real>* poses;
   PlanTwist<Real>* twists;
   PlanCenter<Real>* centers;  // of all nodes of all bodies
@@ -189,6 +190,8 @@ struct PlanScratch {
   PlanCandidate* candidates;
   PlanTask* tasks;
   // Of a motion.
+  double* from;  // in: positions at both ends
+  double* to;
   Real* rates;   // in: by how much each position changes, signed
   Real* speeds;  // in: its magnitude, rounded up; one more, which is zero
   Real* shifts;  // in: the largest magnitude of the position, rounded up; one more, zero
@@ -209,17 +212,18 @@ struct PlanClient {
   void* context;
 };
 
-// Parts of a motion, one in each lane, evaluated at their middles (the positions in the scratch).
+// Parts of a motion, one in each lane, evaluated at their middles.
 struct PlanParts {
-  double half[kPlanLanes];             // in: half the length of each
-  unsigned lanes = 0;                  // in: those that count
-  const std::uint64_t* open = nullptr; // in: a set of tests for each lane; null: all tests
-  double enough = 0.0;       // in: what is inflated by no more than this is not split any more
-  std::uint64_t* near;       // out: a set for each lane: tests that are not proved apart
-  unsigned any_near = 0;     // out: lanes whose set is not empty
-  unsigned given_up = 0;     // out: lanes with a test that was not inflated by more than `enough`
-  unsigned contacts = 0;     // out: lanes in whose middles there is a contact
-  bool all_contacts = false; // in: go on after a contact, in the lanes before it
+  alignas(64) double middle[kPlanLanes];  // in: of each, a fraction of the motion
+  alignas(64) double half[kPlanLanes];    // in: half the length of each
+  unsigned lanes = 0;                     // in: those that count
+  const std::uint64_t* open = nullptr;    // in: a set of tests for each lane; null: all tests
+  double enough = 0.0;        // in: what is inflated by no more than this is not split any more
+  std::uint64_t* near;        // out: a set for each lane: tests that are not proved apart
+  unsigned any_near = 0;      // out: lanes whose set is not empty
+  unsigned given_up = 0;      // out: lanes with a test that was not inflated by more than `enough`
+  unsigned contacts = 0;      // out: lanes in whose middles there is a contact
+  bool all_contacts = false;  // in: go on after a contact, in the lanes before it
 };
 
 template <class Real>

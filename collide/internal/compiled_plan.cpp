@@ -15,13 +15,14 @@
 
 // Error budget, v being the unit roundoff of Real (2^-24 or 2^-53); n frames lie between the root
 // and a body. No point of the body, and no centre of a node of its tree, is further from the root
-// than W: the lengths of the chain, kLargestVariable for each shift, and how far the tree reaches in
-// its frame. X bounds W for all bodies, and how far obstacles reach that are trees.
+// than W: the lengths of the chain, kLargestVariable for each shift, and how far the tree reaches
+// in its frame. X bounds W for all bodies, and how far obstacles reach that are trees.
 //   placed centres (`error` of a body): 38 v n W and 12 v W of plan_poses.h, and in double what its
 //     sines err by, less than 5e-11 n W;
 //   the middles of parts: positions err by less than 9 u times 100 < 1e-12, which moves a point by
 //     less than 1e-12 times 2 W a joint (1e-12 for a shift);
-//   poses for which the answer holds: `pose_error` for each of the two ends between which a motion is
+//   poses for which the answer holds: `pose_error` for each of the two ends between which a motion
+//   is
 //     compared (from the middle to the exact mechanism, and from there to the computed poses of any
 //     other configuration), of both bodies, with the slack of the canonical test: 4 pose_error;
 //   centres were moved to their frame in double: 1e-12 X.
@@ -62,7 +63,7 @@ struct CompiledPlan<Real>::Reach {
   std::vector<double> joints;  // n
   double largest = 0.0;        // the largest W
   double largest_error = 0.0;
-  double scene = 0.0;          // X
+  double scene = 0.0;  // X
 };
 
 template <class Real>
@@ -71,7 +72,8 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   Reach reach;
   reach.chains = chains_of(source.frames);
   for (const PlanSource::Body& body : source.bodies) {
-    const Chain chain = body.frame < 0 ? Chain() : reach.chains[static_cast<std::size_t>(body.frame)];
+    const Chain chain =
+        body.frame < 0 ? Chain() : reach.chains[static_cast<std::size_t>(body.frame)];
     double size = 0.0;
     for (const Sphere& sphere : body.spheres) {
       size = std::max(size, sphere.center.norm() + sphere.radius);
@@ -110,8 +112,7 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   plan_.steps = steps_.data();
   plan_.slides = std::any_of(source.frames.begin(), source.frames.end(),
                              [](const MechanismFrame& frame) { return frame.prismatic; });
-  plan_.bound_slack =
-      rounded_up<Real>(1.0 + (4.0 * static_cast<double>(longest_path_) + 32.0) * v);
+  plan_.bound_slack = rounded_up<Real>(1.0 + (4.0 * static_cast<double>(longest_path_) + 32.0) * v);
   plan_.velocity_error = rounded_up<Real>(kVelocityErrors * reach.largest_error);
 }
 
@@ -171,10 +172,9 @@ template <class Real>
 void CompiledPlan<Real>::compile_bodies(const PlanSource& source, const Reach& reach) {
   std::vector<std::int32_t> firsts;
   for (std::size_t i = 0; i < source.bodies.size(); ++i) {
-    const double middle =
-        reach.joints[i] * kMiddleError * std::max(2.0 * reach.reach[i], 1.0);
-    const double inflation = 2.0 * reach.error[i] + 4.0 * source.pose_error + middle +
-                             kPerScene * reach.scene;
+    const double middle = reach.joints[i] * kMiddleError * std::max(2.0 * reach.reach[i], 1.0);
+    const double inflation =
+        2.0 * reach.error[i] + 4.0 * source.pose_error + middle + kPerScene * reach.scene;
     double largest = 0.0;
     firsts.push_back(add_tree(source.bodies[i].spheres, inflation, largest));
     PlanBody<Real>& body = bodies_.emplace_back();
@@ -200,7 +200,8 @@ void CompiledPlan<Real>::compile_bodies(const PlanSource& source, const Reach& r
   }
   for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].nodes = nodes_.data() + firsts[i];
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    if (obstacles_[i].shape == PlanShape::kTree) obstacles_[i].nodes = nodes_.data() + tree_firsts[i];
+    if (obstacles_[i].shape == PlanShape::kTree)
+      obstacles_[i].nodes = nodes_.data() + tree_firsts[i];
   }
 }
 

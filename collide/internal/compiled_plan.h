@@ -79,6 +79,8 @@ class PlanMemory {
   std::uint64_t evaluation_ = 0;
   std::vector<PlanCandidate> candidates_;
   std::vector<PlanTask> tasks_;
+  std::vector<double> from_;
+  std::vector<double> to_;
   std::vector<Real> rates_;
   std::vector<Real> speeds_;
   std::vector<Real> shifts_;

@@ -2,8 +2,8 @@
 #pragma once
 
 // The kernels of compiled checks, compiled once for each instruction set: the including file
-// defines SPHERULE_KERNEL, a namespace of its own. Vectors are those of the compiler, which makes of
-// them what the machine has. Nothing here comes from a header with inline functions, which the
+// defines SPHERULE_KERNEL, a namespace of its own. Vectors are those of the compiler, which makes
+// of them what the machine has. Nothing here comes from a header with inline functions, which the
 // linker could share between files that were compiled for different machines.
 //
 // Which instructions and which order of operations are used changes the rounding, and so what is
@@ -26,17 +26,14 @@ class Evaluation {
   // `parts` only if it moves.
   Evaluation(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, unsigned lanes,
              const PlanClient& client, PlanParts* parts)
-      : plan_(plan),
-        scratch_(scratch),
-        parts_(parts),
-        lanes_(lanes),
-        context_{plan, scratch, client, {}, {}, Real(0)} {
+      : plan_(plan), scratch_(scratch), parts_(parts), lanes_(lanes), context_{plan,   scratch,
+                                                                               client, {},
+                                                                               {},     Real(0)} {
     if constexpr (kMoves) {
-      for (int lane = 0; lane < kPlanLanes; ++lane) {
-        context_.half[lane] = static_cast<Real>(parts->half[lane] * (1.0 + 0x1p-16));
-      }
+      context_.half = rounded(load(parts->half) * (1.0 + 0x1p-16), Real());
       context_.half_squared = context_.half * context_.half;
       context_.enough = static_cast<Real>(parts->enough);
+      place_middles(plan, scratch, *parts);
     }
     ++*scratch.evaluation;
     place_frames(plan, scratch);
@@ -245,8 +242,8 @@ class Evaluation {
         found = solid(HalfSpaceShape());
         break;
       case PlanShape::kTree:
-        found = from_side<Real, kMoves>(context_, motion, body, 0, StaticSide<Real>{obstacle}, 0,
-                                        open);
+        found =
+            from_side<Real, kMoves>(context_, motion, body, 0, StaticSide<Real>{obstacle}, 0, open);
         break;
     }
     add({test, index, found.near, found.overlap});
@@ -282,8 +279,7 @@ class Evaluation {
       search_side<Real, kMoves>(context_, motion_of_pair(pair), plan_.bodies[both.first],
                                 MovingSide<Real>{plan_.bodies[both.second]}, search);
     } else {
-      const std::int32_t index =
-          plan_.groups[test / kPlanLanes].obstacle[test % kPlanLanes];
+      const std::int32_t index = plan_.groups[test / kPlanLanes].obstacle[test % kPlanLanes];
       search_obstacle(candidate.body, plan_.obstacles[index], search);
     }
     contacts_ |= search.contacts();

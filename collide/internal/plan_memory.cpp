@@ -16,17 +16,21 @@ PlanMemory<Real>::PlanMemory(const CompiledPlan<Real>& compiled) {
   placed_.resize(centers_.size());
   candidates_.resize(static_cast<std::size_t>(plan.test_count()));
   tasks_.resize(compiled.task_count());
+  from_.resize(positions);
+  to_.resize(positions);
   rates_.resize(positions);
   speeds_.resize(positions + 1);
   shifts_.resize(positions + 1);
   body_bounds_.resize(static_cast<std::size_t>(plan.body_count));
   pair_bounds_.resize(static_cast<std::size_t>(plan.pair_count));
   path_work_.resize(2 * compiled.longest_path() + 4);
-  view_ = {positions_.data(),   poses_.data(),       twists_.data(),    centers_.data(),
-           placed_.data(),      &evaluation_,        candidates_.data(), tasks_.data(),
-           rates_.data(),       speeds_.data(),      shifts_.data(),    body_bounds_.data(),
-           pair_bounds_.data(), path_work_.data(),   &total_speed_,
-           &recent_,            has_bounds_};
+  view_ = {positions_.data(),  poses_.data(),       twists_.data(),
+           centers_.data(),    placed_.data(),      &evaluation_,
+           candidates_.data(), tasks_.data(),       from_.data(),
+           to_.data(),         rates_.data(),       speeds_.data(),
+           shifts_.data(),     body_bounds_.data(), pair_bounds_.data(),
+           path_work_.data(),  &total_speed_,       &recent_,
+           has_bounds_};
 }
 
 template class PlanMemory<float>;

@@ -83,9 +83,8 @@ SPHERULE_INLINE void sine_and_cosine(const Double8& angle, Double8& sine, Double
   const Double8 r2 = r * r;
   const Double8 s =
       r + r * r2 *
-              (-1.0 / 6 +
-               r2 * (1.0 / 120 +
-                     r2 * (-1.0 / 5040 + r2 * (1.0 / 362880 + r2 * (-1.0 / 39916800)))));
+              (-1.0 / 6 + r2 * (1.0 / 120 +
+                                r2 * (-1.0 / 5040 + r2 * (1.0 / 362880 + r2 * (-1.0 / 39916800)))));
   const Double8 c =
       1.0 - 0.5 * r2 +
       r2 * r2 *
@@ -123,6 +122,17 @@ SPHERULE_INLINE Point<Real> combined(const PlanPose<Real>& pose, const Real* by)
   return sum;
 }
 
+// The positions in the middles of the parts.
+template <class Real>
+SPHERULE_INLINE void place_middles(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch,
+                                   const PlanParts& parts) {
+  const Double8 at = load(parts.middle);
+  const Double8 before = 1.0 - at;
+  for (std::int32_t i = 0; i < plan.position_count; ++i) {
+    store<double>(before * scratch.from[i] + at * scratch.to[i], scratch.positions[i].lane);
+  }
+}
+
 // The poses of all frames.
 template <class Real>
 SPHERULE_INLINE void place_frames(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch) {
@@ -144,9 +154,8 @@ SPHERULE_INLINE void place_frames(const CheckPlan<Real>& plan, const PlanScratch
       const Vector<Real> shift = rounded(position, Real());
       store_point(m0, pose.columns[0]);
       store_point(m1, pose.columns[1]);
-      store_point<Real>(
-          {origin.x + shift * m2.x, origin.y + shift * m2.y, origin.z + shift * m2.z},
-          pose.columns[3]);
+      store_point<Real>({origin.x + shift * m2.x, origin.y + shift * m2.y, origin.z + shift * m2.z},
+                        pose.columns[3]);
       continue;
     }
     Vector<Real> s, c;
@@ -193,8 +202,8 @@ SPHERULE_INLINE Point<Real> center_of(const PlanScratch<Real>& scratch, const Pl
   scratch.placed[index] = *scratch.evaluation;
   const PlanPose<Real>& pose = scratch.poses[body.frame];
   const Real* const c = body.nodes[node].center;
-  const Point<Real> at =
-      c[0] * column(pose, 0) + (c[1] * column(pose, 1) + (c[2] * column(pose, 2) + column(pose, 3)));
+  const Point<Real> at = c[0] * column(pose, 0) +
+                         (c[1] * column(pose, 1) + (c[2] * column(pose, 2) + column(pose, 3)));
   store_point(at, center.at);
   return at;
 }

@@ -5,8 +5,8 @@
 // kernels, see plan_kernel_impl.h.
 //
 // In each lane a part of a motion (or a configuration, a part of length 0) is evaluated at its
-// middle; h is half its length. Let K be a convex solid that is static, or a sphere's centre as seen
-// from the link of the other side, f the distance of a moving sphere's centre p from it, e the
+// middle; h is half its length. Let K be a convex solid that is static, or a sphere's centre as
+// seen from the link of the other side, f the distance of a moving sphere's centre p from it, e the
 // offset of p from the nearest point of K, |e| = f, and v the velocity of p against K, all at the
 // middle. Distance to a convex set is convex and has the gradient e / f, so that in the whole part
 //     f >= f(middle) - |e . v| h / f - bend h^2   and   f >= f(middle) - speed h,
@@ -19,11 +19,11 @@
 // Rounding. Let |e' - e| <= p for the computed offset e', d = |e'|. Then f >= d - p and |e . v| <=
 // |e' . v| + p speed. A test that finds
 //     d (d - R - 2 p - bend h^2) > |e' . v| h + p speed h
-// proves it: with A = f - R - bend h^2 >= d - R - bend h^2 - p > 0, (d - p) A exceeds the right side
-// because d p >= p A. And d > R + p + speed h proves the other. So radii are inflated by 2 p, split
-// between both sides as `error`, and p speed h is added. Velocities err by `velocity_error` for
-// each unit of time, which is added to bend h; it has room for the roundings of e' . v and of the
-// rotated v, 6 roundoffs of speed. All other numbers are sums of terms that are not negative;
+// proves it: with A = f - R - bend h^2 >= d - R - bend h^2 - p > 0, (d - p) A exceeds the right
+// side because d p >= p A. And d > R + p + speed h proves the other. So radii are inflated by 2 p,
+// split between both sides as `error`, and p speed h is added. Velocities err by `velocity_error`
+// for each unit of time, which is added to bend h; it has room for the roundings of e' . v and of
+// the rotated v, 6 roundoffs of speed. All other numbers are sums of terms that are not negative;
 // radii and h have slack of 16 roundoffs and more for these: let the computed square be at most
 // D^2 (1 + 5.1 v) where D = d, and the computed right side at least (1 - 5 v) of the exact one.
 // 16 v exceed these together.
@@ -193,9 +193,8 @@ SPHERULE_INLINE Separation<Real> from_solid(const SearchContext<Real, kMoves>& c
   const Point<Real> p = center_of(context.scratch, body, node);
   const Point<Real> e = Shape::offset(solid, p);
   return separation<Real, kMoves>(
-      context, motion, e, body.nodes[node].radius + solid.radius, lanes, [&] {
-        return Shape::along(solid, e, velocity_of(context.scratch.twists[body.frame], p));
-      });
+      context, motion, e, body.nodes[node].radius + solid.radius, lanes,
+      [&] { return Shape::along(solid, e, velocity_of(context.scratch.twists[body.frame], p)); });
 }
 
 // Trees of build_tree() are less than 100 levels deep.
@@ -253,7 +252,8 @@ struct MovingSide {
   SPHERULE_INLINE Point<Real> center(const PlanScratch<Real>& scratch, std::int32_t i) const {
     return center_of(scratch, body, i);
   }
-  SPHERULE_INLINE Point<Real> relative(const PlanScratch<Real>& scratch, const Point<Real>& velocity,
+  SPHERULE_INLINE Point<Real> relative(const PlanScratch<Real>& scratch,
+                                       const Point<Real>& velocity,
                                        const Point<Real>& center) const {
     return velocity - velocity_of(scratch.twists[body.frame], center);
   }

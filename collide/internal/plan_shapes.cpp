@@ -6,13 +6,13 @@
 #include <limits>
 
 // Error budget, v being the unit roundoff of Real. A point p with |p| <= W is computed in the frame
-// of a solid with the centre c and the sizes h as A (p - c). Rounding c takes v |c|, the difference v
-// (W + |c|), the entries of A 2 v (W + |c|), products and sums 7 v (W + |c|). The offset from the
-// nearest point: sizes rounded v |h|; clamping and its differences 3 v (W + |c| + |h|); the quotient
-// of a cylinder 4 v (W + |c|); along an axis, product and sum, 4 v (W + |c| + |h|); a normal or an
-// axis that is off by 2 v turns the nearest point by 2 v |h|. Together less than 24 v (W + |c| +
-// |h|); in double the pose itself adds 40 u (W + |c|): 64 covers both. Distances to convex sets
-// differ by no more than the points and the sets do.
+// of a solid with the centre c and the sizes h as A (p - c). Rounding c takes v |c|, the difference
+// v (W + |c|), the entries of A 2 v (W + |c|), products and sums 7 v (W + |c|). The offset from the
+// nearest point: sizes rounded v |h|; clamping and its differences 3 v (W + |c| + |h|); the
+// quotient of a cylinder 4 v (W + |c|); along an axis, product and sum, 4 v (W + |c| + |h|); a
+// normal or an axis that is off by 2 v turns the nearest point by 2 v |h|. Together less than 24 v
+// (W + |c| + |h|); in double the pose itself adds 40 u (W + |c|): 64 covers both. Distances to
+// convex sets differ by no more than the points and the sets do.
 //
 // Boxes are wider by 16 v (W + |corner|): that covers what rounding takes of the boxes around the
 // lanes' spheres, whose radii have the errors of centres in them.
@@ -130,8 +130,7 @@ PlanObstacle<Real> compiled_solid(const PlanSource::Obstacle& obstacle, double r
       kSolidErrors * kRoundoff<Real> * (reach + center.norm() + kind.half.norm() + kind.radius);
   result.error = rounded_up<Real>(error);
   result.radius = inflated_radius<Real>(kind.radius, 2.0 * error);
-  result.margin =
-      rounded_up<Real>(3.0 * sub_up(static_cast<double>(result.radius), kind.radius));
+  result.margin = rounded_up<Real>(3.0 * sub_up(static_cast<double>(result.radius), kind.radius));
   return result;
 }
 

@@ -39,8 +39,7 @@ struct BoxShape {
 // A ball, a capsule: their radius is added elsewhere.
 struct SegmentShape {
   template <class Real>
-  SPHERULE_INLINE static Point<Real> offset(const PlanObstacle<Real>& solid,
-                                            const Point<Real>& p) {
+  SPHERULE_INLINE static Point<Real> offset(const PlanObstacle<Real>& solid, const Point<Real>& p) {
     const Point<Real> at = p - constant(solid.center);
     const Real* const axis = solid.rotation[2];
     const Vector<Real> along = axis[0] * at.x + axis[1] * at.y + axis[2] * at.z;
@@ -56,8 +55,7 @@ struct SegmentShape {
 
 struct CylinderShape {
   template <class Real>
-  SPHERULE_INLINE static Point<Real> offset(const PlanObstacle<Real>& solid,
-                                            const Point<Real>& p) {
+  SPHERULE_INLINE static Point<Real> offset(const PlanObstacle<Real>& solid, const Point<Real>& p) {
     const Point<Real> at = rotated(solid, p - constant(solid.center));
     const Vector<Real> from_axis = root(at.x * at.x + at.y * at.y);
     const Vector<Real> beyond = larger(from_axis - solid.half[0], Vector<Real>{});
@@ -74,8 +72,7 @@ struct CylinderShape {
 
 struct HalfSpaceShape {
   template <class Real>
-  SPHERULE_INLINE static Point<Real> offset(const PlanObstacle<Real>& solid,
-                                            const Point<Real>& p) {
+  SPHERULE_INLINE static Point<Real> offset(const PlanObstacle<Real>& solid, const Point<Real>& p) {
     const Point<Real> at = p - constant(solid.center);
     const Real* const normal = solid.rotation[2];
     const Vector<Real> height = normal[0] * at.x + normal[1] * at.y + normal[2] * at.z;

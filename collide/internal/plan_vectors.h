@@ -76,8 +76,7 @@ SPHERULE_INLINE unsigned above(const Float8& a, const Float8& b) {
 
 SPHERULE_INLINE unsigned above(const Double8& a, const Double8& b) {
 #if defined(__AVX512F__)
-  return _mm512_cmp_pd_mask(reinterpret_cast<__m512d>(a), reinterpret_cast<__m512d>(b),
-                            _CMP_GT_OQ);
+  return _mm512_cmp_pd_mask(reinterpret_cast<__m512d>(a), reinterpret_cast<__m512d>(b), _CMP_GT_OQ);
 #else
   const Long8 set = a > b;
   unsigned mask = 0;

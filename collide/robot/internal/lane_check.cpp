@@ -46,7 +46,8 @@ LaneCheck::Memory::Memory(const LaneCheck& check)
       single_(*check.single_),
       exact_(*check.exact_),
       room_(check.positions_.room_for(kLanes)) {
-  const auto positions = static_cast<std::size_t>(std::max(1, check.single_->plan().position_count));
+  const auto positions =
+      static_cast<std::size_t>(std::max(1, check.single_->plan().position_count));
   from_.resize(positions);
   to_.resize(positions);
   variables_.resize(static_cast<std::size_t>(check.pairs_.robot().variable_count()));

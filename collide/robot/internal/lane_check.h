@@ -29,17 +29,15 @@ class PartStack {
 
   bool empty() const { return parts_.empty(); }
   void clear(std::size_t words);
-  // `open` is a set of tests; null: all.
+  // `open` is a set of tests.
   void push(const Part& part, const std::uint64_t* open);
-  // Into `open`; false if all tests are open, which it is then not filled with.
-  bool pop(Part& part, std::uint64_t* open);
+  void pop(Part& part, std::uint64_t* open);
   // The earliest begin of those that wait; infinite if there is none.
   double earliest() const;
 
  private:
   std::size_t words_ = 0;
   std::vector<Part> parts_;
-  std::vector<std::uint8_t> is_all_;
   std::vector<std::uint64_t> open_;
 };
 
@@ -94,14 +92,14 @@ class LaneCheck {
   const BodyPairs& pairs_;
   JointPositions positions_;
   const PlanKernelSet& kernels_;
-  std::vector<std::size_t> fixed_pairs_;  // that no joint moves
+  std::vector<std::size_t> fixed_pairs_;   // that no joint moves
   std::vector<std::size_t> pair_of_test_;  // of the source
   std::unique_ptr<const CompiledPlan<float>> configurations_;
   std::unique_ptr<const CompiledPlan<float>> single_;
   std::unique_ptr<const CompiledPlan<double>> exact_;
-  double single_error_ = 0.0;  // of placed centres
-  bool always_tested_ = false; // a fixed pair among the first tested() touches
-  bool always_ = false;        // any fixed pair does
+  double single_error_ = 0.0;   // of placed centres
+  bool always_tested_ = false;  // a fixed pair among the first tested() touches
+  bool always_ = false;         // any fixed pair does
 };
 
 }  // namespace spherule::internal

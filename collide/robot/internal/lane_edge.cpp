@@ -30,25 +30,19 @@ constexpr double kUndecided = 4.0;
 void PartStack::clear(std::size_t words) {
   words_ = words;
   parts_.clear();
-  is_all_.clear();
   open_.clear();
 }
 
 void PartStack::push(const Part& part, const std::uint64_t* open) {
   parts_.push_back(part);
-  is_all_.push_back(open == nullptr ? 1 : 0);
-  if (open != nullptr) open_.insert(open_.end(), open, open + words_);
+  open_.insert(open_.end(), open, open + words_);
 }
 
-bool PartStack::pop(Part& part, std::uint64_t* open) {
+void PartStack::pop(Part& part, std::uint64_t* open) {
   part = parts_.back();
   parts_.pop_back();
-  const bool is_all = is_all_.back() != 0;
-  is_all_.pop_back();
-  if (is_all) return false;
   std::copy(open_.end() - static_cast<std::ptrdiff_t>(words_), open_.end(), open);
   open_.resize(open_.size() - words_);
-  return true;
 }
 
 double PartStack::earliest() const {
@@ -129,6 +123,8 @@ class LaneCheck::Edge {
     for (std::size_t p = 0; p < memory_.from_.size(); ++p) {
       const double rate = memory_.to_[p] - memory_.from_[p];
       const double largest = std::max(std::abs(memory_.from_[p]), std::abs(memory_.to_[p]));
+      scratch.from[p] = memory_.from_[p];
+      scratch.to[p] = memory_.to_[p];
       scratch.rates[p] = static_cast<Real>(rate);
       scratch.speeds[p] = static_cast<Real>(std::abs(rate) * kLonger);
       scratch.shifts[p] = static_cast<Real>(largest * kLonger);
@@ -144,48 +140,68 @@ class LaneCheck::Edge {
   template <class Real>
   bool prove(const Part& whole, const std::uint64_t* open) {
     set_motion<Real>();
-    PartStack& waiting = stage<Real>().waiting;
-    const CheckPlan<Real>& plan = compiled<Real>().plan();
-    waiting.clear(static_cast<std::size_t>(plan.word_count()));
-    split(waiting, whole, kPlanLanes, open);
-    while (!waiting.empty()) {
-      if (!evaluate<Real>()) {
-        unproved_from_ = std::min(unproved_from_, waiting.earliest());
-        return false;
-      }
+    Memory::Stage<Real>& stage = this->stage<Real>();
+    stage.waiting.clear(static_cast<std::size_t>(compiled<Real>().plan().word_count()));
+    Batch batch;
+    bool goes_on = true;
+    if (open == nullptr) {
+      for (int i = 0; i < kPlanLanes; ++i) batch.parts[i] = piece_of(whole, i, kPlanLanes);
+      batch.count = kPlanLanes;
+      goes_on = evaluate<Real>(batch);
+    } else {
+      split(stage.waiting, whole, kPlanLanes, open);
     }
-    return true;
+    while (goes_on && !stage.waiting.empty()) goes_on = !take<Real>(batch) || evaluate<Real>(batch);
+    if (!goes_on) unproved_from_ = std::min(unproved_from_, stage.waiting.earliest());
+    return goes_on;
+  }
+
+  // Parts that are evaluated side by side. All tests are open in them, or those of the stage's
+  // sets.
+  struct Batch {
+    std::array<Part, kPlanLanes> parts;
+    std::size_t count = 0;
+    bool is_all = true;
+  };
+
+  static Part piece_of(const Part& part, int i, int pieces) {
+    const double length = part.end - part.begin;
+    const auto border = [&](int k) {
+      return k == pieces ? part.end : part.begin + length * (static_cast<double>(k) / pieces);
+    };
+    return {border(i), border(i + 1)};
   }
 
   // The leftmost piece on top.
   static void split(PartStack& waiting, const Part& part, int pieces, const std::uint64_t* open) {
-    const double length = part.end - part.begin;
-    double end = part.end;
     for (int i = pieces - 1; i >= 0; --i) {
-      const double begin = i == 0 ? part.begin : part.begin + length * (1.0 * i / pieces);
-      if (begin < end) waiting.push({begin, end}, open);
-      end = begin;
+      const Part piece = piece_of(part, i, pieces);
+      if (piece.begin < piece.end) waiting.push(piece, open);
     }
   }
 
-  // Up to eight parts from the top of the stack.
+  // Up to eight parts from the top of the stack, as far as they are not behind a contact.
   template <class Real>
-  bool evaluate() {
+  bool take(Batch& batch) {
+    Memory::Stage<Real>& stage = this->stage<Real>();
+    const auto words = static_cast<std::size_t>(compiled<Real>().plan().word_count());
+    batch.count = 0;
+    batch.is_all = false;
+    while (batch.count < kPlanLanes && !stage.waiting.empty()) {
+      stage.waiting.pop(batch.parts[batch.count], stage.open.data() + batch.count * words);
+      if (batch.parts[batch.count].begin < result_.contact_at) ++batch.count;
+    }
+    return batch.count != 0;
+  }
+
+  // False once there is no more to be found.
+  template <class Real>
+  bool evaluate(const Batch& taken) {
     Memory::Stage<Real>& stage = this->stage<Real>();
     const CheckPlan<Real>& plan = compiled<Real>().plan();
     const auto words = static_cast<std::size_t>(plan.word_count());
-    std::array<Part, kPlanLanes> parts;
-    std::size_t count = 0;
-    bool is_all = true;
-    std::array<bool, kPlanLanes> all_open{};
-    while (count < kPlanLanes && !stage.waiting.empty()) {
-      const bool has_set = stage.waiting.pop(parts[count], stage.open.data() + count * words);
-      if (parts[count].begin >= result_.contact_at) continue;
-      all_open[count] = !has_set;
-      is_all = is_all && !has_set;
-      ++count;
-    }
-    if (count == 0) return true;
+    const std::array<Part, kPlanLanes>& parts = taken.parts;
+    const std::size_t count = taken.count;
     const auto stop = [&] {
       for (std::size_t i = 0; i < count; ++i) {
         unproved_from_ = std::min(unproved_from_, parts[i].begin);
@@ -194,19 +210,16 @@ class LaneCheck::Edge {
     };
     if (result_.configurations + count > request_.max_configurations) return stop();
     result_.configurations += count;
-    for (std::size_t i = 0; !is_all && i < count; ++i) {
-      if (all_open[i]) std::fill_n(stage.open.data() + i * words, words, ~std::uint64_t{0});
-    }
     PlanParts batch;
     batch.lanes = (1U << count) - 1;
-    batch.open = is_all ? nullptr : stage.open.data();
+    batch.open = taken.is_all ? nullptr : stage.open.data();
     batch.near = stage.near.data();
     batch.all_contacts = request_.first;
     batch.enough = 0.5 * request_.resolution;
     if constexpr (std::is_same_v<Real, float>) {
       batch.enough = std::max(batch.enough, kUndecided * check_.single_error_);
     }
-    place(stage.plan.view(), {parts.data(), count}, batch);
+    place({parts.data(), count}, batch);
     Client<Real> client{*this};
     kernels<Real>().evaluate(plan, stage.plan.view(), batch,
                              {&Client<Real>::touches, &Client<Real>::within, &client});
@@ -234,18 +247,12 @@ class LaneCheck::Edge {
   }
 
   // The middles of the parts; the lanes that are left over repeat the last.
-  template <class Real>
-  void place(const PlanScratch<Real>& scratch, std::span<const Part> parts, PlanParts& batch) {
+  void place(std::span<const Part> parts, PlanParts& batch) {
     for (std::size_t lane = 0; lane < kPlanLanes; ++lane) {
       const Part& part = parts[std::min(lane, parts.size() - 1)];
       times_[lane] = middle_of(part);
+      batch.middle[lane] = times_[lane];
       batch.half[lane] = std::max(part.end - times_[lane], times_[lane] - part.begin);
-    }
-    for (std::size_t p = 0; p < memory_.from_.size(); ++p) {
-      for (std::size_t lane = 0; lane < kPlanLanes; ++lane) {
-        scratch.positions[p].lane[lane] =
-            (1.0 - times_[lane]) * memory_.from_[p] + times_[lane] * memory_.to_[p];
-      }
     }
     placed_ = -1.0;
   }

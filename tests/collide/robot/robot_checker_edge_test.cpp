@@ -164,7 +164,7 @@ TEST(RobotCheckerEdge, OnlyJointsBetweenTheTwoCount) {
   const EdgeResult free = checker.check_edge(Configuration{-50, 40, 0.0, 0.0},
                                              Configuration{50, -40, 0.0001, 0.0}, scratch);
   EXPECT_EQ(free.verdict, Verdict::kFree);
-  EXPECT_EQ(free.configurations, 1U);
+  EXPECT_EQ(free.configurations, 8U);
   const EdgeResult met =
       checker.check_edge(Configuration{-50, 40, 0.0, 0.0}, Configuration{50, -40, 0.02, 0.0},
                          scratch, {.first = true});
