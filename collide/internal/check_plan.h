@@ -124,11 +124,9 @@ struct CheckPlan {
   bool slides;          // whether any joint is prismatic
   Real bound_slack;     // factor by which sums of bounds are inflated for rounding
   Real velocity_error;  // of velocities, for each unit of the sum of all rates
-
-  std::int32_t first_pair() const { return group_count * kPlanLanes; }
-  std::int32_t test_count() const { return first_pair() + pair_count; }
-  // Words of a set of tests, one bit each.
-  std::int32_t word_count() const { return (test_count() + 63) / 64; }
+  std::int32_t first_pair;  // the number of the first test of two bodies
+  std::int32_t test_count;
+  std::int32_t word_count;  // of a set of tests, one bit each
 };
 
 template <class Real>
@@ -236,9 +234,15 @@ struct PlanKernels {
                    const PlanClient& client);
 };
 
+struct WidePlan;
+struct WideScratch;
+
 struct PlanKernelSet {
   PlanKernels<float> single;
   PlanKernels<double> exact;
+  // Whether any test touches in one configuration.
+  bool (*check_one)(const CheckPlan<float>& plan, const WidePlan& wide, const WideScratch& scratch,
+                    const PlanClient& client);
 };
 
 const PlanKernelSet& portable_plan_kernels();

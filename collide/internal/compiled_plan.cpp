@@ -105,6 +105,9 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   plan_.groups = groups_.data();
   plan_.group_count = static_cast<std::int32_t>(groups_.size());
   plan_.obstacles = obstacles_.data();
+  plan_.first_pair = plan_.group_count * kPlanLanes;
+  plan_.test_count = plan_.first_pair + static_cast<std::int32_t>(pairs_.size());
+  plan_.word_count = (plan_.test_count + 63) / 64;
   plan_.pairs = pairs_.data();
   plan_.pair_count = static_cast<std::int32_t>(pairs_.size());
   plan_.body_paths = body_paths_.data();
@@ -175,6 +178,7 @@ void CompiledPlan<Real>::compile_bodies(const PlanSource& source, const Reach& r
     const double middle = reach.joints[i] * kMiddleError * std::max(2.0 * reach.reach[i], 1.0);
     const double inflation =
         2.0 * reach.error[i] + 4.0 * source.pose_error + middle + kPerScene * reach.scene;
+    inflations_.push_back(inflation);
     double largest = 0.0;
     firsts.push_back(add_tree(source.bodies[i].spheres, inflation, largest));
     PlanBody<Real>& body = bodies_.emplace_back();

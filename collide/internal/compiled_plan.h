@@ -25,6 +25,8 @@ class CompiledPlan {
   std::int32_t source_test(std::int32_t test) const {
     return source_tests_[static_cast<std::size_t>(test)];
   }
+  // What the radii of a body's spheres are inflated by.
+  double inflation(std::size_t body) const { return inflations_[body]; }
   std::size_t center_count() const { return center_count_; }
   std::size_t task_count() const { return task_count_; }
   std::size_t longest_path() const { return longest_path_; }
@@ -42,6 +44,7 @@ class CompiledPlan {
   CheckPlan<Real> plan_{};
   std::vector<PlanFrame<Real>> frames_{};
   std::vector<PlanNode<Real>> nodes_{};
+  std::vector<double> inflations_{};
   std::vector<PlanBody<Real>> bodies_{};
   std::vector<PlanObstacle<Real>> obstacles_{};
   std::vector<PlanBoxes<Real>> obstacle_boxes_{};  // the box of each in lane 0

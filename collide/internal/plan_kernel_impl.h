@@ -15,6 +15,7 @@
 
 #include "collide/internal/plan_bounds.h"
 #include "collide/internal/plan_search.h"
+#include "collide/internal/plan_single.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
@@ -96,29 +97,16 @@ class Evaluation {
     for (std::int32_t i = 0; i < recent.count; ++i) {
       contacts_ = still.test_alone(recent.tests[i]);
       if (contacts_ == 0) continue;
-      remember(recent.tests[i]);
+      remember(*scratch_.recent, recent.tests[i]);
       return true;
     }
     return false;
   }
 
-  // To the front of the list.
-  void remember(std::int32_t test) {
-    PlanRecent& recent = *scratch_.recent;
-    std::int32_t place = 0;
-    while (place < recent.count && recent.tests[place] != test) ++place;
-    if (place == recent.count) {
-      if (recent.count < PlanRecent::kMost) ++recent.count;
-      place = recent.count - 1;
-    }
-    for (; place > 0; --place) recent.tests[place] = recent.tests[place - 1];
-    recent.tests[0] = test;
-  }
-
   // Of all lanes as they are placed; the lanes that touch.
   unsigned test_alone(std::int32_t test) {
-    if (test >= plan_.first_pair()) {
-      test_pair(test - plan_.first_pair());
+    if (test >= plan_.first_pair) {
+      test_pair(test - plan_.first_pair);
     } else {
       const PlanBoxes<Real>& boxes = plan_.groups[test / kPlanLanes];
       test_obstacle(boxes.body, test, boxes.obstacle[test % kPlanLanes]);
@@ -149,7 +137,7 @@ class Evaluation {
     unsigned open = 0;
     for (unsigned left = lanes_; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
-      const std::uint64_t word = parts_->open[lane * plan_.word_count() + test / 64];
+      const std::uint64_t word = parts_->open[lane * plan_.word_count + test / 64];
       open |= static_cast<unsigned>(word >> (test % 64) & 1U) << lane;
     }
     return open;
@@ -161,7 +149,7 @@ class Evaluation {
     if (parts_->open == nullptr) return kAllLanes;
     std::uint64_t bits = 0;
     for (unsigned left = lanes_; left != 0; left &= left - 1) {
-      bits |= parts_->open[__builtin_ctz(left) * plan_.word_count() + group / 8];
+      bits |= parts_->open[__builtin_ctz(left) * plan_.word_count + group / 8];
     }
     return static_cast<unsigned>(bits >> (group % 8 * 8)) & kAllLanes;
   }
@@ -250,7 +238,7 @@ class Evaluation {
   }
 
   void test_pair(std::int32_t pair) {
-    const std::int32_t test = plan_.first_pair() + pair;
+    const std::int32_t test = plan_.first_pair + pair;
     const unsigned open = open_lanes(test);
     if (open == 0) return;
     const PlanPair& both = plan_.pairs[pair];
@@ -273,8 +261,8 @@ class Evaluation {
   void search(const PlanCandidate& candidate) {
     const std::int32_t test = candidate.test;
     TestSearch<Real, kMoves> search(context_, test, candidate.near);
-    if (test >= plan_.first_pair()) {
-      const std::int32_t pair = test - plan_.first_pair();
+    if (test >= plan_.first_pair) {
+      const std::int32_t pair = test - plan_.first_pair;
       const PlanPair& both = plan_.pairs[pair];
       search_side<Real, kMoves>(context_, motion_of_pair(pair), plan_.bodies[both.first],
                                 MovingSide<Real>{plan_.bodies[both.second]}, search);
@@ -284,7 +272,7 @@ class Evaluation {
     }
     contacts_ |= search.contacts();
     if constexpr (kMoves) {
-      if (search.contacts() != 0) remember(test);
+      if (search.contacts() != 0) remember(*scratch_.recent, test);
       conclude(test, search);
     } else {
       lanes_ &= ~search.contacts();
@@ -318,7 +306,7 @@ class Evaluation {
     parts_->any_near |= near;
     for (unsigned left = near; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
-      parts_->near[lane * plan_.word_count() + test / 64] |= std::uint64_t{1} << (test % 64);
+      parts_->near[lane * plan_.word_count + test / 64] |= std::uint64_t{1} << (test % 64);
       if (!(static_cast<double>(search.inflation(lane)) > parts_->enough)) {
         parts_->given_up |= 1U << lane;
       }
@@ -344,14 +332,19 @@ template <class Real>
 void evaluate(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, PlanParts& parts,
               const PlanClient& client) {
   parts.any_near = parts.given_up = parts.contacts = 0;
-  for (std::int32_t i = 0; i < kPlanLanes * plan.word_count(); ++i) parts.near[i] = 0;
+  for (std::int32_t i = 0; i < kPlanLanes * plan.word_count; ++i) parts.near[i] = 0;
   parts.contacts = Evaluation<Real, true>(plan, scratch, parts.lanes, client, &parts).run();
 }
 
 template <class Real>
 constexpr PlanKernels<Real> kKernelsOf = {&check<Real>, &evaluate<Real>};
 
-constexpr PlanKernelSet kPlanKernels = {kKernelsOf<float>, kKernelsOf<double>};
+bool check_one(const CheckPlan<float>& plan, const WidePlan& wide, const WideScratch& scratch,
+               const PlanClient& client) {
+  return SingleCheck(plan, wide, scratch, client).run();
+}
+
+constexpr PlanKernelSet kPlanKernels = {kKernelsOf<float>, kKernelsOf<double>, &check_one};
 
 }  // namespace
 }  // namespace spherule::internal::SPHERULE_KERNEL

@@ -14,7 +14,7 @@ PlanMemory<Real>::PlanMemory(const CompiledPlan<Real>& compiled) {
   twists_.resize(poses_.size());
   centers_.resize(compiled.center_count());
   placed_.resize(centers_.size());
-  candidates_.resize(static_cast<std::size_t>(plan.test_count()));
+  candidates_.resize(static_cast<std::size_t>(plan.test_count));
   tasks_.resize(compiled.task_count());
   from_.resize(positions);
   to_.resize(positions);

@@ -162,6 +162,18 @@ SPHERULE_INLINE auto highest(const V& a) {
   return -lowest(-a);
 }
 
+// Puts a test to the front of the list.
+SPHERULE_INLINE void remember(PlanRecent& recent, std::int32_t test) {
+  std::int32_t place = 0;
+  while (place < recent.count && recent.tests[place] != test) ++place;
+  if (place == recent.count) {
+    if (recent.count < PlanRecent::kMost) ++recent.count;
+    place = recent.count - 1;
+  }
+  for (; place > 0; --place) recent.tests[place] = recent.tests[place - 1];
+  recent.tests[0] = test;
+}
+
 // Three coordinates.
 template <class Real>
 struct Point {

@@ -105,7 +105,7 @@ bool RobotChecker::is_free_of_itself(std::span<const double> configuration,
   if (parts_->pairs.tested() == 0) return true;
   Scratch::Memory& memory = *scratch.memory_;
   if (parts_->pairs.is_usual(configuration)) {
-    return parts_->lanes.contacts({&configuration, 1}, memory.lanes, memory.pairs) == 0;
+    return !parts_->lanes.touches(configuration, memory.lanes, memory.pairs);
   }
   parts_->pairs.place(configuration, memory.pairs);
   return !parts_->pairs.any_touches(memory.pairs);

@@ -24,6 +24,7 @@ LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
   RobotPlanSource all = make_plan_source(pairs, pairs.pairs().size());
   RobotPlanSource tested = make_plan_source(pairs, pairs.tested());
   configurations_ = std::make_unique<const CompiledPlan<float>>(tested.source);
+  one_ = std::make_unique<const CompiledWidePlan>(tested.source, *configurations_);
   single_ = std::make_unique<const CompiledPlan<float>>(all.source);
   exact_ = std::make_unique<const CompiledPlan<double>>(all.source);
   single_error_ = static_cast<double>(single_->plan().velocity_error) / 16.0;
@@ -38,11 +39,12 @@ LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
 template <class Real>
 LaneCheck::Memory::Stage<Real>::Stage(const CompiledPlan<Real>& compiled)
     : plan(compiled),
-      open(static_cast<std::size_t>(compiled.plan().word_count()) * kPlanLanes),
+      open(static_cast<std::size_t>(compiled.plan().word_count) * kPlanLanes),
       near(open.size()) {}
 
 LaneCheck::Memory::Memory(const LaneCheck& check)
     : configurations_(*check.configurations_),
+      one_(check.configurations_->plan(), *check.one_),
       single_(*check.single_),
       exact_(*check.exact_),
       room_(check.positions_.room_for(kLanes)) {
@@ -81,7 +83,7 @@ unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurat
   const unsigned all = (1U << configurations.size()) - 1;
   if (always_tested_) return all;
   const CheckPlan<float>& plan = configurations_->plan();
-  if (plan.test_count() == 0) return 0;
+  if (plan.test_count == 0) return 0;
   const PlanScratch<float>& scratch = memory.configurations_.view();
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t i = std::min(lane, configurations.size() - 1);
@@ -91,6 +93,19 @@ unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurat
   ConfigurationClient client{pairs_, *configurations_, pair_of_test_, configurations, exact};
   return kernels_.single.check(plan, scratch, all,
                                {&ConfigurationClient::touches, nullptr, &client});
+}
+
+bool LaneCheck::touches(std::span<const double> configuration, Memory& memory,
+                        BodyPairs::Memory& exact) const {
+  if (always_tested_) return true;
+  const CheckPlan<float>& plan = configurations_->plan();
+  if (plan.test_count == 0) return false;
+  const WideScratch& scratch = memory.one_.view();
+  const std::span<const double> at = positions_.of(configuration, memory.room_);
+  std::copy(at.begin(), at.end(), scratch.positions);
+  ConfigurationClient client{pairs_, *configurations_, pair_of_test_, {&configuration, 1}, exact};
+  return kernels_.check_one(plan, one_->plan(), scratch,
+                            {&ConfigurationClient::touches, nullptr, &client});
 }
 
 }  // namespace spherule::internal

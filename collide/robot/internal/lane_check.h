@@ -6,6 +6,7 @@
 
 #include "collide/instruction_set.h"
 #include "collide/internal/compiled_plan.h"
+#include "collide/internal/compiled_wide_plan.h"
 #include "collide/robot/internal/body_pairs.h"
 #include "collide/robot/joint_positions.h"
 
@@ -64,6 +65,7 @@ class LaneCheck {
       std::vector<std::uint64_t> near;
     };
     PlanMemory<float> configurations_;
+    WideMemory one_;
     Stage<float> single_;
     Stage<double> exact_;
     JointPositions::Room room_;
@@ -81,6 +83,10 @@ class LaneCheck {
   unsigned contacts(std::span<const std::span<const double>> configurations, Memory& memory,
                     BodyPairs::Memory& exact) const;
 
+  // The same of one configuration.
+  bool touches(std::span<const double> configuration, Memory& memory,
+               BodyPairs::Memory& exact) const;
+
   // The straight motion up to the fraction `end`, all pairs of BodyPairs, as RobotChecker says of
   // check_edge(). Both ends must be is_usual(), the resolution above zero.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, double end,
@@ -95,6 +101,7 @@ class LaneCheck {
   std::vector<std::size_t> fixed_pairs_;   // that no joint moves
   std::vector<std::size_t> pair_of_test_;  // of the source
   std::unique_ptr<const CompiledPlan<float>> configurations_;
+  std::unique_ptr<const CompiledWidePlan> one_;
   std::unique_ptr<const CompiledPlan<float>> single_;
   std::unique_ptr<const CompiledPlan<double>> exact_;
   double single_error_ = 0.0;   // of placed centres

@@ -74,7 +74,7 @@ class LaneCheck::Edge {
       result_ = {.verdict = Verdict::kCollision, .contact_at = 0.0};
       return result_;
     }
-    if (check_.single_->plan().test_count() > 0) prove<float>({0.0, end_}, nullptr);
+    if (check_.single_->plan().test_count > 0) prove<float>({0.0, end_}, nullptr);
     result_.free_until = std::min({unproved_from_, result_.contact_at, end_});
     result_.verdict = result_.contact_at <= 1.0 ? Verdict::kCollision
                       : unproved_from_ <= end_  ? Verdict::kUnknown
@@ -141,7 +141,7 @@ class LaneCheck::Edge {
   bool prove(const Part& whole, const std::uint64_t* open) {
     set_motion<Real>();
     Memory::Stage<Real>& stage = this->stage<Real>();
-    stage.waiting.clear(static_cast<std::size_t>(compiled<Real>().plan().word_count()));
+    stage.waiting.clear(static_cast<std::size_t>(compiled<Real>().plan().word_count));
     Batch batch;
     bool goes_on = true;
     if (open == nullptr) {
@@ -184,7 +184,7 @@ class LaneCheck::Edge {
   template <class Real>
   bool take(Batch& batch) {
     Memory::Stage<Real>& stage = this->stage<Real>();
-    const auto words = static_cast<std::size_t>(compiled<Real>().plan().word_count());
+    const auto words = static_cast<std::size_t>(compiled<Real>().plan().word_count);
     batch.count = 0;
     batch.is_all = false;
     while (batch.count < kPlanLanes && !stage.waiting.empty()) {
@@ -199,7 +199,7 @@ class LaneCheck::Edge {
   bool evaluate(const Batch& taken) {
     Memory::Stage<Real>& stage = this->stage<Real>();
     const CheckPlan<Real>& plan = compiled<Real>().plan();
-    const auto words = static_cast<std::size_t>(plan.word_count());
+    const auto words = static_cast<std::size_t>(plan.word_count);
     const std::array<Part, kPlanLanes>& parts = taken.parts;
     const std::size_t count = taken.count;
     const auto stop = [&] {
@@ -260,7 +260,7 @@ class LaneCheck::Edge {
   template <class Real>
   bool give_up(const Part& part, const std::uint64_t* open) {
     if constexpr (std::is_same_v<Real, float>) {
-      memory_.undecided_.assign(open, open + check_.single_->plan().word_count());
+      memory_.undecided_.assign(open, open + check_.single_->plan().word_count);
       const auto times = times_;
       const bool goes_on = prove<double>(part, memory_.undecided_.data());
       times_ = times;
@@ -280,7 +280,7 @@ class LaneCheck::Edge {
       if (result_.configurations >= request_.max_configurations) return;
       ++result_.configurations;
       const CheckPlan<double>& plan = check_.exact_->plan();
-      for (std::int32_t test = 0; test < plan.test_count(); ++test) {
+      for (std::int32_t test = 0; test < plan.test_count; ++test) {
         if ((open[test / 64] >> (test % 64) & 1U) == 0) continue;
         if (check_.exact_->source_test(test) < 0 || !touches(at, *check_.exact_, test)) continue;
         result_.contact_at = at;

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/internal/compiled_wide_plan.h"
+
+#include "collide/internal/single_precision.h"
+#include "spheretree/build.h"
+
+#include <algorithm>
+
+namespace spherule::internal {
+namespace {
+
+constexpr std::size_t rounded_to_lanes(std::size_t count) {
+  return (count + kPlanLanes - 1) / kPlanLanes * kPlanLanes;
+}
+
+}  // namespace
+
+CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<float>& compiled) {
+  const CheckPlan<float>& plan = compiled.plan();
+  for (std::int32_t f = 0; f < plan.frame_count; ++f) {
+    const PlanFrame<float>& frame = plan.frames[f];
+    WideFrame& wide = frames_.emplace_back();
+    wide = {};
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) wide.rotation[i][j] = frame.rotation[i][j];
+      wide.origin[i] = frame.origin[i];
+    }
+    wide.parent = frame.parent;
+    wide.position = frame.position;
+    wide.prismatic = frame.prismatic;
+  }
+  int depth = 1;
+  for (std::size_t i = 0; i < source.bodies.size(); ++i) {
+    const PackedTree& tree = trees_.emplace_back(
+        build_tree(source.bodies[i].spheres), compiled.inflation(i));
+    WideBody& body = bodies_.emplace_back();
+    body = {};
+    for (int k = 0; k < 3; ++k) body.center[k] = static_cast<float>(tree.root().center[k]);
+    body.radius = static_cast<float>(tree.root().radius);
+    body.margin = rounded_up_to_single(3.0 * tree.largest_growth());
+    body.frame = plan.bodies[i].frame;
+    body.first_node = static_cast<std::int32_t>(node_count_);
+    node_count_ += static_cast<std::size_t>(tree.node_count());
+    depth = std::max(depth, tree.depth());
+  }
+  // The nodes of a tree stay where they are when the tree is moved.
+  for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].nodes = trees_[i].nodes();
+  // Every task that is taken leaves at most 64, a node of which is a level deeper.
+  task_count_ = 64 * (2 * static_cast<std::size_t>(depth) + 1) + 1;
+  const std::size_t groups = rounded_to_lanes(bodies_.size()) / kPlanLanes;
+  partners_.assign(bodies_.size() * groups, 0);
+  for (std::size_t first = 0; first < bodies_.size(); ++first) {
+    bodies_[first].first_pair = static_cast<std::int32_t>(pair_tests_.size());
+    std::vector<PlanPair> partners;  // with the test in the place of the first body
+    for (std::int32_t p = 0; p < plan.pair_count; ++p) {
+      if (plan.pairs[p].first != static_cast<std::int32_t>(first)) continue;
+      partners.push_back({plan.first_pair + p, plan.pairs[p].second});
+    }
+    std::sort(partners.begin(), partners.end(),
+              [](const PlanPair& a, const PlanPair& b) { return a.second < b.second; });
+    for (const PlanPair& pair : partners) {
+      const auto second = static_cast<std::size_t>(pair.second);
+      partners_[first * groups + second / kPlanLanes] |=
+          static_cast<std::uint8_t>(1U << (second % kPlanLanes));
+      pair_tests_.push_back(pair.first);
+    }
+  }
+  plan_ = {frames_.data(), bodies_.data(), static_cast<std::int32_t>(groups), partners_.data(),
+           pair_tests_.data()};
+}
+
+WideMemory::WideMemory(const CheckPlan<float>& plan, const CompiledWidePlan& wide) {
+  const std::size_t positions = rounded_to_lanes(static_cast<std::size_t>(plan.position_count));
+  const std::size_t bodies = rounded_to_lanes(static_cast<std::size_t>(plan.body_count));
+  positions_.resize(positions);
+  sines_.resize(positions);
+  cosines_.resize(positions);
+  poses_.resize(static_cast<std::size_t>(plan.frame_count));
+  for (std::vector<float>& coordinate : roots_) coordinate.resize(bodies);
+  radii_.resize(bodies);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(plan.body_count); ++i) {
+    radii_[i] = wide.plan().bodies[i].radius;
+  }
+  placed_.resize(wide.node_count());
+  stamps_.resize(wide.node_count());
+  tasks_.resize(wide.task_count());
+  view_ = {positions_.data(),
+           sines_.data(),
+           cosines_.data(),
+           poses_.data(),
+           {roots_[0].data(), roots_[1].data(), roots_[2].data()},
+           radii_.data(),
+           placed_.data(),
+           stamps_.data(),
+           &evaluation_,
+           tasks_.data(),
+           &recent_};
+}
+
+}  // namespace spherule::internal

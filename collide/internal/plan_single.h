@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// One configuration: sines of eight joints, obstacles by eight, nodes of eight spheres. Part of the
+// kernels, see plan_kernel_impl.h.
+//
+// The error budget of poses is that of plan_poses.h: the same operations on the same numbers, in
+// another order.
+
+#include "collide/internal/plan_poses.h"
+#include "collide/internal/plan_solids.h"
+#include "collide/internal/wide_plan.h"
+
+namespace spherule::internal::SPHERULE_KERNEL {
+namespace {
+
+typedef float Float4 __attribute__((vector_size(16), may_alias));
+
+// Memory that need not be aligned to more than a number.
+SPHERULE_INLINE Float8 load_anywhere(const float* p) {
+  Float8 x;
+  __builtin_memcpy(&x, p, sizeof x);
+  return x;
+}
+SPHERULE_INLINE Double8 load_anywhere(const double* p) {
+  Double8 x;
+  __builtin_memcpy(&x, p, sizeof x);
+  return x;
+}
+SPHERULE_INLINE void store_anywhere(const Float8& x, float* p) {
+  __builtin_memcpy(p, &x, sizeof x);
+}
+
+SPHERULE_INLINE Float4 column_of(const float* p) {
+  return *reinterpret_cast<const Float4*>(p);
+}
+
+class SingleCheck {
+ public:
+  SingleCheck(const CheckPlan<float>& plan, const WidePlan& wide, const WideScratch& scratch,
+              const PlanClient& client)
+      : plan_(plan), wide_(wide), scratch_(scratch), client_(client) {}
+
+  // Whether any test touches.
+  bool run() {
+    ++*scratch_.evaluation;
+    place_frames();
+    place_roots();
+    const PlanRecent& recent = *scratch_.recent;
+    for (std::int32_t i = 0; i < recent.count; ++i) {
+      if (touches(recent.tests[i])) return true;
+    }
+    for (std::int32_t b = 0; b < plan_.body_count; ++b) {
+      if (touches_obstacles(b)) return true;
+    }
+    for (std::int32_t b = 0; b < plan_.body_count; ++b) {
+      if (touches_bodies(b)) return true;
+    }
+    return false;
+  }
+
+ private:
+  SPHERULE_INLINE void place_frames() {
+    for (std::int32_t i = 0; i < plan_.position_count; i += kPlanLanes) {
+      Float8 sine, cosine;
+      sine_and_cosine(load_anywhere(scratch_.positions + i), sine, cosine);
+      store_anywhere(sine, scratch_.sines + i);
+      store_anywhere(cosine, scratch_.cosines + i);
+    }
+    WidePose& base = scratch_.poses[0];
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) base.columns[i][j] = i == j ? 1.0F : 0.0F;
+    }
+    for (std::int32_t f = 1; f < plan_.frame_count; ++f) {
+      const WideFrame& frame = wide_.frames[f];
+      const Float4 f0 = column_of(frame.rotation[0]);
+      const Float4 f1 = column_of(frame.rotation[1]);
+      const Float4 f2 = column_of(frame.rotation[2]);
+      Float4 m0 = f0;
+      Float4 m1 = f1;
+      Float4 m3 = column_of(frame.origin);
+      if (frame.prismatic) {
+        m3 += static_cast<float>(scratch_.positions[frame.position]) * f2;
+      } else {
+        const float sine = scratch_.sines[frame.position];
+        const float cosine = scratch_.cosines[frame.position];
+        m0 = cosine * f0 + sine * f1;
+        m1 = cosine * f1 - sine * f0;
+      }
+      const WidePose& parent = scratch_.poses[frame.parent];
+      const Float4 p0 = column_of(parent.columns[0]);
+      const Float4 p1 = column_of(parent.columns[1]);
+      const Float4 p2 = column_of(parent.columns[2]);
+      auto* const pose = reinterpret_cast<Float4*>(scratch_.poses[f].columns);
+      pose[0] = p0 * m0[0] + p1 * m0[1] + p2 * m0[2];
+      pose[1] = p0 * m1[0] + p1 * m1[1] + p2 * m1[2];
+      pose[2] = p0 * f2[0] + p1 * f2[1] + p2 * f2[2];
+      pose[3] = column_of(parent.columns[3]) + p0 * m3[0] + p1 * m3[1] + p2 * m3[2];
+    }
+  }
+
+  SPHERULE_INLINE void place_roots() {
+    for (std::int32_t b = 0; b < plan_.body_count; ++b) {
+      const WideBody& body = wide_.bodies[b];
+      const auto* const pose = reinterpret_cast<const Float4*>(scratch_.poses[body.frame].columns);
+      const Float4 at = pose[0] * body.center[0] + pose[1] * body.center[1] +
+                        pose[2] * body.center[2] + pose[3];
+      for (int i = 0; i < 3; ++i) scratch_.roots[i][b] = at[i];
+    }
+  }
+
+  // The children of a node of a body; computed once a configuration.
+  SPHERULE_INLINE Point<float> placed(const WideBody& body, std::int32_t node) {
+    const std::int32_t index = body.first_node + node;
+    WideSpheres& spheres = scratch_.placed[index];
+    if (scratch_.stamps[index] == *scratch_.evaluation) return load_point(spheres.at);
+    scratch_.stamps[index] = *scratch_.evaluation;
+    const PackedNode& in = body.nodes[node];
+    const auto& [x, y, z, t] = scratch_.poses[body.frame].columns;
+    const Float8 cx = load(in.x);
+    const Float8 cy = load(in.y);
+    const Float8 cz = load(in.z);
+    const Point<float> at = {x[0] * cx + y[0] * cy + z[0] * cz + t[0],
+                             x[1] * cx + y[1] * cy + z[1] * cz + t[1],
+                             x[2] * cx + y[2] * cy + z[2] * cz + t[2]};
+    store_point(at, spheres.at);
+    return at;
+  }
+
+  bool remember(std::int32_t test) {
+    spherule::internal::SPHERULE_KERNEL::remember(*scratch_.recent, test);
+    return true;
+  }
+
+  bool confirm(std::int32_t test) { return client_.touches(client_.context, 0, test); }
+
+  // Of a single test, whatever is known of the spheres around all.
+  bool touches(std::int32_t test) {
+    if (test < plan_.first_pair) {
+      const PlanBoxes<float>& boxes = plan_.groups[test / kPlanLanes];
+      const unsigned near = near_obstacles(boxes, boxes.body) >> (test % kPlanLanes) & 1U;
+      return near != 0 && touches_obstacle(test) && remember(test);
+    }
+    const PlanPair& pair = plan_.pairs[test - plan_.first_pair];
+    return touches_body(test, pair.first, pair.second) && remember(test);
+  }
+
+  // Obstacles of a group whose boxes the sphere around all of a body overlaps.
+  SPHERULE_INLINE unsigned near_obstacles(const PlanBoxes<float>& boxes, std::int32_t b) const {
+    Float8 squared = {};
+    for (int i = 0; i < 3; ++i) {
+      const Float8 center = all(scratch_.roots[i][b]);
+      const Float8 outside = larger(larger(load(boxes.lower[i]) - center,
+                                           center - load(boxes.upper[i])),
+                                    Float8{});
+      squared += outside * outside;
+    }
+    const float radius = wide_.bodies[b].radius;
+    return kAllLanes & ~above(squared, all(radius * radius * (1.0F + 0x1p-20F)));
+  }
+
+  bool touches_obstacles(std::int32_t b) {
+    const PlanBody<float>& body = plan_.bodies[b];
+    for (std::int32_t g = body.first_group; g < body.first_group + body.group_count; ++g) {
+      for (unsigned near = near_obstacles(plan_.groups[g], b); near != 0; near &= near - 1) {
+        const std::int32_t test = g * kPlanLanes + __builtin_ctz(near);
+        if (touches_obstacle(test)) return remember(test);
+      }
+    }
+    return false;
+  }
+
+  bool touches_obstacle(std::int32_t test) {
+    const PlanBoxes<float>& boxes = plan_.groups[test / kPlanLanes];
+    const WideBody& body = wide_.bodies[boxes.body];
+    const PlanObstacle<float>& obstacle = plan_.obstacles[boxes.obstacle[test % kPlanLanes]];
+    switch (obstacle.shape) {
+      case PlanShape::kBox:
+        return touches_solid<BoxShape>(body, obstacle, test);
+      case PlanShape::kSegment:
+        return touches_solid<SegmentShape>(body, obstacle, test);
+      case PlanShape::kCylinder:
+        return touches_solid<CylinderShape>(body, obstacle, test);
+      case PlanShape::kHalfSpace:
+        return touches_solid<HalfSpaceShape>(body, obstacle, test);
+      default:
+        return confirm(test);
+    }
+  }
+
+  template <class Shape>
+  bool touches_solid(const WideBody& body, const PlanObstacle<float>& solid, std::int32_t test) {
+    WideTask* const tasks = scratch_.tasks;
+    tasks[0] = {0, 0, 0};
+    for (std::int32_t top = 1; top > 0;) {
+      const std::int32_t index = tasks[--top].a;
+      const PackedNode& node = body.nodes[index];
+      const Point<float> e = Shape::offset(solid, placed(body, index));
+      const Float8 squared = dot(e, e);
+      const Float8 reach = load(node.radius) + solid.radius;
+      const unsigned near = kAllLanes & ~above(squared, reach * reach);
+      if (near == 0) continue;
+      const Float8 sure = reach - (body.margin + solid.margin);
+      const unsigned certain =
+          near & above(sure, Float8{}) & ~above(squared, sure * sure);
+      for (unsigned left = near; left != 0; left &= left - 1) {
+        const int lane = __builtin_ctz(left);
+        if (node.child[lane] >= 0) {
+          tasks[top++] = {node.child[lane], 0, 0};
+        } else if ((certain >> lane & 1U) != 0) {
+          return true;
+        } else {
+          return confirm(test);
+        }
+      }
+    }
+    return false;
+  }
+
+  bool touches_bodies(std::int32_t a) {
+    std::int32_t next = wide_.bodies[a].first_pair;
+    for (std::int32_t g = 0; g < wide_.body_groups; ++g) {
+      const unsigned partners = wide_.partners[a * wide_.body_groups + g];
+      if (partners == 0) continue;
+      for (unsigned near = near_bodies(a, g) & partners; near != 0; near &= near - 1) {
+        const int lane = __builtin_ctz(near);
+        const std::int32_t rank = __builtin_popcount(partners & ((1U << lane) - 1));
+        const std::int32_t test = wide_.pair_tests[next + rank];
+        if (touches_body(test, a, g * kPlanLanes + lane)) return remember(test);
+      }
+      next += __builtin_popcount(partners);
+    }
+    return false;
+  }
+
+  SPHERULE_INLINE unsigned near_bodies(std::int32_t a, std::int32_t group) const {
+    Float8 squared = {};
+    for (int i = 0; i < 3; ++i) {
+      const Float8 offset =
+          load_anywhere(scratch_.roots[i] + group * kPlanLanes) - scratch_.roots[i][a];
+      squared += offset * offset;
+    }
+    const Float8 reach = load_anywhere(scratch_.radii + group * kPlanLanes) + scratch_.radii[a];
+    return kAllLanes & ~above(squared, reach * reach);
+  }
+
+  struct OneSphere {
+    float x, y, z, radius;
+  };
+
+  // Of a node that has been placed.
+  SPHERULE_INLINE OneSphere sphere_in(const WideBody& body, std::int32_t slot) const {
+    const WideSpheres& spheres = scratch_.placed[body.first_node + slot / kPlanLanes];
+    const int lane = slot % kPlanLanes;
+    return {spheres.at[0][lane], spheres.at[1][lane], spheres.at[2][lane],
+            body.nodes[slot / kPlanLanes].radius[lane]};
+  }
+
+  // The children of a node that may overlap a sphere, and those that certainly do.
+  struct Overlap {
+    unsigned near;
+    unsigned certain;
+  };
+
+  SPHERULE_INLINE Overlap overlapping(const WideBody& body, std::int32_t node,
+                                      const OneSphere& sphere, float margin) {
+    const Point<float> at = placed(body, node);
+    const Float8 dx = at.x - sphere.x;
+    const Float8 dy = at.y - sphere.y;
+    const Float8 dz = at.z - sphere.z;
+    const Float8 squared = dx * dx + dy * dy + dz * dz;
+    const Float8 reach = load(body.nodes[node].radius) + sphere.radius;
+    const unsigned near = kAllLanes & ~above(squared, reach * reach);
+    if (near == 0) return {0, 0};
+    const Float8 sure = reach - margin;
+    return {near, near & above(sure, Float8{}) & ~above(squared, sure * sure)};
+  }
+
+  // Nodes of both sides are opened together; where one side has come to a leaf, that is kept. The
+  // first leaves that may touch decide: for certain, or by the canonical test of the whole pair.
+  bool touches_body(std::int32_t test, std::int32_t a, std::int32_t b) {
+    const WideBody& first = wide_.bodies[a];
+    const WideBody& second = wide_.bodies[b];
+    const float margin = first.margin + second.margin;
+    const OneSphere all_of_second = {scratch_.roots[0][b], scratch_.roots[1][b],
+                                     scratch_.roots[2][b], second.radius};
+    WideTask* const tasks = scratch_.tasks;
+    tasks[0] = {0, 0, -1};
+    for (std::int32_t top = 1; top > 0;) {
+      const WideTask task = tasks[--top];
+      if (task.a < 0 || task.b < 0) {
+        const bool is_first = task.a < 0;  // that it is a leaf of the first
+        const OneSphere leaf = is_first ? sphere_in(first, ~task.a) : sphere_in(second, ~task.b);
+        const WideBody& body = is_first ? second : first;
+        const std::int32_t index = is_first ? task.b : task.a;
+        const Overlap hits = overlapping(body, index, leaf, margin);
+        for (unsigned left = hits.near; left != 0; left &= left - 1) {
+          const int hit = __builtin_ctz(left);
+          const std::int32_t child = body.nodes[index].child[hit];
+          if (child < 0) return (hits.certain >> hit & 1U) != 0 || confirm(test);
+          tasks[top++] = is_first ? WideTask{task.a, child, 0} : WideTask{child, task.b, 0};
+        }
+        continue;
+      }
+      const OneSphere around =
+          task.slot_of_b < 0 ? all_of_second : sphere_in(second, task.slot_of_b);
+      for (unsigned lanes = overlapping(first, task.a, around, margin).near; lanes != 0;
+           lanes &= lanes - 1) {
+        const std::int32_t slot = task.a * kPlanLanes + __builtin_ctz(lanes);
+        const std::int32_t child = first.nodes[task.a].child[slot % kPlanLanes];
+        const Overlap hits = overlapping(second, task.b, sphere_in(first, slot), margin);
+        for (unsigned left = hits.near; left != 0; left &= left - 1) {
+          const int hit = __builtin_ctz(left);
+          const std::int32_t other = second.nodes[task.b].child[hit];
+          const std::int32_t other_slot = task.b * kPlanLanes + hit;
+          if (child < 0 && other < 0) return (hits.certain >> hit & 1U) != 0 || confirm(test);
+          tasks[top++] = {child < 0 ? ~slot : child, other < 0 ? ~other_slot : other, other_slot};
+        }
+      }
+    }
+    return false;
+  }
+
+  const CheckPlan<float>& plan_;
+  const WidePlan& wide_;
+  const WideScratch& scratch_;
+  const PlanClient& client_;
+};
+
+}  // namespace
+}  // namespace spherule::internal::SPHERULE_KERNEL

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// What a CheckPlan is for one configuration: the lanes are obstacles, bodies, or eight children of
+// a node, in place of eight configurations. Plain data.
+
+#include "collide/internal/check_plan.h"
+#include "collide/internal/packed_node.h"
+
+#include <cstdint>
+
+namespace spherule::internal {
+
+// A PlanFrame whose columns are vectors; the fourth number of each is zero.
+struct alignas(16) WideFrame {
+  float rotation[3][4];
+  float origin[4];
+  std::int32_t parent;
+  std::int32_t position;
+  bool prismatic;
+};
+
+struct WideBody {
+  const PackedNode* nodes;
+  float center[3];  // of the sphere around all, in the frame
+  float radius;
+  float margin;
+  std::int32_t frame;
+  std::int32_t first_node;  // among the placed nodes
+  std::int32_t first_pair;  // of those that it is the first body of, among `pair_tests`
+};
+
+struct WidePlan {
+  const WideFrame* frames;
+  const WideBody* bodies;
+  std::int32_t body_groups;        // of eight bodies
+  const std::uint8_t* partners;    // for each body and group: those that it is tested against
+  const std::int32_t* pair_tests;  // by first body, then by second
+};
+
+// Three columns and the origin of a frame.
+struct alignas(64) WidePose {
+  float columns[4][4];
+};
+
+// The eight children of a node, placed.
+struct alignas(32) WideSpheres {
+  float at[3][kPlanLanes];
+};
+
+// A node of one body and a node of another; instead of one, below zero, a leaf by its slot (~slot).
+// A slot is 8 times the node that holds a sphere and its lane.
+struct WideTask {
+  std::int32_t a;
+  std::int32_t b;
+  std::int32_t slot_of_b;  // of the sphere around all of node b; -1: that of the body
+};
+
+// Memory of one caller, enough of it for the plan.
+struct WideScratch {
+  double* positions;  // in; filled up to a multiple of eight
+  float* sines;
+  float* cosines;
+  WidePose* poses;
+  float* roots[3];  // centres of the spheres around all bodies, filled up to a multiple of eight
+  float* radii;
+  WideSpheres* placed;
+  std::uint64_t* stamps;  // of each: the evaluation that has placed it
+  std::uint64_t* evaluation;
+  WideTask* tasks;
+  PlanRecent* recent;
+};
+
+}  // namespace spherule::internal
