@@ -121,9 +121,9 @@ struct CheckPlan {
   const PlanPathGroup* body_paths;
   const PlanPathGroup* pair_paths;
   const PlanPathStep<Real>* steps;
-  bool slides;          // whether any joint is prismatic
-  Real bound_slack;     // factor by which sums of bounds are inflated for rounding
-  Real velocity_error;  // of velocities, for each unit of the sum of all rates
+  bool slides;              // whether any joint is prismatic
+  Real bound_slack;         // factor by which sums of bounds are inflated for rounding
+  Real velocity_error;      // of velocities, for each unit of the sum of all rates
   std::int32_t first_pair;  // the number of the first test of two bodies
   std::int32_t test_count;
   std::int32_t word_count;  // of a set of tests, one bit each
@@ -205,8 +205,9 @@ struct PlanScratch {
 struct PlanClient {
   // Whether the test's sides touch in the lane's configuration, by the canonical test.
   bool (*touches)(void* context, int lane, std::int32_t test);
-  // Whether the canonical test finds them within `clearance` of each other (opaque obstacles).
-  bool (*within)(void* context, int lane, std::int32_t test, double clearance);
+  // Of an opaque obstacle and a body none of whose points is faster than `speed`: those of the
+  // lanes in whose parts the two are not proved apart.
+  unsigned (*near)(void* context, std::int32_t test, unsigned lanes, double speed);
   void* context;
 };
 

@@ -31,8 +31,8 @@ CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<
   }
   int depth = 1;
   for (std::size_t i = 0; i < source.bodies.size(); ++i) {
-    const PackedTree& tree = trees_.emplace_back(
-        build_tree(source.bodies[i].spheres), compiled.inflation(i));
+    const PackedTree& tree =
+        trees_.emplace_back(build_tree(source.bodies[i].spheres), compiled.inflation(i));
     WideBody& body = bodies_.emplace_back();
     body = {};
     for (int k = 0; k < 3; ++k) body.center[k] = static_cast<float>(tree.root().center[k]);

@@ -234,6 +234,8 @@ class Evaluation {
             from_side<Real, kMoves>(context_, motion, body, 0, StaticSide<Real>{obstacle}, 0, open);
         break;
     }
+    // What takes a call each is searched last.
+    if (kMoves && obstacle.shape == PlanShape::kOpaque) found.overlap = 0;
     add({test, index, found.near, found.overlap});
   }
 
@@ -296,7 +298,7 @@ class Evaluation {
         return search_side<Real, kMoves>(context_, motion, body, StaticSide<Real>{obstacle},
                                          search);
       case PlanShape::kOpaque:
-        return search.ask(search.active(), motion.speed);
+        return search.ask(kMoves ? scratch_.body_bounds[index].speed : Real(0));
     }
   }
 

@@ -153,16 +153,16 @@ class TestSearch {
 
   unsigned active() const { return active_; }
 
-  // Of an obstacle that only the caller can test; the part is inflated by `speed`.
-  void ask(unsigned lanes, const Vector<Real>& speed) {
+  // Of an obstacle that only the caller can test; `speed` is that of the body.
+  void ask(Real speed) {
+    const PlanClient& client = context_.client;
+    unsigned lanes = active_;
+    if constexpr (kMoves) {
+      near_ = lanes = client.near(client.context, test_, lanes, static_cast<double>(speed));
+    }
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = __builtin_ctz(lanes);
-      const PlanClient& client = context_.client;
-      if constexpr (kMoves) {
-        if (!client.within(client.context, lane, test_, static_cast<double>(speed[lane]))) continue;
-        near_ |= 1U << lane;
-        inflation_[lane] = speed[lane];
-      }
+      if constexpr (kMoves) inflation_[lane] = speed * context_.half[lane];
       if (client.touches(client.context, lane, test_)) contacts_ |= 1U << lane;
     }
   }

@@ -103,8 +103,8 @@ class SingleCheck {
     for (std::int32_t b = 0; b < plan_.body_count; ++b) {
       const WideBody& body = wide_.bodies[b];
       const auto* const pose = reinterpret_cast<const Float4*>(scratch_.poses[body.frame].columns);
-      const Float4 at = pose[0] * body.center[0] + pose[1] * body.center[1] +
-                        pose[2] * body.center[2] + pose[3];
+      const Float4 at =
+          pose[0] * body.center[0] + pose[1] * body.center[1] + pose[2] * body.center[2] + pose[3];
       for (int i = 0; i < 3; ++i) scratch_.roots[i][b] = at[i];
     }
   }
@@ -150,9 +150,8 @@ class SingleCheck {
     Float8 squared = {};
     for (int i = 0; i < 3; ++i) {
       const Float8 center = all(scratch_.roots[i][b]);
-      const Float8 outside = larger(larger(load(boxes.lower[i]) - center,
-                                           center - load(boxes.upper[i])),
-                                    Float8{});
+      const Float8 outside =
+          larger(larger(load(boxes.lower[i]) - center, center - load(boxes.upper[i])), Float8{});
       squared += outside * outside;
     }
     const float radius = wide_.bodies[b].radius;
@@ -201,8 +200,7 @@ class SingleCheck {
       const unsigned near = kAllLanes & ~above(squared, reach * reach);
       if (near == 0) continue;
       const Float8 sure = reach - (body.margin + solid.margin);
-      const unsigned certain =
-          near & above(sure, Float8{}) & ~above(squared, sure * sure);
+      const unsigned certain = near & above(sure, Float8{}) & ~above(squared, sure * sure);
       for (unsigned left = near; left != 0; left &= left - 1) {
         const int lane = __builtin_ctz(left);
         if (node.child[lane] >= 0) {
