@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// RobotChecker's fast check, configurations and motions in lanes, on every instruction set, against
+// explain(), which makes all canonical tests one by one.
+
+#include "collide/robot/robot_checker.h"
+#include "collide/robot/robot_scene.h"
+#include "tests/collide/robot/robots.h"
+#include "tests/collide/robot/scene_oracle.h"
+#include "tests/collide/trees.h"
+#include "tests/support/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+std::vector<InstructionSet> instruction_sets() {
+  std::vector<InstructionSet> available;
+  for (const InstructionSet set :
+       {InstructionSet::kPortable, InstructionSet::kAvx2, InstructionSet::kAvx512}) {
+    if (is_available(set)) available.push_back(set);
+  }
+  return available;
+}
+
+Primitive random_primitive(SceneRandom& random, double size) {
+  const auto length = [&] { return random.uniform(0.01, 1.0) * size; };
+  switch (random.whole(0, 4)) {
+    case 0:
+      return Box{{length(), length(), length()}};
+    case 1:
+      return Ball{length()};
+    case 2:
+      return Cylinder{length(), length()};
+    case 3:
+      return Capsule{length(), random.whole(0, 9) < 2 ? 0.0 : length()};
+    default:
+      return HalfSpace{};
+  }
+}
+
+// A random scene among solids of every kind; some are tiny, some huge.
+RandomScene scene_with_solids(SceneRandom& random) {
+  RandomScene result = random_scene(random);
+  const int count = random.whole(0, 5);
+  for (int i = 0; i < count; ++i) {
+    const double size = random.whole(0, 9) < 1 ? 100.0 : random.whole(0, 9) < 1 ? 1e-3 : 0.3;
+    const Primitive solid = random_primitive(random, size);
+    const double away = std::holds_alternative<HalfSpace>(solid) ? 4.0 : 3.0 + size;
+    result.scene.add("solid_" + std::to_string(i), solid, random.pose(away));
+  }
+  return result;
+}
+
+// A checker for each instruction set, and the canonical answer.
+class Checkers {
+ public:
+  explicit Checkers(const RobotScene& scene) {
+    for (const InstructionSet set : instruction_sets()) {
+      checkers_.push_back(scene.snapshot({.instructions = set}));
+      scratches_.emplace_back(checkers_.back());
+    }
+  }
+
+  std::size_t count() const { return checkers_.size(); }
+  const RobotChecker& checker(std::size_t i) const { return checkers_[i]; }
+  RobotChecker::Scratch& scratch(std::size_t i) { return scratches_[i]; }
+  bool is_free(const std::vector<double>& q) {
+    return checkers_.front().explain(q, scratches_.front()).empty();
+  }
+
+ private:
+  std::vector<RobotChecker> checkers_;
+  std::vector<RobotChecker::Scratch> scratches_;
+};
+
+// Moves `free` and `touching` together until nothing lies between them.
+void close_in(Checkers& checkers, std::vector<double>& free, std::vector<double>& touching) {
+  for (int i = 0; i < 60; ++i) {
+    std::vector<double> middle;
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      middle.push_back(0.5 * free[k] + 0.5 * touching[k]);
+    }
+    (checkers.is_free(middle) ? free : touching) = middle;
+  }
+}
+
+void expect_same_answers(Checkers& checkers, const std::vector<std::vector<double>>& tested) {
+  std::vector<double> all;
+  std::vector<std::uint8_t> truth;
+  for (const std::vector<double>& q : tested) {
+    all.insert(all.end(), q.begin(), q.end());
+    truth.push_back(checkers.is_free(q) ? 1 : 0);
+  }
+  for (std::size_t i = 0; i < checkers.count(); ++i) {
+    std::vector<std::uint8_t> free(tested.size(), 2);
+    checkers.checker(i).check_configs(all, checkers.scratch(i), free);
+    ASSERT_EQ(free, truth) << "batch, instruction set " << i;
+    for (std::size_t k = 0; k < tested.size(); ++k) {
+      ASSERT_EQ(checkers.checker(i).check_config(tested[k], checkers.scratch(i)), truth[k] != 0)
+          << "one configuration, instruction set " << i;
+    }
+  }
+}
+
+TEST(RobotLanes, VerdictsAreThoseOfTheCanonicalTestsToTheLastDigit) {
+  SceneRandom random(911);
+  int close = 0;
+  for (int n = 0; n < effort(120, 12); ++n) {
+    const auto [scene, oracle] = scene_with_solids(random);
+    Checkers checkers(scene);
+    std::vector<std::vector<double>> tested;
+    const int count = random.whole(1, 19);
+    for (int i = 0; i < count; ++i) {
+      tested.push_back(random_configuration(random, oracle.robot, 3.0));
+    }
+    const auto is_free = [&](const std::vector<double>& q) { return checkers.is_free(q); };
+    const auto first_free = std::find_if(tested.begin(), tested.end(), is_free);
+    const auto first_touching = std::find_if_not(tested.begin(), tested.end(), is_free);
+    if (first_free != tested.end() && first_touching != tested.end()) {
+      std::vector<double> free = *first_free;
+      std::vector<double> touching = *first_touching;
+      close_in(checkers, free, touching);
+      tested.push_back(free);
+      tested.push_back(touching);
+      ++close;
+    }
+    expect_same_answers(checkers, tested);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(close, effort(40, 2));
+}
+
+// What is called free has no contact at many configurations, on any instruction set; where a
+// contact is reported there is one; and no two instruction sets contradict each other.
+TEST(RobotLanes, MotionsAreProvedOnEveryInstructionSet) {
+  SceneRandom random(912);
+  int free = 0;
+  int hits = 0;
+  for (int n = 0; n < effort(100, 10); ++n) {
+    const auto [scene, oracle] = scene_with_solids(random);
+    Checkers checkers(scene);
+    for (int i = 0; i < 4; ++i) {
+      const std::vector<double> from = random_configuration(random, oracle.robot, 3.0);
+      std::vector<double> to = from;
+      const double length = std::exp(random.uniform(std::log(1e-3), std::log(3.0)));
+      for (double& position : to) position += random.uniform(-length, length);
+      const EdgeRequest request{.first = random.whole(0, 9) < 3};
+      for (std::size_t k = 0; k < checkers.count(); ++k) {
+        const EdgeResult result =
+            checkers.checker(k).check_edge(from, to, checkers.scratch(k), request);
+        (result.verdict == Verdict::kFree ? free : hits) += 1;
+        const auto at = [&](double t) {
+          std::vector<double> q;
+          for (std::size_t p = 0; p < from.size(); ++p) {
+            q.push_back((1.0 - t) * from[p] + t * to[p]);
+          }
+          return q;
+        };
+        const double until = result.verdict == Verdict::kFree ? 1.0 : result.free_until;
+        for (int step = 0; step <= effort(60, 20); ++step) {
+          const double t = until * step / effort(60, 20) * (until < 1.0 ? 1.0 - 1e-12 : 1.0);
+          if (until == 0.0) break;
+          ASSERT_TRUE(checkers.is_free(at(t))) << "at " << t << " of " << until;
+        }
+        if (result.verdict == Verdict::kCollision) {
+          ASSERT_FALSE(checkers.is_free(at(result.contact_at)));
+        }
+      }
+    }
+  }
+  EXPECT_GT(free, effort(200, 10));
+  EXPECT_GT(hits, effort(100, 5));
+}
+
+}  // namespace
+}  // namespace spherule::test
