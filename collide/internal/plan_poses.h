@@ -66,8 +66,8 @@ SPHERULE_INLINE void turn_quarters(const Vector<Real>& sine, const Vector<Real>&
 
 SPHERULE_INLINE void sine_and_cosine(const Double8& angle, Float8& sine, Float8& cosine) {
   const Reduced reduced = reduce(angle);
-  const Float8 r = __builtin_convertvector(reduced.remainder, Float8);
-  const Int8 quarter = __builtin_convertvector(reduced.quarter, Int8);
+  const Float8 r = to_single(reduced.remainder);
+  const Int8 quarter = to_integers(reduced.quarter);
   const Float8 r2 = r * r;
   const Float8 s =
       r + r * r2 * (-1.0F / 6 + r2 * (1.0F / 120 + r2 * (-1.0F / 5040 + r2 * (1.0F / 362880))));
@@ -94,7 +94,7 @@ SPHERULE_INLINE void sine_and_cosine(const Double8& angle, Double8& sine, Double
 }
 
 SPHERULE_INLINE Float8 rounded(const Double8& x, float) {
-  return __builtin_convertvector(x, Float8);
+  return to_single(x);
 }
 SPHERULE_INLINE Double8 rounded(const Double8& x, double) {
   return x;
@@ -109,16 +109,16 @@ SPHERULE_INLINE Point<Real> column(const PlanPose<Real>& pose, int which) {
 // coordinates of most frames are zero.
 template <class Real>
 SPHERULE_INLINE Point<Real> combined(const PlanPose<Real>& pose, const Real* by) {
-  Point<Real> sum;
-  bool is_empty = true;
+  // Coordinate by coordinate: the compiler copies a whole point through memory, in pieces of other
+  // sizes than it was written in, which has to wait.
+  Point<Real> sum = {all(Real(0)), all(Real(0)), all(Real(0))};
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
     if (by[i] == Real(0)) continue;
-    const Point<Real> term = by[i] * column(pose, i);
-    sum = is_empty ? term : sum + term;
-    is_empty = false;
+    sum.x += by[i] * load(pose.columns[i][0]);
+    sum.y += by[i] * load(pose.columns[i][1]);
+    sum.z += by[i] * load(pose.columns[i][2]);
   }
-  if (is_empty) sum = {all(Real(0)), all(Real(0)), all(Real(0))};
   return sum;
 }
 

@@ -122,6 +122,33 @@ SPHERULE_INLINE Double8 root(const Double8& a) {
   return result;
 }
 
+// To single precision, and whole numbers to integers. By name: what the compiler makes of
+// __builtin_convertvector goes through memory in halves, which has to wait.
+SPHERULE_INLINE Float8 to_single(const Double8& x) {
+#if defined(__AVX512F__)
+  return reinterpret_cast<Float8>(_mm512_maskz_cvtpd_ps(0xFF, reinterpret_cast<__m512d>(x)));
+#elif defined(__AVX__)
+  __m256d halves[2];
+  __builtin_memcpy(halves, &x, sizeof halves);
+  return reinterpret_cast<Float8>(
+      _mm256_set_m128(_mm256_cvtpd_ps(halves[1]), _mm256_cvtpd_ps(halves[0])));
+#else
+  return __builtin_convertvector(x, Float8);
+#endif
+}
+SPHERULE_INLINE Int8 to_integers(const Double8& x) {
+#if defined(__AVX512F__)
+  return reinterpret_cast<Int8>(_mm512_maskz_cvttpd_epi32(0xFF, reinterpret_cast<__m512d>(x)));
+#elif defined(__AVX__)
+  __m256d halves[2];
+  __builtin_memcpy(halves, &x, sizeof halves);
+  return reinterpret_cast<Int8>(
+      _mm256_set_m128i(_mm256_cvttpd_epi32(halves[1]), _mm256_cvttpd_epi32(halves[0])));
+#else
+  return __builtin_convertvector(x, Int8);
+#endif
+}
+
 template <class V>
 SPHERULE_INLINE V magnitude(const V& a) {
   return larger(a, -a);
