@@ -84,6 +84,7 @@ struct PlanObstacle {
 struct PlanPair {
   std::int32_t first;
   std::int32_t second;
+  bool second_moves;  // against the root by joints that do not move the first as well
 };
 
 // The k-th joint on eight paths, each from one body to another (or to the root): how far points of
@@ -118,6 +119,7 @@ struct CheckPlan {
   const PlanObstacle<Real>* obstacles;
   const PlanPair* pairs;
   std::int32_t pair_count;
+  std::int32_t bound_count;  // one for the bodies, and for every eight pairs
   const PlanPathGroup* body_paths;
   const PlanPathGroup* pair_paths;
   const PlanPathStep<Real>* steps;
@@ -198,7 +200,7 @@ struct PlanScratch {
   PlanNumbers<Real>* path_work;  // twice the longest path and four
   Real* total_speed;             // in: the sum of all speeds
   PlanRecent* recent;
-  bool* has_bounds;  // in: false for a new motion; of bodies, and of pairs
+  bool* has_bounds;  // in: all false for a new motion; of bodies, then of groups of eight pairs
 };
 
 // What the caller decides.

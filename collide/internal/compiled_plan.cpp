@@ -53,6 +53,16 @@ PlanFrame<Real> root_frame() {
   return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}, 0, 0, false};
 }
 
+// Whether a joint moves the one body against the root that does not move the other.
+bool moves_otherwise(const PlanSource& source, int body, int other) {
+  const auto frame_of = [&](int index) {
+    return source.bodies[static_cast<std::size_t>(index)].frame;
+  };
+  int frame = frame_of(other);
+  while (frame > frame_of(body)) frame = source.frames[static_cast<std::size_t>(frame)].parent;
+  return frame != frame_of(body);
+}
+
 }  // namespace
 
 template <class Real>
@@ -96,8 +106,8 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   compile_bodies(source, reach);
   compile_obstacles(source, reach);
   compile_tests(source, reach);
+  compile_pairs(source);
   compile_paths(source.body_paths, body_paths_);
-  compile_paths(source.pair_paths, pair_paths_);
   plan_.frames = frames_.data();
   plan_.frame_count = static_cast<std::int32_t>(frames_.size());
   plan_.bodies = bodies_.data();
@@ -110,6 +120,7 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   plan_.word_count = (plan_.test_count + 63) / 64;
   plan_.pairs = pairs_.data();
   plan_.pair_count = static_cast<std::int32_t>(pairs_.size());
+  plan_.bound_count = 1 + static_cast<std::int32_t>(pair_paths_.size());
   plan_.body_paths = body_paths_.data();
   plan_.pair_paths = pair_paths_.data();
   plan_.steps = steps_.data();
@@ -252,12 +263,31 @@ void CompiledPlan<Real>::compile_tests(const PlanSource& source, const Reach& re
     }
     bodies_[b].group_count = static_cast<std::int32_t>(groups_.size()) - bodies_[b].first_group;
   }
+}
+
+// Short paths first: these are the pairs that are near each other, and paths of one length leave no
+// lane idle.
+template <class Real>
+void CompiledPlan<Real>::compile_pairs(const PlanSource& source) {
+  struct Numbered {
+    std::size_t test;
+    const PlanSource::Path* path;
+  };
+  std::vector<Numbered> order;
   for (std::size_t t = 0; t < source.tests.size(); ++t) {
-    const PlanSource::Test& test = source.tests[t];
-    if (test.is_obstacle) continue;
-    pairs_.push_back({test.body, test.other});
-    source_tests_.push_back(static_cast<std::int32_t>(t));
+    if (!source.tests[t].is_obstacle) order.push_back({t, &source.pair_paths[order.size()]});
   }
+  std::stable_sort(order.begin(), order.end(), [](const Numbered& a, const Numbered& b) {
+    return a.path->size() < b.path->size();
+  });
+  std::vector<PlanSource::Path> paths;
+  for (const Numbered& numbered : order) {
+    const PlanSource::Test& test = source.tests[numbered.test];
+    pairs_.push_back({test.body, test.other, moves_otherwise(source, test.other, test.body)});
+    source_tests_.push_back(static_cast<std::int32_t>(numbered.test));
+    paths.push_back(*numbered.path);
+  }
+  compile_paths(paths, pair_paths_);
 }
 
 template <class Real>

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace spherule::internal {
@@ -37,6 +38,7 @@ class CompiledPlan {
   void compile_bodies(const PlanSource& source, const Reach& reach);
   void compile_obstacles(const PlanSource& source, const Reach& reach);
   void compile_tests(const PlanSource& source, const Reach& reach);
+  void compile_pairs(const PlanSource& source);
   void compile_paths(const std::vector<PlanSource::Path>& paths,
                      std::vector<PlanPathGroup>& groups);
   std::int32_t add_tree(const std::vector<Sphere>& spheres, double inflation, double& largest);
@@ -92,7 +94,7 @@ class PlanMemory {
   std::vector<PlanNumbers<Real>> path_work_;
   Real total_speed_ = 0;
   PlanRecent recent_{};
-  bool has_bounds_[2] = {};
+  std::unique_ptr<bool[]> has_bounds_;
   PlanScratch<Real> view_{};
 };
 

@@ -54,7 +54,7 @@ CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<
     std::vector<PlanPair> partners;  // with the test in the place of the first body
     for (std::int32_t p = 0; p < plan.pair_count; ++p) {
       if (plan.pairs[p].first != static_cast<std::int32_t>(first)) continue;
-      partners.push_back({plan.first_pair + p, plan.pairs[p].second});
+      partners.push_back({plan.first_pair + p, plan.pairs[p].second, false});
     }
     std::sort(partners.begin(), partners.end(),
               [](const PlanPair& a, const PlanPair& b) { return a.second < b.second; });

@@ -66,35 +66,35 @@ SPHERULE_INLINE void bound_bodies(const CheckPlan<Real>& plan, const PlanScratch
   }
 }
 
-// From one body to the other, seen from whichever link between gives the least.
+// Of the pairs in a group, from one body to the other, seen from whichever link between gives the
+// least.
 template <class Real>
-SPHERULE_INLINE void bound_pairs(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch) {
-  for (std::int32_t first = 0, g = 0; first < plan.pair_count; first += kPlanLanes, ++g) {
-    const PlanPathGroup& group = plan.pair_paths[g];
-    PathSum<Real> second;
-    PlanNumbers<Real>* const work = scratch.path_work;  // of the second body, behind each joint
-    store(second.speed, work[2 * group.step_count].lane);
-    store(second.bend, work[2 * group.step_count + 1].lane);
-    for (std::int32_t k = group.step_count; k-- > 0;) {
-      const PlanPathStep<Real>& step = plan.steps[group.first_step + k];
-      second.pass(step, step.second, scratch, plan.slides);
-      store(second.speed, work[2 * k].lane);
-      store(second.bend, work[2 * k + 1].lane);
-    }
-    Vector<Real> speed = load(work[0].lane);
-    Vector<Real> bend = load(work[1].lane);
-    PathSum<Real> sum;
-    for (std::int32_t k = 0; k < group.step_count; ++k) {
-      const PlanPathStep<Real>& step = plan.steps[group.first_step + k];
-      sum.pass(step, step.first, scratch, plan.slides);
-      speed = smaller(speed, sum.speed + load(work[2 * k + 2].lane));
-      bend = smaller(bend, sum.bend + load(work[2 * k + 3].lane));
-    }
-    const std::int32_t count = plan.pair_count - first;
-    for (std::int32_t lane = 0; lane < kPlanLanes && lane < count; ++lane) {
-      scratch.pair_bounds[first + lane] = {speed[lane] * plan.bound_slack,
-                                           bend[lane] * plan.bound_slack};
-    }
+SPHERULE_INLINE void bound_pairs(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch,
+                                 std::int32_t index) {
+  const PlanPathGroup& group = plan.pair_paths[index];
+  PathSum<Real> second;
+  PlanNumbers<Real>* const work = scratch.path_work;  // of the second body, behind each joint
+  store(second.speed, work[2 * group.step_count].lane);
+  store(second.bend, work[2 * group.step_count + 1].lane);
+  for (std::int32_t k = group.step_count; k-- > 0;) {
+    const PlanPathStep<Real>& step = plan.steps[group.first_step + k];
+    second.pass(step, step.second, scratch, plan.slides);
+    store(second.speed, work[2 * k].lane);
+    store(second.bend, work[2 * k + 1].lane);
+  }
+  Vector<Real> speed = load(work[0].lane);
+  Vector<Real> bend = load(work[1].lane);
+  PathSum<Real> sum;
+  for (std::int32_t k = 0; k < group.step_count; ++k) {
+    const PlanPathStep<Real>& step = plan.steps[group.first_step + k];
+    sum.pass(step, step.first, scratch, plan.slides);
+    speed = smaller(speed, sum.speed + load(work[2 * k + 2].lane));
+    bend = smaller(bend, sum.bend + load(work[2 * k + 3].lane));
+  }
+  const std::int32_t first = index * kPlanLanes;
+  for (std::int32_t lane = 0; lane < kPlanLanes && first + lane < plan.pair_count; ++lane) {
+    scratch.pair_bounds[first + lane] = {speed[lane] * plan.bound_slack,
+                                         bend[lane] * plan.bound_slack};
   }
 }
 

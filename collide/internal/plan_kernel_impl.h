@@ -53,15 +53,12 @@ class Evaluation {
     if constexpr (kMoves) {
       if (has_recent_contact()) return contacts_;
       place_twists(plan_, scratch_);
-      require_bounds(0);
+      if (!scratch_.has_bounds[0]) bound_bodies(plan_, scratch_);
+      scratch_.has_bounds[0] = true;
     }
     for (std::int32_t b = 0; b < plan_.body_count && !is_done(); ++b) {
       test_obstacles(b);
       search_candidates(true);
-    }
-    if constexpr (kMoves) {
-      if (is_done()) return contacts_;
-      require_bounds(1);
     }
     for (std::int32_t p = 0; p < plan_.pair_count && !is_done(); ++p) test_pair(p);
     search_candidates(true);
@@ -75,17 +72,6 @@ class Evaluation {
   bool is_done() const {
     if constexpr (kMoves) return contacts_ != 0 && !parts_->all_contacts;
     return lanes_ == 0;
-  }
-
-  // Of bodies (0) or pairs (1), computed once a motion.
-  void require_bounds(int which) {
-    if (scratch_.has_bounds[which]) return;
-    scratch_.has_bounds[which] = true;
-    if (which == 0) {
-      bound_bodies(plan_, scratch_);
-    } else {
-      bound_pairs(plan_, scratch_);
-    }
   }
 
   // Whether one of the tests that touched last touches in the middle of any part, which is found
@@ -239,11 +225,31 @@ class Evaluation {
     add({test, index, found.near, found.overlap});
   }
 
+  // Whether two bodies are apart in all lanes for any motion of theirs against the root. One that
+  // joints of the other alone move against the root moves against it by no more than these give it.
+  SPHERULE_INLINE bool are_far(const PlanPair& both) const {
+    const PlanBody<Real>& first = plan_.bodies[both.first];
+    const PlanBody<Real>& second = plan_.bodies[both.second];
+    const Point<Real> e = center_of(scratch_, first, 0) - center_of(scratch_, second, 0);
+    const Real speed = scratch_.body_bounds[both.first].speed +
+                       (both.second_moves ? scratch_.body_bounds[both.second].speed : Real(0));
+    const Vector<Real> far = first.nodes[0].radius + second.nodes[0].radius + context_.half * speed;
+    return above(dot(e, e), far * far) == kAllLanes;
+  }
+
   void test_pair(std::int32_t pair) {
     const std::int32_t test = plan_.first_pair + pair;
     const unsigned open = open_lanes(test);
     if (open == 0) return;
     const PlanPair& both = plan_.pairs[pair];
+    if constexpr (kMoves) {
+      bool& has_bounds = scratch_.has_bounds[1 + pair / kPlanLanes];
+      if (!has_bounds) {
+        if (are_far(both)) return;
+        bound_pairs(plan_, scratch_, pair / kPlanLanes);
+        has_bounds = true;
+      }
+    }
     const LaneMotion<Real> motion = motion_of_pair(pair);
     const Separation<Real> found =
         from_side<Real, kMoves>(context_, motion, plan_.bodies[both.first], 0,

@@ -23,6 +23,7 @@ PlanMemory<Real>::PlanMemory(const CompiledPlan<Real>& compiled) {
   shifts_.resize(positions + 1);
   body_bounds_.resize(static_cast<std::size_t>(plan.body_count));
   pair_bounds_.resize(static_cast<std::size_t>(plan.pair_count));
+  has_bounds_ = std::make_unique<bool[]>(static_cast<std::size_t>(plan.bound_count));
   path_work_.resize(2 * compiled.longest_path() + 4);
   view_ = {positions_.data(),  poses_.data(),       twists_.data(),
            centers_.data(),    placed_.data(),      &evaluation_,
@@ -30,7 +31,7 @@ PlanMemory<Real>::PlanMemory(const CompiledPlan<Real>& compiled) {
            to_.data(),         rates_.data(),       speeds_.data(),
            shifts_.data(),     body_bounds_.data(), pair_bounds_.data(),
            path_work_.data(),  &total_speed_,       &recent_,
-           has_bounds_};
+           has_bounds_.get()};
 }
 
 template class PlanMemory<float>;

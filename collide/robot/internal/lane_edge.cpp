@@ -132,7 +132,7 @@ class LaneCheck::Edge {
     }
     *scratch.total_speed = static_cast<Real>(total * kLonger);
     pad_ = (4.0 + 4.0 * total) * pairs_.pose_error() + pairs_.middle_error();
-    scratch.has_bounds[0] = scratch.has_bounds[1] = false;
+    std::fill_n(scratch.has_bounds, compiled<Real>().plan().bound_count, false);
   }
 
   // A part of the motion with the tests that are open in it (null: all). False once there is no
