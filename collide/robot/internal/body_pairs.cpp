@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 // Root balls. Let W bound |p| + |t| of the centre p of a root ball in its frame and the pose's
@@ -138,28 +137,27 @@ BodyPairs::BodyPairs(RobotModel robot, const Pose& world_from_root,
 
 void BodyPairs::make_paths() {
   const std::vector<Pose> poses = poses_at_zero(robot_);
-  std::map<int, std::size_t> to_root;  // of pieces
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    const CheckedPair& pair = pairs_[i];
-    path_of_.push_back(paths_.size());
-    if (pair.is_obstacle) {
-      const auto [known, is_new] = to_root.try_emplace(pair.piece, paths_.size());
-      path_of_.back() = known->second;
-      if (!is_new) continue;
-    }
-    const CheckedPiece& first = pieces_[static_cast<std::size_t>(pair.piece)];
-    const CheckedPiece* const second =
-        pair.is_obstacle ? nullptr : &pieces_[static_cast<std::size_t>(pair.other)];
+  const auto moving_joints = [&](int first, int second) {
     std::vector<int> joints;
-    for (const int j : joints_between(robot_, first.link, second == nullptr ? 0 : second->link)) {
+    for (const int j : joints_between(robot_, first, second)) {
       if (robot_.joints()[static_cast<std::size_t>(j)].moves()) joints.push_back(j);
     }
-    if (second == nullptr) {
-      paths_.emplace_back(robot_, poses, pose_error_, joints, first.link, first.tree->ball(0));
-    } else {
-      paths_.emplace_back(robot_, poses, pose_error_, joints, first.link, first.tree->ball(0),
-                          second->link, second->tree->ball(0));
+    return joints;
+  };
+  for (const CheckedPiece& piece : pieces_) {
+    paths_.emplace_back(robot_, poses, pose_error_, moving_joints(piece.link, 0), piece.link,
+                        piece.tree->ball(0));
+  }
+  for (const CheckedPair& pair : pairs_) {
+    if (pair.is_obstacle) {
+      path_of_.push_back(static_cast<std::size_t>(pair.piece));
+      continue;
     }
+    const CheckedPiece& first = pieces_[static_cast<std::size_t>(pair.piece)];
+    const CheckedPiece& second = pieces_[static_cast<std::size_t>(pair.other)];
+    path_of_.push_back(paths_.size());
+    paths_.emplace_back(robot_, poses, pose_error_, moving_joints(first.link, second.link),
+                        first.link, first.tree->ball(0), second.link, second.tree->ball(0));
   }
 }
 

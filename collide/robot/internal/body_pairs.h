@@ -71,7 +71,8 @@ class BodyPairs {
   std::size_t tested() const { return tested_; }
   const RobotModel& robot() const { return robot_; }
   const Pose& world_from_root() const { return world_from_root_; }
-  // Of a pair: the joints between its two sides.
+  // From a piece to the root; of a pair: the joints between its two sides.
+  const PathReach& path_to_root(std::size_t piece) const { return paths_[piece]; }
   const PathReach& path(std::size_t pair) const { return paths_[path_of_[pair]]; }
 
   // Whether the bounds of errors hold: no joint's position is beyond
@@ -127,7 +128,7 @@ class BodyPairs {
   double size_ = 0.0;                // bounds all coordinates within the usual range
   double pose_error_ = 0.0;
   double middle_error_ = 0.0;
-  std::vector<PathReach> paths_;      // a piece and all that stands still share one
+  std::vector<PathReach> paths_;      // of pieces to the root, then of pairs of pieces
   std::vector<std::size_t> path_of_;  // of each pair
 };
 

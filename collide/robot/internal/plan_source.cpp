@@ -73,7 +73,9 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
     source.obstacles.push_back(
         {std::visit(ShapeOf{root_from_shape}, obstacle.shape), root_from_shape});
   }
-  source.body_paths.resize(source.bodies.size());
+  for (std::size_t i = 0; i < source.bodies.size(); ++i) {
+    source.body_paths.push_back(steps_of(pairs.path_to_root(i), pairs.robot(), frames));
+  }
   for (std::size_t i = 0; i < count; ++i) {
     const CheckedPair& pair = pairs.pairs()[i];
     PlanSource::Path path = steps_of(pairs.path(i), pairs.robot(), frames);
@@ -83,11 +85,7 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
     }
     source.tests.push_back({pair.piece, pair.other, pair.is_obstacle});
     result.pair_of_test.push_back(i);
-    if (pair.is_obstacle) {
-      source.body_paths[static_cast<std::size_t>(pair.piece)] = std::move(path);
-    } else {
-      source.pair_paths.push_back(std::move(path));
-    }
+    if (!pair.is_obstacle) source.pair_paths.push_back(std::move(path));
   }
   return result;
 }
