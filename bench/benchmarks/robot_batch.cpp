@@ -108,6 +108,24 @@ void BM_ConfirmedAlongThePath(benchmark::State& state) {
 }
 
 // Configurations; threads.
+// Moves from one configuration of the program to the next, one per call.
+void BM_MovesAlongThePath(benchmark::State& state) {
+  const RobotTreeChecker checker = make_robot_tree_checker(cell().workload);
+  RobotTreeChecker::Scratch scratch(checker);
+  const std::vector<ArmPositions>& program = cell().workload.program;
+  std::size_t free = 0;
+  std::size_t moves = 0;
+  for (auto _ : state) {
+    for (std::size_t i = 0; i + 1 < program.size(); ++i) {
+      free += checker.check_edge(program[i], program[i + 1], scratch).verdict == Verdict::kFree;
+    }
+    moves += program.size() - 1;
+  }
+  using benchmark::Counter;
+  state.counters["each"] = Counter(static_cast<double>(moves), Counter::kIsRate | Counter::kInvert);
+  state.counters["free"] = static_cast<double>(free) / static_cast<double>(moves);
+}
+
 void sizes(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgsProduct({{256, 1024, static_cast<std::int64_t>(kProgramSize)}, {1, 2}})
       ->UseRealTime()
@@ -116,6 +134,7 @@ void sizes(benchmark::internal::Benchmark* benchmark) {
 BENCHMARK(BM_AlongThePath)->Apply(sizes);
 BENCHMARK(BM_InRandomOrder)->Apply(sizes);
 BENCHMARK(BM_ConfirmedAlongThePath)->Apply(sizes);
+BENCHMARK(BM_MovesAlongThePath)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace spherule
