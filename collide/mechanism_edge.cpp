@@ -167,10 +167,6 @@ EdgeResult MechanismCheck::check_edge(std::span<const double> from, std::span<co
   require_own(scratch);
   require_resolution(request.resolution);
   Scratch::Memory& memory = *scratch.memory_;
-  if (memory.motion->is_free(*parts_->kernels, parts_->problem, from.data(), to.data(),
-                             memory.view)) {
-    return {.verdict = Verdict::kFree, .free_until = 1.0};
-  }
   using Halving = EdgeHalving<EdgeMotion>;
   memory.open_pairs.resize(Halving::list_size(parts_->scene.pairs.size()));
   EdgeMotion motion(*parts_, from, to, memory, ask, context);

@@ -20,8 +20,6 @@ constexpr double kFirstSteps = 8.0;
 constexpr double kMore = 1.25;
 constexpr float kLess = 0.5F;
 constexpr int kLooks = 2;
-// After a motion that is not proved so many are left to others, at most.
-constexpr int kMostPatience = 7;
 
 // The way starts anew beyond 2^10 near steps: every addition errs by less than 2^-42 near steps,
 // which kStepRest, a part of every step, covers. So do the sums that it is compared with.
@@ -92,18 +90,13 @@ bool MotionMemory::check(const Kernels& kernels, const KernelProblem& problem,
   return kernels.check(problem, configuration, 0.0F, 0.0F, scratch, confirm, context);
 }
 
-// How far any point moves from the last configuration to this one, at most, in sum.
-double MotionMemory::step_to(const double* configuration) {
+// Whether the configuration is near the one before, as that was near its own.
+bool MotionMemory::follow(const double* configuration) {
   double step = kStepRest * near_step_;
   for (std::size_t i = 0; i < last_.size(); ++i) {
     step += std::abs(configuration[i] - last_[i]) * reach_[i];
     last_[i] = configuration[i];
   }
-  return step;
-}
-
-// Whether a step is near, as the one before was.
-bool MotionMemory::goes_on(double step) {
   const bool was_near = was_near_;
   was_near_ = step <= near_step_;
   is_following_ = was_near_ && was_near;
@@ -111,11 +104,6 @@ bool MotionMemory::goes_on(double step) {
   queries_ += 1.0;
   if (knows_ && (!is_following_ || way_ > kLongestWay * near_step_)) forget();
   return is_following_;
-}
-
-// Whether the configuration is near the one before, as that was near its own.
-bool MotionMemory::follow(const double* configuration) {
-  return goes_on(step_to(configuration));
 }
 
 void MotionMemory::forget() {
@@ -240,57 +228,6 @@ bool MotionMemory::collides(const Kernels& kernels, const KernelProblem& problem
     }
   }
   return touches;
-}
-
-bool MotionMemory::is_free(const Kernels& kernels, const KernelProblem& problem, const double* from,
-                           const double* to, const KernelScratch& scratch) {
-  const double to_start = step_to(from);
-  const double step = step_to(to);
-  if (!goes_on(to_start + step)) return false;
-  if (skipped_ < patience_) {
-    ++skipped_;
-    return false;
-  }
-  due_.clear();
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    Body& body = bodies_[i];
-    if (way_ <= body.free_until) continue;
-    const double moved = body.ball.way_to(from, to);
-    if (body.clearance >= 0.0 && moved <= body.clearance) {
-      body.free_until = way_ + (body.clearance - moved);
-    } else {
-      due_.push_back(static_cast<std::int32_t>(i));
-    }
-  }
-  if (!due_.empty()) kernels.place(problem, to, scratch);
-  const bool is_free = std::all_of(due_.begin(), due_.end(), [&](std::int32_t index) {
-    return stays_clear(kernels, problem, index, from, to, step, scratch);
-  });
-  skipped_ = 0;
-  patience_ = is_free ? 0 : std::min(kMostPatience, 2 * patience_ + 1);
-  return is_free;
-}
-
-// Looks for a clearance of the body at the motion's end that serves this motion, and the next ones.
-bool MotionMemory::stays_clear(const Kernels& kernels, const KernelProblem& problem,
-                               std::int32_t index, const double* from, const double* to,
-                               double step, const KernelScratch& scratch) {
-  Body& body = bodies_[static_cast<std::size_t>(index)];
-  place(problem, index, to, scratch, 0.0);
-  const double needed = body.ball.way_to(from, to) / kGrowthDown + 2.0 * kStepRest * near_step_;
-  if (body.ambition <= 0.0) body.ambition = kFirstSteps * step;
-  const double wanted = std::min(body.ambition, near_step_);
-  for (const double growth : {std::max(wanted, needed), needed}) {
-    const float rounded = static_cast<float>(growth * kStepUp);
-    if (!(growth <= near_step_)) continue;
-    if (look(kernels, problem, index, rounded, scratch) != KernelFinding::kApart) continue;
-    place(problem, index, to, scratch, static_cast<double>(rounded) * kGrowthDown);
-    body.ambition = growth > needed ? growth * kMore : needed * kFirstSteps;
-    return body.ball.way_to(from, to) <= body.clearance;
-  }
-  body.ambition = static_cast<double>(kLess) * body.ambition;
-  body.forget();
-  return false;
 }
 
 void MotionMemory::remember_contact(std::int32_t frame, const Sphere& ball, double depth,

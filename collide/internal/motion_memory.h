@@ -34,12 +34,6 @@ class MotionMemory {
   bool collides(const Kernels& kernels, const KernelProblem& problem, const double* configuration,
                 const KernelScratch& scratch, ConfirmContact confirm, void* context);
 
-  // True only if no body touches anywhere on the straight motion; the next motion is expected to go
-  // on from its end. Motions of a path, whose bodies stay clear of everything by more than they
-  // move, are proved without kinematics.
-  bool is_free(const Kernels& kernels, const KernelProblem& problem, const double* from,
-               const double* to, const KernelScratch& scratch);
-
   // A ball on a frame, in its coordinates, that touches for the configuration that was asked last,
   // and wherever none of its points has moved by more than `depth` from there. Ignored unless
   // is_following().
@@ -65,10 +59,6 @@ class MotionMemory {
   bool check(const Kernels& kernels, const KernelProblem& problem, const double* configuration,
              const KernelScratch& scratch, ConfirmContact confirm, void* context);
   bool follow(const double* configuration);
-  double step_to(const double* configuration);
-  bool goes_on(double step);
-  bool stays_clear(const Kernels& kernels, const KernelProblem& problem, std::int32_t index,
-                   const double* from, const double* to, double step, const KernelScratch& scratch);
   void forget();
   bool find_due(const double* configuration);
   bool grow_due(const Kernels& kernels, const KernelProblem& problem, const double* configuration,
@@ -93,8 +83,6 @@ class MotionMemory {
   std::vector<std::int32_t> due_;  // bodies
   std::vector<KernelPair> pairs_;  // of those
   std::vector<char> is_due_;
-  int skipped_ = 0;   // motions that were left to others since one was not proved
-  int patience_ = 0;  // how many are left to them
 };
 
 }  // namespace spherule::internal

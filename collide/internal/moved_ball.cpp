@@ -50,52 +50,28 @@ void MovedBall::place(std::int32_t frame, const double* center, double radius,
   }
 }
 
-void MovedBall::Sums::add_rates(const Joint& joint, double change) {
-  for (int i = 0; i < 3; ++i) {
-    moved[i] += change * joint.center_rate[i];
-    turned[i] += change * joint.turn_rate[i];
-  }
-}
-
-// From the tip: a turn meets the ways of itself, half, and of all beyond it.
-void MovedBall::Sums::add_size(const Joint& joint, double size) {
-  const double way = size * joint.reach;
-  if (!joint.prismatic) second += size * (0.5 * way + ways);
-  ways += way;
-  changes += size;
-}
-
-double MovedBall::Sums::first(double radius) const {
-  return length(moved) + length(turned) * radius;
-}
-
-double MovedBall::bound(double first, const Sums& sums) const {
-  if (count_ == 0 || !(sums.ways <= room_)) return std::numeric_limits<double>::infinity();
-  return (first + sums.second) * (1.0 + kRelative) + sums.changes * error_;
-}
-
 double MovedBall::way_to(const double* configuration) const {
-  Sums sums;
-  for (std::size_t n = 0; n < count_; ++n) {
-    const double change = configuration[joints_[n].variable] - joints_[n].at;
-    sums.add_rates(joints_[n], change);
-    sums.add_size(joints_[n], std::abs(change));
-  }
-  return bound(sums.first(radius_), sums);
-}
-
-double MovedBall::way_to(const double* from, const double* to) const {
-  Sums sums;  // to one end, and all magnitudes
-  Sums other;
+  double moved[3] = {0.0, 0.0, 0.0};
+  double turned[3] = {0.0, 0.0, 0.0};
+  double changes = 0.0;
+  double ways = 0.0;  // sum of |D_k| L_k
+  double second = 0.0;
   for (std::size_t n = 0; n < count_; ++n) {
     const Joint& joint = joints_[n];
-    const double before = from[joint.variable] - joint.at;
-    const double after = to[joint.variable] - joint.at;
-    sums.add_rates(joint, before);
-    other.add_rates(joint, after);
-    sums.add_size(joint, std::max(std::abs(before), std::abs(after)));
+    const double change = configuration[joint.variable] - joint.at;
+    for (int i = 0; i < 3; ++i) {
+      moved[i] += change * joint.center_rate[i];
+      turned[i] += change * joint.turn_rate[i];
+    }
+    // From the tip: a turn meets the ways of itself, half, and of all beyond it.
+    const double size = std::abs(change);
+    const double way = size * joint.reach;
+    if (!joint.prismatic) second += size * (0.5 * way + ways);
+    ways += way;
+    changes += size;
   }
-  return bound(std::max(sums.first(radius_), other.first(radius_)), sums);
+  if (count_ == 0 || !(ways <= room_)) return std::numeric_limits<double>::infinity();
+  return (length(moved) + length(turned) * radius_ + second) * (1.0 + kRelative) + changes * error_;
 }
 
 }  // namespace spherule::internal

@@ -42,10 +42,6 @@ class MovedBall {
 
   // An upper bound, infinite if none is known.
   double way_to(const double* configuration) const;
-  // The same for every configuration on the straight motion between two: the sum of |v| and |w|
-  // radius is convex in the changes, so it is largest at an end, and the rest grows with the
-  // magnitude of each change, which is largest at an end, too.
-  double way_to(const double* from, const double* to) const;
 
  private:
   static constexpr double kRelative = 1e-6;
@@ -59,20 +55,6 @@ class MovedBall {
     std::int32_t variable;
     bool prismatic;
   };
-
-  // What a bound is summed up from: v and w, and magnitudes.
-  struct Sums {
-    double moved[3] = {0.0, 0.0, 0.0};
-    double turned[3] = {0.0, 0.0, 0.0};
-    double changes = 0.0;
-    double ways = 0.0;  // of |D_k| L_k
-    double second = 0.0;
-
-    void add_rates(const Joint& joint, double change);
-    void add_size(const Joint& joint, double size);
-    double first(double radius) const;
-  };
-  double bound(double first, const Sums& sums) const;
 
   const KernelFrame* frames_;
   double error_;
