@@ -232,19 +232,26 @@ void CompiledPlan<Real>::compile_obstacles(const PlanSource& source, const Reach
 }
 
 // Obstacles that a body never gets to are left out: all its points stay within the lengths of its
-// chain behind the first joint (and its own) of where that joint is.
+// chain behind the first joint (and its own) of where that joint is. Judged in double, so that
+// plans of the same source have the same tests.
 template <class Real>
 void CompiledPlan<Real>::compile_tests(const PlanSource& source, const Reach& reach) {
-  constexpr double kLonger = 1.0 + 1e-6;
+  constexpr double kSlack = 1e-6;  // far above all roundings
+  std::vector<PlanBoxes<double>> exact_boxes;
+  for (const PlanSource::Obstacle& obstacle : source.obstacles) {
+    exact_boxes.push_back(compiled_box<double>(obstacle, reach.largest));
+  }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Sphere around = reachable(source, static_cast<int>(b), reach.reach[b]);
+    const double limit = around.radius + kSlack * reach.reach[b] + 4.0 * source.pose_error;
     bodies_[b].first_group = static_cast<std::int32_t>(groups_.size());
     int lane = kPlanLanes;
     for (std::size_t t = 0; t < source.tests.size(); ++t) {
       const PlanSource::Test& test = source.tests[t];
       if (!test.is_obstacle || test.body != static_cast<int>(b)) continue;
-      const PlanBoxes<Real>& box = obstacle_boxes_[static_cast<std::size_t>(test.other)];
-      if (distance_from_box(around.center, box) > kLonger * around.radius) continue;
+      const auto obstacle = static_cast<std::size_t>(test.other);
+      if (distance_from_box(around.center, exact_boxes[obstacle]) > limit) continue;
+      const PlanBoxes<Real>& box = obstacle_boxes_[obstacle];
       if (lane == kPlanLanes) {
         groups_.push_back(empty_boxes<Real>());
         groups_.back().body = static_cast<std::int32_t>(b);

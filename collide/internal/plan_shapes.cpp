@@ -173,12 +173,10 @@ Sphere reachable(const PlanSource& source, std::size_t body, double reach) {
   return {origin, std::max(0.0, reach - origin.norm())};
 }
 
-template <class Real>
-double distance_from_box(const Eigen::Vector3d& p, const PlanBoxes<Real>& box) {
+double distance_from_box(const Eigen::Vector3d& p, const PlanBoxes<double>& box) {
   double squared = 0.0;
   for (int i = 0; i < 3; ++i) {
-    const double outside = std::max({0.0, static_cast<double>(box.lower[i][0]) - p[i],
-                                     p[i] - static_cast<double>(box.upper[i][0])});
+    const double outside = std::max({0.0, box.lower[i][0] - p[i], p[i] - box.upper[i][0]});
     squared += outside * outside;
   }
   return std::sqrt(squared);
@@ -192,7 +190,5 @@ template PlanBoxes<float> compiled_box<float>(const PlanSource::Obstacle&, doubl
 template PlanBoxes<double> compiled_box<double>(const PlanSource::Obstacle&, double);
 template PlanBoxes<float> empty_boxes<float>();
 template PlanBoxes<double> empty_boxes<double>();
-template double distance_from_box<float>(const Eigen::Vector3d&, const PlanBoxes<float>&);
-template double distance_from_box<double>(const Eigen::Vector3d&, const PlanBoxes<double>&);
 
 }  // namespace spherule::internal

@@ -51,7 +51,6 @@ PlanBoxes<Real> empty_boxes();
 Sphere reachable(const PlanSource& source, std::size_t body, double reach);
 
 // From the box in lane 0.
-template <class Real>
-double distance_from_box(const Eigen::Vector3d& p, const PlanBoxes<Real>& box);
+double distance_from_box(const Eigen::Vector3d& p, const PlanBoxes<double>& box);
 
 }  // namespace spherule::internal
