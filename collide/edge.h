@@ -16,7 +16,7 @@ struct EdgeRequest {
   double resolution = 1e-4;
   // Look for the first contact, and prove all before it; otherwise any will do, which is faster.
   bool first = false;
-  // Look at no more configurations than this, with the verdict kUnknown unless a contact was found.
+  // Evaluate no more configurations than this, with the verdict kUnknown unless a contact was found.
   std::uint64_t max_configurations = std::numeric_limits<std::uint64_t>::max();
 };
 
@@ -33,7 +33,8 @@ struct EdgeResult {
   // too). Nothing is proved if it is 0. More may be free unless the first contact was asked for.
   double free_until = 0.0;
   double contact_at = std::numeric_limits<double>::infinity();
-  std::uint64_t configurations = 0;  // looked at
+  // Evaluated: the middles of parts of the motion, by a RobotChecker up to eight side by side.
+  std::uint64_t configurations = 0;
 };
 
 }  // namespace spherule

@@ -67,6 +67,10 @@ struct RobotClearance {
 // overlap or touch, in exact arithmetic under the poses that forward_kinematics() computes (G4); a
 // solid mesh or primitive is tested with its inside. What is not free has a gap of rounding only
 // (G5), collision_slack() for spheres.
+//
+// Configurations and motions are evaluated in single precision with proved margins, eight side by
+// side; what these leave undecided is decided by the queries of the library in double precision, so
+// that the answers are the same on every instruction set.
 class RobotChecker {
  public:
   // The robot that is checked.

@@ -145,8 +145,11 @@ class LaneCheck::Edge {
     Batch batch;
     bool goes_on = true;
     if (open == nullptr) {
-      for (int i = 0; i < kPlanLanes; ++i) batch.parts[i] = piece_of(whole, i, kPlanLanes);
-      batch.count = kPlanLanes;
+      const std::size_t pieces = std::max<std::size_t>(1, most_lanes());
+      for (std::size_t i = 0; i < pieces; ++i) {
+        batch.parts[i] = piece_of(whole, static_cast<int>(i), static_cast<int>(pieces));
+      }
+      batch.count = pieces;
       goes_on = evaluate<Real>(batch);
     } else {
       split(stage.waiting, whole, kPlanLanes, open);
@@ -187,11 +190,18 @@ class LaneCheck::Edge {
     const auto words = static_cast<std::size_t>(compiled<Real>().plan().word_count);
     batch.count = 0;
     batch.is_all = false;
-    while (batch.count < kPlanLanes && !stage.waiting.empty()) {
+    const std::size_t most = std::max<std::size_t>(1, most_lanes());
+    while (batch.count < most && !stage.waiting.empty()) {
       stage.waiting.pop(batch.parts[batch.count], stage.open.data() + batch.count * words);
       if (batch.parts[batch.count].begin < result_.contact_at) ++batch.count;
     }
     return batch.count != 0;
+  }
+
+  // So many configurations may be evaluated next.
+  std::size_t most_lanes() const {
+    const std::uint64_t left = request_.max_configurations - result_.configurations;
+    return static_cast<std::size_t>(std::min<std::uint64_t>(left, kPlanLanes));
   }
 
   // False once there is no more to be found.
