@@ -126,6 +126,8 @@ PlanObstacle<Real> compiled_solid(const PlanSource::Obstacle& obstacle, double r
     result.center[i] = static_cast<Real>(center[i]);
     result.half[i] = static_cast<Real>(kind.half[i]);
   }
+  // A cylinder's radius is divided by: not zero where that underflows.
+  result.half[0] = std::max(result.half[0], std::numeric_limits<Real>::min());
   const double error =
       kSolidErrors * kRoundoff<Real> * (reach + center.norm() + kind.half.norm() + kind.radius);
   result.error = rounded_up<Real>(error);
