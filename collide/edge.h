@@ -16,7 +16,8 @@ struct EdgeRequest {
   double resolution = 1e-4;
   // Look for the first contact, and prove all before it; otherwise any will do, which is faster.
   bool first = false;
-  // Evaluate no more configurations than this, with the verdict kUnknown unless a contact was found.
+  // Evaluate no more configurations than this, with the verdict kUnknown unless a contact was
+  // found.
   std::uint64_t max_configurations = std::numeric_limits<std::uint64_t>::max();
 };
 

@@ -3,23 +3,25 @@
 
 // What a CheckPlan is compiled from, in double precision and in the frame of the mechanism's root.
 
+#include "collide/internal/search_trees.h"
 #include "collide/mechanism_check.h"
 #include "collide/primitive.h"
 #include "spheretree/pose.h"
-#include "spheretree/sphere.h"
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <variant>
 #include <vector>
 
 namespace spherule::internal {
 
 struct PlanSource {
-  // Spheres, in the coordinates of a frame; -1: of the root.
+  // Spheres that move with a frame; -1: with the root.
   struct Body {
     int frame = -1;
-    std::vector<Sphere> spheres{};
+    std::shared_ptr<const SearchTrees> trees{};
+    Pose frame_from_trees{};
   };
 
   // What only the caller can test: nothing of it is outside of the box.
@@ -27,11 +29,10 @@ struct PlanSource {
     Eigen::Vector3d lower;
     Eigen::Vector3d upper;
   };
-  // Spheres are in the root's coordinates.
-  using Shape = std::variant<Primitive, std::vector<Sphere>, Opaque>;
+  using Shape = std::variant<Primitive, std::shared_ptr<const SearchTrees>, Opaque>;
   struct Obstacle {
     Shape shape;
-    Pose root_from_shape{};  // of a primitive
+    Pose root_from_shape{};  // the box of an opaque one is in the root's coordinates as it is
   };
 
   struct Test {

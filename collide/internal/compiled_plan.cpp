@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/compiled_plan.h"
 
-#include "collide/internal/culling_spheres.h"
 #include "collide/internal/mechanism_input.h"
 #include "collide/internal/plan_shapes.h"
 #include "collide/internal/single_precision.h"
-#include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -30,10 +28,6 @@
 
 namespace spherule::internal {
 namespace {
-
-// Wide nodes cost the lanes that are apart from some of their children; narrow ones more levels.
-// Measured on proofs of motions of an arm, from 2 to 8.
-constexpr int kBranching = 4;
 
 constexpr double kMiddleError = 1e-12;
 constexpr double kPerScene = 1e-12;
@@ -85,8 +79,8 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
     const Chain chain =
         body.frame < 0 ? Chain() : reach.chains[static_cast<std::size_t>(body.frame)];
     double size = 0.0;
-    for (const Sphere& sphere : body.spheres) {
-      size = std::max(size, sphere.center.norm() + sphere.radius);
+    for (const Sphere& sphere : body.trees->narrow.spheres()) {
+      size = std::max(size, (body.frame_from_trees * sphere.center).norm() + sphere.radius);
     }
     // Spheres around others reach no further than twice as far.
     const double length = chain.length + 2.0 * size;
@@ -150,20 +144,20 @@ void CompiledPlan<Real>::compile_frames(const PlanSource& source) {
   }
 }
 
-// Appends the tree over the spheres to the nodes; returns where it begins. `largest` is the most
-// that was added to the radius of a leaf.
+// Appends the tree, placed, to the nodes; returns where it begins. `largest` is the most that was
+// added to the radius of a leaf.
 template <class Real>
-std::int32_t CompiledPlan<Real>::add_tree(const std::vector<Sphere>& spheres, double inflation,
-                                          double& largest) {
-  const SphereTree tree = build_tree(spheres, {.branching = kBranching});
-  const CullingSpheres culling(tree);
+std::int32_t CompiledPlan<Real>::add_tree(const SearchTrees& trees, const Pose& pose,
+                                          double inflation, double& largest) {
+  const SphereTree& tree = trees.narrow;
   const auto first = static_cast<std::int32_t>(nodes_.size());
   // Depth first; a node's end is known once what is below it is there.
   const auto visit = [&](const auto& self, std::size_t node) -> void {
     const std::size_t place = nodes_.size();
     PlanNode<Real>& added = nodes_.emplace_back();
-    const Sphere& sphere = culling[node];
-    for (int i = 0; i < 3; ++i) added.center[i] = static_cast<Real>(sphere.center[i]);
+    const Sphere& sphere = trees.narrow_spheres[node];
+    const Eigen::Vector3d center = pose * sphere.center;
+    for (int i = 0; i < 3; ++i) added.center[i] = static_cast<Real>(center[i]);
     added.radius = inflated_radius<Real>(sphere.radius, inflation);
     added.sphere = tree.is_leaf(node) ? tree.sphere_index(node) : -1;
     if (tree.is_leaf(node)) {
@@ -178,7 +172,7 @@ std::int32_t CompiledPlan<Real>::add_tree(const std::vector<Sphere>& spheres, do
   visit(visit, 0);
   // Opening a node of either tree puts at most so many tasks in the place of one, a level deeper.
   height_ = std::max(height_, static_cast<std::size_t>(tree.depth()) + 1);
-  task_count_ = kBranching * (2 * height_ + 1) + 2;
+  task_count_ = static_cast<std::size_t>(tree.branching()) * (2 * height_ + 1) + 2;
   return first;
 }
 
@@ -191,7 +185,8 @@ void CompiledPlan<Real>::compile_bodies(const PlanSource& source, const Reach& r
         2.0 * reach.error[i] + 4.0 * source.pose_error + middle + kPerScene * reach.scene;
     inflations_.push_back(inflation);
     double largest = 0.0;
-    firsts.push_back(add_tree(source.bodies[i].spheres, inflation, largest));
+    firsts.push_back(
+        add_tree(*source.bodies[i].trees, source.bodies[i].frame_from_trees, inflation, largest));
     PlanBody<Real>& body = bodies_.emplace_back();
     body.frame = source.bodies[i].frame + 1;
     body.node_count = static_cast<std::int32_t>(nodes_.size()) - firsts.back();
@@ -204,11 +199,13 @@ void CompiledPlan<Real>::compile_bodies(const PlanSource& source, const Reach& r
   std::vector<std::int32_t> tree_firsts(source.obstacles.size(), 0);
   for (std::size_t i = 0; i < source.obstacles.size(); ++i) {
     PlanObstacle<Real>& obstacle = obstacles_.emplace_back();
-    const auto* const spheres = std::get_if<std::vector<Sphere>>(&source.obstacles[i].shape);
-    if (spheres == nullptr) continue;
+    const auto* const trees =
+        std::get_if<std::shared_ptr<const SearchTrees>>(&source.obstacles[i].shape);
+    if (trees == nullptr) continue;
     const double error = 2.0 * kRoundoff<Real> * reach_of(source.obstacles[i]);
     double largest = 0.0;
-    tree_firsts[i] = add_tree(*spheres, 2.0 * error + kPerScene * reach.scene, largest);
+    tree_firsts[i] = add_tree(**trees, source.obstacles[i].root_from_shape,
+                              2.0 * error + kPerScene * reach.scene, largest);
     obstacle.shape = PlanShape::kTree;
     obstacle.error = rounded_up<Real>(error);
     obstacle.margin = rounded_up<Real>(3.0 * largest);

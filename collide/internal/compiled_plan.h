@@ -41,7 +41,8 @@ class CompiledPlan {
   void compile_pairs(const PlanSource& source);
   void compile_paths(const std::vector<PlanSource::Path>& paths,
                      std::vector<PlanPathGroup>& groups);
-  std::int32_t add_tree(const std::vector<Sphere>& spheres, double inflation, double& largest);
+  std::int32_t add_tree(const SearchTrees& trees, const Pose& pose, double inflation,
+                        double& largest);
 
   CheckPlan<Real> plan_{};
   std::vector<PlanFrame<Real>> frames_{};

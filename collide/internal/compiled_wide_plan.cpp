@@ -2,7 +2,6 @@
 #include "collide/internal/compiled_wide_plan.h"
 
 #include "collide/internal/single_precision.h"
-#include "spheretree/build.h"
 
 #include <algorithm>
 
@@ -31,8 +30,9 @@ CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<
   }
   int depth = 1;
   for (std::size_t i = 0; i < source.bodies.size(); ++i) {
-    const PackedTree& tree =
-        trees_.emplace_back(build_tree(source.bodies[i].spheres), compiled.inflation(i));
+    const PlanSource::Body& from = source.bodies[i];
+    const PackedTree& tree = trees_.emplace_back(from.trees->wide, from.trees->wide_spheres,
+                                                 from.frame_from_trees, compiled.inflation(i));
     WideBody& body = bodies_.emplace_back();
     body = {};
     for (int k = 0; k < 3; ++k) body.center[k] = static_cast<float>(tree.root().center[k]);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/internal/packed_tree.h"
 
-#include "collide/internal/culling_spheres.h"
 #include "collide/internal/single_precision.h"
 #include "spheretree/rounding.h"
 
@@ -48,13 +47,19 @@ void set_lane(PackedNode& node, int lane, const Sphere& ball, std::int32_t child
 
 }  // namespace
 
-PackedTree::PackedTree(const SphereTree& tree, double inflation) {
+PackedTree::PackedTree(const SphereTree& tree, double inflation)
+    : PackedTree(tree, CullingSpheres(tree), Pose(), inflation) {}
+
+PackedTree::PackedTree(const SphereTree& tree, const CullingSpheres& culling, const Pose& pose,
+                       double inflation) {
   assert(tree.branching() <= PackedNode::kWidth);
-  const CullingSpheres balls(tree);
-  root_ = packed(balls[0], inflation);
+  const auto placed = [&](const Sphere& sphere) {
+    return Sphere{pose * sphere.center, sphere.radius};
+  };
+  root_ = packed(placed(culling[0]), inflation);
   depth_ = std::max(1, tree.depth());
   for (const Sphere& sphere : tree.spheres()) {
-    const Sphere leaf = packed(sphere, inflation);
+    const Sphere leaf = packed(placed(sphere), inflation);
     largest_growth_ = std::max(largest_growth_, sub_up(leaf.radius, sphere.radius));
     leaves_.push_back({{static_cast<float>(leaf.center.x()), static_cast<float>(leaf.center.y()),
                         static_cast<float>(leaf.center.z())},
@@ -76,7 +81,7 @@ PackedTree::PackedTree(const SphereTree& tree, double inflation) {
     nodes_.push_back(empty_node());
     for (std::int32_t lane = 0; lane < tree.child_count(node); ++lane) {
       const auto child = static_cast<std::size_t>(tree.first_child(node) + lane);
-      set_lane(nodes_.back(), lane, packed(balls[child], inflation), number[child]);
+      set_lane(nodes_.back(), lane, packed(placed(culling[child]), inflation), number[child]);
     }
   }
   nodes_.push_back(empty_node());

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/internal/culling_spheres.h"
 #include "collide/internal/packed_node.h"
+#include "spheretree/pose.h"
 #include "spheretree/sphere_tree.h"
 
 #include <cstdint>
@@ -35,6 +37,10 @@ class PackedTree {
  public:
   // `inflation` is an absolute length. The tree's branching must be at most PackedNode::kWidth.
   PackedTree(const SphereTree& tree, double inflation);
+  // The same of a tree whose culling spheres are known, placed by a pose: what that rounds is for
+  // the inflation to cover.
+  PackedTree(const SphereTree& tree, const CullingSpheres& culling, const Pose& pose,
+             double inflation);
 
   // The root is node 0; behind the last, number node_count(), one holds the ball around all.
   const PackedNode* nodes() const { return nodes_.data(); }

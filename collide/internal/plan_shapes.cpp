@@ -84,9 +84,11 @@ Bounds bounds_of(const PlanSource::Obstacle& obstacle) {
     return {center - extent, center + extent};
   }
   Bounds bounds{Eigen::Vector3d::Constant(kEverywhere), Eigen::Vector3d::Constant(-kEverywhere)};
-  for (const Sphere& sphere : std::get<std::vector<Sphere>>(obstacle.shape)) {
-    bounds.lower = bounds.lower.cwiseMin((sphere.center.array() - sphere.radius).matrix());
-    bounds.upper = bounds.upper.cwiseMax((sphere.center.array() + sphere.radius).matrix());
+  const auto& trees = std::get<std::shared_ptr<const SearchTrees>>(obstacle.shape);
+  for (const Sphere& sphere : trees->narrow.spheres()) {
+    const Eigen::Vector3d center = obstacle.root_from_shape * sphere.center;
+    bounds.lower = bounds.lower.cwiseMin((center.array() - sphere.radius).matrix());
+    bounds.upper = bounds.upper.cwiseMax((center.array() + sphere.radius).matrix());
   }
   return bounds;
 }

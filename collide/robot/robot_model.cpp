@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/robot_model.h"
 
+#include "collide/internal/search_trees.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -21,7 +22,8 @@ Eigen::Vector3d unit_axis(const Eigen::Vector3d& axis, const std::string& name) 
 
 }  // namespace
 
-RobotModel::RobotModel(std::string root_link) {
+RobotModel::RobotModel(std::string root_link)
+    : search_trees_(std::make_shared<internal::SearchTreeCache>()) {
   links_.push_back({std::move(root_link), -1, {}});
 }
 

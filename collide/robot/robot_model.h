@@ -15,6 +15,10 @@
 
 namespace spherule {
 
+namespace internal {
+class SearchTreeCache;
+}
+
 // kContinuous is a revolute joint without limits.
 enum class JointType { kFixed, kRevolute, kPrismatic, kContinuous };
 
@@ -93,6 +97,9 @@ class RobotModel {
   int find_link(std::string_view name) const;
   int find_joint(std::string_view name) const;
 
+  // For checkers: what they build of sphere trees. Copies of a model share it.
+  internal::SearchTreeCache& search_trees() const { return *search_trees_; }
+
  private:
   // What a joint was told to follow.
   struct Follow {
@@ -108,6 +115,7 @@ class RobotModel {
   std::vector<Follow> follow_;  // for each joint
   std::vector<int> variable_joints_;
   bool has_mimics_ = false;
+  std::shared_ptr<internal::SearchTreeCache> search_trees_;
 };
 
 }  // namespace spherule

@@ -23,10 +23,11 @@ LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
     : pairs_(pairs), positions_(pairs.robot()), kernels_(plan_kernels_for(instructions)) {
   RobotPlanSource all = make_plan_source(pairs, pairs.pairs().size());
   RobotPlanSource tested = make_plan_source(pairs, pairs.tested());
-  configurations_ = std::make_unique<const CompiledPlan<float>>(tested.source);
-  one_ = std::make_unique<const CompiledWidePlan>(tested.source, *configurations_);
-  single_ = std::make_unique<const CompiledPlan<float>>(all.source);
+  single_ = std::make_shared<const CompiledPlan<float>>(all.source);
   exact_ = std::make_unique<const CompiledPlan<double>>(all.source);
+  const bool is_all = pairs.tested() == pairs.pairs().size();
+  configurations_ = is_all ? single_ : std::make_shared<const CompiledPlan<float>>(tested.source);
+  one_ = std::make_unique<const CompiledWidePlan>(tested.source, *configurations_);
   single_error_ = static_cast<double>(single_->plan().velocity_error) / 16.0;
   pair_of_test_ = std::move(all.pair_of_test);
   BodyPairs::Memory memory;

@@ -98,11 +98,11 @@ class LaneCheck {
   const BodyPairs& pairs_;
   JointPositions positions_;
   const PlanKernelSet& kernels_;
-  std::vector<std::size_t> fixed_pairs_;   // that no joint moves
-  std::vector<std::size_t> pair_of_test_;  // of the source
-  std::unique_ptr<const CompiledPlan<float>> configurations_;
+  std::vector<std::size_t> fixed_pairs_;                       // that no joint moves
+  std::vector<std::size_t> pair_of_test_;                      // of the source
+  std::shared_ptr<const CompiledPlan<float>> configurations_;  // of the first tested() pairs
   std::unique_ptr<const CompiledWidePlan> one_;
-  std::unique_ptr<const CompiledPlan<float>> single_;
+  std::shared_ptr<const CompiledPlan<float>> single_;  // of all
   std::unique_ptr<const CompiledPlan<double>> exact_;
   double single_error_ = 0.0;   // of placed centres
   bool always_tested_ = false;  // a fixed pair among the first tested() touches

@@ -10,13 +10,6 @@
 namespace spherule::internal {
 namespace {
 
-std::vector<Sphere> placed(std::span<const Sphere> spheres, const Pose& pose) {
-  std::vector<Sphere> result;
-  result.reserve(spheres.size());
-  for (const Sphere& sphere : spheres) result.push_back({pose * sphere.center, sphere.radius});
-  return result;
-}
-
 // The box of the spheres around the triangles, with what rounding may take of it.
 PlanSource::Opaque box_of(const SolidMesh& mesh, const Pose& root_from_mesh) {
   PlanSource::Opaque box{Eigen::Vector3d::Constant(kMaxCoordinate),
@@ -33,9 +26,10 @@ PlanSource::Opaque box_of(const SolidMesh& mesh, const Pose& root_from_mesh) {
 
 struct ShapeOf {
   const Pose& root_from_shape;
+  SearchTreeCache& cache;
 
   PlanSource::Shape operator()(const std::shared_ptr<const SphereTree>& tree) const {
-    return placed(tree->spheres(), root_from_shape);
+    return cache.of(tree);
   }
   PlanSource::Shape operator()(const std::shared_ptr<const SolidMesh>& mesh) const {
     return box_of(*mesh, root_from_shape);
@@ -58,6 +52,7 @@ PlanSource::Path steps_of(const PathReach& reach, const RobotModel& robot,
 
 RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
   const MovingFrames frames(pairs.robot());
+  SearchTreeCache& cache = pairs.robot().search_trees();
   RobotPlanSource result;
   PlanSource& source = result.source;
   source.frames = frames.frames;
@@ -65,13 +60,13 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
   for (const CheckedPiece& piece : pairs.pieces()) {
     const auto link = static_cast<std::size_t>(piece.link);
     source.bodies.push_back(
-        {frames.frame_of_link[link], placed(piece.tree->spheres(), frames.frame_from_link[link])});
+        {frames.frame_of_link[link], cache.of(piece.tree), frames.frame_from_link[link]});
   }
   const Pose root_from_world = pairs.world_from_root().inverse();
   for (const PlacedShape& obstacle : pairs.obstacles()) {
     const Pose root_from_shape = root_from_world * obstacle.world_from_shape;
     source.obstacles.push_back(
-        {std::visit(ShapeOf{root_from_shape}, obstacle.shape), root_from_shape});
+        {std::visit(ShapeOf{root_from_shape, cache}, obstacle.shape), root_from_shape});
   }
   for (std::size_t i = 0; i < source.bodies.size(); ++i) {
     source.body_paths.push_back(steps_of(pairs.path_to_root(i), pairs.robot(), frames));

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// The trees over a set of spheres that compiled checks search, in the coordinates of the spheres:
+// what takes time to build, once for every set.
+
+#include "collide/internal/culling_spheres.h"
+#include "spheretree/sphere_tree.h"
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+
+namespace spherule::internal {
+
+struct SearchTrees {
+  explicit SearchTrees(std::span<const Sphere> spheres);
+
+  SphereTree narrow;  // for lanes that hold configurations
+  CullingSpheres narrow_spheres;
+  SphereTree wide;  // for lanes that hold children
+  CullingSpheres wide_spheres;
+};
+
+// Keeps the search trees of sphere trees for as long as these live. Threads may share it.
+class SearchTreeCache {
+ public:
+  std::shared_ptr<const SearchTrees> of(const std::shared_ptr<const SphereTree>& tree);
+
+ private:
+  struct Entry {
+    std::weak_ptr<const SphereTree> tree;
+    std::shared_ptr<const SearchTrees> trees;
+  };
+  std::mutex mutex_;
+  std::map<const SphereTree*, Entry> entries_;
+};
+
+}  // namespace spherule::internal
