@@ -26,4 +26,11 @@ void check_sweeps(std::uint64_t motions, std::uint64_t seed, ScaleReport& report
 // RobotTreeChecker::check_edge(), likewise.
 void check_edges(std::uint64_t motions, std::uint64_t seed, ScaleReport& report);
 
+// RobotChecker in random scenes: check_config() and check_configs() with every instruction set of
+// this machine, which must answer as the canonical tests of all pairs do, one by one; and
+// check_edge(), against these at many places.
+void check_checker_configurations(std::uint64_t configurations, std::uint64_t seed,
+                                  ScaleReport& report);
+void check_checker_edges(std::uint64_t edges, std::uint64_t seed, ScaleReport& report);
+
 }  // namespace spherule

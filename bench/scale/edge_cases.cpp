@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scale/cases.h"
-#include "bench/scale/robot_scene.h"
+#include "bench/scale/scale_robot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ struct Edge {
   bool is_near = false;
 };
 
-Edge make_edge(RobotScene& scene, SceneRandom& random) {
+Edge make_edge(ScaleRobot& scene, SceneRandom& random) {
   Edge edge;
   std::vector<double> there = scene.anywhere(random);
   const std::vector<double> before = there;
@@ -44,7 +44,7 @@ class EdgeCheck {
   std::uint64_t edges() const { return tally_.cases; }
 
   void run(SceneRandom& random) {
-    RobotScene scene(random);
+    ScaleRobot scene(random);
     const RobotTreeChecker checker(scene.robot(), scene.obstacles());
     RobotTreeChecker::Scratch scratch(checker);
     for (int i = 0; i < kEdgesOfAScene; ++i) {
@@ -62,7 +62,7 @@ class EdgeCheck {
   }
 
  private:
-  void judge(RobotScene& scene, const Edge& edge, const EdgeResult& result) {
+  void judge(ScaleRobot& scene, const Edge& edge, const EdgeResult& result) {
     tally_.count(result.verdict, edge.is_near);
     const auto is_called_free = [&](double t) {
       return result.verdict == Verdict::kFree || t < result.free_until;
@@ -99,7 +99,7 @@ class EdgeCheck {
 
   // The contact that was reported is one within the slack.
   template <class GoTo>
-  void check_contact(RobotScene& scene, const std::vector<double>& at, const EdgeResult& result,
+  void check_contact(ScaleRobot& scene, const std::vector<double>& at, const EdgeResult& result,
                      GoTo go_to) {
     go_to(result.contact_at);
     const long double gap = scene.gap(at).lower;

@@ -14,16 +14,19 @@ namespace spherule {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: spherule_scale [--poses N] [--motions N] [--distances N] [--seed S] [--out FILE]\n"
+    "usage: spherule_scale [--poses N] [--motions N] [--distances N] [--checked N] [--seed S]\n"
+    "                      [--out FILE]\n"
     "Asks the collision queries of N cases each (10000000 poses, 1000000 motions and distances),\n"
     "a third of them near contact, and judges the answers by an exact oracle. A tenth as many\n"
-    "robot configurations and edges come with the poses and motions. FILE gets the table, too.\n"
+    "robot configurations and edges come with the poses and motions; `checked` are configurations\n"
+    "of a RobotChecker (1000000), with a tenth as many edges. FILE gets the table, too.\n"
     "Fails if a collision was missed, a bound crossed, or a slack exceeded.\n";
 
 struct Arguments {
   std::uint64_t poses = 10'000'000;
   std::uint64_t motions = 1'000'000;
   std::uint64_t distances = 1'000'000;
+  std::uint64_t checked = 1'000'000;
   std::uint64_t seed = 1;
   std::string out;
   bool help = false;
@@ -53,6 +56,8 @@ Arguments parse(int count, char** values) {
       arguments.motions = number(option, value);
     } else if (option == "--distances") {
       arguments.distances = number(option, value);
+    } else if (option == "--checked") {
+      arguments.checked = number(option, value);
     } else if (option == "--seed") {
       arguments.seed = number(option, value);
     } else if (option == "--out") {
@@ -81,6 +86,8 @@ int run(const Arguments& arguments) {
   check_distances(arguments.distances, arguments.seed, report);
   check_sweeps(arguments.motions, arguments.seed, report);
   check_edges(arguments.motions / 10, arguments.seed, report);
+  check_checker_configurations(arguments.checked, arguments.seed, report);
+  check_checker_edges(arguments.checked / 10, arguments.seed, report);
   report.print(stdout);
   if (file) {
     report.print(file.get());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scale/cases.h"
-#include "bench/scale/robot_scene.h"
+#include "bench/scale/scale_robot.h"
 
 #include <array>
 #include <cstdint>
@@ -28,7 +28,7 @@ struct Configurations {
 };
 
 // As on a path or shuffled.
-Configurations make_configurations(RobotScene& scene, SceneRandom& random) {
+Configurations make_configurations(ScaleRobot& scene, SceneRandom& random) {
   Configurations made;
   const bool is_path = random.chance(0.5);
   std::vector<double> last = scene.anywhere(random);
@@ -66,7 +66,7 @@ void check_configurations(std::uint64_t configurations, std::uint64_t seed, Scal
   SceneRandom random(seed);
   std::vector<std::uint8_t> batch(kConfigurations), first;
   for (std::uint64_t done = 0; done < configurations; done += kConfigurations) {
-    RobotScene scene(random);
+    ScaleRobot scene(random);
     const Configurations asked = make_configurations(scene, random);
     const auto variables = static_cast<std::size_t>(scene.robot().variable_count());
     const auto judge = [&](Tally& tally, std::size_t i, bool said) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/robot_scene.h"
+#include "bench/scale/scale_robot.h"
 
 #include "collide/collide.h"
 #include "collide/robot/kinematics.h"
@@ -56,7 +56,7 @@ RobotModel make_robot(SceneRandom& random, const Eigen::Vector3d& aim,
 
 }  // namespace
 
-RobotScene::RobotScene(SceneRandom& random)
+ScaleRobot::ScaleRobot(SceneRandom& random)
     : obstacles_(make_obstacles(random)),
       direction_(random.direction()),
       robot_(make_robot(random,
@@ -67,7 +67,7 @@ RobotScene::RobotScene(SceneRandom& random)
   }
 }
 
-std::vector<double> RobotScene::anywhere(SceneRandom& random) const {
+std::vector<double> ScaleRobot::anywhere(SceneRandom& random) const {
   std::vector<double> configuration{random.between(-3.0, 3.0)};
   for (int i = 1; i < robot_.variable_count(); ++i) {
     configuration.push_back(random.between(-std::numbers::pi, std::numbers::pi));
@@ -76,7 +76,7 @@ std::vector<double> RobotScene::anywhere(SceneRandom& random) const {
 }
 
 template <class Use>
-bool RobotScene::any_pair(std::span<const double> configuration, Use use) {
+bool ScaleRobot::any_pair(std::span<const double> configuration, Use use) {
   forward_kinematics(robot_, configuration, world_from_link_);
   for (std::size_t link = 0; link < robot_.links().size(); ++link) {
     for (const auto& tree : robot_.links()[link].trees) {
@@ -88,7 +88,7 @@ bool RobotScene::any_pair(std::span<const double> configuration, Use use) {
   return false;
 }
 
-bool RobotScene::bring_to_gap(std::vector<double>& configuration, double gap) {
+bool ScaleRobot::bring_to_gap(std::vector<double>& configuration, double gap) {
   configuration[0] = 0.0;
   forward_kinematics(robot_, configuration, world_from_link_);
   movers_.clear();
@@ -103,7 +103,7 @@ bool RobotScene::bring_to_gap(std::vector<double>& configuration, double gap) {
   return true;
 }
 
-bool RobotScene::touches(std::span<const double> configuration) {
+bool ScaleRobot::touches(std::span<const double> configuration) {
   return any_pair(
       configuration, [&](const SphereTree& tree, const Pose& pose, const PlacedTree& obstacle) {
         return oracle_.within({tree.spheres(), pose},
@@ -111,7 +111,7 @@ bool RobotScene::touches(std::span<const double> configuration) {
       });
 }
 
-GapBounds RobotScene::gap(std::span<const double> configuration) {
+GapBounds ScaleRobot::gap(std::span<const double> configuration) {
   constexpr long double kFar = std::numeric_limits<double>::infinity();
   GapBounds least{kFar, kFar};
   any_pair(configuration,
@@ -125,7 +125,7 @@ GapBounds RobotScene::gap(std::span<const double> configuration) {
   return least;
 }
 
-double RobotScene::slack(std::span<const double> configuration) {
+double ScaleRobot::slack(std::span<const double> configuration) {
   double largest = 0.0;
   any_pair(configuration,
            [&](const SphereTree& tree, const Pose& pose, const PlacedTree& obstacle) {

@@ -13,9 +13,9 @@ namespace spherule {
 
 // A random robot among obstacles. Its first joint shifts all of it, so that it can be brought to
 // any gap.
-class RobotScene {
+class ScaleRobot {
  public:
-  explicit RobotScene(SceneRandom& random);
+  explicit ScaleRobot(SceneRandom& random);
 
   const RobotModel& robot() const { return robot_; }
   const std::vector<PlacedTree>& obstacles() const { return obstacles_; }

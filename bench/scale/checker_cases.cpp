@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Configurations of a RobotChecker: its answer is that of the canonical tests of all pairs, one by
+// one, with every instruction set.
+#include "bench/scale/cases.h"
+#include "bench/scale/checker_scene.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+constexpr std::size_t kConfigurations = 251;  // of a scene: no whole number of lanes
+
+struct NamedInstructions {
+  InstructionSet set;
+  const char* name;
+};
+constexpr std::array<NamedInstructions, 3> kInstructions{{{InstructionSet::kPortable, "portable"},
+                                                          {InstructionSet::kAvx2, "avx2"},
+                                                          {InstructionSet::kAvx512, "avx512"}}};
+
+struct Configurations {
+  std::vector<double> positions;  // one behind the other
+  std::vector<std::uint8_t> is_near, truth;
+};
+
+// Anywhere, on paths, and around where contact begins, at gaps of all orders of magnitude.
+Configurations make_configurations(CheckerScene& scene, SceneRandom& random) {
+  Configurations made;
+  std::vector<double> last = scene.anywhere(random);
+  std::optional<CheckerScene::Border> border;
+  while (made.truth.size() < kConfigurations) {
+    if (made.truth.size() % 32 == 0) border = scene.find_border(random);
+    std::vector<double> next;
+    const double kind = random.unit();
+    const bool is_near = border && kind < 0.7;
+    if (is_near) {
+      next = random.chance(0.5) ? border->free : border->contact;
+      const double far = random.chance(0.2) ? 0.0 : random.magnitude(1e-17, 1e-2);
+      const bool is_one = random.chance(0.5);
+      const auto one = static_cast<std::size_t>(random.whole(0, static_cast<int>(next.size()) - 1));
+      for (std::size_t i = 0; i < next.size(); ++i) {
+        if (is_one && i != one) continue;
+        next[i] += far * random.between(-1.0, 1.0);
+      }
+    } else if (kind < 0.9) {
+      next = last;
+      for (double& position : next) position += random.between(-0.01, 0.01);
+    } else {
+      next = scene.anywhere(random);
+    }
+    last = next;
+    made.positions.insert(made.positions.end(), next.begin(), next.end());
+    made.is_near.push_back(is_near ? 1 : 0);
+    made.truth.push_back(scene.touches(next) ? 1 : 0);
+  }
+  return made;
+}
+
+}  // namespace
+
+void check_checker_configurations(std::uint64_t configurations, std::uint64_t seed,
+                                  ScaleReport& report) {
+  struct Rows {
+    InstructionSet set;
+    Tally* single;
+    Tally* batch;
+  };
+  std::vector<Rows> rows;
+  for (const auto& [set, name] : kInstructions) {
+    if (!is_available(set)) continue;
+    const std::string checker = std::string("checker, ") + name;
+    Tally& single = report.add(checker + ", single");
+    rows.push_back({set, &single, &report.add(checker + ", batch")});
+  }
+  std::vector<std::uint8_t> free(kConfigurations);
+  for (std::uint64_t done = 0, number = 0; done < configurations; ++number) {
+    SceneRandom random(seed * 1'000'003 + number);
+    CheckerScene scene(random);
+    if (scene.pair_count() == 0) continue;
+    const Configurations asked = make_configurations(scene, random);
+    const auto variables = static_cast<std::size_t>(scene.robot().variable_count());
+    const auto judge = [&](Tally& tally, std::size_t i, bool is_free) {
+      tally.count(is_free ? Verdict::kFree : Verdict::kCollision, asked.is_near[i] != 0);
+      if (is_free != (asked.truth[i] != 0)) return;
+      is_free ? ++tally.missed : ++tally.extra;
+      if (!is_free) ++tally.beyond;
+      report.failure(tally, std::string(is_free ? "missed" : "extra") + ", scene " +
+                                std::to_string(number) + ", configuration " + std::to_string(i));
+    };
+    for (const Rows& row : rows) {
+      const RobotChecker checker = scene.scene().snapshot({.instructions = row.set});
+      RobotChecker::Scratch scratch(checker);
+      for (std::size_t i = 0; i < kConfigurations; ++i) {
+        const std::span<const double> configuration(&asked.positions[i * variables], variables);
+        judge(*row.single, i, checker.check_config(configuration, scratch));
+      }
+      checker.check_configs(asked.positions, scratch, free);
+      for (std::size_t i = 0; i < kConfigurations; ++i) judge(*row.batch, i, free[i] != 0);
+    }
+    done += kConfigurations;
+    report.progress("checked configurations", done, configurations);
+  }
+}
+
+}  // namespace spherule
