@@ -197,7 +197,8 @@ class SingleCheck {
       const Point<float> e = Shape::offset(solid, placed(body, index));
       const Float8 squared = dot(e, e);
       const Float8 reach = load(node.radius) + solid.radius;
-      const unsigned near = kAllLanes & ~above(squared, reach * reach);
+      // Places that are not used have no radius, and may lie in a half-space.
+      const unsigned near = above(load(node.radius), Float8{}) & ~above(squared, reach * reach);
       if (near == 0) continue;
       const Float8 sure = reach - (body.margin + solid.margin);
       const unsigned certain = near & above(sure, Float8{}) & ~above(squared, sure * sure);
