@@ -113,5 +113,17 @@ TEST(Scale, TracksLeadFromPoseToPose) {
   }
 }
 
+TEST(Scale, CheckedConfigurationsAreAnsweredAsByTheCanonicalTests) {
+  ScaleReport report(true);
+  check_checker_configurations(20'000, 7, report);
+  expect_clean(report);
+}
+
+TEST(Scale, CheckedEdgesAreFreeWhereTheyAreCalledSo) {
+  ScaleReport report(true);
+  check_checker_edges(2'000, 7, report);
+  expect_clean(report);
+}
+
 }  // namespace
 }  // namespace spherule
