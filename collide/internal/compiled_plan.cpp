@@ -172,7 +172,7 @@ std::int32_t CompiledPlan<Real>::add_tree(const SearchTrees& trees, const Pose& 
   visit(visit, 0);
   // Opening a node of either tree puts at most so many tasks in the place of one, a level deeper.
   height_ = std::max(height_, static_cast<std::size_t>(tree.depth()) + 1);
-  task_count_ = static_cast<std::size_t>(tree.branching()) * (2 * height_ + 1) + 2;
+  task_count_ = SearchTrees::kNarrow * (2 * height_ + 1) + 2;
   return first;
 }
 

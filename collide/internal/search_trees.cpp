@@ -4,14 +4,6 @@
 #include "spheretree/build.h"
 
 namespace spherule::internal {
-namespace {
-
-// Wide nodes cost the lanes that are apart from some of their children, narrow ones more levels:
-// from 2 to 8 proofs of motions of an arm differ by less than noise.
-constexpr int kNarrow = 4;
-
-}  // namespace
-
 SearchTrees::SearchTrees(std::span<const Sphere> spheres)
     : narrow(build_tree(spheres, {.branching = kNarrow})),
       narrow_spheres(narrow),

@@ -15,6 +15,10 @@
 namespace spherule::internal {
 
 struct SearchTrees {
+  // Children of a node. Wide nodes cost the lanes that are apart from some of their children,
+  // narrow ones more levels: from 2 to 8 proofs of motions of an arm differ by less than noise.
+  static constexpr int kNarrow = 4;
+
   explicit SearchTrees(std::span<const Sphere> spheres);
 
   SphereTree narrow;  // for lanes that hold configurations

@@ -2,6 +2,7 @@
 #include "collide/robot/internal/lane_check.h"
 
 #include "collide/internal/plan_kernels.h"
+#include "collide/robot/internal/moving_frames.h"
 #include "collide/robot/internal/plan_source.h"
 
 #include <algorithm>
@@ -9,16 +10,6 @@
 #include <utility>
 
 namespace spherule::internal {
-namespace {
-
-bool any_touches(const BodyPairs& pairs, std::span<const std::size_t> which,
-                 const BodyPairs::Memory& memory) {
-  return std::any_of(which.begin(), which.end(),
-                     [&](std::size_t pair) { return pairs.touches(pair, memory); });
-}
-
-}  // namespace
-
 LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
     : pairs_(pairs), positions_(pairs.robot()), kernels_(plan_kernels_for(instructions)) {
   RobotPlanSource all = make_plan_source(pairs, pairs.pairs().size());
@@ -30,11 +21,30 @@ LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
   one_ = std::make_unique<const CompiledWidePlan>(tested.source, *configurations_);
   single_error_ = static_cast<double>(single_->plan().velocity_error) / 16.0;
   pair_of_test_ = std::move(all.pair_of_test);
+  decide_fixed_pairs(all.fixed_pairs);
+}
+
+// Pairs that no joint moves: of static ones the canonical poses are always the same. Those that
+// move together are apart in all configurations if they are in one by far more than rounding; the
+// others are asked for each.
+void LaneCheck::decide_fixed_pairs(std::span<const std::size_t> pairs) {
+  constexpr double kFar = 1e4;
   BodyPairs::Memory memory;
-  pairs.place(std::vector<double>(static_cast<std::size_t>(pairs.robot().variable_count())),
-              memory);
-  always_tested_ = any_touches(pairs, tested.fixed_pairs, memory);
-  always_ = any_touches(pairs, all.fixed_pairs, memory);
+  pairs_.place(std::vector<double>(static_cast<std::size_t>(pairs_.robot().variable_count())),
+               memory);
+  const MovingFrames frames(pairs_.robot());
+  for (const std::size_t pair : pairs) {
+    const CheckedPiece& piece =
+        pairs_.pieces()[static_cast<std::size_t>(pairs_.pairs()[pair].piece)];
+    const bool is_static = frames.frame_of_link[static_cast<std::size_t>(piece.link)] < 0;
+    if (is_static && pairs_.touches(pair, memory)) {
+      always_ = true;
+      always_tested_ = always_tested_ || pair < pairs_.tested();
+    }
+    if (!is_static && pairs_.is_near(pair, kFar * pairs_.pose_error(), memory)) {
+      rigid_pairs_.push_back(pair);
+    }
+  }
 }
 
 template <class Real>
@@ -79,12 +89,24 @@ struct ConfigurationClient {
 
 }  // namespace
 
+bool LaneCheck::rigid_pairs_touch(std::span<const double> configuration,
+                                  BodyPairs::Memory& exact) const {
+  if (rigid_pairs_.empty()) return false;
+  pairs_.place(configuration, exact);
+  return std::any_of(rigid_pairs_.begin(), rigid_pairs_.end(),
+                     [&](std::size_t pair) { return pairs_.touches(pair, exact); });
+}
+
 unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurations,
                              Memory& memory, BodyPairs::Memory& exact) const {
   const unsigned all = (1U << configurations.size()) - 1;
   if (always_tested_) return all;
+  unsigned rigid = 0;
+  for (std::size_t i = 0; i < configurations.size() && !rigid_pairs_.empty(); ++i) {
+    rigid |= (rigid_pairs_touch(configurations[i], exact) ? 1U : 0U) << i;
+  }
   const CheckPlan<float>& plan = configurations_->plan();
-  if (plan.test_count == 0) return 0;
+  if (plan.test_count == 0) return rigid;
   const PlanScratch<float>& scratch = memory.configurations_.view();
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t i = std::min(lane, configurations.size() - 1);
@@ -92,13 +114,13 @@ unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurat
     for (std::size_t p = 0; p < at.size(); ++p) scratch.positions[p].lane[lane] = at[p];
   }
   ConfigurationClient client{pairs_, *configurations_, pair_of_test_, configurations, exact};
-  return kernels_.single.check(plan, scratch, all,
-                               {&ConfigurationClient::touches, nullptr, &client});
+  return rigid | kernels_.single.check(plan, scratch, all & ~rigid,
+                                       {&ConfigurationClient::touches, nullptr, &client});
 }
 
 bool LaneCheck::touches(std::span<const double> configuration, Memory& memory,
                         BodyPairs::Memory& exact) const {
-  if (always_tested_) return true;
+  if (always_tested_ || rigid_pairs_touch(configuration, exact)) return true;
   const CheckPlan<float>& plan = configurations_->plan();
   if (plan.test_count == 0) return false;
   const WideScratch& scratch = memory.one_.view();

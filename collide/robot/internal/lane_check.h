@@ -95,18 +95,22 @@ class LaneCheck {
  private:
   class Edge;
 
+  void decide_fixed_pairs(std::span<const std::size_t> pairs);
+  bool rigid_pairs_touch(std::span<const double> configuration, BodyPairs::Memory& exact) const;
+
   const BodyPairs& pairs_;
   JointPositions positions_;
   const PlanKernelSet& kernels_;
-  std::vector<std::size_t> fixed_pairs_;                       // that no joint moves
+  // Rigid pairs that are so near that the rounding of their poses decides.
+  std::vector<std::size_t> rigid_pairs_;
   std::vector<std::size_t> pair_of_test_;                      // of the source
   std::shared_ptr<const CompiledPlan<float>> configurations_;  // of the first tested() pairs
   std::unique_ptr<const CompiledWidePlan> one_;
   std::shared_ptr<const CompiledPlan<float>> single_;  // of all
   std::unique_ptr<const CompiledPlan<double>> exact_;
   double single_error_ = 0.0;   // of placed centres
-  bool always_tested_ = false;  // a fixed pair among the first tested() touches
-  bool always_ = false;         // any fixed pair does
+  bool always_tested_ = false;  // a static pair among the first tested() touches
+  bool always_ = false;         // any static pair does
 };
 
 }  // namespace spherule::internal

@@ -70,10 +70,11 @@ class LaneCheck::Edge {
   }
 
   EdgeResult run() {
-    if (check_.always_) {
+    if (check_.always_ || check_.rigid_pairs_touch(from_, exact_)) {
       result_ = {.verdict = Verdict::kCollision, .contact_at = 0.0};
       return result_;
     }
+    if (!check_.rigid_pairs_.empty()) unproved_from_ = 0.0;
     if (check_.single_->plan().test_count > 0) prove<float>({0.0, end_}, nullptr);
     result_.free_until = std::min({unproved_from_, result_.contact_at, end_});
     result_.verdict = result_.contact_at <= 1.0 ? Verdict::kCollision

@@ -4,6 +4,7 @@
 
 #include "collide/robot/robot_checker.h"
 #include "collide/robot/robot_scene.h"
+#include "spheretree/build.h"
 #include "tests/collide/robot/robots.h"
 #include "tests/collide/robot/scene_oracle.h"
 #include "tests/collide/trees.h"
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -176,6 +178,82 @@ TEST(RobotLanes, MotionsAreProvedOnEveryInstructionSet) {
   }
   EXPECT_GT(free, effort(200, 10));
   EXPECT_GT(hits, effort(100, 5));
+}
+
+std::shared_ptr<const SphereTree> spheres_at(std::vector<Eigen::Vector3d> centers, double radius) {
+  std::vector<Sphere> spheres;
+  for (const Eigen::Vector3d& center : centers) spheres.push_back({center, radius});
+  return std::make_shared<const SphereTree>(build_tree(spheres));
+}
+
+Joint turning(double limit = 4.0) {
+  return {.type = JointType::kRevolute, .lower = -limit, .upper = limit};
+}
+
+// Bodies that no obstacle is near move, too.
+TEST(RobotLanes, PairsWithoutObstaclesAreNotPassed) {
+  RobotModel robot("base");
+  robot.add_link("mid", "base", turning());
+  robot.add_link("arm", "mid", turning());
+  robot.attach("base", spheres_at({{0, 1, 0}}, 0.01));
+  robot.attach("mid", spheres_at({{0, 0, 5}}, 0.01));
+  robot.attach("arm", spheres_at({{1, 0, 0}}, 0.01));
+  Checkers checkers{RobotScene(robot)};
+  for (std::size_t i = 0; i < checkers.count(); ++i) {
+    const EdgeResult result = checkers.checker(i).check_edge(
+        std::vector<double>{0.02, 0.0}, std::vector<double>{3.0, 0.0}, checkers.scratch(i));
+    EXPECT_EQ(result.verdict, Verdict::kCollision);
+  }
+}
+
+// An obstacle as far away as the robot reaches, to the last digits of single precision, does not
+// change which tests single precision leaves to double precision.
+TEST(RobotLanes, WhatIsJustOutOfReachHidesNothing) {
+  RobotModel robot("base");
+  robot.add_link("arm", "base", turning());
+  robot.attach("arm", spheres_at({{1, 0, 0}}, 0.1));
+  for (int i = -40; i <= 40; ++i) {
+    RobotScene scene(robot);
+    scene.add("a", Primitive(Box{{1, 1, 1}}),
+              Pose::from_translation({2.7 * (1.0 + i * 2e-7), 0, 0}));
+    scene.add("b", Primitive(Ball{0.1}), Pose::from_translation({0, 1.2 - 1e-6, 0}));
+    Checkers checkers(scene);
+    const double middle = 1.5707963267948966;
+    const EdgeResult result = checkers.checker(0).check_edge(
+        std::vector<double>{middle - 0.7}, std::vector<double>{middle + 1.1}, checkers.scratch(0));
+    EXPECT_NE(result.verdict, Verdict::kFree);
+  }
+}
+
+TEST(RobotLanes, ANeedleOfACylinderIsNoContact) {
+  RobotModel robot("base");
+  robot.add_link("arm", "base", turning());
+  robot.attach("arm", spheres_at({{0, 0, 10}, {0, 0, -10}}, 0.1));
+  RobotScene scene(robot);
+  scene.add("needle", Primitive(Cylinder{1e-50, 1.0}));
+  Checkers checkers(scene);
+  expect_same_answers(checkers, {{0.0}, {0.5}, {1.0}});
+}
+
+// Rigid pairs that rounding decides have the answers of each configuration.
+TEST(RobotLanes, RigidPairsAtRoundingsDistance) {
+  RobotModel robot("base");
+  robot.add_link("arm", "base", turning());
+  robot.add_link("tip", "arm", {.type = JointType::kFixed});
+  robot.attach("arm", spheres_at({{0.5, 0, 0}}, 0.1));
+  robot.attach("tip", spheres_at({{0.7 + 3.5e-15, 0, 0}}, 0.1));
+  RobotScene scene(robot);
+  AllowedCollisions allowed(robot);
+  allowed.forbid("arm", "tip");
+  scene.set_allowed_collisions(allowed);
+  Checkers checkers(scene);
+  SceneRandom random(913);
+  std::vector<std::vector<double>> tested;
+  for (int i = 0; i < 50; ++i) tested.push_back({random.uniform(-3.0, 3.0)});
+  expect_same_answers(checkers, tested);
+  const EdgeResult result =
+      checkers.checker(0).check_edge(tested[0], tested[1], checkers.scratch(0));
+  EXPECT_NE(result.verdict, Verdict::kFree);
 }
 
 }  // namespace
