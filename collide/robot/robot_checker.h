@@ -69,8 +69,9 @@ struct RobotClearance {
 // (G5), collision_slack() for spheres.
 //
 // Configurations and motions are evaluated in single precision with proved margins, eight side by
-// side; what these leave undecided is decided by the queries of the library in double precision, so
-// that the answers are the same on every instruction set.
+// side; what these leave undecided is decided by the queries of the library in double precision:
+// verdicts of configurations are the same on every instruction set. Of motions, what is proved and
+// where a contact is found may differ by rounding and by what the scratch was asked before.
 class RobotChecker {
  public:
   // The robot that is checked.

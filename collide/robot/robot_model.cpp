@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/robot_model.h"
 
-#include "collide/internal/search_trees.h"
+#include "collide/kernels/search_trees.h"
 #include "spheretree/error.h"
 
 #include <algorithm>

@@ -137,7 +137,7 @@ constexpr std::string_view kSystemHeaders[] = {"fcntl.h",    "signal.h",      "s
                                                "unistd.h",   "sys/stat.h",    "sys/types.h",
                                                "sys/wait.h", "sys/resource.h"};
 constexpr std::string_view kSimdHeaders[] = {"emmintrin.h", "immintrin.h", "arm_neon.h", "cpuid.h"};
-constexpr std::string_view kSimdFolder = "collide/internal/";
+constexpr std::string_view kSimdFolders[] = {"collide/internal/", "collide/kernels/"};
 
 template <class Range>
 bool contains(const Range& range, std::string_view value) {
@@ -174,7 +174,10 @@ std::string check_foreign_include(const std::string& path, const Room& room,
                                   std::string_view target) {
   if (contains(kSystemHeaders, target)) return {};
   if (contains(kSimdHeaders, target)) {
-    return path.starts_with(kSimdFolder) ? "" : "is for " + std::string(kSimdFolder) + " only";
+    const bool is_there =
+        std::any_of(std::begin(kSimdFolders), std::end(kSimdFolders),
+                    [&](std::string_view folder) { return path.starts_with(folder); });
+    return is_there ? "" : "is for collide/internal/ and collide/kernels/ only";
   }
   for (const auto& [start, third_party] : kPrefixes) {
     if (!(start.starts_with('.') ? target.ends_with(start) : target.starts_with(start))) continue;
@@ -272,7 +275,8 @@ std::vector<std::string> check_public_headers(const std::string& folder, std::st
   const std::set<std::string> listed{std::istream_iterator<std::string>(list), {}};
   std::vector<std::string> problems;
   for (const std::string& header : headers) {
-    const bool is_private = header.starts_with("internal/");
+    // kernels/ is for the components of collide, too, but not for users.
+    const bool is_private = header.starts_with("internal/") || header.starts_with("kernels/");
     if (is_private == listed.contains(header)) {
       problems.push_back(folder + "/" + header +
                          (is_private ? ": is private and must not be in HEADERS"

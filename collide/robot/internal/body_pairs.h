@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Pairs of spheres on links, and of spheres and standing solids, in double precision: what a
+// Pairs of spheres on links, and of spheres and standing solids, in double precision: the
 // canonical tests of a RobotChecker. Its proofs are in body_pairs.cpp.
 
 #include "collide/contact.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/internal/lane_check.h"
 
-#include "collide/internal/plan_kernels.h"
+#include "collide/kernels/plan_kernels.h"
 #include "collide/robot/internal/moving_frames.h"
 #include "collide/robot/internal/plan_source.h"
 
@@ -28,7 +28,8 @@ LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
 // move together are apart in all configurations if they are in one by far more than rounding; the
 // others are asked for each.
 void LaneCheck::decide_fixed_pairs(std::span<const std::size_t> pairs) {
-  constexpr double kFar = 1e4;
+  // Of both bodies, in both configurations, with the slack of the canonical test: 4.
+  constexpr double kFar = 8.0;
   BodyPairs::Memory memory;
   pairs_.place(std::vector<double>(static_cast<std::size_t>(pairs_.robot().variable_count())),
                memory);

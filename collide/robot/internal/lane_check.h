@@ -5,8 +5,8 @@
 // precision, with the canonical tests of BodyPairs where that leaves something undecided.
 
 #include "collide/instruction_set.h"
-#include "collide/internal/compiled_plan.h"
-#include "collide/internal/compiled_wide_plan.h"
+#include "collide/kernels/compiled_plan.h"
+#include "collide/kernels/compiled_wide_plan.h"
 #include "collide/robot/internal/body_pairs.h"
 #include "collide/robot/joint_positions.h"
 

@@ -272,6 +272,10 @@ class LaneCheck::Edge {
   template <class Real>
   bool give_up(const Part& part, const std::uint64_t* open) {
     if constexpr (std::is_same_v<Real, float>) {
+      if (!(part.begin < part.end)) {
+        unproved_from_ = std::min(unproved_from_, part.begin);
+        return true;
+      }
       memory_.undecided_.assign(open, open + check_.single_->plan().word_count);
       const auto times = times_;
       const auto halves = halves_;

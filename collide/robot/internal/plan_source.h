@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/internal/check_plan_source.h"
+#include "collide/kernels/check_plan_source.h"
 #include "collide/robot/internal/body_pairs.h"
 
 #include <cstddef>

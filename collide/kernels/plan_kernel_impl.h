@@ -13,9 +13,9 @@
 // Every function with vectors is inlined or local: none crosses a boundary between files.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-#include "collide/internal/plan_bounds.h"
-#include "collide/internal/plan_search.h"
-#include "collide/internal/plan_single.h"
+#include "collide/kernels/plan_bounds.h"
+#include "collide/kernels/plan_search.h"
+#include "collide/kernels/plan_single.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {

@@ -7,9 +7,9 @@
 // The error budget of poses is that of plan_poses.h: the same operations on the same numbers, in
 // another order.
 
-#include "collide/internal/plan_poses.h"
-#include "collide/internal/plan_solids.h"
-#include "collide/internal/wide_plan.h"
+#include "collide/kernels/plan_poses.h"
+#include "collide/kernels/plan_solids.h"
+#include "collide/kernels/wide_plan.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {

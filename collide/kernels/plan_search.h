@@ -32,8 +32,8 @@
 // that finds d <= R' - 3 g1 - 3 g2, R' being the computed sum of inflated radii, has an exact
 // distance of at most R' - 2 g1 - 2 g2 + rounding < r1 + r2.
 
-#include "collide/internal/plan_poses.h"
-#include "collide/internal/plan_solids.h"
+#include "collide/kernels/plan_poses.h"
+#include "collide/kernels/plan_solids.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {

@@ -3,8 +3,8 @@
 
 // A CheckPlan with what it points to, and the memory that its kernels write to.
 
-#include "collide/internal/check_plan.h"
-#include "collide/internal/check_plan_source.h"
+#include "collide/kernels/check_plan.h"
+#include "collide/kernels/check_plan_source.h"
 
 #include <cstddef>
 #include <cstdint>

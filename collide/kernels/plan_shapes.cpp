@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/internal/plan_shapes.h"
+#include "collide/kernels/plan_shapes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/internal/compiled_plan.h"
+#include "collide/kernels/compiled_plan.h"
 
 #include "collide/internal/mechanism_input.h"
-#include "collide/internal/plan_shapes.h"
 #include "collide/internal/single_precision.h"
+#include "collide/kernels/plan_shapes.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/internal/search_trees.h"
+#include "collide/kernels/search_trees.h"
 
 #include "spheretree/build.h"
 

@@ -4,7 +4,7 @@
 // Eight numbers side by side, in single or double precision. Part of the kernels, see
 // plan_kernel_impl.h.
 
-#include "collide/internal/check_plan.h"
+#include "collide/kernels/check_plan.h"
 
 #ifdef __x86_64__
 #include <immintrin.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/internal/plan_kernels.h"
+#include "collide/kernels/plan_kernels.h"
 
 #include "spheretree/error.h"
 

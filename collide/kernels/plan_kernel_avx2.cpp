@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // For x86 processors with AVX2 and fused multiply-add; compiled for these.
-#include "collide/internal/check_plan.h"
+#include "collide/kernels/check_plan.h"
 
 #define SPHERULE_KERNEL avx2
-#include "collide/internal/plan_kernel_impl.h"
+#include "collide/kernels/plan_kernel_impl.h"
 
 namespace spherule::internal {
 

@@ -5,7 +5,7 @@
 // at a time: what PathReach::bounds() computes (the proof is with it), in lanes. Part of the
 // kernels, see plan_kernel_impl.h.
 
-#include "collide/internal/plan_vectors.h"
+#include "collide/kernels/plan_vectors.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/internal/compiled_plan.h"
+#include "collide/kernels/compiled_plan.h"
 
 #include <algorithm>
 

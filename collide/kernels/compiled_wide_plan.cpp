@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/internal/compiled_wide_plan.h"
+#include "collide/kernels/compiled_wide_plan.h"
 
 #include "collide/internal/single_precision.h"
 

@@ -4,7 +4,7 @@
 // A compiled check of a jointed mechanism as plain data, and the kernels that evaluate it in lanes:
 // eight configurations, or the middles of eight parts of a motion, side by side. `Real` is float
 // for the fast evaluation and double for what that leaves undecided. All lengths are in the frame
-// of the mechanism's root. Bounds and error budgets: plan_search.h, check_plan_builder.cpp.
+// of the mechanism's root. Bounds and error budgets: plan_search.h, compiled_plan.cpp.
 
 #include <cstdint>
 
@@ -224,7 +224,7 @@ struct PlanParts {
   unsigned any_near = 0;      // out: lanes whose set is not empty
   unsigned given_up = 0;      // out: lanes with a test that was not inflated by more than `enough`
   unsigned contacts = 0;      // out: lanes in whose middles there is a contact
-  bool all_contacts = false;  // in: go on after a contact, in the lanes before it
+  bool all_contacts = false;  // in: go on after a contact; otherwise `near` is not complete then
 };
 
 template <class Real>

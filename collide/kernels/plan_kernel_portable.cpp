@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // For any processor.
-#include "collide/internal/check_plan.h"
+#include "collide/kernels/check_plan.h"
 
 #define SPHERULE_KERNEL portable
-#include "collide/internal/plan_kernel_impl.h"
+#include "collide/kernels/plan_kernel_impl.h"
 
 namespace spherule::internal {
 

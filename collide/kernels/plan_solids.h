@@ -5,9 +5,9 @@
 //
 // Each shape gives, for a point p in the root's frame, the offset e of p from the nearest point of
 // the solid (zero inside), in coordinates of its choice, and the product of e with a velocity. The
-// computed e errs by less than `error` of the obstacle (check_plan_builder.cpp) and the error of p.
+// computed e errs by less than `error` of the obstacle (plan_shapes.cpp) and the error of p.
 
-#include "collide/internal/plan_vectors.h"
+#include "collide/kernels/plan_vectors.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collide/instruction_set.h"
-#include "collide/internal/check_plan.h"
+#include "collide/kernels/check_plan.h"
 
 namespace spherule::internal {
 

@@ -3,7 +3,7 @@
 
 // What a CheckPlan is compiled from, in double precision and in the frame of the mechanism's root.
 
-#include "collide/internal/search_trees.h"
+#include "collide/kernels/search_trees.h"
 #include "collide/mechanism_check.h"
 #include "collide/primitive.h"
 #include "spheretree/pose.h"

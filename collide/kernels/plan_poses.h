@@ -27,7 +27,7 @@
 // by less than 4 of it for each rate. Rounding of the n + 2 sums and of two products adds less than
 // (4 n + 16) v W for each rate, which is below the above, 38 n v W, too: 5 times that in all.
 
-#include "collide/internal/plan_vectors.h"
+#include "collide/kernels/plan_vectors.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
