@@ -19,13 +19,6 @@ typedef float Float4 __attribute__((vector_size(16), may_alias));
 typedef double Double4 __attribute__((vector_size(32), may_alias));
 typedef std::int64_t Long4 __attribute__((vector_size(32), may_alias));
 
-// Adding 1.5 2^52 rounds to an integer only where double is not computed with more bits.
-static_assert(__FLT_EVAL_METHOD__ == 0);
-constexpr double kRound = 0x1.8p52;  // added, it leaves an integer in the last bits
-constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
-constexpr double kHalfPi = 0x1.921fb54442d18p+0;
-constexpr double kHalfPiRest = 0x1.1a62633145c07p-54;
-
 SPHERULE_INLINE Double4 load(const double* p) {
   return *reinterpret_cast<const Double4*>(p);
 }

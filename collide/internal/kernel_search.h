@@ -4,44 +4,15 @@
 // One body against one obstacle: the dual-tree search over nodes of eight. Part of the kernels, see
 // mechanism_kernel_impl.h.
 
+#include "collide/internal/kernel_vectors.h"
 #include "collide/internal/mechanism_kernel.h"
-
-#ifdef __x86_64__
-#include <immintrin.h>
-#endif
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 
-#define SPHERULE_INLINE inline __attribute__((always_inline))
-
-typedef float Float8 __attribute__((vector_size(32), may_alias));
-typedef std::int32_t Int8 __attribute__((vector_size(32), may_alias));
-
 // The obstacle is opened until its ball is smaller than this part of the body's: opening the body
 // costs a change of frame. Measured on the workload of bench/, from 0.35 to 1.
 constexpr float kOpenBody = 0.7F;
-
-SPHERULE_INLINE Float8 load(const float* p) {
-  return *reinterpret_cast<const Float8*>(p);
-}
-
-// A bit for every lane that is set.
-SPHERULE_INLINE unsigned mask_of(Int8 set) {
-#if defined(__AVX__)
-  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(set)));
-#elif defined(__SSE2__)
-  typedef std::int32_t Int4 __attribute__((vector_size(16), may_alias));
-  const Int4* const halves = reinterpret_cast<const Int4*>(&set);
-  const int low = _mm_movemask_ps(reinterpret_cast<__m128>(halves[0]));
-  const int high = _mm_movemask_ps(reinterpret_cast<__m128>(halves[1]));
-  return static_cast<unsigned>(low | high << 4);
-#else
-  unsigned mask = 0;
-  for (int lane = 0; lane < 8; ++lane) mask |= (set[lane] != 0 ? 1U : 0U) << lane;
-  return mask;
-#endif
-}
 
 struct Balls {
   Float8 x, y, z, radius;

@@ -32,13 +32,6 @@
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 
-// Adding 1.5 2^52 rounds to an integer only where double is not computed with more bits.
-static_assert(__FLT_EVAL_METHOD__ == 0);
-constexpr double kRound = 0x1.8p52;
-constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
-constexpr double kHalfPi = 0x1.921fb54442d18p+0;
-constexpr double kHalfPiRest = 0x1.1a62633145c07p-54;
-
 struct Reduced {
   Double8 remainder;
   Double8 quarter;  // a whole number

@@ -4,19 +4,15 @@
 // Eight numbers side by side, in single or double precision. Part of the kernels, see
 // plan_kernel_impl.h.
 
+#include "collide/internal/kernel_vectors.h"
 #include "collide/kernels/check_plan.h"
 
-#ifdef __x86_64__
-#include <immintrin.h>
-#endif
+#include <cstdint>
+#include <type_traits>
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 
-#define SPHERULE_INLINE inline __attribute__((always_inline))
-
-typedef float Float8 __attribute__((vector_size(32), may_alias));
-typedef std::int32_t Int8 __attribute__((vector_size(32), may_alias));
 typedef double Double8 __attribute__((vector_size(64), may_alias));
 typedef std::int64_t Long8 __attribute__((vector_size(64), may_alias));
 
@@ -39,9 +35,8 @@ using Bits = typename VectorOf<Real>::Bits;
 
 constexpr unsigned kAllLanes = (1U << kPlanLanes) - 1;
 
-template <class Real>
-SPHERULE_INLINE Vector<Real> load(const Real* p) {
-  return *reinterpret_cast<const Vector<Real>*>(p);
+SPHERULE_INLINE Double8 load(const double* p) {
+  return *reinterpret_cast<const Double8*>(p);
 }
 
 template <class Real>
@@ -58,33 +53,39 @@ SPHERULE_INLINE Vector<Real> all(Real x) {
 SPHERULE_INLINE unsigned above(const Float8& a, const Float8& b) {
 #if defined(__AVX512VL__)
   return _mm256_cmp_ps_mask(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b), _CMP_GT_OQ);
-#elif defined(__AVX__)
-  return static_cast<unsigned>(_mm256_movemask_ps(
-      _mm256_cmp_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b), _CMP_GT_OQ)));
-#elif defined(__SSE2__)
-  const Int8 set = a > b;
-  __m128 halves[2];
-  __builtin_memcpy(halves, &set, sizeof halves);
-  return static_cast<unsigned>(_mm_movemask_ps(halves[0]) | _mm_movemask_ps(halves[1]) << 4);
 #else
-  const Int8 set = a > b;
-  unsigned mask = 0;
-  for (int lane = 0; lane < kPlanLanes; ++lane) mask |= (set[lane] != 0 ? 1U : 0U) << lane;
-  return mask;
+  return mask_of(a > b);
 #endif
 }
-
 SPHERULE_INLINE unsigned above(const Double8& a, const Double8& b) {
 #if defined(__AVX512F__)
   return _mm512_cmp_pd_mask(reinterpret_cast<__m512d>(a), reinterpret_cast<__m512d>(b), _CMP_GT_OQ);
 #else
-  const Long8 set = a > b;
-  unsigned mask = 0;
-  for (int lane = 0; lane < kPlanLanes; ++lane) mask |= (set[lane] != 0 ? 1U : 0U) << lane;
-  return mask;
+  return bits_of_lanes(a > b);
 #endif
 }
 
+template <class V>
+SPHERULE_INLINE V larger(const V& a, const V& b) {
+  return a > b ? a : b;
+}
+template <class V>
+SPHERULE_INLINE V smaller(const V& a, const V& b) {
+  return a < b ? a : b;
+}
+template <class V>
+SPHERULE_INLINE V root(const V& a) {
+  V result = {};
+  for (int lane = 0; lane < kPlanLanes; ++lane) {
+    if constexpr (sizeof(a[0]) == sizeof(float)) {
+      result[lane] = __builtin_sqrtf(a[lane]);
+    } else {
+      result[lane] = __builtin_sqrt(a[lane]);
+    }
+  }
+  return result;
+}
+// By name: the compiler finds the instructions for doubles only.
 #if defined(__AVX__)
 SPHERULE_INLINE Float8 larger(const Float8& a, const Float8& b) {
   return reinterpret_cast<Float8>(
@@ -97,30 +98,7 @@ SPHERULE_INLINE Float8 smaller(const Float8& a, const Float8& b) {
 SPHERULE_INLINE Float8 root(const Float8& a) {
   return reinterpret_cast<Float8>(_mm256_sqrt_ps(reinterpret_cast<__m256>(a)));
 }
-#else
-SPHERULE_INLINE Float8 larger(const Float8& a, const Float8& b) {
-  return a > b ? a : b;
-}
-SPHERULE_INLINE Float8 smaller(const Float8& a, const Float8& b) {
-  return a < b ? a : b;
-}
-SPHERULE_INLINE Float8 root(const Float8& a) {
-  Float8 result = {};
-  for (int lane = 0; lane < kPlanLanes; ++lane) result[lane] = __builtin_sqrtf(a[lane]);
-  return result;
-}
 #endif
-SPHERULE_INLINE Double8 larger(const Double8& a, const Double8& b) {
-  return a > b ? a : b;
-}
-SPHERULE_INLINE Double8 smaller(const Double8& a, const Double8& b) {
-  return a < b ? a : b;
-}
-SPHERULE_INLINE Double8 root(const Double8& a) {
-  Double8 result = {};
-  for (int lane = 0; lane < kPlanLanes; ++lane) result[lane] = __builtin_sqrt(a[lane]);
-  return result;
-}
 
 // To single precision, and whole numbers to integers. By name: what the compiler makes of
 // __builtin_convertvector goes through memory in halves, which has to wait.
@@ -155,16 +133,17 @@ SPHERULE_INLINE V magnitude(const V& a) {
 }
 
 // The magnitude of a with the sign of b.
-SPHERULE_INLINE Float8 with_sign(const Float8& a, const Float8& b) {
-  const Int8 sign = reinterpret_cast<const Int8&>(b) & static_cast<std::int32_t>(0x80000000U);
-  const Int8 bits = reinterpret_cast<const Int8&>(a) | sign;
-  return reinterpret_cast<const Float8&>(bits);
-}
-SPHERULE_INLINE Double8 with_sign(const Double8& a, const Double8& b) {
-  const Long8 sign =
-      reinterpret_cast<const Long8&>(b) & static_cast<std::int64_t>(0x8000000000000000U);
-  const Long8 bits = reinterpret_cast<const Long8&>(a) | sign;
-  return reinterpret_cast<const Double8&>(bits);
+template <class V>
+SPHERULE_INLINE V with_sign(const V& a, const V& b) {
+  const V negative = -V{};
+  Bits<std::remove_cvref_t<decltype(a[0])>> bits[3];
+  __builtin_memcpy(&bits[0], &a, sizeof a);
+  __builtin_memcpy(&bits[1], &b, sizeof b);
+  __builtin_memcpy(&bits[2], &negative, sizeof negative);
+  bits[0] |= bits[1] & bits[2];
+  V result;
+  __builtin_memcpy(&result, &bits[0], sizeof result);
+  return result;
 }
 
 SPHERULE_INLINE float lowest(const Float8& a) {
