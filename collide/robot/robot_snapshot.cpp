@@ -39,10 +39,7 @@ int add_fixed_link(RobotModel& robot, const std::string& name, int parent,
 
 // Sorts out what is tested against what.
 //
-// `carrier_` is the robot with a link more for each attached object. For the check against standing
-// trees, whose pairs are links and obstacles, each piece that is not all of a tree as it is gets a
-// link of its own below, at the same place: forward_kinematics() computes the same pose for it, to
-// the last bit, because to multiply by one and to add zero is exact.
+// `carrier_` is the robot with a link more for each attached object.
 class RobotScene::Snapshot {
  public:
   Snapshot(const RobotScene& scene, const RobotCheckerOptions& options)
@@ -68,7 +65,6 @@ class RobotScene::Snapshot {
       for (std::size_t i = 0; i < shapes_.size(); ++i) pair_with_obstacle(body, i);
       for (std::size_t other = body; other-- > 0;) pair_bodies(body, other);
     }
-    std::optional<RobotTreeChecker> standing = check_of_standing_trees();
     std::vector<RobotChecker::Parts::Named> names;
     for (const Body& body : bodies_) names.push_back({body.kind, body.name});
     const std::size_t tested = pairs_.size();
@@ -77,7 +73,7 @@ class RobotScene::Snapshot {
         scene_.robot_, options_,
         internal::BodyPairs(carrier_, scene_.world_from_root_, std::move(pieces_),
                             std::move(shapes_), std::move(pairs_), tested),
-        std::move(standing), std::move(names), std::move(obstacle_names_));
+        std::move(names), std::move(obstacle_names_));
   }
 
  private:
@@ -187,69 +183,6 @@ class RobotScene::Snapshot {
     return std::none_of(joints.begin(), joints.end(), [&](int joint) {
       return carrier_.joints()[static_cast<std::size_t>(joint)].moves();
     });
-  }
-
-  std::optional<RobotTreeChecker> check_of_standing_trees() const {
-    if (standing_pairs_.empty()) return std::nullopt;
-    std::vector<PlacedTree> placed;
-    std::vector<std::size_t> place_of(shapes_.size(), 0);
-    for (std::size_t i = 0; i < shapes_.size(); ++i) {
-      const Tree* const tree = std::get_if<Tree>(&shapes_[i].shape);
-      if (tree == nullptr) continue;
-      place_of[i] = placed.size();
-      placed.push_back({*tree, shapes_[i].world_from_shape});
-    }
-    RobotModel model = carrier_;
-    for (const Body& body : bodies_) {
-      if (body.kind != CheckedBody::Kind::kAttached) continue;
-      model.attach(model.links()[static_cast<std::size_t>(body.link)].name, body.trees.front());
-    }
-    const auto tested = tested_links(model, placed.size(), place_of);
-    RobotTreeCheckerOptions options{.world_from_root = scene_.world_from_root_,
-                                    .instructions = options_.instructions};
-    for (std::size_t link = 0; link < tested.size(); ++link) {
-      for (std::size_t i = 0; i < placed.size(); ++i) {
-        if (!tested[link][i]) options.untested.push_back({static_cast<int>(link), i});
-      }
-    }
-    return RobotTreeChecker(std::move(model), std::move(placed), options);
-  }
-
-  // Which links are tested against which placed trees; adds to the model those of pieces. What a
-  // body is tested with against an obstacle are its trees as they are, all of them, or else pieces.
-  std::vector<std::vector<bool>> tested_links(RobotModel& model, std::size_t placed,
-                                              const std::vector<std::size_t>& place_of) const {
-    std::vector<std::vector<bool>> tested(model.links().size(), std::vector<bool>(placed, false));
-    std::map<std::pair<std::size_t, int>, std::vector<int>> pieces;  // of a body, for an obstacle
-    for (const internal::CheckedPair& pair : standing_pairs_) {
-      const auto& piece = pieces_[static_cast<std::size_t>(pair.piece)];
-      pieces[{piece.body, pair.other}].push_back(pair.piece);
-    }
-    std::map<int, std::size_t> link_of;  // of a piece
-    for (const auto& [key, of_body] : pieces) {
-      const Body& body = bodies_[key.first];
-      const std::size_t place = place_of[static_cast<std::size_t>(key.second)];
-      const bool is_whole = of_body.size() == body.trees.size() &&
-                            std::all_of(of_body.begin(), of_body.end(), [&](int index) {
-                              const auto& piece = pieces_[static_cast<std::size_t>(index)];
-                              return piece.tree == body.trees[piece.body_tree];
-                            });
-      if (is_whole) {
-        tested[static_cast<std::size_t>(body.link)][place] = true;
-        continue;
-      }
-      for (const int index : of_body) {
-        const auto [found, is_new] = link_of.try_emplace(index, tested.size());
-        if (is_new) {
-          const int link = add_fixed_link(model, body.name, body.link, Pose());
-          model.attach(model.links()[static_cast<std::size_t>(link)].name,
-                       pieces_[static_cast<std::size_t>(index)].tree);
-          tested.emplace_back(placed, false);
-        }
-        tested[found->second][place] = true;
-      }
-    }
-    return tested;
   }
 
   const RobotScene& scene_;

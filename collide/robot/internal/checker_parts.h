@@ -5,8 +5,8 @@
 
 #include "collide/robot/internal/body_pairs.h"
 #include "collide/robot/internal/lane_check.h"
+#include "collide/robot/internal/standing_trees.h"
 #include "collide/robot/robot_checker.h"
-#include "collide/robot/robot_tree_checker.h"
 #include "spheretree/rounding.h"
 
 #include <memory>
@@ -33,16 +33,18 @@ struct RobotChecker::Parts {
   };
 
   Parts(RobotModel model, const RobotCheckerOptions& options, internal::BodyPairs all,
-        std::optional<RobotTreeChecker> static_trees, std::vector<Named> body_names,
-        std::vector<Named> obstacle_names)
+        std::vector<Named> body_names, std::vector<Named> obstacle_names)
       : robot(std::move(model)),
         enforces_limits(options.enforce_limits),
         pairs(std::move(all)),
         lanes(pairs, options.instructions),
-        standing(std::move(static_trees)),
         bodies(std::move(body_names)),
-        obstacles(std::move(obstacle_names)) {}
-  // `lanes` refers to `pairs`.
+        obstacles(std::move(obstacle_names)) {
+    if (pairs.tested() < pairs.pairs().size())
+      standing.emplace(pairs, std::span<const std::shared_ptr<const CoveredMesh>>(),
+                       options.instructions);
+  }
+  // `lanes` and `standing` refer to `pairs`.
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
@@ -52,7 +54,7 @@ struct RobotChecker::Parts {
   // configurations.
   internal::BodyPairs pairs;
   internal::LaneCheck lanes;  // of these
-  std::optional<RobotTreeChecker> standing;
+  std::optional<internal::StandingTrees> standing;
   std::vector<Named> bodies;     // of CheckedPiece::body
   std::vector<Named> obstacles;  // of pairs.obstacles()
 };
@@ -64,7 +66,7 @@ struct RobotChecker::Scratch::Memory {
   std::shared_ptr<const Parts> owner;
   internal::LaneCheck::Memory lanes;
   internal::BodyPairs::Memory pairs{};
-  std::optional<RobotTreeChecker::Scratch> standing{};
+  std::optional<internal::StandingTrees::Memory> standing{};
 };
 
 }  // namespace spherule

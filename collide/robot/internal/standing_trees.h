@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Configurations against sphere trees that stand still: what a RobotChecker asks a MechanismCheck,
+// whose memory of the last configurations makes a path fast.
+
+#include "collide/instruction_set.h"
+#include "collide/mechanism_check.h"
+#include "collide/mesh_contact.h"
+#include "collide/robot/internal/body_pairs.h"
+#include "collide/robot/joint_positions.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace spherule::internal {
+
+// Of the pairs of BodyPairs from tested() on, pieces and sphere trees: does any touch? Exactly
+// BodyPairs::touches(), or collides() of covered meshes where these are given for both. No
+// instruction set changes an answer.
+class StandingTrees {
+ private:
+  // A contact that was confirmed on triangles: of the piece's mesh and the obstacle's.
+  struct Touch {
+    MechanismContact contact;
+    TrianglePair triangles;
+  };
+
+ public:
+  // `pairs` must outlive it. Contacts of two trees that are both the cover() of one of the meshes
+  // count only if the meshes touch. Throws Error as MechanismCheck does.
+  StandingTrees(const BodyPairs& pairs, std::span<const std::shared_ptr<const CoveredMesh>> meshes,
+                InstructionSet instructions);
+
+  // What a query writes to. Those of several threads share no cache line.
+  class alignas(64) Memory {
+   public:
+    // For these.
+    explicit Memory(const StandingTrees& trees)
+        : check_(*trees.check_), room_(trees.positions_.room_for(MechanismCheck::kBlock)) {}
+
+   private:
+    friend class StandingTrees;
+    MechanismCheck::Scratch check_;
+    std::vector<Pose> world_from_link_{};
+    std::vector<MechanismPair> unconfirmed_{};  // spheres touch, but no triangles do
+    std::optional<Touch> last_{};
+    JointPositions::Room room_;
+  };
+
+  // Fastest where each configuration is near the one before: the memory then knows how far the
+  // robot was from everything, or how deep in it. The configuration has as many numbers as the
+  // robot has variables; throws Error if one is not finite, and where forward_kinematics() does.
+  bool touch(std::span<const double> configuration, Memory& memory) const;
+
+  // The same of many, which lie one behind the other; verdicts[i] is 1 if the i-th touches,
+  // otherwise 0. Several times faster where neighbours differ little.
+  void touch(std::span<const double> configurations, Memory& memory,
+             std::span<std::uint8_t> verdicts) const;
+
+ private:
+  // A piece that variables move, with its mesh, if that is known.
+  struct Body {
+    const CheckedPiece* piece;
+    const CoveredMesh* mesh;
+    int frame;  // of the check
+    Pose frame_from_link;
+  };
+  struct Obstacle {
+    std::shared_ptr<const SphereTree> tree;
+    Pose world_from_tree;
+    const CoveredMesh* mesh;
+  };
+
+  const Body& body_of(const MechanismPair& pair) const {
+    return bodies_[static_cast<std::size_t>(pair.body)];
+  }
+  const Obstacle& obstacle_of(const MechanismPair& pair) const {
+    return obstacles_[static_cast<std::size_t>(pair.obstacle)];
+  }
+  static const Pose& pose_of(const Body& body, const Memory& memory) {
+    return memory.world_from_link_[static_cast<std::size_t>(body.piece->link)];
+  }
+  const CoveredMesh* mesh_of(const SphereTree& tree) const;
+  bool pair_touches(const Body& body, const Obstacle& obstacle, const Pose& world_from_link) const;
+
+  enum class Finding { kApart, kSpheres, kTouch };
+  Finding find(const MechanismContact& contact, Memory& memory) const;
+  bool still_touches(const Touch& touch, Memory& memory) const;
+  double depth_of(const Touch& touch, const Memory& memory) const;
+  void remember(const Touch& touch, double depth, Memory& memory) const;
+  bool touches(std::span<const double> configuration, const MechanismContact& contact,
+               bool& is_placed, Memory& memory) const;
+  bool contains_component(const Memory& memory) const;
+  bool touch_exactly(std::span<const double> configuration, Memory& memory) const;
+  void place(std::span<const double> configuration, Memory& memory) const;
+
+  const BodyPairs& pairs_;
+  std::vector<std::shared_ptr<const CoveredMesh>> meshes_;
+  JointPositions positions_;
+  std::vector<Body> bodies_;
+  std::vector<Obstacle> obstacles_;
+  std::vector<MechanismPair> tested_;
+  bool always_ = false;  // a piece that stands with the root touches
+  std::unique_ptr<const MechanismCheck> check_;
+};
+
+}  // namespace spherule::internal
