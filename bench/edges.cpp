@@ -10,14 +10,14 @@
 namespace spherule {
 namespace {
 
-bool is_free_at_many(const RobotTreeChecker& checker, RobotTreeChecker::Scratch& scratch,
+bool is_free_at_many(const RobotChecker& checker, RobotChecker::Scratch& scratch,
                      const ArmPositions& from, const ArmPositions& to) {
   constexpr int kSteps = 10000;
   for (int step = 0; step <= kSteps; ++step) {
     const double t = static_cast<double>(step) / kSteps;
     ArmPositions at;
     for (std::size_t i = 0; i < at.size(); ++i) at[i] = (1.0 - t) * from[i] + t * to[i];
-    if (checker.collides(at, scratch)) return false;
+    if (!checker.check_config(at, scratch)) return false;
   }
   return true;
 }
@@ -25,8 +25,8 @@ bool is_free_at_many(const RobotTreeChecker& checker, RobotTreeChecker::Scratch&
 }  // namespace
 
 EdgeMeasurement measure_edges(const Workload& workload) {
-  const RobotTreeChecker checker = make_robot_tree_checker(workload);
-  RobotTreeChecker::Scratch scratch(checker);
+  const RobotChecker checker = make_robot_checker(workload);
+  RobotChecker::Scratch scratch(checker);
   const std::vector<ArmPositions>& program = workload.program;
   checker.check_edge(program[0], program[1], scratch);  // warms the scratch up
   const double cost = clock_cost();

@@ -2,20 +2,56 @@
 #include "bench/tree_checker.h"
 
 #include "collide/collide.h"
+#include "collide/mesh_contact.h"
 #include "collide/robot/robot_mesh_checker.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace spherule {
 namespace {
 
-template <class AnyChecker>
 class SingleTreeChecker : public Checker {
  public:
-  explicit SingleTreeChecker(AnyChecker checker)
+  explicit SingleTreeChecker(RobotChecker checker)
+      : checker_(std::move(checker)), scratch_(checker_) {}
+
+  void check(std::span<const ArmPositions> configurations,
+             std::span<std::uint8_t> verdicts) override {
+    for (std::size_t i = 0; i < configurations.size(); ++i) {
+      verdicts[i] = checker_.check_config(configurations[i], scratch_) ? 0 : 1;
+    }
+  }
+
+ private:
+  RobotChecker checker_;
+  RobotChecker::Scratch scratch_;
+};
+
+class BatchTreeChecker : public Checker {
+ public:
+  explicit BatchTreeChecker(RobotChecker checker)
+      : checker_(std::move(checker)), scratch_(checker_) {}
+
+  void check(std::span<const ArmPositions> configurations,
+             std::span<std::uint8_t> verdicts) override {
+    if (configurations.empty()) return;
+    checker_.check_configs({configurations.front().data(), configurations.size() * kJoints},
+                           scratch_, verdicts);
+    for (std::uint8_t& verdict : verdicts) verdict ^= 1U;  // free to colliding
+  }
+
+ private:
+  RobotChecker checker_;
+  RobotChecker::Scratch scratch_;
+};
+
+class MeshRobotChecker : public Checker {
+ public:
+  explicit MeshRobotChecker(RobotMeshChecker checker)
       : checker_(std::move(checker)), scratch_(checker_) {}
 
   void check(std::span<const ArmPositions> configurations,
@@ -26,25 +62,8 @@ class SingleTreeChecker : public Checker {
   }
 
  private:
-  AnyChecker checker_;
-  typename AnyChecker::Scratch scratch_;
-};
-
-class BatchTreeChecker : public Checker {
- public:
-  explicit BatchTreeChecker(RobotTreeChecker checker)
-      : checker_(std::move(checker)), scratch_(checker_) {}
-
-  void check(std::span<const ArmPositions> configurations,
-             std::span<std::uint8_t> verdicts) override {
-    if (configurations.empty()) return;
-    checker_.collides({configurations.front().data(), configurations.size() * kJoints}, scratch_,
-                      verdicts);
-  }
-
- private:
-  RobotTreeChecker checker_;
-  RobotTreeChecker::Scratch scratch_;
+  RobotMeshChecker checker_;
+  RobotMeshChecker::Scratch scratch_;
 };
 
 class PairTreeChecker : public SingleChecker {
@@ -95,40 +114,46 @@ RobotMeshChecker make_mesh_checker(const Workload& workload, InstructionSet inst
 
 }  // namespace
 
-RobotTreeChecker make_robot_tree_checker(const Workload& workload, InstructionSet instructions,
-                                         bool confirmed) {
+RobotChecker make_robot_checker(const Workload& workload, InstructionSet instructions,
+                                bool confirmed) {
   RobotModel robot = workload.robot;
-  RobotTreeCheckerOptions options{.instructions = instructions};
+  RobotCheckerOptions options{.instructions = instructions};
   const auto add_mesh = [&](const Part& part) {
     if (!confirmed) return;
     options.meshes.push_back(std::make_shared<const CoveredMesh>(part.mesh, part.tree));
   };
-  std::vector<PlacedTree> obstacles;
-  for (const Obstacle& obstacle : workload.obstacles) {
-    obstacles.push_back({obstacle.part.tree, obstacle.world_from_part});
-    add_mesh(obstacle.part);
-  }
+  const auto link_of = [&](const Body& body) {
+    return robot.links()[static_cast<std::size_t>(body.link)].name;
+  };
   for (const Body& body : workload.bodies) {
-    robot.attach(robot.links()[static_cast<std::size_t>(body.link)].name, body.part.tree);
+    robot.attach(link_of(body), body.part.tree);
     add_mesh(body.part);
-    for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
-      if (!is_tested(body, workload.obstacles[i])) options.untested.push_back({body.link, i});
+  }
+  AllowedCollisions allowed(robot);
+  allowed.allow_all();
+  RobotScene scene(robot);
+  scene.set_allowed_collisions(std::move(allowed));
+  for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
+    const Obstacle& obstacle = workload.obstacles[i];
+    const std::string name = "obstacle " + std::to_string(i);
+    scene.add(name, obstacle.part.tree, obstacle.world_from_part);
+    add_mesh(obstacle.part);
+    for (const Body& body : workload.bodies) {
+      if (!is_tested(body, obstacle)) scene.allow_contact(link_of(body), name);
     }
   }
-  return RobotTreeChecker(std::move(robot), std::move(obstacles), options);
+  return scene.snapshot(options);
 }
 
 std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mode,
                                            InstructionSet instructions) {
   if (mode == TreeMode::kPairs) return std::make_unique<PairTreeChecker>(workload);
   if (mode == TreeMode::kMeshes) {
-    return std::make_unique<SingleTreeChecker<RobotMeshChecker>>(
-        make_mesh_checker(workload, instructions));
+    return std::make_unique<MeshRobotChecker>(make_mesh_checker(workload, instructions));
   }
-  RobotTreeChecker checker =
-      make_robot_tree_checker(workload, instructions, mode == TreeMode::kConfirmed);
+  RobotChecker checker = make_robot_checker(workload, instructions, mode == TreeMode::kConfirmed);
   if (mode == TreeMode::kBatch) return std::make_unique<BatchTreeChecker>(std::move(checker));
-  return std::make_unique<SingleTreeChecker<RobotTreeChecker>>(std::move(checker));
+  return std::make_unique<SingleTreeChecker>(std::move(checker));
 }
 
 }  // namespace spherule

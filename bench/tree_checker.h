@@ -2,17 +2,17 @@
 #pragma once
 
 #include "bench/workload.h"
-#include "collide/robot/robot_tree_checker.h"
+#include "collide/robot/robot_scene.h"
 
 #include <memory>
 
 namespace spherule {
 
-// The workload's robot with its sphere trees, among its obstacles; contacts confirmed on the
-// triangles if asked for.
-RobotTreeChecker make_robot_tree_checker(const Workload& workload,
-                                         InstructionSet instructions = best_instruction_set(),
-                                         bool confirmed = false);
+// The workload's robot with its sphere trees, among its obstacles, its links not tested against
+// each other; contacts confirmed on the triangles if asked for.
+RobotChecker make_robot_checker(const Workload& workload,
+                                InstructionSet instructions = best_instruction_set(),
+                                bool confirmed = false);
 
 enum class TreeMode { kSingle, kBatch, kConfirmed, kPairs, kMeshes };
 

@@ -10,11 +10,10 @@ namespace spherule {
 
 // How to check a straight motion in the space of a mechanism's variables.
 struct EdgeRequest {
-  // What comes closer than about half of this, in the unit of the trees, is not kept apart any
-  // more: it is not proved free. All else is proved free, or a contact found, unless the budget
-  // ends before.
+  // What comes closer than about half of this, in the unit of the trees, need not be proved free.
+  // All else is proved free, or a contact found, unless the budget ends before.
   double resolution = 1e-4;
-  // Look for the first contact, and prove all before it; otherwise any will do, which is faster.
+  // Find the first contact, and prove all before it; otherwise any will do, which is faster.
   bool first = false;
   // Evaluate no more configurations than this, with the verdict kUnknown unless a contact was
   // found.

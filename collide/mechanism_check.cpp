@@ -2,8 +2,6 @@
 #include "collide/mechanism_check.h"
 
 #include "collide/internal/mechanism_parts.h"
-#include "collide/internal/single_precision.h"
-#include "collide/within.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -29,7 +27,6 @@ MechanismCheck::Scratch::Scratch(const MechanismCheck& check)
   const Parts& parts = *check.parts_;
   memory_->owner = check.parts_;
   const auto variables = static_cast<std::size_t>(filled_up(parts.problem.variable_count));
-  memory_->variables.resize(variables);
   memory_->sines.resize(variables);
   memory_->cosines.resize(variables);
   memory_->poses.resize(parts.frames.size());
@@ -73,27 +70,15 @@ bool MechanismCheck::is_in_range(std::span<const double> variables) {
                      [](double v) { return std::abs(v) <= MechanismCheck::kLargestVariable; });
 }
 
-// For a clearance, bodies are grown by g' >= clearance (1 + 16 v): then the tests of packed_tree.h,
-// which round by less than 8 v of all radii together, find nothing apart that is within it. What
-// they find to touch by 3 g of the radii is within it up to 17 v g' and the rounding of a sum with
-// g', less than 2 v g' more: kDoubt g' is more than that.
-bool MechanismCheck::within(std::span<const double> variables, double clearance, Scratch& scratch,
-                            Ask ask, void* context) const {
-  constexpr double kGrowth = 1.0 + 16.0 * internal::kFloatRoundoff;
-  constexpr float kDoubt = 0x1p-18F;
+bool MechanismCheck::collides(std::span<const double> variables, Scratch& scratch, Ask ask,
+                              void* context) const {
   assert(is_in_range(variables));
   assert(variables.size() >= static_cast<std::size_t>(parts_->problem.variable_count));
   require_own(scratch);
-  require_clearance(clearance);
   Translator translator{parts_->scene, ask, context};
   Scratch::Memory& memory = *scratch.memory_;
-  if (clearance == 0.0) {
-    return memory.motion->collides(*parts_->kernels, parts_->problem, variables.data(), memory.view,
-                                   &Translator::confirm, &translator);
-  }
-  const float growth = internal::rounded_up_to_single(clearance * kGrowth);
-  return parts_->kernels->check(parts_->problem, variables.data(), growth, kDoubt * growth,
-                                memory.view, &Translator::confirm, &translator);
+  return memory.motion->collides(*parts_->kernels, parts_->problem, variables.data(), memory.view,
+                                 &Translator::confirm, &translator);
 }
 
 bool MechanismCheck::is_following(const Scratch& scratch) const {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/edge.h"
 #include "collide/instruction_set.h"
 #include "spheretree/pose.h"
 #include "spheretree/sphere.h"
@@ -100,19 +99,10 @@ class MechanismCheck {
   // changes no answer: near the last ones it may answer without asking. Allocates nothing.
   template <class Confirm>
   bool collides(std::span<const double> variables, Scratch& scratch, Confirm confirm) const {
-    return within(variables, 0.0, scratch, confirm);
-  }
-
-  // The same of spheres that come within `clearance` of each other: `confirm` says whether two do.
-  // A clearance of zero is collides().
-  // Throws Error as require_clearance() does.
-  template <class Confirm>
-  bool within(std::span<const double> variables, double clearance, Scratch& scratch,
-              Confirm confirm) const {
     const Ask ask = [](void* context, int, const MechanismContact& contact) -> bool {
       return (*static_cast<Confirm*>(context))(contact);
     };
-    return within(variables, clearance, scratch, ask, std::addressof(confirm));
+    return collides(variables, scratch, ask, std::addressof(confirm));
   }
 
   // For `confirm` of collides() to say that a ball (in the coordinates of a frame) touches an
@@ -122,22 +112,6 @@ class MechanismCheck {
   void remember_contact(int frame, const Sphere& ball, double depth, Scratch& scratch) const;
   // Whether it is worth while: the last configurations were near each other.
   bool is_following(const Scratch& scratch) const;
-
-  // Whether the mechanism is free all along the straight motion of its variables: at (1 - t) `from`
-  // + t `to` in exact arithmetic, for every t in [0, 1]. `confirm`, given the number of a
-  // configuration on it (a new one each time it changes), the configuration and a MechanismContact
-  // there, says whether the two touch. Proof in mechanism_edge.cpp.
-  // is_in_range() must hold for both ends. Throws Error as require_resolution() does.
-  // Allocates nothing once the scratch is warm.
-  template <class Confirm>
-  EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
-                        const EdgeRequest& request, Confirm confirm) const {
-    const AskAt ask = [](void* context, std::uint64_t number, std::span<const double> at,
-                         const MechanismContact& contact) -> bool {
-      return (*static_cast<Confirm*>(context))(number, at, contact);
-    };
-    return check_edge(from, to, scratch, request, ask, std::addressof(confirm));
-  }
 
   // Configurations that are asked for side by side; answers are bits, the first configuration's is
   // the lowest.
@@ -162,21 +136,14 @@ class MechanismCheck {
 
  private:
   using Ask = bool (*)(void* context, int index, const MechanismContact& contact);
-  bool within(std::span<const double> variables, double clearance, Scratch& scratch, Ask ask,
-              void* context) const;
+  bool collides(std::span<const double> variables, Scratch& scratch, Ask ask, void* context) const;
   BlockAnswer collides(std::span<const double* const, kBlock> configurations, Scratch& scratch,
                        Ask ask, void* context) const;
-
-  using AskAt = bool (*)(void* context, std::uint64_t number, std::span<const double> at,
-                         const MechanismContact& contact);
-  EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
-                        const EdgeRequest& request, AskAt ask, void* context) const;
 
   void require_own(const Scratch& scratch) const;
 
   struct Parts;
   struct Translator;
-  class EdgeMotion;
   std::shared_ptr<const Parts> parts_;
 };
 

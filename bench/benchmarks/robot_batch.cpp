@@ -74,44 +74,42 @@ const Cell& cell() {
   return kCell;
 }
 
-void run(benchmark::State& state, const RobotTreeChecker& checker,
+void run(benchmark::State& state, const RobotChecker& checker,
          const std::vector<ArmPositions>& program) {
   const auto count = static_cast<std::size_t>(state.range(0));
-  std::vector<RobotTreeChecker::Scratch> scratches;
+  std::vector<RobotChecker::Scratch> scratches;
   for (int i = 0; i < state.range(1); ++i) scratches.emplace_back(checker);
-  std::vector<std::uint8_t> verdicts(count);
+  std::vector<std::uint8_t> free(count);
   const std::span<const double> configurations(program.front().data(), count * kJoints);
   for (auto _ : state) {
-    checker.collides(configurations, scratches, verdicts);
-    benchmark::DoNotOptimize(verdicts.data());
+    checker.check_configs(configurations, scratches, free);
+    benchmark::DoNotOptimize(free.data());
     benchmark::ClobberMemory();
   }
   using benchmark::Counter;
   state.counters["each"] =
       Counter(static_cast<double>(count), Counter::kIsIterationInvariantRate | Counter::kInvert);
   state.counters["colliding"] =
-      static_cast<double>(std::count(verdicts.begin(), verdicts.end(), 1)) /
-      static_cast<double>(count);
+      static_cast<double>(std::count(free.begin(), free.end(), 0)) / static_cast<double>(count);
   state.counters["spheres"] = static_cast<double>(cell().spheres);
 }
 
 void BM_AlongThePath(benchmark::State& state) {
-  run(state, make_robot_tree_checker(cell().workload), cell().workload.program);
+  run(state, make_robot_checker(cell().workload), cell().workload.program);
 }
 void BM_InRandomOrder(benchmark::State& state) {
-  run(state, make_robot_tree_checker(cell().workload), cell().jumps);
+  run(state, make_robot_checker(cell().workload), cell().jumps);
 }
 // Contacts confirmed on the triangles.
 void BM_ConfirmedAlongThePath(benchmark::State& state) {
-  run(state, make_robot_tree_checker(cell().workload, best_instruction_set(), true),
+  run(state, make_robot_checker(cell().workload, best_instruction_set(), true),
       cell().workload.program);
 }
 
-// Configurations; threads.
 // Moves from one configuration of the program to the next, one per call.
 void BM_MovesAlongThePath(benchmark::State& state) {
-  const RobotTreeChecker checker = make_robot_tree_checker(cell().workload);
-  RobotTreeChecker::Scratch scratch(checker);
+  const RobotChecker checker = make_robot_checker(cell().workload);
+  RobotChecker::Scratch scratch(checker);
   const std::vector<ArmPositions>& program = cell().workload.program;
   std::size_t free = 0;
   std::size_t moves = 0;
@@ -126,6 +124,7 @@ void BM_MovesAlongThePath(benchmark::State& state) {
   state.counters["free"] = static_cast<double>(free) / static_cast<double>(moves);
 }
 
+// Configurations; threads.
 void sizes(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgsProduct({{256, 1024, static_cast<std::int64_t>(kProgramSize)}, {1, 2}})
       ->UseRealTime()

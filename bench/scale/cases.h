@@ -12,8 +12,8 @@ namespace spherule {
 // Relative poses of two trees: collides(), collide(), within(), PairCache.
 void check_poses(std::uint64_t poses, std::uint64_t seed, ScaleReport& report);
 
-// Configurations of robots: RobotTreeChecker, single and in batches, with every instruction set of
-// this machine.
+// Configurations of robots among sphere trees alone: RobotChecker, single and in batches, with
+// every instruction set of this machine.
 void check_configurations(std::uint64_t configurations, std::uint64_t seed, ScaleReport& report);
 
 // The bounds of distance().
@@ -23,7 +23,7 @@ void check_distances(std::uint64_t distances, std::uint64_t seed, ScaleReport& r
 // brute force in 200 steps, and of every hundredth motion in 10,000.
 void check_sweeps(std::uint64_t motions, std::uint64_t seed, ScaleReport& report);
 
-// RobotTreeChecker::check_edge(), likewise.
+// RobotChecker::check_edge(), likewise.
 void check_edges(std::uint64_t motions, std::uint64_t seed, ScaleReport& report);
 
 // RobotChecker in random scenes: check_config() and check_configs() with every instruction set of

@@ -2,9 +2,9 @@
 // Configurations of a RobotChecker: its answer is that of the canonical tests of all pairs, one by
 // one, with every instruction set.
 #include "bench/scale/cases.h"
+#include "bench/scale/checker_rows.h"
 #include "bench/scale/checker_scene.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,22 +15,9 @@ namespace {
 
 constexpr std::size_t kConfigurations = 251;  // of a scene: no whole number of lanes
 
-struct NamedInstructions {
-  InstructionSet set;
-  const char* name;
-};
-constexpr std::array<NamedInstructions, 3> kInstructions{{{InstructionSet::kPortable, "portable"},
-                                                          {InstructionSet::kAvx2, "avx2"},
-                                                          {InstructionSet::kAvx512, "avx512"}}};
-
-struct Configurations {
-  std::vector<double> positions;  // one behind the other
-  std::vector<std::uint8_t> is_near, truth;
-};
-
 // Anywhere, on paths, and around where contact begins, at gaps of all orders of magnitude.
-Configurations make_configurations(CheckerScene& scene, SceneRandom& random) {
-  Configurations made;
+AskedConfigurations make_configurations(CheckerScene& scene, SceneRandom& random) {
+  AskedConfigurations made;
   std::vector<double> last = scene.anywhere(random);
   std::optional<CheckerScene::Border> border;
   while (made.truth.size() < kConfigurations) {
@@ -65,27 +52,14 @@ Configurations make_configurations(CheckerScene& scene, SceneRandom& random) {
 
 void check_checker_configurations(std::uint64_t configurations, std::uint64_t seed,
                                   ScaleReport& report) {
-  struct Rows {
-    InstructionSet set;
-    Tally* single;
-    Tally* batch;
-  };
-  std::vector<Rows> rows;
-  for (const auto& [set, name] : kInstructions) {
-    if (!is_available(set)) continue;
-    const std::string checker = std::string("checker, ") + name;
-    Tally& single = report.add(checker + ", single");
-    rows.push_back({set, &single, &report.add(checker + ", batch")});
-  }
-  std::vector<std::uint8_t> free(kConfigurations);
+  const std::vector<CheckerRows> rows = add_checker_rows("checker", report);
   for (std::uint64_t done = 0, number = 0; done < configurations; ++number) {
     SceneRandom random(seed * 1'000'003 + number);
     CheckerScene scene(random);
     if (scene.pair_count() == 0) continue;
     // Few of those that touch everywhere or nowhere.
     if (!scene.find_border(random) && !random.chance(0.1)) continue;
-    const Configurations asked = make_configurations(scene, random);
-    const auto variables = static_cast<std::size_t>(scene.robot().variable_count());
+    const AskedConfigurations asked = make_configurations(scene, random);
     const auto judge = [&](Tally& tally, std::size_t i, bool is_free) {
       tally.count(is_free ? Verdict::kFree : Verdict::kCollision, asked.is_near[i] != 0);
       if (is_free != (asked.truth[i] != 0)) return;
@@ -94,16 +68,7 @@ void check_checker_configurations(std::uint64_t configurations, std::uint64_t se
       report.failure(tally, std::string(is_free ? "missed" : "extra") + ", scene " +
                                 std::to_string(number) + ", configuration " + std::to_string(i));
     };
-    for (const Rows& row : rows) {
-      const RobotChecker checker = scene.scene().snapshot({.instructions = row.set});
-      RobotChecker::Scratch scratch(checker);
-      for (std::size_t i = 0; i < kConfigurations; ++i) {
-        const std::span<const double> configuration(&asked.positions[i * variables], variables);
-        judge(*row.single, i, checker.check_config(configuration, scratch));
-      }
-      checker.check_configs(asked.positions, scratch, free);
-      for (std::size_t i = 0; i < kConfigurations; ++i) judge(*row.batch, i, free[i] != 0);
-    }
+    ask_rows(scene.scene(), rows, asked, judge);
     done += kConfigurations;
     report.progress("checked configurations", done, configurations);
   }

@@ -21,6 +21,13 @@ struct Edge {
   bool is_near = false;
 };
 
+// Whether a motion may start or end there.
+bool is_usual(const std::vector<double>& configuration) {
+  return std::all_of(configuration.begin(), configuration.end(), [](double position) {
+    return std::abs(position) <= RobotChecker::kLargestPosition;
+  });
+}
+
 Edge make_edge(ScaleRobot& scene, SceneRandom& random) {
   Edge edge;
   std::vector<double> there = scene.anywhere(random);
@@ -45,11 +52,11 @@ class EdgeCheck {
 
   void run(SceneRandom& random) {
     ScaleRobot scene(random);
-    const RobotTreeChecker checker(scene.robot(), scene.obstacles());
-    RobotTreeChecker::Scratch scratch(checker);
+    const RobotChecker checker = scene.scene().snapshot();
+    RobotChecker::Scratch scratch(checker);
     for (int i = 0; i < kEdgesOfAScene; ++i) {
       const Edge edge = make_edge(scene, random);
-      if (!MechanismCheck::is_in_range(edge.from) || !MechanismCheck::is_in_range(edge.to)) {
+      if (!is_usual(edge.from) || !is_usual(edge.to)) {
         continue;
       }
       EdgeRequest request{.first = random.chance(0.5)};

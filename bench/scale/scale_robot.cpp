@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kSize = 0.4;
 
-std::vector<PlacedTree> make_obstacles(SceneRandom& random) {
-  std::vector<PlacedTree> obstacles;
+std::vector<ScaleObstacle> make_obstacles(SceneRandom& random) {
+  std::vector<ScaleObstacle> obstacles;
   for (int i = random.whole(1, 3); i > 0; --i) {
     const int count = random.chance(0.95) ? random.whole(1, 12) : random.whole(100, 300);
     obstacles.push_back({std::make_shared<const SphereTree>(random_tree(random, count, kSize)),
@@ -62,9 +62,20 @@ ScaleRobot::ScaleRobot(SceneRandom& random)
       robot_(make_robot(random,
                         obstacles_[0].world_from_tree * obstacles_[0].tree->spheres()[0].center,
                         direction_)) {
-  for (const PlacedTree& obstacle : obstacles_) {
+  for (const ScaleObstacle& obstacle : obstacles_) {
     add_placed(obstacle.tree->spheres(), obstacle.world_from_tree, standing_);
   }
+}
+
+RobotScene ScaleRobot::scene() const {
+  RobotScene scene(robot_);
+  AllowedCollisions allowed(robot_);
+  allowed.allow_all();
+  scene.set_allowed_collisions(std::move(allowed));
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    scene.add("obstacle " + std::to_string(i), obstacles_[i].tree, obstacles_[i].world_from_tree);
+  }
+  return scene;
 }
 
 std::vector<double> ScaleRobot::anywhere(SceneRandom& random) const {
@@ -80,7 +91,7 @@ bool ScaleRobot::any_pair(std::span<const double> configuration, Use use) {
   forward_kinematics(robot_, configuration, world_from_link_);
   for (std::size_t link = 0; link < robot_.links().size(); ++link) {
     for (const auto& tree : robot_.links()[link].trees) {
-      for (const PlacedTree& obstacle : obstacles_) {
+      for (const ScaleObstacle& obstacle : obstacles_) {
         if (use(*tree, world_from_link_[link], obstacle)) return true;
       }
     }
@@ -98,14 +109,14 @@ bool ScaleRobot::bring_to_gap(std::vector<double>& configuration, double gap) {
     }
   }
   const auto way = way_to_gap(standing_, movers_, direction_, gap);
-  if (!way || std::abs(*way) > MechanismCheck::kLargestVariable) return false;
+  if (!way || std::abs(*way) > RobotChecker::kLargestPosition) return false;
   configuration[0] = *way;
   return true;
 }
 
 bool ScaleRobot::touches(std::span<const double> configuration) {
   return any_pair(
-      configuration, [&](const SphereTree& tree, const Pose& pose, const PlacedTree& obstacle) {
+      configuration, [&](const SphereTree& tree, const Pose& pose, const ScaleObstacle& obstacle) {
         return oracle_.within({tree.spheres(), pose},
                               {obstacle.tree->spheres(), obstacle.world_from_tree}, 0.0);
       });
@@ -115,7 +126,7 @@ GapBounds ScaleRobot::gap(std::span<const double> configuration) {
   constexpr long double kFar = std::numeric_limits<double>::infinity();
   GapBounds least{kFar, kFar};
   any_pair(configuration,
-           [&](const SphereTree& tree, const Pose& pose, const PlacedTree& obstacle) {
+           [&](const SphereTree& tree, const Pose& pose, const ScaleObstacle& obstacle) {
              const GapBounds gap = oracle_.gap(
                  {tree.spheres(), pose}, {obstacle.tree->spheres(), obstacle.world_from_tree});
              least.lower = std::min(least.lower, gap.lower);
@@ -128,7 +139,7 @@ GapBounds ScaleRobot::gap(std::span<const double> configuration) {
 double ScaleRobot::slack(std::span<const double> configuration) {
   double largest = 0.0;
   any_pair(configuration,
-           [&](const SphereTree& tree, const Pose& pose, const PlacedTree& obstacle) {
+           [&](const SphereTree& tree, const Pose& pose, const ScaleObstacle& obstacle) {
              largest = std::max(
                  largest, collision_slack(tree, pose, *obstacle.tree, obstacle.world_from_tree));
              return false;

@@ -3,13 +3,19 @@
 
 #include "bench/scale/exact_oracle.h"
 #include "bench/scale/random_scene.h"
-#include "collide/robot/robot_tree_checker.h"
+#include "collide/robot/robot_scene.h"
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace spherule {
+
+struct ScaleObstacle {
+  std::shared_ptr<const SphereTree> tree;
+  Pose world_from_tree;
+};
 
 // A random robot among obstacles. Its first joint shifts all of it, so that it can be brought to
 // any gap.
@@ -18,7 +24,8 @@ class ScaleRobot {
   explicit ScaleRobot(SceneRandom& random);
 
   const RobotModel& robot() const { return robot_; }
-  const std::vector<PlacedTree>& obstacles() const { return obstacles_; }
+  // Its links are tested against the obstacles alone.
+  RobotScene scene() const;
 
   std::vector<double> anywhere(SceneRandom& random) const;
   // Sets the first joint so that the least gap is `gap`, but for rounding; false if the robot
@@ -37,7 +44,7 @@ class ScaleRobot {
   template <class Use>
   bool any_pair(std::span<const double> configuration, Use use);
 
-  std::vector<PlacedTree> obstacles_;
+  std::vector<ScaleObstacle> obstacles_;
   Eigen::Vector3d direction_;  // of the first joint
   RobotModel robot_;
   std::vector<Sphere> standing_, movers_;

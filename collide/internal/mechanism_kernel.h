@@ -165,10 +165,9 @@ struct KernelBlockAnswer {
 enum class KernelFinding { kApart, kNear, kTouch };
 
 struct Kernels {
-  // True if a pair of spheres, those of bodies grown, touches for sure or is confirmed to; false if
-  // none can. What is sure takes `doubt` more than the margins.
-  bool (*check)(const KernelProblem& problem, const double* configuration, float growth,
-                float doubt, const KernelScratch& scratch, ConfirmContact confirm, void* context);
+  // True if a pair of spheres touches for sure or is confirmed to; false if none can.
+  bool (*check)(const KernelProblem& problem, const double* configuration,
+                const KernelScratch& scratch, ConfirmContact confirm, void* context);
   // The same for kLanes configurations.
   KernelBlockAnswer (*check_block)(const KernelProblem& problem,
                                    const double* const* configurations,

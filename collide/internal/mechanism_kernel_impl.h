@@ -32,19 +32,17 @@ SPHERULE_INLINE bool are_apart(const KernelTask& root, const KernelObstacle& obs
   return dx * dx + dy * dy + dz * dz > limit * limit;
 }
 
-bool check(const KernelProblem& problem, const double* configuration, float growth, float doubt,
-           const KernelScratch& scratch, ConfirmContact confirm, void* context) {
+bool check(const KernelProblem& problem, const double* configuration, const KernelScratch& scratch,
+           ConfirmContact confirm, void* context) {
   place(problem, configuration, scratch);
   for (std::int32_t i = 0; i < problem.pair_count; ++i) {
     const KernelPair pair = problem.pairs[i];
-    KernelTask root = scratch.roots[pair.body];
-    root.radius += growth;
+    const KernelTask& root = scratch.roots[pair.body];
     const KernelBody& body = problem.bodies[pair.body];
     const KernelObstacle& obstacle = problem.obstacles[pair.obstacle];
     if (are_apart(root, obstacle)) continue;
-    Contact contact(pair, 0, body.margin + obstacle.margin + doubt, confirm, context);
-    Placement at = in_single_precision(scratch.poses[body.frame]);
-    at.growth = growth;
+    Contact contact(pair, 0, body.margin + obstacle.margin, confirm, context);
+    const Placement at = in_single_precision(scratch.poses[body.frame]);
     if (PairSearch<Contact>(body, obstacle, at, scratch.tasks, contact).run(root)) return true;
   }
   return false;

@@ -38,7 +38,6 @@ struct MechanismCheck::Parts {
 
 struct MechanismCheck::Scratch::Memory {
   std::shared_ptr<const Parts> owner;  // kept, so that no later check is at its address
-  std::vector<double> variables;       // of a configuration on an edge
   std::vector<double> sines;
   std::vector<double> cosines;
   std::vector<internal::KernelPose> poses;
@@ -51,8 +50,6 @@ struct MechanismCheck::Scratch::Memory {
   std::vector<std::uint64_t> generations;
   std::uint64_t generation = 0;
   std::vector<internal::KernelMemory> memories;
-  std::vector<double> changes;  // of an edge: by how much each variable changes
-  std::vector<std::int32_t> open_pairs;
   internal::KernelScratch view = {};
   std::optional<internal::MotionMemory> motion;
 };

@@ -87,7 +87,7 @@ bool MotionMemory::check(const Kernels& kernels, const KernelProblem& problem,
     bool& is_asking;
   };
   const Asking asking(is_asking_);
-  return kernels.check(problem, configuration, 0.0F, 0.0F, scratch, confirm, context);
+  return kernels.check(problem, configuration, scratch, confirm, context);
 }
 
 // Whether the configuration is near the one before, as that was near its own.

@@ -30,7 +30,7 @@ class MotionMemory {
   MotionMemory(const KernelProblem& problem, std::span<const double> reach,
                std::span<const double> tilt);
 
-  // The answer of kernels.check() for ungrown bodies.
+  // The answer of kernels.check().
   bool collides(const Kernels& kernels, const KernelProblem& problem, const double* configuration,
                 const KernelScratch& scratch, ConfirmContact confirm, void* context);
 

@@ -29,11 +29,13 @@ class Evaluation {
              const PlanClient& client, PlanParts* parts)
       : plan_(plan), scratch_(scratch), parts_(parts), lanes_(lanes), context_{plan,   scratch,
                                                                                client, {},
-                                                                               {},     Real(0)} {
+                                                                               {},     Real(0),
+                                                                               false} {
     if constexpr (kMoves) {
       context_.half = rounded(load(parts->half) * (1.0 + 0x1p-16), Real());
       context_.half_squared = context_.half * context_.half;
       context_.enough = static_cast<Real>(parts->enough);
+      context_.all_contacts = parts->all_contacts;
       place_middles(plan, scratch, *parts);
     }
     ++*scratch.evaluation;
@@ -46,7 +48,7 @@ class Evaluation {
         scratch_(other.scratch_),
         parts_(nullptr),
         lanes_(other.lanes_),
-        context_{plan_, scratch_, other.context_.client, {}, {}, Real(0)} {}
+        context_{plan_, scratch_, other.context_.client, {}, {}, Real(0), false} {}
 
   // Lanes in which there is a contact.
   unsigned run() {

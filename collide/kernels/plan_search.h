@@ -47,11 +47,14 @@ struct SearchContext {
   Vector<Real> half;
   Vector<Real> half_squared;
   Real enough;
+  bool all_contacts;
 };
 
 // Spheres at centres in lanes against something: lanes that are not proved apart, those that may
 // overlap as placed, by how much the sphere was inflated for its motion, and how much of that the
-// motion itself is worth: what is for rounding errors does not get less in shorter parts.
+// motion itself is worth: what is for rounding errors does not get less in shorter parts. Where all
+// before the first contact is to be proved, that is all of the motion: beside the closest approach,
+// where the sides only pass each other, a shorter part may be free.
 template <class Real>
 struct Separation {
   unsigned near;
@@ -105,7 +108,7 @@ SPHERULE_INLINE Separation<Real> separation(const SearchContext<Real, kMoves>& c
     // Where the distance is zero the quotient is infinite or no number: then smaller() gives speed.
     result.inflation = smaller(motion.bend + closing / distance, motion.speed);
     const Vector<Real> errors = motion.approach / larger(distance, all(reach)) + motion.error;
-    result.worth = result.inflation - Real(2) * errors;
+    result.worth = context.all_contacts ? motion.speed : result.inflation - Real(2) * errors;
   }
   return result;
 }

@@ -93,6 +93,15 @@ void AllowedCollisions::allow(int first, int second, AllowedReason reason) {
   if (!allows(first, second)) set(first, second, reason);
 }
 
+void AllowedCollisions::allow_all() {
+  const int count = static_cast<int>(names_.size());
+  for (int first = 0; first < count; ++first) {
+    for (int second = first + 1; second < count; ++second) {
+      allow(first, second, AllowedReason::kGiven);
+    }
+  }
+}
+
 void AllowedCollisions::forbid(std::string_view first, std::string_view second) {
   const int a = link(first);
   const int b = link(second);

@@ -45,6 +45,8 @@ class AllowedCollisions {
   // The pairs that an SRDF disables. Throws Error for names that are no links, before any is taken.
   void allow(std::span<const std::pair<std::string, std::string>> pairs);
   void allow(int first, int second, AllowedReason reason);
+  // Every pair, as given: links are tested against obstacles and attached objects alone.
+  void allow_all();
   // Tests them again. Throws Error as allow() does, and for a link and itself.
   void forbid(std::string_view first, std::string_view second);
 

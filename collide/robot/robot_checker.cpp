@@ -23,7 +23,8 @@ namespace {
 constexpr std::size_t kEdgesAPiece = 16;
 constexpr std::size_t kPiece = 512;
 constexpr std::size_t kFewestShared = 4096;
-static_assert(kPiece % MechanismCheck::kBlock == 0);
+static_assert(kPiece % MechanismCheck::kBlock == 0 &&
+              RobotChecker::kLargestPosition == MechanismCheck::kLargestVariable);
 
 void require_size(const RobotModel& robot, std::span<const double> configuration) {
   if (configuration.size() != static_cast<std::size_t>(robot.variable_count())) {
@@ -194,8 +195,8 @@ EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<cons
   for (const std::span<const double> end : {from, to}) {
     require_configuration(parts_->robot, end);
     if (!parts_->pairs.is_usual(end)) {
-      throw Error("edge", "a joint's position is beyond " +
-                              std::to_string(MechanismCheck::kLargestVariable) + " in magnitude");
+      throw Error("edge", "a joint's position is beyond " + std::to_string(kLargestPosition) +
+                              " in magnitude");
     }
   }
   require_resolution(request.resolution);

@@ -4,7 +4,6 @@
 #include "collide/contact.h"
 #include "collide/edge.h"
 #include "collide/instruction_set.h"
-#include "collide/robot/robot_contact.h"
 #include "collide/robot/robot_model.h"
 
 #include <Eigen/Core>
@@ -20,11 +19,23 @@
 
 namespace spherule {
 
+class CoveredMesh;
+
 // How a RobotChecker answers.
 struct RobotCheckerOptions {
   // A configuration with a joint outside its limits counts as a collision.
   bool enforce_limits = false;
   InstructionSet instructions = best_instruction_set();
+  // Confirmation on the triangles (opt-in): contacts of two trees that are both the cover() of one
+  // of these count only if their meshes touch (mesh_contact.h). Free stays certain; false alarms
+  // vanish.
+  std::vector<std::shared_ptr<const CoveredMesh>> meshes{};
+};
+
+// When an explanation may stop.
+struct ExplainRequest {
+  // Tell of no more contacts than this (1: the first).
+  std::size_t max_contacts = std::numeric_limits<std::size_t>::max();
 };
 
 // One side of a pair that is tested: a link, an attached object or an obstacle.
@@ -95,6 +106,11 @@ class RobotChecker {
 
   // All throw Error for a configuration of the wrong size or with a number that is not finite.
 
+  // Configurations with a joint's position beyond this in magnitude (radians or metres) are
+  // answered as exactly, but slowly; where one leads out of all bounds, forward_kinematics()
+  // throws. Motions do not start or end there.
+  static constexpr double kLargestPosition = 100.0;
+
   // True if the configuration is free: of obstacles and of itself, and within the limits if these
   // are enforced.
   bool check_config(std::span<const double> configuration, Scratch& scratch) const;
@@ -113,7 +129,7 @@ class RobotChecker {
   // exact motion as for the poses that forward_kinematics() computes for configurations on it.
   // Where limits are enforced, leaving them is a contact. Unless the first contact is asked for,
   // free_until may be 0 where one is found. Throws Error also for a position beyond
-  // 100 in magnitude and for a resolution that is not above zero.
+  // kLargestPosition and for a resolution that is not above zero.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
                         const EdgeRequest& request = {}) const;
 
@@ -128,6 +144,11 @@ class RobotChecker {
   // its end, too. At most the fraction of the first contact. `resolution` as in EdgeRequest.
   double measure_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
                       double resolution = 1e-4) const;
+
+  // Whether any two of the spheres and solids that are tested against each other come within
+  // `clearance` (metres) of touching: never false if they do in exact arithmetic. Throws Error,
+  // too, as require_clearance() does.
+  bool within(std::span<const double> configuration, double clearance, Scratch& scratch) const;
 
   // How far the robot is from the nearest contact, and of which two. Allocates.
   RobotClearance clearance(std::span<const double> configuration, Scratch& scratch) const;

@@ -2,6 +2,7 @@
 #include "collide/robot/internal/checker_parts.h"
 #include "collide/robot/kinematics.h"
 #include "collide/robot/robot_checker.h"
+#include "collide/within.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -59,6 +60,19 @@ std::vector<CheckedContact> RobotChecker::explain(std::span<const double> config
   }
   if (result.size() > request.max_contacts) result.resize(request.max_contacts);
   return result;
+}
+
+bool RobotChecker::within(std::span<const double> configuration, double clearance,
+                          Scratch& scratch) const {
+  require_own(scratch);
+  require_clearance(clearance);
+  internal::BodyPairs::Memory& memory = scratch.memory_->pairs;
+  const internal::BodyPairs& pairs = parts_->pairs;
+  pairs.place(configuration, memory);
+  for (std::size_t i = 0; i < pairs.pairs().size(); ++i) {
+    if (pairs.is_near(i, clearance, memory)) return true;
+  }
+  return false;
 }
 
 // The pairs that may be nearest come first; a search ends where its pair cannot be nearer than the

@@ -3,13 +3,26 @@
 
 #include "collide/mesh_mechanism.h"
 #include "collide/robot/joint_positions.h"
-#include "collide/robot/robot_tree_checker.h"
+#include "collide/robot/robot_model.h"
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace spherule {
+
+// A tree that stands still, in metres.
+struct PlacedTree {
+  std::shared_ptr<const SphereTree> tree;
+  Pose world_from_tree;
+};
+
+// A link, with all of its meshes, and an obstacle that need not be tested, by their indices.
+struct UntestedPair {
+  int link = 0;
+  std::size_t obstacle = 0;
+};
 
 // A mesh in the frame of a link, in metres.
 struct LinkMesh {

@@ -3,6 +3,7 @@
 #include "collide/robot/internal/link_paths.h"
 #include "collide/robot/robot_scene.h"
 #include "spheretree/build.h"
+#include "spheretree/error.h"
 #include "spheretree/refit.h"
 #include "spheretree/rounding.h"
 
@@ -198,6 +199,9 @@ class RobotScene::Snapshot {
 };
 
 RobotChecker RobotScene::snapshot(const RobotCheckerOptions& options) const {
+  if (std::find(options.meshes.begin(), options.meshes.end(), nullptr) != options.meshes.end()) {
+    throw Error("robot checker", "a mesh is missing");
+  }
   return RobotChecker(Snapshot(*this, options).parts());
 }
 

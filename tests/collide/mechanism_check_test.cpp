@@ -183,9 +183,7 @@ TEST(MechanismCheck, RefusesTheScratchOfAnother) {
   const auto none = [](const auto&...) { return false; };
   EXPECT_FALSE(other.collides(q, scratch, none));
   EXPECT_THROW((void)check.collides(q, scratch, none), Error);
-  EXPECT_THROW((void)check.within(q, 0.1, scratch, none), Error);
   EXPECT_THROW((void)check.collides(block, scratch, none), Error);
-  EXPECT_THROW((void)check.check_edge(q, q, scratch, {}, none), Error);
   EXPECT_THROW((void)check.is_following(scratch), Error);
   EXPECT_THROW(check.remember_contact(0, {{1, 0, 0}, 0.1}, 0.1, scratch), Error);
 }

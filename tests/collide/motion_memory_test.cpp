@@ -37,14 +37,14 @@ constexpr double kNothing = -1.0;  // for a depth: nothing is to be remembered
 // yes, and what is to be remembered with it.
 class DeepContact {
  public:
-  bool is_asked(double angle, double depth, double clearance = 0.0) {
+  bool is_asked(double angle, double depth) {
     int asked = 0;
     const auto confirm = [&](const MechanismContact&) {
       ++asked;
       if (depth > 0.0) check_.remember_contact(0, {{1, 0, 0}, 0.1}, depth, scratch_);
       return true;
     };
-    EXPECT_TRUE(check_.within(std::array{angle}, clearance, scratch_, confirm));
+    EXPECT_TRUE(check_.collides(std::array{angle}, scratch_, confirm));
     EXPECT_FALSE(check_.is_following(scratch_));
     EXPECT_LE(asked, 1);
     return asked > 0;
@@ -96,18 +96,6 @@ TEST(MotionMemory, NothingIsKnownAfterAJump) {
   }
   EXPECT_TRUE(contact.is_asked(0.12, kDepth));
   EXPECT_FALSE(contact.is_asked(0.11, kDepth));
-}
-
-TEST(MotionMemory, HearsNothingWithAClearance) {
-  DeepContact contact;
-  contact.settle(kNothing);
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_TRUE(contact.is_asked(0.0, 1.0, 0.01));
-    EXPECT_TRUE(contact.is_asked(0.0, kNothing));
-  }
-  contact.settle(1.0);
-  EXPECT_TRUE(contact.is_asked(0.0, 1.0, 0.01));
-  EXPECT_FALSE(contact.is_asked(0.0, kNothing));
 }
 
 // An arm of turns and shifts with a sphere on every frame. The true bodies are smaller balls within
@@ -271,7 +259,7 @@ struct PlainKernels {
                                                                      : KernelFinding::kNear;
   }
 
-  static bool check(const KernelProblem& problem, const double* configuration, float, float,
+  static bool check(const KernelProblem& problem, const double* configuration,
                     const KernelScratch& scratch, internal::ConfirmContact, void*) {
     place(problem, configuration, scratch);
     return std::any_of(problem.pairs, problem.pairs + problem.pair_count, [&](KernelPair pair) {
@@ -344,7 +332,7 @@ TEST(MotionMemory, SavesSearchesAndOverlooksNoTouch) {
     for (int step = 0; step < kSteps; ++step) {
       const std::vector<double> at = way.at(step);
       scratch.queues.generation = &all_searches;
-      const bool truth = kernels.check(problem, at.data(), 0.0F, 0.0F, scratch, nullptr, nullptr);
+      const bool truth = kernels.check(problem, at.data(), scratch, nullptr, nullptr);
       close += std::any_of(tables.pairs.begin(), tables.pairs.end(), [&](KernelPair pair) {
         return std::abs(PlainKernels::gap(problem, pair, scratch)) < 1e-4;
       });

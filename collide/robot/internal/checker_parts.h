@@ -40,9 +40,8 @@ struct RobotChecker::Parts {
         lanes(pairs, options.instructions),
         bodies(std::move(body_names)),
         obstacles(std::move(obstacle_names)) {
-    if (pairs.tested() < pairs.pairs().size())
-      standing.emplace(pairs, std::span<const std::shared_ptr<const CoveredMesh>>(),
-                       options.instructions);
+    if (pairs.tested() == pairs.pairs().size()) return;
+    standing.emplace(pairs, options.meshes, options.instructions);
   }
   // `lanes` and `standing` refer to `pairs`.
   Parts(const Parts&) = delete;

@@ -20,7 +20,7 @@
 namespace spherule::internal {
 namespace {
 
-// Where so many parts are given up, no contact is looked for any more.
+// Where so many parts are given up, no contact is looked for behind the first of them any more.
 constexpr int kMostGivenUp = 32;
 // Single precision gives up what is inflated by no more than this many times the error of centres.
 constexpr double kUndecided = 4.0;
@@ -184,7 +184,14 @@ class LaneCheck::Edge {
     }
   }
 
-  // Up to eight parts from the top of the stack, as far as they are not behind a contact.
+  // Whether nothing can be found in a part any more: it is behind a contact, or behind what was
+  // given up.
+  bool is_behind(const Part& part) const {
+    return part.begin >= result_.contact_at ||
+           (given_up_ >= kMostGivenUp && part.begin >= unproved_from_);
+  }
+
+  // Up to eight parts from the top of the stack in which something may be found.
   template <class Real>
   bool take(Batch& batch) {
     Memory::Stage<Real>& stage = this->stage<Real>();
@@ -194,7 +201,7 @@ class LaneCheck::Edge {
     const std::size_t most = std::max<std::size_t>(1, most_lanes());
     while (batch.count < most && !stage.waiting.empty()) {
       stage.waiting.pop(batch.parts[batch.count], stage.open.data() + batch.count * words);
-      if (batch.parts[batch.count].begin < result_.contact_at) ++batch.count;
+      if (!is_behind(batch.parts[batch.count])) ++batch.count;
     }
     return batch.count != 0;
   }
@@ -245,7 +252,7 @@ class LaneCheck::Edge {
     const auto open = static_cast<std::size_t>(std::popcount(batch.any_near));
     const int pieces = std::max(2, static_cast<int>(kPlanLanes / std::max<std::size_t>(open, 1)));
     for (std::size_t i = count; i-- > 0;) {
-      if ((batch.any_near >> i & 1U) == 0 || parts[i].begin >= result_.contact_at) continue;
+      if ((batch.any_near >> i & 1U) == 0 || is_behind(parts[i])) continue;
       const std::uint64_t* const near = stage.near.data() + i * words;
       const bool is_shortest = !(parts[i].begin < times_[i] && times_[i] < parts[i].end);
       if (!is_shortest && (batch.given_up >> i & 1U) == 0) {
@@ -286,8 +293,8 @@ class LaneCheck::Edge {
     } else {
       unproved_from_ = std::min(unproved_from_, part.begin);
       settle(part, open);
-      const bool is_enough = result_.contact_at <= 1.0 && !request_.first;
-      return !is_enough && ++given_up_ < kMostGivenUp;
+      ++given_up_;
+      return request_.first || (result_.contact_at > 1.0 && given_up_ < kMostGivenUp);
     }
   }
 

@@ -4,7 +4,6 @@
 #include "collide/collide.h"
 #include "collide/robot/internal/moving_frames.h"
 #include "collide/robot/kinematics.h"
-#include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -17,9 +16,6 @@ StandingTrees::StandingTrees(const BodyPairs& pairs,
                              std::span<const std::shared_ptr<const CoveredMesh>> meshes,
                              InstructionSet instructions)
     : pairs_(pairs), meshes_(meshes.begin(), meshes.end()), positions_(pairs.robot()) {
-  if (std::find(meshes_.begin(), meshes_.end(), nullptr) != meshes_.end()) {
-    throw Error("robot checker", "a mesh is missing");
-  }
   const RobotModel& robot = pairs.robot();
   const MovingFrames frames(robot);
   std::vector<Pose> at_zero;

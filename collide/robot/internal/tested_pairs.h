@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/robot/robot_tree_checker.h"
+#include "collide/robot/robot_mesh_checker.h"
 
 #include <cstddef>
 #include <span>

@@ -8,8 +8,42 @@
 #include "tests/collide/trees.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace spherule::test {
+
+namespace {
+
+RobotChecker checker_of(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+                        const ObstacleOptions& options) {
+  RobotScene scene(robot, options.world_from_root);
+  AllowedCollisions allowed(robot);
+  allowed.allow_all();
+  scene.set_allowed_collisions(std::move(allowed));
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    scene.add(obstacle_name(i), obstacles[i].tree, obstacles[i].world_from_tree);
+  }
+  for (const auto& [link, obstacle] : options.untested) {
+    scene.allow_contact(robot.links()[static_cast<std::size_t>(link)].name,
+                        obstacle_name(obstacle));
+  }
+  return scene.snapshot({.instructions = options.instructions, .meshes = options.meshes});
+}
+
+}  // namespace
+
+ObstacleChecker::ObstacleChecker(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+                                 const ObstacleOptions& options)
+    : RobotChecker(checker_of(robot, obstacles, options)) {}
+
+std::string obstacle_name(std::size_t index) {
+  return "obstacle " + std::to_string(index);
+}
+
+Pose random_root(SceneRandom& random, double size) {
+  const Pose pose = random.pose(size);
+  return Pose(unit_rotation(pose.rotation()), pose.translation());
+}
 
 std::shared_ptr<const SphereTree> random_tree(SceneRandom& random, double size) {
   const int count = random.whole(1, 60);
@@ -50,7 +84,7 @@ std::optional<Sphere> random_sphere_of(SceneRandom& random, const RobotModel& ro
 }
 
 bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
-            std::span<const double> configuration, const RobotTreeCheckerOptions& options) {
+            std::span<const double> configuration, const ObstacleOptions& options) {
   std::vector<Pose> world_from_link;
   forward_kinematics(robot, configuration, world_from_link, options.world_from_root);
   for (std::size_t link = 0; link < robot.links().size(); ++link) {

@@ -90,19 +90,19 @@ RobotModel random_follower(SceneRandom& random, double size) {
   return robot;
 }
 
-TEST(Mimic, RobotTreeCheckerAnswersAsThePairsDo) {
+TEST(Mimic, ObstacleCheckerAnswersAsThePairsDo) {
   SceneRandom random(81);
   int hits = 0;
   int all = 0;
   for (int i = 0; i < effort(150, 15); ++i) {
     const RobotModel robot = random_follower(random, 0.3);
     const std::vector<PlacedTree> obstacles = random_obstacles(random);
-    RobotTreeCheckerOptions options{.world_from_root = i % 2 == 0 ? Pose() : random.pose(3.0)};
+    ObstacleOptions options{.world_from_root = i % 2 == 0 ? Pose() : random_root(random, 3.0)};
     const double clearance = random.uniform(0.0, 0.2);
     for (const InstructionSet set : instruction_sets()) {
       options.instructions = set;
-      const RobotTreeChecker checker(robot, obstacles, options);
-      RobotTreeChecker::Scratch scratch(checker);
+      const ObstacleChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);
       std::vector<double> configurations;
       std::vector<std::uint8_t> expected;
       std::vector<double> q = random_configuration(random, robot, 3.0);
@@ -133,14 +133,14 @@ TEST(Mimic, ConfigurationsAreSharedAmongThreads) {
   SceneRandom random(82);
   const RobotModel robot = random_follower(random, 0.3);
   const std::vector<PlacedTree> obstacles = random_obstacles(random);
-  const RobotTreeChecker checker(robot, obstacles);
-  const std::size_t count = RobotTreeChecker::kFewestShared + 7;
+  const ObstacleChecker checker(robot, obstacles);
+  const std::size_t count = 4096 + 7;
   std::vector<double> configurations;
   for (std::size_t i = 0; i < count; ++i) {
     const std::vector<double> q = random_configuration(random, robot, 3.0);
     configurations.insert(configurations.end(), q.begin(), q.end());
   }
-  std::vector<RobotTreeChecker::Scratch> scratches;
+  std::vector<RobotChecker::Scratch> scratches;
   for (int i = 0; i < 3; ++i) scratches.emplace_back(checker);
   std::vector<std::uint8_t> alone(count);
   std::vector<std::uint8_t> shared(count);
@@ -196,15 +196,15 @@ TEST(Mimic, EdgesThatAreProvedFreeAreFree) {
   int unknown = 0;
   for (int i = 0; i < effort(400, 30); ++i) {
     const RobotModel robot = random_follower(random, 0.2);
-    const RobotTreeChecker checker(robot, random_obstacles(random));
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(robot, random_obstacles(random));
+    RobotChecker::Scratch scratch(checker);
     const double size = std::pow(10.0, random.uniform(-3.0, 1.0));
     const std::vector<double> from = random_configuration(random, robot, 3.0);
     std::vector<double> to = random_configuration(random, robot, size);
     for (std::size_t k = 0; k < to.size(); ++k) to[k] += from[k];
     const EdgeResult result =
         checker.check_edge(from, to, scratch, {.resolution = 1e-3, .first = i % 3 == 0});
-    RobotTreeChecker::Scratch other(checker);
+    RobotChecker::Scratch other(checker);
     const auto collides_at = [&](double t) {
       return checker.collides(between(from, to, t), other);
     };
@@ -241,8 +241,8 @@ TEST(Mimic, FastFollowersDoNotPassThrough) {
     robot.attach("arm", ball({10, 0, 0}, 1e-3));
     robot.mimic("arm", "handle", multiplier, offset);
     const double size = std::pow(10.0, random.uniform(-6.0, -2.0));
-    const RobotTreeChecker checker(robot, {{ball(center, size), Pose()}});
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(robot, {{ball(center, size), Pose()}});
+    RobotChecker::Scratch scratch(checker);
     const double reach = std::min(5.0, 30.0 / multiplier);
     const double before = random.uniform(0.01, 1.0) * reach;
     const double after = random.uniform(0.01, 1.0) * reach;
@@ -274,8 +274,8 @@ TEST(Mimic, DoubtsOnEdgesAreSettledWhereTheyAre) {
     robot.attach("arm", ball({10, 0, 0}, 1e-3));
     robot.mimic("arm", "handle", multiplier, angle - multiplier * handle);
     const Eigen::Vector3d center(10.0 * std::cos(angle), 10.0 * std::sin(angle), 3e-3 - 1e-9);
-    const RobotTreeChecker checker(robot, {{ball(center, 2e-3), Pose()}});
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(robot, {{ball(center, 2e-3), Pose()}});
+    RobotChecker::Scratch scratch(checker);
     const double before = random.uniform(0.01, 0.5);
     const EdgeResult result =
         checker.check_edge(std::vector<double>{handle - before},
@@ -305,8 +305,8 @@ TEST(Mimic, RoundingDoesNotHideContactsOnEdges) {
     robot.mimic("x", "handle", to_x, -to_x * handle);
     robot.mimic("y", "handle", to_y, -to_y * handle);
     const Eigen::Vector3d beside_line = Eigen::Vector3d(-to_y, to_x, 0.0).normalized();
-    const RobotTreeChecker checker(robot, {{ball(beside_line * (0.51 + gap), 0.5), Pose()}});
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(robot, {{ball(beside_line * (0.51 + gap), 0.5), Pose()}});
+    RobotChecker::Scratch scratch(checker);
     const std::vector<double> from = {handle - 1e-12};
     const std::vector<double> to = {handle + 1e-12};
     const bool is_free =
@@ -329,8 +329,8 @@ TEST(Mimic, PositionsBeyondTheRangeAreRefusedOnEdges) {
   robot.add_link("b", "a", {.name = "b", .type = JointType::kRevolute});
   robot.attach("b", ball({1, 0, 0}, 0.1));
   robot.mimic("b", "a", 10.0);
-  const RobotTreeChecker checker(robot, {{ball({9, 0, 0}, 0.1), Pose()}});
-  RobotTreeChecker::Scratch scratch(checker);
+  const ObstacleChecker checker(robot, {{ball({9, 0, 0}, 0.1), Pose()}});
+  RobotChecker::Scratch scratch(checker);
   const auto edge = [&](double to) {
     return checker.check_edge(std::vector<double>{0.0}, std::vector<double>{to}, scratch).verdict;
   };
@@ -347,8 +347,8 @@ TEST(Mimic, AQueryTakesNoMemory) {
   robot.mimic("a", "c", 0.5, 0.25);
   robot.mimic("d", "b", -2.0);
   for (const char* link : {"1", "3", "5"}) robot.attach(link, random_tree(random, 0.4));
-  const RobotTreeChecker checker(robot, random_obstacles(random));
-  RobotTreeChecker::Scratch scratch(checker);
+  const ObstacleChecker checker(robot, random_obstacles(random));
+  RobotChecker::Scratch scratch(checker);
   const auto variables = static_cast<std::size_t>(robot.variable_count());
   std::vector<double> many;
   for (int i = 0; i < 100; ++i) {

@@ -52,8 +52,8 @@ Path random_path(SceneRandom& random, const RobotModel& robot, std::size_t count
   return path;
 }
 
-std::vector<std::uint8_t> verdicts(const RobotTreeChecker& checker, const Path& path,
-                                   RobotTreeChecker::Scratch& scratch) {
+std::vector<std::uint8_t> verdicts(const ObstacleChecker& checker, const Path& path,
+                                   RobotChecker::Scratch& scratch) {
   std::vector<std::uint8_t> result(path.size());
   checker.collides(path.positions, scratch, result);
   return result;
@@ -61,7 +61,7 @@ std::vector<std::uint8_t> verdicts(const RobotTreeChecker& checker, const Path& 
 
 // The same by the exact queries.
 std::vector<std::uint8_t> answers(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
-                                  const Path& path, const RobotTreeCheckerOptions& options) {
+                                  const Path& path, const ObstacleOptions& options) {
   std::vector<std::uint8_t> result;
   for (std::size_t k = 0; k < path.size(); ++k) {
     result.push_back(answer(robot, obstacles, path[k], options) ? 1 : 0);
@@ -88,7 +88,7 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDo) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
     if (robot.variable_count() == 0) continue;
     const std::vector<PlacedTree> obstacles = random_obstacles(random);
-    RobotTreeCheckerOptions options{.world_from_root = i % 2 == 0 ? Pose() : random.pose(3.0)};
+    ObstacleOptions options{.world_from_root = i % 2 == 0 ? Pose() : random_root(random, 3.0)};
     std::vector<Path> paths;
     for (const double step : {1e-3, 1e-2, 0.1, 0.0, 1e-4}) {
       const auto length = static_cast<std::size_t>(random.whole(1, effort(90, 30)));
@@ -101,9 +101,8 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDo) {
     }
     for (const InstructionSet set : instruction_sets()) {
       options.instructions = set;
-      const RobotTreeChecker checker(robot, obstacles, options);
-      RobotTreeChecker::Scratch scratch(
-          checker);  // one for all paths: what it remembers is no matter
+      const ObstacleChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);  // one for all paths: what it remembers is no matter
       for (std::size_t k = 0; k < paths.size(); ++k) {
         ASSERT_EQ(verdicts(checker, paths[k], scratch), expected[k]) << i << ' ' << k;
       }
@@ -120,7 +119,7 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
   Count count;
   for (int i = 0; i < effort(1500, 100); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
-    const Pose root = i % 2 == 0 ? Pose() : random.pose(100.0);
+    const Pose root = i % 2 == 0 ? Pose() : random_root(random, 100.0);
     const double step = std::pow(10.0, random.uniform(-9.0, -2.0));
     const auto length = static_cast<std::size_t>(random.whole(1, 40));
     const Path path = random_path(random, robot, length, step);
@@ -134,13 +133,13 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
     const Eigen::Vector3d center =
         sphere->center + (sphere->radius + 0.1 + gap) * random.point(1.0).normalized();
     const std::vector<PlacedTree> obstacles = {{ball(center, 0.1), Pose()}};
-    RobotTreeCheckerOptions options{.world_from_root = root};
+    ObstacleOptions options{.world_from_root = root};
     const std::vector<std::uint8_t> expected = answers(robot, obstacles, path, options);
     count.add(expected);
     for (const InstructionSet set : instruction_sets()) {
       options.instructions = set;
-      const RobotTreeChecker checker(robot, obstacles, options);
-      RobotTreeChecker::Scratch scratch(checker);
+      const ObstacleChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);
       ASSERT_EQ(verdicts(checker, path, scratch), expected) << i << ' ' << gap << ' ' << step;
     }
   }
@@ -163,8 +162,8 @@ TEST(RobotBatch, AnswersWhereThereIsTooMuchToRemember) {
   for (int i = 0; i < 100; ++i) path.add({0.001 * i + (i % 23 == 7 ? 628.3 : 0.0)});
   const std::vector<std::uint8_t> expected = answers(robot, obstacles, path, {});
   for (const InstructionSet set : instruction_sets()) {
-    const RobotTreeChecker checker(robot, obstacles, {.instructions = set});
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(robot, obstacles, {.instructions = set});
+    RobotChecker::Scratch scratch(checker);
     EXPECT_EQ(verdicts(checker, path, scratch), expected);
   }
 }
@@ -193,8 +192,8 @@ TEST(RobotBatch, NothingThatWaitsIsForgotten) {
     const std::vector<PlacedTree> obstacles = {
         {std::make_shared<const SphereTree>(build_tree(spheres)), Pose()}};
     for (const InstructionSet set : instruction_sets()) {
-      const RobotTreeChecker checker(robot, obstacles, {.instructions = set});
-      RobotTreeChecker::Scratch scratch(checker);
+      const ObstacleChecker checker(robot, obstacles, {.instructions = set});
+      RobotChecker::Scratch scratch(checker);
       const std::vector<std::uint8_t> expected(path.size(), at > 0 ? 1 : 0);
       EXPECT_EQ(verdicts(checker, path, scratch), expected) << at;
     }
@@ -205,8 +204,8 @@ TEST(RobotBatch, RefusesBadInput) {
   RobotModel robot("base");
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
   robot.attach("arm", ball({1, 0, 0}, 0.1));
-  const RobotTreeChecker checker(robot, {{ball({0, 1, 0}, 0.1), Pose()}});
-  RobotTreeChecker::Scratch scratch(checker);
+  const ObstacleChecker checker(robot, {{ball({0, 1, 0}, 0.1), Pose()}});
+  RobotChecker::Scratch scratch(checker);
   std::vector<std::uint8_t> two(2);
   EXPECT_THROW(checker.collides(std::vector<double>{0.0}, scratch, two), Error);
   EXPECT_THROW(checker.collides(std::vector<double>{0.0, 0.0, 0.0}, scratch, two), Error);

@@ -18,9 +18,9 @@
 namespace spherule::test {
 namespace {
 
-void expect_true(const RobotTreeChecker& checker, const std::vector<double>& from,
+void expect_true(const ObstacleChecker& checker, const std::vector<double>& from,
                  const std::vector<double>& to, const EdgeResult& result, int steps) {
-  RobotTreeChecker::Scratch scratch(checker);
+  RobotChecker::Scratch scratch(checker);
   const auto hits = [&](const std::vector<double>& at) { return checker.collides(at, scratch); };
   expect_so(hits, from, to, result, steps);
 }
@@ -33,11 +33,11 @@ TEST(RobotEdge, WhatIsProvedFreeIsFree) {
   for (int i = 0; i < effort(1200, 60); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.2);
     const std::vector<PlacedTree> obstacles = random_obstacles(random);
-    RobotTreeCheckerOptions options{.world_from_root = i % 2 == 0 ? Pose() : random.pose(3.0)};
+    ObstacleOptions options{.world_from_root = i % 2 == 0 ? Pose() : random_root(random, 3.0)};
     for (const InstructionSet set : instruction_sets()) {
       options.instructions = set;
-      const RobotTreeChecker checker(robot, obstacles, options);
-      RobotTreeChecker::Scratch scratch(checker);
+      const ObstacleChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);
       const double size = std::pow(10.0, random.uniform(-3.0, 1.0));
       const std::vector<double> from = random_configuration(random, robot, 3.0);
       std::vector<double> to = random_configuration(random, robot, size);
@@ -74,8 +74,8 @@ TEST(RobotEdge, NothingIsPassedThrough) {
     const double beside =
         (1e-3 + size) * (random.whole(0, 1) == 0 ? random.uniform(0.0, 0.999) : 1.3);
     const Eigen::Vector3d center(10.0 * std::cos(angle), 10.0 * std::sin(angle), beside);
-    const RobotTreeChecker checker(robot, {{ball(center, size), Pose()}});
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(robot, {{ball(center, size), Pose()}});
+    RobotChecker::Scratch scratch(checker);
     const double before = random.uniform(0.1, 50.0);
     const double after = random.uniform(0.1, 50.0);
     const std::vector<double> from = {angle - before};
@@ -111,8 +111,8 @@ TEST(RobotEdge, AWallIsNotPassed) {
                    {.name = "drill", .type = JointType::kRevolute, .axis = {1, 0, 0}});
     const Eigen::Vector3d offset(0.0, random.uniform(0.0, 0.2), random.uniform(0.0, 0.2));
     robot.attach("drill", ball(offset, 1e-3));
-    const RobotTreeChecker checker(robot, obstacles);
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(robot, obstacles);
+    RobotChecker::Scratch scratch(checker);
     const std::vector<double> from = {random.uniform(-60.0, 0.9), random.uniform(-9.0, 9.0)};
     const std::vector<double> to = {random.uniform(1.1, 60.0), random.uniform(-9.0, 9.0)};
     const EdgeResult result = checker.check_edge(from, to, scratch, {.first = true});
@@ -126,15 +126,15 @@ TEST(RobotEdge, AWallIsNotPassed) {
 TEST(RobotEdge, PassesCloseAtAFineResolution) {
   const RobotModel robot = long_arm();
   // Beside the way of the arm's end, at a gap of 2e-4.
-  const RobotTreeChecker checker(robot, {{ball({0, 10, 0.0022}, 1e-3), Pose()}});
-  RobotTreeChecker::Scratch scratch(checker);
+  const ObstacleChecker checker(robot, {{ball({0, 10, 0.0022}, 1e-3), Pose()}});
+  RobotChecker::Scratch scratch(checker);
   const auto verdict = [&](double resolution) {
     return checker
         .check_edge(std::vector<double>{0.0}, std::vector<double>{3.0}, scratch,
                     {.resolution = resolution})
         .verdict;
   };
-  EXPECT_EQ(verdict(1e-2), Verdict::kUnknown);
+  EXPECT_NE(verdict(1e-2), Verdict::kCollision);
   EXPECT_EQ(verdict(1e-4), Verdict::kFree);
 }
 
@@ -143,8 +143,8 @@ TEST(RobotEdge, EndsAtAnyResolution) {
   const RobotModel robot = long_arm();
   for (const double angle : {0.5, 1e-9, 1e-15, 3.0}) {
     const Eigen::Vector3d center(10.0 * std::cos(angle + 2e-4), 10.0 * std::sin(angle + 2e-4), 0.0);
-    const RobotTreeChecker checker(robot, {{ball(center, 1e-3), Pose()}});
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(robot, {{ball(center, 1e-3), Pose()}});
+    RobotChecker::Scratch scratch(checker);
     for (const double resolution : {1e-12, 1e-300, std::numeric_limits<double>::denorm_min()}) {
       const std::vector<double> from = {0.0};
       const std::vector<double> to = {3.0};
@@ -157,12 +157,29 @@ TEST(RobotEdge, EndsAtAnyResolution) {
   }
 }
 
+// Past a ball that is touched at the closest approach only: free up to where the resolution ends.
+TEST(RobotEdge, IsFreeUpToWhereItGrazes) {
+  RobotModel robot("base");
+  robot.add_link("slide", "base",
+                 {.name = "slide", .type = JointType::kPrismatic, .axis = {1, 0, 0}});
+  robot.attach("slide", ball({0, 0, 0}, 1.0));
+  const ObstacleChecker checker(robot, {{ball({0, 0, 2}, 1.0), Pose()}});
+  RobotChecker::Scratch scratch(checker);
+  for (const double resolution : {1e-2, 1e-3, 1e-4}) {
+    const EdgeResult result =
+        checker.check_edge(std::vector<double>{-1.0}, std::vector<double>{2.0}, scratch,
+                           {.resolution = resolution, .first = true});
+    EXPECT_NE(result.verdict, Verdict::kFree);
+    EXPECT_NEAR(3.0 * result.free_until, 1.0, 3.0 * resolution);
+  }
+}
+
 TEST(RobotEdge, TakesAnyContactUnlessAskedForTheFirst) {
   const RobotModel robot = long_arm();
-  const RobotTreeChecker checker(
+  const ObstacleChecker checker(
       robot, {{ball({10.0 * std::cos(0.5), 10.0 * std::sin(0.5), 0}, 0.01), Pose()},
               {ball({10.0 * std::cos(1.5), 10.0 * std::sin(1.5), 0}, 0.01), Pose()}});
-  RobotTreeChecker::Scratch scratch(checker);
+  RobotChecker::Scratch scratch(checker);
   const std::vector<double> from = {0.0};
   const std::vector<double> to = {3.0};
   const EdgeResult any = checker.check_edge(from, to, scratch);
@@ -176,8 +193,8 @@ TEST(RobotEdge, TakesAnyContactUnlessAskedForTheFirst) {
 
 TEST(RobotEdge, BudgetsAndEnds) {
   const RobotModel robot = long_arm();
-  const RobotTreeChecker checker(robot, {{ball({0, 10, 0.0022}, 1e-3), Pose()}});
-  RobotTreeChecker::Scratch scratch(checker);
+  const ObstacleChecker checker(robot, {{ball({0, 10, 0.0022}, 1e-3), Pose()}});
+  RobotChecker::Scratch scratch(checker);
   const std::vector<double> from = {0.0};
   const std::vector<double> to = {3.0};
   for (const std::uint64_t budget : {0U, 1U, 7U}) {
@@ -187,8 +204,8 @@ TEST(RobotEdge, BudgetsAndEnds) {
     expect_true(checker, from, to, result, 100);
   }
   // A contact that was found counts, however short the budget for what lies before it.
-  const RobotTreeChecker met(robot, {{ball({0, 10, 0}, 1e-3), Pose()}});
-  RobotTreeChecker::Scratch third(met);
+  const ObstacleChecker met(robot, {{ball({0, 10, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch third(met);
   const EdgeRequest all{.resolution = 1e-9, .first = true};
   const std::uint64_t needed = met.check_edge(from, to, third, all).configurations;
   for (std::uint64_t budget = 0; budget < needed; ++budget) {
@@ -200,8 +217,8 @@ TEST(RobotEdge, BudgetsAndEnds) {
     expect_true(met, from, to, result, 10);
   }
   EXPECT_EQ(checker.check_edge(from, from, scratch).verdict, Verdict::kFree);
-  const RobotTreeChecker touched(robot, {{ball({10, 0, 0}, 1e-3), Pose()}});
-  RobotTreeChecker::Scratch other(touched);
+  const ObstacleChecker touched(robot, {{ball({10, 0, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch other(touched);
   const EdgeResult at_once = touched.check_edge(from, to, other, {.first = true});
   EXPECT_EQ(at_once.verdict, Verdict::kCollision);
   EXPECT_EQ(at_once.free_until, 0.0);
@@ -212,13 +229,13 @@ TEST(RobotEdge, BudgetsAndEnds) {
 }
 
 TEST(RobotEdge, RefusesBadInput) {
-  const RobotTreeChecker checker(long_arm(), {{ball({0, 10, 0}, 1e-3), Pose()}});
-  RobotTreeChecker::Scratch scratch(checker);
+  const ObstacleChecker checker(long_arm(), {{ball({0, 10, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch scratch(checker);
   const std::vector<double> good = {0.0};
   RobotModel touching = long_arm();
   touching.attach("base", ball({0, 10, 0}, 1e-3));
-  const RobotTreeChecker standing(touching, {{ball({0, 10, 0}, 1e-3), Pose()}});
-  RobotTreeChecker::Scratch other(standing);
+  const ObstacleChecker standing(touching, {{ball({0, 10, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch other(standing);
   EXPECT_EQ(standing.check_edge(good, good, other).verdict, Verdict::kCollision);
   for (const std::vector<double>& bad : {std::vector<double>{},
                                          {0.0, 0.0},

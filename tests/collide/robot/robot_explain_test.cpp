@@ -3,7 +3,6 @@
 
 #include "collide/collide.h"
 #include "collide/robot/kinematics.h"
-#include "collide/robot/robot_tree_checker.h"
 #include "spheretree/error.h"
 #include "tests/collide/exact_pose.h"
 #include "tests/collide/robot/checked_scene.h"
@@ -29,7 +28,7 @@ namespace {
 struct Scene {
   RobotModel robot{"base"};
   std::vector<PlacedTree> obstacles{};
-  RobotTreeCheckerOptions options{};
+  ObstacleOptions options{};
 
   const CoveredMesh* mesh_of(const SphereTree& tree) const {
     for (const auto& mesh : options.meshes) {
@@ -102,51 +101,54 @@ struct Count {
 };
 
 // Asks for all contacts of a configuration and for the first few.
-void expect_explained(const Scene& scene, const RobotTreeChecker& checker,
-                      std::span<const double> configuration, RobotTreeChecker::Scratch& scratch,
+void expect_explained(const Scene& scene, const ObstacleChecker& checker,
+                      std::span<const double> configuration, RobotChecker::Scratch& scratch,
                       Count& count) {
   const Depths expected = expected_depths(scene, configuration);
-  const std::vector<RobotContact> contacts = checker.explain(configuration, scratch);
+  const std::vector<CheckedContact> contacts = checker.explain(configuration, scratch);
   ASSERT_EQ(!contacts.empty(), checker.collides(configuration, scratch));
   ASSERT_EQ(contacts.size(), expected.size());
   std::vector<Pose> poses;
   forward_kinematics(scene.robot, configuration, poses, scene.options.world_from_root);
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const RobotContact& found = contacts[k];
-    const auto link = static_cast<std::size_t>(found.link);
-    if (k > 0) {  // each once, in the promised order
-      const RobotContact& before = contacts[k - 1];
-      ASSERT_LT(std::pair(-before.link, before.obstacle), std::pair(-found.link, found.obstacle));
-    }
-    const auto depth = expected.find({link, found.obstacle});
+  std::pair<long, std::size_t> before{std::numeric_limits<long>::min(), 0};
+  for (const CheckedContact& found : contacts) {
+    const auto link = static_cast<std::size_t>(scene.robot.find_link(found.first.name));
+    std::size_t obstacle = 0;
+    while (obstacle_name(obstacle) != found.second.name) ++obstacle;
+    const std::pair place(-static_cast<long>(link), obstacle);
+    ASSERT_LT(before, place) << "each once, in the promised order";
+    before = place;
+    const auto depth = expected.find({link, obstacle});
     ASSERT_NE(depth, expected.end());
-    const SphereTree& tree = *scene.robot.links()[link].trees.at(found.tree);
-    const PlacedTree& other = scene.obstacles[found.obstacle];
+    const SphereTree& tree = *scene.robot.links()[link].trees.at(found.first.tree);
+    const PlacedTree& other = scene.obstacles.at(obstacle);
+    const SpherePair spheres{found.first.sphere, found.second.sphere};
     const double slack = collision_slack(tree, poses[link], *other.tree, other.world_from_tree);
-    ASSERT_NEAR(found.contact.overlap_depth, depth->second, 2.0 * slack);
-    ASSERT_LE(found.contact.overlap_depth, overlap(tree, poses[link], *other.tree,
-                                                   other.world_from_tree, found.contact.spheres));
-    ASSERT_TRUE(spheres_touch(tree, found.contact.spheres.a, poses[link], *other.tree,
-                              found.contact.spheres.b, other.world_from_tree));
-    count.inside += found.contact.kind == ContactKind::kInside;
+    ASSERT_NEAR(found.overlap_depth, depth->second, 2.0 * slack);
+    ASSERT_LE(found.overlap_depth,
+              overlap(tree, poses[link], *other.tree, other.world_from_tree, spheres));
+    ASSERT_TRUE(
+        spheres_touch(tree, spheres.a, poses[link], *other.tree, spheres.b, other.world_from_tree));
     const CoveredMesh* const mesh = scene.mesh_of(tree);
     const CoveredMesh* const other_mesh = scene.mesh_of(*other.tree);
-    ASSERT_EQ(found.contact.kind == ContactKind::kSpheres,
-              mesh == nullptr || other_mesh == nullptr);
-    if (found.contact.kind == ContactKind::kTriangles) {
-      ASSERT_TRUE(triangles_touch(*mesh, found.contact.spheres.a, poses[link], *other_mesh,
-                                  found.contact.spheres.b, other.world_from_tree));
+    if (mesh != nullptr && other_mesh != nullptr) {
+      const bool do_triangles = triangles_touch(*mesh, spheres.a, poses[link], *other_mesh,
+                                                spheres.b, other.world_from_tree);
+      ASSERT_TRUE(do_triangles ||
+                  contains_component(*mesh, poses[link], *other_mesh, other.world_from_tree));
+      count.inside += do_triangles ? 0 : 1;
     }
   }
   for (const std::size_t limit : {0, 1, 2}) {
-    const std::vector<RobotContact> some =
+    const std::vector<CheckedContact> some =
         checker.explain(configuration, scratch, {.max_contacts = limit});
     ASSERT_EQ(some.size(), std::min(limit, contacts.size()));
     for (std::size_t k = 0; k < some.size(); ++k) {
-      ASSERT_EQ(some[k].link, contacts[k].link);
-      ASSERT_EQ(some[k].tree, contacts[k].tree);
-      ASSERT_EQ(some[k].obstacle, contacts[k].obstacle);
-      ASSERT_EQ(some[k].contact.spheres, contacts[k].contact.spheres);
+      ASSERT_EQ(some[k].first.name, contacts[k].first.name);
+      ASSERT_EQ(some[k].first.tree, contacts[k].first.tree);
+      ASSERT_EQ(some[k].first.sphere, contacts[k].first.sphere);
+      ASSERT_EQ(some[k].second.name, contacts[k].second.name);
+      ASSERT_EQ(some[k].second.sphere, contacts[k].second.sphere);
     }
   }
   (contacts.empty() ? count.none : contacts.size() == 1 ? count.one : count.many) += 1;
@@ -162,14 +164,14 @@ TEST(RobotExplain, TellsWhatTouchesWhat) {
     for (int k = 0; k < 2; ++k) {
       for (const PlacedTree& other : random_obstacles(random)) scene.obstacles.push_back(other);
     }
-    if (i % 2 == 1) scene.options.world_from_root = random.pose(3.0);
+    if (i % 2 == 1) scene.options.world_from_root = random_root(random, 3.0);
     for (int k = i % 4; k > 0; --k) {
       scene.options.untested.push_back(
           {random.whole(0, static_cast<int>(scene.robot.links().size()) - 1),
            random.bits() % scene.obstacles.size()});
     }
-    const RobotTreeChecker checker(scene.robot, scene.obstacles, scene.options);
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(scene.robot, scene.obstacles, scene.options);
+    RobotChecker::Scratch scratch(checker);
     for (int k = 0; k < 30; ++k) {
       const double largest = k % 10 == 0 ? 99.0 : k % 10 == 1 ? 300.0 : 3.2;
       const std::vector<double> at = random_configuration(random, scene.robot, largest);
@@ -190,7 +192,7 @@ TEST(RobotExplain, IsEmptyExactlyIfFreeNearContact) {
   Count count;
   for (int i = 0; i < effort(800, 100); ++i) {
     Scene scene{.robot = random_robot_with_trees(random, 0.3)};
-    if (i % 2 == 1) scene.options.world_from_root = random.pose(1000.0);
+    if (i % 2 == 1) scene.options.world_from_root = random_root(random, 1000.0);
     const std::vector<double> at =
         random_configuration(random, scene.robot, i % 5 == 0 ? 300.0 : 3.2);
     std::vector<Pose> poses;
@@ -202,8 +204,8 @@ TEST(RobotExplain, IsEmptyExactlyIfFreeNearContact) {
     const Eigen::Vector3d center =
         sphere->center + (sphere->radius + 0.1 + gap) * random.point(1.0).normalized();
     scene.obstacles = {{ball({0, 0, 0}, 0.1), Pose::from_translation(center)}};
-    const RobotTreeChecker checker(scene.robot, scene.obstacles, scene.options);
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(scene.robot, scene.obstacles, scene.options);
+    RobotChecker::Scratch scratch(checker);
     ASSERT_NO_FATAL_FAILURE(expect_explained(scene, checker, at, scratch, count)) << i;
   }
   EXPECT_GT(count.none, effort(100, 10));
@@ -217,7 +219,7 @@ TEST(RobotExplain, TellsWhatMeshesTouch) {
   Count count;
   for (int i = 0; i < effort(120, 10); ++i) {
     Scene scene{.robot = random_robot(random, random.whole(1, 6), i % 2 == 1)};
-    scene.options.world_from_root = random.pose(1.0);
+    scene.options.world_from_root = random_root(random, 1.0);
     const auto covered = [&](double size) {
       scene.options.meshes.push_back(covered_tetrahedron(random, size));
       return cover_of(scene.options.meshes.back());
@@ -231,8 +233,8 @@ TEST(RobotExplain, TellsWhatMeshesTouch) {
       scene.obstacles.push_back({covered(random.uniform(0.05, size)), random.pose(1.5)});
     }
     scene.obstacles.push_back({random_tree(random, 0.2), random.pose(1.5)});
-    const RobotTreeChecker checker(scene.robot, scene.obstacles, scene.options);
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(scene.robot, scene.obstacles, scene.options);
+    RobotChecker::Scratch scratch(checker);
     std::vector<double> at = random_configuration(random, scene.robot, 3.2);
     const std::vector<double> heading = random_configuration(random, scene.robot, 0.03);
     for (int k = 0; k < 40; ++k) {
@@ -254,24 +256,21 @@ TEST(RobotExplain, NamesLinksAndRefusesBadInput) {
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
   robot.attach("arm", ball({5, 0, 0}, 0.1));
   robot.attach("arm", ball({1, 0, 0}, 0.1));
-  const RobotTreeChecker checker(robot,
-                                 {{ball({0, 0, 0.15}, 0.1), Pose()},
-                                  {ball({1, 0, 0}, 0.1), Pose::from_translation({0.1, 0, 0})}});
-  RobotTreeChecker::Scratch scratch(checker);
-  const std::vector<RobotContact> contacts = checker.explain(std::vector<double>{0.0}, scratch);
+  const ObstacleChecker checker(robot,
+                                {{ball({0, 0, 0.15}, 0.1), Pose()},
+                                 {ball({1, 0, 0}, 0.1), Pose::from_translation({0.1, 0, 0})}});
+  RobotChecker::Scratch scratch(checker);
+  const std::vector<CheckedContact> contacts = checker.explain(std::vector<double>{0.0}, scratch);
   ASSERT_EQ(contacts.size(), 2U);
-  const auto name = [&](const RobotContact& contact) {
-    return checker.robot().links()[static_cast<std::size_t>(contact.link)].name;
-  };
-  EXPECT_EQ(name(contacts[0]), "arm");
-  EXPECT_EQ(contacts[0].tree, 1U);
-  EXPECT_EQ(contacts[0].obstacle, 1U);
-  EXPECT_NEAR(contacts[0].contact.overlap_depth, 0.1, 1e-12);
-  EXPECT_TRUE(contacts[0].contact.world_point.isApprox(Eigen::Vector3d(1.05, 0, 0), 1e-12));
-  EXPECT_EQ(name(contacts[1]), "base");
-  EXPECT_EQ(contacts[1].tree, 0U);
-  EXPECT_EQ(contacts[1].obstacle, 0U);
-  EXPECT_NEAR(contacts[1].contact.overlap_depth, 0.05, 1e-12);
+  EXPECT_EQ(contacts[0].first.name, "arm");
+  EXPECT_EQ(contacts[0].first.tree, 1U);
+  EXPECT_EQ(contacts[0].second.name, obstacle_name(1));
+  EXPECT_NEAR(contacts[0].overlap_depth, 0.1, 1e-12);
+  EXPECT_TRUE(contacts[0].world_point.isApprox(Eigen::Vector3d(1.05, 0, 0), 1e-12));
+  EXPECT_EQ(contacts[1].first.name, "base");
+  EXPECT_EQ(contacts[1].first.tree, 0U);
+  EXPECT_EQ(contacts[1].second.name, obstacle_name(0));
+  EXPECT_NEAR(contacts[1].overlap_depth, 0.05, 1e-12);
   EXPECT_THROW(checker.explain(std::vector<double>{}, scratch), Error);
   EXPECT_THROW(
       checker.explain(std::vector<double>{std::numeric_limits<double>::quiet_NaN()}, scratch),

@@ -2,8 +2,8 @@
 // A robot whose contacts are confirmed on triangles: the answers of collides() of covered meshes.
 
 #include "collide/robot/kinematics.h"
-#include "collide/robot/robot_tree_checker.h"
 #include "spheretree/error.h"
+#include "tests/collide/robot/checked_scene.h"
 #include "tests/collide/robot/robots.h"
 #include "tests/collide/tetrahedra.h"
 #include "tests/collide/trees.h"
@@ -26,7 +26,7 @@ TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
   int free = 0;
   for (int i = 0; i < effort(60, 8); ++i) {
     RobotModel robot = random_robot(random, random.whole(1, 6), i % 2 == 1);
-    RobotTreeCheckerOptions options{.world_from_root = random.pose(1.0)};
+    ObstacleOptions options{.world_from_root = random_root(random, 1.0)};
     std::vector<std::pair<std::size_t, std::shared_ptr<const CoveredMesh>>> bodies;
     for (std::size_t link = 0; link < robot.links().size(); ++link) {
       const auto mesh = covered_tetrahedron(random, random.uniform(0.05, 0.4));
@@ -65,8 +65,8 @@ TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
     const auto variables = static_cast<std::size_t>(robot.variable_count());
     for (const InstructionSet set : instruction_sets()) {
       options.instructions = set;
-      const RobotTreeChecker checker(robot, obstacles, options);
-      RobotTreeChecker::Scratch scratch(checker);
+      const ObstacleChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);
       std::vector<std::uint8_t> verdicts(expected.size());
       checker.collides(path, scratch, verdicts);
       EXPECT_EQ(verdicts, expected) << i;
@@ -91,7 +91,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
   int changes = 0;
   for (int i = 0; i < effort(60, 10); ++i) {
     RobotModel robot = random_robot(random, random.whole(1, 6), i % 2 == 1);
-    RobotTreeCheckerOptions options{.world_from_root = random.pose(1.0)};
+    ObstacleOptions options{.world_from_root = random_root(random, 1.0)};
     const bool confirmed = i % 4 != 3;
     std::vector<std::shared_ptr<const CoveredMesh>> meshes;
     // What stands with the root would touch always or never.
@@ -119,8 +119,8 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
       return result;
     };
     if (confirmed) options.meshes = meshes;
-    const RobotTreeChecker checker(robot, obstacles, options);
-    RobotTreeChecker::Scratch remembers(checker);
+    const ObstacleChecker checker(robot, obstacles, options);
+    RobotChecker::Scratch remembers(checker);
     std::vector<double> at = near_home();
     std::vector<double> heading = random_configuration(random, robot, 1.0);
     double step = 1e-2;
@@ -132,7 +132,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
       if (random.whole(0, 20) != 0) {
         for (std::size_t v = 0; v < at.size(); ++v) at[v] += step * heading[v];
       }
-      RobotTreeChecker::Scratch fresh(checker);
+      RobotChecker::Scratch fresh(checker);
       const bool expected = checker.collides(at, fresh);
       ASSERT_EQ(checker.collides(at, remembers), expected) << i << ' ' << k;
       const std::vector<double> elsewhere = near_home();
@@ -169,8 +169,8 @@ TEST(RobotMesh, WhatLiesInsideCollides) {
   const auto outer = covered_tetrahedron(random, 2.0);
   robot.attach("arm", cover_of(inner));
   const std::vector<PlacedTree> obstacles = {{cover_of(outer), Pose()}};
-  const RobotTreeChecker checker(robot, obstacles, {.meshes = {inner, outer}});
-  RobotTreeChecker::Scratch scratch(checker);
+  const ObstacleChecker checker(robot, obstacles, {.meshes = {inner, outer}});
+  RobotChecker::Scratch scratch(checker);
   const std::vector<double> path = {0.0, 0.5, 1.0};
   EXPECT_TRUE(checker.collides(std::span(path).first(1), scratch));
   std::vector<std::uint8_t> verdicts(3);
@@ -180,7 +180,7 @@ TEST(RobotMesh, WhatLiesInsideCollides) {
 
 TEST(RobotMesh, RefusesAMissingMesh) {
   RobotModel robot("base");
-  EXPECT_THROW(RobotTreeChecker(robot, {}, {.meshes = {nullptr}}), Error);
+  EXPECT_THROW(ObstacleChecker(robot, {}, {.meshes = {nullptr}}), Error);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // Configurations shared out among threads: the verdicts and the errors of one thread.
 
 #include "collide/robot/internal/shared_work.h"
-#include "collide/robot/robot_tree_checker.h"
 #include "spheretree/error.h"
 #include "tests/collide/robot/checked_scene.h"
 #include "tests/collide/robot/robots.h"
@@ -26,12 +25,12 @@
 namespace spherule::test {
 namespace {
 
-constexpr std::size_t kPiece = RobotTreeChecker::kPiece;
-constexpr std::size_t kFewestShared = RobotTreeChecker::kFewestShared;
+// What robot_checker.cpp shares out.
+constexpr std::size_t kPiece = 512;
+constexpr std::size_t kFewestShared = 4096;
 
-std::vector<RobotTreeChecker::Scratch> scratches(const RobotTreeChecker& checker,
-                                                 std::size_t count) {
-  std::vector<RobotTreeChecker::Scratch> result;
+std::vector<RobotChecker::Scratch> scratches(const ObstacleChecker& checker, std::size_t count) {
+  std::vector<RobotChecker::Scratch> result;
   for (std::size_t i = 0; i < count; ++i) result.emplace_back(checker);
   return result;
 }
@@ -56,8 +55,8 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
     const auto variables = static_cast<std::size_t>(robot.variable_count());
     if (variables == 0) continue;
-    const RobotTreeChecker checker(robot, random_obstacles(random),
-                                   {.world_from_root = random.pose(1.0)});
+    const ObstacleChecker checker(robot, random_obstacles(random),
+                                  {.world_from_root = random_root(random, 1.0)});
     // About the ends of pieces and of blocks, and anywhere; some are shared out, some are not.
     constexpr std::size_t kLongest = kFewestShared + 3 * kPiece;
     const std::size_t sizes[] = {0,
@@ -70,12 +69,12 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
                                  static_cast<std::size_t>(random.whole(
                                      static_cast<int>(kFewestShared), static_cast<int>(kLongest)))};
     const std::vector<double> path = random_path(random, robot, kLongest);
-    std::vector<RobotTreeChecker::Scratch> seven =
+    std::vector<RobotChecker::Scratch> seven =
         scratches(checker, 7);  // what they remember is no matter
     for (const std::size_t size : sizes) {
       ASSERT_LE(size * variables, path.size());
       const auto configurations = std::span(path).first(size * variables);
-      RobotTreeChecker::Scratch scratch(checker);
+      RobotChecker::Scratch scratch(checker);
       std::vector<std::uint8_t> expected(size);
       checker.collides(configurations, scratch, expected);
       for (const std::uint8_t verdict : expected) (verdict == 1 ? hits : free) += 1;
@@ -91,25 +90,25 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
 }
 
 // One that slides along x and touches from 0.9 to 1.1.
-RobotTreeChecker slide() {
+ObstacleChecker slide() {
   RobotModel robot("base");
   robot.add_link("slide", "base",
                  {.name = "slide", .type = JointType::kPrismatic, .axis = {1, 0, 0}});
   robot.attach("slide", ball({0, 0, 0}, 0.05));
-  return RobotTreeChecker(robot, {{ball({1, 0, 0}, 0.05), Pose()}});
+  return ObstacleChecker(robot, {{ball({1, 0, 0}, 0.05), Pose()}});
 }
 
 // What is thrown is what one thread would meet first, whichever thread meets which first.
 TEST(RobotThreads, ErrorsAreThoseOfOneThread) {
-  const RobotTreeChecker checker = slide();
+  const ObstacleChecker checker = slide();
   constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
   constexpr double kTooFar = 1e17;
   const auto error_of = [&](const std::vector<double>& path, std::size_t threads) -> std::string {
-    std::vector<RobotTreeChecker::Scratch> some = scratches(checker, threads);
+    std::vector<RobotChecker::Scratch> some = scratches(checker, threads);
     std::vector<std::uint8_t> verdicts(path.size());
     try {
       if (threads == 0) {
-        RobotTreeChecker::Scratch scratch(checker);
+        RobotChecker::Scratch scratch(checker);
         checker.collides(path, scratch, verdicts);
       } else {
         checker.collides(path, some, verdicts);
@@ -139,22 +138,22 @@ TEST(RobotThreads, ErrorsAreThoseOfOneThread) {
 }
 
 TEST(RobotThreads, RefusesWhatDoesNotFit) {
-  const RobotTreeChecker checker = slide();
-  std::vector<RobotTreeChecker::Scratch> two = scratches(checker, 2);
+  const ObstacleChecker checker = slide();
+  std::vector<RobotChecker::Scratch> two = scratches(checker, 2);
   std::vector<std::uint8_t> verdicts(2);
   EXPECT_THROW(checker.collides(std::vector<double>{0.0}, two, verdicts), Error);
-  EXPECT_THROW(checker.collides(std::vector<double>{0.0, 1.0},
-                                std::span<RobotTreeChecker::Scratch>(), verdicts),
-               Error);
+  EXPECT_THROW(
+      checker.collides(std::vector<double>{0.0, 1.0}, std::span<RobotChecker::Scratch>(), verdicts),
+      Error);
   checker.collides(std::vector<double>{0.0, 1.0}, two, verdicts);
   EXPECT_EQ(verdicts, (std::vector<std::uint8_t>{0, 1}));
   checker.collides({}, two, {});
 }
 
 TEST(RobotThreads, RefusesTheScratchOfAnother) {
-  const RobotTreeChecker checker = slide();
-  std::vector<RobotTreeChecker::Scratch> own = scratches(checker, 1);
-  std::vector<RobotTreeChecker::Scratch> other = scratches(slide(), 2);
+  const ObstacleChecker checker = slide();
+  std::vector<RobotChecker::Scratch> own = scratches(checker, 1);
+  std::vector<RobotChecker::Scratch> other = scratches(slide(), 2);
   const std::vector<double> q = {0.0};
   std::vector<std::uint8_t> verdicts(1);
   EXPECT_NO_THROW((void)checker.explain(q, own[0]));

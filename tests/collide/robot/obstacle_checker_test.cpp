@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/robot/robot_tree_checker.h"
-
 #include "collide/distance.h"
 #include "collide/robot/kinematics.h"
 #include "collide/within.h"
@@ -24,33 +22,33 @@ namespace {
 
 // Asks a checker of every instruction set for one configuration; returns the exact answer.
 bool expect_answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
-                   const std::vector<double>& configuration, RobotTreeCheckerOptions options) {
+                   const std::vector<double>& configuration, ObstacleOptions options) {
   const bool expected = answer(robot, obstacles, configuration, options);
   for (const InstructionSet set : instruction_sets()) {
     options.instructions = set;
-    const RobotTreeChecker checker(robot, obstacles, options);
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(robot, obstacles, options);
+    RobotChecker::Scratch scratch(checker);
     EXPECT_EQ(checker.collides(configuration, scratch), expected);
   }
   return expected;
 }
 
-TEST(RobotTreeChecker, AnswersAsTheExactQueriesDo) {
+TEST(ObstacleChecker, AnswersAsTheExactQueriesDo) {
   SceneRandom random(21);
   int hits = 0;
   int free = 0;
   for (int i = 0; i < effort(150, 15); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
     const std::vector<PlacedTree> obstacles = random_obstacles(random);
-    RobotTreeCheckerOptions options{.world_from_root = i % 2 == 0 ? Pose() : random.pose(3.0)};
+    ObstacleOptions options{.world_from_root = i % 2 == 0 ? Pose() : random_root(random, 3.0)};
     for (int k = i % 4; k > 0; --k) {
       options.untested.push_back({random.whole(0, static_cast<int>(robot.links().size()) - 1),
                                   random.bits() % obstacles.size()});
     }
     for (const InstructionSet set : instruction_sets()) {
       options.instructions = set;
-      const RobotTreeChecker checker(robot, obstacles, options);
-      RobotTreeChecker::Scratch scratch(checker);
+      const ObstacleChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);
       for (int k = 0; k < 40; ++k) {
         const double largest = k % 10 == 0 ? 99.0 : k % 10 == 1 ? 300.0 : 3.2;
         const std::vector<double> configuration = random_configuration(random, robot, largest);
@@ -64,14 +62,14 @@ TEST(RobotTreeChecker, AnswersAsTheExactQueriesDo) {
   EXPECT_GT(free, effort(500, 50));
 }
 
-TEST(RobotTreeChecker, ClearancesAreThoseOfTheExactQueries) {
+TEST(ObstacleChecker, ClearancesAreThoseOfTheExactQueries) {
   SceneRandom random(24);
   int near = 0;
   int far = 0;
   for (int i = 0; i < effort(300, 25); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
     const std::vector<PlacedTree> obstacles = random_obstacles(random);
-    RobotTreeCheckerOptions options{.world_from_root = random.pose(3.0)};
+    ObstacleOptions options{.world_from_root = random_root(random, 3.0)};
     for (int k = 0; k < 10; ++k) {
       const std::vector<double> configuration =
           random_configuration(random, robot, k == 0 ? 300.0 : 3.2);
@@ -103,8 +101,8 @@ TEST(RobotTreeChecker, ClearancesAreThoseOfTheExactQueries) {
       }
       for (const InstructionSet set : instruction_sets()) {
         options.instructions = set;
-        const RobotTreeChecker checker(robot, obstacles, options);
-        RobotTreeChecker::Scratch scratch(checker);
+        const ObstacleChecker checker(robot, obstacles, options);
+        RobotChecker::Scratch scratch(checker);
         ASSERT_EQ(checker.within(configuration, clearance, scratch), expected)
             << i << ' ' << k << ' ' << lower << ' ' << clearance;
         for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
@@ -120,13 +118,13 @@ TEST(RobotTreeChecker, ClearancesAreThoseOfTheExactQueries) {
 
 // A sphere of the robot is met by one that stands at a distance which single precision cannot tell
 // from contact, or can only just.
-TEST(RobotTreeChecker, AnswersAsTheExactQueriesDoAtContact) {
+TEST(ObstacleChecker, AnswersAsTheExactQueriesDoAtContact) {
   SceneRandom random(22);
   int hits = 0;
   int free = 0;
   for (int i = 0; i < effort(3000, 300); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
-    const Pose root = i % 2 == 0 ? Pose() : random.pose(1000.0);
+    const Pose root = i % 2 == 0 ? Pose() : random_root(random, 1000.0);
     const std::vector<double> configuration = random_configuration(random, robot, 3.2);
     std::vector<Pose> world_from_link;
     forward_kinematics(robot, configuration, world_from_link, root);
@@ -142,7 +140,7 @@ TEST(RobotTreeChecker, AnswersAsTheExactQueriesDoAtContact) {
     const std::vector<PlacedTree> obstacles = {
         {ball(other.center, other.radius),
          Pose(turned.rotation(), center - turned * other.center)}};
-    const RobotTreeCheckerOptions options{.world_from_root = root};
+    const ObstacleOptions options{.world_from_root = root};
     SCOPED_TRACE(testing::Message() << i << ' ' << gap);
     (expect_answer(robot, obstacles, configuration, options) ? hits : free) += 1;
     if (HasFailure()) return;
@@ -152,7 +150,7 @@ TEST(RobotTreeChecker, AnswersAsTheExactQueriesDoAtContact) {
 }
 
 // Axes that point nearly backwards, and trees far from their frames, whose offsets cancel.
-TEST(RobotTreeChecker, AnswersAsTheExactQueriesDoForOddFrames) {
+TEST(ObstacleChecker, AnswersAsTheExactQueriesDoForOddFrames) {
   SceneRandom random(23);
   int hits = 0;
   for (int i = 0; i < effort(4000, 300); ++i) {
@@ -200,14 +198,14 @@ RobotModel arm() {
   return robot;
 }
 
-TEST(RobotTreeChecker, WhatIsNotTestedIsNotFound) {
+TEST(ObstacleChecker, WhatIsNotTestedIsNotFound) {
   const std::vector<PlacedTree> obstacles = {{ball({0, 0, 0}, 0.05), Pose()},
                                              {ball({0, 1, 0}, 0.05), Pose()}};
   const auto collides = [&](std::vector<UntestedPair> untested, double angle) {
-    RobotTreeCheckerOptions options;
+    ObstacleOptions options;
     options.untested = std::move(untested);
-    const RobotTreeChecker checker(arm(), obstacles, options);
-    RobotTreeChecker::Scratch scratch(checker);
+    const ObstacleChecker checker(arm(), obstacles, options);
+    RobotChecker::Scratch scratch(checker);
     return checker.collides(std::vector<double>{angle}, scratch);
   };
   constexpr double kQuarter = 1.5707963;
@@ -220,23 +218,20 @@ TEST(RobotTreeChecker, WhatIsNotTestedIsNotFound) {
   EXPECT_FALSE(collides({{0, 0}, {0, 1}, {1, 0}, {1, 1}}, kQuarter));
 }
 
-TEST(RobotTreeChecker, NothingToTestIsFree) {
-  const RobotTreeChecker no_obstacle(arm(), {});
-  RobotTreeChecker::Scratch scratch(no_obstacle);
+TEST(ObstacleChecker, NothingToTestIsFree) {
+  const ObstacleChecker no_obstacle(arm(), {});
+  RobotChecker::Scratch scratch(no_obstacle);
   EXPECT_FALSE(no_obstacle.collides(std::vector<double>{1.0}, scratch));
-  const RobotTreeChecker no_robot(RobotModel("base"), {{ball({0, 0, 0}, 1.0), Pose()}});
-  RobotTreeChecker::Scratch other(no_robot);
+  const ObstacleChecker no_robot(RobotModel("base"), {{ball({0, 0, 0}, 1.0), Pose()}});
+  RobotChecker::Scratch other(no_robot);
   EXPECT_FALSE(no_robot.collides({}, other));
 }
 
-TEST(RobotTreeChecker, RefusesBadInput) {
-  EXPECT_THROW(RobotTreeChecker(arm(), {{nullptr, Pose()}}), Error);
+TEST(ObstacleChecker, RefusesBadInput) {
+  EXPECT_THROW(ObstacleChecker(arm(), {{nullptr, Pose()}}), Error);
   const std::vector<PlacedTree> one = {{ball({5, 0, 0}, 1.0), Pose()}};
-  EXPECT_THROW(RobotTreeChecker(arm(), one, {.untested = {{2, 0}}}), Error);
-  EXPECT_THROW(RobotTreeChecker(arm(), one, {.untested = {{-1, 0}}}), Error);
-  EXPECT_THROW(RobotTreeChecker(arm(), one, {.untested = {{0, 1}}}), Error);
-  const RobotTreeChecker checker(arm(), one);
-  RobotTreeChecker::Scratch scratch(checker);
+  const ObstacleChecker checker(arm(), one);
+  RobotChecker::Scratch scratch(checker);
   for (const std::vector<double>& bad : {std::vector<double>{},
                                          {0.0, 0.0},
                                          {std::numeric_limits<double>::quiet_NaN()},

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/scale/tally.h"
+#include "collide/robot/robot_scene.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// Configurations, one behind the other, and what is known of each.
+struct AskedConfigurations {
+  std::vector<double> positions;
+  std::vector<std::uint8_t> is_near, truth;
+};
+
+// The rows of a RobotChecker with an instruction set: one configuration a call, and all at once.
+struct CheckerRows {
+  InstructionSet set;
+  Tally* single;
+  Tally* batch;
+};
+
+// For each instruction set that this machine has; `name` stands before its name.
+std::vector<CheckerRows> add_checker_rows(const std::string& name, ScaleReport& report);
+
+// Calls judge(tally, i, is_free) for each configuration and each row.
+template <class Judge>
+void ask_rows(const RobotScene& scene, std::span<const CheckerRows> rows,
+              const AskedConfigurations& asked, const Judge& judge) {
+  const auto variables = static_cast<std::size_t>(scene.robot().variable_count());
+  std::vector<std::uint8_t> free(asked.truth.size());
+  for (const CheckerRows& row : rows) {
+    const RobotChecker checker = scene.snapshot({.instructions = row.set});
+    RobotChecker::Scratch scratch(checker);
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const std::span<const double> configuration(&asked.positions[i * variables], variables);
+      judge(*row.single, i, checker.check_config(configuration, scratch));
+    }
+    checker.check_configs(asked.positions, scratch, free);
+    for (std::size_t i = 0; i < free.size(); ++i) judge(*row.batch, i, free[i] != 0);
+  }
+}
+
+}  // namespace spherule
