@@ -27,6 +27,7 @@ MechanismCheck::Scratch::Scratch(const MechanismCheck& check)
   const Parts& parts = *check.parts_;
   memory_->owner = check.parts_;
   const auto variables = static_cast<std::size_t>(filled_up(parts.problem.variable_count));
+  memory_->middle.resize(variables);
   memory_->sines.resize(variables);
   memory_->cosines.resize(variables);
   memory_->poses.resize(parts.frames.size());
@@ -79,6 +80,19 @@ bool MechanismCheck::collides(std::span<const double> variables, Scratch& scratc
   Scratch::Memory& memory = *scratch.memory_;
   return memory.motion->collides(*parts_->kernels, parts_->problem, variables.data(), memory.view,
                                  &Translator::confirm, &translator);
+}
+
+std::optional<bool> MechanismCheck::is_free_along(std::span<const double> from,
+                                                  std::span<const double> to,
+                                                  Scratch& scratch) const {
+  assert(is_in_range(from) && is_in_range(to));
+  require_own(scratch);
+  Scratch::Memory& memory = *scratch.memory_;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(parts_->problem.variable_count); ++i) {
+    memory.middle[i] = 0.5 * from[i] + 0.5 * to[i];
+  }
+  return memory.motion->is_free_along(*parts_->kernels, parts_->problem, from.data(), to.data(),
+                                      memory.middle.data(), memory.view);
 }
 
 bool MechanismCheck::is_following(const Scratch& scratch) const {

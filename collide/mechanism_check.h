@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -104,6 +105,13 @@ class MechanismCheck {
     };
     return collides(variables, scratch, ask, std::addressof(confirm));
   }
+
+  // Whether no two spheres of a pair touch for any variables on the straight motion from one
+  // configuration to another, in exact arithmetic: true only if so, false where that is not known
+  // soon. None where the motion does not follow in small steps what the scratch was asked last, as
+  // those of a path do. is_in_range() must hold for both ends. Allocates nothing.
+  std::optional<bool> is_free_along(std::span<const double> from, std::span<const double> to,
+                                    Scratch& scratch) const;
 
   // For `confirm` of collides() to say that a ball (in the coordinates of a frame) touches an
   // obstacle, and would wherever none of its points has moved by more than `depth` from where the

@@ -38,6 +38,7 @@ struct MechanismCheck::Parts {
 
 struct MechanismCheck::Scratch::Memory {
   std::shared_ptr<const Parts> owner;  // kept, so that no later check is at its address
+  std::vector<double> middle;          // of a motion
   std::vector<double> sines;
   std::vector<double> cosines;
   std::vector<internal::KernelPose> poses;

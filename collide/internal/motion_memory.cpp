@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace spherule::internal {
 namespace {
@@ -170,6 +171,55 @@ bool MotionMemory::grow_due(const Kernels& kernels, const KernelProblem& problem
     due_[left++] = index;
   }
   due_.resize(left);
+  return false;
+}
+
+std::optional<bool> MotionMemory::is_free_along(const Kernels& kernels,
+                                                const KernelProblem& problem, const double* from,
+                                                const double* to, const double* middle,
+                                                const KernelScratch& scratch) {
+  if (!follow(middle)) return std::nullopt;
+  // From the middle to either end.
+  double half = kStepRest * near_step_;
+  for (std::size_t i = 0; i < last_.size(); ++i) {
+    half += std::max(std::abs(from[i] - middle[i]), std::abs(to[i] - middle[i])) * reach_[i];
+  }
+  if (!(half <= near_step_)) return std::nullopt;
+  bool is_placed = false;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Body& body = bodies_[i];
+    if (way_ + half <= body.free_until) continue;
+    if (body.placed_at >= 0.0 && body.ball.way_along(from, to) <= body.clearance) continue;
+    if (!std::exchange(is_placed, true)) kernels.place(problem, middle, scratch);
+    if (!grow_along(kernels, problem, static_cast<std::int32_t>(i), from, to, middle, scratch)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Whether the body is apart, grown by what it moves from the middle or, to know more for the next
+// motions, by more.
+bool MotionMemory::grow_along(const Kernels& kernels, const KernelProblem& problem,
+                              std::int32_t index, const double* from, const double* to,
+                              const double* middle, const KernelScratch& scratch) {
+  Body& body = bodies_[static_cast<std::size_t>(index)];
+  place(problem, index, middle, scratch, 0.0);
+  const double moved = body.ball.way_along(from, to) + kStepRest * near_step_;
+  if (!(moved <= near_step_)) return false;
+  const double needed = moved * (1.0 + 1e-5);  // above what kGrowthDown takes
+  const double wanted = std::clamp(body.ambition, needed, std::max(needed, near_step_));
+  for (const double growth : {wanted, needed}) {
+    if (look(kernels, problem, index, static_cast<float>(growth), scratch) ==
+        KernelFinding::kApart) {
+      place(problem, index, middle, scratch, growth * kGrowthDown);
+      const bool is_more = growth > needed;
+      body.ambition = is_more ? kMore * growth : wanted > needed ? needed : kFirstSteps * needed;
+      return true;
+    }
+    if (growth <= needed) break;
+  }
+  body.forget();
   return false;
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,9 @@ namespace spherule::internal {
 // balls allow for. Bodies that are near to nothing need not even be asked how far they have moved:
 // the way of all their points since is at most the sum of |change| times the farthest that any
 // point can be from the joint.
+//
+// So it is for all configurations between two: the sums and the ways of MovedBall are bounded there
+// by those of the ends.
 //
 // Touching. Two things were found to go into each other by more than a depth; wherever the one of
 // them that moves has moved by less, they touch.
@@ -33,6 +37,14 @@ class MotionMemory {
   // The answer of kernels.check().
   bool collides(const Kernels& kernels, const KernelProblem& problem, const double* configuration,
                 const KernelScratch& scratch, ConfirmContact confirm, void* context);
+
+  // Whether every body is apart from all that it is tested against on the whole straight motion of
+  // the variables, from one configuration to another; `middle` is that between them, up to
+  // rounding. False where that is not known soon; none where the motion does not follow the last
+  // ones in small steps, as those of a path do.
+  std::optional<bool> is_free_along(const Kernels& kernels, const KernelProblem& problem,
+                                    const double* from, const double* to, const double* middle,
+                                    const KernelScratch& scratch);
 
   // A ball on a frame, in its coordinates, that touches for the configuration that was asked last,
   // and wherever none of its points has moved by more than `depth` from there. Ignored unless
@@ -63,6 +75,9 @@ class MotionMemory {
   bool find_due(const double* configuration);
   bool grow_due(const Kernels& kernels, const KernelProblem& problem, const double* configuration,
                 const KernelScratch& scratch);
+  bool grow_along(const Kernels& kernels, const KernelProblem& problem, std::int32_t index,
+                  const double* from, const double* to, const double* middle,
+                  const KernelScratch& scratch);
   static KernelFinding look(const Kernels& kernels, const KernelProblem& problem, std::int32_t body,
                             float growth, const KernelScratch& scratch);
   void place(const KernelProblem& problem, std::int32_t index, const double* configuration,

@@ -51,27 +51,43 @@ void MovedBall::place(std::int32_t frame, const double* center, double radius,
 }
 
 double MovedBall::way_to(const double* configuration) const {
-  double moved[3] = {0.0, 0.0, 0.0};
-  double turned[3] = {0.0, 0.0, 0.0};
+  return way({configuration});
+}
+
+double MovedBall::way_along(const double* from, const double* to) const {
+  return way({from, to});
+}
+
+template <std::size_t kEnds>
+double MovedBall::way(const double* const (&ends)[kEnds]) const {
+  double moved[kEnds][3] = {};
+  double turned[kEnds][3] = {};
   double changes = 0.0;
   double ways = 0.0;  // sum of |D_k| L_k
   double second = 0.0;
   for (std::size_t n = 0; n < count_; ++n) {
     const Joint& joint = joints_[n];
-    const double change = configuration[joint.variable] - joint.at;
-    for (int i = 0; i < 3; ++i) {
-      moved[i] += change * joint.center_rate[i];
-      turned[i] += change * joint.turn_rate[i];
+    double size = 0.0;
+    for (std::size_t end = 0; end < kEnds; ++end) {
+      const double change = ends[end][joint.variable] - joint.at;
+      for (int i = 0; i < 3; ++i) {
+        moved[end][i] += change * joint.center_rate[i];
+        turned[end][i] += change * joint.turn_rate[i];
+      }
+      size = std::max(size, std::abs(change));
     }
     // From the tip: a turn meets the ways of itself, half, and of all beyond it.
-    const double size = std::abs(change);
     const double way = size * joint.reach;
     if (!joint.prismatic) second += size * (0.5 * way + ways);
     ways += way;
     changes += size;
   }
   if (count_ == 0 || !(ways <= room_)) return std::numeric_limits<double>::infinity();
-  return (length(moved) + length(turned) * radius_ + second) * (1.0 + kRelative) + changes * error_;
+  double first = 0.0;
+  for (std::size_t end = 0; end < kEnds; ++end) {
+    first = std::max(first, length(moved[end]) + length(turned[end]) * radius_);
+  }
+  return (first + second) * (1.0 + kRelative) + changes * error_;
 }
 
 }  // namespace spherule::internal

@@ -27,6 +27,9 @@ namespace spherule::internal {
 // such a bound: it holds at the start, and as long as it holds p cannot come to where it fails.
 // Beyond that nothing is known.
 //
+// For all configurations between two, D is between those of the ends: |v| + |w| radius, which is
+// convex in D, is at most the larger of the ends, and so is every |D_k|.
+//
 // Rounding. As placed, origins and centres err by 2.1e-11 n W and axes by 2.1e-11 n, n frames from
 // the root, W being how far the mechanism reaches (mechanism_parts.cpp): v and w radius err by less
 // than 1e-10 (n + 1) (W + radius) sum |D_k| together. The caller gives twice that per sum |D_k|.
@@ -42,8 +45,13 @@ class MovedBall {
 
   // An upper bound, infinite if none is known.
   double way_to(const double* configuration) const;
+  // For every configuration between two.
+  double way_along(const double* from, const double* to) const;
 
  private:
+  template <std::size_t kEnds>
+  double way(const double* const (&ends)[kEnds]) const;
+
   static constexpr double kRelative = 1e-6;
   static constexpr double kRoom = 0.25;  // of the largest |c - o_k| + radius
 

@@ -5,16 +5,13 @@ namespace spherule {
 
 JointPositions::JointPositions(const RobotModel& robot) : has_mimics_(robot.has_mimics()) {
   for (const Joint& joint : robot.joints()) {
-    if (!joint.moves()) continue;
-    if (joint.mimics < 0) variables_.push_back(moving_.size());
-    moving_.push_back(joint);
+    if (joint.moves()) moving_.push_back(joint);
   }
 }
 
 JointPositions::Room JointPositions::room_for(std::size_t configurations) const {
   if (!has_mimics_) return {};
-  return {std::vector<double>(configurations * moving_.size()),
-          std::vector<double>(variables_.size())};
+  return {std::vector<double>(configurations * moving_.size())};
 }
 
 std::span<const double> JointPositions::computed(std::span<const double> configuration, Room& room,
@@ -25,14 +22,6 @@ std::span<const double> JointPositions::computed(std::span<const double> configu
     positions[i] = moving_[i].position(configuration);
   }
   return positions;
-}
-
-std::span<const double> JointPositions::picked(std::span<const double> positions,
-                                               Room& room) const {
-  for (std::size_t i = 0; i < variables_.size(); ++i) {
-    room.configuration[i] = positions[variables_[i]];
-  }
-  return room.configuration;
 }
 
 }  // namespace spherule

@@ -10,17 +10,15 @@
 namespace spherule {
 
 // From configurations to what a check made from MovingFrames is asked for, the positions of the
-// joints that move, and back. Where no joint mimics another, both are the same numbers and nothing
-// is done.
+// joints that move. Where no joint mimics another, both are the same numbers and nothing is done.
 class JointPositions {
  public:
   // Of the joints of this robot.
   explicit JointPositions(const RobotModel& robot);
 
-  // What is written to: the positions of several configurations, and a configuration.
+  // What is written to: the positions of several configurations.
   struct Room {
     std::vector<double> positions{};
-    std::vector<double> configuration{};
   };
   // Room for so many configurations.
   Room room_for(std::size_t configurations) const;
@@ -32,19 +30,12 @@ class JointPositions {
     return has_mimics_ ? computed(configuration, room, place) : configuration;
   }
 
-  // The variables among positions. Allocates nothing.
-  std::span<const double> configuration_at(std::span<const double> positions, Room& room) const {
-    return has_mimics_ ? picked(positions, room) : positions;
-  }
-
  private:
   std::span<const double> computed(std::span<const double> configuration, Room& room,
                                    std::size_t place) const;
-  std::span<const double> picked(std::span<const double> positions, Room& room) const;
 
   bool has_mimics_;
   std::vector<Joint> moving_{};
-  std::vector<std::size_t> variables_{};  // where the positions hold them
 };
 
 }  // namespace spherule

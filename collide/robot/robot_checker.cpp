@@ -218,6 +218,19 @@ EdgeResult RobotChecker::check_within_limits(std::span<const double> from,
                                              std::span<const double> to, double end,
                                              Scratch& scratch, const EdgeRequest& request) const {
   Scratch::Memory& memory = *scratch.memory_;
+  // Against standing trees alone, what the last motions have shown often decides the next one.
+  if (end == 1.0 && request.max_configurations > 0 && parts_->standing &&
+      parts_->pairs.tested() == 0) {
+    using Finding = internal::StandingTrees::AlongFinding;
+    switch (parts_->standing->look_along(from, to, !request.first, *memory.standing)) {
+      case Finding::kFree:
+        return {.verdict = Verdict::kFree, .free_until = 1.0, .configurations = 1};
+      case Finding::kTouchesInTheMiddle:
+        return {.verdict = Verdict::kCollision, .contact_at = 0.5, .configurations = 1};
+      case Finding::kUndecided:
+        break;
+    }
+  }
   return parts_->lanes.check_edge(from, to, end, request, memory.lanes, memory.pairs);
 }
 

@@ -114,6 +114,20 @@ void StandingTrees::touch(std::span<const double> configurations, Memory& memory
   }
 }
 
+StandingTrees::AlongFinding StandingTrees::look_along(std::span<const double> from,
+                                                      std::span<const double> to,
+                                                      bool asks_for_contact, Memory& memory) const {
+  if (always_) return AlongFinding::kUndecided;
+  const std::optional<bool> is_free = check_->is_free_along(
+      positions_.of(from, memory.room_, 0), positions_.of(to, memory.room_, 1), memory.check_);
+  if (is_free.value_or(false)) return AlongFinding::kFree;
+  if (!is_free || !asks_for_contact) return AlongFinding::kUndecided;
+  memory.middle_.resize(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) memory.middle_[i] = 0.5 * from[i] + 0.5 * to[i];
+  return touch(memory.middle_, memory) ? AlongFinding::kTouchesInTheMiddle
+                                       : AlongFinding::kUndecided;
+}
+
 // For the contacts of a configuration that are asked about.
 void StandingTrees::place(std::span<const double> configuration, Memory& memory) const {
   forward_kinematics(pairs_.robot(), configuration, memory.world_from_link_,

@@ -48,6 +48,7 @@ class StandingTrees {
     friend class StandingTrees;
     MechanismCheck::Scratch check_;
     std::vector<Pose> world_from_link_{};
+    std::vector<double> middle_{};
     std::vector<MechanismPair> unconfirmed_{};  // spheres touch, but no triangles do
     std::optional<Touch> last_{};
     JointPositions::Room room_;
@@ -62,6 +63,14 @@ class StandingTrees {
   // otherwise 0. Several times faster where neighbours differ little.
   void touch(std::span<const double> configurations, Memory& memory,
              std::span<std::uint8_t> verdicts) const;
+
+  // Of a straight motion from one configuration to another: whether it is free, as RobotChecker
+  // says of check_edge(), or (if that is asked for) touches in its middle. Fast for the motions of
+  // a path, one after the other; undecided where that is not known soon. Both ends must be
+  // BodyPairs::is_usual().
+  enum class AlongFinding { kFree, kTouchesInTheMiddle, kUndecided };
+  AlongFinding look_along(std::span<const double> from, std::span<const double> to,
+                          bool asks_for_contact, Memory& memory) const;
 
  private:
   // A piece that variables move, with its mesh, if that is known.

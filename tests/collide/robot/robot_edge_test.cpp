@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Straight motions in joint space, against many configurations on them.
 
+#include "collide/robot/kinematics.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "tests/collide/robot/checked_scene.h"
@@ -13,6 +14,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace spherule::test {
@@ -53,6 +55,55 @@ TEST(RobotEdge, WhatIsProvedFreeIsFree) {
   }
   EXPECT_GT(free, effort(100, 5));
   EXPECT_GT(hits, effort(100, 5));
+  EXPECT_LT(unknown, (free + hits) / 20);
+}
+
+// Motions that follow each other in steps of any size, beside what was found near: what the scratch
+// remembers proves many of them, and none that is not free.
+TEST(RobotEdge, WhatIsProvedFreeAlongAPathIsFree) {
+  SceneRandom random(55);
+  int free = 0;
+  int remembered = 0;
+  int hits = 0;
+  int unknown = 0;
+  for (int i = 0; i < effort(300, 20); ++i) {
+    const RobotModel robot = random_robot_with_trees(random, 0.2);
+    if (robot.variable_count() == 0) continue;
+    std::vector<double> at = random_configuration(random, robot, 3.0);
+    std::vector<Pose> links;
+    forward_kinematics(robot, at, links);
+    const std::optional<Sphere> near = random_sphere_of(random, robot, links);
+    if (!near) continue;
+    // A ball that the path begins beside.
+    const double gap = std::pow(10.0, random.uniform(-6.0, -1.0));
+    const Eigen::Vector3d center =
+        near->center + (near->radius + 0.05 + gap) * random.point(1.0).normalized();
+    const ObstacleChecker checker(robot, {{ball(center, 0.05), Pose()}});
+    RobotChecker::Scratch scratch(checker);
+    double step = 0.0;
+    std::vector<double> heading;
+    for (int k = 0; k < 60; ++k) {
+      if (k % 15 == 0) {
+        step = std::pow(10.0, random.uniform(-5.0, -1.5));
+        heading = random_configuration(random, robot, step);
+      }
+      std::vector<double> to = at;
+      for (std::size_t v = 0; v < to.size(); ++v) {
+        to[v] += heading[v] + 0.1 * step * random.uniform(-1.0, 1.0);
+      }
+      const EdgeResult result = checker.check_edge(at, to, scratch, {.first = k % 7 == 0});
+      expect_true(checker, at, to, result, effort(100, 30));
+      if (HasFailure()) return;
+      (result.verdict == Verdict::kFree        ? free
+       : result.verdict == Verdict::kCollision ? hits
+                                               : unknown) += 1;
+      remembered += result.configurations == 1 ? 1 : 0;
+      at = to;
+    }
+  }
+  EXPECT_GT(free, effort(3000, 200));
+  EXPECT_GT(remembered, effort(2000, 100));
+  EXPECT_GT(hits, effort(1000, 50));
   EXPECT_LT(unknown, (free + hits) / 20);
 }
 
