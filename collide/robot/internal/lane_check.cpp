@@ -6,10 +6,10 @@
 #include "collide/robot/internal/plan_source.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace spherule::internal {
+
 LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
     : pairs_(pairs), positions_(pairs.robot()), kernels_(plan_kernels_for(instructions)) {
   RobotPlanSource all = make_plan_source(pairs, pairs.pairs().size());

@@ -8,6 +8,7 @@
 #include "collide/kernels/compiled_plan.h"
 #include "collide/kernels/compiled_wide_plan.h"
 #include "collide/robot/internal/body_pairs.h"
+#include "collide/robot/internal/part_stack.h"
 #include "collide/robot/joint_positions.h"
 
 #include <array>
@@ -18,29 +19,6 @@
 #include <vector>
 
 namespace spherule::internal {
-
-// Parts of a motion that wait, the one to be evaluated next on top, each with the tests that are
-// open in it.
-class PartStack {
- public:
-  struct Part {
-    double begin;
-    double end;
-  };
-
-  bool empty() const { return parts_.empty(); }
-  void clear(std::size_t words);
-  // `open` is a set of tests.
-  void push(const Part& part, const std::uint64_t* open);
-  void pop(Part& part, std::uint64_t* open);
-  // The earliest begin of those that wait; infinite if there is none.
-  double earliest() const;
-
- private:
-  std::size_t words_ = 0;
-  std::vector<Part> parts_;
-  std::vector<std::uint64_t> open_;
-};
 
 class LaneCheck {
  public:

@@ -27,30 +27,6 @@ constexpr double kUndecided = 4.0;
 
 }  // namespace
 
-void PartStack::clear(std::size_t words) {
-  words_ = words;
-  parts_.clear();
-  open_.clear();
-}
-
-void PartStack::push(const Part& part, const std::uint64_t* open) {
-  parts_.push_back(part);
-  open_.insert(open_.end(), open, open + words_);
-}
-
-void PartStack::pop(Part& part, std::uint64_t* open) {
-  part = parts_.back();
-  parts_.pop_back();
-  std::copy(open_.end() - static_cast<std::ptrdiff_t>(words_), open_.end(), open);
-  open_.resize(open_.size() - words_);
-}
-
-double PartStack::earliest() const {
-  double result = std::numeric_limits<double>::infinity();
-  for (const Part& part : parts_) result = std::min(result, part.begin);
-  return result;
-}
-
 class LaneCheck::Edge {
  public:
   Edge(const LaneCheck& check, std::span<const double> from, std::span<const double> to, double end,
