@@ -104,7 +104,8 @@ class RobotScene {
 
   // What is asked, as of now: later edits do not change it. Trees and meshes are shared, not
   // copied, but for those of bodies that have padding or regions. Throws Error for what reaches
-  // too far to be computed with, and as RobotTreeChecker does.
+  // too far to be computed with, a mesh of the options that is missing, and instructions that this
+  // machine has not got.
   RobotChecker snapshot(const RobotCheckerOptions& options = {}) const;
 
  private:
