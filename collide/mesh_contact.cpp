@@ -5,7 +5,6 @@
 #include "collide/internal/box_gap.h"
 #include "collide/internal/cover_proof.h"
 #include "collide/internal/listed_triangles.h"
-#include "collide/internal/mesh_inside.h"
 #include "collide/internal/patch_trees.h"
 #include "collide/internal/traversal.h"
 #include "spheretree/error.h"
@@ -62,11 +61,10 @@ class FindTriangles {
 }  // namespace
 
 CoveredMesh::CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereTree> cover)
-    : cover_(not_null(std::move(cover))),
-      mesh_(mesh),
-      inside_(std::make_shared<const internal::MeshInside>(mesh)) {
+    : cover_(not_null(std::move(cover))), solid_(mesh, 0.0) {
   const std::size_t spheres = cover_->spheres().size();
-  const std::vector<internal::Patch> patches = internal::share_out(mesh_, cover_->spheres());
+  const std::vector<internal::Patch> patches =
+      internal::share_out(solid_.mesh(), cover_->spheres());
   patches_ = std::make_shared<const internal::PatchTrees>(patches, cover_->spheres());
   first_.assign(spheres + 1, 0);
   for (const internal::Patch& patch : patches) {
@@ -74,10 +72,6 @@ CoveredMesh::CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereT
     triangles_.push_back(patch.triangle);
   }
   for (std::size_t i = 0; i < spheres; ++i) first_[i + 1] += first_[i];
-}
-
-bool CoveredMesh::is_closed() const {
-  return inside_->is_closed();
 }
 
 bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,

@@ -7,6 +7,7 @@
 
 #include "collide/collide.h"
 #include "collide/mesh_tree.h"
+#include "collide/solid_mesh.h"
 #include "spheretree/triangle_mesh.h"
 
 #include <cstdint>
@@ -18,7 +19,6 @@
 namespace spherule {
 
 namespace internal {
-class MeshInside;
 class PatchTrees;
 }  // namespace internal
 
@@ -44,7 +44,9 @@ class CoveredMesh {
 
   // What it was made of.
   const SphereTree& cover() const { return *cover_; }
-  const MeshTree& mesh() const { return mesh_; }
+  const MeshTree& mesh() const { return solid_.mesh(); }
+  // The mesh with its inside, as stored: growth() is 0.
+  const SolidMesh& solid() const { return solid_; }
   // Those that a sphere of cover().spheres() stands for, at least in part, sorted. Every point of
   // a triangle lies in a sphere under which the triangle is listed.
   std::span<const std::int32_t> triangles_under(std::int32_t sphere) const {
@@ -53,18 +55,17 @@ class CoveredMesh {
     return std::span(triangles_).subspan(first, static_cast<std::size_t>(first_[i + 1]) - first);
   }
   // Whether every triangle is of a closed surface.
-  bool is_closed() const;
+  bool is_closed() const { return solid_.is_closed(); }
 
   // For queries.
-  const internal::MeshInside& inside() const { return *inside_; }
+  const internal::MeshInside& inside() const { return solid_.inside(); }
   const internal::PatchTrees& patches() const { return *patches_; }
 
  private:
   std::shared_ptr<const SphereTree> cover_;
-  MeshTree mesh_;
+  SolidMesh solid_;
   std::vector<std::int32_t> first_;  // of each sphere in triangles_, and the end
   std::vector<std::int32_t> triangles_;
-  std::shared_ptr<const internal::MeshInside> inside_;
   std::shared_ptr<const internal::PatchTrees> patches_;
 };
 

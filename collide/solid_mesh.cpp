@@ -106,10 +106,10 @@ class FindDeepest {
 
 }  // namespace
 
-SolidMesh::SolidMesh(const TriangleMesh& mesh)
-    : mesh_(mesh),
-      growth_(mesh.vertex_error),
-      inside_(std::make_shared<const internal::MeshInside>(mesh)) {}
+SolidMesh::SolidMesh(const TriangleMesh& mesh) : SolidMesh(mesh, mesh.vertex_error) {}
+
+SolidMesh::SolidMesh(const TriangleMesh& mesh, double growth)
+    : mesh_(mesh), growth_(growth), inside_(std::make_shared<const internal::MeshInside>(mesh)) {}
 
 bool SolidMesh::is_closed() const {
   return inside_->is_closed();

@@ -42,6 +42,9 @@ class SolidMesh {
   const internal::MeshInside& inside() const { return *inside_; }
 
  private:
+  friend class CoveredMesh;
+  SolidMesh(const TriangleMesh& mesh, double growth);
+
   MeshTree mesh_;
   double growth_;
   std::shared_ptr<const internal::MeshInside> inside_;

@@ -62,6 +62,7 @@ struct PlanBody {
   std::int32_t group_count;
   Real error;   // of placed centres
   Real margin;  // leaves that overlap by this and the other side's margin are certain to touch
+  bool is_confirmed;  // no contact is certain: the margin is infinite
 };
 
 enum class PlanShape : std::int32_t { kBox, kSegment, kCylinder, kHalfSpace, kTree, kOpaque };
@@ -77,6 +78,7 @@ struct PlanObstacle {
   Real radius;   // of a ball or capsule, about its segment; with the inflation
   Real error;    // of the offset of a point from the solid
   Real margin;
+  bool is_confirmed;            // as that of a body
   const PlanNode<Real>* nodes;  // of a tree
 };
 

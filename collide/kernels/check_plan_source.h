@@ -22,6 +22,9 @@ struct PlanSource {
     int frame = -1;
     std::shared_ptr<const SearchTrees> trees{};
     Pose frame_from_trees{};
+    // Contacts of its spheres are for the caller to confirm: none is certain, and what is not apart
+    // all along a part of a motion is asked for.
+    bool is_confirmed = false;
   };
 
   // What only the caller can test: nothing of it is outside of the box.
@@ -32,7 +35,8 @@ struct PlanSource {
   using Shape = std::variant<Primitive, std::shared_ptr<const SearchTrees>, Opaque>;
   struct Obstacle {
     Shape shape;
-    Pose root_from_shape{};  // the box of an opaque one is in the root's coordinates as it is
+    Pose root_from_shape{};     // the box of an opaque one is in the root's coordinates as it is
+    bool is_confirmed = false;  // as that of a body
   };
 
   struct Test {

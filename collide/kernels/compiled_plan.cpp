@@ -192,7 +192,9 @@ void CompiledPlan<Real>::compile_bodies(const PlanSource& source, const Reach& r
     body.node_count = static_cast<std::int32_t>(nodes_.size()) - firsts.back();
     body.first_center = static_cast<std::int32_t>(center_count_);
     body.error = rounded_up<Real>(reach.error[i]);
-    body.margin = rounded_up<Real>(3.0 * largest);
+    body.is_confirmed = source.bodies[i].is_confirmed;
+    body.margin =
+        body.is_confirmed ? std::numeric_limits<Real>::infinity() : rounded_up<Real>(3.0 * largest);
     center_count_ += static_cast<std::size_t>(body.node_count);
   }
   // Obstacles that are trees follow: no more nodes after them, so that these stay where they are.
@@ -208,7 +210,9 @@ void CompiledPlan<Real>::compile_bodies(const PlanSource& source, const Reach& r
                               2.0 * error + kPerScene * reach.scene, largest);
     obstacle.shape = PlanShape::kTree;
     obstacle.error = rounded_up<Real>(error);
-    obstacle.margin = rounded_up<Real>(3.0 * largest);
+    obstacle.is_confirmed = source.obstacles[i].is_confirmed;
+    obstacle.margin = obstacle.is_confirmed ? std::numeric_limits<Real>::infinity()
+                                            : rounded_up<Real>(3.0 * largest);
   }
   for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].nodes = nodes_.data() + firsts[i];
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {

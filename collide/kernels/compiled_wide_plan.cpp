@@ -4,6 +4,7 @@
 #include "collide/internal/single_precision.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace spherule::internal {
 namespace {
@@ -37,7 +38,8 @@ CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<
     body = {};
     for (int k = 0; k < 3; ++k) body.center[k] = static_cast<float>(tree.root().center[k]);
     body.radius = static_cast<float>(tree.root().radius);
-    body.margin = rounded_up_to_single(3.0 * tree.largest_growth());
+    body.margin = from.is_confirmed ? std::numeric_limits<float>::infinity()
+                                    : rounded_up_to_single(3.0 * tree.largest_growth());
     body.frame = plan.bodies[i].frame;
     body.first_node = static_cast<std::int32_t>(node_count_);
     node_count_ += static_cast<std::size_t>(tree.node_count());

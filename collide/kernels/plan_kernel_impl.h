@@ -270,15 +270,26 @@ class Evaluation {
 
   void search(const PlanCandidate& candidate) {
     const std::int32_t test = candidate.test;
-    TestSearch<Real, kMoves> search(context_, test, candidate.near);
-    if (test >= plan_.first_pair) {
-      const std::int32_t pair = test - plan_.first_pair;
-      const PlanPair& both = plan_.pairs[pair];
-      search_side<Real, kMoves>(context_, motion_of_pair(pair), plan_.bodies[both.first],
-                                MovingSide<Real>{plan_.bodies[both.second]}, search);
+    const PlanBody<Real>& body = plan_.bodies[candidate.body];
+    const bool is_pair = test >= plan_.first_pair;
+    const std::int32_t pair = test - plan_.first_pair;
+    const PlanBody<Real>* const other = is_pair ? &plan_.bodies[plan_.pairs[pair].second] : nullptr;
+    const PlanObstacle<Real>* const obstacle =
+        is_pair ? nullptr
+                : &plan_.obstacles[plan_.groups[test / kPlanLanes].obstacle[test % kPlanLanes]];
+    const bool is_confirmed =
+        body.is_confirmed || (is_pair ? other->is_confirmed : obstacle->is_confirmed);
+    TestSearch<Real, kMoves> search(context_, test, candidate.near, is_confirmed);
+    if (is_pair) {
+      search_side<Real, kMoves>(context_, motion_of_pair(pair), body, MovingSide<Real>{*other},
+                                search);
     } else {
-      const std::int32_t index = plan_.groups[test / kPlanLanes].obstacle[test % kPlanLanes];
-      search_obstacle(candidate.body, plan_.obstacles[index], search);
+      search_obstacle(candidate.body, *obstacle, search);
+    }
+    if (kMoves && is_confirmed && search.near() != 0 &&
+        (is_pair || obstacle->shape != PlanShape::kOpaque)) {
+      search.confirm(is_pair ? scratch_.pair_bounds[pair].speed
+                             : scratch_.body_bounds[candidate.body].speed);
     }
     contacts_ |= search.contacts();
     if constexpr (kMoves) {

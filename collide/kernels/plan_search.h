@@ -117,8 +117,11 @@ SPHERULE_INLINE Separation<Real> separation(const SearchContext<Real, kMoves>& c
 template <class Real, bool kMoves>
 class TestSearch {
  public:
-  TestSearch(const SearchContext<Real, kMoves>& context, std::int32_t test, unsigned lanes)
-      : context_(context), test_(test), active_(lanes) {}
+  // With `is_confirmed` the search of a motion ends where two leaves are not proved apart all along
+  // a part: confirm() goes on.
+  TestSearch(const SearchContext<Real, kMoves>& context, std::int32_t test, unsigned lanes,
+             bool is_confirmed)
+      : context_(context), test_(test), active_(lanes), is_confirmed_(is_confirmed) {}
 
   unsigned near() const { return near_; }
   unsigned contacts() const { return contacts_; }
@@ -131,12 +134,17 @@ class TestSearch {
     const Real worth = largest > context_.enough ? largest : context_.enough;
     const unsigned coarse = found.near & ~found.overlap & above(found.inflation, all(worth));
     if (coarse != 0) add_near(coarse, found.worth);
-    return found.near & (found.overlap | ~near_);
+    if (is_confirmed_) active_ &= ~near_;
+    return found.near & (is_confirmed_ ? active_ : found.overlap | ~near_);
   }
 
   // Two leaves, or a leaf and a solid.
   SPHERULE_INLINE void leaf(const Separation<Real>& found, Real reach, Real margin) {
     if (kMoves && found.near != 0) add_near(found.near, found.worth);
+    if (kMoves && is_confirmed_) {
+      active_ &= ~found.near;
+      return;
+    }
     const unsigned touching = found.overlap & ~(cleared_ | contacts_);
     if (touching == 0) return;
     const Real sure = reach - margin;
@@ -156,7 +164,13 @@ class TestSearch {
 
   unsigned active() const { return active_; }
 
-  // Of an obstacle that only the caller can test; `speed` is that of the body.
+  // Where spheres are not apart that stand for a mesh; `speed` as below.
+  void confirm(Real speed) {
+    active_ = near_;
+    ask(speed);
+  }
+
+  // Of what only the caller can test; `speed` is that of the two sides against each other.
   void ask(Real speed) {
     const PlanClient& client = context_.client;
     unsigned lanes = active_;
@@ -182,6 +196,7 @@ class TestSearch {
   const SearchContext<Real, kMoves>& context_;
   std::int32_t test_;
   unsigned active_;
+  bool is_confirmed_;
   unsigned near_ = 0;
   unsigned contacts_ = 0;
   unsigned cleared_ = 0;  // by the canonical test

@@ -26,9 +26,11 @@ struct RobotCheckerOptions {
   // A configuration with a joint outside its limits counts as a collision.
   bool enforce_limits = false;
   InstructionSet instructions = best_instruction_set();
-  // Confirmation on the triangles (opt-in): contacts of two trees that are both the cover() of one
-  // of these count only if their meshes touch (mesh_contact.h). Free stays certain; false alarms
-  // vanish.
+  // Confirmation on the triangles (opt-in). A body or an obstacle whose tree is the cover() of one
+  // of these counts as the mesh with its inside (mesh_contact.h), the padding that is asked for
+  // around it, against all that it is tested with: a contact of its spheres counts only if the mesh
+  // touches, in configurations as on motions. Free stays certain; false alarms of coarse covers
+  // vanish. Bodies of which a region may touch are judged by their spheres.
   std::vector<std::shared_ptr<const CoveredMesh>> meshes{};
 };
 
@@ -76,8 +78,8 @@ struct RobotClearance {
 //
 // "Free" means: no two spheres (padded as the scene says) of what is tested against each other
 // overlap or touch, in exact arithmetic under the poses that forward_kinematics() computes (G4); a
-// solid mesh or primitive is tested with its inside. What is not free has a gap of rounding only
-// (G5), collision_slack() for spheres.
+// solid mesh or primitive is tested with its inside, and what is confirmed as its mesh. What is not
+// free has a gap of rounding only (G5), collision_slack() for spheres.
 //
 // Configurations and motions are evaluated in single precision with proved margins, eight side by
 // side; what these leave undecided is decided by the queries of the library in double precision:
@@ -150,11 +152,14 @@ class RobotChecker {
   // too, as require_clearance() does.
   bool within(std::span<const double> configuration, double clearance, Scratch& scratch) const;
 
-  // How far the robot is from the nearest contact, and of which two. Allocates.
+  // How far the robot is from the nearest contact, and of which two: of the spheres, where contacts
+  // are confirmed, too, so that `lower` holds for the meshes. Allocates.
   RobotClearance clearance(std::span<const double> configuration, Scratch& scratch) const;
 
   // What touches what: one contact, the deepest, for each two bodies, and each body and obstacle,
-  // that touch. Empty exactly if all are free of each other: the limits are not asked. Allocates.
+  // that touch. Empty exactly if all are free of each other: the limits are not asked. Where a mesh
+  // confirms the contact of two bodies, the spheres are the deepest two whose triangles touch if
+  // both are meshes without padding, otherwise of all. Allocates.
   std::vector<CheckedContact> explain(std::span<const double> configuration, Scratch& scratch,
                                       const ExplainRequest& request = {}) const;
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "collide/mesh_contact.h"
 #include "collide/robot/internal/checker_parts.h"
 #include "collide/robot/internal/link_paths.h"
 #include "collide/robot/robot_scene.h"
@@ -56,7 +57,9 @@ class RobotScene::Snapshot {
     }
     for (const auto& [name, obstacle] : scene_.obstacles_) {
       obstacle_names_.push_back({CheckedBody::Kind::kObstacle, name});
-      shapes_.push_back({obstacle.shape, obstacle.world_from_shape});
+      const Tree* const tree = std::get_if<Tree>(&obstacle.shape);
+      shapes_.push_back(
+          {obstacle.shape, obstacle.world_from_shape, tree != nullptr ? mesh_of(**tree) : nullptr});
     }
   }
 
@@ -101,6 +104,12 @@ class RobotScene::Snapshot {
     return regions;
   }
 
+  std::shared_ptr<const CoveredMesh> mesh_of(const SphereTree& tree) const {
+    const auto found = std::find_if(options_.meshes.begin(), options_.meshes.end(),
+                                    [&](const auto& mesh) { return &mesh->cover() == &tree; });
+    return found == options_.meshes.end() ? nullptr : *found;
+  }
+
   double padding_of(const std::string& body) const {
     const auto found = scene_.padding_.find(body);
     return found == scene_.padding_.end() ? 0.0 : found->second;
@@ -130,7 +139,7 @@ class RobotScene::Snapshot {
         if (sphere.tree == index) is_left_out[static_cast<std::size_t>(sphere.sphere)] = true;
       }
     }
-    internal::CheckedPiece piece{tree, bodies_[body].link, body, index, {}, padding};
+    internal::CheckedPiece piece{tree, bodies_[body].link, body, index, {}, padding, nullptr};
     if (std::find(is_left_out.begin(), is_left_out.end(), true) != is_left_out.end()) {
       std::vector<Sphere> spheres;
       for (std::size_t i = 0; i < is_left_out.size(); ++i) {
@@ -140,9 +149,12 @@ class RobotScene::Snapshot {
       }
       if (spheres.empty()) return -1;
       piece.tree = std::make_shared<const SphereTree>(build_tree(grown(spheres, padding)));
-    } else if (padding > 0.0) {
-      piece.tree =
-          std::make_shared<const SphereTree>(refit(*tree, grown(tree->spheres(), padding)));
+    } else {
+      piece.mesh = mesh_of(*tree);
+      if (padding > 0.0) {
+        piece.tree =
+            std::make_shared<const SphereTree>(refit(*tree, grown(tree->spheres(), padding)));
+      }
     }
     pieces_.push_back(std::move(piece));
     return static_cast<int>(pieces_.size()) - 1;
@@ -153,12 +165,21 @@ class RobotScene::Snapshot {
     const std::string& other = obstacle_names_[obstacle].name;
     const std::optional<Regions> left_out = regions_left_out(name, other);
     if (!left_out) return;
-    const bool is_tree = std::holds_alternative<Tree>(shapes_[obstacle].shape);
     for (const int piece :
          pieces_of(body, *left_out,
                    internal::padding_sum(padding_of(name), padding_between(name, other)))) {
-      (is_tree ? standing_pairs_ : pairs_).push_back({piece, static_cast<int>(obstacle), true});
+      const bool is_standing =
+          is_for_standing_trees(pieces_[static_cast<std::size_t>(piece)], shapes_[obstacle]);
+      (is_standing ? standing_pairs_ : pairs_).push_back({piece, static_cast<int>(obstacle), true});
     }
+  }
+
+  // What StandingTrees can take.
+  static bool is_for_standing_trees(const internal::CheckedPiece& piece,
+                                    const internal::PlacedShape& obstacle) {
+    if (!std::holds_alternative<Tree>(obstacle.shape)) return false;
+    const bool is_confirmed = piece.mesh != nullptr;
+    return is_confirmed == (obstacle.mesh != nullptr) && !(is_confirmed && piece.padding > 0.0);
   }
 
   void pair_bodies(std::size_t body, std::size_t other) {

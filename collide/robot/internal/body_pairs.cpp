@@ -8,6 +8,7 @@
 #include "collide/robot/kinematics.h"
 #include "collide/solid_fields.h"
 #include "collide/solid_mesh.h"
+#include "collide/solid_within.h"
 #include "collide/within.h"
 #include "spheretree/rounding.h"
 
@@ -208,14 +209,17 @@ bool BodyPairs::touches(std::size_t index, const Memory& memory) const {
   const CheckedPair& pair = pairs_[index];
   if (balls_apart(pair, 0.0, memory)) return false;
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
-  if (!pair.is_obstacle) {
+  bool touch = false;
+  if (pair.is_obstacle) {
+    const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
+    touch = with_shape(obstacle, [&](const auto& shape) {
+      return collides(*a.tree, pose_of(a, memory), shape, obstacle.world_from_shape);
+    });
+  } else {
     const CheckedPiece& b = pieces_[static_cast<std::size_t>(pair.other)];
-    return collides(*a.tree, pose_of(a, memory), *b.tree, pose_of(b, memory));
+    touch = collides(*a.tree, pose_of(a, memory), *b.tree, pose_of(b, memory));
   }
-  const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
-  return with_shape(obstacle, [&](const auto& shape) {
-    return collides(*a.tree, pose_of(a, memory), shape, obstacle.world_from_shape);
-  });
+  return touch && (!is_confirmed(pair) || meshes_within(pair, 0.0, memory));
 }
 
 // A robot that touches often did so a moment ago, in the same place.
@@ -232,7 +236,12 @@ bool BodyPairs::any_touches(Memory& memory) const {
 bool BodyPairs::is_near(std::size_t index, double clearance, const Memory& memory) const {
   const CheckedPair& pair = pairs_[index];
   if (!(clearance <= kMaxCoordinate)) return true;
-  if (balls_apart(pair, clearance, memory)) return false;
+  return !balls_apart(pair, clearance, memory) && spheres_within(pair, clearance, memory) &&
+         (!is_confirmed(pair) || meshes_within(pair, clearance, memory));
+}
+
+bool BodyPairs::spheres_within(const CheckedPair& pair, double clearance,
+                               const Memory& memory) const {
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
   if (!pair.is_obstacle) {
     const CheckedPiece& b = pieces_[static_cast<std::size_t>(pair.other)];
@@ -241,6 +250,39 @@ bool BodyPairs::is_near(std::size_t index, double clearance, const Memory& memor
   const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
   return with_shape(obstacle, [&](const auto& shape) {
     return within(*a.tree, pose_of(a, memory), shape, obstacle.world_from_shape, clearance);
+  });
+}
+
+bool BodyPairs::is_confirmed(const CheckedPair& pair) const {
+  const auto other = static_cast<std::size_t>(pair.other);
+  return pieces_[static_cast<std::size_t>(pair.piece)].mesh != nullptr ||
+         (pair.is_obstacle ? obstacles_[other].mesh : pieces_[other].mesh) != nullptr;
+}
+
+// The padding of a side whose mesh is known is not in what is tested; that of spheres is.
+bool BodyPairs::meshes_within(const CheckedPair& pair, double clearance,
+                              const Memory& memory) const {
+  const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
+  const auto other = static_cast<std::size_t>(pair.other);
+  const CheckedPiece* const b = pair.is_obstacle ? nullptr : &pieces_[other];
+  const CoveredMesh* const mesh_b = b != nullptr ? b->mesh.get() : obstacles_[other].mesh.get();
+  const Pose& pose_a = pose_of(a, memory);
+  const Pose& pose_b = b != nullptr ? pose_of(*b, memory) : obstacles_[other].world_from_shape;
+  double reach = clearance;
+  if (a.mesh != nullptr) reach = padding_sum(reach, a.padding);
+  if (b != nullptr && mesh_b != nullptr) reach = padding_sum(reach, b->padding);
+  if (a.mesh == nullptr) return within(*a.tree, pose_a, mesh_b->solid(), pose_b, reach);
+  if (mesh_b != nullptr) {
+    return reach == 0.0 ? collides(*a.mesh, pose_a, *mesh_b, pose_b)
+                        : within(a.mesh->solid(), pose_a, mesh_b->solid(), pose_b, reach);
+  }
+  if (b != nullptr) return within(*b->tree, pose_b, a.mesh->solid(), pose_a, reach);
+  return with_shape(obstacles_[other], [&](const auto& shape) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, SphereTree>) {
+      return within(shape, pose_b, a.mesh->solid(), pose_a, reach);
+    } else {
+      return within(a.mesh->solid(), pose_a, shape, pose_b, reach);
+    }
   });
 }
 
@@ -277,6 +319,17 @@ std::optional<PairContact> BodyPairs::deepest_contact(std::size_t index,
   };
   const CheckedPair& pair = pairs_[index];
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
+  if (is_confirmed(pair)) {
+    if (!touches(index, memory)) return std::nullopt;
+    const auto other = static_cast<std::size_t>(pair.other);
+    const bool is_padded = a.padding > 0.0 || (!pair.is_obstacle && pieces_[other].padding > 0.0);
+    const auto& mesh_b = pair.is_obstacle ? obstacles_[other].mesh : pieces_[other].mesh;
+    if (a.mesh != nullptr && mesh_b != nullptr && !is_padded) {
+      return between_trees(spherule::deepest_contact(
+          *a.mesh, pose_of(a, memory), *mesh_b,
+          pair.is_obstacle ? obstacles_[other].world_from_shape : pose_of(pieces_[other], memory)));
+    }
+  }
   if (!pair.is_obstacle) {
     const CheckedPiece& b = pieces_[static_cast<std::size_t>(pair.other)];
     return between_trees(

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Pairs of spheres on links, and of spheres and standing solids, in double precision: the
-// canonical tests of a RobotChecker. Its proofs are in body_pairs.cpp.
+// Pairs of spheres on links, and of spheres and static solids, in double precision: the canonical
+// tests of a RobotChecker. Its proofs are in body_pairs.cpp.
+//
+// Confirmation. Where the mesh of one side is known, it stands in the place of the spheres that
+// cover it, with its inside and the padding around it: the two touch if their spheres do and the
+// mesh touches the other side (its mesh, spheres, or solid). No contact is lost, because a padded
+// mesh lies in its padded cover.
 
 #include "collide/contact.h"
 #include "collide/distance.h"
+#include "collide/mesh_contact.h"
 #include "collide/robot/internal/path_reach.h"
 #include "collide/robot/robot_model.h"
 #include "collide/robot/robot_scene.h"
+#include "spheretree/rounding.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +26,11 @@
 
 namespace spherule::internal {
 
+// Of both together; no less than that.
+inline double padding_sum(double first, double second) {
+  return first == 0.0 || second == 0.0 ? first + second : add_up(first, second);
+}
+
 // Spheres on a link that are tested as one: a tree of a link or an attached object, or some of its
 // spheres, grown by the padding that is asked for.
 struct CheckedPiece {
@@ -28,11 +40,14 @@ struct CheckedPiece {
   std::size_t body_tree = 0;            // of which tree of the body
   std::vector<std::int32_t> spheres{};  // which of them; empty: all
   double padding = 0.0;
+  // The body's mesh without the padding, if contacts are to be confirmed on it.
+  std::shared_ptr<const CoveredMesh> mesh{};
 };
 
 struct PlacedShape {
   ObstacleShape shape;
   Pose world_from_shape;
+  std::shared_ptr<const CoveredMesh> mesh{};  // as above, of a tree
 };
 
 // A piece and another, or a piece and an obstacle.
@@ -74,6 +89,8 @@ class BodyPairs {
   // From a piece to the root; of a pair: the joints between its two sides.
   const PathReach& path_to_root(std::size_t piece) const { return paths_[piece]; }
   const PathReach& path(std::size_t pair) const { return paths_[path_of_[pair]]; }
+  // Whether the mesh of a side is known.
+  bool is_confirmed(const CheckedPair& pair) const;
 
   // Whether the bounds of errors hold: no joint's position is beyond
   // MechanismCheck::kLargestVariable. For a configuration of the right size.
@@ -86,11 +103,14 @@ class BodyPairs {
   bool touches(std::size_t pair, const Memory& memory) const;
   bool any_touches(Memory& memory) const;
 
-  // Never false if the canonical test finds the two within the clearance of each other.
+  // Never false if the two are within the clearance of each other, or the canonical test finds them
+  // so.
   bool is_near(std::size_t pair, double clearance, const Memory& memory) const;
 
-  // A lower bound of the exact gap of a pair, found at once; -infinity if there is none.
+  // A lower bound of the exact gap of the spheres of a pair, found at once; -infinity if there is
+  // none.
   double gap_bound(std::size_t pair, const Memory& memory) const;
+  // Of the spheres, whatever is confirmed.
   DistanceResult distance(std::size_t pair, const Memory& memory,
                           const DistanceRequest& request) const;
   // None exactly if touches() is false.
@@ -108,6 +128,8 @@ class BodyPairs {
   }
   double signed_distance(const CheckedPair& pair, const Memory& memory) const;
   bool balls_apart(const CheckedPair& pair, double clearance, const Memory& memory) const;
+  bool spheres_within(const CheckedPair& pair, double clearance, const Memory& memory) const;
+  bool meshes_within(const CheckedPair& pair, double clearance, const Memory& memory) const;
   // True only if the solid is farther than `reach` from the ball's centre in the world; the pad is
   // in it.
   bool is_beyond(std::size_t obstacle, const Eigen::Vector3d& center, double reach) const {

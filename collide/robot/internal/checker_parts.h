@@ -7,7 +7,6 @@
 #include "collide/robot/internal/lane_check.h"
 #include "collide/robot/internal/standing_trees.h"
 #include "collide/robot/robot_checker.h"
-#include "spheretree/rounding.h"
 
 #include <memory>
 #include <optional>
@@ -16,15 +15,6 @@
 #include <vector>
 
 namespace spherule {
-
-namespace internal {
-
-// Of both together; no less than that.
-inline double padding_sum(double first, double second) {
-  return first == 0.0 || second == 0.0 ? first + second : add_up(first, second);
-}
-
-}  // namespace internal
 
 struct RobotChecker::Parts {
   struct Named {
@@ -41,7 +31,7 @@ struct RobotChecker::Parts {
         bodies(std::move(body_names)),
         obstacles(std::move(obstacle_names)) {
     if (pairs.tested() == pairs.pairs().size()) return;
-    standing.emplace(pairs, options.meshes, options.instructions);
+    standing.emplace(pairs, options.instructions);
   }
   // `lanes` and `standing` refer to `pairs`.
   Parts(const Parts&) = delete;

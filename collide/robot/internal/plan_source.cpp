@@ -59,14 +59,14 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
   source.pose_error = pairs.pose_error();
   for (const CheckedPiece& piece : pairs.pieces()) {
     const auto link = static_cast<std::size_t>(piece.link);
-    source.bodies.push_back(
-        {frames.frame_of_link[link], cache.of(piece.tree), frames.frame_from_link[link]});
+    source.bodies.push_back({frames.frame_of_link[link], cache.of(piece.tree),
+                             frames.frame_from_link[link], piece.mesh != nullptr});
   }
   const Pose root_from_world = pairs.world_from_root().inverse();
   for (const PlacedShape& obstacle : pairs.obstacles()) {
     const Pose root_from_shape = root_from_world * obstacle.world_from_shape;
-    source.obstacles.push_back(
-        {std::visit(ShapeOf{root_from_shape, cache}, obstacle.shape), root_from_shape});
+    source.obstacles.push_back({std::visit(ShapeOf{root_from_shape, cache}, obstacle.shape),
+                                root_from_shape, obstacle.mesh != nullptr});
   }
   for (std::size_t i = 0; i < source.bodies.size(); ++i) {
     source.body_paths.push_back(steps_of(pairs.path_to_root(i), pairs.robot(), frames));

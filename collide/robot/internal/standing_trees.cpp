@@ -12,10 +12,8 @@
 
 namespace spherule::internal {
 
-StandingTrees::StandingTrees(const BodyPairs& pairs,
-                             std::span<const std::shared_ptr<const CoveredMesh>> meshes,
-                             InstructionSet instructions)
-    : pairs_(pairs), meshes_(meshes.begin(), meshes.end()), positions_(pairs.robot()) {
+StandingTrees::StandingTrees(const BodyPairs& pairs, InstructionSet instructions)
+    : pairs_(pairs), positions_(pairs.robot()) {
   const RobotModel& robot = pairs.robot();
   const MovingFrames frames(robot);
   std::vector<Pose> at_zero;
@@ -24,6 +22,7 @@ StandingTrees::StandingTrees(const BodyPairs& pairs,
   const Pose root_from_world = pairs.world_from_root().inverse();
   std::vector<MechanismBody> bodies;
   std::vector<MechanismObstacle> obstacles;
+  bool has_meshes = false;
   std::vector<int> body_of_piece(pairs.pieces().size(), -1);
   std::vector<int> place_of(pairs.obstacles().size(), -1);
   for (std::size_t i = pairs.tested(); i < pairs.pairs().size(); ++i) {
@@ -36,11 +35,11 @@ StandingTrees::StandingTrees(const BodyPairs& pairs,
       const PlacedShape& placed = pairs.obstacles()[static_cast<std::size_t>(pair.other)];
       const auto& tree = std::get<std::shared_ptr<const SphereTree>>(placed.shape);
       place = static_cast<int>(obstacles_.size());
-      obstacles_.push_back({tree, placed.world_from_shape, mesh_of(*tree)});
+      obstacles_.push_back({tree, placed.world_from_shape, placed.mesh.get()});
       obstacles.push_back({root_from_world * placed.world_from_shape, tree});
     }
-    const Body body{&piece, mesh_of(*piece.tree), frames.frame_of_link[link],
-                    frames.frame_from_link[link]};
+    has_meshes = has_meshes || pairs.is_confirmed(pair);
+    const Body body{&piece, frames.frame_of_link[link], frames.frame_from_link[link]};
     if (body.frame < 0) {
       always_ =
           always_ || pair_touches(body, obstacles_[static_cast<std::size_t>(place)], at_zero[link]);
@@ -53,15 +52,8 @@ StandingTrees::StandingTrees(const BodyPairs& pairs,
     }
     tested_.push_back({body_of_piece[index], place});
   }
-  check_ =
-      std::make_unique<const MechanismCheck>(frames.frames, bodies, obstacles, tested_,
-                                             pairs.pose_error(), instructions, !meshes_.empty());
-}
-
-const CoveredMesh* StandingTrees::mesh_of(const SphereTree& tree) const {
-  const auto found = std::find_if(meshes_.begin(), meshes_.end(),
-                                  [&](const auto& mesh) { return &mesh->cover() == &tree; });
-  return found == meshes_.end() ? nullptr : found->get();
+  check_ = std::make_unique<const MechanismCheck>(frames.frames, bodies, obstacles, tested_,
+                                                  pairs.pose_error(), instructions, has_meshes);
 }
 
 bool StandingTrees::touch(std::span<const double> configuration, Memory& memory) const {
@@ -164,9 +156,9 @@ StandingTrees::Finding StandingTrees::find(const MechanismContact& contact, Memo
                      contact.obstacle_sphere, obstacle.world_from_tree)) {
     return Finding::kApart;
   }
-  if (body.mesh == nullptr || obstacle.mesh == nullptr) return Finding::kTouch;
+  if (body.piece->mesh == nullptr || obstacle.mesh == nullptr) return Finding::kTouch;
   const std::optional<TrianglePair> triangles =
-      touching_triangles(*body.mesh, contact.body_sphere, world_from_body, *obstacle.mesh,
+      touching_triangles(*body.piece->mesh, contact.body_sphere, world_from_body, *obstacle.mesh,
                          contact.obstacle_sphere, obstacle.world_from_tree);
   if (!triangles) return Finding::kSpheres;
   memory.last_ = {contact, *triangles};
@@ -192,8 +184,8 @@ bool StandingTrees::still_touches(const Touch& touch, Memory& memory) const {
 double StandingTrees::depth_of(const Touch& touch, const Memory& memory) const {
   const Body& body = body_of(touch.contact.pair);
   const Obstacle& obstacle = obstacle_of(touch.contact.pair);
-  return contact_depth(*body.mesh, pose_of(body, memory), *obstacle.mesh, obstacle.world_from_tree,
-                       touch.triangles);
+  return contact_depth(*body.piece->mesh, pose_of(body, memory), *obstacle.mesh,
+                       obstacle.world_from_tree, touch.triangles);
 }
 
 // The poses of forward_kinematics() are within pose_error() of those of the exact mechanism, now
@@ -201,7 +193,7 @@ double StandingTrees::depth_of(const Touch& touch, const Memory& memory) const {
 void StandingTrees::remember(const Touch& touch, double depth, Memory& memory) const {
   if (depth <= 3.0 * pairs_.pose_error()) return;
   const Body& body = body_of(touch.contact.pair);
-  const auto& [p, q, r] = body.mesh->mesh().triangle(touch.triangles.a);
+  const auto& [p, q, r] = body.piece->mesh->mesh().triangle(touch.triangles.a);
   const Eigen::Vector3d center = (p + q + r) / 3.0;
   const double radius =
       std::max({distance_upper(center, p), distance_upper(center, q), distance_upper(center, r)});
@@ -215,18 +207,19 @@ bool StandingTrees::contains_component(const Memory& memory) const {
       memory.unconfirmed_.begin(), memory.unconfirmed_.end(), [&](const MechanismPair& pair) {
         const Body& body = body_of(pair);
         const Obstacle& obstacle = obstacle_of(pair);
-        return spherule::contains_component(*body.mesh, pose_of(body, memory), *obstacle.mesh,
-                                            obstacle.world_from_tree);
+        return spherule::contains_component(*body.piece->mesh, pose_of(body, memory),
+                                            *obstacle.mesh, obstacle.world_from_tree);
       });
 }
 
 bool StandingTrees::pair_touches(const Body& body, const Obstacle& obstacle,
                                  const Pose& world_from_link) const {
-  if (body.mesh == nullptr || obstacle.mesh == nullptr) {
+  if (body.piece->mesh == nullptr || obstacle.mesh == nullptr) {
     return spherule::collides(*body.piece->tree, world_from_link, *obstacle.tree,
                               obstacle.world_from_tree);
   }
-  return spherule::collides(*body.mesh, world_from_link, *obstacle.mesh, obstacle.world_from_tree);
+  return spherule::collides(*body.piece->mesh, world_from_link, *obstacle.mesh,
+                            obstacle.world_from_tree);
 }
 
 bool StandingTrees::touch_exactly(std::span<const double> configuration, Memory& memory) const {

@@ -20,9 +20,9 @@
 
 namespace spherule::internal {
 
-// Of the pairs of BodyPairs from tested() on, pieces and sphere trees: does any touch? Exactly
-// BodyPairs::touches(), or collides() of covered meshes where these are given for both. No
-// instruction set changes an answer.
+// Of the pairs of BodyPairs from tested() on, does any touch? Exactly BodyPairs::touches(): no
+// instruction set changes an answer. The pairs are of pieces and sphere trees, whose meshes are
+// both known, those of pieces without padding, or neither.
 class StandingTrees {
  private:
   // A contact that was confirmed on triangles: of the piece's mesh and the obstacle's.
@@ -32,10 +32,8 @@ class StandingTrees {
   };
 
  public:
-  // `pairs` must outlive it. Contacts of two trees that are both the cover() of one of the meshes
-  // count only if the meshes touch. Throws Error as MechanismCheck does.
-  StandingTrees(const BodyPairs& pairs, std::span<const std::shared_ptr<const CoveredMesh>> meshes,
-                InstructionSet instructions);
+  // `pairs` must outlive it. Throws Error as MechanismCheck does.
+  StandingTrees(const BodyPairs& pairs, InstructionSet instructions);
 
   // What a query writes to. Those of several threads share no cache line.
   class alignas(64) Memory {
@@ -76,7 +74,6 @@ class StandingTrees {
   // A piece that variables move, with its mesh, if that is known.
   struct Body {
     const CheckedPiece* piece;
-    const CoveredMesh* mesh;
     int frame;  // of the check
     Pose frame_from_link;
   };
@@ -95,7 +92,6 @@ class StandingTrees {
   static const Pose& pose_of(const Body& body, const Memory& memory) {
     return memory.world_from_link_[static_cast<std::size_t>(body.piece->link)];
   }
-  const CoveredMesh* mesh_of(const SphereTree& tree) const;
   bool pair_touches(const Body& body, const Obstacle& obstacle, const Pose& world_from_link) const;
 
   enum class Finding { kApart, kSpheres, kTouch };
@@ -110,7 +106,6 @@ class StandingTrees {
   void place(std::span<const double> configuration, Memory& memory) const;
 
   const BodyPairs& pairs_;
-  std::vector<std::shared_ptr<const CoveredMesh>> meshes_;
   JointPositions positions_;
   std::vector<Body> bodies_;
   std::vector<Obstacle> obstacles_;

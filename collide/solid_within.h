@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/primitive.h"
+#include "collide/solid_mesh.h"
+#include "spheretree/pose.h"
+
+namespace spherule {
+
+// Whether two meshes with their insides, rigidly placed, come within a clearance of each other; of
+// 0 whether they have a point in common. growth() of both counts.
+//
+// Never false if the exact distance under exactly the given poses is at most the clearance. If it
+// is true, the exact one is larger by rounding only: some units in the last place of the scene, and
+// up to about 1e-8 of the longest edge where corners of needles are nearest to each other
+// (internal/triangle_pair.h). Inside is what SolidMesh says. Allocates as collides() of two trees
+// does. Throws Error as require_clearance() does.
+bool within(const SolidMesh& a, const Pose& world_from_a, const SolidMesh& b,
+            const Pose& world_from_b, double clearance);
+
+// The same of a mesh with its inside and a solid of simple shape. If it is true, the exact distance
+// is larger by at most 1e-9 of the scene, or by more where a triangle lies along a curved surface
+// at nearly that distance and the search for a proof was given up.
+bool within(const SolidMesh& a, const Pose& world_from_a, const Primitive& b,
+            const Pose& world_from_b, double clearance);
+
+}  // namespace spherule
