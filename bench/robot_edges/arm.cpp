@@ -84,7 +84,9 @@ Arm make_arm(const std::filesystem::path& models, SpheresOf spheres_of) {
     const std::vector<Sphere> spheres = spheres_of(i, mesh);
     if (spheres.empty()) continue;
     arm.spheres += spheres.size();
-    arm.model.attach(robot.links[i].name, std::make_shared<const SphereTree>(build_tree(spheres)));
+    const auto tree = std::make_shared<const SphereTree>(build_tree(spheres));
+    arm.covers.push_back(std::make_shared<const CoveredMesh>(mesh, tree));
+    arm.model.attach(robot.links[i].name, tree);
   }
   return arm;
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/mesh_contact.h"
 #include "collide/robot/robot_model.h"
 #include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 namespace spherule {
@@ -14,6 +16,7 @@ namespace spherule {
 struct Arm {
   RobotModel model;
   std::vector<TriangleMesh> meshes;  // of each link, in its frame; empty for one without
+  std::vector<std::shared_ptr<const CoveredMesh>> covers{};  // of those with spheres
   std::size_t triangles = 0;
   std::size_t spheres = 0;
 };

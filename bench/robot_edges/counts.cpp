@@ -5,7 +5,8 @@
 
 namespace spherule {
 
-void Counts::judge(const EdgeResult& result, const Met& sampled, bool in_contact) {
+void Counts::judge(const EdgeResult& result, const EdgeResult& of_meshes, const Met& sampled,
+                   bool in_contact) {
   const bool is_free = result.verdict == Verdict::kFree;
   const bool collides = result.verdict == Verdict::kCollision;
   ++edges;
@@ -18,6 +19,11 @@ void Counts::judge(const EdgeResult& result, const Met& sampled, bool in_contact
   fcl_missed += in_contact && !sampled.meshes ? 1 : 0;
   own_missed += collides && !sampled.spheres ? 1 : 0;
   looks += result.configurations;
+  const bool is_confirmed_free = of_meshes.verdict == Verdict::kFree;
+  confirmed_proved += is_confirmed_free ? 1 : 0;
+  confirmed_unknown += of_meshes.verdict == Verdict::kUnknown ? 1 : 0;
+  confirmed_missed += is_confirmed_free && in_contact ? 1 : 0;
+  confirmed_extra += !is_confirmed_free && !in_contact ? 1 : 0;
 }
 
 void Counts::add(const Counts& other) {
@@ -31,25 +37,34 @@ void Counts::add(const Counts& other) {
   fcl_missed += other.fcl_missed;
   own_missed += other.own_missed;
   looks += other.looks;
+  confirmed_proved += other.confirmed_proved;
+  confirmed_unknown += other.confirmed_unknown;
+  confirmed_missed += other.confirmed_missed;
+  confirmed_extra += other.confirmed_extra;
   proof.add(other.proof);
+  confirmed.add(other.confirmed);
   own.add(other.own);
   obbrss.add(other.obbrss);
   obb.add(other.obb);
 }
 
 void Counts::print_verdicts(const char* name) const {
-  std::printf("| %-7s | %5zu | %5zu | %5zu | %5zu | %5zu | %5zu | %5zu | %5zu | %5zu |\n", name,
-              edges, contact, proved, collision, unknown, missed, extra, fcl_missed, own_missed);
+  std::printf(
+      "| %-7s | %5zu | %5zu | %5zu | %5zu | %5zu | %5zu | %5zu | %5zu | %5zu | %5zu | %5zu | %5zu "
+      "| "
+      "%5zu |\n",
+      name, edges, contact, proved, collision, unknown, missed, extra, confirmed_proved,
+      confirmed_unknown, confirmed_missed, confirmed_extra, fcl_missed, own_missed);
 }
 
 void Counts::print_times(const char* name) const {
-  std::printf(
-      "| %-7s | %4.1f | %6.2f %6.2f | %6.1f %6.1f | %6.1f %6.1f | %6.1f %6.1f | %5.1f %5.1f | "
-      "%5.1f %5.1f | %5.1f %5.1f |\n",
-      name, static_cast<double>(looks) / static_cast<double>(edges), proof.mean_us(),
-      proof.median_us(), own.mean_us(), own.median_us(), obbrss.mean_us(), obbrss.median_us(),
-      obb.mean_us(), obb.median_us(), own.over(proof), own.median_over(proof), obbrss.over(proof),
-      obbrss.median_over(proof), obb.over(proof), obb.median_over(proof));
+  std::printf("| %-7s | %4.1f | %6.2f %6.2f |", name,
+              static_cast<double>(looks) / static_cast<double>(edges), proof.mean_us(),
+              proof.median_us());
+  for (const Times* times : {&confirmed, &own, &obbrss, &obb}) {
+    std::printf(" %5.1f %5.1f |", times->over(proof), times->median_over(proof));
+  }
+  std::printf("\n");
 }
 
 }  // namespace spherule

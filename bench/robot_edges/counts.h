@@ -17,19 +17,25 @@ struct Met {
 // What was said of edges, and how long it took.
 struct Counts {
   std::size_t edges = 0;
-  std::size_t contact = 0;     // at fine steps
-  std::size_t proved = 0;      // free
-  std::size_t collision = 0;   // of the spheres
-  std::size_t unknown = 0;     // neither
-  std::size_t missed = 0;      // proved free, in contact at fine steps
-  std::size_t extra = 0;       // not proved free, no contact at fine steps
+  std::size_t contact = 0;    // at fine steps
+  std::size_t proved = 0;     // free
+  std::size_t collision = 0;  // of the spheres
+  std::size_t unknown = 0;    // neither
+  std::size_t missed = 0;     // proved free, in contact at fine steps
+  std::size_t extra = 0;      // not proved free, no contact at fine steps
+  // Of the proofs that are confirmed on the meshes.
+  std::size_t confirmed_proved = 0;
+  std::size_t confirmed_unknown = 0;
+  std::size_t confirmed_missed = 0;
+  std::size_t confirmed_extra = 0;
   std::size_t fcl_missed = 0;  // no contact at usual steps, but at fine ones
   std::size_t own_missed = 0;  // spheres that meet, but not at usual steps
   std::size_t looks = 0;       // configurations that the proofs looked at
-  Times proof, own, obbrss, obb;
+  Times proof, confirmed, own, obbrss, obb;
 
   // Of one more edge.
-  void judge(const EdgeResult& result, const Met& sampled, bool in_contact);
+  void judge(const EdgeResult& result, const EdgeResult& of_meshes, const Met& sampled,
+             bool in_contact);
   void add(const Counts& other);
 
   // A row of the table of verdicts, and of the one of times.

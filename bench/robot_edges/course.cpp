@@ -2,7 +2,7 @@
 #include "bench/robot_edges/course.h"
 
 #include "bench/clock.h"
-#include "collide/robot/robot_scene.h"
+#include "bench/robot_edges/robot_scenes.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -19,20 +19,6 @@ constexpr double kFineStep = 0.002;
 constexpr std::size_t kRun = 64;
 constexpr int kRounds = 3;
 
-RobotChecker snapshot_of(const Arm& arm, const AllowedCollisions& allowed,
-                         const PrimitiveScene& primitives) {
-  RobotScene scene(arm.model);
-  scene.set_allowed_collisions(allowed);
-  for (const PlacedPrimitive& obstacle : primitives.obstacles) {
-    scene.add(obstacle.name, obstacle.primitive, obstacle.world_from_primitive);
-    for (int link = 0; link < static_cast<int>(arm.model.links().size()); ++link) {
-      if (link != 0 && allowed.reason(0, link) != AllowedReason::kRigid) continue;
-      scene.allow_contact(arm.model.links()[static_cast<std::size_t>(link)].name, obstacle.name);
-    }
-  }
-  return scene.snapshot();
-}
-
 bool meets(FclArm& fcl, const std::vector<Configuration>& all) {
   return std::any_of(all.begin(), all.end(),
                      [&](const Configuration& at) { return fcl.collides(at); });
@@ -40,11 +26,15 @@ bool meets(FclArm& fcl, const std::vector<Configuration>& all) {
 
 }  // namespace
 
-Course::Course(const Arm& arm, const AllowedCollisions& allowed, const PrimitiveScene& primitives)
-    : checker_(snapshot_of(arm, allowed, primitives)),
+Course::Course(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene)
+    : checker_(robot_scene(arm, allowed, scene).snapshot()),
       scratch_(checker_),
-      obbrss_(arm, allowed, primitives, FclVolume::kObbRss),
-      obb_(arm, allowed, primitives, FclVolume::kObb) {}
+      confirmed_(robot_scene(arm, allowed, scene).snapshot({.meshes = arm.covers})),
+      confirmed_scratch_(confirmed_),
+      flat_(arm, allowed, scene),
+      has_mesh_(!scene.mesh.triangles.empty()),
+      obbrss_(arm, allowed, scene, FclVolume::kObbRss),
+      obb_(arm, allowed, scene, FclVolume::kObb) {}
 
 std::vector<Edge> Course::draw(std::size_t count, RandomNumbers& random) {
   std::vector<Edge> edges;
@@ -66,6 +56,7 @@ Counts Course::measure(std::span<const Edge> edges) {
     std::vector<std::vector<Configuration>> usual;
     for (std::size_t i = first; i < last; ++i) usual.push_back(samples(edges[i], kUsualStep));
     std::vector<EdgeResult> results(last - first);
+    std::vector<EdgeResult> confirmed(last - first);
     std::vector<Met> met(last - first);
     const auto time_all = [&](Times& times, auto ask) {
       for (std::size_t i = first; i < last; ++i) {
@@ -79,6 +70,11 @@ Counts Course::measure(std::span<const Edge> edges) {
         const Edge& edge = edges[first + i];
         results[i] = checker_.check_edge(edge.from, edge.to, scratch_, {.resolution = 1e-3});
       });
+      time_all(counts.confirmed, [&](std::size_t i) {
+        const Edge& edge = edges[first + i];
+        confirmed[i] =
+            confirmed_.check_edge(edge.from, edge.to, confirmed_scratch_, {.resolution = 1e-3});
+      });
       time_all(counts.own, [&](std::size_t i) {
         met[i].spheres = !std::all_of(usual[i].begin(), usual[i].end(),
                                       [&](const Configuration& at) { return is_free(at); });
@@ -89,10 +85,48 @@ Counts Course::measure(std::span<const Edge> edges) {
     for (std::size_t i = first; i < last; ++i) {
       const Met& sampled = met[i - first];
       const bool in_contact = sampled.meshes || meets(obb_, samples(edges[i], kFineStep));
-      counts.judge(results[i - first], sampled, in_contact);
+      counts.judge(results[i - first], confirmed[i - first], sampled, in_contact);
     }
   }
   return counts;
+}
+
+ConfigurationTimes Course::measure_configurations(std::size_t count, bool is_path,
+                                                  RandomNumbers& random) {
+  const RobotModel& robot = checker_.robot();
+  const auto variables = static_cast<std::size_t>(robot.variable_count());
+  std::vector<double> all;
+  while (all.size() < count * variables) {
+    const Edge edge = random_edge(robot, random);
+    // On a path in steps of some hundredths of a radian.
+    const std::size_t steps = is_path ? 64 : 1;
+    for (std::size_t k = 0; k < steps && all.size() < count * variables; ++k) {
+      const double t = static_cast<double>(k) / 64.0;
+      for (std::size_t v = 0; v < variables; ++v) {
+        all.push_back((1.0 - t) * edge.from[v] + t * edge.to[v]);
+      }
+    }
+  }
+  ConfigurationTimes times(count);
+  const auto at = [&](std::size_t i) { return std::span(all).subspan(i * variables, variables); };
+  const auto time_each = [&](ConfigurationRow& row, auto is_free_at) {
+    const auto start = Clock::now();
+    for (std::size_t i = 0; i < count; ++i) row.free[i] = is_free_at(at(i)) ? 1 : 0;
+    row.take(nanoseconds(Clock::now() - start));
+  };
+  constexpr int kConfigurationRounds = 5;
+  for (int round = 0; round < kConfigurationRounds; ++round) {
+    time_each(times.single, [&](auto q) { return checker_.check_config(q, scratch_); });
+    const auto start = Clock::now();
+    checker_.check_configs(all, scratch_, times.batch.free);
+    times.batch.take(nanoseconds(Clock::now() - start));
+    time_each(times.confirmed,
+              [&](auto q) { return confirmed_.check_config(q, confirmed_scratch_); });
+    if (!has_mesh_) time_each(times.flat, [&](auto q) { return !flat_.collides(q); });
+    time_each(times.obbrss, [&](auto q) { return !obbrss_.collides(q); });
+    time_each(times.obb, [&](auto q) { return !obb_.collides(q); });
+  }
+  return times;
 }
 
 }  // namespace spherule

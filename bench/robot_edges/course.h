@@ -2,9 +2,11 @@
 #pragma once
 
 #include "bench/robot_edges/arm.h"
+#include "bench/robot_edges/configurations.h"
 #include "bench/robot_edges/counts.h"
 #include "bench/robot_edges/edges.h"
 #include "bench/robot_edges/fcl_arm.h"
+#include "bench/robot_edges/flat_arm.h"
 #include "bench/robot_edges/primitive_scenes.h"
 #include "bench/studies/random_numbers.h"
 #include "collide/robot/robot_checker.h"
@@ -18,7 +20,8 @@ namespace spherule {
 // What is asked of one scene.
 class Course {
  public:
-  Course(const Arm& arm, const AllowedCollisions& allowed, const PrimitiveScene& primitives);
+  // Keeps referring to both.
+  Course(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene);
 
   // Whose ends are free to both.
   std::vector<Edge> draw(std::size_t count, RandomNumbers& random);
@@ -26,11 +29,18 @@ class Course {
   // The methods take turns at runs of edges; each sees an edge as often as there are rounds.
   Counts measure(std::span<const Edge> edges);
 
+  // So many configurations, anywhere within the limits or on a path, by each method in turns.
+  ConfigurationTimes measure_configurations(std::size_t count, bool is_path, RandomNumbers& random);
+
  private:
   bool is_free(const Configuration& at) { return checker_.check_config(at, scratch_); }
 
   RobotChecker checker_;
   RobotChecker::Scratch scratch_;
+  RobotChecker confirmed_;
+  RobotChecker::Scratch confirmed_scratch_;
+  FlatArm flat_;
+  bool has_mesh_;
   FclArm obbrss_;
   FclArm obb_;
 };

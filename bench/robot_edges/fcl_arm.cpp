@@ -65,7 +65,7 @@ struct FclArm::Parts {
   }
 };
 
-FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const PrimitiveScene& scene,
+FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene,
                FclVolume volume)
     : parts_(std::make_unique<Parts>(Parts{arm.model})) {
   for (const TriangleMesh& mesh : arm.meshes) {
@@ -91,13 +91,23 @@ FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const Primitive
       parts_->pairs.emplace_back(i, k);
     }
   }
-  for (const PlacedPrimitive& obstacle : scene.obstacles) {
-    const Geometry geometry = std::visit(MakeGeometry(), obstacle.primitive);
-    const fcl::Transform3d pose = fcl_pose<double>(obstacle.world_from_primitive);
+  const auto add = [&](const Geometry& geometry, const Pose& world_from_geometry) {
+    const fcl::Transform3d pose = fcl_pose<double>(world_from_geometry);
     fcl::CollisionObjectd object(geometry, pose);
     object.computeAABB();
     parts_->obstacles.push_back(
         {geometry, pose, Eigen::AlignedBox3d(object.getAABB().min_, object.getAABB().max_)});
+  };
+  for (const PlacedPrimitive& obstacle : scene.obstacles) {
+    add(std::visit(MakeGeometry(), obstacle.primitive), obstacle.world_from_primitive);
+  }
+  for (const Eigen::Vector3d& point : scene.cloud) {
+    add(std::make_shared<fcl::Sphered>(scene.cloud_radius), Pose::from_translation(point));
+  }
+  if (!scene.mesh.triangles.empty()) {
+    add(volume == FclVolume::kObb ? Geometry(FclModel<fcl::OBBd>(scene.mesh).geometry)
+                                  : Geometry(FclModel<fcl::OBBRSSd>(scene.mesh).geometry),
+        Pose());
   }
   parts_->poses.resize(count);
   parts_->boxes.resize(count);

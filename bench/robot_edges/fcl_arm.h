@@ -13,13 +13,13 @@ namespace spherule {
 // FCL's volumes around triangles that are fast on moving meshes.
 enum class FclVolume { kObb, kObbRss };
 
-// The arm's meshes among primitives, and against each other where this is not allowed, by FCL in
+// The arm's meshes in a scene, and against each other where this is not allowed, by FCL in
 // double, with a test of boxes along the world's axes in front. What tells a link inside another
-// one is not asked; primitives are solid to FCL.
+// one or inside the scene's mesh is not asked; primitives are solid to FCL, and so are the balls
+// about the points of a cloud.
 class FclArm {
  public:
-  FclArm(const Arm& arm, const AllowedCollisions& allowed, const PrimitiveScene& scene,
-         FclVolume volume);
+  FclArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene, FclVolume volume);
   ~FclArm();
 
   bool collides(std::span<const double> configuration);

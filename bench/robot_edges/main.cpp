@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Moves of a Panda in seven scenes of primitives, self-collision included: proved by RobotChecker,
-// and sampled as planners do it, by FCL on the meshes and by RobotChecker. Prints what each misses,
-// and the ratios of their times.
-//   SPHERULE_MODELS=DIR spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]]
+// Moves and configurations of a Panda in seven scenes of primitives and among fifty, in a cloud of
+// points and about a solid mesh, self-collision included: moves proved by RobotChecker, with its
+// spheres and confirmed on the meshes, and sampled as planners do it, by FCL on the meshes and by
+// RobotChecker. Prints what each misses, and the ratios of their times; and what self-collision and
+// more spheres cost.
+//   SPHERULE_MODELS=DIR spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]...]
 
 #include "bench/clock.h"
 #include "bench/robot_edges/arm.h"
@@ -12,14 +14,17 @@
 #include "bench/robot_edges/edges.h"
 #include "bench/robot_edges/fcl_arm.h"
 #include "bench/robot_edges/primitive_scenes.h"
+#include "bench/robot_edges/shares.h"
 #include "bench/robot_edges/times.h"
 #include "bench/studies/random_numbers.h"
 #include "collide/robot/robot_scene.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,33 +55,65 @@ void measure_itself(const Arm& arm, const AllowedCollisions& allowed, RandomNumb
               ours.mean_us(), found, theirs.mean_us(), met);
 }
 
-void run(const Arm& arm, std::size_t edges) {
+AllowedCollisions allowed_of(const Arm& arm) {
   AllowedCollisions allowed(arm.model);
   // How far the hand is closed is not the arm's affair.
   allowed.allow("panda_leftfinger", "panda_rightfinger");
   allow_sampled(sample_collisions(arm.model, allowed, {.configurations = 2000}), allowed);
-  std::printf("%zu triangles, %zu spheres\n", arm.triangles, arm.spheres);
-  RandomNumbers random(7);
-  measure_itself(arm, allowed, random);
-  const std::vector<PrimitiveScene> scenes = primitive_scenes();
+  return allowed;
+}
+
+void measure_edges(const Arm& arm, const AllowedCollisions& allowed,
+                   const std::vector<ArmScene>& scenes, std::size_t edges, RandomNumbers& random) {
   std::vector<Counts> each;
   Counts all;
-  for (const PrimitiveScene& scene : scenes) {
+  for (const ArmScene& scene : scenes) {
     Course course(arm, allowed, scene);
     each.push_back(course.measure(course.draw(edges / scenes.size(), random)));
     all.add(each.back());
   }
   std::printf(
       "| scene | edges | in contact | proved free | collision | unknown | missed | extra | "
-      "FCL missed | own missed |\n|---|---|---|---|---|---|---|---|---|---|\n");
+      "confirmed: proved | unknown | missed | extra | FCL missed | own missed |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < each.size(); ++i) each[i].print_verdicts(scenes[i].name.c_str());
   all.print_verdicts("all");
   std::printf(
-      "\nus an edge, mean and median; times as long as the proof, in all and median\n"
-      "| scene   | looks | proof | own sampled | FCL OBBRSS | FCL OBB | own / proof | "
-      "OBBRSS / proof | OBB / proof |\n|---|---|---|---|---|---|---|---|---|\n");
+      "\nproof: us an edge, mean and median; times as long as that, in all and median\n"
+      "| scene   | looks | proof | confirmed | own sampled | FCL OBBRSS | FCL OBB |\n"
+      "|---|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < each.size(); ++i) each[i].print_times(scenes[i].name.c_str());
   all.print_times("all");
+}
+
+void measure_configurations(const Arm& arm, const AllowedCollisions& allowed,
+                            const std::vector<ArmScene>& scenes, RandomNumbers& random) {
+  ConfigurationTimes::print_head();
+  for (const ArmScene& scene : scenes) {
+    Course course(arm, allowed, scene);
+    for (const bool is_path : {true, false}) {
+      course.measure_configurations(2000, is_path, random)
+          .print((scene.name + (is_path ? ", path" : ", random")).c_str());
+    }
+  }
+}
+
+void run(std::span<const Arm> arms, std::size_t edges) {
+  const Arm& arm = arms.front();
+  const AllowedCollisions allowed = allowed_of(arm);
+  std::printf("%zu triangles, %zu spheres\n", arm.triangles, arm.spheres);
+  RandomNumbers random(7);
+  measure_itself(arm, allowed, random);
+  measure_edges(arm, allowed, primitive_scenes(), edges, random);
+  const std::vector<ArmScene> whole = {scene_of_primitives(50), scene_of_points(4000),
+                                       scene_of_triangles(20000)};
+  std::printf("\n");
+  measure_edges(arm, allowed, whole, edges / 10, random);
+  std::vector<ArmScene> scenes = primitive_scenes();
+  scenes.insert(scenes.end(), whole.begin(), whole.end());
+  measure_configurations(arm, allowed, scenes, random);
+  measure_self_share(arm, allowed);
+  if (arms.size() > 1) measure_sizes(arms, allowed);
 }
 
 }  // namespace
@@ -89,17 +126,21 @@ int main(int argc, char** argv) {
     return 2;
   }
   const double edges = argc > 1 ? std::atof(argv[1]) : 10000.0;
-  const std::string spheres = argc > 2 ? argv[2] : "0.02";
-  const double radius = std::atof(spheres.c_str());
-  if (!(edges >= 7.0 && edges <= 1e9)) {
-    std::fprintf(stderr, "usage: spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]]\n");
+  if (!(edges >= 30.0 && edges <= 1e9)) {
+    std::fprintf(stderr, "usage: spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]...]\n");
     return 2;
   }
   try {
     using namespace spherule;
-    const Arm arm = radius > 0.0 ? make_panda(models, radius)
-                                 : make_panda(models, std::filesystem::path(spheres));
-    run(arm, static_cast<std::size_t>(edges));
+    std::vector<std::string> covers(argv + std::min(argc, 2), argv + argc);
+    if (covers.empty()) covers = {"0.02"};
+    std::vector<Arm> arms;
+    for (const std::string& cover : covers) {
+      const double radius = std::atof(cover.c_str());
+      arms.push_back(radius > 0.0 ? make_panda(models, radius)
+                                  : make_panda(models, std::filesystem::path(cover)));
+    }
+    run(arms, static_cast<std::size_t>(edges));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

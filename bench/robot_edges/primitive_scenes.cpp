@@ -12,7 +12,7 @@ namespace {
 
 class SceneMaker {
  public:
-  explicit SceneMaker(std::string name) : scene_{std::move(name), {}} {}
+  explicit SceneMaker(std::string name) : scene_{.name = std::move(name)} {}
 
   SceneMaker& add(const Primitive& primitive, const Eigen::Vector3d& at,
                   const Eigen::Quaterniond& turned = Eigen::Quaterniond::Identity()) {
@@ -23,21 +23,21 @@ class SceneMaker {
   SceneMaker& box(const Eigen::Vector3d& size, const Eigen::Vector3d& at) {
     return add(Box{size}, at);
   }
-  PrimitiveScene done() { return std::move(scene_); }
+  ArmScene done() { return std::move(scene_); }
 
  private:
-  PrimitiveScene scene_;
+  ArmScene scene_;
 };
 
 // Boards of 20 mm.
-PrimitiveScene shelf() {
+ArmScene shelf() {
   SceneMaker scene("shelf");
   for (const double z : {0.2, 0.5, 0.8, 1.1}) scene.box({0.3, 1.0, 0.02}, {0.65, 0, z});
   for (const double y : {-0.5, 0.5}) scene.box({0.3, 0.02, 1.2}, {0.65, y, 0.6});
   return scene.done();
 }
 
-PrimitiveScene table() {
+ArmScene table() {
   SceneMaker scene("table");
   scene.box({0.6, 1.2, 0.03}, {0.65, 0, 0.3});
   for (const double y : {-0.3, 0.0, 0.3}) scene.add(Cylinder{0.04, 0.2}, {0.55, y, 0.42});
@@ -46,7 +46,7 @@ PrimitiveScene table() {
 }
 
 // Bars of 10 mm on all sides.
-PrimitiveScene cage() {
+ArmScene cage() {
   SceneMaker scene("cage");
   for (int i = 0; i < 16; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / 16.0;
@@ -55,14 +55,14 @@ PrimitiveScene cage() {
   return scene.done();
 }
 
-PrimitiveScene passage() {
+ArmScene passage() {
   SceneMaker scene("passage");
   for (const double y : {-0.45, 0.45}) scene.box({1.0, 0.5, 0.01}, {0.5, y, 0.6});
   for (const double y : {-0.2, 0.2}) scene.box({1.0, 0.01, 0.6}, {0.5, y, 0.9});
   return scene.done();
 }
 
-PrimitiveScene pillars() {
+ArmScene pillars() {
   SceneMaker scene("pillars");
   for (int i = 0; i < 6; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / 6.0;
@@ -71,7 +71,7 @@ PrimitiveScene pillars() {
   return scene.done();
 }
 
-PrimitiveScene balls() {
+ArmScene balls() {
   SceneMaker scene("balls");
   RandomNumbers random(1);
   for (int i = 0; i < 20; ++i) {
@@ -82,7 +82,7 @@ PrimitiveScene balls() {
   return scene.done();
 }
 
-PrimitiveScene clutter() {
+ArmScene clutter() {
   SceneMaker scene("clutter");
   RandomNumbers random(2);
   for (int i = 0; i < 20; ++i) {
@@ -98,7 +98,7 @@ PrimitiveScene clutter() {
 
 }  // namespace
 
-std::vector<PrimitiveScene> primitive_scenes() {
+std::vector<ArmScene> primitive_scenes() {
   return {shelf(), table(), cage(), passage(), pillars(), balls(), clutter()};
 }
 

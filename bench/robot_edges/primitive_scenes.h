@@ -3,7 +3,9 @@
 
 #include "collide/primitive.h"
 #include "spheretree/pose.h"
+#include "spheretree/triangle_mesh.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -15,13 +17,25 @@ struct PlacedPrimitive {
   Pose world_from_primitive;
 };
 
-struct PrimitiveScene {
+struct ArmScene {
   std::string name;
-  std::vector<PlacedPrimitive> obstacles;
+  std::vector<PlacedPrimitive> obstacles{};
+  // Measured points, each with what is within cloud_radius of it, and a solid mesh, in the world.
+  std::vector<Eigen::Vector3d> cloud{};
+  double cloud_radius = 0.0;
+  TriangleMesh mesh{};
 };
 
 // Seven scenes around an arm that stands at the origin and reaches 0.85 m, the like of those that
 // planners are compared in. The same each time.
-std::vector<PrimitiveScene> primitive_scenes();
+std::vector<ArmScene> primitive_scenes();
+
+// So many boxes, cylinders and balls about the arm.
+ArmScene scene_of_primitives(std::size_t count);
+
+// The surfaces of a few bodies about the arm, as about so many points, and as a solid mesh of about
+// so many triangles.
+ArmScene scene_of_points(std::size_t count);
+ArmScene scene_of_triangles(std::size_t count);
 
 }  // namespace spherule

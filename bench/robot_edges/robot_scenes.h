@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/robot_edges/arm.h"
+#include "bench/robot_edges/primitive_scenes.h"
+#include "collide/robot/robot_scene.h"
+
+namespace spherule {
+
+// The arm in a scene, as a RobotScene. What stands with the arm's root is not tested against the
+// scene.
+RobotScene robot_scene(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene);
+
+}  // namespace spherule
