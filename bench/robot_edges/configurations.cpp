@@ -18,7 +18,8 @@ void ConfigurationTimes::print_head() {
   std::printf(
       "\none configuration: ns one a call; times as long as that: many a call, confirmed, the "
       "flat\n"
-      "scan, FCL; of all configurations in contact by FCL, missed, extra, and extra confirmed\n"
+      "scan, FCL; of all configurations in contact by FCL or with an obstacle inside of a link, "
+      "missed, extra, and extra confirmed\n"
       "| scene, order | ns | many | confirmed | flat | OBBRSS | OBB | contact | missed | extra | "
       "confirmed: missed | extra |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
@@ -31,7 +32,7 @@ void ConfigurationTimes::print(const char* name) const {
   };
   std::size_t contact = 0, missed = 0, extra = 0, confirmed_missed = 0, confirmed_extra = 0;
   for (std::size_t i = 0; i < single.free.size(); ++i) {
-    const bool is_contact = obbrss.free[i] == 0;
+    const bool is_contact = truth[i] == 0;
     contact += is_contact ? 1 : 0;
     missed += is_contact && single.free[i] != 0 ? 1 : 0;
     extra += !is_contact && single.free[i] == 0 ? 1 : 0;

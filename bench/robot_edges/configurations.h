@@ -24,9 +24,11 @@ struct ConfigurationTimes {
         confirmed(single),
         flat(single),
         obbrss(single),
-        obb(single) {}
+        obb(single),
+        truth(count) {}
 
   ConfigurationRow single, batch, confirmed, flat, obbrss, obb;
+  std::vector<std::uint8_t> truth;  // 1: free, by FCL and by points in solids
 
   // A row of the table: ns a configuration, times as long as one a call, and verdicts.
   void print(const char* name) const;

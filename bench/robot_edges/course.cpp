@@ -126,6 +126,9 @@ ConfigurationTimes Course::measure_configurations(std::size_t count, bool is_pat
     time_each(times.obbrss, [&](auto q) { return !obbrss_.collides(q); });
     time_each(times.obb, [&](auto q) { return !obb_.collides(q); });
   }
+  for (std::size_t i = 0; i < count; ++i) {
+    times.truth[i] = times.obbrss.free[i] != 0 && !obbrss_.holds_an_obstacle(at(i)) ? 1 : 0;
+  }
   return times;
 }
 

@@ -2,6 +2,7 @@
 #include "bench/robot_edges/fcl_arm.h"
 
 #include "bench/fcl_models.h"
+#include "bench/fcl_solid.h"
 #include "collide/robot/kinematics.h"
 
 #include <fcl/geometry/shape/box.h>
@@ -12,6 +13,8 @@
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
 
+#include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -51,7 +54,8 @@ struct FclArm::Parts {
   std::vector<std::unique_ptr<FclModel<fcl::OBBRSSd>>> links{};
   std::vector<Geometry> geometries{};  // of these, with the volumes that are asked for
   std::vector<std::pair<std::size_t, std::size_t>> pairs{};
-  std::vector<std::size_t> moving{};  // links with a mesh that a variable moves
+  std::vector<std::size_t> moving{};              // links with a mesh that a variable moves
+  std::vector<std::optional<FclSolid>> solids{};  // of links with meshes, with their insides
   std::vector<FclObstacle> obstacles{};
   fcl::CollisionRequestd request{};
   std::vector<Pose> world_from_link{};
@@ -78,6 +82,8 @@ FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene&
       geometry = parts_->links.back()->geometry;
     }
     parts_->geometries.push_back(std::move(geometry));
+    auto& solid = parts_->solids.emplace_back();
+    if (!mesh.triangles.empty()) solid.emplace(mesh);
   }
   const std::size_t count = parts_->links.size();
   for (std::size_t i = count; i-- > 0;) {
@@ -139,6 +145,17 @@ bool FclArm::collides(std::span<const double> configuration) {
     }
   }
   return false;
+}
+
+bool FclArm::holds_an_obstacle(std::span<const double> configuration) {
+  Parts& in = *parts_;
+  forward_kinematics(in.robot, configuration, in.world_from_link);
+  return std::any_of(in.moving.begin(), in.moving.end(), [&](std::size_t link) {
+    const Pose link_from_world = in.world_from_link[link].inverse();
+    return std::any_of(in.obstacles.begin(), in.obstacles.end(), [&](const FclObstacle& obstacle) {
+      return in.solids[link]->contains(link_from_world * obstacle.pose.translation());
+    });
+  });
 }
 
 }  // namespace spherule

@@ -23,6 +23,8 @@ class FclArm {
   ~FclArm();
 
   bool collides(std::span<const double> configuration);
+  // Whether the middle of an obstacle is inside of a link, which surfaces do not tell.
+  bool holds_an_obstacle(std::span<const double> configuration);
 
  private:
   struct Parts;

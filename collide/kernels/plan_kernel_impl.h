@@ -60,10 +60,10 @@ class Evaluation {
     }
     for (std::int32_t b = 0; b < plan_.body_count && !is_done(); ++b) {
       test_obstacles(b);
-      search_candidates(true);
+      if (kMoves) search_candidates(true);
     }
     for (std::int32_t p = 0; p < plan_.pair_count && !is_done(); ++p) test_pair(p);
-    search_candidates(true);
+    if (kMoves) search_candidates(true);
     search_candidates(false);
     return contacts_;
   }
@@ -98,14 +98,14 @@ class Evaluation {
     } else {
       const PlanBoxes<Real>& boxes = plan_.groups[test / kPlanLanes];
       test_obstacle(boxes.body, test, boxes.obstacle[test % kPlanLanes]);
+      search_candidates(false);
     }
     return contacts_;
   }
 
-  // What overlaps as placed is likely to touch: it is searched at once, the rest when nothing else
-  // is left.
+  // Of a motion, what overlaps as placed is likely to touch: it is searched at once, the rest when
+  // nothing else is left.
   void search_candidates(bool overlaps) {
-    if constexpr (!kMoves) return;
     std::int32_t left = 0;
     for (std::int32_t i = 0; i < candidate_count_; ++i) {
       const PlanCandidate candidate = scratch_.candidates[i];
@@ -223,8 +223,9 @@ class Evaluation {
         break;
     }
     // What takes a call each is searched last.
-    if (kMoves && obstacle.shape == PlanShape::kOpaque) found.overlap = 0;
-    add({test, index, found.near, found.overlap});
+    const bool is_opaque = obstacle.shape == PlanShape::kOpaque;
+    if (is_opaque) found.overlap = 0;
+    add({test, index, found.near, found.overlap}, is_opaque);
   }
 
   // Whether two bodies are apart in all lanes for any motion of theirs against the root. One that
@@ -256,12 +257,12 @@ class Evaluation {
     const Separation<Real> found =
         from_side<Real, kMoves>(context_, motion, plan_.bodies[both.first], 0,
                                 MovingSide<Real>{plan_.bodies[both.second]}, 0, open);
-    add({test, both.first, found.near, found.overlap});
+    add({test, both.first, found.near, found.overlap}, false);
   }
 
-  SPHERULE_INLINE void add(const PlanCandidate& candidate) {
+  SPHERULE_INLINE void add(const PlanCandidate& candidate, bool is_last) {
     if (candidate.near == 0) return;
-    if constexpr (kMoves) {
+    if (kMoves || is_last) {
       scratch_.candidates[candidate_count_++] = candidate;
     } else {
       search(candidate);
@@ -279,7 +280,8 @@ class Evaluation {
                 : &plan_.obstacles[plan_.groups[test / kPlanLanes].obstacle[test % kPlanLanes]];
     const bool is_confirmed =
         body.is_confirmed || (is_pair ? other->is_confirmed : obstacle->is_confirmed);
-    TestSearch<Real, kMoves> search(context_, test, candidate.near, is_confirmed);
+    const unsigned lanes = kMoves ? candidate.near : candidate.near & lanes_;
+    TestSearch<Real, kMoves> search(context_, test, lanes, is_confirmed);
     if (is_pair) {
       search_side<Real, kMoves>(context_, motion_of_pair(pair), body, MovingSide<Real>{*other},
                                 search);
