@@ -65,7 +65,7 @@ struct PlanBody {
   bool is_confirmed;  // no contact is certain: the margin is infinite
 };
 
-enum class PlanShape : std::int32_t { kBox, kSegment, kCylinder, kHalfSpace, kTree, kOpaque };
+enum class PlanShape : std::int32_t { kBox, kSegment, kCylinder, kHalfSpace, kTree };
 
 // A static obstacle. Coordinates of a point p in its frame are `rotation` (rows) times p - center.
 template <class Real>
@@ -209,8 +209,8 @@ struct PlanScratch {
 struct PlanClient {
   // Whether the test's sides touch in the lane's configuration, by the canonical test.
   bool (*touches)(void* context, int lane, std::int32_t test);
-  // Of an opaque obstacle and a body none of whose points is faster than `speed`: those of the
-  // lanes in whose parts the two are not proved apart.
+  // Of two sides whose contacts are confirmed, no point of which is faster than `speed` against the
+  // other one: those of the lanes in whose parts the two are not proved apart.
   unsigned (*near)(void* context, std::int32_t test, unsigned lanes, double speed);
   void* context;
 };

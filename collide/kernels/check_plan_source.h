@@ -27,15 +27,10 @@ struct PlanSource {
     bool is_confirmed = false;
   };
 
-  // What only the caller can test: nothing of it is outside of the box.
-  struct Opaque {
-    Eigen::Vector3d lower;
-    Eigen::Vector3d upper;
-  };
-  using Shape = std::variant<Primitive, std::shared_ptr<const SearchTrees>, Opaque>;
+  using Shape = std::variant<Primitive, std::shared_ptr<const SearchTrees>>;
   struct Obstacle {
     Shape shape;
-    Pose root_from_shape{};     // the box of an opaque one is in the root's coordinates as it is
+    Pose root_from_shape{};
     bool is_confirmed = false;  // as that of a body
   };
 

@@ -199,15 +199,17 @@ void CompiledPlan<Real>::compile_bodies(const PlanSource& source, const Reach& r
   }
   // Obstacles that are trees follow: no more nodes after them, so that these stay where they are.
   std::vector<std::int32_t> tree_firsts(source.obstacles.size(), 0);
+  obstacle_inflations_.assign(source.obstacles.size(), 0.0);
   for (std::size_t i = 0; i < source.obstacles.size(); ++i) {
     PlanObstacle<Real>& obstacle = obstacles_.emplace_back();
     const auto* const trees =
         std::get_if<std::shared_ptr<const SearchTrees>>(&source.obstacles[i].shape);
     if (trees == nullptr) continue;
     const double error = 2.0 * kRoundoff<Real> * reach_of(source.obstacles[i]);
+    obstacle_inflations_[i] = 2.0 * error + kPerScene * reach.scene;
     double largest = 0.0;
-    tree_firsts[i] = add_tree(**trees, source.obstacles[i].root_from_shape,
-                              2.0 * error + kPerScene * reach.scene, largest);
+    tree_firsts[i] =
+        add_tree(**trees, source.obstacles[i].root_from_shape, obstacle_inflations_[i], largest);
     obstacle.shape = PlanShape::kTree;
     obstacle.error = rounded_up<Real>(error);
     obstacle.is_confirmed = source.obstacles[i].is_confirmed;

@@ -28,6 +28,8 @@ class CompiledPlan {
   }
   // What the radii of a body's spheres are inflated by.
   double inflation(std::size_t body) const { return inflations_[body]; }
+  // The same of an obstacle that is a tree.
+  double obstacle_inflation(std::size_t obstacle) const { return obstacle_inflations_[obstacle]; }
   std::size_t center_count() const { return center_count_; }
   std::size_t task_count() const { return task_count_; }
   std::size_t longest_path() const { return longest_path_; }
@@ -48,6 +50,7 @@ class CompiledPlan {
   std::vector<PlanFrame<Real>> frames_{};
   std::vector<PlanNode<Real>> nodes_{};
   std::vector<double> inflations_{};
+  std::vector<double> obstacle_inflations_{};
   std::vector<PlanBody<Real>> bodies_{};
   std::vector<PlanObstacle<Real>> obstacles_{};
   std::vector<PlanBoxes<Real>> obstacle_boxes_{};  // the box of each in lane 0

@@ -29,29 +29,26 @@ CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<
     wide.position = frame.position;
     wide.prismatic = frame.prismatic;
   }
-  int depth = 1;
   for (std::size_t i = 0; i < source.bodies.size(); ++i) {
     const PlanSource::Body& from = source.bodies[i];
-    const PackedTree& tree = trees_.emplace_back(from.trees->wide, from.trees->wide_spheres,
-                                                 from.frame_from_trees, compiled.inflation(i));
-    WideBody& body = bodies_.emplace_back();
-    body = {};
-    for (int k = 0; k < 3; ++k) body.center[k] = static_cast<float>(tree.root().center[k]);
-    body.radius = static_cast<float>(tree.root().radius);
-    body.margin = from.is_confirmed ? std::numeric_limits<float>::infinity()
-                                    : rounded_up_to_single(3.0 * tree.largest_growth());
-    body.frame = plan.bodies[i].frame;
-    body.first_node = static_cast<std::int32_t>(node_count_);
-    node_count_ += static_cast<std::size_t>(tree.node_count());
-    depth = std::max(depth, tree.depth());
+    add_body(*from.trees, from.frame_from_trees, compiled.inflation(i), from.is_confirmed,
+             plan.bodies[i].frame);
+  }
+  const std::size_t moving = bodies_.size();
+  for (std::size_t i = 0; i < source.obstacles.size(); ++i) {
+    const PlanSource::Obstacle& from = source.obstacles[i];
+    const auto* const trees = std::get_if<std::shared_ptr<const SearchTrees>>(&from.shape);
+    tree_of_.push_back(trees == nullptr ? -1 : static_cast<std::int32_t>(bodies_.size()));
+    if (trees == nullptr) continue;
+    add_body(**trees, from.root_from_shape, compiled.obstacle_inflation(i), from.is_confirmed, 0);
   }
   // The nodes of a tree stay where they are when the tree is moved.
   for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].nodes = trees_[i].nodes();
   // Every task that is taken leaves at most 64, a node of which is a level deeper.
-  task_count_ = 64 * (2 * static_cast<std::size_t>(depth) + 1) + 1;
-  const std::size_t groups = rounded_to_lanes(bodies_.size()) / kPlanLanes;
-  partners_.assign(bodies_.size() * groups, 0);
-  for (std::size_t first = 0; first < bodies_.size(); ++first) {
+  task_count_ = 64 * (2 * static_cast<std::size_t>(depth_) + 1) + 1;
+  const std::size_t groups = rounded_to_lanes(moving) / kPlanLanes;
+  partners_.assign(moving * groups, 0);
+  for (std::size_t first = 0; first < moving; ++first) {
     bodies_[first].first_pair = static_cast<std::int32_t>(pair_tests_.size());
     std::vector<PlanPair> partners;  // with the test in the place of the first body
     for (std::int32_t p = 0; p < plan.pair_count; ++p) {
@@ -67,8 +64,23 @@ CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<
       pair_tests_.push_back(pair.first);
     }
   }
-  plan_ = {frames_.data(), bodies_.data(), static_cast<std::int32_t>(groups), partners_.data(),
-           pair_tests_.data()};
+  plan_ = {frames_.data(),   bodies_.data(),    tree_of_.data(), static_cast<std::int32_t>(groups),
+           partners_.data(), pair_tests_.data()};
+}
+
+void CompiledWidePlan::add_body(const SearchTrees& trees, const Pose& pose, double inflation,
+                                bool is_confirmed, std::int32_t frame) {
+  const PackedTree& tree = trees_.emplace_back(trees.wide, trees.wide_spheres, pose, inflation);
+  WideBody& body = bodies_.emplace_back();
+  body = {};
+  for (int k = 0; k < 3; ++k) body.center[k] = static_cast<float>(tree.root().center[k]);
+  body.radius = static_cast<float>(tree.root().radius);
+  body.margin = is_confirmed ? std::numeric_limits<float>::infinity()
+                             : rounded_up_to_single(3.0 * tree.largest_growth());
+  body.frame = frame;
+  body.first_node = static_cast<std::int32_t>(node_count_);
+  node_count_ += static_cast<std::size_t>(tree.node_count());
+  depth_ = std::max(depth_, tree.depth());
 }
 
 WideMemory::WideMemory(const CheckPlan<float>& plan, const CompiledWidePlan& wide) {

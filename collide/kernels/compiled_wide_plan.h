@@ -25,13 +25,18 @@ class CompiledWidePlan {
   std::size_t task_count() const { return task_count_; }
 
  private:
+  void add_body(const SearchTrees& trees, const Pose& pose, double inflation, bool is_confirmed,
+                std::int32_t frame);
+
   WidePlan plan_{};
   std::vector<WideFrame> frames_{};
   std::vector<PackedTree> trees_{};
   std::vector<WideBody> bodies_{};
+  std::vector<std::int32_t> tree_of_{};
   std::vector<std::uint8_t> partners_{};
   std::vector<std::int32_t> pair_tests_{};
   std::size_t node_count_ = 0;
+  int depth_ = 1;  // of the highest tree
   std::size_t task_count_ = 0;
 };
 

@@ -204,7 +204,6 @@ class Evaluation {
     };
     Separation<Real> found;
     switch (obstacle.shape) {
-      case PlanShape::kOpaque:
       case PlanShape::kBox:
         found = solid(BoxShape());
         break;
@@ -222,10 +221,7 @@ class Evaluation {
             from_side<Real, kMoves>(context_, motion, body, 0, StaticSide<Real>{obstacle}, 0, open);
         break;
     }
-    // What takes a call each is searched last.
-    const bool is_opaque = obstacle.shape == PlanShape::kOpaque;
-    if (is_opaque) found.overlap = 0;
-    add({test, index, found.near, found.overlap}, is_opaque);
+    add({test, index, found.near, found.overlap}, body.is_confirmed || obstacle.is_confirmed);
   }
 
   // Whether two bodies are apart in all lanes for any motion of theirs against the root. One that
@@ -257,12 +253,15 @@ class Evaluation {
     const Separation<Real> found =
         from_side<Real, kMoves>(context_, motion, plan_.bodies[both.first], 0,
                                 MovingSide<Real>{plan_.bodies[both.second]}, 0, open);
-    add({test, both.first, found.near, found.overlap}, false);
+    add({test, both.first, found.near, found.overlap},
+        plan_.bodies[both.first].is_confirmed || plan_.bodies[both.second].is_confirmed);
   }
 
-  SPHERULE_INLINE void add(const PlanCandidate& candidate, bool is_last) {
+  // What the caller confirms is searched last.
+  SPHERULE_INLINE void add(PlanCandidate candidate, bool is_confirmed) {
     if (candidate.near == 0) return;
-    if (kMoves || is_last) {
+    if (is_confirmed) candidate.overlap = 0;
+    if (kMoves || is_confirmed) {
       scratch_.candidates[candidate_count_++] = candidate;
     } else {
       search(candidate);
@@ -288,8 +287,7 @@ class Evaluation {
     } else {
       search_obstacle(candidate.body, *obstacle, search);
     }
-    if (kMoves && is_confirmed && search.near() != 0 &&
-        (is_pair || obstacle->shape != PlanShape::kOpaque)) {
+    if (kMoves && is_confirmed && search.near() != 0) {
       search.confirm(is_pair ? scratch_.pair_bounds[pair].speed
                              : scratch_.body_bounds[candidate.body].speed);
     }
@@ -318,8 +316,6 @@ class Evaluation {
       case PlanShape::kTree:
         return search_side<Real, kMoves>(context_, motion, body, StaticSide<Real>{obstacle},
                                          search);
-      case PlanShape::kOpaque:
-        return search.ask(kMoves ? scratch_.body_bounds[index].speed : Real(0));
     }
   }
 

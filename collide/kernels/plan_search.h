@@ -164,22 +164,14 @@ class TestSearch {
 
   unsigned active() const { return active_; }
 
-  // Where spheres are not apart that stand for a mesh; `speed` as below.
+  // Where spheres are not apart that stand for what only the caller can test. `speed` is that of
+  // the two sides against each other.
   void confirm(Real speed) {
-    active_ = near_;
-    ask(speed);
-  }
-
-  // Of what only the caller can test; `speed` is that of the two sides against each other.
-  void ask(Real speed) {
     const PlanClient& client = context_.client;
-    unsigned lanes = active_;
-    if constexpr (kMoves) {
-      near_ = lanes = client.near(client.context, test_, lanes, static_cast<double>(speed));
-    }
-    for (; lanes != 0; lanes &= lanes - 1) {
+    near_ = client.near(client.context, test_, near_, static_cast<double>(speed));
+    for (unsigned lanes = near_; lanes != 0; lanes &= lanes - 1) {
       const int lane = __builtin_ctz(lanes);
-      if constexpr (kMoves) inflation_[lane] = speed * context_.half[lane];
+      inflation_[lane] = speed * context_.half[lane];
       if (client.touches(client.context, lane, test_)) contacts_ |= 1U << lane;
     }
   }

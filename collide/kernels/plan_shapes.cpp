@@ -74,9 +74,6 @@ struct Bounds {
 
 // Of a finite obstacle, up to rounding.
 Bounds bounds_of(const PlanSource::Obstacle& obstacle) {
-  if (const auto* const opaque = std::get_if<PlanSource::Opaque>(&obstacle.shape)) {
-    return {opaque->lower, opaque->upper};
-  }
   if (const auto* const primitive = std::get_if<Primitive>(&obstacle.shape)) {
     const Eigen::Vector3d extent =
         obstacle.root_from_shape.matrix().cwiseAbs() * std::visit(Half(), *primitive);
@@ -110,18 +107,9 @@ double reach_of(const PlanSource::Obstacle& obstacle) {
 template <class Real>
 PlanObstacle<Real> compiled_solid(const PlanSource::Obstacle& obstacle, double reach) {
   PlanObstacle<Real> result = {};
-  Kind kind{PlanShape::kOpaque, Eigen::Vector3d::Zero(), 0.0};
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d center;
-  if (const auto* const primitive = std::get_if<Primitive>(&obstacle.shape)) {
-    kind = std::visit(KindOf(), *primitive);
-    rotation = obstacle.root_from_shape.matrix().transpose();
-    center = obstacle.root_from_shape.translation();
-  } else {
-    const Bounds bounds = bounds_of(obstacle);
-    center = 0.5 * (bounds.lower + bounds.upper);
-    kind.half = 0.5 * (bounds.upper - bounds.lower);
-  }
+  const Kind kind = std::visit(KindOf(), std::get<Primitive>(obstacle.shape));
+  const Eigen::Matrix3d rotation = obstacle.root_from_shape.matrix().transpose();
+  const Eigen::Vector3d& center = obstacle.root_from_shape.translation();
   result.shape = kind.shape;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) result.rotation[i][j] = static_cast<Real>(rotation(i, j));

@@ -37,7 +37,7 @@ Real inflated_radius(double radius, double inflation);
 // How far a finite obstacle reaches from the root's origin; 0 for a half-space.
 double reach_of(const PlanSource::Obstacle& obstacle);
 
-// Of a primitive or an opaque obstacle; bodies reach up to `reach`.
+// Of a primitive; bodies reach up to `reach`.
 template <class Real>
 PlanObstacle<Real> compiled_solid(const PlanSource::Obstacle& obstacle, double reach);
 

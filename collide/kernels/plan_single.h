@@ -142,7 +142,7 @@ class SingleCheck {
       return near != 0 && touches_obstacle(test) && remember(test);
     }
     const PlanPair& pair = plan_.pairs[test - plan_.first_pair];
-    return touches_body(test, pair.first, pair.second) && remember(test);
+    return touches_pair(test, pair.first, pair.second) && remember(test);
   }
 
   // Obstacles of a group whose boxes the sphere around all of a body overlaps.
@@ -182,9 +182,13 @@ class SingleCheck {
         return touches_solid<CylinderShape>(body, obstacle, test);
       case PlanShape::kHalfSpace:
         return touches_solid<HalfSpaceShape>(body, obstacle, test);
-      default:
-        return confirm(test);
+      case PlanShape::kTree: {
+        const WideBody& tree = wide_.bodies[wide_.tree_of[boxes.obstacle[test % kPlanLanes]]];
+        return touches_body(test, body, tree,
+                            {tree.center[0], tree.center[1], tree.center[2], tree.radius});
+      }
     }
+    return confirm(test);
   }
 
   template <class Shape>
@@ -225,7 +229,7 @@ class SingleCheck {
         const int lane = __builtin_ctz(near);
         const std::int32_t rank = __builtin_popcount(partners & ((1U << lane) - 1));
         const std::int32_t test = wide_.pair_tests[next + rank];
-        if (touches_body(test, a, g * kPlanLanes + lane)) return remember(test);
+        if (touches_pair(test, a, g * kPlanLanes + lane)) return remember(test);
       }
       next += __builtin_popcount(partners);
     }
@@ -275,14 +279,18 @@ class SingleCheck {
     return {near, near & above(sure, Float8{}) & ~above(squared, sure * sure)};
   }
 
+  bool touches_pair(std::int32_t test, std::int32_t a, std::int32_t b) {
+    const WideBody& second = wide_.bodies[b];
+    return touches_body(
+        test, wide_.bodies[a], second,
+        {scratch_.roots[0][b], scratch_.roots[1][b], scratch_.roots[2][b], second.radius});
+  }
+
   // Nodes of both sides are opened together; where one side has come to a leaf, that is kept. The
   // first leaves that may touch decide: for certain, or by the canonical test of the whole pair.
-  bool touches_body(std::int32_t test, std::int32_t a, std::int32_t b) {
-    const WideBody& first = wide_.bodies[a];
-    const WideBody& second = wide_.bodies[b];
+  bool touches_body(std::int32_t test, const WideBody& first, const WideBody& second,
+                    const OneSphere& all_of_second) {
     const float margin = first.margin + second.margin;
-    const OneSphere all_of_second = {scratch_.roots[0][b], scratch_.roots[1][b],
-                                     scratch_.roots[2][b], second.radius};
     WideTask* const tasks = scratch_.tasks;
     tasks[0] = {0, 0, -1};
     for (std::int32_t top = 1; top > 0;) {

@@ -5,6 +5,7 @@
 // what takes time to build, once for every set.
 
 #include "collide/internal/culling_spheres.h"
+#include "collide/solid_mesh.h"
 #include "spheretree/sphere_tree.h"
 
 #include <map>
@@ -27,18 +28,24 @@ struct SearchTrees {
   CullingSpheres wide_spheres;
 };
 
-// Keeps the search trees of sphere trees for as long as these live. Threads may share it.
+// Keeps the search trees of sphere trees, and of spheres around solid meshes (solid_spheres.h), for
+// as long as these live. Threads may share it.
 class SearchTreeCache {
  public:
   std::shared_ptr<const SearchTrees> of(const std::shared_ptr<const SphereTree>& tree);
+  std::shared_ptr<const SearchTrees> of(const std::shared_ptr<const SolidMesh>& solid);
 
  private:
+  template <class SpheresOf>
+  std::shared_ptr<const SearchTrees> find(const std::shared_ptr<const void>& owner,
+                                          const SpheresOf& spheres_of);
+
   struct Entry {
-    std::weak_ptr<const SphereTree> tree;
+    std::weak_ptr<const void> owner;
     std::shared_ptr<const SearchTrees> trees;
   };
   std::mutex mutex_;
-  std::map<const SphereTree*, Entry> entries_;
+  std::map<const void*, Entry> entries_;
 };
 
 }  // namespace spherule::internal

@@ -32,9 +32,10 @@ struct WideBody {
 
 struct WidePlan {
   const WideFrame* frames;
-  const WideBody* bodies;
-  std::int32_t body_groups;        // of eight bodies
-  const std::uint8_t* partners;    // for each body and group: those that it is tested against
+  const WideBody* bodies;        // obstacles that are trees, in the root's frame, follow
+  const std::int32_t* tree_of;   // of each obstacle: its place among `bodies`; -1 if it is no tree
+  std::int32_t body_groups;      // of eight bodies
+  const std::uint8_t* partners;  // for each body and group: those that it is tested against
   const std::int32_t* pair_tests;  // by first body, then by second
 };
 

@@ -10,29 +10,14 @@
 namespace spherule::internal {
 namespace {
 
-// The box of the spheres around the triangles, with what rounding may take of it.
-PlanSource::Opaque box_of(const SolidMesh& mesh, const Pose& root_from_mesh) {
-  PlanSource::Opaque box{Eigen::Vector3d::Constant(kMaxCoordinate),
-                         Eigen::Vector3d::Constant(-kMaxCoordinate)};
-  for (const Sphere& sphere : mesh.mesh().tree().spheres()) {
-    const Eigen::Vector3d center = root_from_mesh * sphere.center;
-    const double reach =
-        (sphere.radius + mesh.growth()) * (1.0 + 1e-9) + 1e-12 * (1.0 + center.norm());
-    box.lower = box.lower.cwiseMin((center.array() - reach).matrix());
-    box.upper = box.upper.cwiseMax((center.array() + reach).matrix());
-  }
-  return box;
-}
-
 struct ShapeOf {
-  const Pose& root_from_shape;
   SearchTreeCache& cache;
 
   PlanSource::Shape operator()(const std::shared_ptr<const SphereTree>& tree) const {
     return cache.of(tree);
   }
   PlanSource::Shape operator()(const std::shared_ptr<const SolidMesh>& mesh) const {
-    return box_of(*mesh, root_from_shape);
+    return cache.of(mesh);
   }
   PlanSource::Shape operator()(const Primitive& primitive) const { return primitive; }
 };
@@ -65,8 +50,11 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
   const Pose root_from_world = pairs.world_from_root().inverse();
   for (const PlacedShape& obstacle : pairs.obstacles()) {
     const Pose root_from_shape = root_from_world * obstacle.world_from_shape;
-    source.obstacles.push_back({std::visit(ShapeOf{root_from_shape, cache}, obstacle.shape),
-                                root_from_shape, obstacle.mesh != nullptr});
+    const bool is_confirmed =
+        obstacle.mesh != nullptr ||
+        std::holds_alternative<std::shared_ptr<const SolidMesh>>(obstacle.shape);
+    source.obstacles.push_back(
+        {std::visit(ShapeOf{cache}, obstacle.shape), root_from_shape, is_confirmed});
   }
   for (std::size_t i = 0; i < source.bodies.size(); ++i) {
     source.body_paths.push_back(steps_of(pairs.path_to_root(i), pairs.robot(), frames));

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/solid_mesh.h"
+#include "spheretree/sphere.h"
+
+#include <vector>
+
+namespace spherule::internal {
+
+// Spheres that together hold all of a solid, in its frame: a ball around each triangle, grown as
+// the solid is, and balls around the cells of an octree that hold the inside. They stand out where
+// triangles do, and at the surface by a cell, of which there are about as many as triangles: for a
+// search that rules out what is not near the solid.
+//
+// Proof. What is within growth() of a triangle is in its ball. A point of the inside lies in the
+// root cell, which contains inside().box(). A cell whose ball meets no triangle lies, whole, on one
+// side: it is left out only if its centre is outside. One whose ball may meet a triangle is split,
+// until there are too many; then its ball is kept.
+std::vector<Sphere> spheres_around(const SolidMesh& solid);
+
+}  // namespace spherule::internal
