@@ -85,7 +85,9 @@ Arm make_arm(const std::filesystem::path& models, SpheresOf spheres_of) {
     if (spheres.empty()) continue;
     arm.spheres += spheres.size();
     const auto tree = std::make_shared<const SphereTree>(build_tree(spheres));
-    arm.covers.push_back(std::make_shared<const CoveredMesh>(mesh, tree));
+    if (!mesh.triangles.empty()) {
+      arm.covers.push_back(std::make_shared<const CoveredMesh>(mesh, tree));
+    }
     arm.model.attach(robot.links[i].name, tree);
   }
   return arm;

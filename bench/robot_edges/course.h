@@ -2,12 +2,12 @@
 #pragma once
 
 #include "bench/robot_edges/arm.h"
+#include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/configurations.h"
 #include "bench/robot_edges/counts.h"
 #include "bench/robot_edges/edges.h"
 #include "bench/robot_edges/fcl_arm.h"
 #include "bench/robot_edges/flat_arm.h"
-#include "bench/robot_edges/primitive_scenes.h"
 #include "bench/studies/random_numbers.h"
 #include "collide/robot/robot_checker.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/robot_edges/arm.h"
-#include "bench/robot_edges/primitive_scenes.h"
+#include "bench/robot_edges/arm_scenes.h"
 #include "collide/robot/allowed_collisions.h"
 
 #include <cstddef>

@@ -9,11 +9,11 @@
 
 #include "bench/clock.h"
 #include "bench/robot_edges/arm.h"
+#include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/counts.h"
 #include "bench/robot_edges/course.h"
 #include "bench/robot_edges/edges.h"
 #include "bench/robot_edges/fcl_arm.h"
-#include "bench/robot_edges/primitive_scenes.h"
 #include "bench/robot_edges/shares.h"
 #include "bench/robot_edges/times.h"
 #include "bench/studies/random_numbers.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/robot_edges/primitive_scenes.h"
-
+#include "bench/robot_edges/arm_scenes.h"
 #include "bench/studies/random_numbers.h"
 
 #include <cmath>

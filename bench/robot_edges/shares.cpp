@@ -2,8 +2,8 @@
 #include "bench/robot_edges/shares.h"
 
 #include "bench/clock.h"
+#include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/edges.h"
-#include "bench/robot_edges/primitive_scenes.h"
 #include "bench/robot_edges/robot_scenes.h"
 #include "bench/studies/random_numbers.h"
 
