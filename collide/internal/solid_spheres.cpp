@@ -3,17 +3,23 @@
 
 #include "collide/internal/balls_inside.h"
 #include "collide/internal/mesh_inside.h"
+#include "collide/internal/one_tree.h"
 #include "spheretree/build.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 namespace spherule::internal {
 namespace {
 
 using Eigen::Vector3d;
 
+// Cells at the surface are split down to this part of the mean radius of the triangles' balls, as
+// long as there are not more of them than so many for each triangle.
+constexpr double kSmallestCell = 0.5;
+constexpr std::size_t kCellsATriangle = 8;
 constexpr std::size_t kFewestCells = 512;
 constexpr int kMostLevels = 12;
 
@@ -24,11 +30,41 @@ struct Cell {
   Sphere ball() const { return {center, half * 1.7320508075688774 * (1.0 + 1e-12)}; }
 };
 
+// Whether the ball around one triangle holds all of another ball.
+class FindHolder {
+ public:
+  FindHolder(const SphereTree& tree, const Sphere& ball) : tree_(tree), ball_(ball) {}
+
+  bool afford(std::int32_t, std::int32_t) const { return true; }
+  bool enters(std::int32_t node) const {
+    const Sphere around = tree_.ball(static_cast<std::size_t>(node));
+    return distance_upper(around.center, ball_.center) + ball_.radius <= around.radius;
+  }
+  bool leaf(std::int32_t) {
+    found_ = true;
+    return false;
+  }
+  bool found() const { return found_; }
+
+ private:
+  const SphereTree& tree_;
+  const Sphere ball_;
+  bool found_ = false;
+};
+
+bool is_held(const SolidMesh& solid, const Sphere& ball) {
+  FindHolder query(solid.mesh().tree(), ball);
+  search_tree(solid.mesh().tree(), query);
+  return query.found();
+}
+
 }  // namespace
 
 std::vector<Sphere> spheres_around(const SolidMesh& solid) {
   std::vector<Sphere> spheres;
+  double sum = 0.0;
   for (const Sphere& ball : solid.mesh().tree().spheres()) {
+    sum += ball.radius;
     spheres.push_back(
         {ball.center, solid.growth() > 0.0 ? add_up(ball.radius, solid.growth()) : ball.radius});
   }
@@ -42,20 +78,22 @@ std::vector<Sphere> spheres_around(const SolidMesh& solid) {
   const SphereTree frame = build_tree({&around, 1});
   const RelativePose pose(frame, Pose(), solid.mesh().tree(), Pose());
   const BallsInside balls(frame, solid, pose);
-  const std::size_t most = std::max(kFewestCells, solid.mesh().tree().spheres().size());
+  const double smallest = kSmallestCell * sum / static_cast<double>(spheres.size());
+  const std::size_t most = std::max(kFewestCells, kCellsATriangle * spheres.size());
   for (int level = 0; !cells.empty(); ++level) {
     std::vector<Cell> at_surface;
     for (const Cell& cell : cells) {
       const Sphere ball = cell.ball();
       if (balls.is_outside_box(cell.center, ball.radius)) continue;
       if (!balls.is_clear(cell.center, ball.radius)) {
-        at_surface.push_back(cell);
+        if (!is_held(solid, ball)) at_surface.push_back(cell);
       } else if (balls.contains(cell.center)) {
         spheres.push_back(ball);
       }
     }
     // Of the eight parts of a cell at the surface four are there as well.
-    const bool is_last = level == kMostLevels || 4 * at_surface.size() > most;
+    const bool is_last = level == kMostLevels || 4 * at_surface.size() > most ||
+                         (!at_surface.empty() && at_surface.front().ball().radius <= smallest);
     cells.clear();
     for (const Cell& cell : at_surface) {
       if (is_last) {

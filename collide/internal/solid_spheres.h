@@ -15,8 +15,10 @@ namespace spherule::internal {
 //
 // Proof. What is within growth() of a triangle is in its ball. A point of the inside lies in the
 // root cell, which contains inside().box(). A cell whose ball meets no triangle lies, whole, on one
-// side: it is left out only if its centre is outside. One whose ball may meet a triangle is split,
-// until there are too many; then its ball is kept.
+// side: it is left out only if its centre is outside. One whose ball may meet a triangle is left
+// out if a triangle's ball holds all of it (those of the tree's nodes hold the balls below them, so
+// that the search for it loses none); else it is split, until it is small or there are too many,
+// and then its ball is kept.
 std::vector<Sphere> spheres_around(const SolidMesh& solid);
 
 }  // namespace spherule::internal
