@@ -16,10 +16,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Cells at the surface are split down to this part of the mean radius of the triangles' balls, as
+// Cells at the surface are split down to this part of the mean radius of the triangles' balls, as long
 // long as there are not more of them than so many for each triangle.
-constexpr double kSmallestCell = 0.5;
-constexpr std::size_t kCellsATriangle = 8;
+constexpr double kSmallestCell = 1.0;
+constexpr std::size_t kCellsATriangle = 1;
 constexpr std::size_t kFewestCells = 512;
 constexpr int kMostLevels = 12;
 
