@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Cells at the surface are split down to this part of the mean radius of the triangles' balls, as long
+// Cells at the surface are split down to this part of the mean radius of the triangles' balls, as
 // long as there are not more of them than so many for each triangle.
 constexpr double kSmallestCell = 1.0;
 constexpr std::size_t kCellsATriangle = 1;
