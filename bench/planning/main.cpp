@@ -9,6 +9,7 @@
 #include "bench/planning/planning_cell.h"
 #include "bench/planning/report.h"
 #include "bench/scenes/torch.h"
+#include "bench/tree_checker.h"
 #include "spheretree/error.h"
 
 #include <cstdio>

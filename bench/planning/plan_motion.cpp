@@ -13,6 +13,7 @@
 #include "bench/planning/process_points.h"
 #include "bench/real_models.h"
 #include "bench/scenes/torch.h"
+#include "bench/tree_checker.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 

@@ -96,14 +96,14 @@ TEST(Planner, SaysWhyItHasNoPath) {
   }
 }
 
-TEST(PlanningCell, AnswersAsTheTreeEngine) {
+TEST(PlanningCell, AnswersAsThePairsDo) {
   Workload cell = make_paper_cell();
   // Such balls are so large that the lower links are always in contact.
   std::erase_if(cell.bodies, [](const Body& body) { return body.link < 4; });
   test::add_surface_balls(cell);
   const RobotChecker checker = make_robot_checker(cell);
   RobotChecker::Scratch scratch(checker);
-  const auto engine = make_tree_checker(cell, TreeMode::kSingle);
+  const auto engine = make_tree_checker(cell, TreeMode::kPairs);
   std::size_t free = 0;
   const std::size_t stride = static_cast<std::size_t>(test::effort(37, 601));
   for (std::size_t i = 0; i < cell.program.size(); i += stride) {

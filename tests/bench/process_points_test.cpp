@@ -6,6 +6,7 @@
 #include "bench/scenes/program.h"
 #include "bench/scenes/torch.h"
 #include "bench/scenes/workpiece.h"
+#include "bench/tree_checker.h"
 #include "collide/robot/kinematics.h"
 #include "tests/bench/surface_balls.h"
 #include "tests/support/effort.h"
