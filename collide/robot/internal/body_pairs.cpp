@@ -271,6 +271,7 @@ bool BodyPairs::meshes_within(const CheckedPair& pair, double clearance,
   double reach = clearance;
   if (a.mesh != nullptr) reach = padding_sum(reach, a.padding);
   if (b != nullptr && mesh_b != nullptr) reach = padding_sum(reach, b->padding);
+  if (!(reach <= kMaxCoordinate)) return true;  // the queries refuse it
   if (a.mesh == nullptr) return within(*a.tree, pose_a, mesh_b->solid(), pose_b, reach);
   if (mesh_b != nullptr) {
     return reach == 0.0 ? collides(*a.mesh, pose_a, *mesh_b, pose_b)
