@@ -29,8 +29,9 @@ struct RobotCheckerOptions {
   // Confirmation on the triangles (opt-in). A body or an obstacle whose tree is the cover() of one
   // of these counts as the mesh with its inside (mesh_contact.h), the padding that is asked for
   // around it, against all that it is tested with: a contact of its spheres counts only if the mesh
-  // touches, in configurations as on motions. Free stays certain; false alarms of coarse covers
-  // vanish. Bodies of which a region may touch are judged by their spheres.
+  // touches, in configurations as on motions. Free stays certain, where the spheres cover the
+  // inside, too, as covers of the simplifier do; false alarms of coarse covers vanish. Bodies of
+  // which a region may touch are judged by their spheres.
   std::vector<std::shared_ptr<const CoveredMesh>> meshes{};
 };
 

@@ -103,8 +103,8 @@ class BodyPairs {
   bool touches(std::size_t pair, const Memory& memory) const;
   bool any_touches(Memory& memory) const;
 
-  // Never false if the two are within the clearance of each other, or the canonical test finds them
-  // so.
+  // Never false if the two are within the clearance of each other in exact arithmetic or, where no
+  // mesh is asked, the canonical test finds them so.
   bool is_near(std::size_t pair, double clearance, const Memory& memory) const;
 
   // A lower bound of the exact gap of the spheres of a pair, found at once; -infinity if there is
