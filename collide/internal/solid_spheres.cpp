@@ -76,7 +76,8 @@ std::vector<Sphere> spheres_around(const SolidMesh& solid) {
       {0.5 * (box.min() + box.max()), 0.5 * box.sizes().maxCoeff() * (1.0 + 1e-9) + 1e-12 * reach}};
   const Sphere around = cells.front().ball();
   const SphereTree frame = build_tree({&around, 1});
-  const RelativePose pose(frame, Pose(), solid.mesh().tree(), Pose());
+  const Pose same;  // kept by reference
+  const RelativePose pose(frame, same, solid.mesh().tree(), same);
   const BallsInside balls(frame, solid, pose);
   const double smallest = kSmallestCell * sum / static_cast<double>(spheres.size());
   const std::size_t most = std::max(kFewestCells, kCellsATriangle * spheres.size());
