@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 // Cells at the surface are split down to this part of the mean radius of the triangles' balls, as
 // long as there are not more of them than so many for each triangle.
 constexpr double kSmallestCell = 1.0;
-constexpr std::size_t kCellsATriangle = 1;
+constexpr std::size_t kCellsATriangle = 4;
 constexpr std::size_t kFewestCells = 512;
 constexpr int kMostLevels = 12;
 
@@ -27,7 +27,10 @@ struct Cell {
   Vector3d center;
   double half;
 
-  Sphere ball() const { return {center, half * 1.7320508075688774 * (1.0 + 1e-12)}; }
+  // Halves are powers of two of the first one, but centres err by a few units in the last place.
+  Sphere ball() const {
+    return {center, half * 1.7320508075688774 * (1.0 + 1e-9) + 1e-14 * center.cwiseAbs().sum()};
+  }
 };
 
 // Whether the ball around one triangle holds all of another ball.
@@ -38,7 +41,7 @@ class FindHolder {
   bool afford(std::int32_t, std::int32_t) const { return true; }
   bool enters(std::int32_t node) const {
     const Sphere around = tree_.ball(static_cast<std::size_t>(node));
-    return distance_upper(around.center, ball_.center) + ball_.radius <= around.radius;
+    return add_up(distance_upper(around.center, ball_.center), ball_.radius) <= around.radius;
   }
   bool leaf(std::int32_t) {
     found_ = true;
