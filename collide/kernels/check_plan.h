@@ -89,6 +89,16 @@ struct PlanPair {
   bool second_moves;  // against the root by joints that do not move the first as well
 };
 
+// Where a pair is proved apart, by the positions of at most two joints (FreeCells): bit i of word j
+// for the coordinates i and j, (position - lower) * scale, rounded down.
+struct PlanFreeCells {
+  static constexpr int kCells = 64;
+  const std::uint64_t* words;  // null: nowhere
+  std::int32_t position[2];
+  double lower[2];
+  double scale[2];
+};
+
 // The k-th joint on eight paths, each from one body to another (or to the root): how far points of
 // the first, and of the second body, are at most from its axis. Behind the last joint zeros, and a
 // position behind all, which never changes.
@@ -120,6 +130,7 @@ struct CheckPlan {
   std::int32_t group_count;
   const PlanObstacle<Real>* obstacles;
   const PlanPair* pairs;
+  const PlanFreeCells* free_cells;  // of each pair
   std::int32_t pair_count;
   std::int32_t bound_count;  // one for the bodies, and for every eight pairs
   const PlanPathGroup* body_paths;
@@ -181,6 +192,9 @@ struct PlanRecent {
 };
 
 // Memory of one caller, enough of it for the plan.
+struct WidePlan;
+struct WideScratch;
+
 template <class Real>
 struct PlanScratch {
   PlanNumbers<double>* positions;  // of each joint, in every lane; in, for configurations
@@ -203,6 +217,9 @@ struct PlanScratch {
   Real* total_speed;             // in: the sum of all speeds
   PlanRecent* recent;
   bool* has_bounds;  // in: all false for a new motion; of bodies, then of groups of eight pairs
+  // The same plan for one configuration, if there is one: what only a few lanes have to search.
+  const WidePlan* wide;
+  const WideScratch* wide_scratch;
 };
 
 // What the caller decides.
@@ -229,22 +246,17 @@ struct PlanParts {
   bool all_contacts = false;  // in: go on after a contact; otherwise `near` is not complete then
 };
 
+// Of the motion given by rates, speeds and shifts.
 template <class Real>
-struct PlanKernels {
-  // Lanes in whose configurations some test touches.
-  unsigned (*check)(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, unsigned lanes,
-                    const PlanClient& client);
-  // Of the motion given by rates, speeds and shifts.
-  void (*evaluate)(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, PlanParts& parts,
-                   const PlanClient& client);
-};
-
-struct WidePlan;
-struct WideScratch;
+using EvaluateParts = void (*)(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch,
+                               PlanParts& parts, const PlanClient& client);
 
 struct PlanKernelSet {
-  PlanKernels<float> single;
-  PlanKernels<double> exact;
+  EvaluateParts<float> evaluate_single;
+  EvaluateParts<double> evaluate_exact;
+  // Lanes in whose configurations some test touches.
+  unsigned (*check_lanes)(const CheckPlan<float>& plan, const PlanScratch<float>& scratch,
+                          unsigned lanes, const PlanClient& client);
   // Whether any test touches in one configuration.
   bool (*check_one)(const CheckPlan<float>& plan, const WidePlan& wide, const WideScratch& scratch,
                     const PlanClient& client);

@@ -3,6 +3,7 @@
 
 // What a CheckPlan is compiled from, in double precision and in the frame of the mechanism's root.
 
+#include "collide/kernels/free_cells.h"
 #include "collide/kernels/search_trees.h"
 #include "collide/mechanism_check.h"
 #include "collide/primitive.h"
@@ -38,6 +39,7 @@ struct PlanSource {
     int body = 0;
     int other = 0;  // an obstacle, or another body
     bool is_obstacle = false;
+    std::shared_ptr<const FreeCells> free_cells{};  // of two bodies; null: none is known
   };
 
   // Of the joints between two bodies, or a body and the root, from the first body on: how far

@@ -57,6 +57,19 @@ bool moves_otherwise(const PlanSource& source, int body, int other) {
   return frame != frame_of(body);
 }
 
+PlanFreeCells compiled_cells(const FreeCells* cells) {
+  static_assert(PlanFreeCells::kCells == FreeCells::kCells && FreeCells::kMostJoints == 2);
+  PlanFreeCells result{};
+  if (cells == nullptr) return result;
+  result.words = cells->words().data();
+  for (std::size_t i = 0; i < 2; ++i) {
+    result.position[i] = cells->axes()[i].position;
+    result.lower[i] = cells->axes()[i].lower;
+    result.scale[i] = cells->axes()[i].scale;
+  }
+  return result;
+}
+
 }  // namespace
 
 template <class Real>
@@ -113,6 +126,7 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   plan_.test_count = plan_.first_pair + static_cast<std::int32_t>(pairs_.size());
   plan_.word_count = (plan_.test_count + 63) / 64;
   plan_.pairs = pairs_.data();
+  plan_.free_cells = pair_cells_.data();
   plan_.pair_count = static_cast<std::int32_t>(pairs_.size());
   plan_.bound_count = 1 + static_cast<std::int32_t>(pair_paths_.size());
   plan_.body_paths = body_paths_.data();
@@ -294,6 +308,8 @@ void CompiledPlan<Real>::compile_pairs(const PlanSource& source) {
   for (const Numbered& numbered : order) {
     const PlanSource::Test& test = source.tests[numbered.test];
     pairs_.push_back({test.body, test.other, moves_otherwise(source, test.other, test.body)});
+    free_cells_.push_back(test.free_cells);
+    pair_cells_.push_back(compiled_cells(test.free_cells.get()));
     source_tests_.push_back(static_cast<std::int32_t>(numbered.test));
     paths.push_back(*numbered.path);
   }

@@ -56,6 +56,8 @@ class CompiledPlan {
   std::vector<PlanBoxes<Real>> obstacle_boxes_{};  // the box of each in lane 0
   std::vector<PlanBoxes<Real>> groups_{};
   std::vector<PlanPair> pairs_{};
+  std::vector<std::shared_ptr<const FreeCells>> free_cells_{};
+  std::vector<PlanFreeCells> pair_cells_{};
   std::vector<PlanPathGroup> body_paths_{};
   std::vector<PlanPathGroup> pair_paths_{};
   std::vector<PlanPathStep<Real>> steps_{};
@@ -73,7 +75,9 @@ extern template class CompiledPlan<double>;
 template <class Real>
 class PlanMemory {
  public:
-  explicit PlanMemory(const CompiledPlan<Real>& plan);
+  // `wide` is of the same plan, or null.
+  explicit PlanMemory(const CompiledPlan<Real>& plan, const WidePlan* wide = nullptr,
+                      const WideScratch* wide_scratch = nullptr);
   PlanMemory(const PlanMemory&) = delete;
   PlanMemory& operator=(const PlanMemory&) = delete;
 

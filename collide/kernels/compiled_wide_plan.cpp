@@ -64,8 +64,13 @@ CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<
       pair_tests_.push_back(pair.first);
     }
   }
-  plan_ = {frames_.data(),   bodies_.data(),    tree_of_.data(), static_cast<std::int32_t>(groups),
-           partners_.data(), pair_tests_.data()};
+  plan_ = {frames_.data(),
+           bodies_.data(),
+           tree_of_.data(),
+           static_cast<std::int32_t>(placed_count_),
+           static_cast<std::int32_t>(groups),
+           partners_.data(),
+           pair_tests_.data()};
 }
 
 void CompiledWidePlan::add_body(const SearchTrees& trees, const Pose& pose, double inflation,
@@ -78,8 +83,8 @@ void CompiledWidePlan::add_body(const SearchTrees& trees, const Pose& pose, doub
   body.margin = is_confirmed ? std::numeric_limits<float>::infinity()
                              : rounded_up_to_single(3.0 * tree.largest_growth());
   body.frame = frame;
-  body.first_node = static_cast<std::int32_t>(node_count_);
-  node_count_ += static_cast<std::size_t>(tree.node_count());
+  body.first_node = static_cast<std::int32_t>(placed_count_);
+  if (frame != 0) placed_count_ += static_cast<std::size_t>(tree.node_count());
   depth_ = std::max(depth_, tree.depth());
 }
 
@@ -95,8 +100,8 @@ WideMemory::WideMemory(const CheckPlan<float>& plan, const CompiledWidePlan& wid
   for (std::size_t i = 0; i < static_cast<std::size_t>(plan.body_count); ++i) {
     radii_[i] = wide.plan().bodies[i].radius;
   }
-  placed_.resize(wide.node_count());
-  stamps_.resize(wide.node_count());
+  placed_.resize(kPlanLanes * static_cast<std::size_t>(wide.plan().placed_count));
+  stamps_.resize(placed_.size());
   tasks_.resize(wide.task_count());
   view_ = {positions_.data(),
            sines_.data(),

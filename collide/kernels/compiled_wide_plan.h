@@ -21,7 +21,6 @@ class CompiledWidePlan {
   CompiledWidePlan& operator=(const CompiledWidePlan&) = delete;
 
   const WidePlan& plan() const { return plan_; }
-  std::size_t node_count() const { return node_count_; }
   std::size_t task_count() const { return task_count_; }
 
  private:
@@ -35,7 +34,7 @@ class CompiledWidePlan {
   std::vector<std::int32_t> tree_of_{};
   std::vector<std::uint8_t> partners_{};
   std::vector<std::int32_t> pair_tests_{};
-  std::size_t node_count_ = 0;
+  std::size_t placed_count_ = 0;
   int depth_ = 1;  // of the highest tree
   std::size_t task_count_ = 0;
 };

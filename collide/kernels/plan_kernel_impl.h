@@ -14,11 +14,56 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 #include "collide/kernels/plan_bounds.h"
+#include "collide/kernels/plan_cells.h"
 #include "collide/kernels/plan_search.h"
 #include "collide/kernels/plan_single.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
+
+// Lanes' configurations one by one.
+class LaneSearch {
+ public:
+  LaneSearch(const CheckPlan<float>& plan, const PlanScratch<float>& scratch,
+             const PlanClient& client)
+      : plan_(plan), wide_(*scratch.wide), scratch_(scratch), client_(client) {}
+
+  // Those of the lanes in which a test touches; of these one, if one is enough.
+  unsigned touches(std::int32_t test, unsigned lanes, bool one_is_enough) const {
+    unsigned contacts = 0;
+    for (; lanes != 0 && (contacts == 0 || !one_is_enough); lanes &= lanes - 1) {
+      const int lane = __builtin_ctz(lanes);
+      WideSearch<LanePoses> search(plan_, wide_, *scratch_.wide_scratch, client_,
+                                   LanePoses{scratch_.poses, lane}, lane);
+      contacts |= (touches(test, search) ? 1U : 0U) << lane;
+    }
+    return contacts;
+  }
+
+ private:
+  struct LanePoses {
+    const PlanPose<float>* poses;
+    int lane;
+    float entry(std::int32_t frame, int column, int row) const {
+      return poses[frame].columns[column][row][lane];
+    }
+  };
+
+  bool touches(std::int32_t test, WideSearch<LanePoses>& search) const {
+    if (test < plan_.first_pair) return search.touches_obstacle(test);
+    const PlanPair& pair = plan_.pairs[test - plan_.first_pair];
+    const WideBody& second = wide_.bodies[pair.second];
+    return search.touches_body(test, wide_.bodies[pair.first], second, search.root_of(second));
+  }
+
+  const CheckPlan<float>& plan_;
+  const WidePlan& wide_;
+  const PlanScratch<float>& scratch_;
+  const PlanClient& client_;
+};
+
+// So many lanes are searched one by one rather than side by side.
+constexpr int kFewLanes = 3;
 
 // One evaluation of eight configurations, or of eight parts at their middles.
 template <class Real, bool kMoves>
@@ -32,23 +77,26 @@ class Evaluation {
                                                                                {},     Real(0),
                                                                                false} {
     if constexpr (kMoves) {
-      context_.half = rounded(load(parts->half) * (1.0 + 0x1p-16), Real());
+      half_ = load(parts->half);
+      context_.half = rounded(half_ * (1.0 + 0x1p-16), Real());
       context_.half_squared = context_.half * context_.half;
       context_.enough = static_cast<Real>(parts->enough);
       context_.all_contacts = parts->all_contacts;
       place_middles(plan, scratch, *parts);
     }
     ++*scratch.evaluation;
+    if (scratch.wide != nullptr) ++*scratch.wide_scratch->evaluation;
     place_frames(plan, scratch);
   }
 
-  // The same as placed, without the motion.
+  // The same as placed, without the motion, for single tests, where one contact is enough.
   explicit Evaluation(const Evaluation<Real, true>& other)
       : plan_(other.plan_),
         scratch_(other.scratch_),
         parts_(nullptr),
         lanes_(other.lanes_),
-        context_{plan_, scratch_, other.context_.client, {}, {}, Real(0), false} {}
+        context_{plan_, scratch_, other.context_.client, {}, {}, Real(0), false},
+        is_alone_(true) {}
 
   // Lanes in which there is a contact.
   unsigned run() {
@@ -253,7 +301,10 @@ class Evaluation {
     const Separation<Real> found =
         from_side<Real, kMoves>(context_, motion, plan_.bodies[both.first], 0,
                                 MovingSide<Real>{plan_.bodies[both.second]}, 0, open);
-    add({test, both.first, found.near, found.overlap},
+    if (found.near == 0) return;
+    const unsigned free =
+        lanes_in_free_cells<Real, kMoves>(plan_.free_cells[pair], scratch_, half_, found.near);
+    add({test, both.first, found.near & ~free, found.overlap & ~free},
         plan_.bodies[both.first].is_confirmed || plan_.bodies[both.second].is_confirmed);
   }
 
@@ -277,6 +328,14 @@ class Evaluation {
     const PlanObstacle<Real>* const obstacle =
         is_pair ? nullptr
                 : &plan_.obstacles[plan_.groups[test / kPlanLanes].obstacle[test % kPlanLanes]];
+    if constexpr (!kMoves && sizeof(Real) == sizeof(float)) {
+      const unsigned near = candidate.near & lanes_;
+      if (scratch_.wide != nullptr && (is_alone_ || __builtin_popcount(near) <= kFewLanes)) {
+        contacts_ |= LaneSearch(plan_, scratch_, context_.client).touches(test, near, is_alone_);
+        lanes_ &= ~contacts_;
+        return;
+      }
+    }
     const bool is_confirmed =
         body.is_confirmed || (is_pair ? other->is_confirmed : obstacle->is_confirmed);
     const unsigned lanes = kMoves ? candidate.near : candidate.near & lanes_;
@@ -339,12 +398,13 @@ class Evaluation {
   unsigned contacts_ = 0;
   std::int32_t candidate_count_ = 0;
   SearchContext<Real, kMoves> context_;
+  Double8 half_ = {};
+  bool is_alone_ = false;
 };
 
-template <class Real>
-unsigned check(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, unsigned lanes,
-               const PlanClient& client) {
-  return Evaluation<Real, false>(plan, scratch, lanes, client, nullptr).run();
+unsigned check_lanes(const CheckPlan<float>& plan, const PlanScratch<float>& scratch,
+                     unsigned lanes, const PlanClient& client) {
+  return Evaluation<float, false>(plan, scratch, lanes, client, nullptr).run();
 }
 
 template <class Real>
@@ -355,15 +415,13 @@ void evaluate(const CheckPlan<Real>& plan, const PlanScratch<Real>& scratch, Pla
   parts.contacts = Evaluation<Real, true>(plan, scratch, parts.lanes, client, &parts).run();
 }
 
-template <class Real>
-constexpr PlanKernels<Real> kKernelsOf = {&check<Real>, &evaluate<Real>};
-
 bool check_one(const CheckPlan<float>& plan, const WidePlan& wide, const WideScratch& scratch,
                const PlanClient& client) {
   return SingleCheck(plan, wide, scratch, client).run();
 }
 
-constexpr PlanKernelSet kPlanKernels = {kKernelsOf<float>, kKernelsOf<double>, &check_one};
+constexpr PlanKernelSet kPlanKernels = {&evaluate<float>, &evaluate<double>, &check_lanes,
+                                        &check_one};
 
 }  // namespace
 }  // namespace spherule::internal::SPHERULE_KERNEL

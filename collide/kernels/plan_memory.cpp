@@ -6,7 +6,8 @@
 namespace spherule::internal {
 
 template <class Real>
-PlanMemory<Real>::PlanMemory(const CompiledPlan<Real>& compiled) {
+PlanMemory<Real>::PlanMemory(const CompiledPlan<Real>& compiled, const WidePlan* wide,
+                             const WideScratch* wide_scratch) {
   const CheckPlan<Real>& plan = compiled.plan();
   const auto positions = static_cast<std::size_t>(std::max(1, plan.position_count));
   positions_.resize(positions);
@@ -25,13 +26,17 @@ PlanMemory<Real>::PlanMemory(const CompiledPlan<Real>& compiled) {
   pair_bounds_.resize(static_cast<std::size_t>(plan.pair_count));
   has_bounds_ = std::make_unique<bool[]>(static_cast<std::size_t>(plan.bound_count));
   path_work_.resize(2 * compiled.longest_path() + 4);
-  view_ = {positions_.data(),  poses_.data(),       twists_.data(),
-           centers_.data(),    placed_.data(),      &evaluation_,
-           candidates_.data(), tasks_.data(),       from_.data(),
-           to_.data(),         rates_.data(),       speeds_.data(),
-           shifts_.data(),     body_bounds_.data(), pair_bounds_.data(),
-           path_work_.data(),  &total_speed_,       &recent_,
-           has_bounds_.get()};
+  view_ = {positions_.data(),   poses_.data(),
+           twists_.data(),      centers_.data(),
+           placed_.data(),      &evaluation_,
+           candidates_.data(),  tasks_.data(),
+           from_.data(),        to_.data(),
+           rates_.data(),       speeds_.data(),
+           shifts_.data(),      body_bounds_.data(),
+           pair_bounds_.data(), path_work_.data(),
+           &total_speed_,       &recent_,
+           has_bounds_.get(),   wide,
+           wide_scratch};
 }
 
 template class PlanMemory<float>;

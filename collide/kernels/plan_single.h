@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// One configuration: sines of eight joints, obstacles by eight, nodes of eight spheres. Part of the
-// kernels, see plan_kernel_impl.h.
+// One configuration: sines of eight joints, obstacles and bodies by eight, nodes of eight spheres.
+// Part of the kernels, see plan_kernel_impl.h.
 //
 // The error budget of poses is that of plan_poses.h: the same operations on the same numbers, in
 // another order.
 
-#include "collide/kernels/plan_poses.h"
-#include "collide/kernels/plan_solids.h"
-#include "collide/kernels/wide_plan.h"
+#include "collide/kernels/plan_cells.h"
+#include "collide/kernels/plan_wide.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
@@ -35,11 +34,21 @@ SPHERULE_INLINE Float4 column_of(const float* p) {
   return *reinterpret_cast<const Float4*>(p);
 }
 
+struct SinglePoses {
+  const WidePose* poses;
+  float entry(std::int32_t frame, int column, int row) const {
+    return poses[frame].columns[column][row];
+  }
+};
+
 class SingleCheck {
  public:
   SingleCheck(const CheckPlan<float>& plan, const WidePlan& wide, const WideScratch& scratch,
               const PlanClient& client)
-      : plan_(plan), wide_(wide), scratch_(scratch), client_(client) {}
+      : plan_(plan),
+        wide_(wide),
+        scratch_(scratch),
+        search_(plan, wide, scratch, client, SinglePoses{scratch.poses}, 0) {}
 
   // Whether any test touches.
   bool run() {
@@ -109,37 +118,17 @@ class SingleCheck {
     }
   }
 
-  // The children of a node of a body; computed once a configuration.
-  SPHERULE_INLINE Point<float> placed(const WideBody& body, std::int32_t node) {
-    const std::int32_t index = body.first_node + node;
-    WideSpheres& spheres = scratch_.placed[index];
-    if (scratch_.stamps[index] == *scratch_.evaluation) return load_point(spheres.at);
-    scratch_.stamps[index] = *scratch_.evaluation;
-    const PackedNode& in = body.nodes[node];
-    const auto& [x, y, z, t] = scratch_.poses[body.frame].columns;
-    const Float8 cx = load(in.x);
-    const Float8 cy = load(in.y);
-    const Float8 cz = load(in.z);
-    const Point<float> at = {x[0] * cx + y[0] * cy + z[0] * cz + t[0],
-                             x[1] * cx + y[1] * cy + z[1] * cz + t[1],
-                             x[2] * cx + y[2] * cy + z[2] * cz + t[2]};
-    store_point(at, spheres.at);
-    return at;
-  }
-
   bool remember(std::int32_t test) {
     spherule::internal::SPHERULE_KERNEL::remember(*scratch_.recent, test);
     return true;
   }
-
-  bool confirm(std::int32_t test) { return client_.touches(client_.context, 0, test); }
 
   // Of a single test, whatever is known of the spheres around all.
   bool touches(std::int32_t test) {
     if (test < plan_.first_pair) {
       const PlanBoxes<float>& boxes = plan_.groups[test / kPlanLanes];
       const unsigned near = near_obstacles(boxes, boxes.body) >> (test % kPlanLanes) & 1U;
-      return near != 0 && touches_obstacle(test) && remember(test);
+      return near != 0 && search_.touches_obstacle(test) && remember(test);
     }
     const PlanPair& pair = plan_.pairs[test - plan_.first_pair];
     return touches_pair(test, pair.first, pair.second) && remember(test);
@@ -163,58 +152,7 @@ class SingleCheck {
     for (std::int32_t g = body.first_group; g < body.first_group + body.group_count; ++g) {
       for (unsigned near = near_obstacles(plan_.groups[g], b); near != 0; near &= near - 1) {
         const std::int32_t test = g * kPlanLanes + __builtin_ctz(near);
-        if (touches_obstacle(test)) return remember(test);
-      }
-    }
-    return false;
-  }
-
-  bool touches_obstacle(std::int32_t test) {
-    const PlanBoxes<float>& boxes = plan_.groups[test / kPlanLanes];
-    const WideBody& body = wide_.bodies[boxes.body];
-    const PlanObstacle<float>& obstacle = plan_.obstacles[boxes.obstacle[test % kPlanLanes]];
-    switch (obstacle.shape) {
-      case PlanShape::kBox:
-        return touches_solid<BoxShape>(body, obstacle, test);
-      case PlanShape::kSegment:
-        return touches_solid<SegmentShape>(body, obstacle, test);
-      case PlanShape::kCylinder:
-        return touches_solid<CylinderShape>(body, obstacle, test);
-      case PlanShape::kHalfSpace:
-        return touches_solid<HalfSpaceShape>(body, obstacle, test);
-      case PlanShape::kTree: {
-        const WideBody& tree = wide_.bodies[wide_.tree_of[boxes.obstacle[test % kPlanLanes]]];
-        return touches_body(test, body, tree,
-                            {tree.center[0], tree.center[1], tree.center[2], tree.radius});
-      }
-    }
-    return confirm(test);
-  }
-
-  template <class Shape>
-  bool touches_solid(const WideBody& body, const PlanObstacle<float>& solid, std::int32_t test) {
-    WideTask* const tasks = scratch_.tasks;
-    tasks[0] = {0, 0, 0};
-    for (std::int32_t top = 1; top > 0;) {
-      const std::int32_t index = tasks[--top].a;
-      const PackedNode& node = body.nodes[index];
-      const Point<float> e = Shape::offset(solid, placed(body, index));
-      const Float8 squared = dot(e, e);
-      const Float8 reach = load(node.radius) + solid.radius;
-      // Places that are not used have no radius, and may lie in a half-space.
-      const unsigned near = above(load(node.radius), Float8{}) & ~above(squared, reach * reach);
-      if (near == 0) continue;
-      const Float8 sure = reach - (body.margin + solid.margin);
-      const unsigned certain = near & above(sure, Float8{}) & ~above(squared, sure * sure);
-      for (unsigned left = near; left != 0; left &= left - 1) {
-        const int lane = __builtin_ctz(left);
-        if (node.child[lane] >= 0) {
-          tasks[top++] = {node.child[lane], 0, 0};
-        } else if ((certain >> lane & 1U) != 0) {
-          return true;
-        } else {
-          return confirm(test);
-        }
+        if (search_.touches_obstacle(test)) return remember(test);
       }
     }
     return false;
@@ -247,91 +185,19 @@ class SingleCheck {
     return kAllLanes & ~above(squared, reach * reach);
   }
 
-  struct OneSphere {
-    float x, y, z, radius;
-  };
-
-  // Of a node that has been placed.
-  SPHERULE_INLINE OneSphere sphere_in(const WideBody& body, std::int32_t slot) const {
-    const WideSpheres& spheres = scratch_.placed[body.first_node + slot / kPlanLanes];
-    const int lane = slot % kPlanLanes;
-    return {spheres.at[0][lane], spheres.at[1][lane], spheres.at[2][lane],
-            body.nodes[slot / kPlanLanes].radius[lane]};
-  }
-
-  // The children of a node that may overlap a sphere, and those that certainly do.
-  struct Overlap {
-    unsigned near;
-    unsigned certain;
-  };
-
-  SPHERULE_INLINE Overlap overlapping(const WideBody& body, std::int32_t node,
-                                      const OneSphere& sphere, float margin) {
-    const Point<float> at = placed(body, node);
-    const Float8 dx = at.x - sphere.x;
-    const Float8 dy = at.y - sphere.y;
-    const Float8 dz = at.z - sphere.z;
-    const Float8 squared = dx * dx + dy * dy + dz * dz;
-    const Float8 reach = load(body.nodes[node].radius) + sphere.radius;
-    const unsigned near = kAllLanes & ~above(squared, reach * reach);
-    if (near == 0) return {0, 0};
-    const Float8 sure = reach - margin;
-    return {near, near & above(sure, Float8{}) & ~above(squared, sure * sure)};
-  }
-
   bool touches_pair(std::int32_t test, std::int32_t a, std::int32_t b) {
+    if (is_in_free_cell(plan_.free_cells[test - plan_.first_pair], scratch_.positions))
+      return false;
     const WideBody& second = wide_.bodies[b];
-    return touches_body(
+    return search_.touches_body(
         test, wide_.bodies[a], second,
         {scratch_.roots[0][b], scratch_.roots[1][b], scratch_.roots[2][b], second.radius});
-  }
-
-  // Nodes of both sides are opened together; where one side has come to a leaf, that is kept. The
-  // first leaves that may touch decide: for certain, or by the canonical test of the whole pair.
-  bool touches_body(std::int32_t test, const WideBody& first, const WideBody& second,
-                    const OneSphere& all_of_second) {
-    const float margin = first.margin + second.margin;
-    WideTask* const tasks = scratch_.tasks;
-    tasks[0] = {0, 0, -1};
-    for (std::int32_t top = 1; top > 0;) {
-      const WideTask task = tasks[--top];
-      if (task.a < 0 || task.b < 0) {
-        const bool is_first = task.a < 0;  // that it is a leaf of the first
-        const OneSphere leaf = is_first ? sphere_in(first, ~task.a) : sphere_in(second, ~task.b);
-        const WideBody& body = is_first ? second : first;
-        const std::int32_t index = is_first ? task.b : task.a;
-        const Overlap hits = overlapping(body, index, leaf, margin);
-        for (unsigned left = hits.near; left != 0; left &= left - 1) {
-          const int hit = __builtin_ctz(left);
-          const std::int32_t child = body.nodes[index].child[hit];
-          if (child < 0) return (hits.certain >> hit & 1U) != 0 || confirm(test);
-          tasks[top++] = is_first ? WideTask{task.a, child, 0} : WideTask{child, task.b, 0};
-        }
-        continue;
-      }
-      const OneSphere around =
-          task.slot_of_b < 0 ? all_of_second : sphere_in(second, task.slot_of_b);
-      for (unsigned lanes = overlapping(first, task.a, around, margin).near; lanes != 0;
-           lanes &= lanes - 1) {
-        const std::int32_t slot = task.a * kPlanLanes + __builtin_ctz(lanes);
-        const std::int32_t child = first.nodes[task.a].child[slot % kPlanLanes];
-        const Overlap hits = overlapping(second, task.b, sphere_in(first, slot), margin);
-        for (unsigned left = hits.near; left != 0; left &= left - 1) {
-          const int hit = __builtin_ctz(left);
-          const std::int32_t other = second.nodes[task.b].child[hit];
-          const std::int32_t other_slot = task.b * kPlanLanes + hit;
-          if (child < 0 && other < 0) return (hits.certain >> hit & 1U) != 0 || confirm(test);
-          tasks[top++] = {child < 0 ? ~slot : child, other < 0 ? ~other_slot : other, other_slot};
-        }
-      }
-    }
-    return false;
   }
 
   const CheckPlan<float>& plan_;
   const WidePlan& wide_;
   const WideScratch& scratch_;
-  const PlanClient& client_;
+  WideSearch<SinglePoses> search_;
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ struct WideBody {
   float radius;
   float margin;
   std::int32_t frame;
-  std::int32_t first_node;  // among the placed nodes
+  std::int32_t first_node;  // among the placed nodes, unless the frame is the root
   std::int32_t first_pair;  // of those that it is the first body of, among `pair_tests`
 };
 
@@ -34,6 +34,7 @@ struct WidePlan {
   const WideFrame* frames;
   const WideBody* bodies;        // obstacles that are trees, in the root's frame, follow
   const std::int32_t* tree_of;   // of each obstacle: its place among `bodies`; -1 if it is no tree
+  std::int32_t placed_count;     // of nodes that move
   std::int32_t body_groups;      // of eight bodies
   const std::uint8_t* partners;  // for each body and group: those that it is tested against
   const std::int32_t* pair_tests;  // by first body, then by second
@@ -57,7 +58,8 @@ struct WideTask {
   std::int32_t slot_of_b;  // of the sphere around all of node b; -1: that of the body
 };
 
-// Memory of one caller, enough of it for the plan.
+// Memory of one caller, enough of it for the plan: for one configuration, or for placed nodes of
+// eight, one after the other.
 struct WideScratch {
   double* positions;  // in; filled up to a multiple of eight
   float* sines;

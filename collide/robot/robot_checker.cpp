@@ -34,8 +34,7 @@ void require_size(const RobotModel& robot, std::span<const double> configuration
   }
 }
 
-void require_configuration(const RobotModel& robot, std::span<const double> configuration) {
-  require_size(robot, configuration);
+void require_finite(std::span<const double> configuration) {
   if (!std::all_of(configuration.begin(), configuration.end(),
                    [](double position) { return std::isfinite(position); })) {
     throw Error("configuration", "a position is not finite");
@@ -99,15 +98,12 @@ void RobotChecker::require_own(const Scratch& scratch) const {
   }
 }
 
-// What is tested against standing trees need not be finite: StandingTrees refuses it itself, where
-// it is cheaper.
+// Numbers that are not finite are refused where that costs nothing: by StandingTrees, and where
+// BodyPairs::is_usual() has been asked.
 bool RobotChecker::check_config(std::span<const double> configuration, Scratch& scratch) const {
   require_own(scratch);
-  if (parts_->enforces_limits || !parts_->standing) {
-    require_configuration(parts_->robot, configuration);
-  } else {
-    require_size(parts_->robot, configuration);
-  }
+  require_size(parts_->robot, configuration);
+  if (parts_->requires_finite()) require_finite(configuration);
   if (parts_->enforces_limits && !is_within_limits(parts_->robot, configuration)) return false;
   Scratch::Memory& memory = *scratch.memory_;
   if (parts_->standing && parts_->standing->touch(configuration, *memory.standing)) return false;
@@ -122,6 +118,7 @@ bool RobotChecker::is_free_of_itself(std::span<const double> configuration,
   if (parts_->pairs.is_usual(configuration)) {
     return !parts_->lanes.touches(configuration, memory.lanes, memory.pairs);
   }
+  require_finite(configuration);
   parts_->pairs.place(configuration, memory.pairs);
   return !parts_->pairs.any_touches(memory.pairs);
 }
@@ -141,9 +138,7 @@ void RobotChecker::check_configs(std::span<const double> configurations, Scratch
       return;
     }
   } else {
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      require_configuration(parts_->robot, configuration(i));
-    }
+    if (parts_->requires_finite()) require_finite(configurations);
     std::fill(free.begin(), free.end(), std::uint8_t{0});
   }
   // Those that are left wait until the lanes are full.
@@ -193,8 +188,9 @@ EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<cons
                                     Scratch& scratch, const EdgeRequest& request) const {
   require_own(scratch);
   for (const std::span<const double> end : {from, to}) {
-    require_configuration(parts_->robot, end);
+    require_size(parts_->robot, end);
     if (!parts_->pairs.is_usual(end)) {
+      require_finite(end);
       throw Error("edge", "a joint's position is beyond " + std::to_string(kLargestPosition) +
                               " in magnitude");
     }

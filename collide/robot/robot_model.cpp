@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/robot_model.h"
 
-#include "collide/kernels/search_trees.h"
+#include "collide/kernels/check_cache.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ Eigen::Vector3d unit_axis(const Eigen::Vector3d& axis, const std::string& name) 
 }  // namespace
 
 RobotModel::RobotModel(std::string root_link)
-    : search_trees_(std::make_shared<internal::SearchTreeCache>()) {
+    : check_cache_(std::make_shared<internal::CheckCache>()) {
   links_.push_back({std::move(root_link), -1, {}});
 }
 

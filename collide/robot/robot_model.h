@@ -16,7 +16,7 @@
 namespace spherule {
 
 namespace internal {
-class SearchTreeCache;
+struct CheckCache;
 }
 
 // kContinuous is a revolute joint without limits.
@@ -97,8 +97,8 @@ class RobotModel {
   int find_link(std::string_view name) const;
   int find_joint(std::string_view name) const;
 
-  // For checkers: what they build of sphere trees. Copies of a model share it.
-  internal::SearchTreeCache& search_trees() const { return *search_trees_; }
+  // For checkers: what they compute from the robot. Copies of a model share it.
+  internal::CheckCache& check_cache() const { return *check_cache_; }
 
  private:
   // What a joint was told to follow.
@@ -115,7 +115,7 @@ class RobotModel {
   std::vector<Follow> follow_;  // for each joint
   std::vector<int> variable_joints_;
   bool has_mimics_ = false;
-  std::shared_ptr<internal::SearchTreeCache> search_trees_;
+  std::shared_ptr<internal::CheckCache> check_cache_;
 };
 
 }  // namespace spherule

@@ -163,6 +163,13 @@ void BodyPairs::make_paths() {
 }
 
 bool BodyPairs::is_usual(std::span<const double> configuration) const {
+  if (!robot_.has_mimics()) {
+    bool is_usual = true;
+    for (const double position : configuration) {
+      is_usual &= std::abs(position) <= MechanismCheck::kLargestVariable;
+    }
+    return is_usual;
+  }
   return std::all_of(robot_.joints().begin(), robot_.joints().end(), [&](const Joint& joint) {
     if (!joint.moves()) return true;
     const double variable = configuration[static_cast<std::size_t>(joint.variable)];

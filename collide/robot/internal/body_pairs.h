@@ -92,7 +92,7 @@ class BodyPairs {
   // Whether the mesh of a side is known.
   bool is_confirmed(const CheckedPair& pair) const;
 
-  // Whether the bounds of errors hold: no joint's position is beyond
+  // Whether the bounds of errors hold: every number is finite, and no joint's position is beyond
   // MechanismCheck::kLargestVariable. For a configuration of the right size.
   bool is_usual(std::span<const double> configuration) const;
 

@@ -37,6 +37,9 @@ struct RobotChecker::Parts {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
+  // Whether neither `standing` nor BodyPairs::is_usual() refuses numbers that are not finite.
+  bool requires_finite() const { return enforces_limits || (!standing && pairs.tested() == 0); }
+
   RobotModel robot;
   bool enforces_limits;
   // All pairs. Those behind pairs.tested() are of static trees: `standing` tests them in

@@ -49,16 +49,18 @@ void LaneCheck::decide_fixed_pairs(std::span<const std::size_t> pairs) {
 }
 
 template <class Real>
-LaneCheck::Memory::Stage<Real>::Stage(const CompiledPlan<Real>& compiled)
-    : plan(compiled),
+LaneCheck::Memory::Stage<Real>::Stage(const CompiledPlan<Real>& compiled, const WidePlan* wide,
+                                      const WideScratch* wide_scratch)
+    : plan(compiled, wide, wide_scratch),
       open(static_cast<std::size_t>(compiled.plan().word_count) * kPlanLanes),
       near(open.size()) {}
 
 LaneCheck::Memory::Memory(const LaneCheck& check)
-    : configurations_(*check.configurations_),
-      one_(check.configurations_->plan(), *check.one_),
-      single_(*check.single_),
-      exact_(*check.exact_),
+    : one_(check.configurations_->plan(), *check.one_),
+      configurations_(*check.configurations_, &check.one_->plan(), &one_.view()),
+      single_(*check.single_,
+              check.single_ == check.configurations_ ? &check.one_->plan() : nullptr, &one_.view()),
+      exact_(*check.exact_, nullptr, nullptr),
       room_(check.positions_.room_for(kLanes)) {
   const auto positions =
       static_cast<std::size_t>(std::max(1, check.single_->plan().position_count));
@@ -115,8 +117,8 @@ unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurat
     for (std::size_t p = 0; p < at.size(); ++p) scratch.positions[p].lane[lane] = at[p];
   }
   ConfigurationClient client{pairs_, *configurations_, pair_of_test_, configurations, exact};
-  return rigid | kernels_.single.check(plan, scratch, all & ~rigid,
-                                       {&ConfigurationClient::touches, nullptr, &client});
+  return rigid | kernels_.check_lanes(plan, scratch, all & ~rigid,
+                                      {&ConfigurationClient::touches, nullptr, &client});
 }
 
 bool LaneCheck::touches(std::span<const double> configuration, Memory& memory,

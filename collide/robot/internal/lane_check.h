@@ -36,14 +36,14 @@ class LaneCheck {
     // Of motions, evaluated in Real.
     template <class Real>
     struct Stage {
-      explicit Stage(const CompiledPlan<Real>& plan);
+      Stage(const CompiledPlan<Real>& plan, const WidePlan* wide, const WideScratch* wide_scratch);
       PlanMemory<Real> plan;
       PartStack waiting;
       std::vector<std::uint64_t> open;
       std::vector<std::uint64_t> near;
     };
-    PlanMemory<float> configurations_;
     WideMemory one_;
+    PlanMemory<float> configurations_;
     Stage<float> single_;
     Stage<double> exact_;
     JointPositions::Room room_;

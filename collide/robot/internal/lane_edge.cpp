@@ -81,11 +81,11 @@ class LaneCheck::Edge {
     }
   }
   template <class Real>
-  const PlanKernels<Real>& kernels() const {
+  EvaluateParts<Real> kernel() const {
     if constexpr (std::is_same_v<Real, float>) {
-      return check_.kernels_.single;
+      return check_.kernels_.evaluate_single;
     } else {
-      return check_.kernels_.exact;
+      return check_.kernels_.evaluate_exact;
     }
   }
 
@@ -215,8 +215,8 @@ class LaneCheck::Edge {
     }
     place({parts.data(), count}, batch);
     Client<Real> client{*this};
-    kernels<Real>().evaluate(plan, stage.plan.view(), batch,
-                             {&Client<Real>::touches, &Client<Real>::near, &client});
+    kernel<Real>()(plan, stage.plan.view(), batch,
+                   {&Client<Real>::touches, &Client<Real>::near, &client});
     if (batch.contacts != 0) {
       for (std::size_t i = 0; i < count; ++i) {
         if ((batch.contacts >> i & 1U) != 0) {

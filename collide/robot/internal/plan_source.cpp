@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/internal/plan_source.h"
 
+#include "collide/kernels/check_cache.h"
 #include "collide/robot/internal/moving_frames.h"
 #include "collide/solid_mesh.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <variant>
+#include <vector>
 
 namespace spherule::internal {
 namespace {
@@ -33,11 +37,60 @@ PlanSource::Path steps_of(const PathReach& reach, const RobotModel& robot,
   return path;
 }
 
+// Of a pair of bodies; `margin` as FreeCellsSource has it.
+class CellsSource {
+ public:
+  CellsSource(const RobotModel& robot, const MovingFrames& frames, const PlanSource& source)
+      : source_(source), joints_(source.frames.size()) {
+    for (const Joint& joint : robot.joints()) {
+      if (!joint.moves()) continue;
+      const auto link = static_cast<std::size_t>(joint.child_link);
+      joints_[static_cast<std::size_t>(frames.frame_of_link[link])] = &joint;
+    }
+    // Both bodies, at both ends of what a motion is compared with (compiled_plan.cpp). A power of
+    // two, so that cells serve scenes of almost any size.
+    margin_ = std::max(kLeastMargin, std::exp2(std::ceil(std::log2(8.0 * source.pose_error))));
+  }
+
+  FreeCellsSource of(int first, int second) const {
+    FreeCellsSource result{side(first), side(second), margin_};
+    auto& [a, b, margin] = result;
+    while (!a.chain.empty() && !b.chain.empty() &&
+           a.chain.front().position == b.chain.front().position) {
+      a.chain.erase(a.chain.begin());
+      b.chain.erase(b.chain.begin());
+    }
+    return result;
+  }
+
+ private:
+  FreeCellsSource::Side side(int body) const {
+    const PlanSource::Body& from = source_.bodies[static_cast<std::size_t>(body)];
+    FreeCellsSource::Side result{{}, from.trees, from.frame_from_trees};
+    for (int frame = from.frame; frame >= 0;) {
+      const auto index = static_cast<std::size_t>(frame);
+      const Joint& joint = *joints_[index];
+      result.chain.push_back({source_.frames[index].parent_from_frame, joint.turns(), frame,
+                              joint.lower, joint.upper});
+      frame = source_.frames[index].parent;
+    }
+    std::reverse(result.chain.begin(), result.chain.end());
+    return result;
+  }
+
+  static constexpr double kLeastMargin = 0x1p-33;
+
+  const PlanSource& source_;
+  std::vector<const Joint*> joints_;  // that moves each frame
+  double margin_ = 0.0;
+};
+
 }  // namespace
 
 RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
   const MovingFrames frames(pairs.robot());
-  SearchTreeCache& cache = pairs.robot().search_trees();
+  CheckCache& cached = pairs.robot().check_cache();
+  SearchTreeCache& cache = cached.search_trees;
   RobotPlanSource result;
   PlanSource& source = result.source;
   source.frames = frames.frames;
@@ -59,6 +112,7 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
   for (std::size_t i = 0; i < source.bodies.size(); ++i) {
     source.body_paths.push_back(steps_of(pairs.path_to_root(i), pairs.robot(), frames));
   }
+  const CellsSource cells(pairs.robot(), frames, source);
   for (std::size_t i = 0; i < count; ++i) {
     const CheckedPair& pair = pairs.pairs()[i];
     PlanSource::Path path = steps_of(pairs.path(i), pairs.robot(), frames);
@@ -68,7 +122,9 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
     }
     source.tests.push_back({pair.piece, pair.other, pair.is_obstacle});
     result.pair_of_test.push_back(i);
-    if (!pair.is_obstacle) source.pair_paths.push_back(std::move(path));
+    if (pair.is_obstacle) continue;
+    source.tests.back().free_cells = cached.free_cells.of(cells.of(pair.piece, pair.other));
+    source.pair_paths.push_back(std::move(path));
   }
   return result;
 }
