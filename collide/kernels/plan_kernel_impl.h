@@ -222,6 +222,7 @@ class Evaluation {
     const Point<Real> p = center_of(scratch_, body, 0);
     Vector<Real> reach = all(body.nodes[0].radius);
     if constexpr (kMoves) reach += context_.half * scratch_.body_bounds[index].speed;
+    if (lanes_ != kAllLanes) reach = only<Real>(lanes_, reach);
     lower[0] = all(lowest(p.x - reach));
     lower[1] = all(lowest(p.y - reach));
     lower[2] = all(lowest(p.z - reach));

@@ -168,6 +168,14 @@ SPHERULE_INLINE auto highest(const V& a) {
   return -lowest(-a);
 }
 
+// In the lanes that are not given a number below all coordinates.
+template <class Real>
+SPHERULE_INLINE Vector<Real> only(unsigned lanes, const Vector<Real>& a) {
+  constexpr Real kBelowAll = Real(-1e30);
+  const Bits<Real> bits = {1, 2, 4, 8, 16, 32, 64, 128};
+  return (bits & (Bits<Real>{} + static_cast<int>(lanes))) != 0 ? a : all(kBelowAll);
+}
+
 // Puts a test to the front of the list.
 SPHERULE_INLINE void remember(PlanRecent& recent, std::int32_t test) {
   std::int32_t place = 0;

@@ -121,13 +121,14 @@ class WideSearch {
     WideSpheres& spheres = scratch_.placed[index];
     if (scratch_.stamps[index] == *scratch_.evaluation) return load_point(spheres.at);
     scratch_.stamps[index] = *scratch_.evaluation;
-    const auto row = [&](int i) {
-      return poses_.entry(body.frame, 0, i) * cx + poses_.entry(body.frame, 1, i) * cy +
-             poses_.entry(body.frame, 2, i) * cz + poses_.entry(body.frame, 3, i);
-    };
-    const Point<float> at = {row(0), row(1), row(2)};
-    store_point(at, spheres.at);
-    return at;
+    // Not by a function: that returns vectors, which warns where the machine has none.
+    Float8 at[3];
+    for (int i = 0; i < 3; ++i) {
+      at[i] = poses_.entry(body.frame, 0, i) * cx + poses_.entry(body.frame, 1, i) * cy +
+              poses_.entry(body.frame, 2, i) * cz + poses_.entry(body.frame, 3, i);
+      store(at[i], spheres.at[i]);
+    }
+    return {at[0], at[1], at[2]};
   }
 
   template <class Shape>
