@@ -51,10 +51,9 @@ struct FclObstacle {
 
 struct FclArm::Parts {
   const RobotModel& robot;
+  TestedLinks tested;
   std::vector<std::unique_ptr<FclModel<fcl::OBBRSSd>>> links{};
-  std::vector<Geometry> geometries{};  // of these, with the volumes that are asked for
-  std::vector<std::pair<std::size_t, std::size_t>> pairs{};
-  std::vector<std::size_t> moving{};              // links with a mesh that a variable moves
+  std::vector<Geometry> geometries{};             // of these, with the volumes that are asked for
   std::vector<std::optional<FclSolid>> solids{};  // of links with meshes, with their insides
   std::vector<FclObstacle> obstacles{};
   fcl::CollisionRequestd request{};
@@ -71,7 +70,8 @@ struct FclArm::Parts {
 
 FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene,
                FclVolume volume)
-    : parts_(std::make_unique<Parts>(Parts{arm.model})) {
+    : volume_(volume),
+      parts_(std::make_unique<Parts>(Parts{arm.model, tested_links(arm, allowed)})) {
   for (const TriangleMesh& mesh : arm.meshes) {
     parts_->links.push_back(
         mesh.triangles.empty() ? nullptr : std::make_unique<FclModel<fcl::OBBRSSd>>(mesh));
@@ -84,18 +84,6 @@ FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene&
     parts_->geometries.push_back(std::move(geometry));
     auto& solid = parts_->solids.emplace_back();
     if (!mesh.triangles.empty()) solid.emplace(mesh);
-  }
-  const std::size_t count = parts_->links.size();
-  for (std::size_t i = count; i-- > 0;) {
-    if (!parts_->links[i]) continue;
-    if (!allowed.allows(0, static_cast<int>(i)) ||
-        allowed.reason(0, static_cast<int>(i)) != AllowedReason::kRigid) {
-      parts_->moving.push_back(i);
-    }
-    for (std::size_t k = i; k-- > 0;) {
-      if (!parts_->links[k] || allowed.allows(static_cast<int>(i), static_cast<int>(k))) continue;
-      parts_->pairs.emplace_back(i, k);
-    }
   }
   const auto add = [&](const Geometry& geometry, const Pose& world_from_geometry) {
     const fcl::Transform3d pose = fcl_pose<double>(world_from_geometry);
@@ -115,11 +103,15 @@ FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene&
                                   : Geometry(FclModel<fcl::OBBRSSd>(scene.mesh).geometry),
         Pose());
   }
-  parts_->poses.resize(count);
-  parts_->boxes.resize(count);
+  parts_->poses.resize(parts_->links.size());
+  parts_->boxes.resize(parts_->links.size());
 }
 
 FclArm::~FclArm() = default;
+
+const char* FclArm::name() const {
+  return volume_ == FclVolume::kObb ? "FCL OBB" : "FCL OBBRSS";
+}
 
 bool FclArm::collides(std::span<const double> configuration) {
   Parts& in = *parts_;
@@ -129,7 +121,7 @@ bool FclArm::collides(std::span<const double> configuration) {
     in.poses[i] = fcl_pose<double>(in.world_from_link[i]);
     in.boxes[i] = in.links[i]->world_box(in.poses[i]);
   }
-  for (const std::size_t link : in.moving) {
+  for (const std::size_t link : in.tested.moving) {
     for (const FclObstacle& obstacle : in.obstacles) {
       if (!in.boxes[link].intersects(obstacle.box)) continue;
       if (in.touch(in.geometries[link].get(), in.poses[link], obstacle.geometry.get(),
@@ -138,7 +130,7 @@ bool FclArm::collides(std::span<const double> configuration) {
       }
     }
   }
-  for (const auto& [a, b] : in.pairs) {
+  for (const auto& [a, b] : in.tested.pairs) {
     if (!in.boxes[a].intersects(in.boxes[b])) continue;
     if (in.touch(in.geometries[a].get(), in.poses[a], in.geometries[b].get(), in.poses[b])) {
       return true;
@@ -150,7 +142,7 @@ bool FclArm::collides(std::span<const double> configuration) {
 bool FclArm::holds_an_obstacle(std::span<const double> configuration) {
   Parts& in = *parts_;
   forward_kinematics(in.robot, configuration, in.world_from_link);
-  return std::any_of(in.moving.begin(), in.moving.end(), [&](std::size_t link) {
+  return std::any_of(in.tested.moving.begin(), in.tested.moving.end(), [&](std::size_t link) {
     const Pose link_from_world = in.world_from_link[link].inverse();
     return std::any_of(in.obstacles.begin(), in.obstacles.end(), [&](const FclObstacle& obstacle) {
       return in.solids[link]->contains(link_from_world * obstacle.pose.translation());
