@@ -5,6 +5,7 @@
 #include "bench/fcl_solid.h"
 #include "collide/robot/kinematics.h"
 
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cylinder.h>
@@ -41,10 +42,14 @@ struct MakeGeometry {
   }
 };
 
+// Obstacles beyond this number are in a tree of their boxes.
+constexpr std::size_t kFewObstacles = 64;
+
 struct FclObstacle {
   Geometry geometry;
   fcl::Transform3d pose;
   Eigen::AlignedBox3d box;
+  std::unique_ptr<fcl::CollisionObjectd> object;
 };
 
 }  // namespace
@@ -56,6 +61,8 @@ struct FclArm::Parts {
   std::vector<Geometry> geometries{};             // of these, with the volumes that are asked for
   std::vector<std::optional<FclSolid>> solids{};  // of links with meshes, with their insides
   std::vector<FclObstacle> obstacles{};
+  fcl::DynamicAABBTreeCollisionManagerd tree{};  // of many obstacles, otherwise empty
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> moved{};  // links, for the tree
   fcl::CollisionRequestd request{};
   std::vector<Pose> world_from_link{};
   std::vector<fcl::Transform3d> poses{};
@@ -65,6 +72,37 @@ struct FclArm::Parts {
              const fcl::CollisionGeometryd* b, const fcl::Transform3d& pose_b) const {
     fcl::CollisionResultd result;
     return fcl::collide(a, pose_a, b, pose_b, request, result) > 0;
+  }
+
+  bool touches(std::size_t link, const FclObstacle& obstacle) const {
+    return boxes[link].intersects(obstacle.box) &&
+           touch(geometries[link].get(), poses[link], obstacle.geometry.get(), obstacle.pose);
+  }
+
+  bool touches_any(std::size_t link) {
+    if (tree.empty()) {
+      return std::any_of(obstacles.begin(), obstacles.end(),
+                         [&](const FclObstacle& obstacle) { return touches(link, obstacle); });
+    }
+    // The boxes that FCL gives a turned object are those of its ball.
+    moved[link]->setTransform(poses[link]);
+    moved[link]->computeAABB();
+    TreeQuery query{this, link, false};
+    tree.collide(moved[link].get(), &query, &visit);
+    return query.hit;
+  }
+
+  struct TreeQuery {
+    const Parts* parts;
+    std::size_t link;
+    bool hit;
+  };
+  // True ends the search.
+  static bool visit(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
+    TreeQuery& query = *static_cast<TreeQuery*>(data);
+    const void* const obstacle = a->getUserData() != nullptr ? a->getUserData() : b->getUserData();
+    query.hit = query.parts->touches(query.link, *static_cast<const FclObstacle*>(obstacle));
+    return query.hit;
   }
 };
 
@@ -87,10 +125,10 @@ FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene&
   }
   const auto add = [&](const Geometry& geometry, const Pose& world_from_geometry) {
     const fcl::Transform3d pose = fcl_pose<double>(world_from_geometry);
-    fcl::CollisionObjectd object(geometry, pose);
-    object.computeAABB();
-    parts_->obstacles.push_back(
-        {geometry, pose, Eigen::AlignedBox3d(object.getAABB().min_, object.getAABB().max_)});
+    auto object = std::make_unique<fcl::CollisionObjectd>(geometry, pose);
+    object->computeAABB();
+    const Eigen::AlignedBox3d box(object->getAABB().min_, object->getAABB().max_);
+    parts_->obstacles.push_back({geometry, pose, box, std::move(object)});
   };
   for (const PlacedPrimitive& obstacle : scene.obstacles) {
     add(std::visit(MakeGeometry(), obstacle.primitive), obstacle.world_from_primitive);
@@ -102,6 +140,17 @@ FclArm::FclArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene&
     add(volume == FclVolume::kObb ? Geometry(FclModel<fcl::OBBd>(scene.mesh).geometry)
                                   : Geometry(FclModel<fcl::OBBRSSd>(scene.mesh).geometry),
         Pose());
+  }
+  if (parts_->obstacles.size() > kFewObstacles) {
+    for (FclObstacle& obstacle : parts_->obstacles) {
+      obstacle.object->setUserData(&obstacle);
+      parts_->tree.registerObject(obstacle.object.get());
+    }
+    parts_->tree.setup();
+    for (const Geometry& geometry : parts_->geometries) {
+      parts_->moved.push_back(geometry ? std::make_unique<fcl::CollisionObjectd>(geometry)
+                                       : nullptr);
+    }
   }
   parts_->poses.resize(parts_->links.size());
   parts_->boxes.resize(parts_->links.size());
@@ -121,14 +170,9 @@ bool FclArm::collides(std::span<const double> configuration) {
     in.poses[i] = fcl_pose<double>(in.world_from_link[i]);
     in.boxes[i] = in.links[i]->world_box(in.poses[i]);
   }
-  for (const std::size_t link : in.tested.moving) {
-    for (const FclObstacle& obstacle : in.obstacles) {
-      if (!in.boxes[link].intersects(obstacle.box)) continue;
-      if (in.touch(in.geometries[link].get(), in.poses[link], obstacle.geometry.get(),
-                   obstacle.pose)) {
-        return true;
-      }
-    }
+  if (std::any_of(in.tested.moving.begin(), in.tested.moving.end(),
+                  [&](std::size_t link) { return in.touches_any(link); })) {
+    return true;
   }
   for (const auto& [a, b] : in.tested.pairs) {
     if (!in.boxes[a].intersects(in.boxes[b])) continue;

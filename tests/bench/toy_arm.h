@@ -40,8 +40,10 @@ inline Arm make_toy_arm(const TriangleMesh& bar = make_box({0.3, 0.05, 0.05})) {
 
 // Obstacles of all kinds around it; the largest is a mesh.
 inline ArmScene make_toy_scene() {
-  ArmScene scene{
-      .name = "toy", .cloud = {{0.0, -0.6, 0.2}, {0.1, -0.6, 0.1}}, .cloud_radius = 0.03};
+  ArmScene scene{.name = "toy", .cloud_radius = 0.03};
+  for (int i = 0; i < 10; ++i) {
+    for (int k = 0; k < 10; ++k) scene.cloud.push_back({0.02 * i, -0.6, 0.2 - 0.02 * k});
+  }
   const auto add = [&](const Primitive& primitive, const Eigen::Vector3d& at) {
     scene.obstacles.push_back({"obstacle " + std::to_string(scene.obstacles.size()), primitive,
                                Pose::from_translation(at)});
