@@ -36,11 +36,14 @@ TriangleMesh mesh_of(const LinkDescription& link) {
   return result;
 }
 
+// The middles of edges are rounded: pieces need not quite make up the triangle.
+constexpr double kRounding = 1e-9;  // metres
+
 // A piece whose ball is too large is halved, at the middle of its longest edge.
 void add_balls(const Triangle& triangle, double radius, std::vector<Sphere>& spheres) {
   const Sphere ball = enclosing_sphere(triangle);
-  if (ball.radius <= radius) {
-    spheres.push_back(ball);
+  if (ball.radius + kRounding <= radius) {
+    spheres.push_back({ball.center, ball.radius + kRounding});
     return;
   }
   int longest = 0;
