@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
   }
   try {
     ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
-    run(make_panda(models, argc > 3 ? argv[3] : "0.02"), static_cast<std::size_t>(problems),
+    run(make_panda(models, argc > 3 ? argv[3] : "0.01"), static_cast<std::size_t>(problems),
         options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
