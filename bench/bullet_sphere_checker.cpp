@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/bullet_sphere_checker.h"
 
+#include "bench/bullet_pair_test.h"
 #include "bench/scene_reach.h"
 
 #include <bullet/btBulletCollisionCommon.h>
@@ -11,18 +12,6 @@
 
 namespace spherule {
 namespace {
-
-btVector3 bullet_vector(const Eigen::Vector3d& v) {
-  const Eigen::Matrix<btScalar, 3, 1> rounded = v.cast<btScalar>();
-  return {rounded.x(), rounded.y(), rounded.z()};
-}
-
-btTransform bullet_pose(const Pose& pose) {
-  const Eigen::Matrix<btScalar, 3, 3> r = pose.matrix().cast<btScalar>();
-  const btMatrix3x3 rotation(r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1),
-                             r(2, 2));
-  return btTransform(rotation, bullet_vector(pose.translation()));
-}
 
 class Compound {
  public:
@@ -65,33 +54,12 @@ class Compound {
   btVector3 high_{0, 0, 0};
 };
 
-class Contacts : public btCollisionWorld::ContactResultCallback {
- public:
-  // A sphere pair that Bullet passes on has a distance of at most the threshold, zero.
-  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
-                           const btCollisionObjectWrapper*, int, int) override {
-    found_ |= point.getDistance() <= 0;
-    return 0;
-  }
-  bool found() const { return found_; }
-
- private:
-  bool found_ = false;
-};
-
 class ContactPairTest {
  public:
-  bool operator()(Compound& a, Compound& b) {
-    Contacts contacts;
-    world_.contactPairTest(&a.object(), &b.object(), contacts);
-    return contacts.found();
-  }
+  bool operator()(Compound& a, Compound& b) { return touch_(a.object(), b.object()); }
 
  private:
-  btDefaultCollisionConfiguration configuration_;
-  btCollisionDispatcher dispatcher_{&configuration_};
-  btDbvtBroadphase broadphase_;
-  btCollisionWorld world_{&dispatcher_, &broadphase_, &configuration_};
+  BulletPairTest touch_;
 };
 
 // What btCompoundCompoundCollisionAlgorithm does in MycollideTT().

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/planning/joint_space.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
@@ -22,9 +21,10 @@ class SeededSampler : public ob::RealVectorStateSampler {
 }  // namespace
 
 ob::StateSpacePtr make_joint_space(const RobotModel& robot, std::uint32_t seed, double step) {
-  const auto space = std::make_shared<ob::RealVectorStateSpace>(kJoints);
-  ob::RealVectorBounds bounds(kJoints);
-  for (std::size_t i = 0; i < kJoints; ++i) {
+  const auto joints = static_cast<unsigned>(robot.variable_count());
+  const auto space = std::make_shared<ob::RealVectorStateSpace>(joints);
+  ob::RealVectorBounds bounds(joints);
+  for (std::size_t i = 0; i < joints; ++i) {
     const Joint& joint = robot.joints()[static_cast<std::size_t>(robot.variable_joints()[i])];
     bounds.low[i] = joint.lower;
     bounds.high[i] = joint.upper;
@@ -37,11 +37,8 @@ ob::StateSpacePtr make_joint_space(const RobotModel& robot, std::uint32_t seed, 
   return space;
 }
 
-ArmPositions positions_of(const ob::State* state) {
-  const double* const values = state->as<ob::RealVectorStateSpace::StateType>()->values;
-  ArmPositions positions;
-  std::copy(values, values + kJoints, positions.begin());
-  return positions;
+std::span<const double> positions_of(const ob::State* state, std::size_t joints) {
+  return {state->as<ob::RealVectorStateSpace::StateType>()->values, joints};
 }
 
 }  // namespace spherule

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/workload.h"
+#include "collide/robot/robot_model.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <ompl/base/State.h>
 #include <ompl/base/StateSpace.h>
+#include <span>
 
 namespace spherule {
 
@@ -15,7 +17,7 @@ namespace spherule {
 ompl::base::StateSpacePtr make_joint_space(const RobotModel& robot, std::uint32_t seed,
                                            double step);
 
-// Of a state of such a space.
-ArmPositions positions_of(const ompl::base::State* state);
+// Of a state of such a space of so many joints.
+std::span<const double> positions_of(const ompl::base::State* state, std::size_t joints);
 
 }  // namespace spherule

@@ -3,30 +3,34 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 namespace spherule {
 
-PathCheck check_path(const std::vector<ArmPositions>& path, Checker& checker, double step) {
-  std::vector<ArmPositions> fine;
-  if (!path.empty()) fine.push_back(path.front());
+PathCheck check_path(const std::vector<Configuration>& path, const ContactTest& in_contact,
+                     double step) {
+  PathCheck result;
+  const auto look = [&](const Configuration& at) {
+    ++result.configurations;
+    result.contacts += in_contact(at) ? 1 : 0;
+  };
+  if (!path.empty()) look(path.front());
+  Configuration at;
   for (std::size_t i = 1; i < path.size(); ++i) {
     double most = 0.0;
-    for (std::size_t k = 0; k < kJoints; ++k) {
+    for (std::size_t k = 0; k < path[i].size(); ++k) {
       most = std::max(most, std::abs(path[i][k] - path[i - 1][k]));
     }
     const auto steps = std::max(1, static_cast<int>(std::ceil(most / step)));
+    at.resize(path[i].size());
     for (int s = 1; s <= steps; ++s) {
       const double t = static_cast<double>(s) / steps;
-      fine.emplace_back();
-      for (std::size_t k = 0; k < kJoints; ++k) {
-        fine.back()[k] = (1.0 - t) * path[i - 1][k] + t * path[i][k];
+      for (std::size_t k = 0; k < at.size(); ++k) {
+        at[k] = (1.0 - t) * path[i - 1][k] + t * path[i][k];
       }
+      look(at);
     }
   }
-  std::vector<std::uint8_t> verdicts(fine.size());
-  checker.check(fine, verdicts);
-  return {fine.size(), static_cast<std::size_t>(std::count(verdicts.begin(), verdicts.end(), 1))};
+  return result;
 }
 
 }  // namespace spherule

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/workload.h"
+#include "bench/configuration.h"
 
 #include <cstddef>
 #include <vector>
@@ -15,6 +15,7 @@ struct PathCheck {
 
 // Asks an engine about configurations on a path of straight motions in joint space, its corners
 // included, no joint moving by more than `step` radians from one to the next.
-PathCheck check_path(const std::vector<ArmPositions>& path, Checker& checker, double step);
+PathCheck check_path(const std::vector<Configuration>& path, const ContactTest& in_contact,
+                     double step);
 
 }  // namespace spherule

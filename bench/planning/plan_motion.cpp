@@ -34,10 +34,10 @@ constexpr std::size_t kPoints = 60;
 constexpr std::size_t kAngles = 12;
 
 // A configuration a line, in radians, as `spherule check` reads them.
-void write_path(const std::vector<ArmPositions>& path, const std::filesystem::path& file) {
+void write_path(const std::vector<Configuration>& path, const std::filesystem::path& file) {
   std::ostringstream text;
   text << std::setprecision(std::numeric_limits<double>::max_digits10);
-  for (const ArmPositions& positions : path) {
+  for (const Configuration& positions : path) {
     for (std::size_t i = 0; i < positions.size(); ++i) text << (i == 0 ? "" : ",") << positions[i];
     text << '\n';
   }
@@ -64,11 +64,11 @@ void run(const PlanningArguments& arguments) {
   const auto places = make_process_points(cell.robot, flange_from_wire, kPoints, kAngles);
   // The first of them ends at home.
   const PlanningProblem problem = make_problems(cell, *meshes, places.configurations, 1).front();
-  const Plan found = plan({checker, *meshes}, Validity::kProved, problem);
+  const Plan found = plan({checker, contact_test(*meshes)}, Validity::kProved, problem);
   if (!found.is_solved()) throw Error(cell.name, "no motion was found");
   const auto file = arguments.out / "motion.csv";
   write_path(found.path, file);
-  const PathCheck again = check_path(found.path, *meshes, kRecheckStep);
+  const PathCheck again = check_path(found.path, contact_test(*meshes), kRecheckStep);
   std::printf(
       "from a seam to home in %.2f ms (%zu motions proved or refused), %zu configurations: %s\n"
       "FCL on the meshes at %zu configurations of it: %zu in contact\n",

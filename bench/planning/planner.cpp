@@ -2,7 +2,6 @@
 #include "bench/planning/planner.h"
 
 #include "bench/planning/joint_space.h"
-#include "bench/planning/planning_cell.h"
 #include "bench/planning/processor_time.h"
 #include "collide/ompl/motion_validator.h"
 #include "collide/ompl/state_validity_checker.h"
@@ -21,15 +20,15 @@ namespace ob = ompl::base;
 
 class MeshValidity : public ob::StateValidityChecker {
  public:
-  MeshValidity(const ob::SpaceInformationPtr& information, Checker& meshes)
-      : ob::StateValidityChecker(information), meshes_(meshes) {}
+  MeshValidity(const ob::SpaceInformationPtr& information, ContactTest meshes)
+      : ob::StateValidityChecker(information), meshes_(std::move(meshes)) {}
 
   bool isValid(const ob::State* state) const override {
-    return si_->satisfiesBounds(state) && !collides(meshes_, positions_of(state));
+    return si_->satisfiesBounds(state) && !meshes_(positions_of(state, si_->getStateDimension()));
   }
 
  private:
-  Checker& meshes_;
+  ContactTest meshes_;
 };
 
 class CountedValidity : public ob::StateValidityChecker {
@@ -68,9 +67,9 @@ std::shared_ptr<CountedValidity> set_validity(const PlanningEngines& engines, Va
   return counted;
 }
 
-ob::ScopedState<> state_of(const ob::StateSpacePtr& space, const ArmPositions& positions) {
+ob::ScopedState<> state_of(const ob::StateSpacePtr& space, const Configuration& positions) {
   ob::ScopedState<> state(space);
-  state = std::vector<double>(positions.begin(), positions.end());
+  state = positions;
   return state;
 }
 
@@ -125,7 +124,8 @@ Plan plan(const PlanningEngines& engines, Validity validity, const PlanningProbl
   if (!solved) return result;
   const auto& path = *definition->getSolutionPath()->as<ompl::geometric::PathGeometric>();
   for (unsigned i = 0; i < path.getStateCount(); ++i) {
-    result.path.push_back(positions_of(path.getState(i)));
+    const auto positions = positions_of(path.getState(i), information->getStateDimension());
+    result.path.emplace_back(positions.begin(), positions.end());
   }
   return result;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "bench/configuration.h"
 #include "bench/planning/problems.h"
-#include "bench/workload.h"
 #include "collide/robot/robot_checker.h"
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace spherule {
 enum class Validity {
   kProved,   // RobotChecker, motions proved free at every point
   kSampled,  // RobotChecker, at steps of the motion
-  kMeshes,   // FCL on the meshes, at the same steps
+  kMeshes,   // FCL on the meshes, at steps, too
 };
 std::string name_of(Validity validity);
 
@@ -24,7 +24,7 @@ std::string name_of(Validity validity);
 // third.
 struct PlanningEngines {
   const RobotChecker& checker;
-  Checker& meshes;
+  ContactTest meshes;
 };
 
 struct PlanOptions {
@@ -41,7 +41,7 @@ struct Plan {
   double seconds = 0.0;                 // of the processor, of the search alone
   std::size_t state_checks = 0;         // configurations asked for singly
   std::size_t motion_checks = 0;
-  std::vector<ArmPositions> path = {};  // from start to goal if it is solved, otherwise empty
+  std::vector<Configuration> path = {};  // from start to goal if it is solved, otherwise empty
 
   bool is_solved() const { return end == PlanEnd::kSolved; }
 };

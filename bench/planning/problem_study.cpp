@@ -4,6 +4,7 @@
 #include "bench/clock.h"
 #include "bench/fcl_mesh_checker.h"
 #include "bench/planning/path_check.h"
+#include "bench/planning/planning_cell.h"
 
 #include <algorithm>
 
@@ -30,20 +31,40 @@ std::size_t ProblemRow::paths_in_contact() const {
       std::count_if(contacts.begin(), contacts.end(), [](std::size_t n) { return n > 0; }));
 }
 
+void ProblemStudy::add(const ProblemStudy& other) {
+  if (rows.empty()) {
+    *this = other;
+    return;
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ProblemRow& more = other.rows[i];
+    rows[i].plans.insert(rows[i].plans.end(), more.plans.begin(), more.plans.end());
+    rows[i].contacts.insert(rows[i].contacts.end(), more.contacts.begin(), more.contacts.end());
+    rows[i].looked_at += more.looked_at;
+  }
+}
+
 ProblemStudy study_problems(const Workload& workload, const RobotChecker& checker,
                             const std::vector<PlanningProblem>& problems,
                             const PlanOptions& options, double recheck_step) {
   const auto meshes = make_fcl_mesh_checker(
       workload, {FclMeshSetting::Volume::kObb, FclMeshSetting::Precision::kFloat});
   const auto judge = make_fcl_mesh_checker(workload, {});
+  return study_problems({checker, contact_test(*meshes)}, contact_test(*judge), problems, options,
+                        recheck_step);
+}
+
+ProblemStudy study_problems(const PlanningEngines& engines, const ContactTest& judge,
+                            const std::vector<PlanningProblem>& problems,
+                            const PlanOptions& options, double recheck_step) {
   ProblemStudy study{.options = options, .recheck_step = recheck_step};
   study.rows = {{Validity::kProved}, {Validity::kSampled}, {Validity::kMeshes}};
   for (std::size_t i = 0; i < problems.size(); ++i) {
     for (ProblemRow& row : study.rows) {
       PlanOptions one = options;
       one.seed += static_cast<std::uint32_t>(i);
-      row.plans.push_back(plan({checker, *meshes}, row.validity, problems[i], one));
-      const PathCheck found = check_path(row.plans.back().path, *judge, recheck_step);
+      row.plans.push_back(plan(engines, row.validity, problems[i], one));
+      const PathCheck found = check_path(row.plans.back().path, judge, recheck_step);
       row.contacts.push_back(found.contacts);
       row.looked_at += found.configurations;
     }

@@ -19,7 +19,7 @@ struct ProblemRow {
   std::size_t paths_in_contact() const;
 };
 
-// How another row compares with the last one, FCL's.
+// How a row compares with another one, FCL's.
 struct ProblemComparison {
   std::size_t both = 0;         // problems that both solve
   std::size_t mesh_only = 0;    // that FCL solves and it does not
@@ -33,10 +33,18 @@ struct ProblemStudy {
   PlanOptions options = {};
   double recheck_step = 0.0;
   std::vector<ProblemRow> rows = {};  // proved, sampled, FCL
+
+  // What was found for other problems.
+  void add(const ProblemStudy& other);
 };
 
 // Plans all problems with each way of checking, the same seed for the same problem, and looks at
-// every path again at steps of `recheck_step` radians (check_path()).
+// every path again by `judge` at steps of `recheck_step` radians (check_path()).
+ProblemStudy study_problems(const PlanningEngines& engines, const ContactTest& judge,
+                            const std::vector<PlanningProblem>& problems,
+                            const PlanOptions& options, double recheck_step);
+
+// The same in a cell, by FCL's fastest setting and, looking again, in double.
 ProblemStudy study_problems(const Workload& workload, const RobotChecker& checker,
                             const std::vector<PlanningProblem>& problems,
                             const PlanOptions& options, double recheck_step);

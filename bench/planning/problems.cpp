@@ -16,12 +16,16 @@ constexpr std::uint64_t kSeed = 11;
 constexpr int kTries = 1000;    // for one problem
 constexpr double kStep = 0.01;  // radians
 
-bool needs_a_plan(const PlanningProblem& problem, Checker& meshes) {
-  return !collides(meshes, problem.start) && !collides(meshes, problem.goal) &&
-         check_path({problem.start, problem.goal}, meshes, kStep).contacts > 0;
+Configuration configuration_of(const ArmPositions& positions) {
+  return {positions.begin(), positions.end()};
 }
 
 }  // namespace
+
+bool needs_a_plan(const PlanningProblem& problem, const ContactTest& in_contact) {
+  return !in_contact(problem.start) && !in_contact(problem.goal) &&
+         check_path({problem.start, problem.goal}, in_contact, kStep).contacts > 0;
+}
 
 std::vector<PlanningProblem> make_problems(const Workload& workload, Checker& meshes,
                                            std::span<const ArmPositions> places,
@@ -37,8 +41,9 @@ std::vector<PlanningProblem> make_problems(const Workload& workload, Checker& me
     if (tries == kTries) throw Error(workload.name, "hardly any motion needs a plan");
     const ArmPositions start = place();
     const bool goes_home = problems.size() % 2 == 0;
-    const PlanningProblem problem{start, goes_home ? workload.program.front() : place()};
-    if (!needs_a_plan(problem, meshes)) continue;
+    const PlanningProblem problem{configuration_of(start),
+                                  configuration_of(goes_home ? workload.program.front() : place())};
+    if (!needs_a_plan(problem, contact_test(meshes))) continue;
     problems.push_back(problem);
     tries = 0;
   }

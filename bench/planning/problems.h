@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "bench/configuration.h"
 #include "bench/workload.h"
 
 #include <cstddef>
@@ -10,9 +11,13 @@
 namespace spherule {
 
 struct PlanningProblem {
-  ArmPositions start;
-  ArmPositions goal;
+  Configuration start;
+  Configuration goal;
 };
+
+// Whether its ends are free and the straight motion between them is not, at configurations that are
+// asked about.
+bool needs_a_plan(const PlanningProblem& problem, const ContactTest& in_contact);
 
 // What the robot does between welds: the first, third, ... leads from one of the `places` to the
 // home position (the program's first), the others to another of the places. These are drawn; the

@@ -7,6 +7,7 @@
 #include "spheretree/enclosing_sphere.h"
 
 #include <array>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <utility>
@@ -35,11 +36,14 @@ TriangleMesh mesh_of(const LinkDescription& link) {
   return result;
 }
 
+// The middles of edges are rounded: pieces need not quite make up the triangle.
+constexpr double kRounding = 1e-9;  // metres
+
 // A piece whose ball is too large is halved, at the middle of its longest edge.
 void add_balls(const Triangle& triangle, double radius, std::vector<Sphere>& spheres) {
   const Sphere ball = enclosing_sphere(triangle);
-  if (ball.radius <= radius) {
-    spheres.push_back(ball);
+  if (ball.radius + kRounding <= radius) {
+    spheres.push_back({ball.center, ball.radius + kRounding});
     return;
   }
   int longest = 0;
@@ -54,15 +58,6 @@ void add_balls(const Triangle& triangle, double radius, std::vector<Sphere>& sph
   const Eigen::Vector3d middle = 0.5 * (triangle[k] + triangle[(k + 1) % 3]);
   add_balls({triangle[k], middle, triangle[(k + 2) % 3]}, radius, spheres);
   add_balls({middle, triangle[(k + 1) % 3], triangle[(k + 2) % 3]}, radius, spheres);
-}
-
-std::vector<Sphere> balls_around(const TriangleMesh& mesh, double radius) {
-  std::vector<Sphere> spheres;
-  for (const Eigen::Vector3i& t : mesh.triangles) {
-    const auto corner = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
-    add_balls({corner(0), corner(1), corner(2)}, radius, spheres);
-  }
-  return spheres;
 }
 
 std::vector<Sphere> balls_of(const LinkDescription& link) {
@@ -95,16 +90,33 @@ Arm make_arm(const std::filesystem::path& models, SpheresOf spheres_of) {
 
 }  // namespace
 
-Arm make_panda(const std::filesystem::path& models, double radius) {
+std::vector<Sphere> balls_around(const TriangleMesh& mesh, double radius) {
+  std::vector<Sphere> spheres;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const auto corner = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
+    add_balls({corner(0), corner(1), corner(2)}, radius, spheres);
+  }
+  return spheres;
+}
+
+Arm make_panda(const std::filesystem::path& models, const std::string& cover) {
+  const double radius = std::atof(cover.c_str());
+  if (!(radius > 0.0)) {
+    const RobotDescription spheres = read_urdf(cover);
+    return make_arm(models, [&](std::size_t link, const TriangleMesh&) {
+      return balls_of(spheres.links.at(link));
+    });
+  }
   return make_arm(
       models, [&](std::size_t, const TriangleMesh& mesh) { return balls_around(mesh, radius); });
 }
 
-Arm make_panda(const std::filesystem::path& models, const std::filesystem::path& spherized) {
-  const RobotDescription spheres = read_urdf(spherized);
-  return make_arm(models, [&](std::size_t link, const TriangleMesh&) {
-    return balls_of(spheres.links.at(link));
-  });
+AllowedCollisions allowed_contacts(const Arm& arm) {
+  AllowedCollisions allowed(arm.model);
+  // How far the hand is closed is not the arm's affair.
+  allowed.allow("panda_leftfinger", "panda_rightfinger");
+  allow_sampled(sample_collisions(arm.model, allowed, {.configurations = 2000}), allowed);
+  return allowed;
 }
 
 }  // namespace spherule

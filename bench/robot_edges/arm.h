@@ -2,12 +2,15 @@
 #pragma once
 
 #include "collide/mesh_contact.h"
+#include "collide/robot/allowed_collisions.h"
 #include "collide/robot/robot_model.h"
+#include "spheretree/sphere.h"
 #include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace spherule {
@@ -21,14 +24,17 @@ struct Arm {
   std::size_t spheres = 0;
 };
 
-// Franka's Panda from a folder that holds robots/franka_panda. The spheres contain the surfaces:
-// every triangle is split at its longest edge until a ball of `radius` (metres) holds the piece,
-// and gets the balls of its pieces. They protrude by no more than the radius, and are several times
-// as many as a cover of the solid needs; it is the surfaces that FCL tests. Throws Error if files
-// are missing.
-Arm make_panda(const std::filesystem::path& models, double radius);
+// Every triangle is split at its longest edge until a ball of `radius` (metres) holds the piece,
+// and gets the balls of its pieces: they contain the surface (it is the surfaces that FCL tests),
+// protrude by no more than the radius, and are several times as many as a cover of the solid needs.
+std::vector<Sphere> balls_around(const TriangleMesh& mesh, double radius);
 
-// The same with the balls of a spherized URDF, as `spherule robot` writes it, for the same links.
-Arm make_panda(const std::filesystem::path& models, const std::filesystem::path& spherized);
+// Franka's Panda from a folder that holds robots/franka_panda. `cover` is either a spherized URDF,
+// as `spherule robot` writes it, whose balls its links carry; or the radius of balls_around() its
+// meshes. Throws Error if files are missing.
+Arm make_panda(const std::filesystem::path& models, const std::string& cover);
+
+// Which links of a Panda are not tested against each other: as sampled, and the two fingers.
+AllowedCollisions allowed_contacts(const Arm& arm);
 
 }  // namespace spherule

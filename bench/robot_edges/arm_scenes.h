@@ -38,4 +38,7 @@ ArmScene scene_of_primitives(std::size_t count);
 ArmScene scene_of_points(std::size_t count);
 ArmScene scene_of_triangles(std::size_t count);
 
+// Fifty primitives, a cloud of 4,000 points and a solid mesh of 20,000 triangles.
+std::vector<ArmScene> larger_scenes();
+
 }  // namespace spherule

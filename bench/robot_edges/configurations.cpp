@@ -14,36 +14,46 @@ double ConfigurationRow::median_ns() const {
   return quantile(sorted, 0.5);
 }
 
-void ConfigurationTimes::print_head() {
+void ConfigurationTimes::print_head() const {
   std::printf(
       "\none configuration: ns one a call; times as long as that: many a call, confirmed, the "
       "flat\n"
-      "scan, FCL; of all configurations in contact by FCL or with an obstacle inside of a link, "
-      "missed, extra, and extra confirmed\n"
-      "| scene, order | ns | many | confirmed | flat | OBBRSS | OBB | contact | missed | extra | "
-      "confirmed: missed | extra |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "scan, other libraries; of all configurations in contact by FCL or with an obstacle inside "
+      "of a link, missed / extra\n"
+      "| scene, order | ns | many | confirmed | flat |");
+  for (const Peer& peer : peers) std::printf(" %s |", peer.name.c_str());
+  std::printf(" contact | missed / extra | confirmed |");
+  for (const Peer& peer : peers) std::printf(" %s |", peer.name.c_str());
+  std::printf("\n|---|---|---|---|---|---|---|---|");
+  for (std::size_t i = 0; i < 2 * peers.size(); ++i) std::printf("---|");
+  std::printf("\n");
 }
 
 void ConfigurationTimes::print(const char* name) const {
   const auto count = static_cast<double>(single.free.size());
   const double own = single.median_ns();
-  const auto times = [&](const ConfigurationRow& row) {
-    return row.is_asked() ? row.median_ns() / own : 0.0;
+  const auto print_time = [&](const ConfigurationRow& row) {
+    if (row.is_asked()) {
+      std::printf(" %5.2f |", row.median_ns() / own);
+    } else {
+      std::printf(" - |");
+    }
   };
-  std::size_t contact = 0, missed = 0, extra = 0, confirmed_missed = 0, confirmed_extra = 0;
-  for (std::size_t i = 0; i < single.free.size(); ++i) {
-    const bool is_contact = truth[i] == 0;
-    contact += is_contact ? 1 : 0;
-    missed += is_contact && single.free[i] != 0 ? 1 : 0;
-    extra += !is_contact && single.free[i] == 0 ? 1 : 0;
-    confirmed_missed += is_contact && confirmed.free[i] != 0 ? 1 : 0;
-    confirmed_extra += !is_contact && confirmed.free[i] == 0 ? 1 : 0;
-  }
-  std::printf(
-      "| %-16s | %6.0f | %4.2f | %5.2f | %5.1f | %6.1f | %6.1f | %5zu | %zu | %4zu | %zu | "
-      "%zu |\n",
-      name, own / count, times(batch), times(confirmed), times(flat), times(obbrss), times(obb),
-      contact, missed, extra, confirmed_missed, confirmed_extra);
+  const auto print_verdicts = [&](const ConfigurationRow& row) {
+    std::size_t missed = 0, extra = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      missed += truth[i] == 0 && row.free[i] != 0 ? 1 : 0;
+      extra += truth[i] != 0 && row.free[i] == 0 ? 1 : 0;
+    }
+    std::printf(" %zu / %zu |", missed, extra);
+  };
+  std::printf("| %-16s | %6.0f |", name, own / count);
+  for (const ConfigurationRow* row : {&batch, &confirmed, &flat}) print_time(*row);
+  for (const Peer& peer : peers) print_time(peer.row);
+  std::printf(" %5zu |", static_cast<std::size_t>(std::count(truth.begin(), truth.end(), 0)));
+  for (const ConfigurationRow* row : {&single, &confirmed}) print_verdicts(*row);
+  for (const Peer& peer : peers) print_verdicts(peer.row);
+  std::printf("\n");
 }
 
 }  // namespace spherule

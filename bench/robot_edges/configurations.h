@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace spherule {
@@ -23,16 +24,21 @@ struct ConfigurationTimes {
         batch(single),
         confirmed(single),
         flat(single),
-        obbrss(single),
-        obb(single),
         truth(count) {}
 
-  ConfigurationRow single, batch, confirmed, flat, obbrss, obb;
+  // Of another library.
+  struct Peer {
+    std::string name;
+    ConfigurationRow row;
+  };
+
+  ConfigurationRow single, batch, confirmed, flat;
+  std::vector<Peer> peers{};
   std::vector<std::uint8_t> truth;  // 1: free, by FCL and by points in solids
 
   // A row of the table: ns a configuration, times as long as one a call, and verdicts.
   void print(const char* name) const;
-  static void print_head();
+  void print_head() const;
 };
 
 }  // namespace spherule

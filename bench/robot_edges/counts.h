@@ -5,13 +5,24 @@
 #include "collide/edge.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace spherule {
 
 // What was found at usual steps.
 struct Met {
   bool spheres = false;
-  bool meshes = false;  // by FCL
+  std::vector<std::uint8_t> peers;  // by each of them: 1 or 0
+};
+
+// How another library's check at usual steps compares with fine ones of FCL.
+struct PeerCounts {
+  std::string name;
+  std::size_t missed = 0;  // no contact at usual steps, but at fine ones
+  std::size_t extra = 0;   // the reverse: what it checks is another geometry
+  Times times{};
 };
 
 // What was said of edges, and how long it took.
@@ -28,17 +39,19 @@ struct Counts {
   std::size_t confirmed_unknown = 0;
   std::size_t confirmed_missed = 0;
   std::size_t confirmed_extra = 0;
-  std::size_t fcl_missed = 0;  // no contact at usual steps, but at fine ones
   std::size_t own_missed = 0;  // spheres that meet, but not at usual steps
   std::size_t looks = 0;       // configurations that the proofs looked at
-  Times proof, confirmed, own, obbrss, obb;
+  Times proof, confirmed, own;
+  std::vector<PeerCounts> peers{};
 
   // Of one more edge.
   void judge(const EdgeResult& result, const EdgeResult& of_meshes, const Met& sampled,
              bool in_contact);
   void add(const Counts& other);
 
-  // A row of the table of verdicts, and of the one of times.
+  // A row of the table of verdicts, and of the one of times, and what stands above them.
+  void print_verdicts_head() const;
+  void print_times_head() const;
   void print_verdicts(const char* name) const;
   void print_times(const char* name) const;
 };

@@ -3,6 +3,9 @@
 
 #include "bench/clock.h"
 #include "bench/robot_edges/robot_scenes.h"
+#if defined(SPHERULE_BENCH_BULLET)
+#include "bench/robot_edges/bullet_arm.h"
+#endif
 
 #include <algorithm>
 #include <stdexcept>
@@ -19,9 +22,9 @@ constexpr double kFineStep = 0.002;
 constexpr std::size_t kRun = 64;
 constexpr int kRounds = 3;
 
-bool meets(FclArm& fcl, const std::vector<Configuration>& all) {
+bool meets(ArmChecker& arm, const std::vector<Configuration>& all) {
   return std::any_of(all.begin(), all.end(),
-                     [&](const Configuration& at) { return fcl.collides(at); });
+                     [&](const Configuration& at) { return arm.collides(at); });
 }
 
 }  // namespace
@@ -34,7 +37,15 @@ Course::Course(const Arm& arm, const AllowedCollisions& allowed, const ArmScene&
       flat_(arm, allowed, scene),
       has_mesh_(!scene.mesh.triangles.empty()),
       obbrss_(arm, allowed, scene, FclVolume::kObbRss),
-      obb_(arm, allowed, scene, FclVolume::kObb) {}
+      obb_(arm, allowed, scene, FclVolume::kObb),
+      peers_{&obbrss_, &obb_} {
+#if defined(SPHERULE_BENCH_BULLET)
+  for (const BulletLinks links : {BulletLinks::kHulls, BulletLinks::kGImpact}) {
+    bullet_.push_back(std::make_unique<BulletArm>(arm, allowed, scene, links));
+    peers_.push_back(bullet_.back().get());
+  }
+#endif
+}
 
 std::vector<Edge> Course::draw(std::size_t count, RandomNumbers& random) {
   std::vector<Edge> edges;
@@ -51,13 +62,14 @@ std::vector<Edge> Course::draw(std::size_t count, RandomNumbers& random) {
 
 Counts Course::measure(std::span<const Edge> edges) {
   Counts counts;
+  for (const ArmChecker* peer : peers_) counts.peers.push_back({.name = peer->name()});
   for (std::size_t first = 0; first < edges.size(); first += kRun) {
     const std::size_t last = std::min(edges.size(), first + kRun);
     std::vector<std::vector<Configuration>> usual;
     for (std::size_t i = first; i < last; ++i) usual.push_back(samples(edges[i], kUsualStep));
     std::vector<EdgeResult> results(last - first);
     std::vector<EdgeResult> confirmed(last - first);
-    std::vector<Met> met(last - first);
+    std::vector<Met> met(last - first, {.peers = std::vector<std::uint8_t>(peers_.size())});
     const auto time_all = [&](Times& times, auto ask) {
       for (std::size_t i = first; i < last; ++i) {
         const auto start = Clock::now();
@@ -79,12 +91,14 @@ Counts Course::measure(std::span<const Edge> edges) {
         met[i].spheres = !std::all_of(usual[i].begin(), usual[i].end(),
                                       [&](const Configuration& at) { return is_free(at); });
       });
-      time_all(counts.obbrss, [&](std::size_t i) { met[i].meshes = meets(obbrss_, usual[i]); });
-      time_all(counts.obb, [&](std::size_t i) { meets(obb_, usual[i]); });
+      for (std::size_t k = 0; k < peers_.size(); ++k) {
+        time_all(counts.peers[k].times,
+                 [&](std::size_t i) { met[i].peers[k] = meets(*peers_[k], usual[i]) ? 1 : 0; });
+      }
     }
     for (std::size_t i = first; i < last; ++i) {
       const Met& sampled = met[i - first];
-      const bool in_contact = sampled.meshes || meets(obb_, samples(edges[i], kFineStep));
+      const bool in_contact = sampled.peers[0] != 0 || meets(obb_, samples(edges[i], kFineStep));
       counts.judge(results[i - first], confirmed[i - first], sampled, in_contact);
     }
   }
@@ -108,6 +122,7 @@ ConfigurationTimes Course::measure_configurations(std::size_t count, bool is_pat
     }
   }
   ConfigurationTimes times(count);
+  for (const ArmChecker* peer : peers_) times.peers.push_back({peer->name(), times.single});
   const auto at = [&](std::size_t i) { return std::span(all).subspan(i * variables, variables); };
   const auto time_each = [&](ConfigurationRow& row, auto is_free_at) {
     const auto start = Clock::now();
@@ -123,11 +138,12 @@ ConfigurationTimes Course::measure_configurations(std::size_t count, bool is_pat
     time_each(times.confirmed,
               [&](auto q) { return confirmed_.check_config(q, confirmed_scratch_); });
     if (!has_mesh_) time_each(times.flat, [&](auto q) { return !flat_.collides(q); });
-    time_each(times.obbrss, [&](auto q) { return !obbrss_.collides(q); });
-    time_each(times.obb, [&](auto q) { return !obb_.collides(q); });
+    for (std::size_t k = 0; k < peers_.size(); ++k) {
+      time_each(times.peers[k].row, [&](auto q) { return !peers_[k]->collides(q); });
+    }
   }
   for (std::size_t i = 0; i < count; ++i) {
-    times.truth[i] = times.obbrss.free[i] != 0 && !obbrss_.holds_an_obstacle(at(i)) ? 1 : 0;
+    times.truth[i] = times.peers[0].row.free[i] != 0 && !obbrss_.holds_an_obstacle(at(i)) ? 1 : 0;
   }
   return times;
 }

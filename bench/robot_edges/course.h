@@ -12,6 +12,7 @@
 #include "collide/robot/robot_checker.h"
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -43,6 +44,8 @@ class Course {
   bool has_mesh_;
   FclArm obbrss_;
   FclArm obb_;
+  std::vector<std::unique_ptr<ArmChecker>> bullet_{};  // none if Bullet is not there
+  std::vector<ArmChecker*> peers_;                     // all of these
 };
 
 }  // namespace spherule

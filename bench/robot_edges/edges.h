@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "bench/configuration.h"
 #include "bench/studies/random_numbers.h"
 #include "collide/robot/robot_model.h"
 
 #include <vector>
 
 namespace spherule {
-
-using Configuration = std::vector<double>;
 
 struct Edge {
   Configuration from;

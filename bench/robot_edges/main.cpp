@@ -2,9 +2,9 @@
 
 // Moves and configurations of a Panda in seven scenes of primitives and among fifty, in a cloud of
 // points and about a solid mesh, self-collision included: moves proved by RobotChecker, with its
-// spheres and confirmed on the meshes, and sampled as planners do it, by FCL on the meshes and by
-// RobotChecker. Prints what each misses, and the ratios of their times; and what self-collision and
-// more spheres cost.
+// spheres and confirmed on the meshes, and sampled as planners do it, by FCL on the meshes, by
+// Bullet on their hulls and triangles, and by RobotChecker. Prints what each misses, and the ratios
+// of their times; and what self-collision and more spheres cost.
 //   SPHERULE_MODELS=DIR spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]...]
 
 #include "bench/clock.h"
@@ -55,14 +55,6 @@ void measure_itself(const Arm& arm, const AllowedCollisions& allowed, RandomNumb
               ours.mean_us(), found, theirs.mean_us(), met);
 }
 
-AllowedCollisions allowed_of(const Arm& arm) {
-  AllowedCollisions allowed(arm.model);
-  // How far the hand is closed is not the arm's affair.
-  allowed.allow("panda_leftfinger", "panda_rightfinger");
-  allow_sampled(sample_collisions(arm.model, allowed, {.configurations = 2000}), allowed);
-  return allowed;
-}
-
 void measure_edges(const Arm& arm, const AllowedCollisions& allowed,
                    const std::vector<ArmScene>& scenes, std::size_t edges, RandomNumbers& random) {
   std::vector<Counts> each;
@@ -72,45 +64,38 @@ void measure_edges(const Arm& arm, const AllowedCollisions& allowed,
     each.push_back(course.measure(course.draw(edges / scenes.size(), random)));
     all.add(each.back());
   }
-  std::printf(
-      "| scene | edges | in contact | proved free | collision | unknown | missed | extra | "
-      "confirmed: proved | unknown | missed | extra | FCL missed | own missed |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  all.print_verdicts_head();
   for (std::size_t i = 0; i < each.size(); ++i) each[i].print_verdicts(scenes[i].name.c_str());
   all.print_verdicts("all");
-  std::printf(
-      "\nproof: us an edge, mean and median; times as long as that, in all and median\n"
-      "| scene   | looks | proof | confirmed | own sampled | FCL OBBRSS | FCL OBB |\n"
-      "|---|---|---|---|---|---|---|\n");
+  all.print_times_head();
   for (std::size_t i = 0; i < each.size(); ++i) each[i].print_times(scenes[i].name.c_str());
   all.print_times("all");
 }
 
 void measure_configurations(const Arm& arm, const AllowedCollisions& allowed,
                             const std::vector<ArmScene>& scenes, RandomNumbers& random) {
-  ConfigurationTimes::print_head();
   for (const ArmScene& scene : scenes) {
     Course course(arm, allowed, scene);
     for (const bool is_path : {true, false}) {
-      course.measure_configurations(2000, is_path, random)
-          .print((scene.name + (is_path ? ", path" : ", random")).c_str());
+      const ConfigurationTimes times = course.measure_configurations(2000, is_path, random);
+      if (&scene == &scenes.front() && is_path) times.print_head();
+      times.print((scene.name + (is_path ? ", path" : ", random")).c_str());
     }
   }
 }
 
 void run(std::span<const Arm> arms, std::size_t edges) {
   const Arm& arm = arms.front();
-  const AllowedCollisions allowed = allowed_of(arm);
+  const AllowedCollisions allowed = allowed_contacts(arm);
   std::printf("%zu triangles, %zu spheres\n", arm.triangles, arm.spheres);
   RandomNumbers random(7);
   measure_itself(arm, allowed, random);
   measure_edges(arm, allowed, primitive_scenes(), edges, random);
-  const std::vector<ArmScene> whole = {scene_of_primitives(50), scene_of_points(4000),
-                                       scene_of_triangles(20000)};
+  const std::vector<ArmScene> larger = larger_scenes();
   std::printf("\n");
-  measure_edges(arm, allowed, whole, edges / 10, random);
+  measure_edges(arm, allowed, larger, edges / 10, random);
   std::vector<ArmScene> scenes = primitive_scenes();
-  scenes.insert(scenes.end(), whole.begin(), whole.end());
+  scenes.insert(scenes.end(), larger.begin(), larger.end());
   measure_configurations(arm, allowed, scenes, random);
   measure_self_share(arm, allowed);
   if (arms.size() > 1) measure_sizes(arms, allowed);
@@ -135,11 +120,7 @@ int main(int argc, char** argv) {
     std::vector<std::string> covers(argv + std::min(argc, 2), argv + argc);
     if (covers.empty()) covers = {"0.02"};
     std::vector<Arm> arms;
-    for (const std::string& cover : covers) {
-      const double radius = std::atof(cover.c_str());
-      arms.push_back(radius > 0.0 ? make_panda(models, radius)
-                                  : make_panda(models, std::filesystem::path(cover)));
-    }
+    for (const std::string& cover : covers) arms.push_back(make_panda(models, cover));
     run(arms, static_cast<std::size_t>(edges));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

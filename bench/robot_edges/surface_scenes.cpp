@@ -87,4 +87,8 @@ ArmScene scene_of_primitives(std::size_t count) {
   return scene;
 }
 
+std::vector<ArmScene> larger_scenes() {
+  return {scene_of_primitives(50), scene_of_points(4000), scene_of_triangles(20000)};
+}
+
 }  // namespace spherule

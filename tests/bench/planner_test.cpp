@@ -18,9 +18,9 @@
 namespace spherule {
 namespace {
 
-constexpr ArmPositions kLeft{0.6, 0.0, 0.0, 0.0, 0.5, 0.0};
-constexpr ArmPositions kAtPost{0.0, 0.0, 0.0, 0.0, 0.5, 0.0};
-constexpr ArmPositions kRight{-0.6, 0.0, 0.0, 0.0, 0.5, 0.0};
+const Configuration kLeft{0.6, 0.0, 0.0, 0.0, 0.5, 0.0};
+const Configuration kAtPost{0.0, 0.0, 0.0, 0.0, 0.5, 0.0};
+const Configuration kRight{-0.6, 0.0, 0.0, 0.0, 0.5, 0.0};
 
 // A side of the post goes through the tool in kAtPost.
 Workload make_post_cell() {
@@ -38,7 +38,7 @@ struct PostCell {
   std::unique_ptr<Checker> meshes = make_fcl_mesh_checker(cell, {});
 
   Plan plan(Validity validity, const PlanningProblem& problem, const PlanOptions& options = {}) {
-    return spherule::plan({checker, *meshes}, validity, problem, options);
+    return spherule::plan({checker, contact_test(*meshes)}, validity, problem, options);
   }
 };
 
@@ -46,7 +46,7 @@ constexpr Validity kAll[] = {Validity::kProved, Validity::kSampled, Validity::kM
 
 TEST(Planner, FindsAWayAroundThePost) {
   PostCell post;
-  EXPECT_GT(check_path({kLeft, kRight}, *post.meshes, 0.01).contacts, 0u);
+  EXPECT_GT(check_path({kLeft, kRight}, contact_test(*post.meshes), 0.01).contacts, 0u);
   for (const Validity validity : kAll) {
     for (std::uint32_t seed = 1; seed <= static_cast<std::uint32_t>(test::effort(5, 2)); ++seed) {
       const Plan plan = post.plan(validity, {kLeft, kRight}, {.seed = seed});
@@ -58,7 +58,8 @@ TEST(Planner, FindsAWayAroundThePost) {
       if (validity != Validity::kProved) {
         EXPECT_GT(plan.state_checks, 10 * plan.motion_checks);
       }
-      EXPECT_EQ(check_path(plan.path, *post.meshes, 0.002).contacts, 0u) << name_of(validity);
+      EXPECT_EQ(check_path(plan.path, contact_test(*post.meshes), 0.002).contacts, 0u)
+          << name_of(validity);
     }
   }
 }
@@ -79,7 +80,7 @@ TEST(Planner, SampledMotionsMayPassThroughThePost) {
   for (const Validity validity : kAll) {
     const Plan plan = post.plan(validity, {kLeft, kRight}, coarse);
     ASSERT_TRUE(plan.is_solved());
-    EXPECT_EQ(check_path(plan.path, *post.meshes, 0.01).contacts == 0,
+    EXPECT_EQ(check_path(plan.path, contact_test(*post.meshes), 0.01).contacts == 0,
               validity == Validity::kProved)
         << name_of(validity);
   }

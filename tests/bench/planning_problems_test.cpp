@@ -34,19 +34,27 @@ TEST(PlanningProblems, EndsAreFreeAndTheStraightMotionIsNot) {
   places.insert(places.end(), places.size(), *in_contact);
   const auto problems = make_problems(cell, *meshes, places, 10);
   ASSERT_EQ(problems.size(), 10u);
+  const auto positions_of = [](const Configuration& configuration) {
+    ArmPositions positions;
+    std::copy_n(configuration.begin(), kJoints, positions.begin());
+    return positions;
+  };
   const auto is_place = [&](const ArmPositions& positions) {
     return std::find(places.begin(), places.end(), positions) != places.end();
   };
   std::vector<ArmPositions> ends;
   std::set<ArmPositions> starts;
   for (std::size_t i = 0; i < problems.size(); ++i) {
-    const auto& [start, goal] = problems[i];
+    const ArmPositions start = positions_of(problems[i].start);
+    const ArmPositions goal = positions_of(problems[i].goal);
     EXPECT_TRUE(is_place(start));
     EXPECT_EQ(goal == cell.program.front(), i % 2 == 0);
     EXPECT_EQ(is_place(goal), i % 2 == 1);
     ends.push_back(start);
     ends.push_back(goal);
-    EXPECT_GT(check_path({start, goal}, *meshes, 0.001).contacts, 0u);
+    EXPECT_GT(
+        check_path({problems[i].start, problems[i].goal}, contact_test(*meshes), 0.001).contacts,
+        0u);
     starts.insert(start);
   }
   EXPECT_GT(starts.size(), problems.size() / 2);
@@ -55,40 +63,30 @@ TEST(PlanningProblems, EndsAreFreeAndTheStraightMotionIsNot) {
   EXPECT_THROW(make_problems(cell, *meshes, {&*in_contact, 1}, 1), Error);
 }
 
-// In contact where the second joint is in a thin slab; keeps what it is asked.
-class Slab : public Checker {
- public:
-  void check(std::span<const ArmPositions> configurations,
-             std::span<std::uint8_t> verdicts) override {
-    asked.assign(configurations.begin(), configurations.end());
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      verdicts[i] = asked[i][1] > 0.5 && asked[i][1] < 0.502 ? 1 : 0;
-    }
-  }
-  std::vector<ArmPositions> asked;
-};
-
 TEST(PathCheck, StepsFinelyOverEveryCorner) {
-  const std::vector<ArmPositions> path = {{},
-                                          {0.0, 1.0, 0.0, 0.0, 0.0, 0.0},
-                                          {0.0, 1.0, 0.0, 0.0, 0.0, 0.0},
-                                          {-0.3, 1.0, 0.2, 0.0, 0.0, 0.05}};
-  Slab slab;
+  const std::vector<Configuration> path = {
+      {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}, {-0.3, 1.0, 0.2}};
+  // In contact where the second joint is in a thin slab.
+  std::vector<Configuration> asked;
+  const ContactTest slab = [&](std::span<const double> at) {
+    asked.emplace_back(at.begin(), at.end());
+    return at[1] > 0.5 && at[1] < 0.502;
+  };
   const PathCheck check = check_path(path, slab, 1e-3);
-  EXPECT_EQ(check.configurations, slab.asked.size());
+  EXPECT_EQ(check.configurations, asked.size());
   EXPECT_NEAR(static_cast<double>(check.configurations), 1302.0, 2.0);
   EXPECT_GE(check.contacts, 1u);
   EXPECT_LE(check.contacts, 2u);
-  for (const ArmPositions& corner : path) {
-    EXPECT_NE(std::find(slab.asked.begin(), slab.asked.end(), corner), slab.asked.end());
+  for (const Configuration& corner : path) {
+    EXPECT_NE(std::find(asked.begin(), asked.end(), corner), asked.end());
   }
-  for (std::size_t i = 1; i < slab.asked.size(); ++i) {
-    for (std::size_t k = 0; k < kJoints; ++k) {
-      EXPECT_LE(std::abs(slab.asked[i][k] - slab.asked[i - 1][k]), 1e-3 + 1e-12);
+  for (std::size_t i = 1; i < asked.size(); ++i) {
+    for (std::size_t k = 0; k < asked[i].size(); ++k) {
+      EXPECT_LE(std::abs(asked[i][k] - asked[i - 1][k]), 1e-3 + 1e-12);
     }
   }
   EXPECT_EQ(check_path({}, slab, 1e-3).configurations, 0u);
-  EXPECT_EQ(check_path({ArmPositions{0.0, 0.501}}, slab, 1e-3).contacts, 1u);
+  EXPECT_EQ(check_path({Configuration{0.0, 0.501}}, slab, 1e-3).contacts, 1u);
 }
 
 TEST(ProblemStudy, ComparesWhatBothSolve) {

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Motions of a Panda planned in the scenes of spherule_robot_edges, by OMPL's RRTConnect: with
+// motions that RobotChecker proves, that it samples, and that FCL samples on the meshes. Every path
+// is looked at again by FCL. Prints how many are solved, how fast, and how many paths are in
+// contact.
+//   SPHERULE_MODELS=DIR spherule_arm_planning [PROBLEMS [STEP [RADIUS | SPHERIZED.urdf]]]
+
+#include "bench/planning/problem_study.h"
+#include "bench/robot_edges/arm.h"
+#include "bench/robot_edges/arm_problems.h"
+#include "bench/robot_edges/arm_scenes.h"
+#include "bench/robot_edges/fcl_arm.h"
+#include "bench/robot_edges/robot_scenes.h"
+#include "spheretree/error.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <ompl/util/Console.h>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+constexpr double kRecheckStep = 0.002;  // radians
+
+ProblemStudy study_scene(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene,
+                         std::size_t problems, const PlanOptions& options) {
+  const RobotChecker checker = robot_scene(arm, allowed, scene).snapshot();
+  FclArm judge(arm, allowed, scene, FclVolume::kObbRss);
+  FclArm fastest(arm, allowed, scene, FclVolume::kObb);
+  RandomNumbers random(13);
+  return study_problems(
+      {checker, [&](std::span<const double> at) { return fastest.collides(at); }},
+      [&](std::span<const double> at) { return judge.collides(at); },
+      make_arm_problems(checker, judge, problems, random), options, kRecheckStep);
+}
+
+void print_head(const PlanOptions& options) {
+  std::printf(
+      "RRTConnect; motions sampled every %g rad (length of the vector of joint positions), paths "
+      "looked at again every %g rad\n"
+      "proved / sampled / by FCL; times as long as the proved ones: of problems that both solve, "
+      "median and sums\n"
+      "| scene | problems | solved | paths in contact | median ms | sampled, times | FCL, times "
+      "|\n|---|---|---|---|---|---|---|\n",
+      options.step, kRecheckStep);
+}
+
+void print_row(const char* name, const ProblemStudy& study) {
+  const ProblemRow& proved = study.rows[0];
+  const ProblemRow& sampled = study.rows[1];
+  const ProblemRow& meshes = study.rows[2];
+  const ProblemComparison with_sampled = compare(proved, sampled);
+  const ProblemComparison with_meshes = compare(proved, meshes);
+  std::printf(
+      "| %-7s | %4zu | %zu / %zu / %zu | %zu / %zu / %zu | %.2f / %.2f / %.2f | %.1f %.1f | %.1f "
+      "%.1f |\n",
+      name, proved.plans.size(), proved.ended(PlanEnd::kSolved), sampled.ended(PlanEnd::kSolved),
+      meshes.ended(PlanEnd::kSolved), proved.paths_in_contact(), sampled.paths_in_contact(),
+      meshes.paths_in_contact(), median_milliseconds(proved), median_milliseconds(sampled),
+      median_milliseconds(meshes), with_sampled.median_ratio, with_sampled.total_ratio,
+      with_meshes.median_ratio, with_meshes.total_ratio);
+  std::fflush(stdout);
+}
+
+void run(const Arm& arm, std::size_t problems, const PlanOptions& options) {
+  const AllowedCollisions allowed = allowed_contacts(arm);
+  std::vector<ArmScene> scenes = primitive_scenes();
+  for (ArmScene& scene : larger_scenes()) scenes.push_back(std::move(scene));
+  std::printf("%zu triangles, %zu spheres\n", arm.triangles, arm.spheres);
+  print_head(options);
+  ProblemStudy all;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    // The remainder goes to the first ones.
+    const std::size_t count = problems / scenes.size() + (i < problems % scenes.size() ? 1 : 0);
+    const ProblemStudy study = study_scene(arm, allowed, scenes[i], count, options);
+    print_row(scenes[i].name.c_str(), study);
+    all.add(study);
+  }
+  print_row("all", all);
+  if (all.rows.front().paths_in_contact() > 0) {
+    throw Error("planning", "a path that was proved free is in contact");
+  }
+}
+
+}  // namespace
+}  // namespace spherule
+
+int main(int argc, char** argv) {
+  using namespace spherule;
+  const char* const models = std::getenv("SPHERULE_MODELS");
+  if (models == nullptr || *models == '\0') {
+    std::fprintf(stderr, "SPHERULE_MODELS does not name a folder of models\n");
+    return 2;
+  }
+  const double problems = argc > 1 ? std::atof(argv[1]) : 200.0;
+  PlanOptions options;
+  if (argc > 2) options.step = std::atof(argv[2]);
+  if (argc > 4 || !(problems >= 1.0 && problems <= 1e6) || !(options.step > 0.0)) {
+    std::fprintf(stderr,
+                 "usage: spherule_arm_planning [PROBLEMS [STEP [RADIUS | SPHERIZED.urdf]]]\n");
+    return 2;
+  }
+  try {
+    ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
+    run(make_panda(models, argc > 3 ? argv[3] : "0.01"), static_cast<std::size_t>(problems),
+        options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
