@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/internal/pair_search.h"
+
+#include "collide/robot/internal/hull_direction.h"
+#include "collide/robot/internal/pair_bound.h"
+#include "collide/robot/kinematics.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+// Pairs of pieces that one box leaves open before it is given up and halved, and of nodes that are
+// handed down: beyond that the halves start from the roots.
+constexpr std::size_t kMostOpenPieces = 4;
+constexpr std::size_t kLongestFront = 96;
+
+struct NodePair {
+  std::int32_t first;
+  std::int32_t second;
+};
+using Front = std::vector<NodePair>;
+using Bounds = std::array<double, FreeBoxes::kMostVariables>;
+
+struct Box {
+  Bounds lower{};
+  Bounds upper{};
+  std::size_t node = 0;
+  Vector3d direction = Vector3d::UnitX();  // that separated the hulls at the middle of the whole
+  Front front{{0, 0}};
+};
+
+enum class Outcome { kFree, kOpen, kTouching };
+
+class Search {
+ public:
+  Search(const PairSpace& space, const PairSearchLimits& limits)
+      : space_(space),
+        limits_(limits),
+        bound_(*space.robot, space.joints, space.error),
+        configuration_(static_cast<std::size_t>(space.robot->variable_count()), 0.0),
+        half_widths_(configuration_.size(), 0.0) {}
+
+  PairSearchResult run() {
+    PairSearchResult result;
+    Box whole;
+    for (std::size_t i = 0; i < space_.variables.size(); ++i) {
+      whole.lower[i] = space_.variables[i].lower;
+      whole.upper[i] = space_.variables[i].upper;
+    }
+    tree_.emplace_back();
+    std::deque<Box> open;
+    open.push_back(std::move(whole));
+    bool touching = limits_.is_touching;
+    while (!open.empty()) {
+      if (result.boxes >= (touching ? limits_.boxes_once_touching : limits_.boxes)) break;
+      if (result.boxes % 16 == 0 && limits_.is_over && limits_.is_over()) break;
+      Box box = std::move(open.front());
+      open.pop_front();
+      ++result.boxes;
+      place(box);
+      const Outcome outcome = judge(box);
+      if (outcome == Outcome::kFree) {
+        tree_[box.node].state = FreeBoxes::kFree;
+        continue;
+      }
+      if (outcome == Outcome::kTouching && result.witness.empty()) {
+        result.witness = configuration_;
+        touching = true;
+      }
+      halve(std::move(box), open);
+    }
+    write(0, result.nodes);
+    return result;
+  }
+
+ private:
+  struct Node {
+    std::uint8_t state = FreeBoxes::kNotProved;
+    std::size_t first = 0;  // the second half follows it
+  };
+
+  const Pose& first_pose() const { return poses_[static_cast<std::size_t>(space_.first)]; }
+  const Pose& second_pose() const { return poses_[static_cast<std::size_t>(space_.second)]; }
+
+  void place(const Box& box) {
+    for (std::size_t i = 0; i < space_.variables.size(); ++i) {
+      const auto index = static_cast<std::size_t>(space_.variables[i].index);
+      const double middle = 0.5 * (box.lower[i] + box.upper[i]);
+      configuration_[index] = middle;
+      half_widths_[index] = std::max(sub_up(box.upper[i], middle), sub_up(middle, box.lower[i]));
+    }
+    forward_kinematics(*space_.robot, configuration_, poses_);
+    bound_.place(poses_, half_widths_);
+  }
+
+  bool touch_at_middle() const {
+    return touches(*space_.of_first, first_pose(), *space_.of_second, second_pose(), 0.0);
+  }
+
+  Outcome judge(Box& box) {
+    const LinkPieces& a = *space_.of_first;
+    const LinkPieces& b = *space_.of_second;
+    const double radii = add_up(a.hull_radius, b.hull_radius);
+    const double gap = direction_of(a.hull, b.hull, box.direction) - radii;
+    if (gap > 0.0 &&
+        bound_.are_apart(box.direction, first_pose(), a.hull, second_pose(), b.hull, radii)) {
+      return Outcome::kFree;
+    }
+    if (gap > 0.0 && a.is_convex && b.is_convex) return Outcome::kOpen;
+    if (gap <= 0.0 && touch_at_middle()) return Outcome::kTouching;
+    if (!clear(box.front)) return Outcome::kOpen;
+    return gap <= 0.0 || !touch_at_middle() ? Outcome::kFree : Outcome::kTouching;
+  }
+
+  // Between two sets of points, in the world: the direction, starting from the one given, and the
+  // gap along it.
+  double direction_of(std::span<const Vector3d> first, std::span<const Vector3d> second,
+                      Vector3d& direction) const {
+    const Eigen::Matrix3d& world_from_first = first_pose().matrix();
+    const HullDirection found = hull_direction(
+        first, second, world_from_first.transpose() * second_pose().matrix(),
+        world_from_first.transpose() * (second_pose().translation() - first_pose().translation()),
+        world_from_first.transpose() * direction);
+    direction = (world_from_first * found.direction).normalized();
+    return found.gap;
+  }
+
+  // Leaves in the front what is not proved apart.
+  bool clear(Front& front) const {
+    const LinkPieces& a = *space_.of_first;
+    const LinkPieces& b = *space_.of_second;
+    Front todo = std::move(front);
+    front.clear();
+    std::size_t open_pieces = 0;
+    while (!todo.empty() && open_pieces < kMostOpenPieces) {
+      const NodePair pair = todo.back();
+      todo.pop_back();
+      const auto& of_a = a.nodes[static_cast<std::size_t>(pair.first)];
+      const auto& of_b = b.nodes[static_cast<std::size_t>(pair.second)];
+      const Vector3d way = first_pose() * of_a.ball.center - second_pose() * of_b.ball.center;
+      const double length = way.norm();
+      const double radii = add_up(of_a.ball.radius, of_b.ball.radius);
+      if (length > radii &&
+          bound_.are_apart(way / length, first_pose(), std::span(&of_a.ball.center, 1),
+                           second_pose(), std::span(&of_b.ball.center, 1), radii)) {
+        continue;
+      }
+      const bool is_piece = of_a.first_child < 0;
+      const bool other_is_piece = of_b.first_child < 0;
+      if (is_piece && other_is_piece) {
+        if (pieces_apart(of_a, of_b, way)) continue;
+        front.push_back(pair);
+        ++open_pieces;
+      } else if (other_is_piece || (!is_piece && of_a.ball.radius > of_b.ball.radius)) {
+        todo.push_back({of_a.first_child, pair.second});
+        todo.push_back({of_a.first_child + 1, pair.second});
+      } else {
+        todo.push_back({pair.first, of_b.first_child});
+        todo.push_back({pair.first, of_b.first_child + 1});
+      }
+    }
+    if (front.empty()) return true;
+    front.insert(front.end(), todo.begin(), todo.end());
+    if (front.size() > kLongestFront) front = {{0, 0}};
+    return false;
+  }
+
+  bool pieces_apart(const LinkPieces::Node& of_a, const LinkPieces::Node& of_b,
+                    const Vector3d& start) const {
+    const auto points_of = [](const LinkPieces& pieces, const LinkPieces::Node& node) {
+      return std::span(pieces.points)
+          .subspan(static_cast<std::size_t>(node.first_point),
+                   static_cast<std::size_t>(node.point_count));
+    };
+    const auto first = points_of(*space_.of_first, of_a);
+    const auto second = points_of(*space_.of_second, of_b);
+    const double radii = add_up(of_a.radius, of_b.radius);
+    Vector3d direction = start.squaredNorm() > 0.0 ? start : Vector3d::UnitX();
+    if (direction_of(first, second, direction) <= radii) return false;
+    return bound_.are_apart(direction, first_pose(), first, second_pose(), second, radii);
+  }
+
+  void halve(Box box, std::deque<Box>& open) {
+    const Vector3d first = first_pose() * space_.of_first->nodes[0].ball.center;
+    const Vector3d second = second_pose() * space_.of_second->nodes[0].ball.center;
+    const double radius =
+        std::min(space_.of_first->nodes[0].ball.radius, space_.of_second->nodes[0].ball.radius);
+    std::array<double, FreeBoxes::kMostVariables> motions{};
+    double sum = 0.0;
+    for (std::size_t step = 0; step < space_.joints.size(); ++step) {
+      const Joint& joint = space_.robot->joints()[static_cast<std::size_t>(space_.joints[step])];
+      const double scale = joint.mimics < 0 ? 1.0 : std::abs(joint.multiplier);
+      const double half = half_widths_[static_cast<std::size_t>(joint.variable)] * scale;
+      const double motion =
+          bound_.motion(step, first, second) + (joint.turns() ? half * radius : 0.0);
+      sum += motion;
+      for (std::size_t i = 0; i < space_.variables.size(); ++i) {
+        if (space_.variables[i].index == joint.variable) motions[i] += motion;
+      }
+    }
+    if (!(sum > limits_.smallest_motion)) return;
+    const auto v = static_cast<std::size_t>(
+        std::max_element(motions.begin(), motions.begin() + std::ssize(space_.variables)) -
+        motions.begin());
+    const double middle = 0.5 * (box.lower[v] + box.upper[v]);
+    if (!(box.lower[v] < middle && middle < box.upper[v])) return;
+    tree_[box.node].state = static_cast<std::uint8_t>(FreeBoxes::kFirstHalving + v);
+    tree_[box.node].first = tree_.size();
+    Box other = box;
+    box.node = tree_.size();
+    box.upper[v] = middle;
+    other.node = tree_.size() + 1;
+    other.lower[v] = middle;
+    tree_.resize(tree_.size() + 2);
+    open.push_back(std::move(box));
+    open.push_back(std::move(other));
+  }
+
+  void write(std::size_t index, std::string& nodes) const {
+    nodes.push_back(static_cast<char>(tree_[index].state));
+    if (tree_[index].state < FreeBoxes::kFirstHalving) return;
+    write(tree_[index].first, nodes);
+    write(tree_[index].first + 1, nodes);
+  }
+
+  const PairSpace& space_;
+  const PairSearchLimits& limits_;
+  PairBound bound_;
+  std::vector<double> configuration_;  // of the middle
+  std::vector<double> half_widths_;
+  std::vector<Pose> poses_;
+  std::vector<Node> tree_;
+};
+
+}  // namespace
+
+PairSearchResult search_free_boxes(const PairSpace& space, const PairSearchLimits& limits) {
+  return Search(space, limits).run();
+}
+
+}  // namespace spherule::internal
