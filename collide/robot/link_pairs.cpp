@@ -113,30 +113,25 @@ std::string_view name_of(PairVerdict verdict) {
 }
 
 LinkPairs::LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t fingerprint)
-    : pairs_(std::move(pairs)),
-      link_count_(link_count),
-      fingerprint_(fingerprint),
-      index_(link_count * link_count, -1) {
+    : pairs_(std::move(pairs)), link_count_(link_count), fingerprint_(fingerprint) {
   std::pair<int, int> last{-1, -1};
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    const LinkPair& pair = pairs_[i];
+  for (const LinkPair& pair : pairs_) {
     if (pair.first < 0 || pair.first >= pair.second ||
         static_cast<std::size_t>(pair.second) >= link_count ||
         !(last < std::pair(pair.first, pair.second))) {
       throw Error("link pairs", "the pairs are not in order");
     }
     last = {pair.first, pair.second};
-    index_[static_cast<std::size_t>(pair.first) * link_count +
-           static_cast<std::size_t>(pair.second)] = static_cast<std::int32_t>(i);
   }
 }
 
 const LinkPair* LinkPairs::find(int first, int second) const noexcept {
-  const auto [a, b] = std::minmax(first, second);
-  if (a < 0 || static_cast<std::size_t>(b) >= link_count_) return nullptr;
-  const std::int32_t i =
-      index_[static_cast<std::size_t>(a) * link_count_ + static_cast<std::size_t>(b)];
-  return i < 0 ? nullptr : &pairs_[static_cast<std::size_t>(i)];
+  const std::pair<int, int> key(std::min(first, second), std::max(first, second));
+  const auto found = std::lower_bound(
+      pairs_.begin(), pairs_.end(), key,
+      [](const LinkPair& pair, const auto& k) { return std::pair(pair.first, pair.second) < k; });
+  if (found == pairs_.end() || std::pair(found->first, found->second) != key) return nullptr;
+  return &*found;
 }
 
 LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,

@@ -78,7 +78,8 @@ class LinkPairs {
   std::size_t link_count() const { return link_count_; }
   std::uint64_t fingerprint() const { return fingerprint_; }
 
-  // The pair of two links in either order, or null: rigidly joined, or a link without a body.
+  // The pair of two links in either order, or null: rigidly joined, or a link without a body. Who
+  // asks often keeps it: a binary search.
   const LinkPair* find(int first, int second) const noexcept;
 
   // Whether two links are proved free in a configuration, or on all of the straight edge between
@@ -97,7 +98,6 @@ class LinkPairs {
   std::vector<LinkPair> pairs_;
   std::size_t link_count_ = 0;
   std::uint64_t fingerprint_ = 0;
-  std::vector<std::int32_t> index_;  // of a pair of links, -1 if none
 };
 
 // Proves what it can of all pairs of links with bodies, within the limits of the joints; continuous

@@ -173,7 +173,6 @@ LinkPairs internal::decode_link_pairs(std::string_view bytes, const std::string&
     std::vector<LinkPair> pairs;
     for (std::uint32_t i = 0; i < count; ++i) pairs.push_back(take_pair(reader, name));
     if (!reader.is_at_end()) throw Error(name, "the file is too long");
-    if (links > 65536) throw Error(name, "has too many links");
     return LinkPairs(std::move(pairs), links, fingerprint);
   } catch (const Error& error) {
     throw Error(name, error.reason());

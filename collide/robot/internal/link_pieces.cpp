@@ -74,7 +74,7 @@ class Builder {
     Vector3d low = elements_[first].corners[0];
     Vector3d high = low;
     double radius = 0.0;
-    bool is_one_sphere = true;
+    bool all_triangles = true;
     for (std::size_t i = first; i < last; ++i) {
       for (int c = 0; c < elements_[i].corner_count; ++c) {
         const Vector3d& corner = elements_[i].corners[static_cast<std::size_t>(c)];
@@ -82,9 +82,9 @@ class Builder {
         high = high.cwiseMax(corner);
       }
       radius = std::max(radius, elements_[i].radius);
-      is_one_sphere &= elements_[i].corner_count == 1;
+      all_triangles &= elements_[i].corner_count == 3;
     }
-    is_one_sphere &= last - first == 1;
+    const bool is_one_sphere = last - first == 1 && !all_triangles;
     Sphere ball{0.5 * (low + high), 0.0};
     for (std::size_t i = first; i < last; ++i) {
       for (int c = 0; c < elements_[i].corner_count; ++c) {
@@ -94,8 +94,8 @@ class Builder {
       }
     }
     pieces_.nodes[node].ball = ball;
-    const bool is_of_triangles = elements_[first].corner_count == 3;
-    if (is_one_sphere || (is_of_triangles && last - first <= kTrianglesOfPiece)) {
+    const std::size_t count = last - first;
+    if (is_one_sphere || (all_triangles && count <= kTrianglesOfPiece)) {
       std::vector<Vector3d> points;
       for (std::size_t i = first; i < last; ++i) {
         points.insert(points.end(), elements_[i].corners.begin(),
@@ -106,8 +106,8 @@ class Builder {
       pieces_.nodes[node].point_count = static_cast<std::int32_t>(points.size());
       pieces_.nodes[node].radius = radius;
       pieces_.points.insert(pieces_.points.end(), points.begin(), points.end());
-      return;
     }
+    if (count == 1) return;
     Eigen::Index axis = 0;
     (high - low).maxCoeff(&axis);
     const std::size_t middle = (first + last) / 2;
@@ -156,7 +156,6 @@ bool touches(const LinkBody& a, const Pose& world_from_a, const LinkBody& b,
 LinkPieces make_link_pieces(std::span<const LinkBody> bodies) {
   LinkPieces result;
   result.bodies.assign(bodies.begin(), bodies.end());
-  // Triangles first: a piece is of one kind, and nodes above two kinds are no pieces.
   std::vector<Element> elements = elements_of(bodies);
   for (const Element& element : elements) {
     result.hull.insert(result.hull.end(), element.corners.begin(),

@@ -12,16 +12,17 @@
 
 namespace spherule::internal {
 
-// The bodies of one link as a binary tree of pieces, for bounds of motion. A piece is the convex
-// hull of points, each grown by `radius`: of a few neighbouring triangles, or of one sphere. Every
-// point of the surface of a mesh grown by its growth lies in a piece, and every point of a sphere.
+// The bodies of one link as a binary tree of pieces, for bounds of motion. Its leaves are triangles
+// and spheres. A piece is the convex hull of points, each grown by `radius`: of a few neighbouring
+// triangles, or of one sphere; it holds all that is below its node. Every point of the surface of a
+// mesh grown by its growth lies in a leaf, and every point of a sphere.
 struct LinkPieces {
   struct Node {
-    Sphere ball;                    // holds all pieces below
-    std::int32_t first_child = -1;  // the second one follows it; -1 for a piece
+    Sphere ball;                    // holds all leaves below
+    std::int32_t first_child = -1;  // the second one follows it; -1 for a leaf
     std::int32_t first_point = 0;   // of a piece
-    std::int32_t point_count = 0;
-    double radius = 0.0;  // by which its points are grown
+    std::int32_t point_count = 0;   // 0 if the node is none
+    double radius = 0.0;            // by which its points are grown
   };
 
   std::vector<Node> nodes;              // the root first

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <utility>
 
@@ -18,10 +17,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Pairs of pieces that one box leaves open before it is given up and halved, and of nodes that are
+// Pairs of leaves that one box leaves open before it is given up and halved, and of nodes that are
 // handed down: beyond that the halves start from the roots.
-constexpr std::size_t kMostOpenPieces = 4;
+constexpr std::size_t kMostOpenLeaves = 4;
 constexpr std::size_t kLongestFront = 96;
+
+// A pair that touches at the middles of all of so many boxes is given up: links that always touch.
+constexpr std::size_t kAlwaysTouching = 1000;
+
+// What halves are worth beside their whole, and beside that if the links touch at its middle: where
+// they mostly touch, there is less to prove.
+constexpr double kHalf = 0.5;
+constexpr double kWhereTouching = 0.5;
 
 struct NodePair {
   std::int32_t first;
@@ -36,6 +43,12 @@ struct Box {
   std::size_t node = 0;
   Vector3d direction = Vector3d::UnitX();  // that separated the hulls at the middle of the whole
   Front front{{0, 0}};
+  double worth = 1.0;
+
+  // The heap's order: what is worth most first, then what came first.
+  friend bool operator<(const Box& a, const Box& b) {
+    return a.worth < b.worth || (a.worth == b.worth && a.node > b.node);
+  }
 };
 
 enum class Outcome { kFree, kOpen, kTouching };
@@ -57,17 +70,21 @@ class Search {
       whole.upper[i] = space_.variables[i].upper;
     }
     tree_.emplace_back();
-    std::deque<Box> open;
+    std::vector<Box> open;
     open.push_back(std::move(whole));
+    bool always = true;
     bool touching = limits_.is_touching;
     while (!open.empty()) {
       if (result.boxes >= (touching ? limits_.boxes_once_touching : limits_.boxes)) break;
       if (result.boxes % 16 == 0 && limits_.is_over && limits_.is_over()) break;
-      Box box = std::move(open.front());
-      open.pop_front();
+      if (always && result.boxes >= kAlwaysTouching) break;
+      std::pop_heap(open.begin(), open.end());
+      Box box = std::move(open.back());
+      open.pop_back();
       ++result.boxes;
       place(box);
       const Outcome outcome = judge(box);
+      always &= outcome == Outcome::kTouching;
       if (outcome == Outcome::kFree) {
         tree_[box.node].state = FreeBoxes::kFree;
         continue;
@@ -76,6 +93,7 @@ class Search {
         result.witness = configuration_;
         touching = true;
       }
+      box.worth *= outcome == Outcome::kTouching ? kHalf * kWhereTouching : kHalf;
       halve(std::move(box), open);
     }
     write(0, result.nodes);
@@ -140,8 +158,8 @@ class Search {
     const LinkPieces& b = *space_.of_second;
     Front todo = std::move(front);
     front.clear();
-    std::size_t open_pieces = 0;
-    while (!todo.empty() && open_pieces < kMostOpenPieces) {
+    std::size_t open_leaves = 0;
+    while (!todo.empty() && open_leaves < kMostOpenLeaves) {
       const NodePair pair = todo.back();
       todo.pop_back();
       const auto& of_a = a.nodes[static_cast<std::size_t>(pair.first)];
@@ -154,13 +172,13 @@ class Search {
                            second_pose(), std::span(&of_b.ball.center, 1), radii)) {
         continue;
       }
-      const bool is_piece = of_a.first_child < 0;
-      const bool other_is_piece = of_b.first_child < 0;
-      if (is_piece && other_is_piece) {
-        if (pieces_apart(of_a, of_b, way)) continue;
+      if (of_a.point_count > 0 && of_b.point_count > 0 && pieces_apart(of_a, of_b, way)) continue;
+      const bool is_leaf = of_a.first_child < 0;
+      const bool other_is_leaf = of_b.first_child < 0;
+      if (is_leaf && other_is_leaf) {
         front.push_back(pair);
-        ++open_pieces;
-      } else if (other_is_piece || (!is_piece && of_a.ball.radius > of_b.ball.radius)) {
+        ++open_leaves;
+      } else if (other_is_leaf || (!is_leaf && of_a.ball.radius > of_b.ball.radius)) {
         todo.push_back({of_a.first_child, pair.second});
         todo.push_back({of_a.first_child + 1, pair.second});
       } else {
@@ -189,7 +207,7 @@ class Search {
     return bound_.are_apart(direction, first_pose(), first, second_pose(), second, radii);
   }
 
-  void halve(Box box, std::deque<Box>& open) {
+  void halve(Box box, std::vector<Box>& open) {
     const Vector3d first = first_pose() * space_.of_first->nodes[0].ball.center;
     const Vector3d second = second_pose() * space_.of_second->nodes[0].ball.center;
     const double radius =
@@ -222,7 +240,9 @@ class Search {
     other.lower[v] = middle;
     tree_.resize(tree_.size() + 2);
     open.push_back(std::move(box));
+    std::push_heap(open.begin(), open.end());
     open.push_back(std::move(other));
+    std::push_heap(open.begin(), open.end());
   }
 
   void write(std::size_t index, std::string& nodes) const {

@@ -27,11 +27,13 @@ struct PairSearchLimits {
   std::function<bool()> is_over{};      // no time is left
 };
 
-// Proves boxes of the ranges free, the largest first: each box that is not proved at its middle is
-// halved, along the variable that moves the links most against each other.
+// Proves boxes of the ranges free, the largest first, those around touching middles later: each box
+// that is not proved at its middle is halved, along the variable that moves the links most against
+// each other.
 //
 // Proof for one box. Either the hulls of the links, grown by their radii, are apart throughout
-// (pair_bound.h). Or all pairs of pieces (link_pieces.h) are, so that the surfaces of meshes,
+// (pair_bound.h). Or all pairs of leaves (link_pieces.h) are, by pieces that
+// hold them, so that the surfaces of meshes,
 // grown, and spheres have no point in common throughout; and at the middle the solids have none, as
 // exact tests say that know the inside. Then they have none anywhere in the box: it is connected,
 // so that on the straight way from the middle a first point in common would have to be one of the
