@@ -6,8 +6,8 @@
 #include "collide/robot/internal/pair_space.h"
 #include "collide/robot/internal/pair_witness.h"
 #include "collide/robot/internal/shared_work.h"
+#include "spheretree/crc64.h"
 #include "spheretree/error.h"
-#include "spheretree/internal/crc64.h"
 
 #include <algorithm>
 #include <bit>
@@ -92,7 +92,7 @@ class Bytes {
     add(std::uint64_t{text.size()});
     bytes_ += text;
   }
-  std::uint64_t sum() const { return internal::crc64(bytes_); }
+  std::uint64_t sum() const { return crc64(bytes_); }
 
  private:
   std::string bytes_;

@@ -3,8 +3,8 @@
 
 #include "collide/robot/internal/pair_space.h"
 #include "spheretree/atomic_file.h"
+#include "spheretree/crc64.h"
 #include "spheretree/error.h"
-#include "spheretree/internal/crc64.h"
 
 #include <bit>
 #include <concepts>

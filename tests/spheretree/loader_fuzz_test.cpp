@@ -5,7 +5,7 @@
 
 #include "spheretree/build.h"
 #include "spheretree/error.h"
-#include "spheretree/internal/crc64.h"
+#include "spheretree/crc64.h"
 #include "spheretree/internal/file_content.h"
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/tree_oracle.h"
@@ -67,7 +67,7 @@ TEST(LoaderFuzz, MutatedTrees) {
     // Half of them get a right checksum, or none would come past it.
     if (i % 2 == 0 && bytes.size() >= 8) {
       const std::uint64_t checksum =
-          internal::crc64(std::string_view(bytes).substr(0, bytes.size() - 8));
+          crc64(std::string_view(bytes).substr(0, bytes.size() - 8));
       std::memcpy(bytes.data() + bytes.size() - 8, &checksum, 8);
     }
     try {

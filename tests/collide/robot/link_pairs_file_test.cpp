@@ -2,7 +2,7 @@
 #include "collide/robot/link_pairs_file.h"
 
 #include "spheretree/error.h"
-#include "spheretree/internal/crc64.h"
+#include "spheretree/crc64.h"
 #include "tests/collide/robot/box_robots.h"
 #include "tests/support/temp_dir.h"
 
@@ -95,7 +95,7 @@ TEST_F(LinkPairsFile, NoContentEndsBadly) {
     for (const int value : {0, 1, 2, 3, 127, 255}) {
       std::string damaged = content;
       damaged[i] = static_cast<char>(value);
-      std::uint64_t sum = internal::crc64(damaged);
+      std::uint64_t sum = crc64(damaged);
       for (int k = 0; k < 8; ++k) damaged.push_back(static_cast<char>(sum >> (8 * k) & 0xFFU));
       try {
         internal::decode_link_pairs(damaged, "file");
