@@ -13,7 +13,8 @@ namespace spherule {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-// Deeper trees cannot come from halving doubles.
+// What a query on an edge recurses to. Searches end far above it: each halving of a range of 100
+// beyond the 60th is below 1e-16.
 constexpr int kDeepest = 1200;
 
 // Joins halves that are equal leaves.
@@ -40,9 +41,10 @@ FreeBoxes::FreeBoxes(std::vector<Variable> variables, std::string_view nodes)
   if (variables_.size() > kMostVariables) throw Error("free boxes", "too many variables");
   struct Open {
     std::int32_t parent;  // whose second half comes next
+    int depth;
     Values lower, upper;
   };
-  Open box{-1, {}, {}};
+  Open box{-1, 0, {}, {}};
   for (std::size_t i = 0; i < variables_.size(); ++i) {
     const Variable& variable = variables_[i];
     if (!(std::abs(variable.lower) <= kLargestPosition) ||
@@ -56,7 +58,6 @@ FreeBoxes::FreeBoxes(std::vector<Variable> variables, std::string_view nodes)
   if (nodes.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
     throw Error("free boxes", "the tree is too large");
   }
-  // Bytes of a leaf are joined with its sibling below, where the children are known to be leaves.
   const std::string bytes = joined(nodes);
   std::vector<Open> open;
   bool complete = false;
@@ -70,12 +71,12 @@ FreeBoxes::FreeBoxes(std::vector<Variable> variables, std::string_view nodes)
     if (state >= kFirstHalving) {
       const auto v = static_cast<std::size_t>(state - kFirstHalving);
       node.at = 0.5 * (box.lower[v] + box.upper[v]);
+      if (++box.depth > kDeepest) throw Error("free boxes", "the tree is too deep");
       Open second = box;
       second.parent = index;
       second.lower[v] = node.at;
       box.upper[v] = node.at;
       open.push_back(second);
-      if (open.size() > kDeepest) throw Error("free boxes", "the tree is too deep");
       nodes_.push_back(node);
       continue;
     }

@@ -1,26 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/internal/pair_search.h"
 
-#include "collide/robot/internal/hull_direction.h"
 #include "collide/robot/internal/pair_bound.h"
+#include "collide/robot/internal/pair_front.h"
 #include "collide/robot/kinematics.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <span>
 #include <utility>
 
 namespace spherule::internal {
 namespace {
 
 using Eigen::Vector3d;
-
-// Pairs of leaves that one box leaves open before it is given up and halved, and of nodes that are
-// handed down: beyond that the halves start from the roots.
-constexpr std::size_t kMostOpenLeaves = 4;
-constexpr std::size_t kLongestFront = 96;
 
 // A pair that touches at the middles of all of so many boxes is given up: links that always touch.
 constexpr std::size_t kAlwaysTouching = 1000;
@@ -30,11 +24,6 @@ constexpr std::size_t kAlwaysTouching = 1000;
 constexpr double kHalf = 0.5;
 constexpr double kWhereTouching = 0.5;
 
-struct NodePair {
-  std::int32_t first;
-  std::int32_t second;
-};
-using Front = std::vector<NodePair>;
 using Bounds = std::array<double, FreeBoxes::kMostVariables>;
 
 struct Box {
@@ -42,7 +31,7 @@ struct Box {
   Bounds upper{};
   std::size_t node = 0;
   Vector3d direction = Vector3d::UnitX();  // that separated the hulls at the middle of the whole
-  Front front{{0, 0}};
+  std::vector<PieceNodes> front{{0, 0}};
   double worth = 1.0;
 
   // The heap's order: what is worth most first, then what came first.
@@ -128,83 +117,16 @@ class Search {
     const LinkPieces& a = *space_.of_first;
     const LinkPieces& b = *space_.of_second;
     const double radii = add_up(a.hull_radius, b.hull_radius);
-    const double gap = direction_of(a.hull, b.hull, box.direction) - radii;
+    const PlacedPair placed{a, first_pose(), b, second_pose(), bound_};
+    const double gap = placed.direction_between(a.hull, b.hull, box.direction) - radii;
     if (gap > 0.0 &&
         bound_.are_apart(box.direction, first_pose(), a.hull, second_pose(), b.hull, radii)) {
       return Outcome::kFree;
     }
     if (gap > 0.0 && a.is_convex && b.is_convex) return Outcome::kOpen;
     if (gap <= 0.0 && touch_at_middle()) return Outcome::kTouching;
-    if (!clear(box.front)) return Outcome::kOpen;
+    if (!clear_front(placed, box.front)) return Outcome::kOpen;
     return gap <= 0.0 || !touch_at_middle() ? Outcome::kFree : Outcome::kTouching;
-  }
-
-  // Between two sets of points, in the world: the direction, starting from the one given, and the
-  // gap along it.
-  double direction_of(std::span<const Vector3d> first, std::span<const Vector3d> second,
-                      Vector3d& direction) const {
-    const Eigen::Matrix3d& world_from_first = first_pose().matrix();
-    const HullDirection found = hull_direction(
-        first, second, world_from_first.transpose() * second_pose().matrix(),
-        world_from_first.transpose() * (second_pose().translation() - first_pose().translation()),
-        world_from_first.transpose() * direction);
-    direction = (world_from_first * found.direction).normalized();
-    return found.gap;
-  }
-
-  // Leaves in the front what is not proved apart.
-  bool clear(Front& front) const {
-    const LinkPieces& a = *space_.of_first;
-    const LinkPieces& b = *space_.of_second;
-    Front todo = std::move(front);
-    front.clear();
-    std::size_t open_leaves = 0;
-    while (!todo.empty() && open_leaves < kMostOpenLeaves) {
-      const NodePair pair = todo.back();
-      todo.pop_back();
-      const auto& of_a = a.nodes[static_cast<std::size_t>(pair.first)];
-      const auto& of_b = b.nodes[static_cast<std::size_t>(pair.second)];
-      const Vector3d way = first_pose() * of_a.ball.center - second_pose() * of_b.ball.center;
-      const double length = way.norm();
-      const double radii = add_up(of_a.ball.radius, of_b.ball.radius);
-      if (length > radii &&
-          bound_.are_apart(way / length, first_pose(), std::span(&of_a.ball.center, 1),
-                           second_pose(), std::span(&of_b.ball.center, 1), radii)) {
-        continue;
-      }
-      if (of_a.point_count > 0 && of_b.point_count > 0 && pieces_apart(of_a, of_b, way)) continue;
-      const bool is_leaf = of_a.first_child < 0;
-      const bool other_is_leaf = of_b.first_child < 0;
-      if (is_leaf && other_is_leaf) {
-        front.push_back(pair);
-        ++open_leaves;
-      } else if (other_is_leaf || (!is_leaf && of_a.ball.radius > of_b.ball.radius)) {
-        todo.push_back({of_a.first_child, pair.second});
-        todo.push_back({of_a.first_child + 1, pair.second});
-      } else {
-        todo.push_back({pair.first, of_b.first_child});
-        todo.push_back({pair.first, of_b.first_child + 1});
-      }
-    }
-    if (front.empty()) return true;
-    front.insert(front.end(), todo.begin(), todo.end());
-    if (front.size() > kLongestFront) front = {{0, 0}};
-    return false;
-  }
-
-  bool pieces_apart(const LinkPieces::Node& of_a, const LinkPieces::Node& of_b,
-                    const Vector3d& start) const {
-    const auto points_of = [](const LinkPieces& pieces, const LinkPieces::Node& node) {
-      return std::span(pieces.points)
-          .subspan(static_cast<std::size_t>(node.first_point),
-                   static_cast<std::size_t>(node.point_count));
-    };
-    const auto first = points_of(*space_.of_first, of_a);
-    const auto second = points_of(*space_.of_second, of_b);
-    const double radii = add_up(of_a.radius, of_b.radius);
-    Vector3d direction = start.squaredNorm() > 0.0 ? start : Vector3d::UnitX();
-    if (direction_of(first, second, direction) <= radii) return false;
-    return bound_.are_apart(direction, first_pose(), first, second_pose(), second, radii);
   }
 
   void halve(Box box, std::vector<Box>& open) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/link_pairs_file.h"
 
-#include "spheretree/error.h"
 #include "spheretree/crc64.h"
+#include "spheretree/error.h"
 #include "tests/collide/robot/box_robots.h"
 #include "tests/support/temp_dir.h"
 
@@ -114,6 +114,10 @@ TEST(FreeBoxes, RefusesWhatIsNoTree) {
   EXPECT_THROW(FreeBoxes(one, std::string("\3\1\0", 3)), Error);
   EXPECT_THROW(FreeBoxes({{0, false, 1.0, 0.0}}, std::string("\1", 1)), Error);
   EXPECT_THROW(FreeBoxes({{0, false, 0.0, 101.0}}, std::string("\1", 1)), Error);
+  std::string deep;
+  for (int i = 0; i < 5000; ++i)
+    deep += i % 2 == 0 ? std::string("\2\1", 2) : std::string("\2\0", 2);
+  EXPECT_THROW(FreeBoxes(one, deep + std::string(1, '\0')), Error);
   EXPECT_TRUE(FreeBoxes(one, std::string("\2\1\1", 3)).is_all_free());
   EXPECT_DOUBLE_EQ(FreeBoxes(one, std::string("\2\1\0", 3)).free_share(), 0.5);
 }
