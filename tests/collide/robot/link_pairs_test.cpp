@@ -109,9 +109,8 @@ TEST_F(LinkPairsOfBoxes, NoneTouchesWhereItIsProvedFree) {
   EXPECT_GT(edges_, proved_ / 10);
 }
 
-// Two bars in a plane: a post of half-width 0.1 at x = 1, and a bar from the origin, 0.02 to each
-// side, up to x = 2, turned about z. The bar's side line y = 0.02 touches the post's corner
-// (0.9, -0.1) at the angle where 0.9 sin(-a) ... solved by the sine addition below.
+// Two bars in a plane: a post of half-width 0.1 at x = 1, and a bar from the origin up to x = 2,
+// 0.02 to each side, turned about z.
 class TwoBars : public testing::Test {
  protected:
   static BoxRobot bars(double lower, double upper) {
@@ -123,9 +122,9 @@ class TwoBars : public testing::Test {
     robot.add_boxes(1, {box({0.0, -0.02, -0.05}, {2.0, 0.02, 0.05})});
     return robot;
   }
-  // The bar at angle a below the post touches first the corner (x, -0.1) whose distance from the
-  // bar's middle line is 0.02: x sin(-a) - 0.1 cos(a) = 0.02 for x = 0.9, which is the last corner
-  // to be left by a bar that turns away.
+  // At the angle a < 0 the post's corner (0.9, -0.1) is 0.9 sin(-a) - 0.1 cos(a) =
+  // hypot(0.9, 0.1) sin(-a - atan2(0.1, 0.9)) from the bar's middle line; no other corner is
+  // nearer. They touch where that is 0.02.
   static double contact_angle() {
     return -(std::asin(0.02 / std::hypot(0.9, 0.1)) + std::atan2(0.1, 0.9));
   }
