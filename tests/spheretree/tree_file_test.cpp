@@ -45,8 +45,7 @@ void overwrite(std::string& bytes, std::size_t offset, T value) {
 
 // With the checksum made right again, so that only the content can be refused.
 std::string sealed(std::string bytes) {
-  overwrite(bytes, bytes.size() - 8,
-            crc64(std::string_view(bytes).substr(0, bytes.size() - 8)));
+  overwrite(bytes, bytes.size() - 8, crc64(std::string_view(bytes).substr(0, bytes.size() - 8)));
   return bytes;
 }
 
