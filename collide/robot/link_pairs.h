@@ -45,7 +45,8 @@ struct LinkPair {
   // kUnknown, mainly: the search for a witness gives it.
   double smallest_gap = std::numeric_limits<double>::infinity();
   // Proved: in no configuration of these boxes the two have a point in common, of the exact
-  // mechanism or under the poses that forward_kinematics() computes. All of the ranges for kNever.
+  // mechanism, or under the poses that forward_kinematics() computes with the root at the world's
+  // origin. All of the ranges for kNever.
   FreeBoxes boxes{};
   std::size_t searched_boxes = 0;
 };
