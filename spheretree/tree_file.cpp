@@ -2,8 +2,8 @@
 #include "spheretree/tree_file.h"
 
 #include "spheretree/atomic_file.h"
+#include "spheretree/crc64.h"
 #include "spheretree/error.h"
-#include "spheretree/internal/crc64.h"
 #include "spheretree/internal/file_content.h"
 
 #include <bit>
@@ -104,8 +104,7 @@ SphereTreeData read_tree_data(std::string_view file, const std::string& name) {
                           std::to_string(node_count) + " nodes");
   }
   std::string_view checksum = file.substr(file.size() - kChecksumSize);
-  if (take<std::uint64_t>(checksum) !=
-      internal::crc64(file.substr(0, file.size() - kChecksumSize))) {
+  if (take<std::uint64_t>(checksum) != crc64(file.substr(0, file.size() - kChecksumSize))) {
     throw Error(name, "the checksum is wrong: the file is damaged");
   }
   if (sphere_count > node_count) {

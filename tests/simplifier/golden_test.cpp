@@ -2,7 +2,7 @@
 // G7 (guarantee.md): equal input gives equal bits on every machine, compiler and optimisation
 // level. If a stage is changed on purpose, put the value that the failing test prints here and say
 // so in CHANGELOG.md: spheres fitted before will differ from spheres fitted after.
-#include "spheretree/internal/crc64.h"
+#include "spheretree/crc64.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"
@@ -28,7 +28,7 @@ std::uint64_t hash_of(std::span<const Sphere> spheres) {
       }
     }
   }
-  return internal::crc64(bytes);
+  return crc64(bytes);
 }
 
 struct Golden {

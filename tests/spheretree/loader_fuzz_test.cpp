@@ -4,8 +4,8 @@
 // under the sanitizers, this also shows that no byte sequence leads to undefined behaviour.
 
 #include "spheretree/build.h"
+#include "spheretree/crc64.h"
 #include "spheretree/error.h"
-#include "spheretree/internal/crc64.h"
 #include "spheretree/internal/file_content.h"
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/tree_oracle.h"
@@ -66,8 +66,7 @@ TEST(LoaderFuzz, MutatedTrees) {
     std::string bytes = mutated(good, random, {});
     // Half of them get a right checksum, or none would come past it.
     if (i % 2 == 0 && bytes.size() >= 8) {
-      const std::uint64_t checksum =
-          internal::crc64(std::string_view(bytes).substr(0, bytes.size() - 8));
+      const std::uint64_t checksum = crc64(std::string_view(bytes).substr(0, bytes.size() - 8));
       std::memcpy(bytes.data() + bytes.size() - 8, &checksum, 8);
     }
     try {

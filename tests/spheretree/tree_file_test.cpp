@@ -2,7 +2,7 @@
 #include "spheretree/tree_file.h"
 
 #include "spheretree/build.h"
-#include "spheretree/internal/crc64.h"
+#include "spheretree/crc64.h"
 #include "spheretree/internal/file_content.h"
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/temporary_folder.h"
@@ -45,14 +45,13 @@ void overwrite(std::string& bytes, std::size_t offset, T value) {
 
 // With the checksum made right again, so that only the content can be refused.
 std::string sealed(std::string bytes) {
-  overwrite(bytes, bytes.size() - 8,
-            internal::crc64(std::string_view(bytes).substr(0, bytes.size() - 8)));
+  overwrite(bytes, bytes.size() - 8, crc64(std::string_view(bytes).substr(0, bytes.size() - 8)));
   return bytes;
 }
 
 TEST(Crc64, HasTheCheckValueOfTheCatalogue) {
-  EXPECT_EQ(internal::crc64("123456789"), 0x995DC9BBDF1939FAU);
-  EXPECT_EQ(internal::crc64(""), 0U);
+  EXPECT_EQ(crc64("123456789"), 0x995DC9BBDF1939FAU);
+  EXPECT_EQ(crc64(""), 0U);
 }
 
 TEST_F(TreeFile, RoundTripKeepsEveryBit) {

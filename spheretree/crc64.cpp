@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/internal/crc64.h"
+#include "spheretree/crc64.h"
 
 #include <array>
 #include <cstddef>
 
-namespace spherule::internal {
+namespace spherule {
 namespace {
 
 constexpr std::uint64_t kReflectedPolynomial = 0xC96C5795D7870F42U;
@@ -35,4 +35,4 @@ std::uint64_t crc64(std::string_view bytes) {
   return ~remainder;
 }
 
-}  // namespace spherule::internal
+}  // namespace spherule

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spherule {
+
+// A set of configurations that are proved free of something, as a tree of halvings (kd-tree) over a
+// box of some of a robot's variables: each inner node halves its box at the middle of one of them,
+// and a leaf is free as a whole, or not proved. Only those variables matter. Immutable; threads may
+// share it, and no query allocates.
+//
+// Whoever makes it proves every configuration within kMargin of a free leaf in each of its
+// variables; the margin is what the arithmetic of the queries and of points on edges may take.
+class FreeBoxes {
+ public:
+  // With |position| <= 100 at both ends of an edge and u = 2^-53, a point (1 - t) a + t b as
+  // computed errs by 3 u 200, the place where an edge crosses a plane by 8 u 400, and taking up to
+  // 16 turns off by 3e-14: together less than 5e-13.
+  static constexpr double kMargin = 1e-12;
+  static constexpr std::size_t kMostVariables = 16;
+  static constexpr double kLargestPosition = 100.0;
+
+  // A variable of the robot, by its index in a configuration, and the proved range of its values,
+  // in radians or metres. Values of one that wraps are taken modulo one turn; its range is then
+  // -pi to pi.
+  struct Variable {
+    std::int32_t index = 0;
+    bool wraps = false;
+    double lower = 0.0;
+    double upper = 0.0;
+
+    bool operator==(const Variable&) const = default;
+  };
+
+  // The leaf states, and the first of the numbers that stand for halvings: of variables()[i - 2].
+  static constexpr std::uint8_t kNotProved = 0;
+  static constexpr std::uint8_t kFree = 1;
+  static constexpr std::uint8_t kFirstHalving = 2;
+
+  // Nothing is proved.
+  FreeBoxes() : FreeBoxes({}, std::string(1, '\0')) {}
+  // A tree from its nodes, one byte each, every node before its first and then its second half.
+  // Throws Error for more than kMostVariables variables, a range that is not finite, reversed or
+  // beyond kLargestPosition, and bytes that are no tree.
+  FreeBoxes(std::vector<Variable> variables, std::string_view nodes);
+
+  // Whether a configuration of the whole robot lies in a free box. False for numbers that are not
+  // finite and for what lies outside the ranges.
+  bool contains(std::span<const double> configuration) const noexcept;
+
+  // Whether every configuration of the straight edge between two lies in free boxes. False, too,
+  // for an edge on which a variable that wraps passes the end of its range.
+  bool contains_edge(std::span<const double> from, std::span<const double> to) const noexcept;
+
+  // The bytes it was made of, halves of equal leaves joined.
+  const std::string& nodes() const { return bytes_; }
+  const std::vector<Variable>& variables() const { return variables_; }
+  std::size_t node_count() const { return nodes_.size(); }
+  // Whether the whole box of the ranges is free.
+  bool is_all_free() const { return bytes_[0] == static_cast<char>(kFree); }
+  // The share of the box of the ranges that is free, by volume.
+  double free_share() const;
+
+ private:
+  struct Node {
+    double at = 0.0;          // where the box is halved
+    std::int32_t state = 0;   // as in nodes()
+    std::int32_t second = 0;  // the second half; the first one follows the node
+  };
+  using Values = std::array<double, kMostVariables>;
+
+  bool take(std::span<const double> configuration, const Values* turns, Values& values,
+            Values& turns_taken) const noexcept;
+  bool edge_is_free(std::size_t node, const Values& from, const Values& to, double first,
+                    double last) const noexcept;
+
+  std::vector<Variable> variables_;
+  std::string bytes_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace spherule

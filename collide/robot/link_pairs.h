@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/robot/free_boxes.h"
+#include "collide/robot/robot_model.h"
+#include "collide/solid_mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace spherule {
+
+// What a link, or a tool that is fixed to it, is made of, in the frame of the link, in metres. One
+// of the two: a mesh with its inside (its growth counts), or spheres, of which each is solid.
+struct LinkBody {
+  int link = 0;
+  std::shared_ptr<const SolidMesh> mesh{};
+  std::shared_ptr<const SphereTree> spheres{};
+};
+
+// What is known of two links, with the variables within their ranges.
+enum class PairVerdict : std::uint8_t {
+  kNever,     // proved: they have no point in common in any configuration
+  kTouching,  // they have one in the configuration `witness`, up to the rounding of mesh tests
+  kUnknown,   // neither was found
+};
+
+// For people: what stands in tables.
+std::string_view name_of(PairVerdict verdict);
+
+// Two links that joints move against each other. Inside counts: a link within a closed other one
+// touches it.
+struct LinkPair {
+  int first = 0;  // indices of links, the smaller one first
+  int second = 0;
+  PairVerdict verdict = PairVerdict::kUnknown;
+  std::vector<double> witness{};  // a configuration of the whole robot; empty unless they touch
+  // An upper bound of the smallest gap found, up to rounding, in metres; 0 where they touch. Of
+  // kUnknown, mainly: the search for a witness gives it.
+  double smallest_gap = std::numeric_limits<double>::infinity();
+  // Proved: in no configuration of these boxes the two have a point in common, of the exact
+  // mechanism, or under the poses that forward_kinematics() computes with the root at the world's
+  // origin. All of the ranges for kNever.
+  FreeBoxes boxes{};
+  std::size_t searched_boxes = 0;
+};
+
+// How long is searched. Equal options give equal results on any number of threads, unless `seconds`
+// is set.
+struct LinkPairOptions {
+  std::size_t boxes = 8000;              // for each pair that touches
+  std::size_t undecided_boxes = 100000;  // for each pair without a witness
+  std::size_t samples = 300;             // configurations from which a witness is searched
+  // Boxes in which the two move against each other by less are not halved, in metres.
+  double smallest_motion = 1e-4;
+  double seconds = 0.0;  // limit for all pairs together; what is left then is kUnknown. 0: none
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: all
+  // Called with the share of the pairs that are done and a word, from one thread at a time.
+  std::function<void(double share, const char* what)> progress{};
+};
+
+// The pairs of a robot's links that joints move against each other, and what is proved of each.
+// Immutable; threads may share it.
+class LinkPairs {
+ public:
+  LinkPairs() = default;
+  // Pairs in the order of their indices, each once, first before second, and the fingerprint of
+  // what they hold for. Throws Error otherwise, or for indices beyond the number of links.
+  LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t fingerprint);
+
+  const std::vector<LinkPair>& pairs() const { return pairs_; }
+  std::size_t link_count() const { return link_count_; }
+  std::uint64_t fingerprint() const { return fingerprint_; }
+
+  // The pair of two links in either order, or null: rigidly joined, or a link without a body. Who
+  // asks often keeps it: a binary search.
+  const LinkPair* find(int first, int second) const noexcept;
+
+  // Whether two links are proved free in a configuration, or on all of the straight edge between
+  // two. False where nothing is proved. Neither allocates.
+  bool is_free(int first, int second, std::span<const double> configuration) const noexcept {
+    const LinkPair* const pair = find(first, second);
+    return pair != nullptr && pair->boxes.contains(configuration);
+  }
+  bool is_edge_free(int first, int second, std::span<const double> from,
+                    std::span<const double> to) const noexcept {
+    const LinkPair* const pair = find(first, second);
+    return pair != nullptr && pair->boxes.contains_edge(from, to);
+  }
+
+ private:
+  std::vector<LinkPair> pairs_;
+  std::size_t link_count_ = 0;
+  std::uint64_t fingerprint_ = 0;
+};
+
+// Proves what it can of all pairs of links with bodies, within the limits of the joints; continuous
+// joints take all positions, but where a mimic follows one it is proved for -pi to pi. Pairs with
+// more than 16 joints between them or positions beyond 100 stay kUnknown. Several bodies of a link
+// count together. The trees of the robot's links are not looked at. The proof is in
+// internal/pair_bound.h and internal/pair_search.h.
+// Throws Error for a body without or with both shapes, a link out of range, and options that are
+// negative or not finite.
+LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
+                           const LinkPairOptions& options = {});
+
+// Of the mechanism (joints, origins, axes, mimics, not the limits) and the bodies, bit by bit.
+std::uint64_t link_pairs_fingerprint(const RobotModel& robot, std::span<const LinkBody> bodies);
+
+}  // namespace spherule
