@@ -255,36 +255,6 @@ TEST(MeshContact, IsTheSumOfItsParts) {
   EXPECT_GT(alarms, 10);
 }
 
-// A triangle that is said to be so deep in a sphere has a point so far from its surface.
-TEST(MeshContact, TheDepthInASphereIsNoMoreThanItIs) {
-  SceneRandom random(7);
-  int deep = 0, nearly = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const TriangleMesh mesh = random_mesh(random, 6, 0.2);
-    const CoveredMesh covered = surface_covered(mesh, 0);
-    const Pose world_from_mesh = random.pose(1.0);
-    const Pose world_from_ball = random.pose(1.0);
-    const Vector3d center = world_from_ball.inverse() * (world_from_mesh * random.point(0.3));
-    const auto other = ball(center, random.uniform(0.0, 1.0));
-    for (std::int32_t sphere = 0; sphere < 6; ++sphere) {
-      const auto [triangle, depth] =
-          nearest_triangle(covered, sphere, world_from_mesh, *other, 0, world_from_ball);
-      if (triangle < 0) continue;
-      ASSERT_EQ(depth,
-                contact_depth(covered, triangle, world_from_mesh, *other, 0, world_from_ball));
-      const Real distance = sqrt(squared_distance_to_triangle(
-          transform(world_from_ball, exact<Real>(center)),
-          placed<Real>(world_from_mesh, corners_of(mesh, static_cast<std::size_t>(triangle)))));
-      const Real exact_depth = other->spheres()[0].radius - distance;
-      ASSERT_LE(depth, exact_depth);
-      deep += depth > 0.0;
-      nearly += depth > exact_depth - 1e-12;
-    }
-  }
-  EXPECT_GT(deep, 1000);
-  EXPECT_GT(nearly, 10000);
-}
-
 TEST(MeshContact, ABodyInsideAnotherCollides) {
   SceneRandom random(6);
   const Vector3d large = Vector3d::Constant(1.0), small = Vector3d::Constant(0.2);
