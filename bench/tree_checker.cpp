@@ -3,7 +3,6 @@
 
 #include "collide/collide.h"
 #include "collide/mesh_contact.h"
-#include "collide/robot/robot_mesh_checker.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -49,23 +48,6 @@ class BatchTreeChecker : public Checker {
   RobotChecker::Scratch scratch_;
 };
 
-class MeshRobotChecker : public Checker {
- public:
-  explicit MeshRobotChecker(RobotMeshChecker checker)
-      : checker_(std::move(checker)), scratch_(checker_) {}
-
-  void check(std::span<const ArmPositions> configurations,
-             std::span<std::uint8_t> verdicts) override {
-    for (std::size_t i = 0; i < configurations.size(); ++i) {
-      verdicts[i] = checker_.collides(configurations[i], scratch_) ? 1 : 0;
-    }
-  }
-
- private:
-  RobotMeshChecker checker_;
-  RobotMeshChecker::Scratch scratch_;
-};
-
 class PairTreeChecker : public SingleChecker {
  public:
   explicit PairTreeChecker(const Workload& workload) : SingleChecker(workload.robot) {
@@ -96,30 +78,13 @@ class PairTreeChecker : public SingleChecker {
   std::vector<Pair> pairs_;
 };
 
-RobotMeshChecker make_mesh_checker(const Workload& workload, InstructionSet instructions) {
-  RobotMeshCheckerOptions options{.instructions = instructions};
-  std::vector<PlacedTree> obstacles;
-  for (const Obstacle& obstacle : workload.obstacles) {
-    obstacles.push_back({obstacle.part.tree, obstacle.world_from_part});
-  }
-  std::vector<LinkMesh> meshes;
-  for (const Body& body : workload.bodies) {
-    meshes.push_back({body.link, std::make_shared<const MeshTree>(body.part.mesh)});
-    for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
-      if (!is_tested(body, workload.obstacles[i])) options.untested.push_back({body.link, i});
-    }
-  }
-  return RobotMeshChecker(workload.robot, std::move(meshes), std::move(obstacles), options);
-}
-
 }  // namespace
 
 RobotChecker make_robot_checker(const Workload& workload, InstructionSet instructions,
-                                bool confirmed) {
+                                UsedMeshes used) {
   RobotModel robot = workload.robot;
   RobotCheckerOptions options{.instructions = instructions};
   const auto add_mesh = [&](const Part& part) {
-    if (!confirmed) return;
     options.meshes.push_back(std::make_shared<const CoveredMesh>(part.mesh, part.tree));
   };
   const auto link_of = [&](const Body& body) {
@@ -127,7 +92,7 @@ RobotChecker make_robot_checker(const Workload& workload, InstructionSet instruc
   };
   for (const Body& body : workload.bodies) {
     robot.attach(link_of(body), body.part.tree);
-    add_mesh(body.part);
+    if (used != UsedMeshes::kNone) add_mesh(body.part);
   }
   AllowedCollisions allowed(robot);
   allowed.allow_all();
@@ -137,7 +102,7 @@ RobotChecker make_robot_checker(const Workload& workload, InstructionSet instruc
     const Obstacle& obstacle = workload.obstacles[i];
     const std::string name = "obstacle " + std::to_string(i);
     scene.add(name, obstacle.part.tree, obstacle.world_from_part);
-    add_mesh(obstacle.part);
+    if (used == UsedMeshes::kAll) add_mesh(obstacle.part);
     for (const Body& body : workload.bodies) {
       if (!is_tested(body, obstacle)) scene.allow_contact(link_of(body), name);
     }
@@ -148,10 +113,10 @@ RobotChecker make_robot_checker(const Workload& workload, InstructionSet instruc
 std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mode,
                                            InstructionSet instructions) {
   if (mode == TreeMode::kPairs) return std::make_unique<PairTreeChecker>(workload);
-  if (mode == TreeMode::kMeshes) {
-    return std::make_unique<MeshRobotChecker>(make_mesh_checker(workload, instructions));
-  }
-  RobotChecker checker = make_robot_checker(workload, instructions, mode == TreeMode::kConfirmed);
+  const UsedMeshes used = mode == TreeMode::kConfirmed ? UsedMeshes::kAll
+                          : mode == TreeMode::kMeshes  ? UsedMeshes::kOfRobot
+                                                       : UsedMeshes::kNone;
+  RobotChecker checker = make_robot_checker(workload, instructions, used);
   if (mode == TreeMode::kBatch) return std::make_unique<BatchTreeChecker>(std::move(checker));
   return std::make_unique<SingleTreeChecker>(std::move(checker));
 }

@@ -7,6 +7,7 @@
 #include "collide/internal/listed_triangles.h"
 #include "collide/internal/patch_trees.h"
 #include "collide/internal/traversal.h"
+#include "collide/internal/triangle_leaves.h"
 #include "spheretree/error.h"
 
 #include <optional>
@@ -97,6 +98,34 @@ double contact_depth(const CoveredMesh& a, const Pose& world_from_a, const Cover
                      const Pose& world_from_b, const TrianglePair& triangles) noexcept {
   const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
   return internal::ListedTriangles(a, world_from_a, b, world_from_b, pose).depth(triangles);
+}
+
+double contact_depth(const CoveredMesh& a, std::int32_t triangle_a, const Pose& world_from_a,
+                     const SphereTree& b, std::int32_t sphere_b,
+                     const Pose& world_from_b) noexcept {
+  const RelativePose pose(b, world_from_b, a.mesh().tree(), world_from_a);
+  return internal::TriangleLeaves(b, a.mesh(), pose).depth(sphere_b, triangle_a);
+}
+
+TriangleDepth nearest_triangle(const CoveredMesh& a, std::int32_t sphere_a,
+                               const Pose& world_from_a, const SphereTree& b, std::int32_t sphere_b,
+                               const Pose& world_from_b) noexcept {
+  const std::span<const Sphere> balls = a.mesh().tree().spheres();
+  const RelativePose pose(b, world_from_b, a.mesh().tree(), world_from_a);
+  const Eigen::Vector3d center =
+      pose.b_from_a()(b.spheres()[static_cast<std::size_t>(sphere_b)].center);
+  TriangleDepth result;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::int32_t triangle : a.triangles_under(sphere_a)) {
+    const double square = (balls[static_cast<std::size_t>(triangle)].center - center).squaredNorm();
+    if (square >= least) continue;
+    least = square;
+    result.triangle = triangle;
+  }
+  if (result.triangle >= 0) {
+    result.depth = internal::TriangleLeaves(b, a.mesh(), pose).depth(sphere_b, result.triangle);
+  }
+  return result;
 }
 
 bool contains_component(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,

@@ -11,6 +11,7 @@
 #include "spheretree/triangle_mesh.h"
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -109,6 +110,18 @@ inline bool triangles_touch(const CoveredMesh& a, std::int32_t sphere_a, const P
 // keep one wherever one of them goes, none of its points by more than that from where it is.
 double contact_depth(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
                      const Pose& world_from_b, const TrianglePair& triangles) noexcept;
+// The same of a triangle and a sphere of a set.
+double contact_depth(const CoveredMesh& a, std::int32_t triangle_a, const Pose& world_from_a,
+                     const SphereTree& b, std::int32_t sphere_b, const Pose& world_from_b) noexcept;
+// A triangle under a sphere, and that depth.
+struct TriangleDepth {
+  std::int32_t triangle = -1;
+  double depth = -std::numeric_limits<double>::infinity();
+};
+// The one whose enclosing ball is centred nearest to a sphere of a set; -1 if there is none.
+TriangleDepth nearest_triangle(const CoveredMesh& a, std::int32_t sphere_a,
+                               const Pose& world_from_a, const SphereTree& b, std::int32_t sphere_b,
+                               const Pose& world_from_b) noexcept;
 // Whether a component of one mesh lies inside the other, given that no triangles touch.
 bool contains_component(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
                         const Pose& world_from_b) noexcept;

@@ -38,18 +38,17 @@ SphereTree tree_of(const std::vector<Triangle>& triangles) {
 MeshTree::MeshTree(const TriangleMesh& mesh)
     : triangles_(triangles_of(mesh)),
       tree_(tree_of(triangles_)),
-      packed_(
-          std::make_shared<const internal::PackedMesh>(triangles_, tree_.spheres(), triangles_)) {}
+      packed_(std::make_shared<const internal::PackedMesh>(triangles_, tree_.spheres())) {}
 
 bool collides(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
               const Pose& world_from_b) noexcept {
-  return internal::collides_by(internal::best_mesh_kernels(), a, world_from_a, b, world_from_b);
+  return internal::collides_by(internal::best_mesh_kernel(), a, world_from_a, b, world_from_b);
 }
 
 bool within(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
             const Pose& world_from_b, double clearance) {
   require_clearance(clearance);
-  return internal::collides_by(internal::best_mesh_kernels(), a, world_from_a, b, world_from_b,
+  return internal::collides_by(internal::best_mesh_kernel(), a, world_from_a, b, world_from_b,
                                clearance);
 }
 

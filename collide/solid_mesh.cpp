@@ -23,7 +23,7 @@ using internal::GapInterval;
 bool comes_within(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
                   const Pose& world_from_solid, double clearance) noexcept {
   const double reach = clearance > 0.0 ? add_up(clearance, solid.growth()) : solid.growth();
-  if (internal::collides_by(internal::best_mesh_kernels(), tree, world_from_tree, solid.mesh(),
+  if (internal::collides_by(internal::best_mesh_kernel(), tree, world_from_tree, solid.mesh(),
                             world_from_solid, reach)) {
     return true;
   }

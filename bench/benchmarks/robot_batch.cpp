@@ -102,7 +102,7 @@ void BM_InRandomOrder(benchmark::State& state) {
 }
 // Contacts confirmed on the triangles.
 void BM_ConfirmedAlongThePath(benchmark::State& state) {
-  run(state, make_robot_checker(cell().workload, best_instruction_set(), true),
+  run(state, make_robot_checker(cell().workload, best_instruction_set(), UsedMeshes::kAll),
       cell().workload.program);
 }
 

@@ -4,8 +4,6 @@
 // What a search for contacts of balls and triangles works on, as plain data, and the kernels that
 // do it, one for each instruction set. It takes place in the frame of the mesh.
 
-#include "collide/internal/mechanism_kernel.h"
-
 #include <cstdint>
 
 namespace spherule::internal {
@@ -80,42 +78,18 @@ struct MeshBalls {
   MeshTask root;  // the ball around all, there and grown
 };
 
-// Meshes that move with frames against spheres that stand still, in the root's frame.
-struct MeshBody {
-  MeshView mesh;
-  std::int32_t frame;
-};
-
-struct MeshObstacle {
-  const PackedNode* nodes;  // inflated already
-  float margin;
-};
-
-struct MeshProblem {
-  const MeshBody* bodies;
-  const MeshObstacle* obstacles;
-  const KernelPair* pairs;  // in the order in which they are tested
-  std::int32_t pair_count;
-};
-
 // A sphere and a triangle that single precision cannot tell apart: whether they touch.
-using ConfirmTriangle = bool (*)(void* context, KernelPair pair, std::int32_t sphere,
-                                 std::int32_t triangle);
+using ConfirmTriangle = bool (*)(void* context, std::int32_t sphere, std::int32_t triangle);
 
 // True if a sphere meets a triangle for sure, a corner being inside by `margin` at least, or is
 // confirmed to; false if none does.
-struct MeshKernels {
-  bool (*meets)(const MeshView& mesh, const MeshBalls& balls, float margin, MeshTasks& tasks,
-                ConfirmTriangle confirm, void* context);
-  // Frames and balls around the bodies as Kernels::place leaves them, in the order of the bodies.
-  bool (*check)(const MeshProblem& problem, const KernelPose* poses, const KernelTask* roots,
-                MeshTasks& tasks, ConfirmTriangle confirm, void* context);
-};
+using MeshKernel = bool (*)(const MeshView& mesh, const MeshBalls& balls, float margin,
+                            MeshTasks& tasks, ConfirmTriangle confirm, void* context);
 
-const MeshKernels& portable_mesh_kernels();
+MeshKernel portable_mesh_kernel();
 #if defined(SPHERULE_X86_KERNELS)
-const MeshKernels& avx2_mesh_kernels();
-const MeshKernels& avx512_mesh_kernels();
+MeshKernel avx2_mesh_kernel();
+MeshKernel avx512_mesh_kernel();
 #endif
 
 }  // namespace spherule::internal

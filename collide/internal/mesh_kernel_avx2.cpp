@@ -9,8 +9,8 @@
 
 namespace spherule::internal {
 
-const MeshKernels& avx2_mesh_kernels() {
-  return mesh_avx2::kMeshKernels;
+MeshKernel avx2_mesh_kernel() {
+  return &mesh_avx2::meets;
 }
 
 }  // namespace spherule::internal

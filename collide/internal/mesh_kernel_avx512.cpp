@@ -9,8 +9,8 @@
 
 namespace spherule::internal {
 
-const MeshKernels& avx512_mesh_kernels() {
-  return mesh_avx512::kMeshKernels;
+MeshKernel avx512_mesh_kernel() {
+  return &mesh_avx512::meets;
 }
 
 }  // namespace spherule::internal

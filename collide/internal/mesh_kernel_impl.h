@@ -127,82 +127,32 @@ class TreeSide {
   const MeshBalls& balls_;
 };
 
-// A packed tree there.
-class PackedSide {
- public:
-  // `pose` is the one of the mesh; the way back is its transpose.
-  PackedSide(const PackedNode* nodes, const KernelPose& pose) : nodes_(nodes) {
-    const auto& [x, y, z, t] = pose.columns;
-    for (int i = 0; i < 3; ++i) {
-      at_.columns[i][0] = static_cast<float>(x[i]);
-      at_.columns[i][1] = static_cast<float>(y[i]);
-      at_.columns[i][2] = static_cast<float>(z[i]);
-    }
-    at_.columns[3][0] = static_cast<float>(-(x[0] * t[0] + x[1] * t[1] + x[2] * t[2]));
-    at_.columns[3][1] = static_cast<float>(-(y[0] * t[0] + y[1] * t[1] + y[2] * t[2]));
-    at_.columns[3][2] = static_cast<float>(-(z[0] * t[0] + z[1] * t[1] + z[2] * t[2]));
-  }
-
-  SPHERULE_INLINE void place(std::int32_t node, MeshChildren& to) const {
-    hold(placed(nodes_[node], at_), to.balls);
-    __builtin_memcpy(to.child, nodes_[node].child, sizeof to.child);
-    to.present = 0xffU;
-  }
-
- private:
-  const PackedNode* nodes_;
-  Placement at_;
-};
-
-struct AskTriangle {
-  ConfirmTriangle confirm;
-  void* context;
-  KernelPair pair;
-
-  SPHERULE_INLINE bool operator()(std::int32_t sphere, std::int32_t triangle) const {
-    return confirm(context, pair, sphere, triangle);
-  }
-};
-
-template <class Spheres>
 class MeshSearch {
  public:
-  MeshSearch(const MeshView& mesh, const Spheres& spheres, float margin, MeshTasks& tasks,
-             const AskTriangle& ask)
+  MeshSearch(const MeshView& mesh, const MeshBalls& balls, float margin, MeshTasks& tasks,
+             ConfirmTriangle confirm, void* context)
       : nodes_(mesh.nodes),
         blocks_(mesh.blocks),
-        spheres_(spheres),
+        spheres_(balls),
         margin_(margin),
         tasks_(tasks.waiting),
-        ask_(ask) {}
+        confirm_(confirm),
+        context_(context) {}
 
   // From one ball. True if a sphere and a triangle ended the search.
   bool run(const MeshTask& root) {
     tasks_[0] = root;
     top_ = 1;
-    return finish();
-  }
-
-  // From some of the children of the balls' root.
-  SPHERULE_INLINE bool run_below_root(unsigned chosen) {
-    MeshTask root;
-    root.sphere = 0;
-    root.mesh = 0;
-    return open_ball(root, nodes_[0].around, chosen) || finish();
-  }
-
- private:
-  bool finish() {
     while (top_ > 0) {
       const MeshTask task = tasks_[--top_];
       const MeshBox& box = task.mesh >= 0 ? nodes_[task.mesh].around : blocks_[~task.mesh].around;
       const bool is_small = task.mesh < 0 || box.size < kOpenBoxes * task.radius;
-      if (task.sphere >= 0 && is_small ? open_ball(task, box, 0xffU) : open_boxes(task))
-        return true;
+      if (task.sphere >= 0 && is_small ? open_ball(task, box) : open_boxes(task)) return true;
     }
     return false;
   }
 
+ private:
   // The boxes of a node that are not apart from the ball.
   SPHERULE_INLINE bool open_boxes(const MeshTask& task) {
     const MeshNode& node = nodes_[task.mesh];
@@ -218,15 +168,15 @@ class MeshSearch {
     return false;
   }
 
-  // Those of the chosen balls below a node that are not apart from a box.
-  SPHERULE_INLINE bool open_ball(const MeshTask& task, const MeshBox& box, unsigned chosen) {
+  // The balls below a node that are not apart from a box.
+  SPHERULE_INLINE bool open_ball(const MeshTask& task, const MeshBox& box) {
     MeshChildren children;
     spheres_.place(task.sphere, children);
     const KernelBalls& balls = children.balls;
     const Balls lanes = balls_of(balls);
     const Float8 gap = squared_gap(lanes, {all(box.low[0]), all(box.low[1]), all(box.low[2])},
                                    {all(box.high[0]), all(box.high[1]), all(box.high[2])});
-    unsigned hits = chosen & children.present & ~mask_of(gap > lanes.radius * lanes.radius);
+    unsigned hits = children.present & ~mask_of(gap > lanes.radius * lanes.radius);
     for (; hits != 0; hits &= hits - 1) {
       const int hit = __builtin_ctz(hits);
       const MeshTask next = {balls.x[hit],      balls.y[hit],        balls.z[hit],
@@ -280,7 +230,7 @@ class MeshSearch {
     near &= ~(separates(aa, ab, ca, ball.radius) | separates(bb, bc, ab, ball.radius) |
               separates(cc, ca, bc, ball.radius));
     for (; near != 0; near &= near - 1) {
-      if (ask_(~ball.sphere, block.triangle[__builtin_ctz(near)])) return true;
+      if (confirm_(context_, ~ball.sphere, block.triangle[__builtin_ctz(near)])) return true;
     }
     return false;
   }
@@ -298,55 +248,18 @@ class MeshSearch {
 
   const MeshNode* nodes_;
   const MeshBlock* blocks_;
-  const Spheres& spheres_;
+  const TreeSide spheres_;
   float margin_;
   MeshTask* tasks_;
   std::size_t top_ = 0;
-  const AskTriangle& ask_;
+  ConfirmTriangle confirm_;
+  void* context_;
 };
 
 bool meets(const MeshView& mesh, const MeshBalls& balls, float margin, MeshTasks& tasks,
            ConfirmTriangle confirm, void* context) {
-  const TreeSide spheres(balls);
-  const AskTriangle ask = {confirm, context, {0, 0}};
-  return MeshSearch<TreeSide>(mesh, spheres, margin, tasks, ask).run(balls.root);
+  return MeshSearch(mesh, balls, margin, tasks, confirm, context).run(balls.root);
 }
-
-// The children of the root of a tree below which something is not apart from a ball: two levels
-// are asked before anything is placed, which is what ends most searches.
-SPHERULE_INLINE unsigned near_root(const PackedNode* nodes, const KernelTask& ball) {
-  const auto near = [&](std::int32_t node) {
-    return overlaps(balls_of(nodes[node]), ball.x, ball.y, ball.z, ball.radius);
-  };
-  unsigned result = near(0);
-  for (unsigned rest = result; rest != 0; rest &= rest - 1) {
-    const unsigned lane = rest & -rest;
-    const std::int32_t child = nodes[0].child[__builtin_ctz(rest)];
-    if (child >= 0 && near(child) == 0) result &= ~lane;
-  }
-  return result;
-}
-
-bool check(const MeshProblem& problem, const KernelPose* poses, const KernelTask* roots,
-           MeshTasks& tasks, ConfirmTriangle confirm, void* context) {
-  for (std::int32_t i = 0; i < problem.pair_count; ++i) {
-    const KernelPair pair = problem.pairs[i];
-    const KernelTask& root = roots[pair.body];
-    const MeshObstacle& obstacle = problem.obstacles[pair.obstacle];
-    const unsigned near = near_root(obstacle.nodes, root);
-    if (near == 0) continue;
-    const MeshBody& body = problem.bodies[pair.body];
-    const PackedSide spheres(obstacle.nodes, poses[body.frame]);
-    const AskTriangle ask = {confirm, context, pair};
-    if (MeshSearch<PackedSide>(body.mesh, spheres, obstacle.margin, tasks, ask)
-            .run_below_root(near)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-constexpr MeshKernels kMeshKernels = {&meets, &check};
 
 }  // namespace
 }  // namespace spherule::internal::SPHERULE_KERNEL

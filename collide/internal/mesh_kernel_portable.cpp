@@ -9,8 +9,8 @@
 
 namespace spherule::internal {
 
-const MeshKernels& portable_mesh_kernels() {
-  return mesh_portable::kMeshKernels;
+MeshKernel portable_mesh_kernel() {
+  return &mesh_portable::meets;
 }
 
 }  // namespace spherule::internal

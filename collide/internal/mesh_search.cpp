@@ -30,8 +30,7 @@ struct Question {
   const RelativePose& pose;
   double clearance;
 
-  static bool confirm(void* context, KernelPair /*pair*/, std::int32_t sphere,
-                      std::int32_t triangle) {
+  static bool confirm(void* context, std::int32_t sphere, std::int32_t triangle) {
     const Question& in = *static_cast<const Question*>(context);
     return TriangleLeaves(in.a, in.b, in.pose, in.clearance).touches(sphere, triangle);
   }
@@ -39,20 +38,20 @@ struct Question {
 
 }  // namespace
 
-const MeshKernels& mesh_kernels_for([[maybe_unused]] InstructionSet set) {
+MeshKernel mesh_kernel_for([[maybe_unused]] InstructionSet set) {
 #if defined(SPHERULE_X86_KERNELS)
-  if (set == InstructionSet::kAvx512) return avx512_mesh_kernels();
-  if (set == InstructionSet::kAvx2) return avx2_mesh_kernels();
+  if (set == InstructionSet::kAvx512) return avx512_mesh_kernel();
+  if (set == InstructionSet::kAvx2) return avx2_mesh_kernel();
 #endif
-  return portable_mesh_kernels();
+  return portable_mesh_kernel();
 }
 
-const MeshKernels& best_mesh_kernels() {
-  static const MeshKernels& kKernels = mesh_kernels_for(best_instruction_set());
-  return kKernels;
+MeshKernel best_mesh_kernel() {
+  static const MeshKernel kKernel = mesh_kernel_for(best_instruction_set());
+  return kKernel;
 }
 
-bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& world_from_a,
+bool collides_by(MeshKernel kernel, const SphereTree& a, const Pose& world_from_a,
                  const MeshTree& b, const Pose& world_from_b, double clearance) noexcept {
   if (far_apart(a, world_from_a, b.tree(), world_from_b, clearance)) return false;
   const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
@@ -85,8 +84,8 @@ bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& wo
       a.is_leaf(0) ? ~a.sphere_index(0) : 0, 0};
   MeshTasks tasks;  // 24 KiB that are not touched before they are needed
   Question question{a, b, pose, clearance};
-  return kernels.meets(mesh.view(), balls, 3.0F * rounded_up_to_single(rounding), tasks,
-                       &Question::confirm, &question);
+  return kernel(mesh.view(), balls, 3.0F * rounded_up_to_single(rounding), tasks,
+                &Question::confirm, &question);
 }
 
 }  // namespace spherule::internal

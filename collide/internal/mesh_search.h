@@ -7,13 +7,13 @@
 
 namespace spherule::internal {
 
-const MeshKernels& mesh_kernels_for(InstructionSet set);
+MeshKernel mesh_kernel_for(InstructionSet set);
 // Of this machine.
-const MeshKernels& best_mesh_kernels();
+MeshKernel best_mesh_kernel();
 
 // within() with the kernel of an instruction set, which this machine must have; collides() for a
 // clearance of 0.
-bool collides_by(const MeshKernels& kernels, const SphereTree& a, const Pose& world_from_a,
+bool collides_by(MeshKernel kernel, const SphereTree& a, const Pose& world_from_a,
                  const MeshTree& b, const Pose& world_from_b, double clearance = 0.0) noexcept;
 
 }  // namespace spherule::internal

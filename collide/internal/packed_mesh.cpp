@@ -95,8 +95,7 @@ MeshBox packed(const Box& box) {
 class Builder {
  public:
   Builder(std::span<const Triangle> triangles, std::span<const Sphere> balls,
-          std::span<const Triangle> judged, std::vector<MeshNode>& nodes,
-          std::vector<MeshBlock>& blocks)
+          std::vector<MeshNode>& nodes, std::vector<MeshBlock>& blocks)
       : triangles_(triangles), nodes_(nodes), blocks_(blocks), order_(triangles.size()) {
     for (const Triangle& t : triangles) {
       for (const Vector3d& corner : t) bound_ = std::max(bound_, corner.norm());
@@ -104,7 +103,7 @@ class Builder {
     // Also where norms are rounded down.
     bound_ *= 1.0 + 0x1p-40;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-      sides_.push_back(is_high(judged[i]) ? sides_of(triangles[i], bound_) : Sides());
+      sides_.push_back(is_high(triangles[i]) ? sides_of(triangles[i], bound_) : Sides());
       Box box;
       if (sides_[i].hold) {
         for (const Vector3d& corner : triangles[i]) box.extend(corner);
@@ -232,9 +231,8 @@ class Builder {
 
 }  // namespace
 
-PackedMesh::PackedMesh(std::span<const Triangle> triangles, std::span<const Sphere> balls,
-                       std::span<const Triangle> judged) {
-  depth_ = Builder(triangles, balls, judged, nodes_, blocks_).build();
+PackedMesh::PackedMesh(std::span<const Triangle> triangles, std::span<const Sphere> balls) {
+  depth_ = Builder(triangles, balls, nodes_, blocks_).build();
 }
 
 }  // namespace spherule::internal

@@ -33,10 +33,8 @@ class PackedMesh {
   // Below this a triangle is as good as a segment, see ball_triangle.h.
   static constexpr double kLowest = 0x1p-24;
 
-  // `balls` enclose the triangles one by one. The heights are those of `judged`, the triangles as
-  // the exact test has them, where these have been moved.
-  PackedMesh(std::span<const Triangle> triangles, std::span<const Sphere> balls,
-             std::span<const Triangle> judged);
+  // `balls` enclose the triangles one by one.
+  PackedMesh(std::span<const Triangle> triangles, std::span<const Sphere> balls);
 
   MeshView view() const { return {nodes_.data(), blocks_.data()}; }
   // Nodes and blocks on the longest way from the root.

@@ -60,6 +60,12 @@ class TriangleLeaves {
     return std::max(lower(ball, b_.tree().sphere_index(pair.index(1))) - ball.radius,
                     pose_.gap(ball, b_.tree().ball(pair.index(1))));
   }
+  // So deep is the triangle in the ball at least, if that is above zero: its image errs by less
+  // than the pad.
+  double depth(std::int32_t sphere, std::int32_t triangle) const {
+    const Sphere& ball = a_.spheres()[static_cast<std::size_t>(sphere)];
+    return (ball.radius - pad_) - distance(ball, triangle).upper;
+  }
   GapInterval interval(NodePair pair) const {
     const Sphere ball = a_.ball(pair.index(0));
     const TriangleDistance found = distance(ball, b_.tree().sphere_index(pair.index(1)));

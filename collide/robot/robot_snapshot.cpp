@@ -168,18 +168,9 @@ class RobotScene::Snapshot {
     for (const int piece :
          pieces_of(body, *left_out,
                    internal::padding_sum(padding_of(name), padding_between(name, other)))) {
-      const bool is_standing =
-          is_for_standing_trees(pieces_[static_cast<std::size_t>(piece)], shapes_[obstacle]);
+      const bool is_standing = std::holds_alternative<Tree>(shapes_[obstacle].shape);
       (is_standing ? standing_pairs_ : pairs_).push_back({piece, static_cast<int>(obstacle), true});
     }
-  }
-
-  // What StandingTrees can take.
-  static bool is_for_standing_trees(const internal::CheckedPiece& piece,
-                                    const internal::PlacedShape& obstacle) {
-    if (!std::holds_alternative<Tree>(obstacle.shape)) return false;
-    const bool is_confirmed = piece.mesh != nullptr;
-    return is_confirmed == (obstacle.mesh != nullptr) && !(is_confirmed && piece.padding > 0.0);
   }
 
   void pair_bodies(std::size_t body, std::size_t other) {

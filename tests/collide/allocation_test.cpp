@@ -6,7 +6,6 @@
 #include "collide/internal/traversal.h"
 #include "collide/mechanism_check.h"
 #include "collide/mesh_contact.h"
-#include "collide/mesh_mechanism.h"
 #include "collide/mesh_tree.h"
 #include "collide/pair_cache.h"
 #include "collide/sweep.h"
@@ -121,30 +120,6 @@ TEST(Allocation, AMechanismsCheckTakesNoMemory) {
   EXPECT_GT(hits, 0);
   EXPECT_LT(hits, 1000);
   EXPECT_GT(asked, 0);
-}
-
-TEST(Allocation, AMechanismOfMeshesTakesNoMemory) {
-  SceneRandom random(4);
-  const auto mesh = std::make_shared<const MeshTree>(
-      TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}});
-  const std::vector<MechanismFrame> frames = {{.parent_from_frame = random.pose(0.1)}};
-  const std::vector<MechanismMesh> bodies = {{0, random.pose(0.3), mesh}};
-  const std::vector<MechanismObstacle> obstacles = {
-      {random.pose(1.0),
-       std::make_shared<const SphereTree>(build_tree(random_spheres(random, 60, 1.0, 0.05)))}};
-  const MechanismPair pair = {0, 0};
-  const MeshMechanismCheck check(frames, bodies, obstacles, std::span(&pair, 1), 1e-6);
-  MeshMechanismCheck::Scratch scratch(check);
-  int hits = 0;
-  const int before = allocations;
-  for (int i = 0; i < 1000; ++i) {
-    const double angle = random.uniform(-3.0, 3.0);
-    hits += check.collides(std::span(&angle, 1), scratch,
-                           [](const MeshContactInDoubt&) { return false; });
-  }
-  EXPECT_EQ(allocations, before);
-  EXPECT_GT(hits, 0);
-  EXPECT_LT(hits, 1000);
 }
 
 TEST(Allocation, CollidesAnswersWithoutMemoryForTheStack) {

@@ -7,10 +7,10 @@
 #include "collide/internal/ball_triangle.h"
 #include "collide/internal/packed_mesh.h"
 #include "collide/internal/relative_pose.h"
-#include "collide/mesh_mechanism.h"
+#include "collide/mesh_contact.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/exact_triangles.h"
+#include "tests/collide/tetrahedra.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"
 
@@ -110,7 +110,7 @@ TEST(MeshSearch, MissesNoContactWithOneTriangleOnAnyInstructionSet) {
     const bool expected = meets_triangle(tree, 0, world_from_a, mesh, 0, world_from_b);
     ASSERT_TRUE(expected || gap > 0) << "missed by " << gap;
     for (const InstructionSet set : instruction_sets()) {
-      ASSERT_EQ(internal::collides_by(internal::mesh_kernels_for(set), tree, world_from_a, mesh,
+      ASSERT_EQ(internal::collides_by(internal::mesh_kernel_for(set), tree, world_from_a, mesh,
                                       world_from_b),
                 expected)
           << "case " << i << ", gap " << gap;
@@ -183,7 +183,7 @@ TEST(MeshSearch, AnswersAsAllPairsDo) {
     ASSERT_EQ(collides(a, world_from_a, b, world_from_b), expected);
     for (const InstructionSet set : instruction_sets()) {
       ASSERT_EQ(
-          internal::collides_by(internal::mesh_kernels_for(set), a, world_from_a, b, world_from_b),
+          internal::collides_by(internal::mesh_kernel_for(set), a, world_from_a, b, world_from_b),
           expected)
           << "case " << i;
     }
@@ -191,6 +191,34 @@ TEST(MeshSearch, AnswersAsAllPairsDo) {
   }
   EXPECT_GT(hits, effort(100, 25));
   EXPECT_LT(hits, 580);
+}
+
+// A triangle that is said to be so deep in a sphere has a point so far from its surface.
+TEST(MeshSearch, TheDepthInASphereIsNoMoreThanItIs) {
+  SceneRandom random(16);
+  int deep = 0;
+  int nearly = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const double size = std::pow(10.0, random.whole(-6, 6));
+    const Triangle triangle = random_triangle(random, size);
+    const auto covered = covered_surface(mesh_of({triangle}));
+    const Pose world_from_a = random.pose(size);
+    const Pose world_from_b = random.pose(size);
+    const Eigen::Vector3d center =
+        world_from_b.inverse() * (world_from_a * (point_of(random, triangle) + random.point(size)));
+    const auto other = ball(center, random.uniform(0.0, 2.0 * size));
+    const auto [index, depth] =
+        nearest_triangle(*covered, 0, world_from_a, *other, 0, world_from_b);
+    ASSERT_EQ(index, 0);
+    ASSERT_EQ(depth, contact_depth(*covered, 0, world_from_a, *other, 0, world_from_b));
+    const Real exact_depth =
+        other->spheres()[0].radius - exact_distance(center, world_from_b, triangle, world_from_a);
+    ASSERT_LE(depth, exact_depth) << i;
+    deep += depth > 0.0;
+    nearly += depth > exact_depth - 1e-9 * size;
+  }
+  EXPECT_GT(deep, 1500);
+  EXPECT_GT(nearly, 5000);
 }
 
 TEST(MeshSearch, TheBoxesHoldEveryTriangleOnce) {
@@ -240,108 +268,6 @@ TEST(MeshSearch, TheBoxesHoldEveryTriangleOnce) {
     EXPECT_EQ(visit(visit, 0).size(), 3 * triangles.size());
     EXPECT_EQ(seen.size(), triangles.size());
   }
-}
-
-TEST(MeshMechanism, AnswersAsThePairsDoOnEveryInstructionSet) {
-  SceneRandom random(15);
-  int hits = 0;
-  int asked = 0;
-  int checked = 0;
-  for (int i = 0; i < effort(60, 12); ++i) {
-    // One frame that turns about z, and one that is shifted along its own.
-    const std::vector<MechanismFrame> frames = {
-        {.parent_from_frame = random.pose(1.0)},
-        {.parent = 0, .parent_from_frame = random.pose(0.5), .variable = 1, .prismatic = true}};
-    std::vector<MechanismMesh> bodies;
-    for (const int frame : {1, 0, 1}) {
-      std::vector<Triangle> triangles;
-      for (int k = 0; k < 40; ++k) triangles.push_back(random_triangle(random, 0.3));
-      bodies.push_back(
-          {frame, random.pose(0.3), std::make_shared<const MeshTree>(mesh_of(triangles))});
-    }
-    std::vector<MechanismObstacle> obstacles;
-    for (int k = 0; k < 2; ++k) {
-      obstacles.push_back({random.pose(1.5), std::make_shared<const SphereTree>(build_tree(
-                                                 random_spheres(random, 40, 0.5, 0.1)))});
-    }
-    const std::vector<MechanismPair> pairs = {{0, 1}, {0, 0}, {1, 1}, {2, 0}};
-    for (const InstructionSet set : instruction_sets()) {
-      const MeshMechanismCheck check(frames, bodies, obstacles, pairs, 1e-9, set);
-      MeshMechanismCheck::Scratch scratch(check);
-      SceneRandom variables(static_cast<std::uint64_t>(i));
-      for (int k = 0; k < 20; ++k) {
-        const double angle = variables.uniform(-3.0, 3.0);
-        const std::array<double, 2> q = {angle, variables.uniform(-1.0, 1.0)};
-        const Pose turned(Eigen::Quaterniond(std::cos(0.5 * angle), 0, 0, std::sin(0.5 * angle)),
-                          Eigen::Vector3d::Zero());
-        const Pose first = frames[0].parent_from_frame * turned;
-        const std::array<Pose, 2> root_from_frame = {
-            first, first * frames[1].parent_from_frame * Pose::from_translation({0.0, 0.0, q[1]})};
-        const auto pose_of = [&](int body) {
-          const MechanismMesh& mesh = bodies[static_cast<std::size_t>(body)];
-          return root_from_frame[static_cast<std::size_t>(mesh.frame)] * mesh.frame_from_mesh;
-        };
-        const bool expected = std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
-          const MechanismObstacle& obstacle = obstacles[static_cast<std::size_t>(pair.obstacle)];
-          return any_pair_meets(*obstacle.tree, obstacle.root_from_tree,
-                                *bodies[static_cast<std::size_t>(pair.body)].mesh,
-                                pose_of(pair.body));
-        });
-        const bool hit = check.collides(q, scratch, [&](const MeshContactInDoubt& contact) {
-          ++asked;
-          const MechanismObstacle& obstacle =
-              obstacles[static_cast<std::size_t>(contact.pair.obstacle)];
-          EXPECT_TRUE(std::any_of(pairs.begin(), pairs.end(), [&](const MechanismPair& pair) {
-            return pair.body == contact.pair.body && pair.obstacle == contact.pair.obstacle;
-          }));
-          return meets_triangle(*obstacle.tree, contact.sphere, obstacle.root_from_tree,
-                                *bodies[static_cast<std::size_t>(contact.pair.body)].mesh,
-                                contact.triangle, pose_of(contact.pair.body));
-        });
-        ASSERT_EQ(hit, expected) << i << ' ' << k;
-        hits += hit;
-        ++checked;
-      }
-    }
-  }
-  EXPECT_GT(hits, checked / 5);
-  EXPECT_LT(hits, checked * 4 / 5);
-  EXPECT_GT(asked, effort(50, 10));
-}
-
-TEST(MeshMechanism, RefusesWhatItCannotUse) {
-  const auto mesh = std::make_shared<const MeshTree>(
-      mesh_of({{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}}));
-  const std::vector<MechanismFrame> frames(1);
-  const std::vector<MechanismObstacle> obstacles = {{Pose(), ball({0, 0, 0}, 1.0)}};
-  const auto make = [&](const MechanismMesh& body, const MechanismPair& pair, double error) {
-    MeshMechanismCheck(frames, std::span(&body, 1), obstacles, std::span(&pair, 1), error);
-  };
-  EXPECT_NO_THROW(make({0, Pose(), mesh}, {0, 0}, 0.0));
-  EXPECT_THROW(make({0, Pose(), nullptr}, {0, 0}, 0.0), Error);
-  EXPECT_THROW(make({1, Pose(), mesh}, {0, 0}, 0.0), Error);
-  EXPECT_THROW(make({0, Pose(), mesh}, {0, 1}, 0.0), Error);
-  EXPECT_THROW(make({0, Pose(), mesh}, {0, 0}, -1.0), Error);
-  EXPECT_THROW(make({0, Pose::from_translation({1e15, 0, 0}), mesh}, {0, 0}, 0.0), Error);
-}
-
-TEST(MeshMechanism, RefusesTheScratchOfAnother) {
-  const auto mesh = std::make_shared<const MeshTree>(
-      mesh_of({{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}}));
-  const std::vector<MechanismFrame> frames(1);
-  const MechanismMesh body{0, Pose(), mesh};
-  const std::vector<MechanismObstacle> obstacles = {{Pose(), ball({9, 0, 0}, 1.0)}};
-  const MechanismPair pair;
-  const auto make = [&] {
-    return MeshMechanismCheck(frames, std::span(&body, 1), obstacles, std::span(&pair, 1), 0.0);
-  };
-  const MeshMechanismCheck check = make();
-  const MeshMechanismCheck other = make();
-  MeshMechanismCheck::Scratch scratch(other);
-  const std::array<double, 1> q = {0.0};
-  const auto none = [](const MeshContactInDoubt&) { return false; };
-  EXPECT_FALSE(other.collides(q, scratch, none));
-  EXPECT_THROW((void)check.collides(q, scratch, none), Error);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ TEST(MeshTreeTest, KernelsAgreeWithinAClearance) {
         internal::TriangleLeaves(tree, mesh, pose, clearance).touches(std::int32_t{0}, 0);
     ASSERT_TRUE(expected || distance > Real(ball.radius) + clearance) << i;
     for (const InstructionSet set : instruction_sets()) {
-      ASSERT_EQ(internal::collides_by(internal::mesh_kernels_for(set), tree, world_from_a, mesh,
+      ASSERT_EQ(internal::collides_by(internal::mesh_kernel_for(set), tree, world_from_a, mesh,
                                       world_from_b, clearance),
                 expected)
           << i;

@@ -19,6 +19,11 @@ std::shared_ptr<const CoveredMesh> covered_tetrahedron(SceneRandom& random, doub
       mesh, std::make_shared<const SphereTree>(build_tree(spheres)));
 }
 
+std::shared_ptr<const CoveredMesh> covered_surface(const TriangleMesh& mesh) {
+  return std::make_shared<const CoveredMesh>(
+      mesh, std::make_shared<const SphereTree>(MeshTree(mesh).tree()));
+}
+
 std::shared_ptr<const SphereTree> cover_of(const std::shared_ptr<const CoveredMesh>& mesh) {
   return {mesh, &mesh->cover()};
 }

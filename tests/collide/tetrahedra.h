@@ -11,6 +11,9 @@ namespace spherule::test {
 // A closed tetrahedron, covered by one ball a corner's cell and many more than it needs.
 std::shared_ptr<const CoveredMesh> covered_tetrahedron(SceneRandom& random, double size);
 
+// A mesh whose spheres are the balls around its triangles.
+std::shared_ptr<const CoveredMesh> covered_surface(const TriangleMesh& mesh);
+
 // Its spheres, which keep it alive.
 std::shared_ptr<const SphereTree> cover_of(const std::shared_ptr<const CoveredMesh>& mesh);
 

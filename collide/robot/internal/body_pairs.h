@@ -102,6 +102,10 @@ class BodyPairs {
   // By the canonical tests.
   bool touches(std::size_t pair, const Memory& memory) const;
   bool any_touches(Memory& memory) const;
+  // Of a pair that is_confirmed() and whose spheres touch: touches().
+  bool meshes_touch(std::size_t pair, const Memory& memory) const {
+    return meshes_within(pairs_[pair], 0.0, memory);
+  }
 
   // Never false if the two are within the clearance of each other in exact arithmetic or, where no
   // mesh is asked, the canonical test finds them so.

@@ -3,7 +3,6 @@
 
 #include "collide/collide.h"
 #include "collide/robot/internal/moving_frames.h"
-#include "collide/robot/kinematics.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -16,21 +15,22 @@ StandingTrees::StandingTrees(const BodyPairs& pairs, InstructionSet instructions
     : pairs_(pairs), positions_(pairs.robot()) {
   const RobotModel& robot = pairs.robot();
   const MovingFrames frames(robot);
-  std::vector<Pose> at_zero;
-  forward_kinematics(robot, std::vector<double>(static_cast<std::size_t>(robot.variable_count())),
-                     at_zero, pairs.world_from_root());
+  BodyPairs::Memory at_zero;
+  pairs.place(std::vector<double>(static_cast<std::size_t>(robot.variable_count())), at_zero);
   const Pose root_from_world = pairs.world_from_root().inverse();
   std::vector<MechanismBody> bodies;
   std::vector<MechanismObstacle> obstacles;
+  std::vector<MechanismPair> tested;
+  std::vector<std::size_t> indices;  // of these, in BodyPairs
   bool has_meshes = false;
   std::vector<int> body_of_piece(pairs.pieces().size(), -1);
-  std::vector<int> place_of(pairs.obstacles().size(), -1);
+  std::vector<int> obstacle_at(pairs.obstacles().size(), -1);
   for (std::size_t i = pairs.tested(); i < pairs.pairs().size(); ++i) {
     const CheckedPair& pair = pairs.pairs()[i];
     const auto index = static_cast<std::size_t>(pair.piece);
     const CheckedPiece& piece = pairs.pieces()[index];
     const auto link = static_cast<std::size_t>(piece.link);
-    int& place = place_of[static_cast<std::size_t>(pair.other)];
+    int& place = obstacle_at[static_cast<std::size_t>(pair.other)];
     if (place < 0) {
       const PlacedShape& placed = pairs.obstacles()[static_cast<std::size_t>(pair.other)];
       const auto& tree = std::get<std::shared_ptr<const SphereTree>>(placed.shape);
@@ -41,8 +41,7 @@ StandingTrees::StandingTrees(const BodyPairs& pairs, InstructionSet instructions
     has_meshes = has_meshes || pairs.is_confirmed(pair);
     const Body body{&piece, frames.frame_of_link[link], frames.frame_from_link[link]};
     if (body.frame < 0) {
-      always_ =
-          always_ || pair_touches(body, obstacles_[static_cast<std::size_t>(place)], at_zero[link]);
+      always_ = always_ || pairs.touches(i, at_zero);
       continue;
     }
     if (body_of_piece[index] < 0) {
@@ -50,9 +49,12 @@ StandingTrees::StandingTrees(const BodyPairs& pairs, InstructionSet instructions
       bodies_.push_back(body);
       bodies.push_back({body.frame, body.frame_from_link, piece.tree});
     }
-    tested_.push_back({body_of_piece[index], place});
+    tested.push_back({body_of_piece[index], place});
+    indices.push_back(i);
   }
-  check_ = std::make_unique<const MechanismCheck>(frames.frames, bodies, obstacles, tested_,
+  pair_of_.resize(bodies_.size() * obstacles_.size());
+  for (std::size_t i = 0; i < tested.size(); ++i) pair_of_[place_of(tested[i])] = indices[i];
+  check_ = std::make_unique<const MechanismCheck>(frames.frames, bodies, obstacles, tested,
                                                   pairs.pose_error(), instructions, has_meshes);
 }
 
@@ -120,43 +122,51 @@ StandingTrees::AlongFinding StandingTrees::look_along(std::span<const double> fr
                                        : AlongFinding::kUndecided;
 }
 
-// For the contacts of a configuration that are asked about.
-void StandingTrees::place(std::span<const double> configuration, Memory& memory) const {
-  forward_kinematics(pairs_.robot(), configuration, memory.world_from_link_,
-                     pairs_.world_from_root());
-}
-
-// Whether the robot touches an obstacle at the contact, or where it last did: a robot that touches
-// often did so a moment ago, by the same triangles. `is_placed` says whether the memory holds the
-// configuration's poses.
+// Whether the robot touches an obstacle at the contact, or where it last did. `is_placed` says
+// whether the memory holds the configuration's poses.
 bool StandingTrees::touches(std::span<const double> configuration, const MechanismContact& contact,
                             bool& is_placed, Memory& memory) const {
   if (!std::exchange(is_placed, true)) {
-    place(configuration, memory);
+    pairs_.place(configuration, memory.placed_);
     if (memory.last_ && still_touches(*memory.last_, memory)) return true;
   }
+  const bool is_known =
+      std::any_of(memory.unconfirmed_.begin(), memory.unconfirmed_.end(), [&](const auto& pair) {
+        return pair.body == contact.pair.body && pair.obstacle == contact.pair.obstacle;
+      });
+  if (is_known && !are_meshes(contact.pair)) return false;
   const Finding finding = find(contact, memory);
-  if (finding == Finding::kSpheres) {
-    const auto is_same = [&](const MechanismPair& pair) {
-      return pair.body == contact.pair.body && pair.obstacle == contact.pair.obstacle;
-    };
-    if (std::none_of(memory.unconfirmed_.begin(), memory.unconfirmed_.end(), is_same)) {
-      memory.unconfirmed_.push_back(contact.pair);
-    }
-  }
+  if (finding == Finding::kSpheres && !is_known) memory.unconfirmed_.push_back(contact.pair);
   return finding == Finding::kTouch;
 }
 
-// The canonical test, and the one of the triangles.
+// The canonical test of the spheres, and that of the meshes; the latter is for a body and an
+// obstacle as a whole unless both are meshes.
 StandingTrees::Finding StandingTrees::find(const MechanismContact& contact, Memory& memory) const {
   const Body& body = body_of(contact.pair);
   const Obstacle& obstacle = obstacle_of(contact.pair);
   const Pose& world_from_body = pose_of(body, memory);
+  if (body.piece->mesh != nullptr && obstacle.mesh == nullptr) {
+    // One triangle often tells, and if it is deep in the sphere, both tests would agree.
+    const auto [triangle, depth] =
+        nearest_triangle(*body.piece->mesh, contact.body_sphere, world_from_body, *obstacle.tree,
+                         contact.obstacle_sphere, obstacle.world_from_tree);
+    if (depth > 0.0) {
+      memory.last_ = {contact, {triangle, contact.obstacle_sphere}};
+      if (check_->is_following(memory.check_)) remember(*memory.last_, depth, memory);
+      return Finding::kTouch;
+    }
+  }
   if (!spheres_touch(*body.piece->tree, contact.body_sphere, world_from_body, *obstacle.tree,
                      contact.obstacle_sphere, obstacle.world_from_tree)) {
     return Finding::kApart;
   }
-  if (body.piece->mesh == nullptr || obstacle.mesh == nullptr) return Finding::kTouch;
+  if (!are_meshes(contact.pair)) {
+    const std::size_t pair = pair_of(contact.pair);
+    const bool touch =
+        !pairs_.is_confirmed(pairs_.pairs()[pair]) || pairs_.meshes_touch(pair, memory.placed_);
+    return touch ? Finding::kTouch : Finding::kSpheres;
+  }
   const std::optional<TrianglePair> triangles =
       touching_triangles(*body.piece->mesh, contact.body_sphere, world_from_body, *obstacle.mesh,
                          contact.obstacle_sphere, obstacle.world_from_tree);
@@ -169,7 +179,8 @@ StandingTrees::Finding StandingTrees::find(const MechanismContact& contact, Memo
 }
 
 // A robot that touches often did so a moment ago, by the same triangles or by others near to them.
-// What is not proved by the former alone is left to the test of the spheres.
+// What is not proved by the former alone is left to the test of the spheres, or to the contact that
+// is asked about.
 bool StandingTrees::still_touches(const Touch& touch, Memory& memory) const {
   if (check_->is_following(memory.check_)) {
     const double depth = depth_of(touch, memory);
@@ -178,14 +189,17 @@ bool StandingTrees::still_touches(const Touch& touch, Memory& memory) const {
       return true;
     }
   }
-  return find(touch.contact, memory) == Finding::kTouch;
+  return are_meshes(touch.contact.pair) && find(touch.contact, memory) == Finding::kTouch;
 }
 
 double StandingTrees::depth_of(const Touch& touch, const Memory& memory) const {
   const Body& body = body_of(touch.contact.pair);
   const Obstacle& obstacle = obstacle_of(touch.contact.pair);
-  return contact_depth(*body.piece->mesh, pose_of(body, memory), *obstacle.mesh,
-                       obstacle.world_from_tree, touch.triangles);
+  return obstacle.mesh != nullptr
+             ? contact_depth(*body.piece->mesh, pose_of(body, memory), *obstacle.mesh,
+                             obstacle.world_from_tree, touch.triangles)
+             : contact_depth(*body.piece->mesh, touch.triangles.a, pose_of(body, memory),
+                             *obstacle.tree, touch.triangles.b, obstacle.world_from_tree);
 }
 
 // The poses of forward_kinematics() are within pose_error() of those of the exact mechanism, now
@@ -205,6 +219,7 @@ void StandingTrees::remember(const Touch& touch, double depth, Memory& memory) c
 bool StandingTrees::contains_component(const Memory& memory) const {
   return std::any_of(
       memory.unconfirmed_.begin(), memory.unconfirmed_.end(), [&](const MechanismPair& pair) {
+        if (!are_meshes(pair)) return false;
         const Body& body = body_of(pair);
         const Obstacle& obstacle = obstacle_of(pair);
         return spherule::contains_component(*body.piece->mesh, pose_of(body, memory),
@@ -212,22 +227,12 @@ bool StandingTrees::contains_component(const Memory& memory) const {
       });
 }
 
-bool StandingTrees::pair_touches(const Body& body, const Obstacle& obstacle,
-                                 const Pose& world_from_link) const {
-  if (body.piece->mesh == nullptr || obstacle.mesh == nullptr) {
-    return spherule::collides(*body.piece->tree, world_from_link, *obstacle.tree,
-                              obstacle.world_from_tree);
-  }
-  return spherule::collides(*body.piece->mesh, world_from_link, *obstacle.mesh,
-                            obstacle.world_from_tree);
-}
-
 bool StandingTrees::touch_exactly(std::span<const double> configuration, Memory& memory) const {
-  place(configuration, memory);
-  return always_ || std::any_of(tested_.begin(), tested_.end(), [&](const MechanismPair& pair) {
-           const Body& body = body_of(pair);
-           return pair_touches(body, obstacle_of(pair), pose_of(body, memory));
-         });
+  pairs_.place(configuration, memory.placed_);
+  for (std::size_t i = pairs_.tested(); i < pairs_.pairs().size(); ++i) {
+    if (pairs_.touches(i, memory.placed_)) return true;
+  }
+  return false;
 }
 
 }  // namespace spherule::internal

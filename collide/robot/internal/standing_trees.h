@@ -21,11 +21,11 @@
 namespace spherule::internal {
 
 // Of the pairs of BodyPairs from tested() on, does any touch? Exactly BodyPairs::touches(): no
-// instruction set changes an answer. The pairs are of pieces and sphere trees, whose meshes are
-// both known, those of pieces without padding, or neither.
+// instruction set changes an answer. The pairs are of pieces and sphere trees.
 class StandingTrees {
  private:
-  // A contact that was confirmed on triangles: of the piece's mesh and the obstacle's.
+  // A contact that was confirmed: by a triangle of the piece's mesh and one of the obstacle's, or
+  // where that has no mesh, the obstacle's sphere.
   struct Touch {
     MechanismContact contact;
     TrianglePair triangles;
@@ -45,9 +45,9 @@ class StandingTrees {
    private:
     friend class StandingTrees;
     MechanismCheck::Scratch check_;
-    std::vector<Pose> world_from_link_{};
+    BodyPairs::Memory placed_{};
     std::vector<double> middle_{};
-    std::vector<MechanismPair> unconfirmed_{};  // spheres touch, but no triangles do
+    std::vector<MechanismPair> unconfirmed_{};  // spheres touch, but the meshes do not
     std::optional<Touch> last_{};
     JointPositions::Room room_;
   };
@@ -89,10 +89,20 @@ class StandingTrees {
   const Obstacle& obstacle_of(const MechanismPair& pair) const {
     return obstacles_[static_cast<std::size_t>(pair.obstacle)];
   }
-  static const Pose& pose_of(const Body& body, const Memory& memory) {
-    return memory.world_from_link_[static_cast<std::size_t>(body.piece->link)];
+  std::size_t place_of(const MechanismPair& pair) const {
+    return static_cast<std::size_t>(pair.body) * obstacles_.size() +
+           static_cast<std::size_t>(pair.obstacle);
   }
-  bool pair_touches(const Body& body, const Obstacle& obstacle, const Pose& world_from_link) const;
+  std::size_t pair_of(const MechanismPair& pair) const { return pair_of_[place_of(pair)]; }
+  static const Pose& pose_of(const Body& body, const Memory& memory) {
+    return memory.placed_.world_from_link[static_cast<std::size_t>(body.piece->link)];
+  }
+  // Whether two meshes without padding stand for the two: contacts are then confirmed sphere by
+  // sphere, on the triangles under them.
+  bool are_meshes(const MechanismPair& pair) const {
+    const CheckedPiece& piece = *body_of(pair).piece;
+    return piece.mesh != nullptr && obstacle_of(pair).mesh != nullptr && piece.padding == 0.0;
+  }
 
   enum class Finding { kApart, kSpheres, kTouch };
   Finding find(const MechanismContact& contact, Memory& memory) const;
@@ -103,14 +113,13 @@ class StandingTrees {
                bool& is_placed, Memory& memory) const;
   bool contains_component(const Memory& memory) const;
   bool touch_exactly(std::span<const double> configuration, Memory& memory) const;
-  void place(std::span<const double> configuration, Memory& memory) const;
 
   const BodyPairs& pairs_;
   JointPositions positions_;
   std::vector<Body> bodies_;
   std::vector<Obstacle> obstacles_;
-  std::vector<MechanismPair> tested_;
-  bool always_ = false;  // a piece that stands with the root touches
+  std::vector<std::size_t> pair_of_;  // of BodyPairs, for each body and obstacle
+  bool always_ = false;               // a piece that stands with the root touches
   std::unique_ptr<const MechanismCheck> check_;
 };
 

@@ -3,7 +3,6 @@
 
 // Random robots with spheres among sphere trees, and what a RobotChecker has to say of them.
 
-#include "collide/robot/robot_mesh_checker.h"
 #include "collide/robot/robot_scene.h"
 #include "tests/collide/scene_random.h"
 
@@ -16,6 +15,18 @@
 #include <vector>
 
 namespace spherule::test {
+
+// A tree that stands still.
+struct PlacedTree {
+  std::shared_ptr<const SphereTree> tree;
+  Pose world_from_tree;
+};
+
+// A link and an obstacle that need not be tested, by their indices.
+struct UntestedPair {
+  int link = 0;
+  std::size_t obstacle = 0;
+};
 
 struct ObstacleOptions {
   Pose world_from_root{};

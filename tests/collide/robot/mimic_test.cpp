@@ -3,12 +3,12 @@
 // poses of forward_kinematics().
 
 #include "collide/robot/kinematics.h"
-#include "collide/robot/robot_mesh_checker.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "tests/collide/counting_new.h"
 #include "tests/collide/robot/checked_scene.h"
 #include "tests/collide/robot/robots.h"
+#include "tests/collide/tetrahedra.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"
 
@@ -149,28 +149,28 @@ TEST(Mimic, ConfigurationsAreSharedAmongThreads) {
   EXPECT_EQ(alone, shared);
 }
 
-TEST(Mimic, RobotMeshCheckerAnswersAsThePairsDo) {
+TEST(Mimic, MeshesAmongSpheresAreJudgedAsThePairsAre) {
   SceneRandom random(83);
-  const auto mesh = std::make_shared<const MeshTree>(
-      TriangleMesh{{{0, 0, 0}, {0.6, 0, 0}, {0, 0.6, 0}, {0, 0, 0.6}}, {{0, 1, 2}, {0, 2, 3}}});
+  const auto mesh =
+      covered_surface({{{0, 0, 0}, {0.6, 0, 0}, {0, 0.6, 0}, {0, 0, 0.6}}, {{0, 1, 2}, {0, 2, 3}}});
   int hits = 0;
   int all = 0;
   for (int i = 0; i < effort(100, 10); ++i) {
-    const RobotModel robot = random_follower(random, 0.3);
-    const std::vector<PlacedTree> obstacles = random_obstacles(random);
-    std::vector<LinkMesh> meshes;
-    for (int link = 0; link < static_cast<int>(robot.links().size()); ++link) {
-      meshes.push_back({link, mesh});
+    RobotModel robot = random_robot(random, random.whole(1, 8), random.whole(0, 1) == 1);
+    for (const Link& link : std::vector<Link>(robot.links())) {
+      robot.attach(link.name, cover_of(mesh));
     }
-    const RobotMeshChecker checker(robot, meshes, obstacles);
-    RobotMeshChecker::Scratch scratch(checker);
+    add_random_mimics(random, robot, 3.0);
+    const std::vector<PlacedTree> obstacles = random_obstacles(random);
+    const ObstacleChecker checker(robot, obstacles, {.meshes = {mesh}});
+    RobotChecker::Scratch scratch(checker);
     std::vector<Pose> poses;
     for (int k = 0; k < 20; ++k) {
       const std::vector<double> q = random_configuration(random, robot, k < 18 ? 3.0 : 200.0);
       forward_kinematics(robot, q, poses);
       const bool expected = std::any_of(poses.begin(), poses.end(), [&](const Pose& pose) {
         return std::any_of(obstacles.begin(), obstacles.end(), [&](const PlacedTree& o) {
-          return collides(*o.tree, o.world_from_tree, *mesh, pose);
+          return collides(*o.tree, o.world_from_tree, mesh->mesh(), pose);
         });
       });
       ASSERT_EQ(checker.collides(q, scratch), expected);

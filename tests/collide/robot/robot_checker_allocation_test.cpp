@@ -5,6 +5,7 @@
 #include "spheretree/build.h"
 #include "tests/collide/counting_new.h"
 #include "tests/collide/robot/robots.h"
+#include "tests/collide/tetrahedra.h"
 #include "tests/collide/trees.h"
 
 #include <gtest/gtest.h>
@@ -22,12 +23,14 @@ TEST(RobotCheckerAllocation, WarmQueriesAllocateNothing) {
   for (const Link& link : std::vector<Link>(robot.links())) {
     robot.attach(link.name, spheres(60, 0.2));
   }
+  const auto mesh = covered_tetrahedron(random, 0.2);
+  robot.attach("link_4", cover_of(mesh));
   RobotScene scene(robot);
   scene.add("tree", spheres(200, 0.5), Pose::from_translation({1, 0, 0}));
   scene.add("box", Primitive(Box{{0.1, 0.1, 0.1}}), Pose::from_translation({0, 2, 0}));
   scene.set_padding("link_3", 0.01);
   scene.attach("tool", "link_6", spheres(30, 0.1));
-  const RobotChecker checker = scene.snapshot({.enforce_limits = true});
+  const RobotChecker checker = scene.snapshot({.enforce_limits = true, .meshes = {mesh}});
   RobotChecker::Scratch scratch(checker);
   std::vector<std::vector<double>> points;
   for (int i = 0; i < 60; ++i) points.push_back(random_configuration(random, robot, 1.0));

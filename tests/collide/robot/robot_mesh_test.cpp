@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A robot whose contacts are confirmed on triangles: the answers of collides() of covered meshes.
+// A robot whose contacts are confirmed on triangles: the answers of collides() of covered meshes,
+// or of meshes and spheres.
 
 #include "collide/robot/kinematics.h"
 #include "spheretree/error.h"
@@ -11,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -82,6 +84,102 @@ TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
   EXPECT_GT(free, effort(50, 5));
 }
 
+// Up to 40 triangles within `size`, or a closed tetrahedron.
+std::shared_ptr<const CoveredMesh> random_body(SceneRandom& random, double size) {
+  if (random.whole(0, 2) == 0) return covered_tetrahedron(random, size);
+  TriangleMesh mesh;
+  for (int i = random.whole(1, 40); i > 0; --i) {
+    const Eigen::Vector3d a = random.point(size);
+    const int first = static_cast<int>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(),
+                         {a, a + random.point(0.3 * size), a + random.point(0.3 * size)});
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+  }
+  return covered_surface(mesh);
+}
+
+// One side of every pair is a mesh, the other one spheres: those of the obstacles, but for every
+// fifth robot.
+TEST(RobotMesh, AnswersAsMeshesAmongSpheresDoOnEveryInstructionSet) {
+  SceneRandom random(71);
+  int hits = 0;
+  int removed = 0;
+  int free = 0;
+  for (int i = 0; i < effort(100, 20); ++i) {
+    RobotModel robot = random_robot(random, random.whole(1, 6), i % 2 == 1);
+    ObstacleOptions options{.world_from_root = random_root(random, 1.0)};
+    std::vector<std::pair<std::size_t, std::shared_ptr<const CoveredMesh>>> bodies;
+    for (std::size_t link = 0; link < robot.links().size(); ++link) {
+      if (random.whole(0, 3) == 0) continue;
+      bodies.emplace_back(link, random_body(random, 0.3));
+      robot.attach(robot.links()[link].name, cover_of(bodies.back().second));
+    }
+    std::vector<PlacedTree> obstacles;
+    for (int k = random.whole(1, 3); k > 0; --k) {
+      obstacles.push_back({random_tree(random, 0.8), random.pose(1.0)});
+    }
+    std::vector<std::shared_ptr<const CoveredMesh>> others(obstacles.size());
+    for (std::size_t o = 0; i % 5 == 4 && o < obstacles.size(); ++o) {
+      others[o] = random_body(random, 0.5);
+      obstacles[o].tree = cover_of(others[o]);
+      options.meshes.push_back(others[o]);
+    }
+    if (i % 5 != 4) {
+      for (const auto& [link, mesh] : bodies) options.meshes.push_back(mesh);
+    }
+    if (i % 3 == 0) {
+      options.untested.push_back({0, 0});
+      options.untested.push_back({static_cast<int>(robot.links().size()) - 1, 0});
+    }
+    const auto is_untested = [&](std::size_t link, std::size_t obstacle) {
+      return std::any_of(options.untested.begin(), options.untested.end(), [&](const auto& pair) {
+        return static_cast<std::size_t>(pair.link) == link && pair.obstacle == obstacle;
+      });
+    };
+    std::vector<double> path;
+    std::vector<std::uint8_t> expected;
+    for (int k = 0; k < 40; ++k) {
+      // The last ones are far out of the kernels' range.
+      const std::vector<double> at = random_configuration(random, robot, k < 36 ? 2.0 : 300.0);
+      path.insert(path.end(), at.begin(), at.end());
+      std::vector<Pose> poses;
+      forward_kinematics(robot, at, poses, options.world_from_root);
+      bool spheres = false;
+      bool hit = false;
+      for (const auto& [link, mesh] : bodies) {
+        for (std::size_t o = 0; o < obstacles.size(); ++o) {
+          const auto& [tree, world_from_tree] = obstacles[o];
+          if (is_untested(link, o)) continue;
+          if (!collides(mesh->cover(), poses[link], *tree, world_from_tree)) continue;
+          spheres = true;
+          hit = hit || (others[o] ? collides(mesh->cover(), poses[link], others[o]->solid(),
+                                             world_from_tree)
+                                  : collides(*tree, world_from_tree, mesh->solid(), poses[link]));
+        }
+      }
+      expected.push_back(hit ? 1 : 0);
+      (hit ? hits : spheres ? removed : free) += 1;
+    }
+    const auto variables = static_cast<std::size_t>(robot.variable_count());
+    for (const InstructionSet set : instruction_sets()) {
+      options.instructions = set;
+      const ObstacleChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);
+      std::vector<std::uint8_t> verdicts(expected.size());
+      checker.collides(path, scratch, verdicts);
+      EXPECT_EQ(verdicts, expected) << i;
+      for (std::size_t k = 0; k < expected.size(); ++k) {
+        const auto at = std::span(path).subspan(k * variables, variables);
+        ASSERT_EQ(checker.collides(at, scratch), expected[k] != 0) << i << ' ' << k;
+        ASSERT_EQ(checker.explain(at, scratch).empty(), expected[k] == 0) << i << ' ' << k;
+      }
+    }
+  }
+  EXPECT_GT(hits, effort(400, 80));
+  EXPECT_GT(removed, effort(50, 10));
+  EXPECT_GT(free, effort(400, 80));
+}
+
 // Along paths, with steps of any size, stops and jumps, what is remembered changes no answer:
 // neither of those before, nor of a block or a motion that was asked for in between.
 TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
@@ -92,7 +190,6 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
   for (int i = 0; i < effort(60, 10); ++i) {
     RobotModel robot = random_robot(random, random.whole(1, 6), i % 2 == 1);
     ObstacleOptions options{.world_from_root = random_root(random, 1.0)};
-    const bool confirmed = i % 4 != 3;
     std::vector<std::shared_ptr<const CoveredMesh>> meshes;
     // What stands with the root would touch always or never.
     for (const Joint& joint : std::vector<Joint>(robot.joints())) {
@@ -118,7 +215,11 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
       for (std::size_t v = 0; v < result.size(); ++v) result[v] += home[v];
       return result;
     };
-    if (confirmed) options.meshes = meshes;
+    // Of all, of the robot alone, of the obstacles alone, of none.
+    const auto first_of_obstacles = meshes.end() - 2;
+    if (i % 4 < 2) options.meshes.assign(meshes.begin(), first_of_obstacles);
+    if (i % 4 % 2 == 0)
+      options.meshes.insert(options.meshes.end(), first_of_obstacles, meshes.end());
     const ObstacleChecker checker(robot, obstacles, options);
     RobotChecker::Scratch remembers(checker);
     std::vector<double> at = near_home();
@@ -176,6 +277,26 @@ TEST(RobotMesh, WhatLiesInsideCollides) {
   std::vector<std::uint8_t> verdicts(3);
   checker.collides(path, scratch, verdicts);
   EXPECT_EQ(verdicts, (std::vector<std::uint8_t>{1, 1, 1}));
+}
+
+// So does a sphere inside a mesh, whichever of the two moves.
+TEST(RobotMesh, ASphereInsideCollides) {
+  SceneRandom random(64);
+  const auto outer = covered_tetrahedron(random, 2.0);
+  const std::vector<double> path = {0.0, 0.5, 1.0};
+  for (const bool mesh_moves : {true, false}) {
+    RobotModel robot("base");
+    robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
+    robot.attach("arm", mesh_moves ? cover_of(outer) : ball({0, 0, 0}, 0.02));
+    const std::vector<PlacedTree> obstacles = {
+        {mesh_moves ? ball({0, 0, 0}, 0.02) : cover_of(outer), Pose()}};
+    const ObstacleChecker checker(robot, obstacles, {.meshes = {outer}});
+    RobotChecker::Scratch scratch(checker);
+    EXPECT_TRUE(checker.collides(std::span(path).first(1), scratch));
+    std::vector<std::uint8_t> verdicts(3);
+    checker.collides(path, scratch, verdicts);
+    EXPECT_EQ(verdicts, (std::vector<std::uint8_t>{1, 1, 1}));
+  }
 }
 
 TEST(RobotMesh, RefusesAMissingMesh) {
