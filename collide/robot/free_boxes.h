@@ -36,6 +36,7 @@ class FreeBoxes {
     double lower = 0.0;
     double upper = 0.0;
 
+    // Whether all four are the same.
     bool operator==(const Variable&) const = default;
   };
 

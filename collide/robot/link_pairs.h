@@ -75,8 +75,11 @@ class LinkPairs {
   // what they hold for. Throws Error otherwise, or for indices beyond the number of links.
   LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t fingerprint);
 
+  // In the order of their indices.
   const std::vector<LinkPair>& pairs() const { return pairs_; }
+  // Of the robot that they were proved for.
   std::size_t link_count() const { return link_count_; }
+  // As link_pairs_fingerprint() has it of that robot and its bodies.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
   // The pair of two links in either order, or null: rigidly joined, or a link without a body. Who
