@@ -127,7 +127,6 @@ struct CheckPlan {
   const PlanBody<Real>* bodies;
   std::int32_t body_count;
   const PlanBoxes<Real>* groups;
-  std::int32_t group_count;
   const PlanObstacle<Real>* obstacles;
   const PlanPair* pairs;
   const PlanFreeCells* free_cells;  // of each pair

@@ -17,6 +17,10 @@
 
 namespace spherule::internal {
 
+// Of a position in the middle of a part of a motion: rounded fractions of positions up to
+// MechanismCheck::kLargestVariable err by less than 9 u times that.
+inline constexpr double kMiddleError = 1e-12;
+
 struct PlanSource {
   // Spheres that move with a frame; -1: with the root.
   struct Body {

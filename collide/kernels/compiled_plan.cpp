@@ -17,8 +17,8 @@
 // in its frame. X bounds W for all bodies, and how far obstacles reach that are trees.
 //   placed centres (`error` of a body): 38 v n W and 12 v W of plan_poses.h, and in double what its
 //     sines err by, less than 5e-11 n W;
-//   the middles of parts: positions err by less than 9 u times 100 < 1e-12, which moves a point by
-//     less than 1e-12 times 2 W a joint (1e-12 for a shift);
+//   the middles of parts: positions err by less than kMiddleError, which moves a point by less than
+//     that times 2 W a joint (once for a shift);
 //   poses for which the answer holds: `pose_error` for each of the two ends between which a motion
 //   is
 //     compared (from the middle to the exact mechanism, and from there to the computed poses of any
@@ -29,9 +29,7 @@
 namespace spherule::internal {
 namespace {
 
-constexpr double kMiddleError = 1e-12;
 constexpr double kPerScene = 1e-12;
-constexpr double kAbsolute = 0x1p-60;
 constexpr double kVelocityErrors = 16.0;
 // What is below this is an axis at a right angle, and costs less as zero: far below the budget of
 // rotations in single precision.
@@ -120,9 +118,8 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   plan_.bodies = bodies_.data();
   plan_.body_count = static_cast<std::int32_t>(bodies_.size());
   plan_.groups = groups_.data();
-  plan_.group_count = static_cast<std::int32_t>(groups_.size());
   plan_.obstacles = obstacles_.data();
-  plan_.first_pair = plan_.group_count * kPlanLanes;
+  plan_.first_pair = static_cast<std::int32_t>(groups_.size()) * kPlanLanes;
   plan_.test_count = plan_.first_pair + static_cast<std::int32_t>(pairs_.size());
   plan_.word_count = (plan_.test_count + 63) / 64;
   plan_.pairs = pairs_.data();
@@ -135,7 +132,8 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   plan_.slides = std::any_of(source.frames.begin(), source.frames.end(),
                              [](const MechanismFrame& frame) { return frame.prismatic; });
   plan_.bound_slack = rounded_up<Real>(1.0 + (4.0 * static_cast<double>(longest_path_) + 32.0) * v);
-  plan_.velocity_error = rounded_up<Real>(kVelocityErrors * reach.largest_error);
+  center_error_ = reach.largest_error;
+  plan_.velocity_error = rounded_up<Real>(kVelocityErrors * center_error_);
 }
 
 template <class Real>

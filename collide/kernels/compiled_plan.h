@@ -30,6 +30,8 @@ class CompiledPlan {
   double inflation(std::size_t body) const { return inflations_[body]; }
   // The same of an obstacle that is a tree.
   double obstacle_inflation(std::size_t obstacle) const { return obstacle_inflations_[obstacle]; }
+  // By how much placed centres of any body are off, at most.
+  double center_error() const { return center_error_; }
   std::size_t center_count() const { return center_count_; }
   std::size_t task_count() const { return task_count_; }
   std::size_t longest_path() const { return longest_path_; }
@@ -62,6 +64,7 @@ class CompiledPlan {
   std::vector<PlanPathGroup> pair_paths_{};
   std::vector<PlanPathStep<Real>> steps_{};
   std::vector<std::int32_t> source_tests_{};
+  double center_error_ = 0.0;
   std::size_t center_count_ = 0;
   std::size_t height_ = 0;  // of the highest tree
   std::size_t task_count_ = 1;

@@ -2,6 +2,7 @@
 #include "collide/robot/internal/body_pairs.h"
 
 #include "collide/collide.h"
+#include "collide/kernels/check_plan_source.h"
 #include "collide/mechanism_check.h"
 #include "collide/robot/internal/link_paths.h"
 #include "collide/robot/internal/moving_frames.h"
@@ -91,10 +92,6 @@ double largest_reach(const RobotModel& robot, std::span<const CheckedPiece> piec
   }
   return reach;
 }
-
-// Of a position in the middle of a part: rounded fractions of positions up to 100 err by less than
-// 9 u times 100.
-constexpr double kMiddleError = 1e-12;
 
 // With all joints at zero; the root at the origin.
 std::vector<Pose> poses_at_zero(const RobotModel& robot) {

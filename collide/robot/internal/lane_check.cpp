@@ -19,7 +19,6 @@ LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
   const bool is_all = pairs.tested() == pairs.pairs().size();
   configurations_ = is_all ? single_ : std::make_shared<const CompiledPlan<float>>(tested.source);
   one_ = std::make_unique<const CompiledWidePlan>(tested.source, *configurations_);
-  single_error_ = static_cast<double>(single_->plan().velocity_error) / 16.0;
   pair_of_test_ = std::move(all.pair_of_test);
   decide_fixed_pairs(all.fixed_pairs);
 }

@@ -86,7 +86,6 @@ class LaneCheck {
   std::unique_ptr<const CompiledWidePlan> one_;
   std::shared_ptr<const CompiledPlan<float>> single_;  // of all
   std::unique_ptr<const CompiledPlan<double>> exact_;
-  double single_error_ = 0.0;   // of placed centres
   bool always_tested_ = false;  // a static pair among the first tested() touches
   bool always_ = false;         // any static pair does
 };

@@ -211,7 +211,7 @@ class LaneCheck::Edge {
     batch.all_contacts = request_.first;
     batch.enough = 0.5 * request_.resolution;
     if constexpr (std::is_same_v<Real, float>) {
-      batch.enough = std::max(batch.enough, kUndecided * check_.single_error_);
+      batch.enough = std::max(batch.enough, kUndecided * check_.single_->center_error());
     }
     place({parts.data(), count}, batch);
     Client<Real> client{*this};
