@@ -21,10 +21,10 @@ SPHERULE_INLINE bool is_in_free_cell(const PlanFreeCells& cells, const double* p
   return (cells.words[static_cast<int>(j)] >> static_cast<int>(i) & 1U) != 0;
 }
 
-// Those of the lanes whose configurations, or parts of half the length `half`, lie in free cells.
+// Those of the lanes whose configurations lie in free cells, or with `parts` all of the part.
 template <class Real, bool kMoves>
 unsigned lanes_in_free_cells(const PlanFreeCells& cells, const PlanScratch<Real>& scratch,
-                             const Double8& half, unsigned lanes) {
+                             const PlanParts* parts, unsigned lanes) {
   if (cells.words == nullptr) return 0;
   alignas(64) std::int32_t first[2][kPlanLanes];
   alignas(64) std::int32_t last[2][kPlanLanes];
@@ -35,7 +35,8 @@ unsigned lanes_in_free_cells(const PlanFreeCells& cells, const PlanScratch<Real>
     Double8 high = low;
     if constexpr (kMoves) {
       const double rate = scratch.to[p] - scratch.from[p];
-      const Double8 way = half * ((rate < 0.0 ? -rate : rate) * (1.0 + 0x1p-40)) + 1e-12;
+      const Double8 way =
+          load(parts->half) * ((rate < 0.0 ? -rate : rate) * (1.0 + 0x1p-40)) + 1e-12;
       low = (offset - way) * cells.scale[k];
       high = (offset + way) * cells.scale[k];
     }

@@ -37,8 +37,7 @@ class Evaluation {
                                                                                {},     Real(0),
                                                                                false} {
     if constexpr (kMoves) {
-      half_ = load(parts->half);
-      context_.half = rounded(half_ * (1.0 + 0x1p-16), Real());
+      context_.half = rounded(load(parts->half) * (1.0 + 0x1p-16), Real());
       context_.half_squared = context_.half * context_.half;
       context_.enough = static_cast<Real>(parts->enough);
       context_.all_contacts = parts->all_contacts;
@@ -264,7 +263,7 @@ class Evaluation {
                                 MovingSide<Real>{plan_.bodies[both.second]}, 0, open);
     if (found.near == 0) return;
     const unsigned free =
-        lanes_in_free_cells<Real, kMoves>(plan_.free_cells[pair], scratch_, half_, found.near);
+        lanes_in_free_cells<Real, kMoves>(plan_.free_cells[pair], scratch_, parts_, found.near);
     add({test, both.first, found.near & ~free, found.overlap & ~free},
         plan_.bodies[both.first].is_confirmed || plan_.bodies[both.second].is_confirmed);
   }
@@ -359,7 +358,6 @@ class Evaluation {
   unsigned contacts_ = 0;
   std::int32_t candidate_count_ = 0;
   SearchContext<Real, kMoves> context_;
-  Double8 half_ = {};
   bool is_alone_ = false;
 };
 

@@ -151,14 +151,20 @@ TEST_F(TwoBars, ContactAtTheLimitAloneIsFound) {
   EXPECT_TRUE(pairs.is_free(0, 1, Configuration{angle - 0.01}));
 }
 
-TEST(LinkPairs, APartInsideAClosedOneTouchesIt) {
-  BoxRobot robot{RobotModel("shell")};
-  robot.model.add_link("part", "shell",
+// A part that slides along x, from -0.5 on, in a link that has no body yet.
+BoxRobot with_sliding_part(double upper) {
+  BoxRobot robot{RobotModel("base")};
+  robot.model.add_link("part", "base",
                        {.name = "slide",
                         .type = JointType::kPrismatic,
                         .axis = Vector3d::UnitX(),
                         .lower = -0.5,
-                        .upper = 3.0});
+                        .upper = upper});
+  return robot;
+}
+
+TEST(LinkPairs, APartInsideAClosedOneTouchesIt) {
+  BoxRobot robot = with_sliding_part(3.0);
   robot.add_boxes(0, {box({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0})});
   robot.add_boxes(1, {box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})});
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
@@ -169,13 +175,7 @@ TEST(LinkPairs, APartInsideAClosedOneTouchesIt) {
 
 // A part between the two prongs of a fork, whose hull it is in: only the pieces tell.
 TEST(LinkPairs, PiecesProveWhatHullsDoNot) {
-  BoxRobot robot{RobotModel("fork")};
-  robot.model.add_link("part", "fork",
-                       {.name = "slide",
-                        .type = JointType::kPrismatic,
-                        .axis = Vector3d::UnitX(),
-                        .lower = -0.5,
-                        .upper = 0.5});
+  BoxRobot robot = with_sliding_part(0.5);
   robot.add_boxes(
       0, {box({-1.0, 0.2, -0.1}, {1.0, 0.3, 0.1}), box({-1.0, -0.3, -0.1}, {1.0, -0.2, 0.1})});
   robot.add_boxes(1, {box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})});

@@ -21,6 +21,26 @@
 namespace spherule::test {
 namespace {
 
+// One call for all, and a call for each, on every instruction set; explain() agrees.
+void expect_verdicts_on_every_set(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+                                  ObstacleOptions options, std::span<const double> path,
+                                  const std::vector<std::uint8_t>& expected, int round) {
+  const auto variables = static_cast<std::size_t>(robot.variable_count());
+  for (const InstructionSet set : instruction_sets()) {
+    options.instructions = set;
+    const ObstacleChecker checker(robot, obstacles, options);
+    RobotChecker::Scratch scratch(checker);
+    std::vector<std::uint8_t> verdicts(expected.size());
+    checker.collides(path, scratch, verdicts);
+    EXPECT_EQ(verdicts, expected) << round;
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      const auto at = path.subspan(k * variables, variables);
+      ASSERT_EQ(checker.collides(at, scratch), expected[k] != 0) << round << ' ' << k;
+      ASSERT_EQ(checker.explain(at, scratch).empty(), expected[k] == 0) << round << ' ' << k;
+    }
+  }
+}
+
 TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
   SceneRandom random(61);
   int hits = 0;
@@ -64,20 +84,7 @@ TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
       expected.push_back(hit ? 1 : 0);
       (hit ? hits : spheres ? removed : free) += 1;
     }
-    const auto variables = static_cast<std::size_t>(robot.variable_count());
-    for (const InstructionSet set : instruction_sets()) {
-      options.instructions = set;
-      const ObstacleChecker checker(robot, obstacles, options);
-      RobotChecker::Scratch scratch(checker);
-      std::vector<std::uint8_t> verdicts(expected.size());
-      checker.collides(path, scratch, verdicts);
-      EXPECT_EQ(verdicts, expected) << i;
-      for (std::size_t k = 0; k < expected.size(); ++k) {
-        const bool hit =
-            checker.collides(std::span(path).subspan(k * variables, variables), scratch);
-        ASSERT_EQ(hit, expected[k] != 0) << i << ' ' << k;
-      }
-    }
+    expect_verdicts_on_every_set(robot, obstacles, options, path, expected, i);
   }
   EXPECT_GT(hits, effort(300, 20));
   EXPECT_GT(removed, effort(300, 20));
@@ -160,20 +167,7 @@ TEST(RobotMesh, AnswersAsMeshesAmongSpheresDoOnEveryInstructionSet) {
       expected.push_back(hit ? 1 : 0);
       (hit ? hits : spheres ? removed : free) += 1;
     }
-    const auto variables = static_cast<std::size_t>(robot.variable_count());
-    for (const InstructionSet set : instruction_sets()) {
-      options.instructions = set;
-      const ObstacleChecker checker(robot, obstacles, options);
-      RobotChecker::Scratch scratch(checker);
-      std::vector<std::uint8_t> verdicts(expected.size());
-      checker.collides(path, scratch, verdicts);
-      EXPECT_EQ(verdicts, expected) << i;
-      for (std::size_t k = 0; k < expected.size(); ++k) {
-        const auto at = std::span(path).subspan(k * variables, variables);
-        ASSERT_EQ(checker.collides(at, scratch), expected[k] != 0) << i << ' ' << k;
-        ASSERT_EQ(checker.explain(at, scratch).empty(), expected[k] == 0) << i << ' ' << k;
-      }
-    }
+    expect_verdicts_on_every_set(robot, obstacles, options, path, expected, i);
   }
   EXPECT_GT(hits, effort(400, 80));
   EXPECT_GT(removed, effort(50, 10));
