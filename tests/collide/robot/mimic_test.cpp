@@ -155,7 +155,7 @@ TEST(Mimic, MeshesAmongSpheresAreJudgedAsThePairsAre) {
       covered_surface({{{0, 0, 0}, {0.6, 0, 0}, {0, 0.6, 0}, {0, 0, 0.6}}, {{0, 1, 2}, {0, 2, 3}}});
   int hits = 0;
   int all = 0;
-  for (int i = 0; i < effort(100, 10); ++i) {
+  for (int i = 0; i < effort(100, 40); ++i) {
     RobotModel robot = random_robot(random, random.whole(1, 8), random.whole(0, 1) == 1);
     for (const Link& link : std::vector<Link>(robot.links())) {
       robot.attach(link.name, cover_of(mesh));
