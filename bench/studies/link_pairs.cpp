@@ -6,7 +6,7 @@
 #include "collide/collide.h"
 #include "collide/robot/allowed_collisions.h"
 #include "collide/robot/kinematics.h"
-#include "collide/robot/link_mesh.h"
+#include "collide/robot/link_bodies.h"
 #include "collide/robot/link_pairs_file.h"
 #include "collide/robot/sphere_formats.h"
 #include "collide/robot/urdf.h"
@@ -42,12 +42,10 @@ struct Robot {
 
 Robot read_robot(const char* path) {
   Robot robot{read_urdf(path), {}, {}};
-  for (std::size_t i = 0; i < robot.description.links.size(); ++i) {
-    robot.solids.emplace_back();
-    const auto mesh = link_mesh(robot.description.links[i]);
-    if (!mesh) continue;
-    robot.solids.back() = std::make_shared<const SolidMesh>(*mesh);
-    robot.bodies.push_back({.link = static_cast<int>(i), .mesh = robot.solids.back()});
+  robot.bodies = link_bodies(robot.description);
+  robot.solids.resize(robot.description.links.size());
+  for (const LinkBody& body : robot.bodies) {
+    robot.solids[static_cast<std::size_t>(body.link)] = body.mesh;
   }
   return robot;
 }

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/robot/link_mesh.h"
+#include "collide/robot/link_pairs.h"
+#include "collide/robot/robot_description.h"
+
+#include <vector>
+
+namespace spherule {
+
+// What the links are made of, for prove_link_pairs(): a mesh with its inside for each link that has
+// such geometry, in the order of the links, grown by its vertex error and by `padding` (metres, at
+// least 0), so that what is proved of the bodies holds for the exact geometry of the links grown by
+// the padding. Throws Error as link_mesh() does, and for a padding that is negative or not finite.
+std::vector<LinkBody> link_bodies(const RobotDescription& robot,
+                                  const LinkMeshOptions& options = {}, double padding = 0.0);
+
+}  // namespace spherule
