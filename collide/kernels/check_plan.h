@@ -86,7 +86,8 @@ struct PlanObstacle {
 struct PlanPair {
   std::int32_t first;
   std::int32_t second;
-  bool second_moves;  // against the root by joints that do not move the first as well
+  bool second_moves;         // against the root by joints that do not move the first as well
+  bool is_proved_somewhere;  // as PlanSource::Test has it
 };
 
 // Where a pair is proved apart, by the positions of at most two joints (FreeCells): bit i of word j
@@ -131,6 +132,7 @@ struct CheckPlan {
   const PlanPair* pairs;
   const PlanFreeCells* free_cells;  // of each pair
   std::int32_t pair_count;
+  std::int32_t first_never;  // of the pairs behind which all are PlanSource::Test::never_touches
   std::int32_t bound_count;  // one for the bodies, and for every eight pairs
   const PlanPathGroup* body_paths;
   const PlanPathGroup* pair_paths;
@@ -228,7 +230,12 @@ struct PlanClient {
   // Of two sides whose contacts are confirmed, no point of which is faster than `speed` against the
   // other one: those of the lanes in whose parts the two are not proved apart.
   unsigned (*near)(void* context, std::int32_t test, unsigned lanes, double speed);
+  // Of two bodies that are proved free somewhere: whether they are in the lane's configuration, and
+  // in which lanes they are all along the part.
+  bool (*is_proved_free)(void* context, int lane, std::int32_t test);
+  unsigned (*proved_parts)(void* context, std::int32_t test, unsigned lanes);
   void* context;
+  bool skips_never;  // those pairs need no test in any of the lanes
 };
 
 // Parts of a motion, one in each lane, evaluated at their middles.

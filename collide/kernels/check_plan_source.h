@@ -44,6 +44,10 @@ struct PlanSource {
     int other = 0;  // an obstacle, or another body
     bool is_obstacle = false;
     std::shared_ptr<const FreeCells> free_cells{};  // of two bodies; null: none is known
+    // Two bodies that the caller knows to be free in some configurations, and in those for which it
+    // skips what never touches.
+    bool is_proved_somewhere = false;
+    bool never_touches = false;
   };
 
   // Of the joints between two bodies, or a body and the root, from the first body on: how far

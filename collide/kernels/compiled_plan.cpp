@@ -125,6 +125,9 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   plan_.pairs = pairs_.data();
   plan_.free_cells = pair_cells_.data();
   plan_.pair_count = static_cast<std::int32_t>(pairs_.size());
+  plan_.first_never = static_cast<std::int32_t>(std::count_if(
+      source.tests.begin(), source.tests.end(),
+      [](const PlanSource::Test& test) { return !test.is_obstacle && !test.never_touches; }));
   plan_.bound_count = 1 + static_cast<std::int32_t>(pair_paths_.size());
   plan_.body_paths = body_paths_.data();
   plan_.pair_paths = pair_paths_.data();
@@ -287,8 +290,8 @@ void CompiledPlan<Real>::compile_tests(const PlanSource& source, const Reach& re
   }
 }
 
-// Short paths first: these are the pairs that are near each other, and paths of one length leave no
-// lane idle.
+// What never touches last. Short paths first: these are the pairs that are near each other, and
+// paths of one length leave no lane idle.
 template <class Real>
 void CompiledPlan<Real>::compile_pairs(const PlanSource& source) {
   struct Numbered {
@@ -299,13 +302,16 @@ void CompiledPlan<Real>::compile_pairs(const PlanSource& source) {
   for (std::size_t t = 0; t < source.tests.size(); ++t) {
     if (!source.tests[t].is_obstacle) order.push_back({t, &source.pair_paths[order.size()]});
   }
-  std::stable_sort(order.begin(), order.end(), [](const Numbered& a, const Numbered& b) {
-    return a.path->size() < b.path->size();
-  });
+  const auto rank = [&](const Numbered& pair) {
+    return std::pair(source.tests[pair.test].never_touches, pair.path->size());
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const Numbered& a, const Numbered& b) { return rank(a) < rank(b); });
   std::vector<PlanSource::Path> paths;
   for (const Numbered& numbered : order) {
     const PlanSource::Test& test = source.tests[numbered.test];
-    pairs_.push_back({test.body, test.other, moves_otherwise(source, test.other, test.body)});
+    pairs_.push_back({test.body, test.other, moves_otherwise(source, test.other, test.body),
+                      test.is_proved_somewhere});
     free_cells_.push_back(test.free_cells);
     pair_cells_.push_back(compiled_cells(test.free_cells.get()));
     source_tests_.push_back(static_cast<std::int32_t>(numbered.test));

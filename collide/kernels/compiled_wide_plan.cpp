@@ -48,20 +48,27 @@ CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<
   task_count_ = 64 * (2 * static_cast<std::size_t>(depth_) + 1) + 1;
   const std::size_t groups = rounded_to_lanes(moving) / kPlanLanes;
   partners_.assign(moving * groups, 0);
+  never_.assign(moving * groups, 0);
   for (std::size_t first = 0; first < moving; ++first) {
     bodies_[first].first_pair = static_cast<std::int32_t>(pair_tests_.size());
-    std::vector<PlanPair> partners;  // with the test in the place of the first body
+    struct Partner {
+      std::int32_t pair;
+      std::int32_t second;
+    };
+    std::vector<Partner> partners;
     for (std::int32_t p = 0; p < plan.pair_count; ++p) {
       if (plan.pairs[p].first != static_cast<std::int32_t>(first)) continue;
-      partners.push_back({plan.first_pair + p, plan.pairs[p].second, false});
+      partners.push_back({p, plan.pairs[p].second});
     }
     std::sort(partners.begin(), partners.end(),
-              [](const PlanPair& a, const PlanPair& b) { return a.second < b.second; });
-    for (const PlanPair& pair : partners) {
-      const auto second = static_cast<std::size_t>(pair.second);
-      partners_[first * groups + second / kPlanLanes] |=
-          static_cast<std::uint8_t>(1U << (second % kPlanLanes));
-      pair_tests_.push_back(pair.first);
+              [](const Partner& a, const Partner& b) { return a.second < b.second; });
+    for (const Partner& partner : partners) {
+      const auto second = static_cast<std::size_t>(partner.second);
+      const std::size_t group = first * groups + second / kPlanLanes;
+      const auto bit = static_cast<std::uint8_t>(1U << (second % kPlanLanes));
+      partners_[group] |= bit;
+      if (partner.pair >= plan.first_never) never_[group] |= bit;
+      pair_tests_.push_back(plan.first_pair + partner.pair);
     }
   }
   plan_ = {frames_.data(),
@@ -70,6 +77,7 @@ CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<
            static_cast<std::int32_t>(placed_count_),
            static_cast<std::int32_t>(groups),
            partners_.data(),
+           never_.data(),
            pair_tests_.data()};
 }
 

@@ -33,6 +33,7 @@ class CompiledWidePlan {
   std::vector<WideBody> bodies_{};
   std::vector<std::int32_t> tree_of_{};
   std::vector<std::uint8_t> partners_{};
+  std::vector<std::uint8_t> never_{};
   std::vector<std::int32_t> pair_tests_{};
   std::size_t placed_count_ = 0;
   int depth_ = 1;  // of the highest tree

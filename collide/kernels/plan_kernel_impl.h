@@ -69,7 +69,8 @@ class Evaluation {
       test_obstacles(b);
       if (kMoves) search_candidates(true);
     }
-    for (std::int32_t p = 0; p < plan_.pair_count && !is_done(); ++p) test_pair(p);
+    const std::int32_t pairs = context_.client.skips_never ? plan_.first_never : plan_.pair_count;
+    for (std::int32_t p = 0; p < pairs && !is_done(); ++p) test_pair(p);
     if (kMoves) search_candidates(true);
     search_candidates(false);
     return contacts_;
@@ -262,10 +263,23 @@ class Evaluation {
         from_side<Real, kMoves>(context_, motion, plan_.bodies[both.first], 0,
                                 MovingSide<Real>{plan_.bodies[both.second]}, 0, open);
     if (found.near == 0) return;
-    const unsigned free =
-        lanes_in_free_cells<Real, kMoves>(plan_.free_cells[pair], scratch_, parts_, found.near);
-    add({test, both.first, found.near & ~free, found.overlap & ~free},
+    unsigned near = found.near & ~lanes_in_free_cells<Real, kMoves>(plan_.free_cells[pair],
+                                                                    scratch_, parts_, found.near);
+    if (near != 0 && both.is_proved_somewhere) near &= ~proved_lanes(test, near);
+    add({test, both.first, near, found.overlap & near},
         plan_.bodies[both.first].is_confirmed || plan_.bodies[both.second].is_confirmed);
+  }
+
+  // Those of the lanes in which two bodies are proved free by the caller.
+  unsigned proved_lanes(std::int32_t test, unsigned lanes) const {
+    const PlanClient& client = context_.client;
+    if constexpr (kMoves) return client.proved_parts(client.context, test, lanes);
+    unsigned proved = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = __builtin_ctz(lanes);
+      if (client.is_proved_free(client.context, lane, test)) proved |= 1U << lane;
+    }
+    return proved;
   }
 
   // What the caller confirms is searched last.
@@ -299,7 +313,8 @@ class Evaluation {
     const bool is_confirmed =
         body.is_confirmed || (is_pair ? other->is_confirmed : obstacle->is_confirmed);
     const unsigned lanes = kMoves ? candidate.near : candidate.near & lanes_;
-    TestSearch<Real, kMoves> search(context_, test, lanes, is_confirmed);
+    const bool is_proved_somewhere = is_pair && plan_.pairs[pair].is_proved_somewhere;
+    TestSearch<Real, kMoves> search(context_, test, lanes, is_confirmed, is_proved_somewhere);
     if (is_pair) {
       search_side<Real, kMoves>(context_, motion_of_pair(pair), body, MovingSide<Real>{*other},
                                 search);

@@ -118,10 +118,15 @@ template <class Real, bool kMoves>
 class TestSearch {
  public:
   // With `is_confirmed` the search of a motion ends where two leaves are not proved apart all along
-  // a part: confirm() goes on.
+  // a part: confirm() goes on. With `is_proved_somewhere` spheres that touch in the middle of a
+  // part do not make a contact there where the two bodies are proved free.
   TestSearch(const SearchContext<Real, kMoves>& context, std::int32_t test, unsigned lanes,
-             bool is_confirmed)
-      : context_(context), test_(test), active_(lanes), is_confirmed_(is_confirmed) {}
+             bool is_confirmed, bool is_proved_somewhere)
+      : context_(context),
+        test_(test),
+        active_(lanes),
+        is_confirmed_(is_confirmed),
+        is_proved_somewhere_(is_proved_somewhere) {}
 
   unsigned near() const { return near_; }
   unsigned contacts() const { return contacts_; }
@@ -145,13 +150,21 @@ class TestSearch {
       active_ &= ~found.near;
       return;
     }
-    const unsigned touching = found.overlap & ~(cleared_ | contacts_);
+    unsigned touching = found.overlap & ~(cleared_ | contacts_);
+    const PlanClient& client = context_.client;
+    if (kMoves && is_proved_somewhere_) {
+      for (unsigned left = touching; left != 0; left &= left - 1) {
+        const int lane = __builtin_ctz(left);
+        if (client.is_proved_free(client.context, lane, test_)) cleared_ |= 1U << lane;
+      }
+      touching &= ~cleared_;
+    }
     if (touching == 0) return;
     const Real sure = reach - margin;
     unsigned hits = sure > Real(0) ? touching & ~above(found.squared, all(sure * sure)) : 0U;
     for (unsigned left = touching & ~hits; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
-      if (context_.client.touches(context_.client.context, lane, test_)) {
+      if (client.touches(client.context, lane, test_)) {
         hits |= 1U << lane;
       } else {
         cleared_ |= 1U << lane;
@@ -189,9 +202,10 @@ class TestSearch {
   std::int32_t test_;
   unsigned active_;
   bool is_confirmed_;
+  bool is_proved_somewhere_;
   unsigned near_ = 0;
   unsigned contacts_ = 0;
-  unsigned cleared_ = 0;  // by the canonical test
+  unsigned cleared_ = 0;  // by the canonical test, or a proof
   Real inflation_[kPlanLanes] = {};
 };
 

@@ -48,6 +48,7 @@ class SingleCheck {
       : plan_(plan),
         wide_(wide),
         scratch_(scratch),
+        client_(client),
         search_(plan, wide, scratch, client, SinglePoses{scratch.poses}, 0) {}
 
   // Whether any test touches.
@@ -163,7 +164,13 @@ class SingleCheck {
     for (std::int32_t g = 0; g < wide_.body_groups; ++g) {
       const unsigned partners = wide_.partners[a * wide_.body_groups + g];
       if (partners == 0) continue;
-      for (unsigned near = near_bodies(a, g) & partners; near != 0; near &= near - 1) {
+      const unsigned tested =
+          client_.skips_never ? partners & ~wide_.never[a * wide_.body_groups + g] : partners;
+      if (tested == 0) {
+        next += __builtin_popcount(partners);
+        continue;
+      }
+      for (unsigned near = near_bodies(a, g) & tested; near != 0; near &= near - 1) {
         const int lane = __builtin_ctz(near);
         const std::int32_t rank = __builtin_popcount(partners & ((1U << lane) - 1));
         const std::int32_t test = wide_.pair_tests[next + rank];
@@ -186,8 +193,11 @@ class SingleCheck {
   }
 
   bool touches_pair(std::int32_t test, std::int32_t a, std::int32_t b) {
-    if (is_in_free_cell(plan_.free_cells[test - plan_.first_pair], scratch_.positions))
+    const std::int32_t pair = test - plan_.first_pair;
+    if (is_in_free_cell(plan_.free_cells[pair], scratch_.positions)) return false;
+    if (plan_.pairs[pair].is_proved_somewhere && client_.is_proved_free(client_.context, 0, test)) {
       return false;
+    }
     const WideBody& second = wide_.bodies[b];
     return search_.touches_body(
         test, wide_.bodies[a], second,
@@ -197,6 +207,7 @@ class SingleCheck {
   const CheckPlan<float>& plan_;
   const WidePlan& wide_;
   const WideScratch& scratch_;
+  const PlanClient& client_;
   WideSearch<SinglePoses> search_;
 };
 

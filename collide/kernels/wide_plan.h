@@ -37,6 +37,7 @@ struct WidePlan {
   std::int32_t placed_count;     // of nodes that move
   std::int32_t body_groups;      // of eight bodies
   const std::uint8_t* partners;  // for each body and group: those that it is tested against
+  const std::uint8_t* never;     // of these: those that never touch it (CheckPlan::first_never)
   const std::int32_t* pair_tests;  // by first body, then by second
 };
 

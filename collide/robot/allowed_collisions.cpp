@@ -2,6 +2,7 @@
 #include "collide/robot/allowed_collisions.h"
 
 #include "collide/robot/internal/link_paths.h"
+#include "collide/robot/link_pairs.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -38,6 +39,10 @@ std::string_view name_of(AllowedReason reason) {
       return "never in the sample";
     case AllowedReason::kAlways:
       return "always in the sample";
+    case AllowedReason::kProvedNever:
+      return "proved never";
+    case AllowedReason::kFreeInBoxes:
+      return "free in boxes";
     case AllowedReason::kTested:
       break;
   }
@@ -87,10 +92,20 @@ void AllowedCollisions::allow(int first, int second, AllowedReason reason) {
                                           std::to_string(second) + " is not there: the robot has " +
                                           std::to_string(count) + " links");
   }
-  if (reason == AllowedReason::kTested) {
+  if (reason == AllowedReason::kTested || reason == AllowedReason::kFreeInBoxes) {
     throw Error("allowed collisions", "a pair that is tested is not allowed");
   }
   if (!allows(first, second)) set(first, second, reason);
+}
+
+void AllowedCollisions::allow(const LinkPairs& pairs) {
+  if (pairs.link_count() != names_.size()) {
+    throw Error("allowed collisions", "the proofs are of a robot with other links");
+  }
+  for (const LinkPair& pair : pairs.pairs()) {
+    if (pair.verdict != PairVerdict::kNever) continue;
+    allow(pair.first, pair.second, AllowedReason::kProvedNever);
+  }
 }
 
 void AllowedCollisions::allow_all() {

@@ -13,14 +13,18 @@
 
 namespace spherule {
 
-// Why two links are not tested against each other.
+class LinkPairs;
+
+// Why two links are not tested against each other, or not everywhere.
 enum class AllowedReason : std::uint8_t {
-  kTested,    // they are
-  kRigid,     // no joint moves them against each other
-  kAdjacent,  // one joint joins them, directly or past links without spheres
-  kGiven,     // by name: an SRDF, or the user
-  kNever,     // touched in none of the sampled configurations: likely, not proved
-  kAlways,    // touched in all of the sampled configurations
+  kTested,       // they are
+  kRigid,        // no joint moves them against each other
+  kAdjacent,     // one joint joins them, directly or past links without spheres
+  kGiven,        // by name: an SRDF, or the user
+  kNever,        // touched in none of the sampled configurations: likely, not proved
+  kAlways,       // touched in all of the sampled configurations
+  kProvedNever,  // proved never to touch within the limits of the joints (link_pairs.h)
+  kFreeInBoxes,  // tested, but in configurations in which they are proved free (link_pairs.h)
 };
 
 // For people: what stands in tables and files.
@@ -45,6 +49,10 @@ class AllowedCollisions {
   // The pairs that an SRDF disables. Throws Error for names that are no links, before any is taken.
   void allow(std::span<const std::pair<std::string, std::string>> pairs);
   void allow(int first, int second, AllowedReason reason);
+  // The pairs that are proved never to touch, as kProvedNever: beyond the limits of the joints they
+  // are not tested either. A scene that is given the proofs (RobotScene::set_link_pairs()) tests
+  // them there. Throws Error for proofs of a robot with another number of links.
+  void allow(const LinkPairs& pairs);
   // Every pair, as given: links are tested against obstacles and attached objects alone.
   void allow_all();
   // Tests them again. Throws Error as allow() does, and for a link and itself.

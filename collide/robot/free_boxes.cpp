@@ -106,9 +106,7 @@ bool FreeBoxes::take(std::span<const double> configuration, const Values* turns,
       turns_taken[i] = turns != nullptr ? (*turns)[i] : std::round(value / kTurn);
       value -= turns_taken[i] * kTurn;
     }
-    // Of a value that wraps, rounding may leave more than the range, which is then the other end.
-    const double beyond = variable.wraps ? 0.5 * kMargin : 0.0;
-    if (value < variable.lower - beyond || value > variable.upper + beyond) return false;
+    if (value < variable.lower - kTolerance || value > variable.upper + kTolerance) return false;
     values[i] = value;
   }
   return true;
@@ -118,12 +116,32 @@ bool FreeBoxes::contains(std::span<const double> configuration) const noexcept {
   Values values;
   Values turns;
   if (!take(configuration, nullptr, values, turns)) return false;
-  std::size_t node = 0;
+  return point_is_free(0, values) || seam_is_free(values, 0);
+}
+
+// On both sides of what it is near.
+bool FreeBoxes::point_is_free(std::size_t node, const Values& values) const noexcept {
   while (nodes_[node].state >= kFirstHalving) {
-    const auto v = static_cast<std::size_t>(nodes_[node].state - kFirstHalving);
-    node = values[v] > nodes_[node].at ? static_cast<std::size_t>(nodes_[node].second) : node + 1;
+    const double beyond =
+        values[static_cast<std::size_t>(nodes_[node].state - kFirstHalving)] - nodes_[node].at;
+    const auto second = static_cast<std::size_t>(nodes_[node].second);
+    if (std::abs(beyond) <= kTolerance && point_is_free(second, values)) return true;
+    node = beyond > kTolerance ? second : node + 1;
   }
   return nodes_[node].state == kFree;
+}
+
+// From the other end of the range of variables that wrap and are near one end: the same
+// configuration.
+bool FreeBoxes::seam_is_free(Values& values, std::size_t first) const noexcept {
+  for (std::size_t i = first; i < variables_.size(); ++i) {
+    if (!variables_[i].wraps || std::abs(values[i]) < 0.5 * kTurn - kTolerance) continue;
+    const double value = values[i];
+    values[i] -= std::copysign(kTurn, value);
+    if (point_is_free(0, values) || seam_is_free(values, i + 1)) return true;
+    values[i] = value;
+  }
+  return false;
 }
 
 bool FreeBoxes::contains_edge(std::span<const double> from,

@@ -17,13 +17,16 @@ namespace spherule {
 // share it, and no query allocates.
 //
 // Whoever makes it proves every configuration within kMargin of a free leaf in each of its
-// variables; the margin is what the arithmetic of the queries and of points on edges may take.
+// variables; the margin is what the arithmetic of the queries and of points on edges may take. A
+// configuration within kTolerance of a free leaf counts as in it, so that points of an edge that is
+// free are free themselves, whichever way they are rounded.
 class FreeBoxes {
  public:
   // With |position| <= 100 at both ends of an edge and u = 2^-53, a point (1 - t) a + t b as
   // computed errs by 3 u 200, the place where an edge crosses a plane by 8 u 400, and taking up to
-  // 16 turns off by 3e-14: together less than 5e-13.
+  // 16 turns off by 3e-14: together less than kTolerance, and with that less than kMargin.
   static constexpr double kMargin = 1e-12;
+  static constexpr double kTolerance = 4.7e-13;
   static constexpr std::size_t kMostVariables = 16;
   static constexpr double kLargestPosition = 100.0;
 
@@ -52,8 +55,8 @@ class FreeBoxes {
   // beyond kLargestPosition, and bytes that are no tree.
   FreeBoxes(std::vector<Variable> variables, std::string_view nodes);
 
-  // Whether a configuration of the whole robot lies in a free box. False for numbers that are not
-  // finite and for what lies outside the ranges.
+  // Whether a configuration of the whole robot lies in a free box, or within kTolerance of one.
+  // False for numbers that are not finite and for what lies outside the ranges.
   bool contains(std::span<const double> configuration) const noexcept;
 
   // Whether every configuration of the straight edge between two lies in free boxes. False, too,
@@ -79,6 +82,8 @@ class FreeBoxes {
 
   bool take(std::span<const double> configuration, const Values* turns, Values& values,
             Values& turns_taken) const noexcept;
+  bool point_is_free(std::size_t node, const Values& values) const noexcept;
+  bool seam_is_free(Values& values, std::size_t first) const noexcept;
   bool edge_is_free(std::size_t node, const Values& from, const Values& to, double first,
                     double last) const noexcept;
 

@@ -112,8 +112,9 @@ std::string_view name_of(PairVerdict verdict) {
   return "unknown";
 }
 
-LinkPairs::LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t fingerprint)
-    : pairs_(std::move(pairs)), link_count_(link_count), fingerprint_(fingerprint) {
+LinkPairs::LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t mechanism,
+                     std::uint64_t bodies)
+    : pairs_(std::move(pairs)), link_count_(link_count), mechanism_(mechanism), bodies_(bodies) {
   std::pair<int, int> last{-1, -1};
   for (const LinkPair& pair : pairs_) {
     if (pair.first < 0 || pair.first >= pair.second ||
@@ -134,8 +135,11 @@ const LinkPair* LinkPairs::find(int first, int second) const noexcept {
   return &*found;
 }
 
-LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
-                           const LinkPairOptions& options) {
+namespace {
+
+// Of all pairs, or those of one link (-1: all).
+LinkPairs prove_pairs_of(int only, const RobotModel& robot, std::span<const LinkBody> bodies,
+                         const LinkPairOptions& options) {
   check(robot, bodies, options);
   const Clock::time_point end =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -158,6 +162,7 @@ LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bo
       const int first = static_cast<int>(i);
       const int second = static_cast<int>(j);
       if (bodies_of[i].empty() || bodies_of[j].empty()) continue;
+      if (only >= 0 && first != only && second != only) continue;
       if (internal::moving_joints(robot, first, second).empty()) continue;
       pairs.push_back({.first = first, .second = second});
     }
@@ -171,10 +176,28 @@ LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bo
     options.progress(static_cast<double>(++done) / static_cast<double>(pairs.size()),
                      "pairs of links");
   });
-  return LinkPairs(std::move(pairs), count, link_pairs_fingerprint(robot, bodies));
+  return LinkPairs(std::move(pairs), count, mechanism_fingerprint(robot),
+                   bodies_fingerprint(bodies));
 }
 
-std::uint64_t link_pairs_fingerprint(const RobotModel& robot, std::span<const LinkBody> bodies) {
+}  // namespace
+
+LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
+                           const LinkPairOptions& options) {
+  return prove_pairs_of(-1, robot, bodies, options);
+}
+
+LinkPairs prove_attached_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
+                               const LinkBody& tool, const LinkPairOptions& options) {
+  std::vector<LinkBody> all;
+  for (const LinkBody& body : bodies) {
+    if (body.link != tool.link) all.push_back(body);
+  }
+  all.push_back(tool);
+  return prove_pairs_of(tool.link, robot, all, options);
+}
+
+std::uint64_t mechanism_fingerprint(const RobotModel& robot) {
   Bytes bytes;
   for (const Link& link : robot.links()) bytes.add(link.name);
   for (const Joint& joint : robot.joints()) {
@@ -191,6 +214,11 @@ std::uint64_t link_pairs_fingerprint(const RobotModel& robot, std::span<const Li
     bytes.add(joint.offset);
     bytes.add(joint.mimics);
   }
+  return bytes.sum();
+}
+
+std::uint64_t bodies_fingerprint(std::span<const LinkBody> bodies) {
+  Bytes bytes;
   for (const LinkBody& body : bodies) {
     bytes.add(body.link);
     if (body.mesh != nullptr) {

@@ -71,16 +71,18 @@ struct LinkPairOptions {
 class LinkPairs {
  public:
   LinkPairs() = default;
-  // Pairs in the order of their indices, each once, first before second, and the fingerprint of
+  // Pairs in the order of their indices, each once, first before second, and the fingerprints of
   // what they hold for. Throws Error otherwise, or for indices beyond the number of links.
-  LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t fingerprint);
+  LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t mechanism,
+            std::uint64_t bodies);
 
   // In the order of their indices.
   const std::vector<LinkPair>& pairs() const { return pairs_; }
   // Of the robot that they were proved for.
   std::size_t link_count() const { return link_count_; }
-  // As link_pairs_fingerprint() has it of that robot and its bodies.
-  std::uint64_t fingerprint() const { return fingerprint_; }
+  // The fingerprints of that robot and its bodies.
+  std::uint64_t mechanism() const { return mechanism_; }
+  std::uint64_t bodies() const { return bodies_; }
 
   // The pair of two links in either order, or null: rigidly joined, or a link without a body. Who
   // asks often keeps it: a binary search.
@@ -101,7 +103,8 @@ class LinkPairs {
  private:
   std::vector<LinkPair> pairs_;
   std::size_t link_count_ = 0;
-  std::uint64_t fingerprint_ = 0;
+  std::uint64_t mechanism_ = 0;
+  std::uint64_t bodies_ = 0;
 };
 
 // Proves what it can of all pairs of links with bodies, within the limits of the joints; continuous
@@ -114,7 +117,15 @@ class LinkPairs {
 LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
                            const LinkPairOptions& options = {});
 
-// Of the mechanism (joints, origins, axes, mimics, not the limits) and the bodies, bit by bit.
-std::uint64_t link_pairs_fingerprint(const RobotModel& robot, std::span<const LinkBody> bodies);
+// The same for a tool that is fixed to a link, or what a gripper holds: the pairs of its link with
+// all others, in which the tool alone stands for that link. `bodies` are those of the links; those
+// of links that do not move against the tool are of no matter. Throws Error as above.
+LinkPairs prove_attached_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
+                               const LinkBody& tool, const LinkPairOptions& options = {});
+
+// Of links, joints, origins, axes and mimics, not of limits and trees, bit by bit.
+std::uint64_t mechanism_fingerprint(const RobotModel& robot);
+// Of triangles, spheres and growth, bit by bit.
+std::uint64_t bodies_fingerprint(std::span<const LinkBody> bodies);
 
 }  // namespace spherule

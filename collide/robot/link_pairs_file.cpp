@@ -11,7 +11,8 @@
 #include <cstdint>
 #include <utility>
 
-// Layout: magic; version (32 bits); links (32); fingerprint (64); pairs (32); for each pair first,
+// Layout: magic; version (32 bits); links (32); mechanism and bodies (64
+// each); pairs (32); for each pair first,
 // second (32 each), verdict (8), smallest gap (double), searched boxes (64), the count (32) and the
 // numbers (doubles) of the witness, the count of variables (8) and for each index (32), wraps (8),
 // lower and upper (doubles), the count of nodes (32) and their bytes; CRC-64 of all before it.
@@ -125,7 +126,8 @@ std::string internal::encode_link_pairs(const LinkPairs& pairs) {
   std::string bytes(kMagic);
   append(bytes, kVersion);
   append(bytes, static_cast<std::uint32_t>(pairs.link_count()));
-  append(bytes, pairs.fingerprint());
+  append(bytes, pairs.mechanism());
+  append(bytes, pairs.bodies());
   append(bytes, static_cast<std::uint32_t>(pairs.pairs().size()));
   for (const LinkPair& pair : pairs.pairs()) {
     append(bytes, static_cast<std::uint32_t>(pair.first));
@@ -168,12 +170,13 @@ LinkPairs internal::decode_link_pairs(std::string_view bytes, const std::string&
   }
   try {
     const auto links = reader.take<std::uint32_t>();
-    const auto fingerprint = reader.take<std::uint64_t>();
+    const auto mechanism = reader.take<std::uint64_t>();
+    const auto bodies = reader.take<std::uint64_t>();
     const auto count = reader.take<std::uint32_t>();
     std::vector<LinkPair> pairs;
     for (std::uint32_t i = 0; i < count; ++i) pairs.push_back(take_pair(reader, name));
     if (!reader.is_at_end()) throw Error(name, "the file is too long");
-    return LinkPairs(std::move(pairs), links, fingerprint);
+    return LinkPairs(std::move(pairs), links, mechanism, bodies);
   } catch (const Error& error) {
     throw Error(name, error.reason());
   }
@@ -187,9 +190,11 @@ LinkPairs load_link_pairs(const std::filesystem::path& path, const RobotModel& r
                           std::span<const LinkBody> bodies) {
   const std::string name = path.string();
   LinkPairs result = internal::decode_link_pairs(read_file(path), name);
-  if (result.link_count() != robot.links().size() ||
-      result.fingerprint() != link_pairs_fingerprint(robot, bodies)) {
-    throw Error(name, "was made for another robot, or for other meshes or attached bodies");
+  if (result.mechanism() != mechanism_fingerprint(robot)) {
+    throw Error(name, "was made for another robot: its links and joints are not these");
+  }
+  if (result.bodies() != bodies_fingerprint(bodies)) {
+    throw Error(name, "was made for other meshes or attached bodies of this robot");
   }
   for (const LinkPair& pair : result.pairs()) check_ranges(pair, robot, name);
   return result;

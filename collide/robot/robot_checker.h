@@ -39,6 +39,8 @@ struct RobotCheckerOptions {
 struct ExplainRequest {
   // Tell of no more contacts than this (1: the first).
   std::size_t max_contacts = std::numeric_limits<std::size_t>::max();
+  // Tell, too, of spheres that overlap though their bodies are proved free of each other.
+  bool proved_free = false;
 };
 
 // One side of a pair that is tested: a link, an attached object or an obstacle.
@@ -61,6 +63,8 @@ struct CheckedContact {
   double overlap_depth = 0.0;
   double padding = 0.0;  // asked for, of both bodies and the pair together; rounded upward
   Eigen::Vector3d world_point = Eigen::Vector3d::Zero();  // between the two, up to rounding
+  // No contact: the spheres overlap, but the two bodies are proved free (RobotScene::reason()).
+  bool is_proved_free = false;
 };
 
 // How far a robot is from the nearest contact, between two bounds.
@@ -158,7 +162,8 @@ class RobotChecker {
   RobotClearance clearance(std::span<const double> configuration, Scratch& scratch) const;
 
   // What touches what: one contact, the deepest, for each two bodies, and each body and obstacle,
-  // that touch. Empty exactly if all are free of each other: the limits are not asked. Where a mesh
+  // that touch. Empty exactly if all are free of each other, unless what is proved free is asked
+  // for: the limits are not asked. Where a mesh
   // confirms the contact of two bodies, the spheres are the deepest two whose triangles touch if
   // both are meshes without padding, otherwise of all. Allocates.
   std::vector<CheckedContact> explain(std::span<const double> configuration, Scratch& scratch,

@@ -43,12 +43,18 @@ std::vector<CheckedContact> RobotChecker::explain(std::span<const double> config
   internal::BodyPairs::Memory& memory = scratch.memory_->pairs;
   parts_->pairs.place(configuration, memory);
   for (std::size_t i = 0; i < parts_->pairs.pairs().size(); ++i) {
-    if (!parts_->pairs.touches(i, memory)) continue;
+    const bool touches = parts_->pairs.touches(i, memory);
+    const bool is_proved_free = !touches && parts_->pairs.is_proved_free(i, memory);
+    if (!touches && !(request.proved_free && is_proved_free)) continue;
     const internal::CheckedPair& pair = parts_->pairs.pairs()[i];
     const auto contact = parts_->pairs.deepest_contact(i, memory);
     if (!contact) continue;
-    CheckedContact found{body_of(pair.piece, contact->sphere), other_of(i, contact->other_sphere),
-                         contact->overlap_depth, padding_of(i), contact->world_point};
+    CheckedContact found{body_of(pair.piece, contact->sphere),
+                         other_of(i, contact->other_sphere),
+                         contact->overlap_depth,
+                         padding_of(i),
+                         contact->world_point,
+                         is_proved_free};
     const auto known = std::find_if(result.begin(), result.end(), [&](const CheckedContact& other) {
       return other.first.name == found.first.name && other.second.name == found.second.name;
     });

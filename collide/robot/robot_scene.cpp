@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/robot_scene.h"
 
+#include "collide/robot/link_pairs.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -131,6 +132,40 @@ void RobotScene::detach(std::string_view object) {
   }
   forget(object);
   attached_.erase(found);
+}
+
+void RobotScene::require_proofs_of_this(const std::shared_ptr<const LinkPairs>& pairs) const {
+  if (pairs != nullptr && pairs->mechanism() != mechanism_fingerprint(robot_)) {
+    throw Error("proofs of pairs", "they are of another robot: its links and joints are not these");
+  }
+}
+
+void RobotScene::set_link_pairs(std::shared_ptr<const LinkPairs> pairs) {
+  require_proofs_of_this(pairs);
+  link_pairs_ = std::move(pairs);
+}
+
+void RobotScene::set_attached_pairs(std::string_view object,
+                                    std::shared_ptr<const LinkPairs> pairs) {
+  const auto found = attached_.find(object);
+  if (found == attached_.end()) {
+    throw Error(std::string(object), "there is no attached object of that name");
+  }
+  require_proofs_of_this(pairs);
+  found->second.pairs = std::move(pairs);
+}
+
+AllowedReason RobotScene::reason(std::string_view first, std::string_view second) const {
+  for (const std::string_view name : {first, second}) {
+    if (robot_.find_link(name) < 0) throw Error(std::string(name), "there is no link of that name");
+  }
+  const int a = robot_.find_link(first);
+  const int b = robot_.find_link(second);
+  if (allowed_.allows(a, b) || link_pairs_ == nullptr) return allowed_.reason(a, b);
+  const LinkPair* const pair = link_pairs_->find(a, b);
+  if (pair == nullptr || pair->boxes.free_share() == 0.0) return AllowedReason::kTested;
+  return pair->verdict == PairVerdict::kNever ? AllowedReason::kProvedNever
+                                              : AllowedReason::kFreeInBoxes;
 }
 
 std::vector<std::string> RobotScene::attached() const {

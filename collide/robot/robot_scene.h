@@ -23,6 +23,7 @@
 
 namespace spherule {
 
+class LinkPairs;
 class SolidMesh;
 
 // What may stand in the way, in metres. A cloud of points is the tree that point_cloud_tree() makes
@@ -67,6 +68,19 @@ class RobotScene {
   // spheres (they may come from a model whose links had no spheres yet), is tested again. Throws
   // Error for those of a robot with other links.
   void set_allowed_collisions(AllowedCollisions allowed);
+
+  // What is proved of the pairs of links (prove_link_pairs()); null, as at first: nothing. Where
+  // two links are proved free of each other they are free whatever their spheres say: in the
+  // configurations of their boxes, and on motions that stay in these. The bodies that the proofs
+  // are about have to be what the spheres of the links stand for: all of them. Pairs with padding
+  // are tested everywhere. Throws Error for proofs of another robot.
+  void set_link_pairs(std::shared_ptr<const LinkPairs> pairs);
+  // The same for an attached object and all links, by prove_attached_pairs() of its link; forgotten
+  // with the object. Throws Error, too, for an unknown object.
+  void set_attached_pairs(std::string_view object, std::shared_ptr<const LinkPairs> pairs);
+  // Why two links are not tested against each other, or not everywhere: what is allowed, and then
+  // what is proved. Throws Error for names that are no links.
+  AllowedReason reason(std::string_view first, std::string_view second) const;
 
   // Throws Error for a name that is taken or empty, a missing tree or mesh, or a primitive that
   // require_primitive() refuses.
@@ -118,6 +132,7 @@ class RobotScene {
     std::string link;
     std::shared_ptr<const SphereTree> tree;
     Pose link_from_object;
+    std::shared_ptr<const LinkPairs> pairs{};
   };
   // An intended contact: of a body, or its region unless that name is empty, and another.
   struct Intended {
@@ -137,10 +152,12 @@ class RobotScene {
   // The trees whose spheres a body consists of.
   std::vector<std::shared_ptr<const SphereTree>> trees_of(std::string_view body) const;
   void forget(std::string_view name);
+  void require_proofs_of_this(const std::shared_ptr<const LinkPairs>& pairs) const;
 
   RobotModel robot_;
   Pose world_from_root_;
   AllowedCollisions allowed_;
+  std::shared_ptr<const LinkPairs> link_pairs_;
   std::map<std::string, Obstacle, std::less<>> obstacles_;
   std::map<std::string, Attached, std::less<>> attached_;
   std::map<std::string, double, std::less<>> padding_;

@@ -2,6 +2,7 @@
 #include "collide/mesh_contact.h"
 #include "collide/robot/internal/checker_parts.h"
 #include "collide/robot/internal/link_paths.h"
+#include "collide/robot/link_pairs.h"
 #include "collide/robot/robot_scene.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
@@ -48,12 +49,13 @@ class RobotScene::Snapshot {
       : scene_(scene), options_(options), carrier_(scene.robot_) {
     for (std::size_t i = 0; i < scene_.robot_.links().size(); ++i) {
       const Link& link = scene_.robot_.links()[i];
-      bodies_.push_back({CheckedBody::Kind::kLink, link.name, static_cast<int>(i), link.trees});
+      bodies_.push_back({CheckedBody::Kind::kLink, link.name, static_cast<int>(i),
+                         static_cast<int>(i), link.trees});
     }
     for (const auto& [name, object] : scene_.attached_) {
-      const int link = add_fixed_link(carrier_, name, scene_.robot_.find_link(object.link),
-                                      object.link_from_object);
-      bodies_.push_back({CheckedBody::Kind::kAttached, name, link, {object.tree}});
+      const int parent = scene_.robot_.find_link(object.link);
+      const int link = add_fixed_link(carrier_, name, parent, object.link_from_object);
+      bodies_.push_back({CheckedBody::Kind::kAttached, name, link, parent, {object.tree}});
     }
     for (const auto& [name, obstacle] : scene_.obstacles_) {
       obstacle_names_.push_back({CheckedBody::Kind::kObstacle, name});
@@ -84,7 +86,8 @@ class RobotScene::Snapshot {
   struct Body {
     CheckedBody::Kind kind;
     std::string name;
-    int link;  // of carrier_
+    int link;         // of carrier_
+    int proved_link;  // of the robot: for which it stands in proofs of pairs
     std::vector<Tree> trees;
   };
 
@@ -181,11 +184,31 @@ class RobotScene::Snapshot {
     const std::optional<Regions> of_second = regions_left_out(second.name, first.name);
     if (!of_first || !of_second) return;
     const double between = padding_between(first.name, second.name);
+    const std::shared_ptr<const FreeBoxes> boxes = boxes_of(first, second);
     const std::vector<int> seconds = pieces_of(other, *of_second, padding_of(second.name));
     const double padding = internal::padding_sum(padding_of(first.name), between);
     for (const int a : pieces_of(body, *of_first, padding)) {
-      for (const int b : seconds) pairs_.push_back({a, b, false});
+      for (const int b : seconds) pairs_.push_back({a, b, false, boxes});
     }
+  }
+
+  // Where two bodies are proved free: without padding, which the proofs do not know of.
+  std::shared_ptr<const FreeBoxes> boxes_of(const Body& first, const Body& second) const {
+    std::shared_ptr<const LinkPairs> pairs = scene_.link_pairs_;
+    for (const Body* const body : {&first, &second}) {
+      if (padding_of(body->name) > 0.0) return nullptr;
+      if (body->kind == CheckedBody::Kind::kAttached) {
+        pairs = scene_.attached_.find(body->name)->second.pairs;
+      }
+    }
+    const bool are_both_attached =
+        first.kind == CheckedBody::Kind::kAttached && second.kind == CheckedBody::Kind::kAttached;
+    if (pairs == nullptr || are_both_attached || padding_between(first.name, second.name) > 0.0) {
+      return nullptr;
+    }
+    const LinkPair* const pair = pairs->find(first.proved_link, second.proved_link);
+    if (pair == nullptr || pair->boxes.free_share() == 0.0) return nullptr;
+    return {pairs, &pair->boxes};
   }
 
   bool is_never_tested(const Body& first, const Body& second) const {

@@ -176,6 +176,7 @@ bool BodyPairs::is_usual(std::span<const double> configuration) const {
 
 void BodyPairs::place(std::span<const double> configuration, Memory& memory) const {
   forward_kinematics(robot_, configuration, memory.world_from_link, world_from_root_);
+  memory.configuration.assign(configuration.begin(), configuration.end());
   memory.placed.resize(pieces_.size());
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const Sphere ball = pieces_[i].tree->ball(0);
@@ -211,7 +212,7 @@ bool BodyPairs::balls_apart(const CheckedPair& pair, double clearance, const Mem
 
 bool BodyPairs::touches(std::size_t index, const Memory& memory) const {
   const CheckedPair& pair = pairs_[index];
-  if (balls_apart(pair, 0.0, memory)) return false;
+  if (balls_apart(pair, 0.0, memory) || is_proved_free(index, memory)) return false;
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
   bool touch = false;
   if (pair.is_obstacle) {

@@ -12,6 +12,7 @@
 #include "collide/contact.h"
 #include "collide/distance.h"
 #include "collide/mesh_contact.h"
+#include "collide/robot/free_boxes.h"
 #include "collide/robot/internal/path_reach.h"
 #include "collide/robot/robot_model.h"
 #include "collide/robot/robot_scene.h"
@@ -55,6 +56,8 @@ struct CheckedPair {
   int piece = 0;
   int other = 0;
   bool is_obstacle = false;
+  // Where the two are proved free, whatever their spheres say. Null: nowhere.
+  std::shared_ptr<const FreeBoxes> boxes{};
 };
 
 // The spheres that overlap deepest, or the sphere and the solid (then `other_sphere` is -1 unless
@@ -74,6 +77,7 @@ class BodyPairs {
             std::vector<PlacedShape> obstacles, std::vector<CheckedPair> pairs, std::size_t tested);
 
   struct Memory {
+    std::vector<double> configuration{};
     std::vector<Pose> world_from_link{};
     std::vector<Sphere> placed{};  // root balls of the pieces, in the world, up to pad
     double pad = 0.0;
@@ -99,9 +103,14 @@ class BodyPairs {
   // Takes a configuration; the functions below answer for it. Throws Error as forward_kinematics().
   void place(std::span<const double> configuration, Memory& memory) const;
 
-  // By the canonical tests.
+  // By the canonical tests, which find nothing where the pair is proved free.
   bool touches(std::size_t pair, const Memory& memory) const;
   bool any_touches(Memory& memory) const;
+  // Whether a pair is proved free in the configuration that was taken.
+  bool is_proved_free(std::size_t pair, const Memory& memory) const {
+    const FreeBoxes* const boxes = pairs_[pair].boxes.get();
+    return boxes != nullptr && boxes->contains(memory.configuration);
+  }
   // Of a pair that is_confirmed() and whose spheres touch: touches().
   bool meshes_touch(std::size_t pair, const Memory& memory) const {
     return meshes_within(pairs_[pair], 0.0, memory);
@@ -117,7 +126,8 @@ class BodyPairs {
   // Of the spheres, whatever is confirmed.
   DistanceResult distance(std::size_t pair, const Memory& memory,
                           const DistanceRequest& request) const;
-  // None exactly if touches() is false.
+  // None exactly if touches() is false, where the pair is not proved free; there the spheres
+  // decide, unless meshes confirm them.
   std::optional<PairContact> deepest_contact(std::size_t pair, const Memory& memory) const;
 
   // How far any point of a link may be from where the exact mechanism has it.

@@ -21,6 +21,32 @@ LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
   one_ = std::make_unique<const CompiledWidePlan>(tested.source, *configurations_);
   pair_of_test_ = std::move(all.pair_of_test);
   decide_fixed_pairs(all.fixed_pairs);
+  find_never_ranges();
+}
+
+void LaneCheck::find_never_ranges() {
+  for (const CheckedPair& pair : pairs_.pairs()) {
+    if (pair.boxes == nullptr || !pair.boxes->is_all_free()) continue;
+    for (const FreeBoxes::Variable& variable : pair.boxes->variables()) {
+      if (variable.wraps) continue;  // all positions are proved
+      const auto index = static_cast<std::size_t>(variable.index);
+      auto known = std::find_if(never_ranges_.begin(), never_ranges_.end(),
+                                [&](const Range& range) { return range.variable == index; });
+      if (known == never_ranges_.end()) {
+        known = never_ranges_.insert(known, {index, variable.lower, variable.upper});
+      }
+      known->lower = std::max(known->lower, variable.lower);
+      known->upper = std::min(known->upper, variable.upper);
+    }
+  }
+}
+
+// Ranges are intervals: on a straight motion it is enough to ask for both ends.
+bool LaneCheck::never_touch(std::span<const double> configuration) const {
+  return std::all_of(never_ranges_.begin(), never_ranges_.end(), [&](const Range& range) {
+    const double value = configuration[range.variable];
+    return range.lower <= value && value <= range.upper;
+  });
 }
 
 // Pairs that no joint moves: of static ones the canonical poses are always the same. Those that
@@ -65,7 +91,10 @@ LaneCheck::Memory::Memory(const LaneCheck& check)
       static_cast<std::size_t>(std::max(1, check.single_->plan().position_count));
   from_.resize(positions);
   to_.resize(positions);
-  variables_.resize(static_cast<std::size_t>(check.pairs_.robot().variable_count()));
+  for (std::vector<double>* const variables : {&variables_, &part_begin_, &part_end_}) {
+    variables->resize(static_cast<std::size_t>(check.pairs_.robot().variable_count()));
+  }
+  proved_edges_.resize(check.pairs_.pairs().size());
 }
 
 namespace {
@@ -84,8 +113,20 @@ struct ConfigurationClient {
     if (std::exchange(self.placed, lane) != lane) {
       self.pairs.place(self.configurations[static_cast<std::size_t>(lane)], self.memory);
     }
-    const auto source = static_cast<std::size_t>(self.plan.source_test(test));
-    return self.pairs.touches(self.pair_of_test[source], self.memory);
+    return self.pairs.touches(self.pair_of(test), self.memory);
+  }
+  static bool is_proved_free(void* context, int lane, std::int32_t test) {
+    const auto& self = *static_cast<ConfigurationClient*>(context);
+    return self.pairs.pairs()[self.pair_of(test)].boxes->contains(
+        self.configurations[static_cast<std::size_t>(lane)]);
+  }
+
+  std::size_t pair_of(std::int32_t test) const {
+    return pair_of_test[static_cast<std::size_t>(plan.source_test(test))];
+  }
+  // For one evaluation.
+  PlanClient client(bool skips_never) {
+    return {&touches, nullptr, &is_proved_free, nullptr, this, skips_never};
   }
 };
 
@@ -116,8 +157,10 @@ unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurat
     for (std::size_t p = 0; p < at.size(); ++p) scratch.positions[p].lane[lane] = at[p];
   }
   ConfigurationClient client{pairs_, *configurations_, pair_of_test_, configurations, exact};
-  return rigid | kernels_.check_lanes(plan, scratch, all & ~rigid,
-                                      {&ConfigurationClient::touches, nullptr, &client});
+  const bool skips_never = std::all_of(
+      configurations.begin(), configurations.end(),
+      [&](std::span<const double> configuration) { return never_touch(configuration); });
+  return rigid | kernels_.check_lanes(plan, scratch, all & ~rigid, client.client(skips_never));
 }
 
 bool LaneCheck::touches(std::span<const double> configuration, Memory& memory,
@@ -129,8 +172,7 @@ bool LaneCheck::touches(std::span<const double> configuration, Memory& memory,
   const std::span<const double> at = positions_.of(configuration, memory.room_);
   std::copy(at.begin(), at.end(), scratch.positions);
   ConfigurationClient client{pairs_, *configurations_, pair_of_test_, {&configuration, 1}, exact};
-  return kernels_.check_one(plan, one_->plan(), scratch,
-                            {&ConfigurationClient::touches, nullptr, &client});
+  return kernels_.check_one(plan, one_->plan(), scratch, client.client(never_touch(configuration)));
 }
 
 }  // namespace spherule::internal

@@ -50,6 +50,9 @@ class LaneCheck {
     std::vector<double> from_;  // positions
     std::vector<double> to_;
     std::vector<double> variables_;
+    std::vector<double> part_begin_;
+    std::vector<double> part_end_;
+    std::vector<std::int8_t> proved_edges_;  // of each pair: the whole motion is; -1: not known yet
     std::vector<std::uint64_t> undecided_;
   };
 
@@ -73,6 +76,14 @@ class LaneCheck {
  private:
   class Edge;
 
+  // Of the pairs that never touch: the ranges of variables in which all of them are proved.
+  struct Range {
+    std::size_t variable = 0;
+    double lower = 0.0;
+    double upper = 0.0;
+  };
+  void find_never_ranges();
+  bool never_touch(std::span<const double> configuration) const;
   void decide_fixed_pairs(std::span<const std::size_t> pairs);
   bool rigid_pairs_touch(std::span<const double> configuration, BodyPairs::Memory& exact) const;
 
@@ -81,7 +92,8 @@ class LaneCheck {
   const PlanKernelSet& kernels_;
   // Rigid pairs that are so near that the rounding of their poses decides.
   std::vector<std::size_t> rigid_pairs_;
-  std::vector<std::size_t> pair_of_test_;                      // of the source
+  std::vector<std::size_t> pair_of_test_;  // of the source
+  std::vector<Range> never_ranges_;
   std::shared_ptr<const CompiledPlan<float>> configurations_;  // of the first tested() pairs
   std::unique_ptr<const CompiledWidePlan> one_;
   std::shared_ptr<const CompiledPlan<float>> single_;  // of all

@@ -43,6 +43,8 @@ class LaneCheck::Edge {
     const std::span<const double> finish = check_.positions_.of(to, memory.room_, 1);
     std::copy(start.begin(), start.end(), memory.from_.begin());
     std::copy(finish.begin(), finish.end(), memory.to_.begin());
+    std::fill(memory.proved_edges_.begin(), memory.proved_edges_.end(), std::int8_t{-1});
+    skips_never_ = check.never_touch(from) && check.never_touch(to);
   }
 
   EdgeResult run() {
@@ -216,7 +218,8 @@ class LaneCheck::Edge {
     place({parts.data(), count}, batch);
     Client<Real> client{*this};
     kernel<Real>()(plan, stage.plan.view(), batch,
-                   {&Client<Real>::touches, &Client<Real>::near, &client});
+                   {&Client<Real>::touches, &Client<Real>::near, &Client<Real>::is_proved_free,
+                    &Client<Real>::proved_parts, &client, skips_never_});
     if (batch.contacts != 0) {
       for (std::size_t i = 0; i < count; ++i) {
         if ((batch.contacts >> i & 1U) != 0) {
@@ -290,16 +293,46 @@ class LaneCheck::Edge {
     }
   }
 
+  void take_variables(double at, std::vector<double>& variables) const {
+    for (std::size_t i = 0; i < from_.size(); ++i) {
+      variables[i] = (1.0 - at) * from_[i] + at * to_[i];
+    }
+  }
+
+  // Those of the lanes in whose parts a pair is proved free. The margin of FreeBoxes is for the
+  // rounding of both ends.
+  unsigned proved_parts(std::size_t pair, unsigned lanes) {
+    const FreeBoxes& boxes = *pairs_.pairs()[pair].boxes;
+    std::int8_t& all = memory_.proved_edges_[pair];
+    if (all < 0) all = boxes.contains_edge(from_, to_) ? 1 : 0;
+    if (all == 1) return lanes;
+    unsigned proved = 0;
+    for (unsigned left = lanes; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+      take_variables(times_[lane] - halves_[lane], memory_.part_begin_);
+      take_variables(times_[lane] + halves_[lane], memory_.part_end_);
+      if (boxes.contains_edge(memory_.part_begin_, memory_.part_end_)) proved |= 1U << lane;
+    }
+    return proved;
+  }
+  bool is_proved_free(std::size_t pair, double at) {
+    take_variables(at, memory_.part_begin_);
+    return pairs_.pairs()[pair].boxes->contains(memory_.part_begin_);
+  }
+
+  template <class Real>
+  std::size_t pair_of(const CompiledPlan<Real>& plan, std::int32_t test) const {
+    return check_.pair_of_test_[static_cast<std::size_t>(plan.source_test(test))];
+  }
+
   // By the canonical tests.
   template <class Real>
   std::size_t pair_at(double at, const CompiledPlan<Real>& plan, std::int32_t test) {
     if (std::exchange(placed_, at) != at) {
-      for (std::size_t i = 0; i < from_.size(); ++i) {
-        memory_.variables_[i] = (1.0 - at) * from_[i] + at * to_[i];
-      }
+      take_variables(at, memory_.variables_);
       pairs_.place(memory_.variables_, exact_);
     }
-    return check_.pair_of_test_[static_cast<std::size_t>(plan.source_test(test))];
+    return pair_of(plan, test);
   }
   template <class Real>
   bool touches(double at, const CompiledPlan<Real>& plan, std::int32_t test) {
@@ -339,6 +372,15 @@ class LaneCheck::Edge {
       Edge& edge = static_cast<Client*>(context)->edge;
       return edge.near_lanes(edge.compiled<Real>(), test, lanes, speed);
     }
+    static bool is_proved_free(void* context, int lane, std::int32_t test) {
+      Edge& edge = static_cast<Client*>(context)->edge;
+      return edge.is_proved_free(edge.pair_of(edge.compiled<Real>(), test),
+                                 edge.times_[static_cast<std::size_t>(lane)]);
+    }
+    static unsigned proved_parts(void* context, std::int32_t test, unsigned lanes) {
+      Edge& edge = static_cast<Client*>(context)->edge;
+      return edge.proved_parts(edge.pair_of(edge.compiled<Real>(), test), lanes);
+    }
   };
 
   const LaneCheck& check_;
@@ -350,6 +392,7 @@ class LaneCheck::Edge {
   Memory& memory_;
   BodyPairs::Memory& exact_;
   EdgeResult result_;
+  bool skips_never_ = false;
   std::array<bool, 2> is_bounded_{};
   std::array<double, kPlanLanes> times_{};
   std::array<double, kPlanLanes> halves_{};

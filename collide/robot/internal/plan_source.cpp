@@ -123,7 +123,13 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
     source.tests.push_back({pair.piece, pair.other, pair.is_obstacle});
     result.pair_of_test.push_back(i);
     if (pair.is_obstacle) continue;
-    source.tests.back().free_cells = cached.free_cells.of(cells.of(pair.piece, pair.other));
+    PlanSource::Test& test = source.tests.back();
+    test.is_proved_somewhere = pair.boxes != nullptr;
+    test.never_touches = pair.boxes != nullptr && pair.boxes->is_all_free();
+    // What never touches is hardly ever tested.
+    if (!test.never_touches) {
+      test.free_cells = cached.free_cells.of(cells.of(pair.piece, pair.other));
+    }
     source.pair_paths.push_back(std::move(path));
   }
   return result;

@@ -68,9 +68,10 @@ TEST_F(LinkPairsFile, HoldsForThisRobotAlone) {
   EXPECT_EQ(reason(bars(-1.0, 0.5)), "");
   EXPECT_EQ(reason(bars(-2.0, 2.1)),
             "the limits of joint 'turn' are wider than those it was made with");
-  const char* const other = "was made for another robot, or for other meshes or attached bodies";
+  const char* const other = "was made for other meshes or attached bodies of this robot";
   EXPECT_EQ(reason(bars(-2.0, 2.0, 0.06)), other);
-  EXPECT_EQ(reason(bars(-2.0, 2.0, 0.05, 0.01)), other);
+  EXPECT_EQ(reason(bars(-2.0, 2.0, 0.05, 0.01)),
+            "was made for another robot: its links and joints are not these");
   BoxRobot with_tool = bars(-2.0, 2.0);
   with_tool.bodies.push_back(with_tool.bodies[1]);
   EXPECT_EQ(reason(with_tool), other);
