@@ -111,10 +111,25 @@ Arm make_panda(const std::filesystem::path& models, const std::string& cover) {
       models, [&](std::size_t, const TriangleMesh& mesh) { return balls_around(mesh, radius); });
 }
 
-AllowedCollisions allowed_contacts(const Arm& arm) {
+std::vector<LinkBody> bodies_of(const Arm& arm) {
+  std::vector<LinkBody> bodies;
+  for (std::size_t i = 0; i < arm.meshes.size(); ++i) {
+    if (arm.meshes[i].triangles.empty()) continue;
+    bodies.push_back(
+        {.link = static_cast<int>(i), .mesh = std::make_shared<const SolidMesh>(arm.meshes[i])});
+  }
+  return bodies;
+}
+
+AllowedCollisions joined_contacts(const Arm& arm) {
   AllowedCollisions allowed(arm.model);
   // How far the hand is closed is not the arm's affair.
   allowed.allow("panda_leftfinger", "panda_rightfinger");
+  return allowed;
+}
+
+AllowedCollisions allowed_contacts(const Arm& arm) {
+  AllowedCollisions allowed = joined_contacts(arm);
   allow_sampled(sample_collisions(arm.model, allowed, {.configurations = 2000}), allowed);
   return allowed;
 }

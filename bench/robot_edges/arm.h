@@ -3,6 +3,7 @@
 
 #include "collide/mesh_contact.h"
 #include "collide/robot/allowed_collisions.h"
+#include "collide/robot/link_pairs.h"
 #include "collide/robot/robot_model.h"
 #include "spheretree/sphere.h"
 #include "spheretree/triangle_mesh.h"
@@ -34,7 +35,12 @@ std::vector<Sphere> balls_around(const TriangleMesh& mesh, double radius);
 // meshes. Throws Error if files are missing.
 Arm make_panda(const std::filesystem::path& models, const std::string& cover);
 
-// Which links of a Panda are not tested against each other: as sampled, and the two fingers.
+// Its meshes as bodies for proofs about pairs of links.
+std::vector<LinkBody> bodies_of(const Arm& arm);
+
+// Which links of a Panda are not tested against each other: what is joined, and the two fingers;
+// and what did not touch in a sample, too.
+AllowedCollisions joined_contacts(const Arm& arm);
 AllowedCollisions allowed_contacts(const Arm& arm);
 
 }  // namespace spherule

@@ -230,9 +230,10 @@ struct PlanClient {
   // Of two sides whose contacts are confirmed, no point of which is faster than `speed` against the
   // other one: those of the lanes in whose parts the two are not proved apart.
   unsigned (*near)(void* context, std::int32_t test, unsigned lanes, double speed);
-  // Of two bodies that are proved free somewhere: whether they are in the lane's configuration, and
-  // in which lanes they are all along the part.
+  // Of two bodies that are proved free somewhere: whether they are in the lane's configuration; all
+  // along the motion; and in which lanes they are all along the part.
   bool (*is_proved_free)(void* context, int lane, std::int32_t test);
+  bool (*is_motion_proved)(void* context, std::int32_t test);
   unsigned (*proved_parts)(void* context, std::int32_t test, unsigned lanes);
   void* context;
   bool skips_never;  // those pairs need no test in any of the lanes

@@ -55,6 +55,10 @@ class FreeCells {
   };
   const std::array<Axis, kMostJoints>& axes() const { return axes_; }
 
+  FreeCells(const std::array<Axis, kMostJoints>& axes,
+            const std::array<std::uint64_t, kCells>& words)
+      : axes_(axes), words_(words) {}
+
   // Bit i of word j: in all positions whose coordinates lie in [i, i + 1] and [j, j + 1] the two
   // are further apart than the margin.
   const std::array<std::uint64_t, kCells>& words() const { return words_; }

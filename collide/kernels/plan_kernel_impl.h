@@ -263,23 +263,15 @@ class Evaluation {
         from_side<Real, kMoves>(context_, motion, plan_.bodies[both.first], 0,
                                 MovingSide<Real>{plan_.bodies[both.second]}, 0, open);
     if (found.near == 0) return;
-    unsigned near = found.near & ~lanes_in_free_cells<Real, kMoves>(plan_.free_cells[pair],
-                                                                    scratch_, parts_, found.near);
-    if (near != 0 && both.is_proved_somewhere) near &= ~proved_lanes(test, near);
+    const unsigned near = found.near & ~lanes_in_free_cells<Real, kMoves>(
+                                           plan_.free_cells[pair], scratch_, parts_, found.near);
+    if constexpr (kMoves) {
+      const PlanClient& client = context_.client;
+      const bool may_be_proved = near != 0 && both.is_proved_somewhere;
+      if (may_be_proved && client.is_motion_proved(client.context, test)) return;
+    }
     add({test, both.first, near, found.overlap & near},
         plan_.bodies[both.first].is_confirmed || plan_.bodies[both.second].is_confirmed);
-  }
-
-  // Those of the lanes in which two bodies are proved free by the caller.
-  unsigned proved_lanes(std::int32_t test, unsigned lanes) const {
-    const PlanClient& client = context_.client;
-    if constexpr (kMoves) return client.proved_parts(client.context, test, lanes);
-    unsigned proved = 0;
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const int lane = __builtin_ctz(lanes);
-      if (client.is_proved_free(client.context, lane, test)) proved |= 1U << lane;
-    }
-    return proved;
   }
 
   // What the caller confirms is searched last.
@@ -328,7 +320,12 @@ class Evaluation {
     contacts_ |= search.contacts();
     if constexpr (kMoves) {
       if (search.contacts() != 0) remember(*scratch_.recent, test);
-      conclude(test, search);
+      unsigned near = search.near() | search.contacts();
+      if (near != 0 && is_proved_somewhere) {
+        const PlanClient& client = context_.client;
+        near &= ~client.proved_parts(client.context, test, near);
+      }
+      conclude(test, near, search);
     } else {
       lanes_ &= ~search.contacts();
     }
@@ -354,8 +351,7 @@ class Evaluation {
   }
 
   // Notes the lanes in which the test is not proved apart.
-  void conclude(std::int32_t test, const TestSearch<Real, kMoves>& search) {
-    const unsigned near = search.near() | search.contacts();
+  void conclude(std::int32_t test, unsigned near, const TestSearch<Real, kMoves>& search) {
     parts_->any_near |= near;
     for (unsigned left = near; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);

@@ -118,8 +118,8 @@ template <class Real, bool kMoves>
 class TestSearch {
  public:
   // With `is_confirmed` the search of a motion ends where two leaves are not proved apart all along
-  // a part: confirm() goes on. With `is_proved_somewhere` spheres that touch in the middle of a
-  // part do not make a contact there where the two bodies are proved free.
+  // a part: confirm() goes on. With `is_proved_somewhere` spheres that touch in a configuration do
+  // not make a contact where the two bodies are proved free.
   TestSearch(const SearchContext<Real, kMoves>& context, std::int32_t test, unsigned lanes,
              bool is_confirmed, bool is_proved_somewhere)
       : context_(context),
@@ -152,12 +152,13 @@ class TestSearch {
     }
     unsigned touching = found.overlap & ~(cleared_ | contacts_);
     const PlanClient& client = context_.client;
-    if (kMoves && is_proved_somewhere_) {
+    if (is_proved_somewhere_) {
       for (unsigned left = touching; left != 0; left &= left - 1) {
         const int lane = __builtin_ctz(left);
         if (client.is_proved_free(client.context, lane, test_)) cleared_ |= 1U << lane;
       }
       touching &= ~cleared_;
+      if (!kMoves) active_ &= ~cleared_;
     }
     if (touching == 0) return;
     const Real sure = reach - margin;

@@ -195,13 +195,12 @@ class SingleCheck {
   bool touches_pair(std::int32_t test, std::int32_t a, std::int32_t b) {
     const std::int32_t pair = test - plan_.first_pair;
     if (is_in_free_cell(plan_.free_cells[pair], scratch_.positions)) return false;
-    if (plan_.pairs[pair].is_proved_somewhere && client_.is_proved_free(client_.context, 0, test)) {
-      return false;
-    }
     const WideBody& second = wide_.bodies[b];
-    return search_.touches_body(
-        test, wide_.bodies[a], second,
-        {scratch_.roots[0][b], scratch_.roots[1][b], scratch_.roots[2][b], second.radius});
+    const OneSphere around = {scratch_.roots[0][b], scratch_.roots[1][b], scratch_.roots[2][b],
+                              second.radius};
+    return search_.touches_body(test, wide_.bodies[a], second, around) &&
+           !(plan_.pairs[pair].is_proved_somewhere &&
+             client_.is_proved_free(client_.context, 0, test));
   }
 
   const CheckPlan<float>& plan_;

@@ -30,6 +30,8 @@ class WideSearch {
         lane_(lane),
         first_placed_(lane * wide.placed_count) {}
 
+  int lane() const { return lane_; }
+
   // A body and an obstacle whose boxes are not apart.
   bool touches_obstacle(std::int32_t test) {
     const PlanBoxes<float>& boxes = plan_.groups[test / kPlanLanes];

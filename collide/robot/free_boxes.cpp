@@ -177,6 +177,33 @@ bool FreeBoxes::edge_is_free(std::size_t index, const Values& from, const Values
          edge_is_free(upwards ? second : index + 1, from, to, crossing, last);
 }
 
+void FreeBoxes::for_each_leaf(
+    const std::function<void(bool is_free, std::span<const double> lower,
+                             std::span<const double> upper)>& visit) const {
+  Values lower{};
+  Values upper{};
+  for (std::size_t i = 0; i < variables_.size(); ++i) {
+    lower[i] = variables_[i].lower;
+    upper[i] = variables_[i].upper;
+  }
+  const auto descend = [&](const auto& self, std::size_t index) -> void {
+    const Node& node = nodes_[index];
+    if (node.state < kFirstHalving) {
+      visit(node.state == kFree, {lower.data(), variables_.size()},
+            {upper.data(), variables_.size()});
+      return;
+    }
+    const auto v = static_cast<std::size_t>(node.state - kFirstHalving);
+    const double end = std::exchange(upper[v], node.at);
+    self(self, index + 1);
+    upper[v] = end;
+    const double begin = std::exchange(lower[v], node.at);
+    self(self, static_cast<std::size_t>(node.second));
+    lower[v] = begin;
+  };
+  descend(descend, 0);
+}
+
 double FreeBoxes::free_share() const {
   double share = 0.0;
   std::vector<double> open{1.0};

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -62,6 +63,10 @@ class FreeBoxes {
   // Whether every configuration of the straight edge between two lies in free boxes. False, too,
   // for an edge on which a variable that wraps passes the end of its range.
   bool contains_edge(std::span<const double> from, std::span<const double> to) const noexcept;
+
+  // Calls a function for each leaf: whether it is free, and its interval of each of variables().
+  void for_each_leaf(const std::function<void(bool is_free, std::span<const double> lower,
+                                              std::span<const double> upper)>& visit) const;
 
   // The bytes it was made of, halves of equal leaves joined.
   const std::string& nodes() const { return bytes_; }

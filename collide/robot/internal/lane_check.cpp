@@ -126,7 +126,7 @@ struct ConfigurationClient {
   }
   // For one evaluation.
   PlanClient client(bool skips_never) {
-    return {&touches, nullptr, &is_proved_free, nullptr, this, skips_never};
+    return {&touches, nullptr, &is_proved_free, nullptr, nullptr, this, skips_never};
   }
 };
 

@@ -217,9 +217,10 @@ class LaneCheck::Edge {
     }
     place({parts.data(), count}, batch);
     Client<Real> client{*this};
-    kernel<Real>()(plan, stage.plan.view(), batch,
-                   {&Client<Real>::touches, &Client<Real>::near, &Client<Real>::is_proved_free,
-                    &Client<Real>::proved_parts, &client, skips_never_});
+    kernel<Real>()(
+        plan, stage.plan.view(), batch,
+        {&Client<Real>::touches, &Client<Real>::near, &Client<Real>::is_proved_free,
+         &Client<Real>::is_motion_proved, &Client<Real>::proved_parts, &client, skips_never_});
     if (batch.contacts != 0) {
       for (std::size_t i = 0; i < count; ++i) {
         if ((batch.contacts >> i & 1U) != 0) {
@@ -299,13 +300,15 @@ class LaneCheck::Edge {
     }
   }
 
+  bool is_motion_proved(std::size_t pair) {
+    std::int8_t& is_proved = memory_.proved_edges_[pair];
+    if (is_proved < 0) is_proved = pairs_.pairs()[pair].boxes->contains_edge(from_, to_) ? 1 : 0;
+    return is_proved == 1;
+  }
   // Those of the lanes in whose parts a pair is proved free. The margin of FreeBoxes is for the
   // rounding of both ends.
   unsigned proved_parts(std::size_t pair, unsigned lanes) {
     const FreeBoxes& boxes = *pairs_.pairs()[pair].boxes;
-    std::int8_t& all = memory_.proved_edges_[pair];
-    if (all < 0) all = boxes.contains_edge(from_, to_) ? 1 : 0;
-    if (all == 1) return lanes;
     unsigned proved = 0;
     for (unsigned left = lanes; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(left));
@@ -376,6 +379,10 @@ class LaneCheck::Edge {
       Edge& edge = static_cast<Client*>(context)->edge;
       return edge.is_proved_free(edge.pair_of(edge.compiled<Real>(), test),
                                  edge.times_[static_cast<std::size_t>(lane)]);
+    }
+    static bool is_motion_proved(void* context, std::int32_t test) {
+      Edge& edge = static_cast<Client*>(context)->edge;
+      return edge.is_motion_proved(edge.pair_of(edge.compiled<Real>(), test));
     }
     static unsigned proved_parts(void* context, std::int32_t test, unsigned lanes) {
       Edge& edge = static_cast<Client*>(context)->edge;

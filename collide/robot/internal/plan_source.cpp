@@ -2,6 +2,7 @@
 #include "collide/robot/internal/plan_source.h"
 
 #include "collide/kernels/check_cache.h"
+#include "collide/robot/internal/box_cells.h"
 #include "collide/robot/internal/moving_frames.h"
 #include "collide/solid_mesh.h"
 
@@ -37,22 +38,40 @@ PlanSource::Path steps_of(const PathReach& reach, const RobotModel& robot,
   return path;
 }
 
-// Of a pair of bodies; `margin` as FreeCellsSource has it.
+// Of a pair of bodies, by what is proved of it or else by its spheres; `margin` as FreeCellsSource
+// has it.
 class CellsSource {
  public:
   CellsSource(const RobotModel& robot, const MovingFrames& frames, const PlanSource& source)
-      : source_(source), joints_(source.frames.size()) {
+      : robot_(robot), source_(source), joints_(source.frames.size()) {
     for (const Joint& joint : robot.joints()) {
       if (!joint.moves()) continue;
       const auto link = static_cast<std::size_t>(joint.child_link);
       joints_[static_cast<std::size_t>(frames.frame_of_link[link])] = &joint;
+    }
+    for (const int joint : robot.variable_joints()) {
+      const auto link =
+          static_cast<std::size_t>(robot.joints()[static_cast<std::size_t>(joint)].child_link);
+      frame_of_variable_.push_back(frames.frame_of_link[link]);
     }
     // Both bodies, at both ends of what a motion is compared with (compiled_plan.cpp). A power of
     // two, so that cells serve scenes of almost any size.
     margin_ = std::max(kLeastMargin, std::exp2(std::ceil(std::log2(8.0 * source.pose_error))));
   }
 
-  FreeCellsSource of(int first, int second) const {
+  std::shared_ptr<const FreeCells> of(const CheckedPair& pair) const {
+    if (pair.boxes == nullptr) {
+      return robot_.check_cache().free_cells.of(source_of(pair.piece, pair.other));
+    }
+    std::vector<int> positions;
+    for (const FreeBoxes::Variable& variable : pair.boxes->variables()) {
+      positions.push_back(frame_of_variable_[static_cast<std::size_t>(variable.index)]);
+    }
+    return box_cells(*pair.boxes, positions);
+  }
+
+ private:
+  FreeCellsSource source_of(int first, int second) const {
     FreeCellsSource result{side(first), side(second), margin_};
     auto& [a, b, margin] = result;
     while (!a.chain.empty() && !b.chain.empty() &&
@@ -63,7 +82,6 @@ class CellsSource {
     return result;
   }
 
- private:
   FreeCellsSource::Side side(int body) const {
     const PlanSource::Body& from = source_.bodies[static_cast<std::size_t>(body)];
     FreeCellsSource::Side result{{}, from.trees, from.frame_from_trees};
@@ -80,8 +98,10 @@ class CellsSource {
 
   static constexpr double kLeastMargin = 0x1p-33;
 
+  const RobotModel& robot_;
   const PlanSource& source_;
-  std::vector<const Joint*> joints_;  // that moves each frame
+  std::vector<const Joint*> joints_;    // that moves each frame
+  std::vector<int> frame_of_variable_;  // whose position it is
   double margin_ = 0.0;
 };
 
@@ -89,8 +109,7 @@ class CellsSource {
 
 RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
   const MovingFrames frames(pairs.robot());
-  CheckCache& cached = pairs.robot().check_cache();
-  SearchTreeCache& cache = cached.search_trees;
+  SearchTreeCache& cache = pairs.robot().check_cache().search_trees;
   RobotPlanSource result;
   PlanSource& source = result.source;
   source.frames = frames.frames;
@@ -127,9 +146,7 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
     test.is_proved_somewhere = pair.boxes != nullptr;
     test.never_touches = pair.boxes != nullptr && pair.boxes->is_all_free();
     // What never touches is hardly ever tested.
-    if (!test.never_touches) {
-      test.free_cells = cached.free_cells.of(cells.of(pair.piece, pair.other));
-    }
+    if (!test.never_touches) test.free_cells = cells.of(pair);
     source.pair_paths.push_back(std::move(path));
   }
   return result;
