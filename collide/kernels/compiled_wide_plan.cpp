@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace spherule::internal {
 namespace {
 
-constexpr std::size_t rounded_to_lanes(std::size_t count) {
-  return (count + kPlanLanes - 1) / kPlanLanes * kPlanLanes;
+constexpr std::size_t rounded_up(std::size_t count, std::size_t unit) {
+  return (count + unit - 1) / unit * unit;
 }
 
 }  // namespace
@@ -46,39 +47,66 @@ CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<
   for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].nodes = trees_[i].nodes();
   // Every task that is taken leaves at most 64, a node of which is a level deeper.
   task_count_ = 64 * (2 * static_cast<std::size_t>(depth_) + 1) + 1;
-  const std::size_t groups = rounded_to_lanes(moving) / kPlanLanes;
-  partners_.assign(moving * groups, 0);
-  never_.assign(moving * groups, 0);
-  for (std::size_t first = 0; first < moving; ++first) {
-    bodies_[first].first_pair = static_cast<std::int32_t>(pair_tests_.size());
-    struct Partner {
-      std::int32_t pair;
-      std::int32_t second;
-    };
-    std::vector<Partner> partners;
-    for (std::int32_t p = 0; p < plan.pair_count; ++p) {
-      if (plan.pairs[p].first != static_cast<std::int32_t>(first)) continue;
-      partners.push_back({p, plan.pairs[p].second});
-    }
-    std::sort(partners.begin(), partners.end(),
-              [](const Partner& a, const Partner& b) { return a.second < b.second; });
-    for (const Partner& partner : partners) {
-      const auto second = static_cast<std::size_t>(partner.second);
-      const std::size_t group = first * groups + second / kPlanLanes;
-      const auto bit = static_cast<std::uint8_t>(1U << (second % kPlanLanes));
-      partners_[group] |= bit;
-      if (partner.pair >= plan.first_never) never_[group] |= bit;
-      pair_tests_.push_back(plan.first_pair + partner.pair);
-    }
-  }
+  compile_partners(plan, moving);
+  const auto touching =
+      std::partition_point(partners_.begin(), partners_.end(),
+                           [](const WidePartners& entry) { return entry.partners != entry.never; });
   plan_ = {frames_.data(),
            bodies_.data(),
            tree_of_.data(),
            static_cast<std::int32_t>(placed_count_),
-           static_cast<std::int32_t>(groups),
            partners_.data(),
-           never_.data(),
+           static_cast<std::int32_t>(partners_.size()),
+           static_cast<std::int32_t>(touching - partners_.begin()),
            pair_tests_.data()};
+}
+
+// Each pair is looked for from one of its sides. A body is compared with many others at a time, so
+// that few bodies should do this: whichever has most pairs that are left takes them all, what never
+// touches last.
+void CompiledWidePlan::compile_partners(const CheckPlan<float>& plan, std::size_t bodies) {
+  const auto pairs = static_cast<std::size_t>(plan.pair_count);
+  const auto side = [&](std::size_t pair, int k) {
+    return static_cast<std::size_t>(k == 0 ? plan.pairs[pair].first : plan.pairs[pair].second);
+  };
+  std::vector<int> from(pairs, -1);  // which side looks for the other
+  for (const std::size_t end : {static_cast<std::size_t>(plan.first_never), pairs}) {
+    while (true) {
+      std::vector<std::size_t> counts(bodies, 0);
+      for (std::size_t p = 0; p < end; ++p) {
+        if (from[p] >= 0) continue;
+        for (const int k : {0, 1}) ++counts[side(p, k)];
+      }
+      const auto most = std::max_element(counts.begin(), counts.end());
+      if (most == counts.end() || *most == 0) break;
+      const auto body = static_cast<std::size_t>(most - counts.begin());
+      for (std::size_t p = 0; p < end; ++p) {
+        for (const int k : {0, 1}) {
+          if (from[p] < 0 && side(p, k) == body) from[p] = k;
+        }
+      }
+    }
+  }
+  for (std::size_t body = 0; body < bodies; ++body) {
+    std::vector<std::pair<std::size_t, std::size_t>> partners;  // with their pairs
+    for (std::size_t p = 0; p < pairs; ++p) {
+      if (side(p, from[p]) == body) partners.emplace_back(side(p, 1 - from[p]), p);
+    }
+    std::sort(partners.begin(), partners.end());
+    for (const auto& [other, pair] : partners) {
+      const auto group = static_cast<std::int32_t>(other / WidePartners::kGroup);
+      const auto index = static_cast<std::int32_t>(body);
+      if (partners_.empty() || partners_.back().body != index || partners_.back().group != group) {
+        partners_.push_back({index, group, static_cast<std::int32_t>(pair_tests_.size()), 0, 0});
+      }
+      const auto bit = static_cast<std::uint16_t>(1U << (other % WidePartners::kGroup));
+      partners_.back().partners |= bit;
+      if (pair >= static_cast<std::size_t>(plan.first_never)) partners_.back().never |= bit;
+      pair_tests_.push_back(plan.first_pair + static_cast<std::int32_t>(pair));
+    }
+  }
+  std::stable_partition(partners_.begin(), partners_.end(),
+                        [](const WidePartners& entry) { return entry.partners != entry.never; });
 }
 
 void CompiledWidePlan::add_body(const SearchTrees& trees, const Pose& pose, double inflation,
@@ -97,8 +125,10 @@ void CompiledWidePlan::add_body(const SearchTrees& trees, const Pose& pose, doub
 }
 
 WideMemory::WideMemory(const CheckPlan<float>& plan, const CompiledWidePlan& wide) {
-  const std::size_t positions = rounded_to_lanes(static_cast<std::size_t>(plan.position_count));
-  const std::size_t bodies = rounded_to_lanes(static_cast<std::size_t>(plan.body_count));
+  const std::size_t positions =
+      rounded_up(static_cast<std::size_t>(plan.position_count), kPlanLanes);
+  const std::size_t bodies =
+      rounded_up(static_cast<std::size_t>(plan.body_count), WidePartners::kGroup);
   positions_.resize(positions);
   sines_.resize(positions);
   cosines_.resize(positions);

@@ -26,14 +26,14 @@ class CompiledWidePlan {
  private:
   void add_body(const SearchTrees& trees, const Pose& pose, double inflation, bool is_confirmed,
                 std::int32_t frame);
+  void compile_partners(const CheckPlan<float>& plan, std::size_t bodies);
 
   WidePlan plan_{};
   std::vector<WideFrame> frames_{};
   std::vector<PackedTree> trees_{};
   std::vector<WideBody> bodies_{};
   std::vector<std::int32_t> tree_of_{};
-  std::vector<std::uint8_t> partners_{};
-  std::vector<std::uint8_t> never_{};
+  std::vector<WidePartners> partners_{};
   std::vector<std::int32_t> pair_tests_{};
   std::size_t placed_count_ = 0;
   int depth_ = 1;  // of the highest tree

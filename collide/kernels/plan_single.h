@@ -63,10 +63,7 @@ class SingleCheck {
     for (std::int32_t b = 0; b < plan_.body_count; ++b) {
       if (touches_obstacles(b)) return true;
     }
-    for (std::int32_t b = 0; b < plan_.body_count; ++b) {
-      if (touches_bodies(b)) return true;
-    }
-    return false;
+    return touches_bodies();
   }
 
  private:
@@ -159,37 +156,38 @@ class SingleCheck {
     return false;
   }
 
-  bool touches_bodies(std::int32_t a) {
-    std::int32_t next = wide_.bodies[a].first_pair;
-    for (std::int32_t g = 0; g < wide_.body_groups; ++g) {
-      const unsigned partners = wide_.partners[a * wide_.body_groups + g];
-      if (partners == 0) continue;
-      const unsigned tested =
-          client_.skips_never ? partners & ~wide_.never[a * wide_.body_groups + g] : partners;
-      if (tested == 0) {
-        next += __builtin_popcount(partners);
-        continue;
-      }
-      for (unsigned near = near_bodies(a, g) & tested; near != 0; near &= near - 1) {
+  bool touches_bodies() {
+    const std::int32_t count = client_.skips_never ? wide_.touching_count : wide_.partners_count;
+    for (std::int32_t i = 0; i < count; ++i) {
+      const WidePartners& entry = wide_.partners[i];
+      const unsigned partners = entry.partners;
+      unsigned near = near_bodies(entry.body, entry.group) & partners;
+      if (client_.skips_never) near &= ~static_cast<unsigned>(entry.never);
+      for (; near != 0; near &= near - 1) {
         const int lane = __builtin_ctz(near);
         const std::int32_t rank = __builtin_popcount(partners & ((1U << lane) - 1));
-        const std::int32_t test = wide_.pair_tests[next + rank];
-        if (touches_pair(test, a, g * kPlanLanes + lane)) return remember(test);
+        const std::int32_t test = wide_.pair_tests[entry.first_test + rank];
+        const std::int32_t other = entry.group * WidePartners::kGroup + lane;
+        if (touches_pair(test, entry.body, other)) return remember(test);
       }
-      next += __builtin_popcount(partners);
     }
     return false;
   }
 
+  // Those of a group whose spheres around all are not apart from that of a body.
   SPHERULE_INLINE unsigned near_bodies(std::int32_t a, std::int32_t group) const {
-    Float8 squared = {};
-    for (int i = 0; i < 3; ++i) {
-      const Float8 offset =
-          load_anywhere(scratch_.roots[i] + group * kPlanLanes) - scratch_.roots[i][a];
-      squared += offset * offset;
+    unsigned near = 0;
+    for (int half = 0; half < 2; ++half) {
+      const std::int32_t first = group * WidePartners::kGroup + half * kPlanLanes;
+      Float8 squared = {};
+      for (int i = 0; i < 3; ++i) {
+        const Float8 offset = load_anywhere(scratch_.roots[i] + first) - scratch_.roots[i][a];
+        squared += offset * offset;
+      }
+      const Float8 reach = load_anywhere(scratch_.radii + first) + scratch_.radii[a];
+      near |= (kAllLanes & ~above(squared, reach * reach)) << (half * kPlanLanes);
     }
-    const Float8 reach = load_anywhere(scratch_.radii + group * kPlanLanes) + scratch_.radii[a];
-    return kAllLanes & ~above(squared, reach * reach);
+    return near;
   }
 
   bool touches_pair(std::int32_t test, std::int32_t a, std::int32_t b) {

@@ -27,7 +27,16 @@ struct WideBody {
   float margin;
   std::int32_t frame;
   std::int32_t first_node;  // among the placed nodes, unless the frame is the root
-  std::int32_t first_pair;  // of those that it is the first body of, among `pair_tests`
+};
+
+// A body and those of a group of bodies that it is tested against.
+struct WidePartners {
+  static constexpr int kGroup = 2 * kPlanLanes;
+  std::int32_t body;
+  std::int32_t group;
+  std::int32_t first_test;  // the tests of the partners, in their order, among `pair_tests`
+  std::uint16_t partners;
+  std::uint16_t never;  // of these: those that never touch it (CheckPlan::first_never)
 };
 
 struct WidePlan {
@@ -35,10 +44,10 @@ struct WidePlan {
   const WideBody* bodies;        // obstacles that are trees, in the root's frame, follow
   const std::int32_t* tree_of;   // of each obstacle: its place among `bodies`; -1 if it is no tree
   std::int32_t placed_count;     // of nodes that move
-  std::int32_t body_groups;      // of eight bodies
-  const std::uint8_t* partners;  // for each body and group: those that it is tested against
-  const std::uint8_t* never;     // of these: those that never touch it (CheckPlan::first_never)
-  const std::int32_t* pair_tests;  // by first body, then by second
+  const WidePartners* partners;  // those with a partner that may touch come first
+  std::int32_t partners_count;
+  std::int32_t touching_count;  // of these
+  const std::int32_t* pair_tests;
 };
 
 // Three columns and the origin of a frame.
@@ -66,7 +75,7 @@ struct WideScratch {
   float* sines;
   float* cosines;
   WidePose* poses;
-  float* roots[3];  // centres of the spheres around all bodies, filled up to a multiple of eight
+  float* roots[3];  // centres of the spheres around all bodies, filled up to whole groups
   float* radii;
   WideSpheres* placed;
   std::uint64_t* stamps;  // of each: the evaluation that has placed it
