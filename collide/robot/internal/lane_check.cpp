@@ -86,15 +86,13 @@ LaneCheck::Memory::Memory(const LaneCheck& check)
       single_(*check.single_,
               check.single_ == check.configurations_ ? &check.one_->plan() : nullptr, &one_.view()),
       exact_(*check.exact_, nullptr, nullptr),
-      room_(check.positions_.room_for(kLanes)) {
+      room_(check.positions_.room_for(kLanes)),
+      proofs_(check.pairs_) {
   const auto positions =
       static_cast<std::size_t>(std::max(1, check.single_->plan().position_count));
   from_.resize(positions);
   to_.resize(positions);
-  for (std::vector<double>* const variables : {&variables_, &part_begin_, &part_end_}) {
-    variables->resize(static_cast<std::size_t>(check.pairs_.robot().variable_count()));
-  }
-  proved_edges_.resize(check.pairs_.pairs().size());
+  variables_.resize(static_cast<std::size_t>(check.pairs_.robot().variable_count()));
 }
 
 namespace {

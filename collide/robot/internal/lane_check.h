@@ -8,6 +8,7 @@
 #include "collide/kernels/compiled_plan.h"
 #include "collide/kernels/compiled_wide_plan.h"
 #include "collide/robot/internal/body_pairs.h"
+#include "collide/robot/internal/edge_proofs.h"
 #include "collide/robot/internal/part_stack.h"
 #include "collide/robot/joint_positions.h"
 
@@ -50,9 +51,7 @@ class LaneCheck {
     std::vector<double> from_;  // positions
     std::vector<double> to_;
     std::vector<double> variables_;
-    std::vector<double> part_begin_;
-    std::vector<double> part_end_;
-    std::vector<std::int8_t> proved_edges_;  // of each pair: the whole motion is; -1: not known yet
+    EdgeProofs proofs_;
     std::vector<std::uint64_t> undecided_;
   };
 

@@ -43,7 +43,7 @@ class LaneCheck::Edge {
     const std::span<const double> finish = check_.positions_.of(to, memory.room_, 1);
     std::copy(start.begin(), start.end(), memory.from_.begin());
     std::copy(finish.begin(), finish.end(), memory.to_.begin());
-    std::fill(memory.proved_edges_.begin(), memory.proved_edges_.end(), std::int8_t{-1});
+    memory.proofs_.take(from, to);
     skips_never_ = check.never_touch(from) && check.never_touch(to);
   }
 
@@ -294,35 +294,6 @@ class LaneCheck::Edge {
     }
   }
 
-  void take_variables(double at, std::vector<double>& variables) const {
-    for (std::size_t i = 0; i < from_.size(); ++i) {
-      variables[i] = (1.0 - at) * from_[i] + at * to_[i];
-    }
-  }
-
-  bool is_motion_proved(std::size_t pair) {
-    std::int8_t& is_proved = memory_.proved_edges_[pair];
-    if (is_proved < 0) is_proved = pairs_.pairs()[pair].boxes->contains_edge(from_, to_) ? 1 : 0;
-    return is_proved == 1;
-  }
-  // Those of the lanes in whose parts a pair is proved free. The margin of FreeBoxes is for the
-  // rounding of both ends.
-  unsigned proved_parts(std::size_t pair, unsigned lanes) {
-    const FreeBoxes& boxes = *pairs_.pairs()[pair].boxes;
-    unsigned proved = 0;
-    for (unsigned left = lanes; left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-      take_variables(times_[lane] - halves_[lane], memory_.part_begin_);
-      take_variables(times_[lane] + halves_[lane], memory_.part_end_);
-      if (boxes.contains_edge(memory_.part_begin_, memory_.part_end_)) proved |= 1U << lane;
-    }
-    return proved;
-  }
-  bool is_proved_free(std::size_t pair, double at) {
-    take_variables(at, memory_.part_begin_);
-    return pairs_.pairs()[pair].boxes->contains(memory_.part_begin_);
-  }
-
   template <class Real>
   std::size_t pair_of(const CompiledPlan<Real>& plan, std::int32_t test) const {
     return check_.pair_of_test_[static_cast<std::size_t>(plan.source_test(test))];
@@ -332,7 +303,7 @@ class LaneCheck::Edge {
   template <class Real>
   std::size_t pair_at(double at, const CompiledPlan<Real>& plan, std::int32_t test) {
     if (std::exchange(placed_, at) != at) {
-      take_variables(at, memory_.variables_);
+      take_between(from_, to_, at, memory_.variables_);
       pairs_.place(memory_.variables_, exact_);
     }
     return pair_of(plan, test);
@@ -377,16 +348,18 @@ class LaneCheck::Edge {
     }
     static bool is_proved_free(void* context, int lane, std::int32_t test) {
       Edge& edge = static_cast<Client*>(context)->edge;
-      return edge.is_proved_free(edge.pair_of(edge.compiled<Real>(), test),
-                                 edge.times_[static_cast<std::size_t>(lane)]);
+      const CheckedPair& pair = edge.pairs_.pairs()[edge.pair_of(edge.compiled<Real>(), test)];
+      return edge.memory_.proofs_.is_free_at(pair, edge.times_[static_cast<std::size_t>(lane)]);
     }
     static bool is_motion_proved(void* context, std::int32_t test) {
       Edge& edge = static_cast<Client*>(context)->edge;
-      return edge.is_motion_proved(edge.pair_of(edge.compiled<Real>(), test));
+      const std::size_t pair = edge.pair_of(edge.compiled<Real>(), test);
+      return edge.memory_.proofs_.is_free(pair, edge.pairs_.pairs()[pair]);
     }
     static unsigned proved_parts(void* context, std::int32_t test, unsigned lanes) {
       Edge& edge = static_cast<Client*>(context)->edge;
-      return edge.proved_parts(edge.pair_of(edge.compiled<Real>(), test), lanes);
+      const CheckedPair& pair = edge.pairs_.pairs()[edge.pair_of(edge.compiled<Real>(), test)];
+      return edge.memory_.proofs_.free_parts(pair, edge.times_, edge.halves_, lanes);
     }
   };
 
