@@ -69,6 +69,16 @@ std::vector<Sphere> balls_of(const LinkDescription& link) {
   return spheres;
 }
 
+std::vector<LinkBody> bodies_of(const std::vector<TriangleMesh>& meshes) {
+  std::vector<LinkBody> bodies;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    if (meshes[i].triangles.empty()) continue;
+    bodies.push_back(
+        {.link = static_cast<int>(i), .mesh = std::make_shared<const SolidMesh>(meshes[i])});
+  }
+  return bodies;
+}
+
 template <class SpheresOf>
 Arm make_arm(const std::filesystem::path& models, SpheresOf spheres_of) {
   RobotDescription robot = read_urdf(models / "robots" / "franka_panda" / "franka_panda.urdf");
@@ -85,6 +95,7 @@ Arm make_arm(const std::filesystem::path& models, SpheresOf spheres_of) {
     }
     arm.model.attach(robot.links[i].name, tree);
   }
+  arm.pairs = std::make_shared<const LinkPairs>(prove_link_pairs(arm.model, bodies_of(arm.meshes)));
   return arm;
 }
 
@@ -109,16 +120,6 @@ Arm make_panda(const std::filesystem::path& models, const std::string& cover) {
   }
   return make_arm(
       models, [&](std::size_t, const TriangleMesh& mesh) { return balls_around(mesh, radius); });
-}
-
-std::vector<LinkBody> bodies_of(const Arm& arm) {
-  std::vector<LinkBody> bodies;
-  for (std::size_t i = 0; i < arm.meshes.size(); ++i) {
-    if (arm.meshes[i].triangles.empty()) continue;
-    bodies.push_back(
-        {.link = static_cast<int>(i), .mesh = std::make_shared<const SolidMesh>(arm.meshes[i])});
-  }
-  return bodies;
 }
 
 AllowedCollisions joined_contacts(const Arm& arm) {

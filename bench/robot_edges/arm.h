@@ -21,6 +21,7 @@ struct Arm {
   RobotModel model;
   std::vector<TriangleMesh> meshes;  // of each link, in its frame; empty for one without
   std::vector<std::shared_ptr<const CoveredMesh>> covers{};  // of those with spheres
+  std::shared_ptr<const LinkPairs> pairs{};  // what is proved of them, by the meshes
   std::size_t triangles = 0;
   std::size_t spheres = 0;
 };
@@ -34,9 +35,6 @@ std::vector<Sphere> balls_around(const TriangleMesh& mesh, double radius);
 // as `spherule robot` writes it, whose balls its links carry; or the radius of balls_around() its
 // meshes. Throws Error if files are missing.
 Arm make_panda(const std::filesystem::path& models, const std::string& cover);
-
-// Its meshes as bodies for proofs about pairs of links.
-std::vector<LinkBody> bodies_of(const Arm& arm);
 
 // Which links of a Panda are not tested against each other: what is joined, and the two fingers;
 // and what did not touch in a sample, too.

@@ -35,6 +35,7 @@ namespace {
 void measure_itself(const Arm& arm, const AllowedCollisions& allowed, RandomNumbers& random) {
   RobotScene scene(arm.model);
   scene.set_allowed_collisions(allowed);
+  scene.set_link_pairs(arm.pairs);
   const RobotChecker checker = scene.snapshot();
   RobotChecker::Scratch scratch(checker);
   FclArm fcl(arm, allowed, {}, FclVolume::kObbRss);

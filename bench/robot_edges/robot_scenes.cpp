@@ -11,6 +11,7 @@ namespace spherule {
 RobotScene robot_scene(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene) {
   RobotScene result(arm.model);
   result.set_allowed_collisions(allowed);
+  result.set_link_pairs(arm.pairs);
   for (const PlacedPrimitive& obstacle : scene.obstacles) {
     result.add(obstacle.name, obstacle.primitive, obstacle.world_from_primitive);
   }
