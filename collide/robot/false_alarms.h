@@ -34,7 +34,8 @@ struct FalseAlarmOptions {
   // Postures of a pair, the first ones that it refuses, whose gap between the meshes is measured.
   std::size_t gaps = 32;
   int threads = 0;  // 0: all; the result does not depend on it
-  // Called with the share that is done and a word, from one thread at a time.
+  // Called with the share that is done, negative where it is not known, and a word, from one thread
+  // at a time.
   std::function<void(double share, const char* what)> progress{};
 };
 
