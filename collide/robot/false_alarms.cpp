@@ -7,6 +7,7 @@
 #include "spheretree/error.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace spherule {
@@ -28,7 +29,31 @@ double median_gap(const AlarmSample& sample, std::size_t pair, const PostureSet&
   return *middle;
 }
 
+void sort_pairs(std::vector<PairAlarms>& pairs) {
+  std::sort(pairs.begin(), pairs.end(), [](const PairAlarms& a, const PairAlarms& b) {
+    return std::tuple(b.refused, a.first, a.second) < std::tuple(a.refused, b.first, b.second);
+  });
+}
+
 }  // namespace
+
+void add(const FalseAlarms& other, FalseAlarms& sum) {
+  sum.postures += other.postures;
+  sum.free += other.free;
+  for (std::size_t i = 0; i < sum.refused.size(); ++i) sum.refused[i] += other.refused[i];
+  for (const PairAlarms& pair : other.pairs) {
+    const auto known = std::find_if(sum.pairs.begin(), sum.pairs.end(), [&](const PairAlarms& one) {
+      return one.first == pair.first && one.second == pair.second;
+    });
+    if (known == sum.pairs.end()) {
+      sum.pairs.push_back(pair);
+      continue;
+    }
+    known->refused += pair.refused;
+    known->refused_alone += pair.refused_alone;
+  }
+  sort_pairs(sum.pairs);
+}
 
 FalseAlarms count_alarms(const AlarmJudge& judge, const AlarmSample& sample, const LinkTrees& trees,
                          const FalseAlarmOptions& options) {
@@ -66,8 +91,7 @@ FalseAlarms count_alarms(const AlarmJudge& judge, const AlarmSample& sample, con
     result.pairs.push_back(
         {judge.pairs()[pair].first, judge.pairs()[pair].second, count, alarms[pair].size(), gap});
   }
-  std::stable_sort(result.pairs.begin(), result.pairs.end(),
-                   [](const PairAlarms& a, const PairAlarms& b) { return a.refused > b.refused; });
+  sort_pairs(result.pairs);
   return result;
 }
 

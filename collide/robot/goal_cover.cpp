@@ -130,6 +130,7 @@ GoalCover cover_robot_to_goal(const RobotDescription& robot, std::span<const Lin
               : CoverLinks([&](std::span<const LinkError> errors) { return last(errors); }),
       choice_options);
   result.cover = {.robot = robot.name, .links = {}, .options = options};
+  result.cover.options.max_error = goal.coarsest_error;
   for (const LinkDescription& link : robot.links) result.cover.links.push_back({.link = link.name});
   for (const ChosenError& chosen : result.choice.links) {
     result.cover.links[static_cast<std::size_t>(chosen.link)] =

@@ -30,7 +30,8 @@ struct GoalCover {
 // `proofs`, or null. Pairs by name in `disabled` are not tested, nor are those of
 // AllowedCollisions.
 //
-// Links with a max error of their own in `options.links` keep it; options.max_error is not used.
+// Links with a max error of their own in `options.links` keep it; options.max_error is not used: in
+// the cover's options, it is the coarsest E.
 // The search is done by first covers, those of an effort of 0; what is chosen is covered with the
 // options' effort. Otherwise as cover_robot(), whose promises hold. Throws Error as both.
 GoalCover cover_robot_to_goal(const RobotDescription& robot, std::span<const LinkBody> bodies,

@@ -15,7 +15,7 @@ namespace spherule {
 namespace {
 
 constexpr int kAttempts = 3;
-// Part of the goal that the search may use up more, the more often a verification failed.
+// What the search may use up of the goal, and of that once more for each verification that failed.
 constexpr double kReserve = 0.9;
 constexpr double kConfidenceOfAttempt = 1.0 - (1.0 - LinkErrorChoice::kConfidence) / kAttempts;
 
@@ -55,18 +55,9 @@ std::vector<internal::ErrorLadder> ladders_of(const RobotModel& robot,
   return result;
 }
 
-// The most refused postures of so many free ones that show the share to be at most `goal`.
-std::size_t most_refused(std::size_t free, double goal) {
-  const auto shows = [&](std::size_t refused) {
-    return RefusedShare{free, refused}.upper_bound(kConfidenceOfAttempt) <= goal;
-  };
-  std::size_t low = 0;
-  std::size_t high = free;  // shows nothing
-  while (high - low > 1) {
-    const std::size_t middle = low + (high - low) / 2;
-    (shows(middle) ? low : high) = middle;
-  }
-  return low;
+// The most postures of so many free ones that are at most such a share of them.
+std::size_t most_of(std::size_t free, double share) {
+  return static_cast<std::size_t>(share * static_cast<double>(free));
 }
 
 // One call of choose_link_errors().
@@ -104,8 +95,8 @@ class Choice {
     result.coarsest_spheres = search_.spheres(steps_);
     for (int attempt = 0; attempt < kAttempts && !result.is_reached; ++attempt) {
       std::vector<std::size_t> limits = {
-          most_refused(random.free(), options_.goal * std::pow(kReserve, attempt + 1))};
-      if (given) limits.push_back(most_of_given(*given));
+          most_of(random.free(), options_.goal * std::pow(kReserve, attempt + 1))};
+      if (given) limits.push_back(most_of(given->free(), options_.goal));
       const bool is_found = search_.run(limits, steps_, [&](const char* what) { tell(what); });
       verify(static_cast<std::uint64_t>(attempt), given, result);
       if (!is_found) break;
@@ -153,10 +144,6 @@ class Choice {
     return sample(trees, internal::draw_postures(judge_.robot(), options_.sample.postures, seed));
   }
 
-  std::size_t most_of_given(const internal::AlarmSample& given) const {
-    return static_cast<std::size_t>(options_.goal * static_cast<double>(given.free()));
-  }
-
   void tell(const char* what) const {
     if (options_.sample.progress) options_.sample.progress(-1.0, what);
   }
@@ -166,14 +153,20 @@ class Choice {
               LinkErrorChoice& result) const {
     const Covers covers = finished();
     const internal::LinkTrees of_links = trees(covers);
-    result.verified = internal::count_alarms(
-        judge_, sample(of_links, options_.sample.seed + attempt + 1), of_links, options_.sample);
+    result.verified = {.proofs = options_.sample.proofs};
+    for (std::uint64_t part = 0; part < LinkErrorChoice::kVerification; ++part) {
+      const std::uint64_t seed =
+          options_.sample.seed + 1 + attempt * LinkErrorChoice::kVerification + part;
+      internal::add(
+          internal::count_alarms(judge_, sample(of_links, seed), of_links, options_.sample),
+          result.verified);
+    }
     result.upper_bound = result.verified.refused_share().upper_bound(kConfidenceOfAttempt);
     result.is_reached = result.upper_bound <= options_.goal;
     if (given) {
       result.given = internal::count_alarms(judge_, *given, of_links, options_.sample);
-      result.is_reached =
-          result.is_reached && result.given.refused_share().refused <= most_of_given(*given);
+      result.is_reached = result.is_reached && result.given.refused_share().refused <=
+                                                   most_of(given->free(), options_.goal);
     }
     result.links.clear();
     result.spheres = 0;

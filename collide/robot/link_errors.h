@@ -32,9 +32,9 @@ struct LinkErrorOptions {
   std::vector<LinkError> fixed{};  // links whose E is not chosen
   // Postures of which at most the goal may be refused, too, one configuration behind the other.
   std::vector<double> given{};
-  // Random postures, and which proofs spare tests. With another seed, as many postures are drawn
-  // anew for each attempt to verify a choice.
-  FalseAlarmOptions sample{};
+  // Random postures of the search, and which proofs spare tests. Other seeds give the postures by
+  // which a choice is verified.
+  FalseAlarmOptions sample{.postures = 40000};
 };
 
 // The E of a link and the spheres that its cover has.
@@ -61,6 +61,8 @@ struct LinkErrorChoice {
   std::size_t covers = 0;  // links that were covered for the search, each E counted
 
   static constexpr double kConfidence = 0.95;
+  // A verification takes so many times the postures of the search.
+  static constexpr std::size_t kVerification = 5;
 };
 
 // Chooses E link by link for few spheres that refuse at most the goal of the free postures.

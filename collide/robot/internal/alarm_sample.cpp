@@ -111,7 +111,6 @@ AlarmSample::AlarmSample(const AlarmJudge& judge, const LinkTrees& trees,
       postures_(std::move(postures)),
       width_(static_cast<std::size_t>(judge.robot().variable_count())),
       posture_count_(width_ == 0 ? 0 : postures_.size() / width_),
-      link_count_(judge.robot().links().size()),
       threads_(threads) {
   if (posture_count_ == 0 || posture_count_ * width_ != postures_.size()) {
     throw Error("postures", std::to_string(postures_.size()) +
@@ -142,14 +141,30 @@ AlarmSample::AlarmSample(const AlarmJudge& judge, const LinkTrees& trees,
   for (std::size_t i = 0; i < posture_count_; ++i) {
     if (is_free[i] != 0) free_.push_back(i);
   }
-  poses_.resize(free_.size() * link_count_);
+  place_free_postures();
+}
+
+void AlarmSample::place_free_postures() {
+  std::vector<int> links;
+  for (const TestedPair& pair : judge_.pairs()) {
+    for (const int link : {pair.first, pair.second}) {
+      if (std::find(links.begin(), links.end(), link) == links.end()) links.push_back(link);
+    }
+  }
+  slot_count_ = links.size();
+  slot_of_.resize(judge_.robot().links().size());
+  for (std::size_t slot = 0; slot < slot_count_; ++slot) {
+    slot_of_[static_cast<std::size_t>(links[slot])] = slot;
+  }
+  poses_.resize(free_.size() * slot_count_);
   share_work(piece_count(free_.size()), threads_, [&](std::size_t, std::size_t piece) {
     std::vector<Pose> world;
     const std::size_t end = std::min((piece + 1) * kPiece, free_.size());
     for (std::size_t i = piece * kPiece; i < end; ++i) {
       forward_kinematics(judge_.robot(), posture(free_[i]), world);
-      std::copy(world.begin(), world.end(),
-                poses_.begin() + static_cast<std::ptrdiff_t>(i * link_count_));
+      for (std::size_t slot = 0; slot < slot_count_; ++slot) {
+        poses_[i * slot_count_ + slot] = pose_of(world, links[slot]);
+      }
     }
   });
 }
@@ -174,19 +189,18 @@ PostureSet AlarmSample::overlaps(std::size_t pair, Trees first, Trees second,
     const std::size_t end = std::min((piece + 1) * kWords, among.word_count());
     for (std::size_t word = piece * kWords; word < end; ++word) {
       among.for_each_in_word(word, [&](std::size_t i) {
-        const std::span<const Pose> world = poses(i);
-        if (overlap(first, pose_of(world, tested.first), second, pose_of(world, tested.second))) {
-          result.insert(i);
-        }
+        if (overlap(first, pose(i, tested.first), second, pose(i, tested.second))) result.insert(i);
       });
     }
   });
   return result;
 }
 
-double AlarmSample::gap(std::size_t pair, std::size_t posture) const {
+double AlarmSample::gap(std::size_t pair, std::size_t free) const {
+  std::vector<Pose> world;
+  forward_kinematics(judge_.robot(), posture(free_[free]), world);
   const auto comes_within = [&](double clearance) {
-    return judge_.touches(judge_.pairs()[pair], poses(posture), clearance);
+    return judge_.touches(judge_.pairs()[pair], world, clearance);
   };
   double low = 0.0;
   double high = 1e-3;

@@ -66,25 +66,27 @@ class AlarmSample {
                       std::span<const std::shared_ptr<const SphereTree>> second,
                       const PostureSet& among) const;
   // The gap of the meshes of a pair in a free posture, up to a tenth of it and a micrometre.
-  double gap(std::size_t pair, std::size_t posture) const;
+  double gap(std::size_t pair, std::size_t free) const;
 
  private:
   std::span<const double> posture(std::size_t index) const {
     return std::span(postures_).subspan(index * width_, width_);
   }
-  // Of all links, in a free posture.
-  std::span<const Pose> poses(std::size_t free) const {
-    return std::span(poses_).subspan(free * link_count_, link_count_);
+  // Of a link that is tested, in a free posture.
+  const Pose& pose(std::size_t free, int link) const {
+    return poses_[free * slot_count_ + slot_of_[static_cast<std::size_t>(link)]];
   }
+  void place_free_postures();
 
   const AlarmJudge& judge_;
   std::vector<double> postures_;
   std::size_t width_;
   std::size_t posture_count_;
-  std::size_t link_count_;
   std::size_t threads_;
-  std::vector<std::size_t> free_;  // indices of postures
-  std::vector<Pose> poses_;        // of all links, for each free posture
+  std::vector<std::size_t> free_;     // indices of postures
+  std::vector<std::size_t> slot_of_;  // of each link that is tested, among the poses of a posture
+  std::size_t slot_count_ = 0;
+  std::vector<Pose> poses_;  // of all tested links, for each free posture
 };
 
 // So many postures, drawn with a seed.
@@ -95,6 +97,9 @@ std::size_t thread_count(int threads);
 
 // The trees of the robot's own links.
 LinkTrees trees_of(const RobotModel& robot);
+
+// Adds what was counted in other postures of the same robot, by the same options.
+void add(const FalseAlarms& other, FalseAlarms& sum);
 
 // What spheres do to a sample.
 FalseAlarms count_alarms(const AlarmJudge& judge, const AlarmSample& sample, const LinkTrees& trees,
