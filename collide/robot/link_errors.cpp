@@ -14,9 +14,9 @@
 namespace spherule {
 namespace {
 
-constexpr int kAttempts = 3;
+constexpr int kAttempts = 4;
 // What the search may use up of the goal, and of that once more for each verification that failed.
-constexpr double kReserve = 0.9;
+constexpr double kReserve = 0.95;
 constexpr double kConfidenceOfAttempt = 1.0 - (1.0 - LinkErrorChoice::kConfidence) / kAttempts;
 
 void check(const LinkErrorOptions& options) {

@@ -26,7 +26,7 @@ using CoverLinks =
 // What is asked of E, link by link.
 struct LinkErrorOptions {
   double goal = 0.01;  // the largest share of free postures that spheres may refuse, in (0, 1)
-  // Between these each link gets its E, in metres; each step is finer by the square root of 2.
+  // Between these each link gets its E, in metres; each step is finer by the fourth root of 2.
   double coarsest_error = 0.04;
   double finest_error = 0.0025;
   std::vector<LinkError> fixed{};  // links whose E is not chosen
@@ -67,13 +67,13 @@ struct LinkErrorChoice {
 
 // Chooses E link by link for few spheres that refuse at most the goal of the free postures.
 //
-// From the coarsest covers on, the link, or the pair of links, that spares most refused postures
-// for each sphere added is refined by a step, until at most the goal is refused, less a reserve for
-// chance. Then links are made coarser again as long as the goal holds, those that save most spheres
-// first. What is chosen is covered by `final_covers` (null: the same) and verified on new postures;
-// where that fails, the search goes on with a larger reserve, up to three times. Each verification
-// has its share of 1 - kConfidence, so that the promise holds for the last one. The search is
-// greedy: fewer spheres may do.
+// From the coarsest covers on, all links of pairs that refuse something are refined by a step,
+// until at most the goal is refused, less a reserve for chance. Then links are made coarser again
+// as long as the goal holds, those that save most spheres for each posture that is then refused
+// first, and links are refined again where that lets others save more. What is chosen is covered by
+// `final_covers` (null: the same) and verified on new postures; where that fails, the search goes
+// on with a larger reserve, up to four times. Each verification has its share of 1 - kConfidence,
+// so that the promise holds for the last one. The search is greedy: fewer spheres may do.
 //
 // `robot` need not have trees; each link with a body is covered. Equal for equal input and options,
 // on any number of threads. Throws Error for options out of range, a fixed link without a body, and

@@ -3,23 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
 namespace spherule::internal {
 namespace {
 
-// What a pair that still refuses a posture beside others counts, of one that refuses it alone:
-// refining both ends in fewer refused postures, where refining either alone does not.
-constexpr double kAlarmWeight = 0.05;
+// Links are refined by so many steps of their ladders at first.
+constexpr std::size_t kStride = 2;
 
 }  // namespace
 
 std::vector<double> error_steps(double coarsest, double finest) {
   std::vector<double> result;
   for (int n = 0;; ++n) {
-    const double error = coarsest * std::pow(2.0, -0.5 * n);
+    const double error = coarsest * std::pow(2.0, -0.25 * n);
     // A finest E that is a power of the step is reached in spite of rounding.
     if (error < finest * (1.0 - 1e-9)) return result;
     result.push_back(error);
@@ -84,101 +82,108 @@ const PostureSet& ErrorSearch::alarms(Sampled& in, std::size_t pair, const Error
       .first->second;
 }
 
-ErrorSearch::Value ErrorSearch::value(const ErrorSteps& steps,
-                                      std::span<const std::size_t> most_refused) {
-  Value result{.is_feasible = true};
+std::optional<std::size_t> ErrorSearch::refused(const ErrorSteps& steps,
+                                                std::span<const std::size_t> most_refused) {
+  std::size_t result = 0;
   for (std::size_t s = 0; s < samples_.size(); ++s) {
-    PostureSet refused(samples_[s].sample->free());
-    std::size_t alarm_count = 0;
+    PostureSet of_sample(samples_[s].sample->free());
     for (std::size_t pair = 0; pair < judge_.pairs().size(); ++pair) {
-      const PostureSet& of_pair = alarms(samples_[s], pair, steps);
-      refused |= of_pair;
-      alarm_count += of_pair.size();
+      of_sample |= alarms(samples_[s], pair, steps);
     }
-    const double free = static_cast<double>(std::max<std::size_t>(samples_[s].sample->free(), 1));
-    const std::size_t count = refused.size();
-    if (count > most_refused[s]) {
-      result.is_feasible = false;
-      result.excess += static_cast<double>(count - most_refused[s]) / free;
-    }
-    result.alarms += static_cast<double>(alarm_count) / free;
+    const std::size_t count = of_sample.size();
+    if (count > most_refused[s]) return std::nullopt;
+    result += count;
   }
   return result;
 }
 
-std::vector<std::vector<std::size_t>> ErrorSearch::moves(const ErrorSteps& steps) {
-  std::set<std::vector<std::size_t>> result;
-  for (std::size_t pair = 0; pair < judge_.pairs().size(); ++pair) {
-    const bool has_alarms = std::any_of(samples_.begin(), samples_.end(), [&](Sampled& in) {
-      return alarms(in, pair, steps).size() > 0;
-    });
-    if (!has_alarms) continue;
-    const std::size_t first = first_ladder_[pair];
-    const std::size_t second = second_ladder_[pair];
-    if (can_refine(first, steps)) result.insert({first});
-    if (can_refine(second, steps)) result.insert({second});
-    if (can_refine(first, steps) && can_refine(second, steps)) result.insert({first, second});
+// All links of pairs that refuse something: which of them could do with coarser spheres shows
+// afterwards, where it is known what all of them do together. One after another, the links that
+// look best early are refined far beyond their worth.
+bool ErrorSearch::refine(ErrorSteps& steps) {
+  std::set<std::pair<std::size_t, std::size_t>> wanted;
+  for (Sampled& in : samples_) {
+    for (std::size_t pair = 0; pair < judge_.pairs().size(); ++pair) {
+      if (alarms(in, pair, steps).size() == 0) continue;
+      for (const std::size_t ladder : {first_ladder_[pair], second_ladder_[pair]}) {
+        const std::size_t last = ladders_[ladder].errors.size() - 1;
+        if (steps[ladder] < last) wanted.emplace(ladder, std::min(steps[ladder] + kStride, last));
+      }
+    }
   }
-  return {result.begin(), result.end()};
+  require(std::vector(wanted.begin(), wanted.end()));
+  for (const auto& [ladder, step] : wanted) steps[ladder] = step;
+  return !wanted.empty();
 }
 
-bool ErrorSearch::refine(std::span<const std::size_t> most_refused, ErrorSteps& steps) {
-  const std::vector<std::vector<std::size_t>> all = moves(steps);
-  std::vector<std::pair<std::size_t, std::size_t>> wanted;
-  for (const std::vector<std::size_t>& move : all) {
-    if (move.size() == 1) wanted.emplace_back(move[0], steps[move[0]] + 1);
-  }
-  require(wanted);
-  const Value now = value(steps, most_refused);
+bool ErrorSearch::coarsen_link(std::span<const std::size_t> most_refused, Prefer prefer,
+                               ErrorSteps& steps) {
   const std::size_t spheres_now = spheres(steps);
-  double best = -std::numeric_limits<double>::infinity();
-  ErrorSteps best_steps = steps;
-  for (const std::vector<std::size_t>& move : all) {
-    ErrorSteps next = steps;
-    for (const std::size_t ladder : move) ++next[ladder];
-    const Value after = value(next, most_refused);
-    const double gain = now.excess - after.excess + kAlarmWeight * (now.alarms - after.alarms);
-    const std::size_t spheres_after = spheres(next);
-    const auto added = static_cast<double>(spheres_after > spheres_now ? spheres_after - spheres_now
-                                                                       : std::size_t{1});
-    // Of moves that spare nothing, the one that costs least spheres.
-    const double worth = gain > 0.0 ? gain / added : gain - added;
-    if (worth <= best) continue;
-    best = worth;
-    best_steps = next;
-  }
-  const bool moved = best_steps != steps;
-  steps = best_steps;
-  return moved;
-}
-
-bool ErrorSearch::coarsen(std::span<const std::size_t> most_refused, ErrorSteps& steps) {
-  const std::size_t spheres_now = spheres(steps);
-  std::size_t fewest = spheres_now;
-  ErrorSteps best_steps = steps;
+  const auto refused_now = static_cast<double>(*refused(steps, most_refused));
+  double best = 0.0;
+  ErrorSteps best_steps;
   for (std::size_t ladder = 0; ladder < ladders_.size(); ++ladder) {
     for (std::size_t step = 0; step < steps[ladder]; ++step) {
-      // Every coarser step was covered on the way to this one.
+      if (!ladders_[ladder].trees[step]) continue;
       ErrorSteps next = steps;
       next[ladder] = step;
       const std::size_t count = spheres(next);
-      if (count >= fewest || !value(next, most_refused).is_feasible) continue;
-      fewest = count;
+      if (count >= spheres_now) continue;
+      const std::optional<std::size_t> refused_then = refused(next, most_refused);
+      if (!refused_then) continue;
+      const auto saved = static_cast<double>(spheres_now - count);
+      const double more = std::max(static_cast<double>(*refused_then) - refused_now, 0.5);
+      const double worth = prefer == Prefer::kFewestSpheres ? saved : saved / more;
+      if (worth <= best) continue;
+      best = worth;
       best_steps = next;
     }
   }
+  if (best_steps.empty()) return false;
   steps = best_steps;
-  return fewest < spheres_now;
+  return true;
+}
+
+ErrorSteps ErrorSearch::coarsened(std::span<const std::size_t> most_refused, ErrorSteps steps) {
+  ErrorSteps other = steps;
+  while (coarsen_link(most_refused, Prefer::kMostSpheresForEachRefusal, steps)) {
+  }
+  while (coarsen_link(most_refused, Prefer::kFewestSpheres, other)) {
+  }
+  return spheres(other) < spheres(steps) ? other : steps;
+}
+
+// Refines a link where it was covered finer already, and makes others coarser for it.
+bool ErrorSearch::exchange(std::span<const std::size_t> most_refused, ErrorSteps& steps) {
+  for (std::size_t ladder = 0; ladder < ladders_.size(); ++ladder) {
+    ErrorSteps next = steps;
+    if (++next[ladder] >= ladders_[ladder].errors.size() || !ladders_[ladder].trees[next[ladder]] ||
+        !refused(next, most_refused)) {
+      continue;
+    }
+    next = coarsened(most_refused, next);
+    if (spheres(next) >= spheres(steps)) continue;
+    steps = next;
+    return true;
+  }
+  return false;
 }
 
 bool ErrorSearch::run(std::span<const std::size_t> most_refused, ErrorSteps& steps,
                       const std::function<void(const char*)>& tell) {
-  while (!value(steps, most_refused).is_feasible) {
-    tell("refining");
-    if (!refine(most_refused, steps)) return false;
+  while (!refused(steps, most_refused)) {
+    tell("refining links");
+    if (!refine(steps)) return false;
   }
-  tell("coarsening");
-  while (coarsen(most_refused, steps)) {
+  // The steps between those that were taken.
+  std::vector<std::pair<std::size_t, std::size_t>> between;
+  for (std::size_t ladder = 0; ladder < steps.size(); ++ladder) {
+    if (steps[ladder] > 0) between.emplace_back(ladder, steps[ladder] - 1);
+  }
+  require(between);
+  tell("exchanging spheres");
+  steps = coarsened(most_refused, steps);
+  while (exchange(most_refused, steps)) {
   }
   return true;
 }
