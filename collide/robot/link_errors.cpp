@@ -35,16 +35,18 @@ void check(const LinkErrorOptions& options) {
 std::vector<internal::ErrorLadder> ladders_of(const RobotModel& robot,
                                               std::span<const LinkBody> bodies,
                                               const LinkErrorOptions& options) {
+  for (const LinkError& fixed : options.fixed) {
+    if (std::any_of(bodies.begin(), bodies.end(),
+                    [&](const LinkBody& body) { return body.link == fixed.link; })) {
+      continue;
+    }
+    throw Error("link " + std::to_string(fixed.link), "has a max error and nothing to cover");
+  }
   std::vector<internal::ErrorLadder> result;
   for (int link = 0; link < static_cast<int>(robot.links().size()); ++link) {
     const auto is_of_link = [&](const auto& x) { return x.link == link; };
     const auto fixed = std::find_if(options.fixed.begin(), options.fixed.end(), is_of_link);
-    const bool has_body = std::any_of(bodies.begin(), bodies.end(), is_of_link);
-    if (fixed != options.fixed.end() && !has_body) {
-      throw Error("link " + robot.links()[static_cast<std::size_t>(link)].name,
-                  "has a max error and nothing to cover");
-    }
-    if (!has_body) continue;
+    if (std::none_of(bodies.begin(), bodies.end(), is_of_link)) continue;
     internal::ErrorLadder ladder{.link = link};
     ladder.errors = fixed != options.fixed.end()
                         ? std::vector{fixed->max_error}
