@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_length.h"
 #include "cli/command.h"
+#include "cli/false_alarm_report.h"
 #include "cli/help.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/robot_false_alarms.h"
 #include "cli/robot_files.h"
 #include "cli/robot_options.h"
 #include "cli/robot_report.h"
@@ -46,6 +48,8 @@ struct RobotArguments {
   std::string xrdf;
   std::string tool_link;
   bool json = false;
+  bool has_max_error = false;
+  FalseAlarmArguments false_alarms;
   RobotCoverOptions options;
 };
 
@@ -91,6 +95,12 @@ void add_disabled_pairs(const std::string& srdf, const RobotModel& model, RobotS
   }
 }
 
+std::vector<std::pair<std::string, std::string>> names_of(const std::vector<DisabledPair>& pairs) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const DisabledPair& pair : pairs) names.emplace_back(pair.link_a, pair.link_b);
+  return names;
+}
+
 std::vector<std::string> links_to_cover(const RobotDescription& robot, LinkGeometry geometry) {
   std::vector<std::string> names;
   for (const LinkDescription& link : robot.links) {
@@ -116,8 +126,22 @@ std::vector<NextStep> next_steps(const RobotArguments& arguments,
   return {{std::move(view), "look at them"}, {std::move(check), "check a program"}};
 }
 
-// Fails (kNo), naming the links, if something promised of a link is not proved; the files are
-// written nevertheless and say so.
+// Whether all that was promised holds; says on standard error what does not.
+bool keeps_promises(const std::string& urdf, const MeasuredCover& result) {
+  const std::vector<std::string> open = links_not_proved(result.cover);
+  if (!open.empty()) {
+    std::cerr << "spherule: " << urdf << ": not proved for";
+    for (const std::string& link : open) std::cerr << " " << link;
+    std::cerr << "\n";
+  }
+  const bool is_reached = !result.choice || result.choice->is_reached;
+  if (!is_reached)
+    std::cerr << "spherule: " << urdf << ": the share of false alarms is not reached\n";
+  return open.empty() && is_reached;
+}
+
+// Fails (kNo), naming the links, if something promised of a link is not proved, or if the share of
+// false alarms that is asked for is not reached; the files are written nevertheless and say so.
 int cover_links(const RobotArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   RobotCoverOptions options = arguments.options;
@@ -133,34 +157,34 @@ int cover_links(const RobotArguments& arguments) {
   rehearse_robot_files(plan, robot, links);
   RobotSpheres spheres;
   add_disabled_pairs(arguments.srdf, robot.model, spheres);  // refuses a bad file in time
+  const FalseAlarmRun run(arguments.false_alarms, robot);
 
-  const RobotCover result = [&] {
+  const MeasuredCover measured = [&] {
     ProgressBar bar;
     options.progress = bar.callback();
-    return cover_robot(robot, options);
+    return run.cover(options, arguments.has_max_error, names_of(spheres.self_collision_ignore));
   }();
+  const RobotCover& result = measured.cover;
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   spheres = robot_spheres(robot, result);
   add_disabled_pairs(arguments.srdf, robot.model, spheres);
-  const Json summary = robot_summary(arguments.urdf, result, seconds.count());
+  Json summary = robot_summary(arguments.urdf, result, seconds.count());
+  summary["false_alarms"] = false_alarm_summary(measured, robot.model);
   write_uninterrupted([&] {
     write_robot_files(plan, robot, spheres);
     write_file_atomically(plan.report(robot), robot_report(summary, result));
   });
 
-  std::cout << (arguments.json ? to_text(summary) : robot_table(result, seconds.count()));
+  std::cout << (arguments.json ? to_text(summary)
+                               : robot_table(result, seconds.count()) +
+                                     describe_false_alarms(measured, robot.model));
   for (const LinkCover& link : result.links) {
     for (const std::string& warning : link.warnings) {
       std::cerr << "spherule: warning: link " << link.link << ": " << warning << "\n";
     }
   }
   if (!arguments.json) std::cout << describe(next_steps(arguments, plan.all(robot, links)));
-  const std::vector<std::string> open = links_not_proved(result);
-  if (open.empty()) return kYes;
-  std::cerr << "spherule: " << arguments.urdf << ": not proved for";
-  for (const std::string& link : open) std::cerr << " " << link;
-  std::cerr << "\n";
-  return kNo;
+  return keeps_promises(arguments.urdf, measured) ? kYes : kNo;
 }
 
 void add_search_options(CLI::App& command, const std::shared_ptr<RobotArguments>& arguments) {
@@ -201,11 +225,12 @@ void add_robot(CLI::App& app, int& exit_code) {
                    "Folder for what is written; it is made if it is not there")
       ->required()
       ->type_name(kFolder);
-  command
-      ->add_option("--max-error", options.max_error,
-                   "E in metres, how far the spheres may protrude (default: 0.01)")
-      ->check(check_length)
-      ->check(CLI::PositiveNumber);
+  const CLI::Option* const max_error =
+      command
+          ->add_option("--max-error", options.max_error,
+                       "E in metres, how far the spheres may protrude (default: 0.01)")
+          ->check(check_length)
+          ->check(CLI::PositiveNumber);
   command
       ->add_option("--min-external", options.min_external_diameter,
                    "D in metres, diameter of the smallest thing that will meet the robot (default: "
@@ -247,6 +272,7 @@ void add_robot(CLI::App& app, int& exit_code) {
                    "The tool's link in new cuRobo and XRDF files (default: where the chain of "
                    "joints ends or branches)")
       ->type_name("LINK");
+  add_false_alarm_options(*command, arguments->false_alarms);
   add_search_options(*command, arguments);
   command->add_flag("--json", arguments->json, "Print the summary as JSON, lengths in metres");
   command->footer(to_text(
@@ -254,14 +280,18 @@ void add_robot(CLI::App& app, int& exit_code) {
                "NAME.spheres.json, NAME.LINK.tree and NAME.report.json, NAME being the robot's "
                "name.",
        .exit_codes = "0 proved for every link; 1 not proved for links that are named (the files "
-                     "are written and say so)",
+                     "are written and say so), or the share of false alarms is not reached",
        .examples = {"spherule robot robot.urdf -o spheres",
                     "spherule robot robot.urdf -o spheres --max-error 0.02 --format curobo,tree",
+                    "spherule robot robot.urdf -o spheres --false-alarms 1%",
                     "spherule robot robot.urdf -o spheres --geometry visual --link "
                     "hand:max-error=0.005",
                     "spherule robot robot.urdf -o spheres --package parts=../parts --srdf "
                     "robot.srdf"}}));
-  command->callback([arguments, &exit_code] { exit_code = cover_links(*arguments); });
+  command->callback([arguments, max_error, &exit_code] {
+    arguments->has_max_error = max_error->count() > 0;
+    exit_code = cover_links(*arguments);
+  });
 }
 
 }  // namespace spherule

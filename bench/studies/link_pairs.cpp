@@ -3,8 +3,8 @@
 // robot's links, and the share of its free postures that covers refuse without and with the proofs.
 #include "collide/robot/link_pairs.h"
 
-#include "collide/collide.h"
 #include "collide/robot/allowed_collisions.h"
+#include "collide/robot/false_alarms.h"
 #include "collide/robot/kinematics.h"
 #include "collide/robot/link_bodies.h"
 #include "collide/robot/link_pairs_file.h"
@@ -115,45 +115,27 @@ void print_judged(const Robot& robot, const LinkPairs& pairs, int postures) {
 void print_postures(const Robot& robot, const LinkPairs& pairs, int postures,
                     const char* cover_path) {
   RobotModel model = robot.description.model;
-  std::vector<std::shared_ptr<const SphereTree>> trees(model.links().size());
   for (const LinkSpheres& link : read_robot_spheres(cover_path).spheres.links) {
-    const int index = model.find_link(link.link);
-    if (index < 0 || link.spheres.empty()) continue;
-    trees[static_cast<std::size_t>(index)] =
-        std::make_shared<const SphereTree>(build_tree(link.spheres));
-    model.attach(link.link, trees[static_cast<std::size_t>(index)]);
+    if (model.find_link(link.link) < 0 || link.spheres.empty()) continue;
+    model.attach(link.link, std::make_shared<const SphereTree>(build_tree(link.spheres)));
   }
-  const AllowedCollisions allowed(model);
-  std::mt19937_64 bits(11);
-  std::vector<Pose> poses;
-  std::array<int, 3> refused{};
-  int free = 0;
-  for (int n = 0; n < postures; ++n) {
-    const std::vector<double> q = draw(model, bits);
-    forward_kinematics(model, q, poses);
-    bool is_free = true;
-    std::array<bool, 3> refuses{};
-    for (const LinkPair& pair : pairs.pairs()) {
-      const auto a = static_cast<std::size_t>(pair.first);
-      const auto b = static_cast<std::size_t>(pair.second);
-      if (allowed.allows(pair.first, pair.second)) continue;
-      const bool proved = pair.boxes.contains(q);
-      is_free = is_free &&
-                (proved || !within(*robot.solids[a], poses[a], *robot.solids[b], poses[b], 0.0));
-      if (!trees[a] || !trees[b] || !collides(*trees[a], poses[a], *trees[b], poses[b])) continue;
-      refuses[0] = true;
-      refuses[1] |= pair.verdict != PairVerdict::kNever;
-      refuses[2] |= !proved;
-    }
-    if (!is_free) continue;
-    ++free;
-    for (std::size_t i = 0; i < 3; ++i) refused[i] += refuses[i] ? 1 : 0;
-  }
-  const auto share = [&](int count) { return 100.0 * count / std::max(free, 1); };
+  const Clock::time_point start = Clock::now();
+  const FalseAlarms alarms =
+      measure_false_alarms(model, robot.bodies, AllowedCollisions(model), &pairs,
+                           {.postures = static_cast<std::size_t>(postures), .seed = 11});
+  const double seconds = seconds_since(start);
+  const auto share = [&](PairProofs with) { return 100.0 * alarms.refused_share(with).share(); };
   std::printf(
-      "%s: %d of %d free; refused %.2f %%, without pairs that never touch %.2f %%, with "
-      "boxes %.2f %%\n",
-      cover_path, free, postures, share(refused[0]), share(refused[1]), share(refused[2]));
+      "%s: %zu of %d free; refused %.2f %%, without pairs that never touch %.2f %%, with "
+      "boxes %.2f %%: %.1f s\n",
+      cover_path, alarms.free, postures, share(PairProofs::kNone), share(PairProofs::kNever),
+      share(PairProofs::kBoxes), seconds);
+  for (const PairAlarms& pair : alarms.pairs) {
+    std::printf("  %-18s %-18s refused %zu, alone %zu, gap %.1f mm\n",
+                model.links()[static_cast<std::size_t>(pair.first)].name.c_str(),
+                model.links()[static_cast<std::size_t>(pair.second)].name.c_str(), pair.refused,
+                pair.refused_alone, 1e3 * pair.median_gap);
+  }
 }
 
 int run(int argc, char** argv) {

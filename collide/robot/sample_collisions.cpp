@@ -1,25 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/allowed_collisions.h"
 #include "collide/robot/internal/body_pairs.h"
+#include "collide/robot/internal/random_configuration.h"
 #include "spheretree/error.h"
 
 #include <random>
 
 namespace spherule {
-namespace {
-
-// Positions between the limits of the joints that the variables move.
-void draw(const RobotModel& robot, std::mt19937_64& bits, std::vector<double>& configuration) {
-  for (std::size_t i = 0; i < configuration.size(); ++i) {
-    const auto joint = static_cast<std::size_t>(robot.variable_joints()[i]);
-    const double lower = robot.joints()[joint].lower;
-    const double part = static_cast<double>(bits() >> 11) * 0x1p-53;
-    configuration[i] = lower + (robot.joints()[joint].upper - lower) * part;
-  }
-}
-
-}  // namespace
-
 SampledCollisions sample_collisions(const RobotModel& robot, const AllowedCollisions& allowed,
                                     const SampleCollisionsOptions& options) {
   if (options.configurations == 0) throw Error("sample", "it has no configurations");
@@ -52,7 +39,7 @@ SampledCollisions sample_collisions(const RobotModel& robot, const AllowedCollis
   std::mt19937_64 bits(options.seed);
   std::vector<double> configuration(static_cast<std::size_t>(robot.variable_count()));
   for (std::size_t n = 0; n < options.configurations; ++n) {
-    draw(robot, bits, configuration);
+    internal::draw_configuration(robot, bits, configuration);
     checked.place(configuration, memory);
     std::size_t i = 0;
     for (std::size_t pair = 0; pair < result.pairs.size(); ++pair) {

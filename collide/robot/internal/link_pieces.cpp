@@ -141,6 +141,8 @@ bool looks_convex(const std::vector<Element>& elements, const std::vector<Vector
   });
 }
 
+}  // namespace
+
 bool touches(const LinkBody& a, const Pose& world_from_a, const LinkBody& b,
              const Pose& world_from_b, double clearance) {
   if (a.mesh != nullptr && b.mesh != nullptr) {
@@ -150,8 +152,6 @@ bool touches(const LinkBody& a, const Pose& world_from_a, const LinkBody& b,
   if (a.mesh != nullptr) return within(*b.spheres, world_from_b, *a.mesh, world_from_a, clearance);
   return within(*a.spheres, world_from_a, *b.spheres, world_from_b, clearance);
 }
-
-}  // namespace
 
 LinkPieces make_link_pieces(std::span<const LinkBody> bodies) {
   LinkPieces result;

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/robot_false_alarms.h"
+
+#include "cli/outline.h"
+#include "spheretree/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <system_error>
+
+namespace spherule {
+namespace {
+
+const std::vector<std::string>& proof_names() {
+  static const std::vector<std::string> names = {std::string(name_of(PairProofs::kBoxes)),
+                                                 std::string(name_of(PairProofs::kNever)),
+                                                 std::string(name_of(PairProofs::kNone))};
+  return names;
+}
+
+PairProofs proofs_named(const std::string& name) {
+  for (const PairProofs proofs : {PairProofs::kNone, PairProofs::kNever}) {
+    if (name == name_of(proofs)) return proofs;
+  }
+  return PairProofs::kBoxes;
+}
+
+std::string check_share(const std::string& text) {
+  try {
+    share_of(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+double share_of(const std::string& text) {
+  const bool is_percent = text.ends_with('%');
+  const char* const end = text.data() + text.size() - (is_percent ? 1 : 0);
+  double value = 0.0;
+  const auto [stop, fault] = std::from_chars(text.data(), end, value);
+  if (is_percent) value /= 100.0;
+  if (fault != std::errc() || stop != end || !(value > 0.0 && value < 1.0)) {
+    throw Error("'" + text + "'", "is no share between 0 and 1, as 1% or 0.01");
+  }
+  return value;
+}
+
+void add_false_alarm_options(CLI::App& command, FalseAlarmArguments& arguments) {
+  arguments.proofs = proof_names().front();
+  command
+      .add_option("--false-alarms", arguments.goal,
+                  "Choose E link by link for few spheres that refuse at most this share of the "
+                  "free random postures, and of those of --poses (1% or 0.01); --max-error is then "
+                  "the coarsest E (default: 0.04)")
+      ->check(check_share)
+      ->type_name("SHARE");
+  command
+      .add_option("--poses", arguments.poses,
+                  "Postures, one a line, in which false alarms are counted, too (as the "
+                  "trajectories that check reads)")
+      ->type_name(kFile);
+  command
+      .add_option("--proofs", arguments.proofs,
+                  "Which proofs about pairs of links spare tests where false alarms are counted: "
+                  "boxes of joint positions (default), pairs that never touch, or none")
+      ->check(CLI::IsMember(proof_names()));
+  command
+      .add_option("--postures", arguments.postures,
+                  "Random postures in which false alarms are counted (default: 20000; with "
+                  "--false-alarms 40000, and 200000 to verify the choice)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{std::numeric_limits<std::int32_t>::max()}));
+}
+
+FalseAlarmRun::FalseAlarmRun(const FalseAlarmArguments& arguments, const RobotDescription& robot)
+    : robot_(robot), proofs_(proofs_named(arguments.proofs)), postures_(arguments.postures) {
+  if (!arguments.goal.empty()) goal_ = share_of(arguments.goal);
+  if (!arguments.poses.empty()) poses_ = read_trajectory(arguments.poses, robot.model);
+  if (goal_ && robot.model.variable_count() == 0) {
+    throw Error("--false-alarms", "the robot has no joint that moves");
+  }
+}
+
+LinkPairs FalseAlarmRun::prove(const std::vector<LinkBody>& bodies,
+                               const RobotCoverOptions& options) const {
+  if (proofs_ == PairProofs::kNone) return {};
+  return prove_link_pairs(
+      robot_.model, bodies,
+      {.seed = options.seed, .threads = options.threads, .progress = options.progress});
+}
+
+MeasuredCover FalseAlarmRun::cover_to_goal(
+    const RobotCoverOptions& options, bool has_max_error,
+    const std::vector<std::pair<std::string, std::string>>& disabled,
+    const std::vector<LinkBody>& bodies, const FalseAlarmOptions& sample) const {
+  LinkErrorOptions goal{.goal = *goal_, .given = poses_.positions, .sample = sample};
+  if (has_max_error) {
+    goal.finest_error *= options.max_error / goal.coarsest_error;
+    goal.coarsest_error = options.max_error;
+  }
+  const LinkPairs pairs = prove(bodies, options);
+  GoalCover found = cover_robot_to_goal(
+      robot_, bodies, disabled, proofs_ == PairProofs::kNone ? nullptr : &pairs, options, goal);
+  return {.cover = std::move(found.cover),
+          .goal = goal_,
+          .choice = found.choice,
+          .random = found.choice.verified,
+          .upper_bound = found.choice.upper_bound,
+          .given = found.choice.given};
+}
+
+MeasuredCover FalseAlarmRun::cover(
+    const RobotCoverOptions& options, bool has_max_error,
+    const std::vector<std::pair<std::string, std::string>>& disabled) const {
+  const std::size_t usual =
+      goal_ ? LinkErrorOptions{}.sample.postures : FalseAlarmOptions{}.postures;
+  const FalseAlarmOptions sample{.postures = postures_ > 0 ? postures_ : usual,
+                                 .seed = options.seed,
+                                 .proofs = proofs_,
+                                 .threads = options.threads,
+                                 .progress = options.progress};
+  if (goal_) {
+    return cover_to_goal(options, has_max_error, disabled, covered_bodies(robot_, options), sample);
+  }
+  MeasuredCover result{.cover = cover_robot(robot_, options)};
+  if (robot_.model.variable_count() == 0) return result;
+  const std::vector<LinkBody> bodies = covered_bodies(robot_, options);
+  const LinkPairs pairs = prove(bodies, options);
+  const LinkPairs* const proofs = proofs_ == PairProofs::kNone ? nullptr : &pairs;
+  const RobotModel model = robot_with_spheres(robot_, result.cover);
+  AllowedCollisions allowed(model);
+  allowed.allow(disabled);
+  result.random = measure_false_alarms(model, bodies, allowed, proofs, sample);
+  result.upper_bound = result.random.refused_share().upper_bound(result.confidence);
+  if (poses_.size() > 0) {
+    result.given = measure_false_alarms(model, bodies, allowed, proofs, poses_.positions, sample);
+  }
+  return result;
+}
+
+}  // namespace spherule
