@@ -8,6 +8,8 @@
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
+#include "collide/robot/goal_cover.h"
+#include "collide/robot/link_pairs_file.h"
 #include "collide/robot/robot_checker.h"
 #include "collide/robot/scene_setup.h"
 #include "collide/robot/sphere_formats.h"
@@ -35,6 +37,7 @@ struct CheckArguments {
   std::string scene;
   std::string trajectory;
   std::string spheres;
+  std::string pairs;
   std::string geometry = geometry_names().front();
   std::vector<std::string> packages;
   RobotCoverOptions cover;
@@ -226,6 +229,7 @@ std::string advice(const CheckArguments& arguments, const CheckReport& report) {
   if (arguments.cover.effort != defaults.cover.effort) {
     repeat("--effort", std::to_string(arguments.cover.effort), finer);
   }
+  if (!arguments.pairs.empty()) repeat("--pairs", arguments.pairs, finer);
   repeat_robot_options(arguments.geometry, arguments.packages, finer);
   return text + describe({{std::move(finer), "finer spheres may part them"}});
 }
@@ -251,6 +255,10 @@ int check(const CheckArguments& arguments) {
   AllowedCollisions allowed = prepared.scene.allowed_collisions();
   for (const DisabledPair& pair : spheres.ignored) allowed.allow(pair.link_a, pair.link_b);
   prepared.scene.set_allowed_collisions(std::move(allowed));
+  if (!arguments.pairs.empty()) {
+    prepared.scene.set_link_pairs(std::make_shared<const LinkPairs>(
+        load_link_pairs(arguments.pairs, robot.model, covered_bodies(robot, options))));
+  }
 
   const RobotChecker checker = prepared.scene.snapshot();
   TrajectoryCheck trajectory_check(checker, trajectory, options.threads, bar.callback());
@@ -288,6 +296,11 @@ void add_check(CLI::App& app, int& exit_code) {
       ->add_option("--spheres", arguments->spheres,
                    "Spheres of the robot, in any format that audit-robot reads (default: cover "
                    "the robot first)")
+      ->type_name(kFile);
+  command
+      ->add_option("--pairs", arguments->pairs,
+                   "What is proved of the pairs of the robot's links (NAME.pairs of robot, covered "
+                   "without padding): where two are proved free their spheres are not tested")
       ->type_name(kFile);
   command
       ->add_option("--max-error", arguments->cover.max_error,

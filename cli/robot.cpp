@@ -6,11 +6,14 @@
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
+#include "cli/pair_report.h"
 #include "cli/progress.h"
 #include "cli/robot_false_alarms.h"
 #include "cli/robot_files.h"
 #include "cli/robot_options.h"
 #include "cli/robot_report.h"
+#include "collide/robot/ignored_pairs.h"
+#include "collide/robot/named_postures.h"
 #include "collide/robot/robot_spheres.h"
 #include "collide/robot/srdf.h"
 #include "collide/robot/urdf.h"
@@ -81,20 +84,6 @@ void check_places(const RobotArguments& arguments, const std::vector<fs::path>& 
   }
 }
 
-// The pairs of an SRDF that are about links of the robot and not there yet.
-void add_disabled_pairs(const std::string& srdf, const RobotModel& model, RobotSpheres& spheres) {
-  if (srdf.empty()) return;
-  std::vector<DisabledPair>& known = spheres.self_collision_ignore;
-  for (const DisabledPair& pair : read_srdf(srdf).disabled_pairs) {
-    if (model.find_link(pair.link_a) < 0 || model.find_link(pair.link_b) < 0) continue;
-    const bool there = std::any_of(known.begin(), known.end(), [&](const DisabledPair& other) {
-      return (other.link_a == pair.link_a && other.link_b == pair.link_b) ||
-             (other.link_a == pair.link_b && other.link_b == pair.link_a);
-    });
-    if (!there) known.push_back(pair);
-  }
-}
-
 std::vector<std::pair<std::string, std::string>> names_of(const std::vector<DisabledPair>& pairs) {
   std::vector<std::pair<std::string, std::string>> names;
   for (const DisabledPair& pair : pairs) names.emplace_back(pair.link_a, pair.link_b);
@@ -120,10 +109,32 @@ std::vector<NextStep> next_steps(const RobotArguments& arguments,
                                    beside(spheres->string(), ".html")};
   std::vector<std::string> check = {"check",    arguments.urdf, "SCENE.json",
                                     "PATH.csv", "--spheres",    spheres->string()};
+  const auto pairs = std::find_if(written.begin(), written.end(), [](const fs::path& file) {
+    return file.extension() == ".pairs";
+  });
+  if (pairs != written.end()) check.insert(check.end(), {"--pairs", pairs->string()});
   for (std::vector<std::string>* step : {&view, &check}) {
     repeat_robot_options(arguments.geometry, arguments.packages, *step);
   }
   return {{std::move(view), "look at them"}, {std::move(check), "check a program"}};
+}
+
+// By the spheres and the lists of ignored pairs that are written.
+std::vector<PostureContact> contacts_in_postures(const RobotDescription& robot,
+                                                 const SemanticDescription& semantics,
+                                                 const RobotSpheres& spheres,
+                                                 const MeasuredCover& measured) {
+  const RobotModel model = robot_with_spheres(robot, measured.cover);
+  AllowedCollisions allowed(model);
+  allowed.allow(names_of(spheres.self_collision_ignore));
+  std::vector<NamedPosture> postures = group_postures(model, semantics);
+  postures.insert(postures.begin(), rest_posture(model));
+  return contacts_in(postures, model, measured.bodies, allowed, measured.pairs);
+}
+
+std::string describe_pairs(const MeasuredCover& measured) {
+  if (measured.pairs == nullptr) return {};
+  return describe_link_pairs(*measured.pairs, measured.pair_seconds);
 }
 
 // Whether all that was promised holds; says on standard error what does not.
@@ -147,7 +158,7 @@ int cover_links(const RobotArguments& arguments) {
   RobotCoverOptions options = arguments.options;
   options.geometry = geometry_named(arguments.geometry);
   options.links = link_options(arguments.links);
-  const RobotFilePlan plan = plan_of(arguments);
+  RobotFilePlan plan = plan_of(arguments);
   const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
   if (!plan.tool_link.empty() && robot.model.find_link(plan.tool_link) < 0) {
     throw Error("--tool-link", "the robot has no link '" + plan.tool_link + "'");
@@ -155,33 +166,49 @@ int cover_links(const RobotArguments& arguments) {
   const std::vector<std::string> links = links_to_cover(robot, options.geometry);
   check_places(arguments, plan.all(robot, links));
   rehearse_robot_files(plan, robot, links);
-  RobotSpheres spheres;
-  add_disabled_pairs(arguments.srdf, robot.model, spheres);  // refuses a bad file in time
+  SemanticDescription semantics;  // a bad file is refused in time
+  if (!arguments.srdf.empty()) semantics = read_srdf(arguments.srdf);
+  std::vector<DisabledPair> disabled;
+  add_missing_pairs(semantics.disabled_pairs, robot.model, disabled);
   const FalseAlarmRun run(arguments.false_alarms, robot);
 
   const MeasuredCover measured = [&] {
     ProgressBar bar;
     options.progress = bar.callback();
-    return run.cover(options, arguments.has_max_error, names_of(spheres.self_collision_ignore));
+    return run.cover(options, arguments.has_max_error, names_of(disabled));
   }();
   const RobotCover& result = measured.cover;
+  if (measured.pairs == nullptr) std::erase(plan.formats, kPairsFormat);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  spheres = robot_spheres(robot, result);
-  add_disabled_pairs(arguments.srdf, robot.model, spheres);
+  RobotSpheres spheres = robot_spheres(robot, result);
+  add_missing_pairs(disabled, robot.model, spheres.self_collision_ignore);
+  if (measured.pairs != nullptr) {
+    add_missing_pairs(pairs_proved_never(robot.model, *measured.pairs), robot.model,
+                      spheres.self_collision_ignore);
+  }
+  const std::vector<PostureContact> contacts =
+      contacts_in_postures(robot, semantics, spheres, measured);
   Json summary = robot_summary(arguments.urdf, result, seconds.count());
+  if (measured.pairs != nullptr) {
+    summary["link_pairs"] = pair_summary(*measured.pairs, robot.model, measured.pair_seconds);
+  }
   summary["false_alarms"] = false_alarm_summary(measured, robot.model);
+  summary["posture_contacts"] = to_json(contacts);
   write_uninterrupted([&] {
-    write_robot_files(plan, robot, spheres);
+    write_robot_files(plan, robot, spheres, measured.pairs.get());
     write_file_atomically(plan.report(robot), robot_report(summary, result));
   });
 
   std::cout << (arguments.json ? to_text(summary)
-                               : robot_table(result, seconds.count()) +
+                               : robot_table(result, seconds.count()) + describe_pairs(measured) +
                                      describe_false_alarms(measured, robot.model));
   for (const LinkCover& link : result.links) {
     for (const std::string& warning : link.warnings) {
       std::cerr << "spherule: warning: link " << link.link << ": " << warning << "\n";
     }
+  }
+  for (const PostureContact& contact : contacts) {
+    std::cerr << "spherule: warning: " << describe(contact) << "\n";
   }
   if (!arguments.json) std::cout << describe(next_steps(arguments, plan.all(robot, links)));
   return keeps_promises(arguments.urdf, measured) ? kYes : kNo;
@@ -277,7 +304,8 @@ void add_robot(CLI::App& app, int& exit_code) {
   command->add_flag("--json", arguments->json, "Print the summary as JSON, lengths in metres");
   command->footer(to_text(
       {.text = "Writes NAME.spheres.urdf, NAME.srdf, NAME.curobo.yml, NAME.xrdf, NAME.foam.json, "
-               "NAME.spheres.json, NAME.LINK.tree and NAME.report.json, NAME being the robot's "
+               "NAME.spheres.json, NAME.LINK.tree, NAME.pairs and NAME.report.json, NAME being the "
+               "robot's "
                "name.",
        .exit_codes = "0 proved for every link; 1 not proved for links that are named (the files "
                      "are written and say so), or the share of false alarms is not reached",

@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <system_error>
 
@@ -88,32 +90,33 @@ FalseAlarmRun::FalseAlarmRun(const FalseAlarmArguments& arguments, const RobotDe
   }
 }
 
-LinkPairs FalseAlarmRun::prove(const std::vector<LinkBody>& bodies,
-                               const RobotCoverOptions& options) const {
-  if (proofs_ == PairProofs::kNone) return {};
-  return prove_link_pairs(
-      robot_.model, bodies,
-      {.seed = options.seed, .threads = options.threads, .progress = options.progress});
+void FalseAlarmRun::prove(const RobotCoverOptions& options, MeasuredCover& result) const {
+  if (proofs_ == PairProofs::kNone) return;
+  const auto start = std::chrono::steady_clock::now();
+  result.pairs = std::make_shared<const LinkPairs>(prove_link_pairs(
+      robot_.model, result.bodies,
+      {.seed = options.seed, .threads = options.threads, .progress = options.progress}));
+  result.pair_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-MeasuredCover FalseAlarmRun::cover_to_goal(
-    const RobotCoverOptions& options, bool has_max_error,
-    const std::vector<std::pair<std::string, std::string>>& disabled,
-    const std::vector<LinkBody>& bodies, const FalseAlarmOptions& sample) const {
+void FalseAlarmRun::cover_to_goal(const RobotCoverOptions& options, bool has_max_error,
+                                  const std::vector<std::pair<std::string, std::string>>& disabled,
+                                  const FalseAlarmOptions& sample, MeasuredCover& result) const {
   LinkErrorOptions goal{.goal = *goal_, .given = poses_.positions, .sample = sample};
   if (has_max_error) {
     goal.finest_error *= options.max_error / goal.coarsest_error;
     goal.coarsest_error = options.max_error;
   }
-  const LinkPairs pairs = prove(bodies, options);
-  GoalCover found = cover_robot_to_goal(
-      robot_, bodies, disabled, proofs_ == PairProofs::kNone ? nullptr : &pairs, options, goal);
-  return {.cover = std::move(found.cover),
-          .goal = goal_,
-          .choice = found.choice,
-          .random = found.choice.verified,
-          .upper_bound = found.choice.upper_bound,
-          .given = found.choice.given};
+  prove(options, result);
+  GoalCover found =
+      cover_robot_to_goal(robot_, result.bodies, disabled, result.pairs.get(), options, goal);
+  result.cover = std::move(found.cover);
+  result.goal = goal_;
+  result.random = found.choice.verified;
+  result.upper_bound = found.choice.upper_bound;
+  result.given = found.choice.given;
+  result.choice = std::move(found.choice);
 }
 
 MeasuredCover FalseAlarmRun::cover(
@@ -126,21 +129,23 @@ MeasuredCover FalseAlarmRun::cover(
                                  .proofs = proofs_,
                                  .threads = options.threads,
                                  .progress = options.progress};
+  MeasuredCover result;
+  result.bodies = covered_bodies(robot_, options);
   if (goal_) {
-    return cover_to_goal(options, has_max_error, disabled, covered_bodies(robot_, options), sample);
+    cover_to_goal(options, has_max_error, disabled, sample, result);
+    return result;
   }
-  MeasuredCover result{.cover = cover_robot(robot_, options)};
+  result.cover = cover_robot(robot_, options);
   if (robot_.model.variable_count() == 0) return result;
-  const std::vector<LinkBody> bodies = covered_bodies(robot_, options);
-  const LinkPairs pairs = prove(bodies, options);
-  const LinkPairs* const proofs = proofs_ == PairProofs::kNone ? nullptr : &pairs;
+  prove(options, result);
   const RobotModel model = robot_with_spheres(robot_, result.cover);
   AllowedCollisions allowed(model);
   allowed.allow(disabled);
-  result.random = measure_false_alarms(model, bodies, allowed, proofs, sample);
+  result.random = measure_false_alarms(model, result.bodies, allowed, result.pairs.get(), sample);
   result.upper_bound = result.random.refused_share().upper_bound(result.confidence);
   if (poses_.size() > 0) {
-    result.given = measure_false_alarms(model, bodies, allowed, proofs, poses_.positions, sample);
+    result.given = measure_false_alarms(model, result.bodies, allowed, result.pairs.get(),
+                                        poses_.positions, sample);
   }
   return result;
 }

@@ -5,6 +5,7 @@
 #include "collide/robot/trajectory_file.h"
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,9 +31,12 @@ void add_false_alarm_options(CLI::App& command, FalseAlarmArguments& arguments);
 // The share that a text means, "1%" or "0.01". Throws Error for what is none between 0 and 1.
 double share_of(const std::string& text);
 
-// A robot's cover and its false alarms.
+// A robot's cover, what is proved of the pairs of its links, and its false alarms.
 struct MeasuredCover {
   RobotCover cover;
+  std::vector<LinkBody> bodies{};            // that are covered
+  std::shared_ptr<const LinkPairs> pairs{};  // of these; null if none were to be proved
+  double pair_seconds = 0.0;                 // that this took
   std::optional<double> goal = std::nullopt;
   std::optional<LinkErrorChoice> choice = std::nullopt;  // if there is a goal
   FalseAlarms random{};      // of the cover; of no postures if not judged
@@ -54,11 +58,11 @@ class FalseAlarmRun {
                       const std::vector<std::pair<std::string, std::string>>& disabled) const;
 
  private:
-  LinkPairs prove(const std::vector<LinkBody>& bodies, const RobotCoverOptions& options) const;
-  MeasuredCover cover_to_goal(const RobotCoverOptions& options, bool has_max_error,
-                              const std::vector<std::pair<std::string, std::string>>& disabled,
-                              const std::vector<LinkBody>& bodies,
-                              const FalseAlarmOptions& sample) const;
+  // Fills in what is proved of the bodies.
+  void prove(const RobotCoverOptions& options, MeasuredCover& result) const;
+  void cover_to_goal(const RobotCoverOptions& options, bool has_max_error,
+                     const std::vector<std::pair<std::string, std::string>>& disabled,
+                     const FalseAlarmOptions& sample, MeasuredCover& result) const;
 
   const RobotDescription& robot_;
   std::optional<double> goal_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robot_files.h"
 
+#include "collide/robot/link_pairs_file.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/tree_file.h"
@@ -99,11 +100,15 @@ class ScratchFolder {
 }  // namespace
 
 std::vector<std::string> robot_format_names() {
-  return {"urdf", "srdf", "curobo", "xrdf", "foam", "json", kTree};
+  return {"urdf", "srdf", "curobo", "xrdf", "foam", "json", kTree, kPairsFormat};
 }
 
 fs::path RobotFilePlan::report(const RobotDescription& robot) const {
   return folder / (checked_name(robot.name) + ".report.json");
+}
+
+fs::path RobotFilePlan::pairs(const RobotDescription& robot) const {
+  return folder / (checked_name(robot.name) + ".pairs");
 }
 
 fs::path RobotFilePlan::tree(const RobotDescription& robot, const std::string& link) const {
@@ -116,6 +121,8 @@ std::vector<fs::path> RobotFilePlan::all(const RobotDescription& robot,
   for (const std::string& format : formats) {
     if (format == kTree) {
       for (const std::string& link : links) files.push_back(tree(robot, link));
+    } else if (format == kPairsFormat) {
+      files.push_back(pairs(robot));
     } else {
       files.push_back(folder / sphere_file_name(robot.name, *sphere_format_named(format)));
     }
@@ -135,11 +142,11 @@ void rehearse_robot_files(const RobotFilePlan& plan, const RobotDescription& rob
   for (const std::string& link : links) {
     spheres.links.push_back({link, {Sphere{Eigen::Vector3d::Zero(), 1.0}}});
   }
-  write_robot_files(rehearsal, robot, spheres);
+  write_robot_files(rehearsal, robot, spheres, nullptr);
 }
 
 void write_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
-                       const RobotSpheres& spheres) {
+                       const RobotSpheres& spheres, const LinkPairs* pairs) {
   std::error_code fault;
   fs::create_directory(plan.folder, fault);
   if (fault) throw Error(plan.folder.string(), fault.message());
@@ -150,6 +157,10 @@ void write_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
         if (link.spheres.empty()) continue;
         save_tree(build_tree(link.spheres), plan.tree(robot, link.link));
       }
+      continue;
+    }
+    if (name == kPairsFormat) {
+      if (pairs != nullptr) save_link_pairs(*pairs, plan.pairs(robot));
       continue;
     }
     const SphereFormat format = *sphere_format_named(name);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/robot/link_pairs.h"
 #include "collide/robot/robot_description.h"
 #include "collide/robot/sphere_formats.h"
 
@@ -10,7 +11,10 @@
 
 namespace spherule {
 
-// What --format takes: the names of the formats that are written, and "tree".
+// The name of the file of pairs among the formats.
+inline constexpr const char* kPairsFormat = "pairs";
+
+// What --format takes: the names of the formats that are written, "tree", and kPairsFormat.
 std::vector<std::string> robot_format_names();
 
 // The files of `spherule robot`.
@@ -25,6 +29,7 @@ struct RobotFilePlan {
   std::string tool_link;  // empty: where the robot's chain of moving joints ends or branches
 
   std::filesystem::path report(const RobotDescription& robot) const;
+  std::filesystem::path pairs(const RobotDescription& robot) const;
   std::filesystem::path tree(const RobotDescription& robot, const std::string& link) const;
   // All that will be written for a robot of which these links get spheres. Throws Error for names
   // that cannot be names of files.
@@ -38,8 +43,9 @@ struct RobotFilePlan {
 void rehearse_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
                           const std::vector<std::string>& links);
 
-// Makes the folder if it is not there and writes the files, but for the report. Throws Error.
+// Makes the folder if it is not there and writes the files, but for the report; none of pairs if
+// nothing was proved (null). Throws Error.
 void write_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
-                       const RobotSpheres& spheres);
+                       const RobotSpheres& spheres, const LinkPairs* pairs);
 
 }  // namespace spherule

@@ -37,12 +37,39 @@ std::string buffers(const std::map<std::string, double>& lengths, const std::str
   return text;
 }
 
+// Why others are ignored, to the end of the line; in ASCII, which no reader refuses.
+std::string comment(const std::vector<std::string>& others,
+                    const std::vector<std::string>& reasons) {
+  std::vector<std::pair<std::string, std::string>> groups;  // reasons, and whom they are of
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const auto known = std::find_if(groups.begin(), groups.end(),
+                                    [&](const auto& group) { return group.first == reasons[i]; });
+    if (known == groups.end()) {
+      groups.emplace_back(reasons[i], others[i]);
+    } else {
+      known->second += ", " + others[i];
+    }
+  }
+  std::string text;
+  for (const auto& [reason, whom] : groups) {
+    text += (text.empty() ? "  # " : "; ") + reason + ": " + whom;
+  }
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < 0x20 || c == 0x7F; }, '?');
+  return text + "\n";
+}
+
 // Under the link that comes first: cuRobo looks for a pair there only.
 std::string ignored(const RobotSpheres& spheres, const std::string& indent) {
   if (spheres.self_collision_ignore.empty()) return " {}\n";
   std::map<std::string, std::size_t> order;
   for (const LinkSpheres& link : spheres.links) order.emplace(link.link, order.size());
-  std::vector<std::pair<std::string, std::vector<std::string>>> lists;
+  struct List {
+    std::string first;
+    std::vector<std::string> others{};
+    std::vector<std::string> reasons{};
+  };
+  std::vector<List> lists;
   for (const DisabledPair& pair : spheres.self_collision_ignore) {
     std::string first = pair.link_a;
     std::string second = pair.link_b;
@@ -50,13 +77,15 @@ std::string ignored(const RobotSpheres& spheres, const std::string& indent) {
     const auto b = order.find(second);
     if (a != order.end() && b != order.end() && b->second < a->second) std::swap(first, second);
     auto list = std::find_if(lists.begin(), lists.end(),
-                             [&](const auto& entry) { return entry.first == first; });
-    if (list == lists.end()) list = lists.insert(lists.end(), {first, {}});
-    list->second.push_back(second);
+                             [&](const List& entry) { return entry.first == first; });
+    if (list == lists.end()) list = lists.insert(lists.end(), {first});
+    list->others.push_back(second);
+    list->reasons.push_back(pair.reason.empty() ? "given" : pair.reason);
   }
   std::string text = "\n";
-  for (const auto& [link, others] : lists) {
-    text += indent + yaml_text(link) + ": " + names(others) + "\n";
+  for (const List& list : lists) {
+    text += indent + yaml_text(list.first) + ": " + names(list.others) +
+            comment(list.others, list.reasons);
   }
   return text;
 }

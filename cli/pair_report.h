@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/json.h"
+#include "collide/robot/link_pairs.h"
+#include "collide/robot/named_postures.h"
+
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// What is proved of the pairs of a robot's links: how many there are of each kind, and every pair
+// with its verdict, the posture in which the two touch (by joints; radians or metres), the smallest
+// gap found (metres), and the share of the postures within the limits that is proved free.
+Json pair_summary(const LinkPairs& pairs, const RobotModel& robot, double seconds);
+
+// What touches in postures.
+Json to_json(const std::vector<PostureContact>& contacts);
+
+// The counts, for a person.
+std::string describe_link_pairs(const LinkPairs& pairs, double seconds);
+
+// A posture of a robot as a person reads it: joints by name, degrees and metres.
+std::string describe_posture(const RobotModel& robot, const std::vector<double>& configuration);
+
+// A contact in a posture of a name, as a warning.
+std::string describe(const PostureContact& contact);
+
+}  // namespace spherule

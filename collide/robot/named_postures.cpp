@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/robot/named_postures.h"
+
+#include "collide/robot/internal/link_pieces.h"
+#include "collide/robot/kinematics.h"
+#include "collide/robot/robot_scene.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+bool bodies_touch(std::span<const LinkBody> bodies, int first, int second,
+                  std::span<const Pose> poses) {
+  for (const LinkBody& a : bodies) {
+    if (a.link != first) continue;
+    for (const LinkBody& b : bodies) {
+      if (b.link != second) continue;
+      if (internal::touches(a, poses[static_cast<std::size_t>(first)], b,
+                            poses[static_cast<std::size_t>(second)], 0.0)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+NamedPosture rest_posture(const RobotModel& robot) {
+  NamedPosture rest{"the rest posture"};
+  for (const int joint : robot.variable_joints()) {
+    const Joint& moving = robot.joints()[static_cast<std::size_t>(joint)];
+    rest.configuration.push_back(std::clamp(0.0, moving.lower, moving.upper));
+  }
+  return rest;
+}
+
+std::vector<NamedPosture> group_postures(const RobotModel& robot,
+                                         const SemanticDescription& semantics) {
+  std::vector<NamedPosture> result;
+  for (const GroupState& state : semantics.group_states) {
+    NamedPosture posture{state.group + "/" + state.name, rest_posture(robot).configuration};
+    for (const JointState& joint : state.joints) {
+      const int index = robot.find_joint(joint.joint);
+      const auto& variables = robot.variable_joints();
+      const auto found = std::find(variables.begin(), variables.end(), index);
+      if (index < 0 || found == variables.end() || joint.position.size() != 1) continue;
+      posture.configuration[static_cast<std::size_t>(found - variables.begin())] =
+          joint.position.front();
+    }
+    result.push_back(std::move(posture));
+  }
+  return result;
+}
+
+std::vector<PostureContact> contacts_in(std::span<const NamedPosture> postures,
+                                        const RobotModel& robot, std::span<const LinkBody> bodies,
+                                        const AllowedCollisions& allowed,
+                                        std::shared_ptr<const LinkPairs> proofs) {
+  RobotScene scene(robot);
+  scene.set_allowed_collisions(allowed);
+  scene.set_link_pairs(std::move(proofs));
+  const RobotChecker checker = scene.snapshot();
+  RobotChecker::Scratch scratch(checker);
+  std::vector<PostureContact> result;
+  std::vector<Pose> poses;
+  for (const NamedPosture& posture : postures) {
+    forward_kinematics(robot, posture.configuration, poses);
+    for (const CheckedContact& contact :
+         checker.explain(posture.configuration, scratch, {.proved_free = true})) {
+      const bool do_meshes_touch =
+          !contact.is_proved_free && bodies_touch(bodies, robot.find_link(contact.first.name),
+                                                  robot.find_link(contact.second.name), poses);
+      result.push_back({posture.name, contact.first.name, contact.second.name,
+                        contact.overlap_depth, do_meshes_touch, contact.is_proved_free});
+    }
+  }
+  return result;
+}
+
+}  // namespace spherule
