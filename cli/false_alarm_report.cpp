@@ -29,7 +29,8 @@ std::string percent(double share) {
 
 std::string millimetres(double length) {
   std::ostringstream out;
-  out << std::setprecision(2) << length * kMillimetresPerMetre << " mm";
+  const double value = length * kMillimetresPerMetre;
+  out << std::fixed << std::setprecision(value < 10.0 ? 1 : 0) << value << " mm";
   return out.str();
 }
 
@@ -103,6 +104,9 @@ void describe_choice(const MeasuredCover& measured, std::ostream& out) {
       << " spheres; E of " << millimetres(measured.cover.options.max_error)
       << " everywhere would take " << choice.coarsest_spheres << " and refuse "
       << percent(choice.coarsest.refused_share().share()) << "\n";
+  if (!choice.is_reached && measured.random.refused_share().share() <= *measured.goal) {
+    out << "  so few postures do not show it: try more (--postures)\n";
+  }
 }
 
 }  // namespace
