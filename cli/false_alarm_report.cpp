@@ -44,6 +44,10 @@ Json counts_of(const FalseAlarms& alarms, const RobotModel& robot) {
   for (const PairProofs proofs : {PairProofs::kNone, PairProofs::kNever, PairProofs::kBoxes}) {
     json["share_with_proofs"][std::string(name_of(proofs))] = alarms.refused_share(proofs).share();
   }
+  json["always_touching"] = Json::array();
+  for (const auto& [first, second] : alarms.always_touching) {
+    json["always_touching"].push_back({link_name(robot, first), link_name(robot, second)});
+  }
   json["pairs"] = Json::array();
   for (const PairAlarms& pair : alarms.pairs) {
     json["pairs"].push_back(
@@ -153,6 +157,10 @@ std::string describe_false_alarms(const MeasuredCover& measured, const RobotMode
         << words_for(PairProofs::kBoxes);
   }
   out << "\n";
+  for (const auto& [first, second] : alarms.always_touching) {
+    out << "  not counted: the meshes of " << link_name(robot, first) << " and "
+        << link_name(robot, second) << " touch in all postures; disable the pair (--srdf)\n";
+  }
   if (measured.choice) describe_choice(measured, out);
   describe_pairs(alarms, robot, measured.cover, out);
   if (measured.given.postures > 0) {

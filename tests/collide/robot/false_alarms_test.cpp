@@ -108,6 +108,23 @@ TEST_F(TwoCubes, AllowedPairsRefuseNothing) {
   EXPECT_TRUE(alarms.pairs.empty());
 }
 
+TEST_F(TwoCubes, PairsThatAlwaysTouchAreNamedAndLeftOut) {
+  const FalseAlarms without = measure({});
+  EXPECT_TRUE(without.always_touching.empty());
+  // A sleeve around the slider's whole way.
+  robot_.model.add_link("sleeve", "post", {.name = "weld", .type = JointType::kFixed});
+  robot_.add_boxes(2, {AlignedBox3d(Vector3d(-9, 0, 0), Vector3d(9, 1, 1))});
+  robot_.model.attach("sleeve", std::make_shared<const SphereTree>(
+                                    build_tree(std::vector{sphere_around(robot_.boxes[2][0])})));
+  AllowedCollisions allowed(robot_.model);
+  allowed.forbid("post", "slider");
+  allowed.forbid("sleeve", "slider");
+  const FalseAlarms alarms = measure_false_alarms(robot_.model, robot_.bodies, allowed, nullptr);
+  EXPECT_EQ(alarms.always_touching, (std::vector{std::pair(1, 2)}));
+  EXPECT_EQ(alarms.free, without.free);
+  EXPECT_EQ(alarms.refused, without.refused);
+}
+
 TEST_F(TwoCubes, RefusesBadInput) {
   EXPECT_THROW(measure({.postures = 0}), Error);
   EXPECT_THROW(measure_false_alarms(robot_.model, robot_.bodies, *allowed_, nullptr,
