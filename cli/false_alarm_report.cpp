@@ -29,7 +29,8 @@ std::string percent(double share) {
 
 std::string millimetres(double length) {
   std::ostringstream out;
-  out << std::setprecision(2) << length * kMillimetresPerMetre << " mm";
+  const double value = length * kMillimetresPerMetre;
+  out << std::fixed << std::setprecision(value < 10.0 ? 1 : 0) << value << " mm";
   return out.str();
 }
 
@@ -42,6 +43,10 @@ Json counts_of(const FalseAlarms& alarms, const RobotModel& robot) {
   json["share"] = alarms.refused_share().share();
   for (const PairProofs proofs : {PairProofs::kNone, PairProofs::kNever, PairProofs::kBoxes}) {
     json["share_with_proofs"][std::string(name_of(proofs))] = alarms.refused_share(proofs).share();
+  }
+  json["always_touching"] = Json::array();
+  for (const auto& [first, second] : alarms.always_touching) {
+    json["always_touching"].push_back({link_name(robot, first), link_name(robot, second)});
   }
   json["pairs"] = Json::array();
   for (const PairAlarms& pair : alarms.pairs) {
@@ -103,6 +108,9 @@ void describe_choice(const MeasuredCover& measured, std::ostream& out) {
       << " spheres; E of " << millimetres(measured.cover.options.max_error)
       << " everywhere would take " << choice.coarsest_spheres << " and refuse "
       << percent(choice.coarsest.refused_share().share()) << "\n";
+  if (!choice.is_reached && measured.random.refused_share().share() <= *measured.goal) {
+    out << "  so few postures do not show it: try more (--postures)\n";
+  }
 }
 
 }  // namespace
@@ -149,6 +157,10 @@ std::string describe_false_alarms(const MeasuredCover& measured, const RobotMode
         << words_for(PairProofs::kBoxes);
   }
   out << "\n";
+  for (const auto& [first, second] : alarms.always_touching) {
+    out << "  not counted: the meshes of " << link_name(robot, first) << " and "
+        << link_name(robot, second) << " touch in all postures; disable the pair (--srdf)\n";
+  }
   if (measured.choice) describe_choice(measured, out);
   describe_pairs(alarms, robot, measured.cover, out);
   if (measured.given.postures > 0) {

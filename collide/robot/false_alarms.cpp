@@ -40,6 +40,7 @@ void sort_pairs(std::vector<PairAlarms>& pairs) {
 void add(const FalseAlarms& other, FalseAlarms& sum) {
   sum.postures += other.postures;
   sum.free += other.free;
+  sum.always_touching = other.always_touching;
   for (std::size_t i = 0; i < sum.refused.size(); ++i) sum.refused[i] += other.refused[i];
   for (const PairAlarms& pair : other.pairs) {
     const auto known = std::find_if(sum.pairs.begin(), sum.pairs.end(), [&](const PairAlarms& one) {
@@ -57,8 +58,10 @@ void add(const FalseAlarms& other, FalseAlarms& sum) {
 
 FalseAlarms count_alarms(const AlarmJudge& judge, const AlarmSample& sample, const LinkTrees& trees,
                          const FalseAlarmOptions& options) {
-  FalseAlarms result{
-      .postures = sample.postures(), .free = sample.free(), .proofs = options.proofs};
+  FalseAlarms result{.postures = sample.postures(),
+                     .free = sample.free(),
+                     .proofs = options.proofs,
+                     .always_touching = judge.always_touching()};
   std::array<PostureSet, 3> refused;
   refused.fill(PostureSet(sample.free()));
   PostureSet once(sample.free());  // by the proofs that blame pairs

@@ -12,6 +12,7 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -69,8 +70,13 @@ struct FalseAlarms {
   // How many of the free ones spheres refuse, by the proofs that are used (PairProofs).
   std::array<std::size_t, 3> refused{};
   PairProofs proofs = PairProofs::kBoxes;  // as the options have them
+  // Pairs of links that are not tested because their meshes touch in every one of
+  // kAlwaysPostures random postures: with them, no posture is free.
+  std::vector<std::pair<int, int>> always_touching{};
   // With these proofs; pairs that refuse something, those that refuse most first.
   std::vector<PairAlarms> pairs{};
+
+  static constexpr std::size_t kAlwaysPostures = 200;
 
   // With the proofs of the options, or others.
   RefusedShare refused_share() const { return refused_share(proofs); }
@@ -84,7 +90,8 @@ struct FalseAlarms {
 // solid_within.h), in which the spheres of two links overlap that are neither allowed nor proved
 // free by `proofs` (null: nothing is proved). Spheres must cover the bodies, as those of
 // cover_robot() do: the meshes of a pair are tested only where its spheres overlap. A posture in
-// which links touch that are allowed to is free.
+// which links touch that are allowed to is free. A pair that
+// seems to touch always is left out and named (FalseAlarms::always_touching).
 //
 // Equal for equal input and options, on any number of threads. Throws Error for no postures, for a
 // link with spheres and without a body that is tested, a body without or with both shapes, and

@@ -77,6 +77,24 @@ AlarmJudge::AlarmJudge(const RobotModel& robot, std::span<const LinkBody> bodies
       pairs_.push_back({first, second});
     }
   }
+  leave_out_always_touching();
+}
+
+void AlarmJudge::leave_out_always_touching() {
+  const auto width = static_cast<std::size_t>(robot_.variable_count());
+  const std::vector<double> postures = draw_postures(robot_, FalseAlarms::kAlwaysPostures, 1);
+  std::vector<TestedPair> left = pairs_;
+  std::vector<Pose> poses;
+  for (std::size_t at = 0; at < postures.size() && !left.empty(); at += width) {
+    forward_kinematics(robot_, std::span(postures).subspan(at, width), poses);
+    std::erase_if(left, [&](const TestedPair& pair) { return !touches(pair, poses, 0.0); });
+  }
+  for (const TestedPair& pair : left) {
+    always_touching_.emplace_back(pair.first, pair.second);
+    std::erase_if(pairs_, [&](const TestedPair& one) {
+      return one.first == pair.first && one.second == pair.second;
+    });
+  }
 }
 
 bool AlarmJudge::touches(const TestedPair& pair, std::span<const Pose> poses,

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace spherule::internal {
@@ -33,6 +34,8 @@ class AlarmJudge {
 
   const RobotModel& robot() const { return robot_; }
   const std::vector<TestedPair>& pairs() const { return pairs_; }
+  // As FalseAlarms has them; they are not among the pairs.
+  const std::vector<std::pair<int, int>>& always_touching() const { return always_touching_; }
   // Whether the meshes of a pair come within a clearance of each other.
   bool touches(const TestedPair& pair, std::span<const Pose> poses, double clearance) const;
   // Whether the test of a pair's spheres is spared.
@@ -41,10 +44,13 @@ class AlarmJudge {
   bool is_always_spared(const TestedPair& pair, PairProofs with) const;
 
  private:
+  void leave_out_always_touching();
+
   const RobotModel& robot_;
   const LinkPairs* proofs_;
   std::vector<std::vector<LinkBody>> bodies_;  // of each link
   std::vector<TestedPair> pairs_;
+  std::vector<std::pair<int, int>> always_touching_;
 };
 
 // The free ones of some postures, by the meshes. What is free does not depend on the trees by which

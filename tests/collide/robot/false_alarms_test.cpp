@@ -85,11 +85,11 @@ TEST_F(TwoCubes, ShareIsThatOfLengths) {
 
 TEST_F(TwoCubes, GapIsThatOfTheMeshes) {
   const FalseAlarms alarms = measure_false_alarms(robot_.model, robot_.bodies, *allowed_, nullptr,
-                                                  std::vector{0.1, 0.3, 0.5, -0.2, 3.0});
+                                                  std::vector{0.1, 0.35, 0.5, -0.2, 3.0});
   EXPECT_EQ(alarms.free, 4U);
   ASSERT_EQ(alarms.pairs.size(), 1U);
   EXPECT_EQ(alarms.pairs[0].refused, 3U);
-  EXPECT_NEAR(alarms.pairs[0].median_gap, 0.3, 0.03);
+  EXPECT_NEAR(alarms.pairs[0].median_gap, 0.35, 0.035);
 }
 
 TEST_F(TwoCubes, ProofsSpareTests) {
@@ -106,6 +106,23 @@ TEST_F(TwoCubes, AllowedPairsRefuseNothing) {
   const FalseAlarms alarms = measure({.postures = 100});
   EXPECT_EQ(alarms.free, 100U);
   EXPECT_TRUE(alarms.pairs.empty());
+}
+
+TEST_F(TwoCubes, PairsThatAlwaysTouchAreNamedAndLeftOut) {
+  const FalseAlarms without = measure({});
+  EXPECT_TRUE(without.always_touching.empty());
+  // A sleeve around the slider's whole way.
+  robot_.model.add_link("sleeve", "post", {.name = "weld", .type = JointType::kFixed});
+  robot_.add_boxes(2, {AlignedBox3d(Vector3d(-9, 0, 0), Vector3d(9, 1, 1))});
+  robot_.model.attach("sleeve", std::make_shared<const SphereTree>(
+                                    build_tree(std::vector{sphere_around(robot_.boxes[2][0])})));
+  AllowedCollisions allowed(robot_.model);
+  allowed.forbid("post", "slider");
+  allowed.forbid("sleeve", "slider");
+  const FalseAlarms alarms = measure_false_alarms(robot_.model, robot_.bodies, allowed, nullptr);
+  EXPECT_EQ(alarms.always_touching, (std::vector{std::pair(1, 2)}));
+  EXPECT_EQ(alarms.free, without.free);
+  EXPECT_EQ(alarms.refused, without.refused);
 }
 
 TEST_F(TwoCubes, RefusesBadInput) {

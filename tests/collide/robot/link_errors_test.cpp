@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -157,6 +158,16 @@ TEST_F(ThreeLinks, CoarsestCoversDoForAWeakGoal) {
   EXPECT_EQ(errors_of(choice), std::vector<double>(4, 0.2));
   EXPECT_EQ(choice.covers, 4U);
   EXPECT_EQ(choice.spheres, choice.coarsest_spheres);
+  // Verified by the postures of the seeds that follow that of the search, 3.
+  std::size_t free = 0;
+  std::size_t refused = 0;
+  for (std::uint64_t seed = 4; seed < 4 + LinkErrorChoice::kVerification; ++seed) {
+    const FalseAlarms part = measure({0.2, 0.2, 0.2, 0.2}, {.postures = 4000, .seed = seed});
+    free += part.free;
+    refused += part.refused_share().refused;
+  }
+  EXPECT_EQ(choice.verified.free, free);
+  EXPECT_EQ(choice.verified.refused_share().refused, refused);
 }
 
 TEST_F(ThreeLinks, SaysThatAGoalIsOutOfReach) {
@@ -210,7 +221,11 @@ TEST_F(ThreeLinks, FinalCoversAreVerified) {
   const CoverLinks worse = [this](std::span<const LinkError> errors) { return cover(errors, 1.1); };
   const LinkErrorChoice choice = choose(options(0.05), worse);
   std::vector<double> errors = errors_of(choice);
-  for (double& error : errors) error *= 1.1;
+  for (std::size_t link = 0; link < 4; ++link) {
+    errors[link] *= 1.1;
+    EXPECT_EQ(choice.links[link].spheres,
+              cover_box(robot_.boxes[link][0], errors[link])->spheres().size());
+  }
   const FalseAlarms fresh = measure(errors, {.postures = 20000, .seed = 99});
   EXPECT_NEAR(choice.verified.refused_share().share(), fresh.refused_share().share(), 0.005);
   EXPECT_EQ(choice.is_reached, choice.upper_bound <= 0.05);
