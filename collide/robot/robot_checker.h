@@ -83,7 +83,9 @@ struct RobotClearance {
 //
 // "Free" means: no two spheres (padded as the scene says) of what is tested against each other
 // overlap or touch, in exact arithmetic under the poses that forward_kinematics() computes (G4); a
-// solid mesh or primitive is tested with its inside, and what is confirmed as its mesh. What is not
+// solid mesh or primitive is tested with its inside, and what is confirmed as its mesh. Two bodies
+// that are proved free of each other (RobotScene::set_link_pairs()) are free of each other, whatever
+// their spheres do: there the meshes are apart, of the exact mechanism. What is not
 // free has a gap of rounding only (G5), collision_slack() for spheres.
 //
 // Configurations and motions are evaluated in single precision with proved margins, eight side by
@@ -153,12 +155,13 @@ class RobotChecker {
                       double resolution = 1e-4) const;
 
   // Whether any two of the spheres and solids that are tested against each other come within
-  // `clearance` (metres) of touching: never false if they do in exact arithmetic. Throws Error,
-  // too, as require_clearance() does.
+  // `clearance` (metres) of touching: never false if they do in exact arithmetic. Proofs of pairs
+  // say nothing of clearances: their spheres are asked. Throws Error, too, as require_clearance()
+  // does.
   bool within(std::span<const double> configuration, double clearance, Scratch& scratch) const;
 
   // How far the robot is from the nearest contact, and of which two: of the spheres, where contacts
-  // are confirmed, too, so that `lower` holds for the meshes. Allocates.
+  // are confirmed or pairs proved free, too, so that `lower` holds for the meshes. Allocates.
   RobotClearance clearance(std::span<const double> configuration, Scratch& scratch) const;
 
   // What touches what: one contact, the deepest, for each two bodies, and each body and obstacle,

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What `spherule robot` proves of pairs of links and writes, and `spherule check` takes.
+#include "tests/cli/command_test_support.h"
+
+#include <string>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+using nlohmann::json;
+
+// A tool that slides beside a block, 0.02 m away from it where the slide stands at zero.
+std::string gantry(const std::string& lower) {
+  return R"(<?xml version="1.0"?>
+<robot name="gantry">
+  <link name="block"><collision><geometry><box size="0.3 0.3 0.3"/></geometry></collision></link>
+  <link name="carriage"/>
+  <link name="tool"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+  <joint name="slide" type="prismatic"><parent link="block"/><child link="carriage"/>
+    <origin xyz="0.22 0 0"/><axis xyz="1 0 0"/>
+    <limit lower=")" +
+         lower + R"(" upper="0.5" effort="1" velocity="1"/></joint>
+  <joint name="turn" type="revolute"><parent link="carriage"/><child link="tool"/>
+    <axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+</robot>
+)";
+}
+
+class RobotPairsTest : public CommandTest {
+ protected:
+  Outcome cover(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> line = {"robot", "gantry.urdf", "-o",  "out",        "--effort",
+                                     "0",     "--max-error", "0.1", "--postures", "500"};
+    line.insert(line.end(), more.begin(), more.end());
+    return run(line);
+  }
+  Outcome check(const std::vector<std::string>& more) {
+    write("empty.json", R"({"format": "spherule-scene", "version": 1})");
+    write("path.csv", "slide, turn\n0, 0\n0.1, 0.5\n");
+    std::vector<std::string> line = {"check",    "gantry.urdf", "empty.json",
+                                     "path.csv", "--spheres",   "out/gantry.spheres.json"};
+    line.insert(line.end(), more.begin(), more.end());
+    return run(line);
+  }
+};
+
+TEST_F(RobotPairsTest, PairsThatNeverTouchAreIgnoredWithTheReason) {
+  write("gantry.urdf", gantry("0"));
+  const Outcome result = cover();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_NE(result.out.find("pairs of links: 1 proved never to touch"), std::string::npos)
+      << result.out;
+  const std::string reason = "Never (proved within the limits)";
+  EXPECT_NE(read("out/gantry.srdf")
+                .find(R"(link1="block" link2="tool" reason=")" + reason + "\""),
+            std::string::npos);
+  for (const char* const file : {"out/gantry.curobo.yml", "out/gantry.xrdf"}) {
+    EXPECT_NE(read(file).find("block: [tool]  # " + reason + ": tool\n"), std::string::npos)
+        << read(file);
+  }
+  const json report = read_json("out/gantry.report.json");
+  EXPECT_EQ(report["link_pairs"]["never"], 1);
+  EXPECT_EQ(report["link_pairs"]["pairs"][0]["links"], (json{"block", "tool"}));
+  EXPECT_EQ(report["link_pairs"]["pairs"][0]["free_share"], 1.0);
+  EXPECT_TRUE(report["posture_contacts"].empty());
+}
+
+TEST_F(RobotPairsTest, WithoutProofsSpheresThatTouchAtRestAreAWarning) {
+  write("gantry.urdf", gantry("0"));
+  const Outcome result = cover({"--proofs", "none"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("in the rest posture block and tool touch by their spheres alone"),
+            std::string::npos)
+      << result.err;
+  EXPECT_FALSE(exists("out/gantry.pairs"));
+  EXPECT_EQ(result.out.find("--pairs"), std::string::npos) << result.out;
+}
+
+TEST_F(RobotPairsTest, CheckTakesTheProofs) {
+  write("gantry.urdf", gantry("-0.05"));
+  const Outcome result = cover();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("free for who takes the proofs"), std::string::npos) << result.err;
+  EXPECT_NE(result.out.find("--pairs out/gantry.pairs"), std::string::npos) << result.out;
+  const json pair = read_json("out/gantry.report.json")["link_pairs"]["pairs"][0];
+  EXPECT_EQ(pair["verdict"], "touching");
+  EXPECT_LT(pair["witness"]["slide"], -0.0199);
+
+  EXPECT_EQ(check({"--edges"}).exit_code, 1);
+  EXPECT_EQ(check({"--edges", "--pairs", "out/gantry.pairs"}).exit_code, 0);
+  // For other limits nothing was proved.
+  write("gantry.urdf", gantry("-0.06"));
+  const Outcome other = check({"--pairs", "out/gantry.pairs"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.err.find("the limits of joint 'slide' are wider"), std::string::npos)
+      << other.err;
+}
+
+TEST_F(RobotPairsTest, NamedStatesThatTouchAreTold) {
+  write("gantry.urdf", gantry("-0.05"));
+  write("gantry.srdf", R"(<robot name="gantry"><group name="all"><joint name="slide"/></group>
+<group_state name="home" group="all"><joint name="slide" value="-0.04"/></group_state></robot>)");
+  const Outcome result = cover({"--srdf", "gantry.srdf"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("in all/home block and tool touch, by their meshes, too"),
+            std::string::npos)
+      << result.err;
+}
+
+}  // namespace
+}  // namespace spherule
