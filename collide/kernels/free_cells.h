@@ -55,12 +55,13 @@ class FreeCells {
   };
   const std::array<Axis, kMostJoints>& axes() const { return axes_; }
 
+  // Of cells that are proved free in another way.
   FreeCells(const std::array<Axis, kMostJoints>& axes,
             const std::array<std::uint64_t, kCells>& words)
       : axes_(axes), words_(words) {}
 
   // Bit i of word j: in all positions whose coordinates lie in [i, i + 1] and [j, j + 1] the two
-  // are further apart than the margin.
+  // are proved free; by of(): further apart than the margin.
   const std::array<std::uint64_t, kCells>& words() const { return words_; }
 
  private:

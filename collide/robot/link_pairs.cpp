@@ -113,14 +113,24 @@ std::string_view name_of(PairVerdict verdict) {
 }
 
 LinkPairs::LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t mechanism,
-                     std::uint64_t bodies)
-    : pairs_(std::move(pairs)), link_count_(link_count), mechanism_(mechanism), bodies_(bodies) {
+                     std::uint64_t bodies, int tool_link)
+    : pairs_(std::move(pairs)),
+      link_count_(link_count),
+      mechanism_(mechanism),
+      bodies_(bodies),
+      tool_link_(tool_link) {
+  if (tool_link < -1 || tool_link >= static_cast<int>(link_count)) {
+    throw Error("link pairs", "the link of a tool is not there");
+  }
   std::pair<int, int> last{-1, -1};
   for (const LinkPair& pair : pairs_) {
     if (pair.first < 0 || pair.first >= pair.second ||
         static_cast<std::size_t>(pair.second) >= link_count ||
         !(last < std::pair(pair.first, pair.second))) {
       throw Error("link pairs", "the pairs are not in order");
+    }
+    if (tool_link >= 0 && pair.first != tool_link && pair.second != tool_link) {
+      throw Error("link pairs", "a pair is not of the tool's link");
     }
     last = {pair.first, pair.second};
   }
@@ -137,7 +147,7 @@ const LinkPair* LinkPairs::find(int first, int second) const noexcept {
 
 namespace {
 
-// Of all pairs, or those of one link (-1: all).
+// Of all pairs, or those of a link that a tool stands for (-1: all).
 LinkPairs prove_pairs_of(int only, const RobotModel& robot, std::span<const LinkBody> bodies,
                          const LinkPairOptions& options) {
   check(robot, bodies, options);
@@ -177,7 +187,7 @@ LinkPairs prove_pairs_of(int only, const RobotModel& robot, std::span<const Link
                      "pairs of links");
   });
   return LinkPairs(std::move(pairs), count, mechanism_fingerprint(robot),
-                   bodies_fingerprint(bodies));
+                   bodies_fingerprint(bodies), only);
 }
 
 }  // namespace

@@ -72,9 +72,10 @@ class LinkPairs {
  public:
   LinkPairs() = default;
   // Pairs in the order of their indices, each once, first before second, and the fingerprints of
-  // what they hold for. Throws Error otherwise, or for indices beyond the number of links.
+  // what they hold for. Where they are of a tool, `tool_link` is the link that carries it, and one
+  // of each pair. Throws Error otherwise, or for indices beyond the number of links.
   LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t mechanism,
-            std::uint64_t bodies);
+            std::uint64_t bodies, int tool_link = -1);
 
   // In the order of their indices.
   const std::vector<LinkPair>& pairs() const { return pairs_; }
@@ -83,6 +84,8 @@ class LinkPairs {
   // The fingerprints of that robot and its bodies.
   std::uint64_t mechanism() const { return mechanism_; }
   std::uint64_t bodies() const { return bodies_; }
+  // The link for which a tool that it carries stands alone (prove_attached_pairs()); -1: none.
+  int tool_link() const { return tool_link_; }
 
   // The pair of two links in either order, or null: rigidly joined, or a link without a body. Who
   // asks often keeps it: a binary search.
@@ -105,6 +108,7 @@ class LinkPairs {
   std::size_t link_count_ = 0;
   std::uint64_t mechanism_ = 0;
   std::uint64_t bodies_ = 0;
+  int tool_link_ = -1;
 };
 
 // Proves what it can of all pairs of links with bodies, within the limits of the joints; continuous

@@ -12,7 +12,7 @@
 #include <utility>
 
 // Layout: magic; version (32 bits); links (32); mechanism and bodies (64
-// each); pairs (32); for each pair first,
+// each); the link of a tool (32); pairs (32); for each pair first,
 // second (32 each), verdict (8), smallest gap (double), searched boxes (64), the count (32) and the
 // numbers (doubles) of the witness, the count of variables (8) and for each index (32), wraps (8),
 // lower and upper (doubles), the count of nodes (32) and their bytes; CRC-64 of all before it.
@@ -128,6 +128,7 @@ std::string internal::encode_link_pairs(const LinkPairs& pairs) {
   append(bytes, static_cast<std::uint32_t>(pairs.link_count()));
   append(bytes, pairs.mechanism());
   append(bytes, pairs.bodies());
+  append(bytes, static_cast<std::uint32_t>(pairs.tool_link()));
   append(bytes, static_cast<std::uint32_t>(pairs.pairs().size()));
   for (const LinkPair& pair : pairs.pairs()) {
     append(bytes, static_cast<std::uint32_t>(pair.first));
@@ -172,11 +173,12 @@ LinkPairs internal::decode_link_pairs(std::string_view bytes, const std::string&
     const auto links = reader.take<std::uint32_t>();
     const auto mechanism = reader.take<std::uint64_t>();
     const auto bodies = reader.take<std::uint64_t>();
+    const int tool_link = reader.take_index();
     const auto count = reader.take<std::uint32_t>();
     std::vector<LinkPair> pairs;
     for (std::uint32_t i = 0; i < count; ++i) pairs.push_back(take_pair(reader, name));
     if (!reader.is_at_end()) throw Error(name, "the file is too long");
-    return LinkPairs(std::move(pairs), links, mechanism, bodies);
+    return LinkPairs(std::move(pairs), links, mechanism, bodies, tool_link);
   } catch (const Error& error) {
     throw Error(name, error.reason());
   }

@@ -84,9 +84,9 @@ struct RobotClearance {
 // "Free" means: no two spheres (padded as the scene says) of what is tested against each other
 // overlap or touch, in exact arithmetic under the poses that forward_kinematics() computes (G4); a
 // solid mesh or primitive is tested with its inside, and what is confirmed as its mesh. Two bodies
-// that are proved free of each other (RobotScene::set_link_pairs()) are free of each other, whatever
-// their spheres do: there the meshes are apart, of the exact mechanism. What is not
-// free has a gap of rounding only (G5), collision_slack() for spheres.
+// that are proved free of each other (RobotScene::set_link_pairs()) are free of each other,
+// whatever their spheres do: there the meshes are apart, of the exact mechanism. What is not free
+// has a gap of rounding only (G5), collision_slack() for spheres.
 //
 // Configurations and motions are evaluated in single precision with proved margins, eight side by
 // side; what these leave undecided is decided by the queries of the library in double precision:

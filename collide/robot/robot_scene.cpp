@@ -134,14 +134,20 @@ void RobotScene::detach(std::string_view object) {
   attached_.erase(found);
 }
 
-void RobotScene::require_proofs_of_this(const std::shared_ptr<const LinkPairs>& pairs) const {
-  if (pairs != nullptr && pairs->mechanism() != mechanism_fingerprint(robot_)) {
+void RobotScene::require_proofs(const std::shared_ptr<const LinkPairs>& pairs,
+                                int tool_link) const {
+  if (pairs == nullptr) return;
+  if (pairs->mechanism() != mechanism_fingerprint(robot_)) {
     throw Error("proofs of pairs", "they are of another robot: its links and joints are not these");
+  }
+  if (pairs->tool_link() != tool_link) {
+    throw Error("proofs of pairs", tool_link < 0 ? "they are of a tool alone"
+                                                 : "they are of no tool on the object's link");
   }
 }
 
 void RobotScene::set_link_pairs(std::shared_ptr<const LinkPairs> pairs) {
-  require_proofs_of_this(pairs);
+  require_proofs(pairs, -1);
   link_pairs_ = std::move(pairs);
 }
 
@@ -151,7 +157,7 @@ void RobotScene::set_attached_pairs(std::string_view object,
   if (found == attached_.end()) {
     throw Error(std::string(object), "there is no attached object of that name");
   }
-  require_proofs_of_this(pairs);
+  require_proofs(pairs, robot_.find_link(found->second.link));
   found->second.pairs = std::move(pairs);
 }
 

@@ -73,10 +73,10 @@ class RobotScene {
   // two links are proved free of each other they are free whatever their spheres say: in the
   // configurations of their boxes, and on motions that stay in these. The bodies that the proofs
   // are about have to be what the spheres of the links stand for: all of them. Pairs with padding
-  // are tested everywhere. Throws Error for proofs of another robot.
+  // are tested everywhere. Throws Error for proofs of another robot, or of a tool.
   void set_link_pairs(std::shared_ptr<const LinkPairs> pairs);
-  // The same for an attached object and all links, by prove_attached_pairs() of its link; forgotten
-  // with the object. Throws Error, too, for an unknown object.
+  // The same for an attached object and all links, by prove_attached_pairs(); forgotten with the
+  // object. Throws Error, too, for an unknown object, and for proofs of a tool on another link.
   void set_attached_pairs(std::string_view object, std::shared_ptr<const LinkPairs> pairs);
   // Why two links are not tested against each other, or not everywhere: what is allowed, and then
   // what is proved. Throws Error for names that are no links.
@@ -152,7 +152,8 @@ class RobotScene {
   // The trees whose spheres a body consists of.
   std::vector<std::shared_ptr<const SphereTree>> trees_of(std::string_view body) const;
   void forget(std::string_view name);
-  void require_proofs_of_this(const std::shared_ptr<const LinkPairs>& pairs) const;
+  // That they are of this robot, and of a tool on that link (-1: of its links).
+  void require_proofs(const std::shared_ptr<const LinkPairs>& pairs, int tool_link) const;
 
   RobotModel robot_;
   Pose world_from_root_;

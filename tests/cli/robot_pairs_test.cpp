@@ -53,8 +53,7 @@ TEST_F(RobotPairsTest, PairsThatNeverTouchAreIgnoredWithTheReason) {
   EXPECT_NE(result.out.find("pairs of links: 1 proved never to touch"), std::string::npos)
       << result.out;
   const std::string reason = "Never (proved within the limits)";
-  EXPECT_NE(read("out/gantry.srdf")
-                .find(R"(link1="block" link2="tool" reason=")" + reason + "\""),
+  EXPECT_NE(read("out/gantry.srdf").find(R"(link1="block" link2="tool" reason=")" + reason + "\""),
             std::string::npos);
   for (const char* const file : {"out/gantry.curobo.yml", "out/gantry.xrdf"}) {
     EXPECT_NE(read(file).find("block: [tool]  # " + reason + ": tool\n"), std::string::npos)

@@ -293,6 +293,19 @@ TEST_F(TwoBarScene, ProofsOfAnotherRobotAreRefused) {
   EXPECT_THROW(own.reason("first", "nobody"), Error);
 }
 
+TEST_F(TwoBarScene, ProofsOfToolsAreForTheirLinkAlone) {
+  const auto of_tool = std::make_shared<const LinkPairs>(prove_attached_pairs(
+      robot_.model, robot_.bodies, {.link = 2, .mesh = robot_.bodies[1].mesh}));
+  RobotScene scene(robot_.model);
+  const auto& tree = robot_.model.links()[2].trees.front();
+  scene.attach("tool", "second", tree);
+  scene.attach("other", "first", tree);
+  scene.set_attached_pairs("tool", of_tool);
+  EXPECT_THROW(scene.set_link_pairs(of_tool), Error);
+  EXPECT_THROW(scene.set_attached_pairs("other", of_tool), Error);
+  EXPECT_THROW(scene.set_attached_pairs("tool", pairs_), Error);
+}
+
 TEST_F(TwoBarScene, WhatNeverTouchesMayBeAllowed) {
   AllowedCollisions allowed(robot_.model);
   allowed.allow(*pairs_);
