@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
 #ifdef SPHERULE_HAS_ROBOT
   add_robot(app, exit_code);
   add_audit_robot(app, exit_code);
+  add_check_srdf(app, exit_code);
   add_check(app, exit_code);
 #endif
 #ifdef SPHERULE_HAS_BASELINES

@@ -40,11 +40,7 @@ Json pair_summary(const LinkPairs& pairs, const RobotModel& robot, double second
     Json written;
     written["links"] = {link_name(robot, pair.first), link_name(robot, pair.second)};
     written["verdict"] = name_of(pair.verdict);
-    if (!pair.witness.empty()) {
-      for (std::size_t i = 0; i < pair.witness.size(); ++i) {
-        written["witness"][joint_of(robot, i).name] = pair.witness[i];
-      }
-    }
+    if (!pair.witness.empty()) written["witness"] = posture_json(robot, pair.witness);
     written["smallest_gap"] = to_json(pair.smallest_gap);
     written["free_share"] = pair.boxes.free_share();
     written["boxes"] = pair.boxes.node_count() / 2 + 1;
@@ -73,6 +69,14 @@ std::string describe_link_pairs(const LinkPairs& pairs, double seconds) {
       << " can touch, " << count_of(pairs, PairVerdict::kUnknown) << " unknown; " << std::fixed
       << std::setprecision(1) << seconds << " s\n";
   return out.str();
+}
+
+Json posture_json(const RobotModel& robot, const std::vector<double>& configuration) {
+  Json json;
+  for (std::size_t i = 0; i < configuration.size(); ++i) {
+    json[joint_of(robot, i).name] = configuration[i];
+  }
+  return json;
 }
 
 std::string describe_posture(const RobotModel& robot, const std::vector<double>& configuration) {

@@ -21,6 +21,9 @@ Json to_json(const std::vector<PostureContact>& contacts);
 // The counts, for a person.
 std::string describe_link_pairs(const LinkPairs& pairs, double seconds);
 
+// A posture by the names of the joints, radians and metres.
+Json posture_json(const RobotModel& robot, const std::vector<double>& configuration);
+
 // A posture of a robot as a person reads it: joints by name, degrees and metres.
 std::string describe_posture(const RobotModel& robot, const std::vector<double>& configuration);
 
