@@ -15,7 +15,7 @@ namespace spherule {
 namespace {
 
 constexpr int kAttempts = 4;
-// What the search may use up of the goal, and of that once more for each verification that failed.
+// What the search may use up of the goal, and of that at most after a verification that failed.
 constexpr double kReserve = 0.95;
 constexpr double kConfidenceOfAttempt = 1.0 - (1.0 - LinkErrorChoice::kConfidence) / kAttempts;
 
@@ -95,13 +95,20 @@ class Choice {
     LinkErrorChoice result;
     result.coarsest = internal::count_alarms(judge_, random, coarsest, options_.sample);
     result.coarsest_spheres = search_.spheres(steps_);
+    double reserve = kReserve;
+    double reserve_of_given = 1.0;
     for (int attempt = 0; attempt < kAttempts && !result.is_reached; ++attempt) {
-      std::vector<std::size_t> limits = {
-          most_of(random.free(), options_.goal * std::pow(kReserve, attempt + 1))};
-      if (given) limits.push_back(most_of(given->free(), options_.goal));
+      std::vector<std::size_t> limits = {most_of(random.free(), options_.goal * reserve)};
+      if (given) limits.push_back(most_of(given->free(), options_.goal * reserve_of_given));
       const bool is_found = search_.run(limits, steps_, [&](const char* what) { tell(what); });
       verify(static_cast<std::uint64_t>(attempt), given, result);
       if (!is_found) break;
+      // By as much as the choice was better in the sample that it was made by.
+      if (result.upper_bound > options_.goal) {
+        reserve *= std::min(kReserve, options_.goal / result.upper_bound);
+      } else {
+        reserve_of_given *= kReserve;
+      }
     }
     result.covers = search_.covers();
     return result;
