@@ -10,6 +10,7 @@
 #include "collide/robot/link_bodies.h"
 #include "collide/robot/srdf_judgement.h"
 #include "collide/robot/urdf.h"
+#include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 
@@ -102,7 +103,7 @@ std::string describe(const SrdfJudgement& judgement, const RobotModel& robot) {
   return out.str();
 }
 
-Json to_json(const SrdfJudgement& judgement, const RobotModel& robot) {
+Json judgement_json(const SrdfJudgement& judgement, const RobotModel& robot) {
   Json json;
   json["format"] = "spherule-srdf-check";
   json["version"] = 1;
@@ -128,6 +129,9 @@ Json to_json(const SrdfJudgement& judgement, const RobotModel& robot) {
 int check_srdf(const CheckSrdfArguments& arguments) {
   const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
   const SemanticDescription semantics = read_srdf(arguments.srdf);
+  if (semantics.disabled_pairs.empty()) {
+    throw Error(arguments.srdf, "it disables no pair of links: is it an SRDF?");
+  }
   const std::vector<LinkBody> bodies =
       link_bodies(robot, {.geometry = geometry_named(arguments.geometry)});
   const LinkPairs proofs = [&] {
@@ -137,7 +141,7 @@ int check_srdf(const CheckSrdfArguments& arguments) {
     return prove_link_pairs(robot.model, bodies, options);
   }();
   const SrdfJudgement judgement = judge_srdf(robot.model, semantics, proofs);
-  std::cout << (arguments.json ? to_text(to_json(judgement, robot.model))
+  std::cout << (arguments.json ? to_text(judgement_json(judgement, robot.model))
                                : describe(judgement, robot.model));
   return std::any_of(judgement.pairs.begin(), judgement.pairs.end(),
                      [](const JudgedPair& judged) { return judged.is_wrong; })

@@ -100,7 +100,7 @@ std::string describe(const PostureContact& contact) {
     out << ", by their meshes, too";
     return out.str();
   }
-  out << " by their spheres alone, " << std::setprecision(2)
+  out << " by their spheres alone, " << std::fixed << std::setprecision(1)
       << contact.overlap_depth * kMillimetresPerMetre << " mm deep: "
       << (contact.is_proved_free ? "free for who takes the proofs (NAME.pairs), " : "")
       << "a smaller E for either, or --false-alarms, would mend it";

@@ -70,7 +70,7 @@ TEST_F(RobotPairsTest, WithoutProofsSpheresThatTouchAtRestAreAWarning) {
   write("gantry.urdf", gantry("0"));
   const Outcome result = cover({"--proofs", "none"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.err.find("in the rest posture block and tool touch by their spheres alone"),
+  EXPECT_NE(result.err.find("in the rest posture tool and block touch by their spheres alone"),
             std::string::npos)
       << result.err;
   EXPECT_FALSE(exists("out/gantry.pairs"));
@@ -103,7 +103,7 @@ TEST_F(RobotPairsTest, NamedStatesThatTouchAreTold) {
 <group_state name="home" group="all"><joint name="slide" value="-0.04"/></group_state></robot>)");
   const Outcome result = cover({"--srdf", "gantry.srdf"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.err.find("in all/home block and tool touch, by their meshes, too"),
+  EXPECT_NE(result.err.find("in all/home tool and block touch, by their meshes, too"),
             std::string::npos)
       << result.err;
 }
