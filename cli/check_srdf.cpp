@@ -97,8 +97,7 @@ std::string describe(const SrdfJudgement& judgement, const RobotModel& robot) {
     out << "could be disabled, too (proved never to touch):\n";
   }
   for (const auto& [first, second] : judgement.could_be_added) {
-    out << "  " << robot.links()[static_cast<std::size_t>(first)].name << " and "
-        << robot.links()[static_cast<std::size_t>(second)].name << "\n";
+    out << "  " << link_name(robot, first) << " and " << link_name(robot, second) << "\n";
   }
   return out.str();
 }
@@ -120,8 +119,7 @@ Json judgement_json(const SrdfJudgement& judgement, const RobotModel& robot) {
   }
   json["could_be_added"] = Json::array();
   for (const auto& [first, second] : judgement.could_be_added) {
-    json["could_be_added"].push_back({robot.links()[static_cast<std::size_t>(first)].name,
-                                      robot.links()[static_cast<std::size_t>(second)].name});
+    json["could_be_added"].push_back({link_name(robot, first), link_name(robot, second)});
   }
   return json;
 }

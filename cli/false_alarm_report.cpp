@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/false_alarm_report.h"
 
+#include "cli/pair_report.h"
 #include "cli/units.h"
 
 #include <algorithm>
@@ -16,10 +17,6 @@ namespace {
 constexpr std::size_t kShownPairs = 5;
 // Meshes nearer to each other than this part of the E of their links together touch, for spheres.
 constexpr double kReallyClose = 1.0 / 16.0;
-
-const std::string& link_name(const RobotModel& robot, int link) {
-  return robot.links()[static_cast<std::size_t>(link)].name;
-}
 
 std::string percent(double share) {
   std::ostringstream out;

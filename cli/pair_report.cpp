@@ -12,10 +12,6 @@
 namespace spherule {
 namespace {
 
-const std::string& link_name(const RobotModel& robot, int link) {
-  return robot.links()[static_cast<std::size_t>(link)].name;
-}
-
 const Joint& joint_of(const RobotModel& robot, std::size_t variable) {
   return robot.joints()[static_cast<std::size_t>(robot.variable_joints()[variable])];
 }
@@ -27,6 +23,10 @@ std::size_t count_of(const LinkPairs& pairs, PairVerdict verdict) {
 }
 
 }  // namespace
+
+const std::string& link_name(const RobotModel& robot, int link) {
+  return robot.links()[static_cast<std::size_t>(link)].name;
+}
 
 Json pair_summary(const LinkPairs& pairs, const RobotModel& robot, double seconds) {
   Json json;

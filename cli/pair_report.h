@@ -10,6 +10,9 @@
 
 namespace spherule {
 
+// The name of a link by its index.
+const std::string& link_name(const RobotModel& robot, int link);
+
 // What is proved of the pairs of a robot's links: how many there are of each kind, and every pair
 // with its verdict, the posture in which the two touch (by joints; radians or metres), the smallest
 // gap found (metres), and the share of the postures within the limits that is proved free.
