@@ -94,19 +94,20 @@ FreeBoxes::FreeBoxes(std::vector<Variable> variables, std::string_view nodes)
 }
 
 // The values of the variables, turns taken off where they wrap: as many as `turns` says, if given.
-bool FreeBoxes::take(std::span<const double> configuration, const Values* turns, Values& values,
-                     Values& turns_taken) const noexcept {
+// They may be beyond the ranges by so much.
+bool FreeBoxes::take(std::span<const double> configuration, double beyond, const Values* turns,
+                     Values& values, Values& turns_taken) const noexcept {
   for (std::size_t i = 0; i < variables_.size(); ++i) {
     const Variable& variable = variables_[i];
     const auto index = static_cast<std::size_t>(variable.index);
     if (index >= configuration.size()) return false;
     double value = configuration[index];
-    if (!(std::abs(value) <= kLargestPosition)) return false;
+    if (!(std::abs(value) <= kLargestPosition + beyond)) return false;
     if (variable.wraps) {
       turns_taken[i] = turns != nullptr ? (*turns)[i] : std::round(value / kTurn);
       value -= turns_taken[i] * kTurn;
     }
-    if (value < variable.lower - kTolerance || value > variable.upper + kTolerance) return false;
+    if (value < variable.lower - beyond || value > variable.upper + beyond) return false;
     values[i] = value;
   }
   return true;
@@ -115,7 +116,7 @@ bool FreeBoxes::take(std::span<const double> configuration, const Values* turns,
 bool FreeBoxes::contains(std::span<const double> configuration) const noexcept {
   Values values;
   Values turns;
-  if (!take(configuration, nullptr, values, turns)) return false;
+  if (!take(configuration, kTolerance, nullptr, values, turns)) return false;
   return point_is_free(0, values) || seam_is_free(values, 0);
 }
 
@@ -149,9 +150,11 @@ bool FreeBoxes::contains_edge(std::span<const double> from,
   Values first;
   Values last;
   Values turns{};
-  if (!take(from, nullptr, first, turns)) return false;
+  // Its points are rounded, and are to be within the tolerance.
+  constexpr double kBeyond = 0.5 * kTolerance;
+  if (!take(from, kBeyond, nullptr, first, turns)) return false;
   Values same;
-  if (!take(to, &turns, last, same)) return false;
+  if (!take(to, kBeyond, &turns, last, same)) return false;
   return edge_is_free(0, first, last, 0.0, 1.0);
 }
 

@@ -85,8 +85,8 @@ class FreeBoxes {
   };
   using Values = std::array<double, kMostVariables>;
 
-  bool take(std::span<const double> configuration, const Values* turns, Values& values,
-            Values& turns_taken) const noexcept;
+  bool take(std::span<const double> configuration, double beyond, const Values* turns,
+            Values& values, Values& turns_taken) const noexcept;
   bool point_is_free(std::size_t node, const Values& values) const noexcept;
   bool seam_is_free(Values& values, std::size_t first) const noexcept;
   bool edge_is_free(std::size_t node, const Values& from, const Values& to, double first,

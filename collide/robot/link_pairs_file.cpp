@@ -100,7 +100,10 @@ const std::string& name_of_link(const RobotModel& robot, int link) {
 
 // What was proved for a pair covers the ranges that would be searched for this robot.
 void check_ranges(const LinkPair& pair, const RobotModel& robot, const std::string& name) {
-  if (pair.boxes.variables().empty()) return;  // nothing is proved
+  if (pair.boxes.variables().empty()) {
+    if (pair.boxes.is_all_free()) throw Error(name, "a pair is proved without variables");
+    return;  // nothing is proved
+  }
   const std::vector<FreeBoxes::Variable> ranges =
       internal::ranges_of(robot, internal::moving_joints(robot, pair.first, pair.second));
   const std::vector<FreeBoxes::Variable>& proved = pair.boxes.variables();

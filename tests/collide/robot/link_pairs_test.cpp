@@ -15,6 +15,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <string>
 #include <vector>
 
 namespace spherule::test {
@@ -200,6 +201,33 @@ TEST(LinkPairs, ContinuousJointsTakeEveryTurn) {
   }
   EXPECT_FALSE(pairs.is_free(0, 1, Configuration{1e9}));
   EXPECT_FALSE(pairs.is_free(0, 1, Configuration{std::nan("")}));
+}
+
+// Ends of edges may stand beyond the ranges by less than points of edges may.
+TEST(LinkPairs, PointsOfFreeEdgesAreFreeUpToTheRim) {
+  const FreeBoxes boxes(
+      {{.index = 0, .lower = -1.0, .upper = 0.9}, {.index = 1, .lower = -100.0, .upper = 100.0}},
+      std::string(1, '\1'));
+  SceneRandom random(511);
+  int free = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const auto end = [&] {
+      const double beyond = random.uniform(-1.0, 1.0) * FreeBoxes::kTolerance;
+      return Configuration{(random.whole(0, 1) == 0 ? -1.0 : 0.9) + beyond,
+                           random.whole(0, 1) == 0 ? -100.0 : 100.0};
+    };
+    const Configuration from = end();
+    const Configuration to = end();
+    if (!boxes.contains_edge(from, to)) continue;
+    ++free;
+    for (int k = 0; k <= 100; ++k) {
+      const double t = 0.01 * k;
+      ASSERT_TRUE(boxes.contains(
+          Configuration{(1.0 - t) * from[0] + t * to[0], (1.0 - t) * from[1] + t * to[1]}))
+          << from[0] << " " << to[0] << " " << t;
+    }
+  }
+  EXPECT_GT(free, 200);
 }
 
 TEST(LinkPairs, SpheresCountAsSolid) {

@@ -306,6 +306,44 @@ TEST_F(TwoBarScene, ProofsOfToolsAreForTheirLinkAlone) {
   EXPECT_THROW(scene.set_attached_pairs("tool", pairs_), Error);
 }
 
+// The two ends of a locked joint's range differ by rounding: 0.3, and 0.1 + 0.2.
+TEST(ProvedScene, RangesAsThinAsRoundingAreNoFreeCells) {
+  BoxRobot robot{RobotModel("base")};
+  robot.model.add_link("lock", "base",
+                       {.name = "locked",
+                        .type = JointType::kRevolute,
+                        .axis = Eigen::Vector3d::UnitZ(),
+                        .lower = 0.3,
+                        .upper = 0.1 + 0.2});
+  robot.model.add_link("bar", "lock",
+                       {.name = "turn",
+                        .type = JointType::kRevolute,
+                        .axis = Eigen::Vector3d::UnitZ(),
+                        .lower = -2.0,
+                        .upper = 2.0});
+  robot.add_boxes(0, {{Eigen::Vector3d(0.9, -0.1, -0.1), Eigen::Vector3d(1.1, 0.1, 0.1)}});
+  robot.add_boxes(1, {{Eigen::Vector3d(0.0, 0.0, 3.0), Eigen::Vector3d(0.1, 0.1, 3.1)}});
+  robot.add_boxes(2, {{Eigen::Vector3d(0.0, -0.02, -0.05), Eigen::Vector3d(2.0, 0.02, 0.05)}});
+  const auto pairs = std::make_shared<const LinkPairs>(prove_link_pairs(robot.model, robot.bodies));
+  for (std::size_t i = 0; i < 3; ++i) {
+    robot.model.attach(robot.model.links()[i].name, tree_of(coarse_cover(robot.boxes[i], 6)));
+  }
+  RobotScene scene(robot.model);
+  scene.set_link_pairs(pairs);
+  const RobotChecker checker = scene.snapshot();
+  RobotChecker::Scratch scratch(checker);
+  std::vector<Pose> poses;
+  int touching = 0;
+  for (int i = -200; i <= 200; ++i) {
+    const Configuration q{0.3, 0.01 * i};
+    forward_kinematics(robot.model, q, poses);
+    if (!boxes_touch(robot, 0, 2, poses, 1e-6)) continue;
+    ++touching;
+    EXPECT_FALSE(checker.check_config(q, scratch)) << q[1];
+  }
+  EXPECT_GT(touching, 10);
+}
+
 TEST_F(TwoBarScene, WhatNeverTouchesMayBeAllowed) {
   AllowedCollisions allowed(robot_.model);
   allowed.allow(*pairs_);
