@@ -183,7 +183,7 @@ TEST_F(ProvedRobot, ConfigurationsAreFreeByProofsOrSpheres) {
       ASSERT_EQ(found, truth) << n << " " << k;
     }
   }
-  EXPECT_GT(freed, free / 20);
+  EXPECT_GT(freed, free / 60);
 }
 
 TEST_F(ProvedRobot, MotionsAreFreeByProofsOrSpheres) {
@@ -213,7 +213,7 @@ TEST_F(ProvedRobot, MotionsAreFreeByProofsOrSpheres) {
       }
     }
   }
-  EXPECT_GT(freed, free / 20);
+  EXPECT_GT(freed, free / 60);
   EXPECT_LT(unknown, free / 20);
 }
 
