@@ -59,9 +59,11 @@ class RobotTest : public CommandTest {
   }
 
   // `spherule robot` with what makes it quick, and `more`.
-  std::vector<std::string> command(const std::vector<std::string>& more) const {
-    std::vector<std::string> line = {"robot", "arm.urdf", "-o", "out",       "--max-error",
-                                     "0.06",  "--effort", "0",  "--package", "parts=parts"};
+  std::vector<std::string> command(const std::vector<std::string>& more,
+                                   const char* proofs = "none") const {
+    std::vector<std::string> line = {
+        "robot", "arm.urdf",  "-o",          "out",        "--max-error", "0.06",     "--effort",
+        "0",     "--package", "parts=parts", "--postures", "100",         "--proofs", proofs};
     line.insert(line.end(), more.begin(), more.end());
     return line;
   }
@@ -110,7 +112,7 @@ void expect_covered(const std::vector<Sphere>& balls, const Pose& pose, const Pr
 }
 
 TEST_F(RobotTest, WritesEveryFormatSoThatItReadsBack) {
-  const Outcome result = run(command({}));
+  const Outcome result = run(command({}, "boxes"));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   // No progress bar: not a terminal.
   EXPECT_EQ(result.err,
