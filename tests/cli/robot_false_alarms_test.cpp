@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/sphere_formats.h"
-#include "tests/cli/command_test_support.h"
+#include "tests/cli/gantry.h"
 
 #include <string>
 #include <vector>
@@ -10,25 +10,11 @@ namespace {
 
 using nlohmann::json;
 
-// A tool that slides from 0.02 m beside a block to 0.52 m, and turns: the two never touch.
-constexpr const char* kGantry = R"(<?xml version="1.0"?>
-<robot name="gantry">
-  <link name="block"><collision><geometry><box size="0.3 0.3 0.3"/></geometry></collision></link>
-  <link name="carriage"/>
-  <link name="tool"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
-  <joint name="slide" type="prismatic"><parent link="block"/><child link="carriage"/>
-    <origin xyz="0.22 0 0"/><axis xyz="1 0 0"/>
-    <limit lower="0" upper="0.5" effort="1" velocity="1"/></joint>
-  <joint name="turn" type="revolute"><parent link="carriage"/><child link="tool"/>
-    <axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
-</robot>
-)";
-
 class RobotFalseAlarmsTest : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
-    write("gantry.urdf", kGantry);
+    write("gantry.urdf", gantry("0"));
   }
 
   static std::vector<std::string> command(const std::vector<std::string>& more) {

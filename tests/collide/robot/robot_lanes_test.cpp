@@ -21,15 +21,6 @@
 namespace spherule::test {
 namespace {
 
-std::vector<InstructionSet> instruction_sets() {
-  std::vector<InstructionSet> available;
-  for (const InstructionSet set :
-       {InstructionSet::kPortable, InstructionSet::kAvx2, InstructionSet::kAvx512}) {
-    if (is_available(set)) available.push_back(set);
-  }
-  return available;
-}
-
 Primitive random_primitive(SceneRandom& random, double size) {
   const auto length = [&] { return random.uniform(0.01, 1.0) * size; };
   switch (random.whole(0, 4)) {

@@ -47,15 +47,6 @@ std::shared_ptr<const SphereTree> tree_of(const std::vector<Sphere>& spheres) {
   return std::make_shared<const SphereTree>(build_tree(spheres));
 }
 
-std::vector<InstructionSet> instruction_sets() {
-  std::vector<InstructionSet> available;
-  for (const InstructionSet set :
-       {InstructionSet::kPortable, InstructionSet::kAvx2, InstructionSet::kAvx512}) {
-    if (is_available(set)) available.push_back(set);
-  }
-  return available;
-}
-
 class ProvedRobot : public testing::Test {
  protected:
   void make(SceneRandom& random) {
