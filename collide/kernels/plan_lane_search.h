@@ -41,9 +41,7 @@ class LaneSearch {
     if (test < plan_.first_pair) return search.touches_obstacle(test);
     const PlanPair& pair = plan_.pairs[test - plan_.first_pair];
     const WideBody& second = wide_.bodies[pair.second];
-    return search.touches_body(test, wide_.bodies[pair.first], second, search.root_of(second)) &&
-           !(pair.is_proved_somewhere &&
-             client_.is_proved_free(client_.context, search.lane(), test));
+    return search.touches_pair(test, wide_.bodies[pair.first], second, search.root_of(second));
   }
 
   const CheckPlan<float>& plan_;

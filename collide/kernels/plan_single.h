@@ -191,14 +191,13 @@ class SingleCheck {
   }
 
   bool touches_pair(std::int32_t test, std::int32_t a, std::int32_t b) {
-    const std::int32_t pair = test - plan_.first_pair;
-    if (is_in_free_cell(plan_.free_cells[pair], scratch_.positions)) return false;
+    if (is_in_free_cell(plan_.free_cells[test - plan_.first_pair], scratch_.positions)) {
+      return false;
+    }
     const WideBody& second = wide_.bodies[b];
-    const OneSphere around = {scratch_.roots[0][b], scratch_.roots[1][b], scratch_.roots[2][b],
-                              second.radius};
-    return search_.touches_body(test, wide_.bodies[a], second, around) &&
-           !(plan_.pairs[pair].is_proved_somewhere &&
-             client_.is_proved_free(client_.context, 0, test));
+    return search_.touches_pair(
+        test, wide_.bodies[a], second,
+        {scratch_.roots[0][b], scratch_.roots[1][b], scratch_.roots[2][b], second.radius});
   }
 
   const CheckPlan<float>& plan_;

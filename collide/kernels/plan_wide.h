@@ -30,8 +30,6 @@ class WideSearch {
         lane_(lane),
         first_placed_(lane * wide.placed_count) {}
 
-  int lane() const { return lane_; }
-
   // A body and an obstacle whose boxes are not apart.
   bool touches_obstacle(std::int32_t test) {
     const PlanBoxes<float>& boxes = plan_.groups[test / kPlanLanes];
@@ -97,6 +95,14 @@ class WideSearch {
       }
     }
     return false;
+  }
+
+  // Two bodies of a pair: the same, unless they are proved free.
+  bool touches_pair(std::int32_t test, const WideBody& first, const WideBody& second,
+                    const OneSphere& all_of_second) {
+    return touches_body(test, first, second, all_of_second) &&
+           !(plan_.pairs[test - plan_.first_pair].is_proved_somewhere &&
+             client_.is_proved_free(client_.context, lane_, test));
   }
 
   // The sphere around all of a body.

@@ -72,7 +72,8 @@ class FreeBoxes {
   const std::string& nodes() const { return bytes_; }
   const std::vector<Variable>& variables() const { return variables_; }
   std::size_t node_count() const { return nodes_.size(); }
-  // Whether the whole box of the ranges is free.
+  // Whether any box is free, and the whole box of the ranges.
+  bool has_free_box() const { return bytes_[0] != static_cast<char>(kNotProved); }
   bool is_all_free() const { return bytes_[0] == static_cast<char>(kFree); }
   // The share of the box of the ranges that is free, by volume.
   double free_share() const;

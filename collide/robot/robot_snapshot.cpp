@@ -207,7 +207,7 @@ class RobotScene::Snapshot {
       return nullptr;
     }
     const LinkPair* const pair = pairs->find(first.proved_link, second.proved_link);
-    if (pair == nullptr || pair->boxes.free_share() == 0.0) return nullptr;
+    if (pair == nullptr || !pair->boxes.has_free_box()) return nullptr;
     return {pairs, &pair->boxes};
   }
 

@@ -13,7 +13,8 @@ void take_between(std::span<const double> from, std::span<const double> to, doub
 }
 
 EdgeProofs::EdgeProofs(const BodyPairs& pairs)
-    : begin_(static_cast<std::size_t>(pairs.robot().variable_count())),
+    : pairs_(pairs),
+      begin_(static_cast<std::size_t>(pairs.robot().variable_count())),
       end_(begin_.size()),
       is_free_(pairs.pairs().size()) {}
 
@@ -23,14 +24,14 @@ void EdgeProofs::take(std::span<const double> from, std::span<const double> to) 
   std::fill(is_free_.begin(), is_free_.end(), std::int8_t{-1});
 }
 
-bool EdgeProofs::is_free_at(const CheckedPair& pair, double at) {
+bool EdgeProofs::is_free_at(std::size_t pair, double at) {
   take_between(from_, to_, at, begin_);
-  return pair.boxes->contains(begin_);
+  return boxes_of(pair).contains(begin_);
 }
 
-bool EdgeProofs::is_free(std::size_t index, const CheckedPair& pair) {
-  std::int8_t& is_free = is_free_[index];
-  if (is_free < 0) is_free = pair.boxes->contains_edge(from_, to_) ? 1 : 0;
+bool EdgeProofs::is_free(std::size_t pair) {
+  std::int8_t& is_free = is_free_[pair];
+  if (is_free < 0) is_free = boxes_of(pair).contains_edge(from_, to_) ? 1 : 0;
   return is_free == 1;
 }
 

@@ -348,18 +348,17 @@ class LaneCheck::Edge {
     }
     static bool is_proved_free(void* context, int lane, std::int32_t test) {
       Edge& edge = static_cast<Client*>(context)->edge;
-      const CheckedPair& pair = edge.pairs_.pairs()[edge.pair_of(edge.compiled<Real>(), test)];
-      return edge.memory_.proofs_.is_free_at(pair, edge.times_[static_cast<std::size_t>(lane)]);
+      return edge.memory_.proofs_.is_free_at(edge.pair_of(edge.compiled<Real>(), test),
+                                             edge.times_[static_cast<std::size_t>(lane)]);
     }
     static bool is_motion_proved(void* context, std::int32_t test) {
       Edge& edge = static_cast<Client*>(context)->edge;
-      const std::size_t pair = edge.pair_of(edge.compiled<Real>(), test);
-      return edge.memory_.proofs_.is_free(pair, edge.pairs_.pairs()[pair]);
+      return edge.memory_.proofs_.is_free(edge.pair_of(edge.compiled<Real>(), test));
     }
     static unsigned proved_parts(void* context, std::int32_t test, unsigned lanes) {
       Edge& edge = static_cast<Client*>(context)->edge;
-      const CheckedPair& pair = edge.pairs_.pairs()[edge.pair_of(edge.compiled<Real>(), test)];
-      return edge.memory_.proofs_.free_parts(pair, edge.times_, edge.halves_, lanes);
+      return edge.memory_.proofs_.free_parts(edge.pair_of(edge.compiled<Real>(), test), edge.times_,
+                                             edge.halves_, lanes);
     }
   };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/goal_cover.h"
 
+#include "collide/robot/scene_setup.h"
 #include "spheretree/error.h"
 
 #include <gtest/gtest.h>
@@ -68,7 +69,7 @@ TEST_F(GoalOfBlocks, HandsOutTheCoversThatWereVerified) {
     EXPECT_EQ(link.fit->options.max_error, chosen.max_error);
     EXPECT_EQ(link.fit->options.effort, 1);
   }
-  const RobotModel model = robot_with_spheres(robot_, result.cover);
+  const RobotModel model = with_spheres(robot_.model, robot_spheres(robot_, result.cover).links);
   EXPECT_EQ(model.links()[0].trees.size(), 1U);
   EXPECT_TRUE(model.links()[1].trees.empty());
   const FalseAlarms fresh =
