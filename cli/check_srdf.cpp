@@ -168,7 +168,7 @@ void add_check_srdf(CLI::App& app, int& exit_code) {
       ->check(check_length);
   command
       ->add_option("--threads", arguments->options.threads,
-                   "Threads, 0: all; the result is the same")
+                   "Threads, 0: all; without --seconds the result is the same")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", arguments->json, "Print the verdicts as JSON");
   command->footer(to_text(

@@ -11,11 +11,7 @@
 #include <cstdint>
 #include <utility>
 
-// Layout: magic; version (32 bits); links (32); mechanism and bodies (64
-// each); the link of a tool (32); pairs (32); for each pair first,
-// second (32 each), verdict (8), smallest gap (double), searched boxes (64), the count (32) and the
-// numbers (doubles) of the witness, the count of variables (8) and for each index (32), wraps (8),
-// lower and upper (doubles), the count of nodes (32) and their bytes; CRC-64 of all before it.
+// The layout is in docs/link-pairs-file.md.
 namespace spherule {
 namespace {
 

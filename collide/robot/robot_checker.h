@@ -166,9 +166,9 @@ class RobotChecker {
 
   // What touches what: one contact, the deepest, for each two bodies, and each body and obstacle,
   // that touch. Empty exactly if all are free of each other, unless what is proved free is asked
-  // for: the limits are not asked. Where a mesh
-  // confirms the contact of two bodies, the spheres are the deepest two whose triangles touch if
-  // both are meshes without padding, otherwise of all. Allocates.
+  // for: the limits are not asked. Where a mesh confirms the contact of two bodies, the spheres are
+  // the deepest two whose triangles touch if both are meshes without padding, otherwise of all.
+  // Allocates.
   std::vector<CheckedContact> explain(std::span<const double> configuration, Scratch& scratch,
                                       const ExplainRequest& request = {}) const;
 
