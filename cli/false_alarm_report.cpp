@@ -116,7 +116,7 @@ Json false_alarm_summary(const MeasuredCover& measured, const RobotModel& robot)
   if (measured.random.postures == 0) return nullptr;
   Json json = counts_of(measured.random, robot);
   json["share_upper_bound"] = measured.upper_bound;
-  json["confidence"] = measured.confidence;
+  json["confidence"] = LinkErrorChoice::kConfidence;
   if (measured.given.postures > 0) json["given"] = counts_of(measured.given, robot);
   if (!measured.choice) return json;
   const LinkErrorChoice& choice = *measured.choice;
@@ -144,7 +144,7 @@ std::string describe_false_alarms(const MeasuredCover& measured, const RobotMode
       << " free postures (of " << alarms.postures
       << " random ones) are refused because of spheres, "
       << "at most " << percent(measured.upper_bound) << " of all with "
-      << std::lround(100.0 * measured.confidence) << " % confidence";
+      << std::lround(100.0 * LinkErrorChoice::kConfidence) << " % confidence";
   if (alarms.proofs != PairProofs::kNone) {
     out << "; " << percent(alarms.refused_share(PairProofs::kNone).share()) << " "
         << words_for(PairProofs::kNone);

@@ -15,6 +15,7 @@
 #include "collide/robot/ignored_pairs.h"
 #include "collide/robot/named_postures.h"
 #include "collide/robot/robot_spheres.h"
+#include "collide/robot/scene_setup.h"
 #include "collide/robot/srdf.h"
 #include "collide/robot/urdf.h"
 #include "simplifier/simplify.h"
@@ -124,7 +125,7 @@ std::vector<PostureContact> contacts_in_postures(const RobotDescription& robot,
                                                  const SemanticDescription& semantics,
                                                  const RobotSpheres& spheres,
                                                  const MeasuredCover& measured) {
-  const RobotModel model = robot_with_spheres(robot, measured.cover);
+  const RobotModel model = with_spheres(robot.model, spheres.links);
   AllowedCollisions allowed(model);
   allowed.allow(names_of(spheres.self_collision_ignore));
   std::vector<NamedPosture> postures = group_postures(model, semantics);

@@ -2,6 +2,7 @@
 #include "cli/robot_false_alarms.h"
 
 #include "cli/outline.h"
+#include "collide/robot/scene_setup.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
@@ -138,11 +139,11 @@ MeasuredCover FalseAlarmRun::cover(
   result.cover = cover_robot(robot_, options);
   if (robot_.model.variable_count() == 0) return result;
   prove(options, result);
-  const RobotModel model = robot_with_spheres(robot_, result.cover);
+  const RobotModel model = with_spheres(robot_.model, robot_spheres(robot_, result.cover).links);
   AllowedCollisions allowed(model);
   allowed.allow(disabled);
   result.random = measure_false_alarms(model, result.bodies, allowed, result.pairs.get(), sample);
-  result.upper_bound = result.random.refused_share().upper_bound(result.confidence);
+  result.upper_bound = result.random.refused_share().upper_bound(LinkErrorChoice::kConfidence);
   if (poses_.size() > 0) {
     result.given = measure_false_alarms(model, result.bodies, allowed, result.pairs.get(),
                                         poses_.positions, sample);

@@ -40,9 +40,8 @@ struct MeasuredCover {
   std::optional<double> goal = std::nullopt;
   std::optional<LinkErrorChoice> choice = std::nullopt;  // if there is a goal
   FalseAlarms random{};      // of the cover; of no postures if not judged
-  double upper_bound = 1.0;  // of its share, with `confidence`
-  double confidence = LinkErrorChoice::kConfidence;
-  FalseAlarms given{};  // of no postures if none are given
+  double upper_bound = 1.0;  // of its share, with LinkErrorChoice::kConfidence
+  FalseAlarms given{};       // of no postures if none are given
 };
 
 // Covers a robot, to the goal if there is one (then with options.max_error as the coarsest E, where

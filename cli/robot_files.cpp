@@ -2,6 +2,7 @@
 #include "cli/robot_files.h"
 
 #include "collide/robot/link_pairs_file.h"
+#include "collide/robot/named_postures.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/tree_file.h"
@@ -55,10 +56,10 @@ SphereFileContext context_of(const RobotFilePlan& plan, const RobotDescription& 
   context.urdf = plan.urdf;
   context.base_link = robot.model.links().front().name;
   context.tool_link = plan.tool_link.empty() ? last_link(robot.model) : plan.tool_link;
+  context.joint_positions = rest_posture(robot.model).configuration;
   for (const int index : robot.model.variable_joints()) {
     const Joint& joint = robot.model.joints()[static_cast<std::size_t>(index)];
     context.joint_names.push_back(joint.name);
-    context.joint_positions.push_back(std::clamp(0.0, joint.lower, joint.upper));
   }
   return context;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/robot_edges/arm.h"
 
+#include "collide/robot/link_bodies.h"
 #include "collide/robot/urdf.h"
 #include "simplifier/mesh_io.h"
 #include "spheretree/build.h"
@@ -69,16 +70,6 @@ std::vector<Sphere> balls_of(const LinkDescription& link) {
   return spheres;
 }
 
-std::vector<LinkBody> bodies_of(const std::vector<TriangleMesh>& meshes) {
-  std::vector<LinkBody> bodies;
-  for (std::size_t i = 0; i < meshes.size(); ++i) {
-    if (meshes[i].triangles.empty()) continue;
-    bodies.push_back(
-        {.link = static_cast<int>(i), .mesh = std::make_shared<const SolidMesh>(meshes[i])});
-  }
-  return bodies;
-}
-
 template <class SpheresOf>
 Arm make_arm(const std::filesystem::path& models, SpheresOf spheres_of) {
   RobotDescription robot = read_urdf(models / "robots" / "franka_panda" / "franka_panda.urdf");
@@ -95,7 +86,7 @@ Arm make_arm(const std::filesystem::path& models, SpheresOf spheres_of) {
     }
     arm.model.attach(robot.links[i].name, tree);
   }
-  arm.pairs = std::make_shared<const LinkPairs>(prove_link_pairs(arm.model, bodies_of(arm.meshes)));
+  arm.pairs = std::make_shared<const LinkPairs>(prove_link_pairs(arm.model, link_bodies(robot)));
   return arm;
 }
 

@@ -80,18 +80,8 @@ std::vector<LinkBody> covered_bodies(const RobotDescription& robot,
     const double padding = own == options.links.end()
                                ? options.padding
                                : own->second.padding.value_or(options.padding);
-    const std::vector<LinkBody> of_link = link_bodies(
-        with_geometry_of(robot, {static_cast<int>(i)}), {.geometry = options.geometry}, padding);
-    result.insert(result.end(), of_link.begin(), of_link.end());
-  }
-  return result;
-}
-
-RobotModel robot_with_spheres(const RobotDescription& robot, const RobotCover& cover) {
-  RobotModel result = robot.model;
-  for (const LinkCover& link : cover.links) {
-    if (link.spheres.empty()) continue;
-    result.attach(link.link, std::make_shared<const SphereTree>(build_tree(link.spheres)));
+    auto body = link_body(robot, static_cast<int>(i), {.geometry = options.geometry}, padding);
+    if (body) result.push_back(std::move(*body));
   }
   return result;
 }

@@ -16,9 +16,6 @@ namespace spherule {
 std::vector<LinkBody> covered_bodies(const RobotDescription& robot,
                                      const RobotCoverOptions& options);
 
-// The robot's mechanism with a tree of its spheres at each link that has some.
-RobotModel robot_with_spheres(const RobotDescription& robot, const RobotCover& cover);
-
 // A robot's cover, and how the E of its links was chosen.
 struct GoalCover {
   RobotCover cover;

@@ -9,21 +9,27 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace spherule {
 
-std::vector<LinkBody> link_bodies(const RobotDescription& robot, const LinkMeshOptions& options,
-                                  double padding) {
+std::optional<LinkBody> link_body(const RobotDescription& robot, int link,
+                                  const LinkMeshOptions& options, double padding) {
   if (!(padding >= 0.0) || !std::isfinite(padding)) {
     throw Error("padding", "must be at least 0 and finite");
   }
+  std::optional<TriangleMesh> mesh =
+      link_mesh(robot.links.at(static_cast<std::size_t>(link)), options);
+  if (!mesh) return std::nullopt;
+  mesh->vertex_error = add_up(mesh->vertex_error, padding);
+  return LinkBody{.link = link, .mesh = std::make_shared<const SolidMesh>(*mesh)};
+}
+
+std::vector<LinkBody> link_bodies(const RobotDescription& robot, const LinkMeshOptions& options,
+                                  double padding) {
   std::vector<LinkBody> bodies;
-  for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    std::optional<TriangleMesh> mesh = link_mesh(robot.links[i], options);
-    if (!mesh) continue;
-    mesh->vertex_error = add_up(mesh->vertex_error, padding);
-    bodies.push_back(
-        {.link = static_cast<int>(i), .mesh = std::make_shared<const SolidMesh>(*mesh)});
+  for (int link = 0; link < static_cast<int>(robot.links.size()); ++link) {
+    if (auto body = link_body(robot, link, options, padding)) bodies.push_back(std::move(*body));
   }
   return bodies;
 }

@@ -5,9 +5,14 @@
 #include "collide/robot/link_pairs.h"
 #include "collide/robot/robot_description.h"
 
+#include <optional>
 #include <vector>
 
 namespace spherule {
+
+// What one link is made of, by its index: as below; none without such geometry.
+std::optional<LinkBody> link_body(const RobotDescription& robot, int link,
+                                  const LinkMeshOptions& options = {}, double padding = 0.0);
 
 // What the links are made of, for prove_link_pairs(): a mesh with its inside for each link that has
 // such geometry, in the order of the links, grown by its vertex error and by `padding` (metres, at

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/link_errors.h"
 
-#include "collide/robot/internal/alarm_sample.h"
+#include "collide/robot/internal/alarm_counts.h"
 #include "collide/robot/internal/error_search.h"
+#include "collide/robot/internal/shared_work.h"
 #include "spheretree/error.h"
 
 #include <algorithm>

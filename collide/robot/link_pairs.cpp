@@ -15,7 +15,6 @@
 #include <cmath>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 
 namespace spherule {
@@ -155,9 +154,7 @@ LinkPairs prove_pairs_of(int only, const RobotModel& robot, std::span<const Link
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(std::min(options.seconds, 1e9)));
   const std::size_t count = robot.links().size();
-  const std::size_t threads = options.threads > 0
-                                  ? static_cast<std::size_t>(options.threads)
-                                  : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  const std::size_t threads = internal::thread_count(options.threads);
   std::vector<std::vector<LinkBody>> bodies_of(count);
   for (const LinkBody& body : bodies) {
     bodies_of[static_cast<std::size_t>(body.link)].push_back(body);

@@ -7,24 +7,17 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 namespace spherule {
 namespace {
 
-bool bodies_touch(std::span<const LinkBody> bodies, int first, int second,
-                  std::span<const Pose> poses) {
-  for (const LinkBody& a : bodies) {
-    if (a.link != first) continue;
-    for (const LinkBody& b : bodies) {
-      if (b.link != second) continue;
-      if (internal::touches(a, poses[static_cast<std::size_t>(first)], b,
-                            poses[static_cast<std::size_t>(second)], 0.0)) {
-        return true;
-      }
-    }
-  }
-  return false;
+std::vector<LinkBody> bodies_of(std::span<const LinkBody> bodies, int link) {
+  std::vector<LinkBody> result;
+  std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(result),
+               [&](const LinkBody& body) { return body.link == link; });
+  return result;
 }
 
 }  // namespace
@@ -71,9 +64,13 @@ std::vector<PostureContact> contacts_in(std::span<const NamedPosture> postures,
     forward_kinematics(robot, posture.configuration, poses);
     for (const CheckedContact& contact :
          checker.explain(posture.configuration, scratch, {.proved_free = true})) {
+      const int first = robot.find_link(contact.first.name);
+      const int second = robot.find_link(contact.second.name);
       const bool do_meshes_touch =
-          !contact.is_proved_free && bodies_touch(bodies, robot.find_link(contact.first.name),
-                                                  robot.find_link(contact.second.name), poses);
+          !contact.is_proved_free &&
+          internal::touches(bodies_of(bodies, first), poses[static_cast<std::size_t>(first)],
+                            bodies_of(bodies, second), poses[static_cast<std::size_t>(second)],
+                            0.0);
       result.push_back({posture.name, contact.first.name, contact.second.name,
                         contact.overlap_depth, do_meshes_touch, contact.is_proved_free});
     }

@@ -169,7 +169,7 @@ AllowedReason RobotScene::reason(std::string_view first, std::string_view second
   const int b = robot_.find_link(second);
   if (allowed_.allows(a, b) || link_pairs_ == nullptr) return allowed_.reason(a, b);
   const LinkPair* const pair = link_pairs_->find(a, b);
-  if (pair == nullptr || pair->boxes.free_share() == 0.0) return AllowedReason::kTested;
+  if (pair == nullptr || !pair->boxes.has_free_box()) return AllowedReason::kTested;
   return pair->verdict == PairVerdict::kNever ? AllowedReason::kProvedNever
                                               : AllowedReason::kFreeInBoxes;
 }

@@ -156,8 +156,7 @@ LinkCover cover_link(const std::string& link, const Task& task) {
 // what is left to do when the last links are long ones.
 struct ThreadShares {
   explicit ThreadShares(int threads)
-      : all(threads > 0 ? static_cast<std::size_t>(threads)
-                        : std::max(1U, std::thread::hardware_concurrency())),
+      : all(internal::thread_count(threads)),
         links((all + 1) / 2),
         within(static_cast<int>(all - links + 1)) {}
 

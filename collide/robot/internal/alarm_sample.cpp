@@ -13,7 +13,6 @@
 #include <mutex>
 #include <random>
 #include <string>
-#include <thread>
 #include <utility>
 
 namespace spherule::internal {
@@ -99,15 +98,9 @@ void AlarmJudge::leave_out_always_touching() {
 
 bool AlarmJudge::touches(const TestedPair& pair, std::span<const Pose> poses,
                          double clearance) const {
-  for (const LinkBody& a : bodies_[static_cast<std::size_t>(pair.first)]) {
-    for (const LinkBody& b : bodies_[static_cast<std::size_t>(pair.second)]) {
-      if (internal::touches(a, pose_of(poses, pair.first), b, pose_of(poses, pair.second),
-                            clearance)) {
-        return true;
-      }
-    }
-  }
-  return false;
+  return internal::touches(
+      bodies_[static_cast<std::size_t>(pair.first)], pose_of(poses, pair.first),
+      bodies_[static_cast<std::size_t>(pair.second)], pose_of(poses, pair.second), clearance);
 }
 
 bool AlarmJudge::is_always_spared(const TestedPair& pair, PairProofs with) const {
@@ -241,11 +234,6 @@ std::vector<double> draw_postures(const RobotModel& robot, std::size_t count, st
     draw_configuration(robot, bits, std::span(result).subspan(i * width, width));
   }
   return result;
-}
-
-std::size_t thread_count(int threads) {
-  return threads > 0 ? static_cast<std::size_t>(threads)
-                     : std::max(1U, std::thread::hardware_concurrency());
 }
 
 LinkTrees trees_of(const RobotModel& robot) {

@@ -98,17 +98,7 @@ class AlarmSample {
 // So many postures, drawn with a seed.
 std::vector<double> draw_postures(const RobotModel& robot, std::size_t count, std::uint64_t seed);
 
-// How many threads an option asks for.
-std::size_t thread_count(int threads);
-
 // The trees of the robot's own links.
 LinkTrees trees_of(const RobotModel& robot);
-
-// Adds what was counted in other postures of the same robot, by the same options.
-void add(const FalseAlarms& other, FalseAlarms& sum);
-
-// What spheres do to a sample.
-FalseAlarms count_alarms(const AlarmJudge& judge, const AlarmSample& sample, const LinkTrees& trees,
-                         const FalseAlarmOptions& options);
 
 }  // namespace spherule::internal

@@ -141,16 +141,25 @@ bool looks_convex(const std::vector<Element>& elements, const std::vector<Vector
   });
 }
 
-}  // namespace
-
-bool touches(const LinkBody& a, const Pose& world_from_a, const LinkBody& b,
-             const Pose& world_from_b, double clearance) {
+bool bodies_touch(const LinkBody& a, const Pose& world_from_a, const LinkBody& b,
+                  const Pose& world_from_b, double clearance) {
   if (a.mesh != nullptr && b.mesh != nullptr) {
     return within(*a.mesh, world_from_a, *b.mesh, world_from_b, clearance);
   }
   if (b.mesh != nullptr) return within(*a.spheres, world_from_a, *b.mesh, world_from_b, clearance);
   if (a.mesh != nullptr) return within(*b.spheres, world_from_b, *a.mesh, world_from_a, clearance);
   return within(*a.spheres, world_from_a, *b.spheres, world_from_b, clearance);
+}
+
+}  // namespace
+
+bool touches(std::span<const LinkBody> a, const Pose& world_from_a, std::span<const LinkBody> b,
+             const Pose& world_from_b, double clearance) {
+  return std::any_of(a.begin(), a.end(), [&](const LinkBody& of_a) {
+    return std::any_of(b.begin(), b.end(), [&](const LinkBody& of_b) {
+      return bodies_touch(of_a, world_from_a, of_b, world_from_b, clearance);
+    });
+  });
 }
 
 LinkPieces make_link_pieces(std::span<const LinkBody> bodies) {
@@ -173,11 +182,7 @@ LinkPieces make_link_pieces(std::span<const LinkBody> bodies) {
 
 bool touches(const LinkPieces& a, const Pose& world_from_a, const LinkPieces& b,
              const Pose& world_from_b, double clearance) {
-  return std::any_of(a.bodies.begin(), a.bodies.end(), [&](const LinkBody& of_a) {
-    return std::any_of(b.bodies.begin(), b.bodies.end(), [&](const LinkBody& of_b) {
-      return touches(of_a, world_from_a, of_b, world_from_b, clearance);
-    });
-  });
+  return touches(a.bodies, world_from_a, b.bodies, world_from_b, clearance);
 }
 
 }  // namespace spherule::internal

@@ -39,10 +39,10 @@ struct LinkPieces {
 
 LinkPieces make_link_pieces(std::span<const LinkBody> bodies);
 
-// Whether two bodies come within a clearance of each other, inside counted, under poses of the
-// frames of their links: never false if they do, and true beyond that by the rounding of the tests
-// only.
-bool touches(const LinkBody& a, const Pose& world_from_a, const LinkBody& b,
+// Whether any bodies of two links come within a clearance of each other, inside counted, under
+// poses of the frames of the links: never false if they do, and true beyond that by the rounding of
+// the tests only.
+bool touches(std::span<const LinkBody> a, const Pose& world_from_a, std::span<const LinkBody> b,
              const Pose& world_from_b, double clearance);
 
 // Whether two links have a point in common, inside counted, under poses of their frames: never

@@ -57,6 +57,11 @@ class Pieces {
 
 }  // namespace
 
+std::size_t thread_count(int threads) {
+  return threads > 0 ? static_cast<std::size_t>(threads)
+                     : std::max(1U, std::thread::hardware_concurrency());
+}
+
 void share_work(std::size_t piece_count, std::size_t worker_count,
                 const std::function<void(std::size_t worker, std::size_t piece)>& work) {
   Pieces pieces(piece_count, work);

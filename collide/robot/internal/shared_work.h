@@ -6,6 +6,9 @@
 
 namespace spherule::internal {
 
+// How many threads an option asks for, of which 0 means all.
+std::size_t thread_count(int threads);
+
 // Calls `work(worker, piece)` once for each piece 0, 1, ... piece_count - 1, on up to worker_count
 // threads, of which the caller's is worker 0; no two calls share a worker at the same time. Pieces
 // are handed out in their order, to whoever is free; no more threads are started than pieces, and
