@@ -2,6 +2,7 @@
 #include "collide/robot/allowed_collisions.h"
 
 #include "collide/robot/internal/link_paths.h"
+#include "collide/robot/internal/proof_scope.h"
 #include "collide/robot/link_pairs.h"
 #include "spheretree/error.h"
 
@@ -49,7 +50,8 @@ std::string_view name_of(AllowedReason reason) {
   return "tested";
 }
 
-AllowedCollisions::AllowedCollisions(const RobotModel& robot) {
+AllowedCollisions::AllowedCollisions(const RobotModel& robot)
+    : mechanism_(mechanism_fingerprint(robot)), limits_(internal::position_limits(robot)) {
   for (const Link& link : robot.links()) names_.push_back(link.name);
   const int count = static_cast<int>(names_.size());
   bits_.resize((names_.size() * names_.size() + 63) / 64);
@@ -99,9 +101,8 @@ void AllowedCollisions::allow(int first, int second, AllowedReason reason) {
 }
 
 void AllowedCollisions::allow(const LinkPairs& pairs) {
-  if (pairs.link_count() != names_.size()) {
-    throw Error("allowed collisions", "the proofs are of a robot with other links");
-  }
+  internal::require_proofs_of(pairs, mechanism_, names_.size(), limits_.size());
+  internal::require_never_within(pairs, limits_);
   for (const LinkPair& pair : pairs.pairs()) {
     if (pair.verdict != PairVerdict::kNever) continue;
     allow(pair.first, pair.second, AllowedReason::kProvedNever);
@@ -126,6 +127,25 @@ void AllowedCollisions::forbid(std::string_view first, std::string_view second) 
 
 bool AllowedCollisions::allows(std::string_view first, std::string_view second) const {
   return allows(link(first), link(second));
+}
+
+void AllowedCollisions::require_robot(const RobotModel& robot) const {
+  if (!std::equal(names_.begin(), names_.end(), robot.links().begin(), robot.links().end(),
+                  [](const std::string& name, const Link& link) { return name == link.name; })) {
+    throw Error("allowed collisions", "they are those of a robot with other links");
+  }
+  if (std::find(reasons_.begin(), reasons_.end(), AllowedReason::kProvedNever) == reasons_.end()) {
+    return;
+  }
+  const std::vector<std::pair<double, double>> limits = internal::position_limits(robot);
+  if (mechanism_fingerprint(robot) != mechanism_ ||
+      !std::equal(limits.begin(), limits.end(), limits_.begin(), limits_.end(),
+                  [](const auto& asked, const auto& proved) {
+                    return proved.first <= asked.first && asked.second <= proved.second;
+                  })) {
+    throw Error("allowed collisions",
+                "pairs in them are proved for a robot with other joints or tighter limits");
+  }
 }
 
 std::vector<AllowedCollisions::Pair> AllowedCollisions::pairs() const {

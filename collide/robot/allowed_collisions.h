@@ -49,9 +49,10 @@ class AllowedCollisions {
   // The pairs that an SRDF disables. Throws Error for names that are no links, before any is taken.
   void allow(std::span<const std::pair<std::string, std::string>> pairs);
   void allow(int first, int second, AllowedReason reason);
-  // The pairs that are proved never to touch, as kProvedNever: beyond the limits of the joints they
-  // are not tested either. A scene that is given the proofs (RobotScene::set_link_pairs()) tests
-  // them there. Throws Error for proofs of a robot with another number of links.
+  // The pairs that are proved never to touch, as kProvedNever: beyond the limits of the joints, or
+  // with padding, they are not tested either. A scene that is given the proofs
+  // (RobotScene::set_link_pairs()) tests them there. Throws Error for proofs of other links, joints
+  // or tighter limits, and those of an attached tool, before any is taken.
   void allow(const LinkPairs& pairs);
   // Every pair, as given: links are tested against obstacles and attached objects alone.
   void allow_all();
@@ -78,6 +79,10 @@ class AllowedCollisions {
   // All pairs of two links that are allowed, in order.
   std::vector<Pair> pairs() const;
 
+  // Throws Error for a robot with other links; where pairs are proved, also for one with other
+  // joints, or limits beyond those of the robot it was made for.
+  void require_robot(const RobotModel& robot) const;
+
  private:
   std::size_t index(int first, int second) const noexcept {
     return static_cast<std::size_t>(first) * names_.size() + static_cast<std::size_t>(second);
@@ -86,6 +91,9 @@ class AllowedCollisions {
   void set(int first, int second, AllowedReason reason);
 
   std::vector<std::string> names_;
+  // What proofs hold for: mechanism_fingerprint(), and the limits of each variable.
+  std::uint64_t mechanism_;
+  std::vector<std::pair<double, double>> limits_;
   std::vector<std::uint64_t> bits_;
   std::vector<AllowedReason> reasons_;
 };

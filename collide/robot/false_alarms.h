@@ -21,7 +21,7 @@ namespace spherule {
 enum class PairProofs : std::uint8_t {
   kNone,   // none
   kNever,  // pairs proved never to touch are not tested: what an SRDF or a list of pairs can say
-  kBoxes,  // nor are pairs in configurations that are proved free, LinkPairs::is_free()
+  kBoxes,  // pairs are not tested in configurations that are proved free, LinkPairs::is_free()
 };
 
 // For people: what stands in tables, and what options of the command take.

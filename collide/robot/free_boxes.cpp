@@ -47,10 +47,16 @@ FreeBoxes::FreeBoxes(std::vector<Variable> variables, std::string_view nodes)
   Open box{-1, 0, {}, {}};
   for (std::size_t i = 0; i < variables_.size(); ++i) {
     const Variable& variable = variables_[i];
+    const bool is_turn = variable.lower == -std::numbers::pi && variable.upper == std::numbers::pi;
     if (!(std::abs(variable.lower) <= kLargestPosition) ||
         !(std::abs(variable.upper) <= kLargestPosition) || variable.lower > variable.upper ||
-        variable.index < 0) {
+        variable.index < 0 || (variable.wraps && !is_turn)) {
       throw Error("free boxes", "the range of a variable is not usable");
+    }
+    const auto before = variables_.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::any_of(variables_.begin(), before,
+                    [&](const Variable& other) { return other.index == variable.index; })) {
+      throw Error("free boxes", "a variable is there twice");
     }
     box.lower[i] = variable.lower;
     box.upper[i] = variable.upper;

@@ -52,8 +52,9 @@ class FreeBoxes {
   // Nothing is proved.
   FreeBoxes() : FreeBoxes({}, std::string(1, '\0')) {}
   // A tree from its nodes, one byte each, every node before its first and then its second half.
-  // Throws Error for more than kMostVariables variables, a range that is not finite, reversed or
-  // beyond kLargestPosition, and bytes that are no tree.
+  // Throws Error for more than kMostVariables variables, one that is there twice, a range that is
+  // not finite, reversed or beyond kLargestPosition, or other than -pi to pi of one that wraps, and
+  // bytes that are no tree.
   FreeBoxes(std::vector<Variable> variables, std::string_view nodes);
 
   // Whether a configuration of the whole robot lies in a free box, or within kTolerance of one.

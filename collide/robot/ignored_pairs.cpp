@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/ignored_pairs.h"
 
+#include "collide/robot/internal/proof_scope.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <string>
@@ -8,6 +10,8 @@
 namespace spherule {
 
 std::vector<DisabledPair> pairs_proved_never(const RobotModel& robot, const LinkPairs& proofs) {
+  internal::require_proofs_of(proofs, robot);
+  internal::require_never_within(proofs, internal::position_limits(robot));
   std::vector<DisabledPair> result;
   for (const LinkPair& pair : proofs.pairs()) {
     if (pair.verdict != PairVerdict::kNever) continue;

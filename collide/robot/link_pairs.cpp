@@ -69,10 +69,11 @@ LinkPair prove(const RobotModel& robot, int first, int second,
     result.smallest_gap = 0.0;
     result.witness = std::move(found.witness);
   }
-  if (!result.witness.empty()) {
+  if (result.boxes.is_all_free()) {
+    result.witness.clear();  // within the rounding of the mesh test, if there was one
+    if (internal::take_all_positions(robot, space->variables)) result.verdict = PairVerdict::kNever;
+  } else if (!result.witness.empty()) {
     result.verdict = PairVerdict::kTouching;
-  } else if (result.boxes.is_all_free()) {
-    result.verdict = PairVerdict::kNever;
   }
   return result;
 }
@@ -130,6 +131,11 @@ LinkPairs::LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::u
     }
     if (tool_link >= 0 && pair.first != tool_link && pair.second != tool_link) {
       throw Error("link pairs", "a pair is not of the tool's link");
+    }
+    const bool is_touching = pair.verdict == PairVerdict::kTouching;
+    if (is_touching == pair.witness.empty() || (is_touching && pair.boxes.is_all_free()) ||
+        (pair.verdict == PairVerdict::kNever && !pair.boxes.is_all_free())) {
+      throw Error("link pairs", "a verdict contradicts its proof");
     }
     last = {pair.first, pair.second};
   }

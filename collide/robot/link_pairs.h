@@ -24,7 +24,8 @@ struct LinkBody {
   std::shared_ptr<const SphereTree> spheres{};
 };
 
-// What is known of two links, with the variables within their ranges.
+// What is known of two links, wherever the limits let the joints be. Continuous joints take every
+// position.
 enum class PairVerdict : std::uint8_t {
   kNever,     // proved: they have no point in common in any configuration
   kTouching,  // they have one in the configuration `witness`, up to the rounding of mesh tests
@@ -46,7 +47,8 @@ struct LinkPair {
   double smallest_gap = std::numeric_limits<double>::infinity();
   // Proved: in no configuration of these boxes the two have a point in common, of the exact
   // mechanism, or under the poses that forward_kinematics() computes with the root at the world's
-  // origin. All of the ranges for kNever.
+  // origin. All of the ranges for kNever. For kUnknown that is so, too, where the ranges are not
+  // all that the joints can do: of a continuous joint that a mimic follows.
   FreeBoxes boxes{};
   std::size_t searched_boxes = 0;
 };
@@ -73,7 +75,8 @@ class LinkPairs {
   LinkPairs() = default;
   // Pairs in the order of their indices, each once, first before second, and the fingerprints of
   // what they hold for. Where they are of a tool, `tool_link` is the link that carries it, and one
-  // of each pair. Throws Error otherwise, or for indices beyond the number of links.
+  // of each pair. Throws Error otherwise, for indices beyond the number of links, and a verdict
+  // that contradicts the boxes or the witness.
   LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t mechanism,
             std::uint64_t bodies, int tool_link = -1);
 
@@ -112,12 +115,12 @@ class LinkPairs {
 };
 
 // Proves what it can of all pairs of links with bodies, within the limits of the joints; continuous
-// joints take all positions, but where a mimic follows one it is proved for -pi to pi. Pairs with
-// more than 16 joints between them or positions beyond 100 stay kUnknown. Several bodies of a link
-// count together. The trees of the robot's links are not looked at. The proof is in
-// internal/pair_bound.h and internal/pair_search.h.
-// Throws Error for a body without or with both shapes, a link out of range, and options that are
-// negative or not finite.
+// joints take all positions, but where a mimic follows one, boxes reach from -pi to pi, and the
+// pair is kUnknown even if all of that is free. Pairs with more than 16 joints between them or
+// positions beyond 100 stay kUnknown. Several bodies of a link count together. The trees of the
+// robot's links are not looked at. The proof is in internal/pair_bound.h and
+// internal/pair_search.h. Throws Error for a body without or with both shapes, a link out of range,
+// and options that are negative or not finite.
 LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
                            const LinkPairOptions& options = {});
 

@@ -83,10 +83,6 @@ LinkPair take_pair(Reader& reader, const std::string& name) {
   }
   const auto nodes = reader.take<std::uint32_t>();
   pair.boxes = FreeBoxes(std::move(variables), reader.take(nodes));
-  if ((pair.verdict == PairVerdict::kNever) != pair.boxes.is_all_free() ||
-      (pair.verdict == PairVerdict::kTouching) == pair.witness.empty()) {
-    throw Error(name, "a verdict contradicts its proof");
-  }
   return pair;
 }
 
@@ -191,7 +187,8 @@ LinkPairs load_link_pairs(const std::filesystem::path& path, const RobotModel& r
                           std::span<const LinkBody> bodies) {
   const std::string name = path.string();
   LinkPairs result = internal::decode_link_pairs(read_file(path), name);
-  if (result.mechanism() != mechanism_fingerprint(robot)) {
+  if (result.mechanism() != mechanism_fingerprint(robot) ||
+      result.link_count() != robot.links().size()) {
     throw Error(name, "was made for another robot: its links and joints are not these");
   }
   if (result.bodies() != bodies_fingerprint(bodies)) {

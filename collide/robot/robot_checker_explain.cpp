@@ -64,6 +64,8 @@ std::vector<CheckedContact> RobotChecker::explain(std::span<const double> config
       *known = std::move(found);
     }
   }
+  std::stable_partition(result.begin(), result.end(),
+                        [](const CheckedContact& contact) { return !contact.is_proved_free; });
   if (result.size() > request.max_contacts) result.resize(request.max_contacts);
   return result;
 }

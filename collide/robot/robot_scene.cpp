@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/robot_scene.h"
 
+#include "collide/robot/internal/proof_scope.h"
 #include "collide/robot/link_pairs.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -36,11 +37,7 @@ RobotScene::RobotScene(RobotModel robot, const Pose& world_from_root)
       allowed_(robot_) {}
 
 void RobotScene::set_allowed_collisions(AllowedCollisions allowed) {
-  if (!std::equal(allowed.link_names().begin(), allowed.link_names().end(), robot_.links().begin(),
-                  robot_.links().end(),
-                  [](const std::string& name, const Link& link) { return name == link.name; })) {
-    throw Error("allowed collisions", "they are those of a robot with other links");
-  }
+  allowed.require_robot(robot_);
   const AllowedCollisions own(robot_);
   for (const auto& [first, second, reason] : allowed.pairs()) {
     const bool is_by_structure =
@@ -134,20 +131,8 @@ void RobotScene::detach(std::string_view object) {
   attached_.erase(found);
 }
 
-void RobotScene::require_proofs(const std::shared_ptr<const LinkPairs>& pairs,
-                                int tool_link) const {
-  if (pairs == nullptr) return;
-  if (pairs->mechanism() != mechanism_fingerprint(robot_)) {
-    throw Error("proofs of pairs", "they are of another robot: its links and joints are not these");
-  }
-  if (pairs->tool_link() != tool_link) {
-    throw Error("proofs of pairs", tool_link < 0 ? "they are of a tool alone"
-                                                 : "they are of no tool on the object's link");
-  }
-}
-
 void RobotScene::set_link_pairs(std::shared_ptr<const LinkPairs> pairs) {
-  require_proofs(pairs, -1);
+  if (pairs != nullptr) internal::require_proofs_of(*pairs, robot_);
   link_pairs_ = std::move(pairs);
 }
 
@@ -157,7 +142,9 @@ void RobotScene::set_attached_pairs(std::string_view object,
   if (found == attached_.end()) {
     throw Error(std::string(object), "there is no attached object of that name");
   }
-  require_proofs(pairs, robot_.find_link(found->second.link));
+  if (pairs != nullptr) {
+    internal::require_proofs_of(*pairs, robot_, robot_.find_link(found->second.link));
+  }
   found->second.pairs = std::move(pairs);
 }
 
@@ -169,7 +156,9 @@ AllowedReason RobotScene::reason(std::string_view first, std::string_view second
   const int b = robot_.find_link(second);
   if (allowed_.allows(a, b) || link_pairs_ == nullptr) return allowed_.reason(a, b);
   const LinkPair* const pair = link_pairs_->find(a, b);
-  if (pair == nullptr || !pair->boxes.has_free_box()) return AllowedReason::kTested;
+  if (pair == nullptr || !pair->boxes.has_free_box() || is_padded(first, second)) {
+    return AllowedReason::kTested;
+  }
   return pair->verdict == PairVerdict::kNever ? AllowedReason::kProvedNever
                                               : AllowedReason::kFreeInBoxes;
 }
@@ -201,6 +190,21 @@ void RobotScene::set_padding(std::string_view body, std::string_view other, doub
   require_pair(body, other);
   require_padding(padding, body);
   pair_padding_.insert_or_assign(in_order(body, other), padding);
+}
+
+double RobotScene::padding_of(std::string_view body) const {
+  const auto found = padding_.find(body);
+  return found == padding_.end() ? 0.0 : found->second;
+}
+
+double RobotScene::padding_between(std::string_view body, std::string_view other) const {
+  const auto found = pair_padding_.find(in_order(body, other));
+  return found == pair_padding_.end() ? 0.0 : found->second;
+}
+
+bool RobotScene::is_padded(std::string_view first, std::string_view second) const {
+  return padding_of(first) > 0.0 || padding_of(second) > 0.0 ||
+         padding_between(first, second) > 0.0;
 }
 
 std::vector<std::shared_ptr<const SphereTree>> RobotScene::trees_of(std::string_view body) const {

@@ -152,8 +152,10 @@ class RobotScene {
   // The trees whose spheres a body consists of.
   std::vector<std::shared_ptr<const SphereTree>> trees_of(std::string_view body) const;
   void forget(std::string_view name);
-  // That they are of this robot, and of a tool on that link (-1: of its links).
-  void require_proofs(const std::shared_ptr<const LinkPairs>& pairs, int tool_link) const;
+  double padding_of(std::string_view body) const;
+  double padding_between(std::string_view body, std::string_view other) const;
+  // Whether two bodies are kept apart by more than nothing: proofs do not hold for that.
+  bool is_padded(std::string_view first, std::string_view second) const;
 
   RobotModel robot_;
   Pose world_from_root_;

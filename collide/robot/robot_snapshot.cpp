@@ -113,16 +113,6 @@ class RobotScene::Snapshot {
     return found == options_.meshes.end() ? nullptr : *found;
   }
 
-  double padding_of(const std::string& body) const {
-    const auto found = scene_.padding_.find(body);
-    return found == scene_.padding_.end() ? 0.0 : found->second;
-  }
-
-  double padding_between(const std::string& body, const std::string& other) const {
-    const auto found = scene_.pair_padding_.find(std::minmax(body, other));
-    return found == scene_.pair_padding_.end() ? 0.0 : found->second;
-  }
-
   // The pieces of a body, made when they are asked for first. None where no sphere is left.
   std::vector<int> pieces_of(std::size_t body, const Regions& left_out, double padding) {
     std::vector<int> result;
@@ -168,9 +158,9 @@ class RobotScene::Snapshot {
     const std::string& other = obstacle_names_[obstacle].name;
     const std::optional<Regions> left_out = regions_left_out(name, other);
     if (!left_out) return;
-    for (const int piece :
-         pieces_of(body, *left_out,
-                   internal::padding_sum(padding_of(name), padding_between(name, other)))) {
+    for (const int piece : pieces_of(
+             body, *left_out,
+             internal::padding_sum(scene_.padding_of(name), scene_.padding_between(name, other)))) {
       const bool is_standing = std::holds_alternative<Tree>(shapes_[obstacle].shape);
       (is_standing ? standing_pairs_ : pairs_).push_back({piece, static_cast<int>(obstacle), true});
     }
@@ -183,10 +173,10 @@ class RobotScene::Snapshot {
     const std::optional<Regions> of_first = regions_left_out(first.name, second.name);
     const std::optional<Regions> of_second = regions_left_out(second.name, first.name);
     if (!of_first || !of_second) return;
-    const double between = padding_between(first.name, second.name);
+    const double between = scene_.padding_between(first.name, second.name);
     const std::shared_ptr<const FreeBoxes> boxes = boxes_of(first, second);
-    const std::vector<int> seconds = pieces_of(other, *of_second, padding_of(second.name));
-    const double padding = internal::padding_sum(padding_of(first.name), between);
+    const std::vector<int> seconds = pieces_of(other, *of_second, scene_.padding_of(second.name));
+    const double padding = internal::padding_sum(scene_.padding_of(first.name), between);
     for (const int a : pieces_of(body, *of_first, padding)) {
       for (const int b : seconds) pairs_.push_back({a, b, false, boxes});
     }
@@ -196,14 +186,13 @@ class RobotScene::Snapshot {
   std::shared_ptr<const FreeBoxes> boxes_of(const Body& first, const Body& second) const {
     std::shared_ptr<const LinkPairs> pairs = scene_.link_pairs_;
     for (const Body* const body : {&first, &second}) {
-      if (padding_of(body->name) > 0.0) return nullptr;
       if (body->kind == CheckedBody::Kind::kAttached) {
         pairs = scene_.attached_.find(body->name)->second.pairs;
       }
     }
     const bool are_both_attached =
         first.kind == CheckedBody::Kind::kAttached && second.kind == CheckedBody::Kind::kAttached;
-    if (pairs == nullptr || are_both_attached || padding_between(first.name, second.name) > 0.0) {
+    if (pairs == nullptr || are_both_attached || scene_.is_padded(first.name, second.name)) {
       return nullptr;
     }
     const LinkPair* const pair = pairs->find(first.proved_link, second.proved_link);

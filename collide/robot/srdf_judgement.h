@@ -46,6 +46,7 @@ struct SrdfJudgement {
 };
 
 // Judges the disabled pairs of a semantic description by what is proved of the robot's links.
+// Throws Error for proofs of another robot, of tighter limits, or of an attached tool.
 SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& semantics,
                          const LinkPairs& proofs);
 

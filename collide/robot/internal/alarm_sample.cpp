@@ -103,16 +103,13 @@ bool AlarmJudge::touches(const TestedPair& pair, std::span<const Pose> poses,
       bodies_[static_cast<std::size_t>(pair.second)], pose_of(poses, pair.second), clearance);
 }
 
-bool AlarmJudge::is_always_spared(const TestedPair& pair, PairProofs with) const {
-  if (proofs_ == nullptr || with == PairProofs::kNone) return false;
-  const LinkPair* const proof = proofs_->find(pair.first, pair.second);
-  return proof != nullptr && proof->verdict == PairVerdict::kNever;
-}
-
 bool AlarmJudge::is_spared(const TestedPair& pair, PairProofs with,
                            std::span<const double> posture) const {
-  return is_always_spared(pair, with) || (proofs_ != nullptr && with == PairProofs::kBoxes &&
-                                          proofs_->is_free(pair.first, pair.second, posture));
+  if (proofs_ == nullptr || with == PairProofs::kNone) return false;
+  const LinkPair* const proof = proofs_->find(pair.first, pair.second);
+  if (proof == nullptr) return false;
+  return with == PairProofs::kNever ? proof->verdict == PairVerdict::kNever
+                                    : proof->boxes.contains(posture);
 }
 
 AlarmSample::AlarmSample(const AlarmJudge& judge, const LinkTrees& trees,
@@ -183,7 +180,6 @@ void AlarmSample::place_free_postures() {
 PostureSet AlarmSample::open(std::size_t pair, PairProofs with) const {
   PostureSet result(free_.size());
   const TestedPair& tested = judge_.pairs()[pair];
-  if (judge_.is_always_spared(tested, with)) return result;
   for (std::size_t i = 0; i < free_.size(); ++i) {
     if (!judge_.is_spared(tested, with, posture(free_[i]))) result.insert(i);
   }

@@ -38,10 +38,9 @@ class AlarmJudge {
   const std::vector<std::pair<int, int>>& always_touching() const { return always_touching_; }
   // Whether the meshes of a pair come within a clearance of each other.
   bool touches(const TestedPair& pair, std::span<const Pose> poses, double clearance) const;
-  // Whether the test of a pair's spheres is spared.
+  // Whether the test of a pair's spheres is spared: by kNever everywhere, as by ignore lists, by
+  // kBoxes where the pair is proved free.
   bool is_spared(const TestedPair& pair, PairProofs with, std::span<const double> posture) const;
-  // Whether it is in every posture.
-  bool is_always_spared(const TestedPair& pair, PairProofs with) const;
 
  private:
   void leave_out_always_touching();

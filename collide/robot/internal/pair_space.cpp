@@ -40,6 +40,14 @@ std::vector<int> moving_joints(const RobotModel& robot, int first, int second) {
   return joints;
 }
 
+bool take_all_positions(const RobotModel& robot, std::span<const FreeBoxes::Variable> ranges) {
+  return std::all_of(ranges.begin(), ranges.end(), [&](const FreeBoxes::Variable& range) {
+    const auto variable = static_cast<std::size_t>(range.index);
+    return range.wraps ||
+           joint_of(robot, robot.variable_joints()[variable]).type != JointType::kContinuous;
+  });
+}
+
 std::vector<FreeBoxes::Variable> ranges_of(const RobotModel& robot, std::span<const int> joints) {
   std::vector<FreeBoxes::Variable> result;
   for (const int index : joints) {

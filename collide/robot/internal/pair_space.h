@@ -32,6 +32,9 @@ std::vector<int> moving_joints(const RobotModel& robot, int first, int second);
 // mimics it.
 std::vector<FreeBoxes::Variable> ranges_of(const RobotModel& robot, std::span<const int> joints);
 
+// Whether ranges of variables are all that the limits allow: of a continuous joint, all turns.
+bool take_all_positions(const RobotModel& robot, std::span<const FreeBoxes::Variable> ranges);
+
 // None where the bounds do not hold: too many joints, or positions beyond
 // FreeBoxes::kLargestPosition somewhere in the ranges, the other variables at zero.
 std::optional<PairSpace> make_pair_space(const RobotModel& robot, int first, int second,

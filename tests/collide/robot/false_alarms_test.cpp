@@ -101,6 +101,23 @@ TEST_F(TwoCubes, ProofsSpareTests) {
   EXPECT_LT(alarms.refused_share().share(), 0.01);
 }
 
+TEST_F(TwoCubes, WhatIsProvedWithinLimitsMayTouchBeyondThem) {
+  BoxRobot robot{RobotModel("post")};
+  Joint slide{.name = "slide", .type = JointType::kPrismatic, .lower = 0.1, .upper = 3.5};
+  slide.axis = Vector3d::UnitX();
+  robot.model.add_link("slider", "post", slide);
+  for (const int link : {0, 1}) robot.add_boxes(link, robot_.boxes[static_cast<std::size_t>(link)]);
+  cover_boxes(robot);
+  AllowedCollisions allowed(robot.model);
+  allowed.forbid("post", "slider");
+  const LinkPairs proofs = prove_link_pairs(robot.model, robot.bodies);
+  ASSERT_EQ(proofs.pairs().front().verdict, PairVerdict::kNever);
+  const FalseAlarms alarms = measure_false_alarms(robot.model, robot.bodies, allowed, &proofs,
+                                                  std::vector{0.5, -0.2, 0.05});
+  EXPECT_EQ(alarms.free, 2U);
+  EXPECT_EQ(alarms.refused, (std::array<std::size_t, 3>{2, 0, 1}));
+}
+
 TEST_F(TwoCubes, AllowedPairsRefuseNothing) {
   allowed_->allow("post", "slider");
   const FalseAlarms alarms = measure({.postures = 100});
@@ -175,8 +192,8 @@ void count_posture(const BoxRobot& robot, const AllowedCollisions& allowed, cons
       if (!spheres_overlap(robot, first, second, poses)) continue;
       alarms[0].emplace_back(first, second);
       const LinkPair* const proof = proofs.find(first, second);
-      if (proof != nullptr && proof->verdict == PairVerdict::kNever) continue;
-      alarms[1].emplace_back(first, second);
+      const bool is_never = proof != nullptr && proof->verdict == PairVerdict::kNever;
+      if (!is_never) alarms[1].emplace_back(first, second);
       if (proof == nullptr || !proof->boxes.contains(q)) alarms[2].emplace_back(first, second);
     }
   }
@@ -206,7 +223,9 @@ TEST(FalseAlarmsOfBoxes, CountsAreThoseOfBruteForce) {
     for (int k = 0; k < 300; ++k) {
       for (const int j : robot.model.variable_joints()) {
         const Joint& joint = robot.model.joints()[static_cast<std::size_t>(j)];
-        postures.push_back(random.uniform(joint.lower, joint.upper));
+        // Beyond the limits, too.
+        const double beyond = k % 3 == 0 ? 0.5 : 0.0;
+        postures.push_back(random.uniform(joint.lower - beyond, joint.upper + beyond));
       }
     }
     const auto with = static_cast<PairProofs>(n % 3);

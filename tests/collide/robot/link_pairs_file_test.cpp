@@ -107,6 +107,24 @@ TEST_F(LinkPairsFile, NoContentEndsBadly) {
   }
 }
 
+TEST_F(LinkPairsFile, VerdictsThatContradictTheirProofsAreRefused) {
+  const auto made_of = [&](PairVerdict verdict, char state, const std::vector<double>& witness) {
+    return LinkPairs({{.first = 0,
+                       .second = 1,
+                       .verdict = verdict,
+                       .witness = witness,
+                       .boxes = FreeBoxes({{0, false, -2.0, 2.0}}, std::string(1, state))}},
+                     2, pairs_.mechanism(), pairs_.bodies());
+  };
+  EXPECT_NO_THROW(made_of(PairVerdict::kNever, '\1', {}));
+  EXPECT_NO_THROW(made_of(PairVerdict::kTouching, '\0', {0.0}));
+  EXPECT_THROW(made_of(PairVerdict::kNever, '\0', {}), Error);
+  EXPECT_THROW(made_of(PairVerdict::kNever, '\1', {0.0}), Error);
+  EXPECT_THROW(made_of(PairVerdict::kTouching, '\1', {0.0}), Error);
+  EXPECT_THROW(made_of(PairVerdict::kTouching, '\0', {}), Error);
+  EXPECT_THROW(made_of(PairVerdict::kUnknown, '\0', {0.0}), Error);
+}
+
 TEST(FreeBoxes, RefusesWhatIsNoTree) {
   const std::vector<FreeBoxes::Variable> one{{0, false, 0.0, 1.0}};
   EXPECT_THROW(FreeBoxes(one, ""), Error);
@@ -115,6 +133,8 @@ TEST(FreeBoxes, RefusesWhatIsNoTree) {
   EXPECT_THROW(FreeBoxes(one, std::string("\3\1\0", 3)), Error);
   EXPECT_THROW(FreeBoxes({{0, false, 1.0, 0.0}}, std::string("\1", 1)), Error);
   EXPECT_THROW(FreeBoxes({{0, false, 0.0, 101.0}}, std::string("\1", 1)), Error);
+  EXPECT_THROW(FreeBoxes({{0, true, 0.0, 1.0}}, std::string("\1", 1)), Error);
+  EXPECT_THROW(FreeBoxes({one.front(), one.front()}, std::string("\1", 1)), Error);
   std::string deep;
   for (int i = 0; i < 5000; ++i)
     deep += i % 2 == 0 ? std::string("\2\1", 2) : std::string("\2\0", 2);

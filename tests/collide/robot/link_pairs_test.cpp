@@ -92,7 +92,8 @@ TEST_F(LinkPairsOfBoxes, NoneTouchesWhereItIsProvedFree) {
         robot.model, robot.bodies, {.boxes = 400, .undecided_boxes = 2000, .samples = 60});
     for (const LinkPair& pair : pairs.pairs()) {
       ++verdicts[static_cast<std::size_t>(pair.verdict)];
-      EXPECT_EQ(pair.verdict == PairVerdict::kNever, pair.boxes.is_all_free());
+      EXPECT_TRUE(pair.verdict != PairVerdict::kNever || pair.boxes.is_all_free());
+      EXPECT_TRUE(pair.verdict != PairVerdict::kTouching || !pair.boxes.is_all_free());
       if (pair.verdict != PairVerdict::kTouching) continue;
       forward_kinematics(robot.model, pair.witness, poses_);
       EXPECT_TRUE(boxes_touch(robot, pair.first, pair.second, poses_, -1e-9));
@@ -201,6 +202,26 @@ TEST(LinkPairs, ContinuousJointsTakeEveryTurn) {
   }
   EXPECT_FALSE(pairs.is_free(0, 1, Configuration{1e9}));
   EXPECT_FALSE(pairs.is_free(0, 1, Configuration{std::nan("")}));
+}
+
+// A lever that follows a wheel at a tenth of its angle comes to the post after two turns.
+TEST(LinkPairs, WhatFollowsAContinuousJointIsProvedForOneTurn) {
+  BoxRobot robot{RobotModel("post")};
+  robot.model.add_link("wheel", "post", {.name = "turn", .type = JointType::kContinuous});
+  robot.model.add_link("lever", "post", {.name = "follow", .type = JointType::kContinuous});
+  robot.model.mimic("follow", "turn", 0.1);
+  robot.add_boxes(0, {box({-0.1, 0.9, -0.1}, {0.1, 1.1, 0.1})});
+  robot.add_boxes(2, {box({0.0, -0.02, -0.05}, {2.0, 0.02, 0.05})});
+  const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
+  ASSERT_EQ(pairs.pairs().size(), 1U);
+  EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kUnknown);
+  EXPECT_TRUE(pairs.pairs()[0].witness.empty());
+  EXPECT_TRUE(pairs.is_free(0, 2, Configuration{std::numbers::pi}));
+  std::vector<Pose> poses;
+  const Configuration touching{5.0 * std::numbers::pi};
+  forward_kinematics(robot.model, touching, poses);
+  EXPECT_TRUE(boxes_touch(robot, 0, 2, poses));
+  EXPECT_FALSE(pairs.is_free(0, 2, touching));
 }
 
 // Ends of edges may stand beyond the ranges by less than points of edges may.

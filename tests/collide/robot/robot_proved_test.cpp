@@ -253,6 +253,17 @@ TEST_F(TwoBarScene, ReasonsAndExplanationsTellOfProofs) {
   EXPECT_FALSE(checker.explain(Configuration{1.5, 1.5}, scratch).front().is_proved_free);
 }
 
+TEST_F(TwoBarScene, ReasonsKnowOfPadding) {
+  RobotScene scene(robot_.model);
+  scene.set_link_pairs(pairs_);
+  scene.set_padding("first", "second", 0.001);
+  EXPECT_EQ(scene.reason("first", "second"), AllowedReason::kTested);
+  scene.set_padding("first", "second", 0.0);
+  EXPECT_EQ(scene.reason("second", "first"), AllowedReason::kProvedNever);
+  scene.set_padding("second", 0.001);
+  EXPECT_EQ(scene.reason("first", "second"), AllowedReason::kTested);
+}
+
 TEST_F(TwoBarScene, PaddingTakesProofsAway) {
   RobotScene scene(robot_.model);
   scene.set_link_pairs(pairs_);

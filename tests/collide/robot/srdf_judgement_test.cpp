@@ -3,6 +3,9 @@
 
 #include "collide/robot/srdf_judgement.h"
 
+#include "collide/robot/ignored_pairs.h"
+#include "collide/robot/robot_scene.h"
+#include "spheretree/error.h"
 #include "tests/collide/robot/box_robots.h"
 
 #include <gtest/gtest.h>
@@ -15,15 +18,15 @@ namespace {
 
 // On a rail: a block, a cart beside it that reaches it at 0.2, a lid fixed to the cart, a bare
 // link, and a shelf out of reach of both, on a rail of its own.
-BoxRobot rail() {
+BoxRobot rail(double upper = 1.0) {
   BoxRobot robot{RobotModel("block")};
-  const auto slide = [](const char* name, const Eigen::Vector3d& from, double lower) {
+  const auto slide = [=](const char* name, const Eigen::Vector3d& from, double lower) {
     return Joint{.name = name,
                  .type = JointType::kPrismatic,
                  .parent_from_joint = Pose::from_translation(from),
                  .axis = Eigen::Vector3d::UnitX(),
                  .lower = lower,
-                 .upper = 1.0};
+                 .upper = upper};
   };
   robot.model.add_link("bare", "block", slide("lift", {0, 0, 0}, 0.0));
   robot.model.add_link("cart", "bare", slide("drive", {0, 0, 0}, 0.1));
@@ -88,6 +91,35 @@ TEST_F(SrdfJudged, NeighboursAreMeantToTouch) {
       judge_srdf(robot.model, semantics, prove_link_pairs(robot.model, robot.bodies));
   EXPECT_EQ(judged.pairs.front().verdict, DisabledVerdict::kAdjacent);
   EXPECT_FALSE(judged.pairs.front().is_wrong);
+}
+
+// What is proved of a tool alone, of other limits or another robot says nothing of these links.
+TEST_F(SrdfJudged, ProofsThatDoNotHoldForTheLinksAreRefused) {
+  const auto expect_refused = [&](const LinkPairs& proofs) {
+    EXPECT_THROW(judge_srdf(robot_.model, {}, proofs), Error);
+    EXPECT_THROW(pairs_proved_never(robot_.model, proofs), Error);
+    AllowedCollisions allowed(robot_.model);
+    EXPECT_THROW(allowed.allow(proofs), Error);
+    EXPECT_FALSE(allowed.allows("cart", "shelf"));
+  };
+  BoxRobot tool{robot_.model};
+  tool.add_boxes(robot_.model.find_link("cart"),
+                 {{Eigen::Vector3d(0, 0, 5), Eigen::Vector3d(0.1, 0.1, 5.1)}});
+  expect_refused(prove_attached_pairs(robot_.model, robot_.bodies, tool.bodies.front()));
+  const BoxRobot shorter = rail(0.9);
+  expect_refused(prove_link_pairs(shorter.model, shorter.bodies));
+  BoxRobot other = rail();
+  other.model.mimic("pull", "lift");
+  expect_refused(prove_link_pairs(other.model, other.bodies));
+
+  AllowedCollisions allowed(robot_.model);
+  allowed.allow(proofs_);
+  EXPECT_EQ(allowed.reason(robot_.model.find_link("cart"), robot_.model.find_link("shelf")),
+            AllowedReason::kProvedNever);
+  EXPECT_NO_THROW(RobotScene(robot_.model).set_allowed_collisions(allowed));
+  EXPECT_NO_THROW(RobotScene(shorter.model).set_allowed_collisions(allowed));
+  EXPECT_THROW(RobotScene(rail(1.1).model).set_allowed_collisions(allowed), Error);
+  EXPECT_THROW(RobotScene(other.model).set_allowed_collisions(allowed), Error);
 }
 
 TEST_F(SrdfJudged, WhatIsProvedAndMissingCouldBeAdded) {
