@@ -142,7 +142,7 @@ int check_srdf(const CheckSrdfArguments& arguments) {
   std::cout << (arguments.json ? to_text(judgement_json(judgement, robot.model))
                                : describe(judgement, robot.model));
   return std::any_of(judgement.pairs.begin(), judgement.pairs.end(),
-                     [](const JudgedPair& judged) { return judged.is_wrong; })
+                     [](const JudgedPair& judged) { return judged.is_wrong || judged.is_open; })
              ? kNo
              : kYes;
 }
@@ -152,8 +152,7 @@ int check_srdf(const CheckSrdfArguments& arguments) {
 void add_check_srdf(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "check-srdf",
-      "Prove whether the pairs of links that an SRDF disables never touch; exit 0 none does, 1 "
-      "some do");
+      "Prove whether the pairs of links that an SRDF disables never touch; exit 0 proved, 1 not");
   auto arguments = std::make_shared<CheckSrdfArguments>();
   command->add_option("urdf", arguments->urdf, "The robot, with its meshes")
       ->required()
@@ -176,7 +175,8 @@ void add_check_srdf(CLI::App& app, int& exit_code) {
            "A pair is proved never to touch within the limits of the joints, by the meshes with "
            "their insides, or a posture is shown in which it does. Touching is wrong for pairs "
            "with the reason Never or none; Adjacent, Default, Always and User are decisions.",
-       .exit_codes = "0 no disabled pair touches but by decision; 1 some do",
+       .exit_codes = "0 every pair that is not disabled by decision is proved never to touch; 1 "
+                     "some touch, or nothing is proved of them",
        .examples = {"spherule check-srdf robot.urdf robot.srdf",
                     "spherule check-srdf robot.urdf robot.srdf --geometry visual --json"}}));
   command->callback([arguments, &exit_code] { exit_code = check_srdf(*arguments); });

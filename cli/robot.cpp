@@ -99,6 +99,13 @@ std::vector<std::string> links_to_cover(const RobotDescription& robot, LinkGeome
   return names;
 }
 
+bool has_padding(const RobotArguments& arguments) {
+  const auto links = link_options(arguments.links);
+  return arguments.options.padding > 0.0 ||
+         std::any_of(links.begin(), links.end(),
+                     [](const auto& link) { return link.second.padding.value_or(0.0) > 0.0; });
+}
+
 // With the file of all links that the other commands read, if it was asked for.
 std::vector<NextStep> next_steps(const RobotArguments& arguments,
                                  const std::vector<fs::path>& written) {
@@ -113,7 +120,10 @@ std::vector<NextStep> next_steps(const RobotArguments& arguments,
   const auto pairs = std::find_if(written.begin(), written.end(), [](const fs::path& file) {
     return file.extension() == ".pairs";
   });
-  if (pairs != written.end()) check.insert(check.end(), {"--pairs", pairs->string()});
+  // Proofs of links with padding are not those that check takes.
+  if (pairs != written.end() && !has_padding(arguments)) {
+    check.insert(check.end(), {"--pairs", pairs->string()});
+  }
   for (std::vector<std::string>* step : {&view, &check}) {
     repeat_robot_options(arguments.geometry, arguments.packages, *step);
   }
@@ -160,6 +170,12 @@ int cover_links(const RobotArguments& arguments) {
   options.geometry = geometry_named(arguments.geometry);
   options.links = link_options(arguments.links);
   RobotFilePlan plan = plan_of(arguments);
+  const bool wants_pairs =
+      std::find(plan.formats.begin(), plan.formats.end(), kPairsFormat) != plan.formats.end();
+  if (wants_pairs && plan.formats.size() < robot_format_names().size() &&
+      arguments.false_alarms.proofs == name_of(PairProofs::kNone)) {
+    throw Error("--format pairs", "nothing is proved of pairs with --proofs none");
+  }
   const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
   if (!plan.tool_link.empty() && robot.model.find_link(plan.tool_link) < 0) {
     throw Error("--tool-link", "the robot has no link '" + plan.tool_link + "'");

@@ -73,7 +73,8 @@ void add_false_alarm_options(CLI::App& command, FalseAlarmArguments& arguments) 
   command
       .add_option("--proofs", arguments.proofs,
                   "Which proofs about pairs of links spare tests where false alarms are counted: "
-                  "boxes of joint positions (default), pairs that never touch, or none")
+                  "boxes of joint positions (default), pairs that never touch, or none, and then "
+                  "none are proved or written")
       ->check(CLI::IsMember(proof_names()));
   command
       .add_option("--postures", arguments.postures,

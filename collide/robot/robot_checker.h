@@ -37,7 +37,7 @@ struct RobotCheckerOptions {
 
 // When an explanation may stop.
 struct ExplainRequest {
-  // Tell of no more contacts than this (1: the first).
+  // Tell of no more contacts than this (1: the first); contacts before what is proved free.
   std::size_t max_contacts = std::numeric_limits<std::size_t>::max();
   // Tell, too, of spheres that overlap though their bodies are proved free of each other.
   bool proved_free = false;

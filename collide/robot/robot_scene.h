@@ -76,7 +76,9 @@ class RobotScene {
   // are tested everywhere. Throws Error for proofs of another robot, or of a tool.
   void set_link_pairs(std::shared_ptr<const LinkPairs> pairs);
   // The same for an attached object and all links, by prove_attached_pairs(); forgotten with the
-  // object. Throws Error, too, for an unknown object, and for proofs of a tool on another link.
+  // object. That tool, in its link's frame, has to be what the object's spheres stand for where the
+  // object is attached: the scene knows spheres alone and cannot compare. Throws Error, too, for an
+  // unknown object, and for proofs of a tool on another link.
   void set_attached_pairs(std::string_view object, std::shared_ptr<const LinkPairs> pairs);
   // Why two links are not tested against each other, or not everywhere: what is allowed, and then
   // what is proved. Throws Error for names that are no links.

@@ -83,7 +83,9 @@ SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& sem
       judged.verdict = verdict_of(proved->verdict);
       judged.witness = proved->witness;
       judged.smallest_gap = proved->smallest_gap;
-      judged.is_wrong = judged.verdict == DisabledVerdict::kTouches && !is_decision(pair.reason);
+      const bool is_stated = !is_decision(pair.reason);
+      judged.is_wrong = judged.verdict == DisabledVerdict::kTouches && is_stated;
+      judged.is_open = judged.verdict == DisabledVerdict::kUnknown && is_stated;
     }
   }
   for (const LinkPair& pair : proofs.pairs()) {

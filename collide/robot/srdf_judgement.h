@@ -36,6 +36,8 @@ struct JudgedPair {
   // ("Adjacent", "Default", "Always" and "User" are somebody's decision; "Never" is a statement,
   // and no reason is none).
   bool is_wrong = false;
+  // Nothing is known of them, though the SRDF states it.
+  bool is_open = false;
 };
 
 // An SRDF's list of disabled pairs, judged.

@@ -58,6 +58,16 @@ TEST_F(CheckSrdfTest, SaysWhatTouchesAndWhere) {
   EXPECT_EQ(judge("User").exit_code, 0);
 }
 
+// No time is enough for nothing: what is not proved is not confirmed.
+TEST_F(CheckSrdfTest, WhatIsNotProvedIsNotConfirmed) {
+  const Outcome result = judge("Never", {"--seconds", "1e-9"});
+  EXPECT_EQ(result.exit_code, 1) << result.out;
+  EXPECT_NE(result.out.find("neither proved nor touching:\n  block and cart (\"Never\")"),
+            std::string::npos)
+      << result.out;
+  EXPECT_EQ(judge("User", {"--seconds", "1e-9"}).exit_code, 0);
+}
+
 TEST_F(CheckSrdfTest, TellsItInJson) {
   const Outcome result = judge("Never", {"--json"});
   EXPECT_EQ(result.exit_code, 1);

@@ -60,6 +60,23 @@ TEST_F(RobotPairsTest, WithoutProofsSpheresThatTouchAtRestAreAWarning) {
   EXPECT_EQ(result.out.find("--pairs"), std::string::npos) << result.out;
 }
 
+TEST_F(RobotPairsTest, PairsAreAskedForWithProofsAlone) {
+  write("gantry.urdf", gantry("0"));
+  const Outcome result = cover({"--format", "json,pairs", "--proofs", "none"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("--format pairs: nothing is proved of pairs with --proofs none"),
+            std::string::npos)
+      << result.err;
+}
+
+TEST_F(RobotPairsTest, StepsThatAreNamedTakeProofsWithoutPadding) {
+  write("gantry.urdf", gantry("0"));
+  const Outcome result = cover({"--format", "json,pairs", "--link", "tool:padding=0.001"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("spherule check gantry.urdf"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("--pairs"), std::string::npos) << result.out;
+}
+
 TEST_F(RobotPairsTest, CheckTakesTheProofs) {
   write("gantry.urdf", gantry("-0.05"));
   const Outcome result = cover();

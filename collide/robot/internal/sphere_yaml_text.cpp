@@ -55,7 +55,7 @@ std::string comment(const std::vector<std::string>& others,
     text += (text.empty() ? "  # " : "; ") + reason + ": " + whom;
   }
   std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < 0x20 || c == 0x7F; }, '?');
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
   return text + "\n";
 }
 

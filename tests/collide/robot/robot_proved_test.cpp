@@ -87,7 +87,11 @@ class ProvedRobot : public testing::Test {
         prove_attached_pairs(robot_.model, robot_.bodies, tool.bodies.front(),
                              {.boxes = 300, .undecided_boxes = 300, .samples = 20, .threads = 1}));
     const std::string& name = robot_.model.links()[static_cast<std::size_t>(tool_link_)].name;
-    scene_->attach("tool", name, tree_of(coarse_cover(tool_boxes_, 2)));
+    // Its spheres are in a frame of its own, the proofs are in the link's.
+    const Eigen::Vector3d origin = random.point(0.5);
+    std::vector<Eigen::AlignedBox3d> in_tool = tool_boxes_;
+    for (Eigen::AlignedBox3d& box : in_tool) box.translate(-origin);
+    scene_->attach("tool", name, tree_of(coarse_cover(in_tool, 2)), Pose::from_translation(origin));
   }
 
   bool is_proved(const CheckedContact& contact, const Configuration& q) const {
@@ -130,6 +134,16 @@ class ProvedRobot : public testing::Test {
     for (const LinkPair& pair : pairs_->pairs()) {
       if (allowed.allows(pair.first, pair.second)) continue;
       ASSERT_FALSE(boxes_touch(robot_, pair.first, pair.second, poses_, 1e-9));
+    }
+    if (tool_pairs_ == nullptr) return;
+    BoxRobot with_tool{robot_.model, robot_.boxes};
+    const std::size_t tool = robot_.model.links().size();
+    with_tool.boxes.resize(tool);
+    with_tool.boxes.push_back(tool_boxes_);
+    poses_.push_back(poses_[static_cast<std::size_t>(tool_link_)]);
+    for (const LinkPair& pair : tool_pairs_->pairs()) {
+      const int other = pair.first == tool_link_ ? pair.second : pair.first;
+      ASSERT_FALSE(boxes_touch(with_tool, other, static_cast<int>(tool), poses_, 1e-9));
     }
   }
 
@@ -344,6 +358,21 @@ TEST(ProvedScene, RangesAsThinAsRoundingAreNoFreeCells) {
     EXPECT_FALSE(checker.check_config(q, scratch)) << q[1];
   }
   EXPECT_GT(touching, 10);
+}
+
+TEST_F(TwoBarScene, ContactsAreToldBeforeWhatIsProvedFree) {
+  RobotScene scene(robot_.model);
+  scene.set_link_pairs(pairs_);
+  scene.add("wall", Ball{0.1}, Pose::from_translation({0.5, 0.0, 0.0}));
+  const RobotChecker checker = scene.snapshot();
+  RobotChecker::Scratch scratch(checker);
+  const Configuration aligned{0.0, 0.0};
+  for (std::size_t most = 1; most <= 3; ++most) {
+    const auto told =
+        checker.explain(aligned, scratch, {.max_contacts = most, .proved_free = true});
+    ASSERT_EQ(told.size(), most);
+    for (std::size_t i = 0; i < most; ++i) EXPECT_EQ(told[i].is_proved_free, i == 2);
+  }
 }
 
 TEST_F(TwoBarScene, WhatNeverTouchesMayBeAllowed) {
