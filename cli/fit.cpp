@@ -179,7 +179,9 @@ int fit(const FitArguments& arguments) {
             << result.options.min_external_diameter << ", padding " << result.external.padding
             << (model.cad ? " (chord error and rounding" : " (rounding")
             << " of the file included)\n"
-            << "external spheres: " << result.external.balls.size() << "\n";
+            << "external spheres: " << result.external.balls.size() << ", ways into the part that "
+            << "are wider than " << result.options.min_external_diameter << " by "
+            << result.external.closing_slack << " stay open (proved)\n";
   if (options.keep_concave_edges) {
     std::cout << "zones along sharp concave edges: " << result.external.concave_edges.size()
               << "\n";
@@ -234,6 +236,11 @@ void add_fit(CLI::App& app, int& exit_code) {
                    "D from the tool that will meet the model: the smallest of these spheres (JSON)")
       ->type_name(kFile)
       ->excludes(diameter);
+  command
+      ->add_option("--tightness", options.tightness,
+                   "How much wider than D a way in may be and still be filled, as a share of D "
+                   "(default: 0.03); less takes longer")
+      ->check(CLI::Range(0.001, ExternalOptions::kNoTightness));
   command
       ->add_option("--zones", arguments->zones,
                    "Where E and D are smaller: balls, boxes and capsules (JSON)")

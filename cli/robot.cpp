@@ -280,6 +280,11 @@ void add_robot(CLI::App& app, int& exit_code) {
                    "D in metres, diameter of the smallest thing that will meet the robot (default: "
                    "4 E)")
       ->check(check_length);
+  command
+      ->add_option("--tightness", options.tightness,
+                   "How much wider than D a way into a link may be and still be filled, as a share "
+                   "of D (default: 0.03)")
+      ->check(CLI::Range(0.001, ExternalOptions::kNoTightness));
   command->add_option("--padding", options.padding, "Grow every link by so many metres")
       ->check(check_length);
   add_geometry_option(*command, "What is covered: collision (default) or visual geometry",

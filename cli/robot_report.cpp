@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iomanip>
+#include <limits>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -93,6 +94,27 @@ void write_row(std::ostream& out, const std::string& name, double max_error, con
       << Cell(sums.over_mesh * kMillimetresPerMetre, 11, 2);
 }
 
+// D of the links, and how much wider a way may be and still be filled.
+std::string describe_filling(const RobotCover& cover) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  double least = kNone;
+  double most = 0.0;
+  double slack = 0.0;
+  for (const LinkCover& link : cover.links) {
+    if (!link.fit) continue;
+    const ExternalSpheres& external = link.fit->external;
+    least = std::min(least, external.min_external_diameter);
+    most = std::max(most, external.min_external_diameter);
+    slack = std::max(slack, external.closing_slack / external.min_external_diameter);
+  }
+  if (least == kNone) return {};
+  std::ostringstream out;
+  out << "filled: what is narrower than D = " << Cell(least * kMillimetresPerMetre, 0, 1);
+  if (most > least) out << " to " << Cell(most * kMillimetresPerMetre, 0, 1);
+  out << " mm; ways that are wider by " << Cell(100.0 * slack, 0, 1) << " % stay open (proved)\n";
+  return out.str();
+}
+
 }  // namespace
 
 Json robot_summary(const std::string& urdf, const RobotCover& cover, double seconds) {
@@ -152,7 +174,7 @@ std::string robot_table(const RobotCover& cover, double seconds) {
     out << Cell(link.seconds, 9, 1) << "\n";
   }
   write_row(out, padded("total"), cover.options.max_error, Totals(cover.links));
-  out << std::setw(8) << "" << Cell(seconds, 9, 1) << "\n";
+  out << std::setw(8) << "" << Cell(seconds, 9, 1) << "\n" << describe_filling(cover);
   return out.str();
 }
 

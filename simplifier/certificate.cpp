@@ -53,6 +53,7 @@ ExternalSpheres flood_closely(const TriangleMesh& mesh, double padding, double d
   ExternalOptions options;
   options.min_external_diameter = kPointFlood * diagonal;
   options.grid_step = options.min_external_diameter / 2.0;
+  options.tightness = ExternalOptions::kNoTightness;
   options.padding = padding;
   return place_external_spheres(mesh, options);
 }

@@ -2,6 +2,7 @@
 #include "simplifier/external_spheres.h"
 
 #include "simplifier/concave_edges.h"
+#include "simplifier/internal/ball_way.h"
 #include "simplifier/internal/flood_grid.h"
 #include "simplifier/internal/local_diameter.h"
 #include "simplifier/internal/random_placement.h"
@@ -31,6 +32,9 @@ void check_options(const ExternalOptions& options) {
   const auto usable = [](double x) { return x >= 0.0 && x <= kMaxCoordinate; };
   if (!usable(options.max_error)) throw Error("max error", "must be finite and not negative");
   if (!usable(options.grid_step)) throw Error("grid step", "must be finite and not negative");
+  if (!(options.tightness > 0.0 && options.tightness <= ExternalOptions::kNoTightness)) {
+    throw Error("tightness", "must be above 0 and at most 10");
+  }
   const double infinity = std::numeric_limits<double>::infinity();
   const bool none = options.placement == ExternalPlacement::kNone;
   check_zones(options.zones, options.max_error > 0.0 ? options.max_error : infinity,
@@ -101,7 +105,7 @@ FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double s
 class SnugBalls {
  public:
   SnugBalls(const MeshDistance& distance, double padding, const LocalDiameter& diameter)
-      : distance_(distance), padding_(padding), diameter_(diameter) {}
+      : distance_(distance), padding_(padding), way_(distance, padding), diameter_(diameter) {}
 
   // A ball of radius 0 where nothing is to be had or flat surface makes it useless.
   Sphere operator()(const FloodGrid::Frontier& frontier) const {
@@ -117,7 +121,7 @@ class SnugBalls {
         if (push < 2) return {};  // one surface only: the grid does as well
         const Sphere ball{x, clearance};
         const bool reached = diameter_.on_way(from, x) <= rho &&
-                             passes({from, frontier.neighbour.clearance}, ball, rho, 0);
+                             way_.passes({from, frontier.neighbour.clearance}, ball, rho);
         return reached ? ball : Sphere{};
       }
       const Vector3d away = x - d.closest;
@@ -130,20 +134,9 @@ class SnugBalls {
   }
 
  private:
-  // Whether a ball of radius rho provably passes on the straight way, by bisection.
-  bool passes(const Sphere& a, const Sphere& b, double rho, int depth) const {
-    constexpr int kMaxDepth = 8;
-    const double gap = distance_upper(a.center, b.center);
-    if (sub_down(add_down(a.radius, b.radius), gap) >= 2.0 * rho * kRelativeUp) return true;
-    if (depth == kMaxDepth) return false;
-    Sphere middle{(a.center + b.center) / 2.0, 0.0};
-    middle.radius = sub_down(distance_(middle.center).lower, padding_);
-    return middle.radius >= rho && passes(a, middle, rho, depth + 1) &&
-           passes(middle, b, rho, depth + 1);
-  }
-
   const MeshDistance& distance_;
   double padding_;
+  internal::BallWay way_;
   const LocalDiameter& diameter_;
 };
 
@@ -167,6 +160,8 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
                  grid_shape(result.box, diameter.radius(), step, diameter.most_halvings()),
                  options.progress);
   grid.flood();
+  result.closing_slack =
+      2.0 * diameter.radius() * grid.tighten(options.tightness, options.progress);
   result.grid_step = step;
   result.nodes_examined = grid.evaluations();
   // Zones make the grid so fine that it pays to leave out what lies in a larger ball.
@@ -182,12 +177,6 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
   std::copy_if(snug.begin(), snug.end(), std::back_inserter(result.balls),
                [](const Sphere& s) { return s.radius > 0.0; });
   if (options.progress) options.progress(1.0, "placing external spheres");
-  // A ball of diameter D + s on its way has clearance at least rho + s / 2. Each node whose cell
-  // the way crosses lies within sqrt(3) h / 2 of a point of it, so two of them that share a face
-  // satisfy the passage rule if rho + s / 2 - 0.8661 h - h / 2 >= rho. Where a zone makes the grid
-  // finer, h only shrinks, for the step between cells of two sizes too, and a node then has the
-  // clearance rho + h / 2 that suffices to get to the face of any free cell.
-  result.closing_slack = 2.0 * (0.8661 + 0.5) * step;
 }
 
 }  // namespace

@@ -37,6 +37,11 @@ struct ExternalOptions {
   double grid_step = 0.0;
   // E, used for the choice of the grid step only.
   double max_error = 0.0;
+  // Reachable placement only: the grid is made finer, where that matters, until `closing_slack` is
+  // proved to be at most this share of D; above 0 and at most kNoTightness, which leaves the grid
+  // as it is. The time grows with what comes close to D in width, not with the whole surface.
+  double tightness = 0.03;
+  static constexpr double kNoTightness = 10.0;
   // Reachable placement only: zones of a D of their own. What is reachable then: a place to which a
   // ball can be moved from outside that may change its size on the way, and at every point x of the
   // way of its centre has a radius of rho(x) at least: d / 2 where x lies in a zone of its own d
@@ -64,9 +69,10 @@ struct ExternalSpheres {
   double padding = 0.0;                // t, the mesh's vertex_error included
   double grid_step = 0.0;              // of the flood; 0 for the other placements
   std::size_t nodes_examined = 0;      // distance evaluations
-  // Bound on how much wider than D a gap may be and still have been closed by the grid. For the d
-  // of a zone the same share of the step there holds for ways that stay inside of the zone by such
-  // a step.
+  // Proved: every place to which a ball of diameter D + closing_slack can be moved from outside
+  // lies, as its centre, in a ball of `balls` that was reached, at most 2.6 grid steps from that
+  // one's centre. So a gap may be wider than D by no more than that and have been closed. For the d
+  // of a zone the same share of d holds. At most `tightness` of D, unless memory ends first.
   double closing_slack = 0.0;
   // What keep_concave_edges added.
   std::vector<Zone> concave_edges;

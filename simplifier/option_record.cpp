@@ -184,6 +184,7 @@ std::map<std::string, OptionValue> option_record(const SimplifyOptions& options,
       {"scale", scale},
       {"max-error", options.max_error},
       {"min-external", options.min_external_diameter},
+      {"tightness", options.tightness},
       {"padding", options.padding},
       {"min-radius", options.min_radius},
       {"method",
@@ -206,6 +207,9 @@ SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& re
   const Reader read(record);
   read.length("max-error", options.max_error);
   read.length("min-external", options.min_external_diameter);
+  // Files without it were made before stage 1 was made tighter than its grid.
+  options.tightness = ExternalOptions::kNoTightness;
+  read.length("tightness", options.tightness);
   read.length("padding", options.padding);
   read.length("min-radius", options.min_radius);
   read.method("method", options);

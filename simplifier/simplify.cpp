@@ -171,6 +171,7 @@ ExternalOptions external_options(const SimplifyOptions& options) {
           .padding = options.padding,
           .max_error = options.max_error > 0.0 ? options.max_error
                                                : options.min_external_diameter / kDefaultDiameter,
+          .tightness = options.tightness,
           .zones = options.zones,
           .keep_concave_edges = options.keep_concave_edges,
           .limit = options.external_limit,

@@ -39,6 +39,9 @@ struct SimplifyOptions {
   std::vector<double> levels = {};
   // D: diameter of the smallest thing that will meet the model; 0 chooses 4 E.
   double min_external_diameter = 0.0;
+  // How much wider than D a way may be and still be filled, as a share of D, at most
+  // (ExternalOptions::tightness).
+  double tightness = ExternalOptions{}.tightness;
   // t: grow M by this much (chord error of the tessellation, calibration).
   double padding = 0.0;
   // No ball of the result is smaller than this radius.
@@ -102,7 +105,7 @@ std::string broken_promises(const Simplification& simplification);
 // D for a tool that is a union of balls: the diameter of the smallest. If all of them are free of M
 // at a place to which the tool gets from outside, they are external balls themselves, so that it
 // does not meet S either (guarantee.md, up to the grid's tightness: it has to get there with room
-// to spare all around, 0.64 of ExternalSpheres::closing_slack). Throws Error with the subject
+// to spare all around, 1.74 of ExternalSpheres::grid_step). Throws Error with the subject
 // "tool" if there is no ball, one is not usable, or has the radius 0.
 double tool_diameter(std::span<const Sphere> tool);
 

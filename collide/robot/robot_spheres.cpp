@@ -61,6 +61,7 @@ SimplifyOptions options_for(const std::string& link, const RobotCoverOptions& op
   SimplifyOptions result;
   result.max_error = options.max_error;
   result.min_external_diameter = options.min_external_diameter;
+  result.tightness = options.tightness;
   result.padding = options.padding;
   result.seed = options.seed;
   result.effort = options.effort;

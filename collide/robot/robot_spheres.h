@@ -33,6 +33,7 @@ struct RobotCoverOptions {
   // D of every link; 0 chooses 4 E, the natural ratio: 90-degree edges ask for balls of radius 2 E,
   // and what is narrower than the smallest ball of a tool made with the same E need not be kept.
   double min_external_diameter = 0.0;
+  double tightness = SimplifyOptions{}.tightness;
   double padding = 0.0;
   LinkGeometry geometry = LinkGeometry::kCollision;
   std::map<std::string, LinkCoverOptions> links = {};  // by the link's name

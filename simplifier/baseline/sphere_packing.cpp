@@ -19,6 +19,7 @@ SpherePacking pack_spheres(const TriangleMesh& mesh, const SpherePackingOptions&
       options.closed_below > 0.0 ? options.closed_below : options.max_error / 2.0;
   // Finer than this only the slack of closing would be smaller (ExternalOptions::grid_step).
   external.grid_step = external.min_external_diameter / 4.0;
+  external.tightness = ExternalOptions::kNoTightness;
   external.padding = options.padding;
   external.threads = options.threads;
   external.progress = options.progress;

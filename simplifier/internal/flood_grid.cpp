@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/internal/flood_grid.h"
 
-#include "simplifier/internal/disjoint_sets.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -18,8 +17,6 @@ namespace {
 constexpr double kLayer = 1.2;
 // Of the step: rounding that a ball may stick out of another by and still be taken for a part.
 constexpr double kContained = 1e-9;
-// Memory stays below 3 GiB.
-constexpr std::size_t kMaxCells = std::size_t{1} << 27;
 
 std::uint32_t gather(std::uint64_t x) {
   x &= 0x1249249249249249;
@@ -31,22 +28,24 @@ std::uint32_t gather(std::uint64_t x) {
   return static_cast<std::uint32_t>(x);
 }
 
-std::array<std::uint32_t, 3> decode(std::uint64_t code) {
+}  // namespace
+
+FloodGrid::Index FloodGrid::decode(std::uint64_t code) {
   return {gather(code), gather(code >> 1), gather(code >> 2)};
 }
 
-}  // namespace
-
 FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
                      const Shape& shape, const Progress& progress)
-    : padding_(padding),
+    : distance_(distance),
+      padding_(padding),
+      way_(distance, padding),
       diameter_(diameter),
       shape_(shape),
       levels_(shape.levels + diameter.most_halvings()) {
   cells_.push_back({});
   level_begin_ = {0};
   for (int level = 0; level <= levels_; ++level) {
-    examine(distance, level);
+    examine(level_begin_[static_cast<std::size_t>(level)]);
     level_begin_.push_back(cells_.size());
     if (progress) progress(0.9 * std::ldexp(1.0, 2 * (level - levels_)), "flooding");
     for (std::size_t i = level_begin_[static_cast<std::size_t>(level)];
@@ -55,12 +54,19 @@ FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDi
       if (cells_.size() + 8 > kMaxCells) {
         throw Error("grid step", "too fine for a model of this size (more than 2^27 cells)");
       }
-      cells_[i].child_or_zone = static_cast<std::uint32_t>(cells_.size());
-      const std::uint64_t code = cells_[i].code << 3;
-      for (std::uint64_t k = 0; k < 8; ++k) {
-        cells_.push_back({.code = code | k, .level = static_cast<std::uint8_t>(level + 1)});
-      }
+      halve(i);
     }
+  }
+}
+
+void FloodGrid::halve(std::size_t cell) {
+  const Entry parent = cells_[cell];
+  cells_[cell].state = State::kRefined;
+  cells_[cell].finest = false;
+  cells_[cell].child_or_zone = static_cast<std::uint32_t>(cells_.size());
+  for (std::uint64_t k = 0; k < 8; ++k) {
+    cells_.push_back(
+        {.code = parent.code << 3 | k, .level = static_cast<std::uint8_t>(parent.level + 1)});
   }
 }
 
@@ -81,48 +87,57 @@ Eigen::Vector3d FloodGrid::center(const Entry& cell) const {
   return center(cell.level, decode(cell.code));
 }
 
-void FloodGrid::examine(const MeshDistance& distance, int level) {
-  // Half the diagonal, with room for the rounding of centres and faces.
-  const double half_diagonal = 0.8660254037844387 * edge(level) * (1.0 + 1e-9) + rounding();
-  const auto examine_cell = [&](Entry& cell, const Eigen::Vector3d& middle,
-                                const SurfaceDistance& d) {
-    cell.clearance = std::max(0.0, sub_down(d.lower, padding_));
-    // What no zone can change is known without looking for zones.
-    if (level < shape_.levels) {
-      if (cell.clearance - half_diagonal >= diameter_.radius() + kLayer * shape_.step) {
-        cell.state = State::kFree;
-        return;
-      }
-      if (d.upper - padding_ + half_diagonal < diameter_.least_radius()) {
-        cell.state = State::kBlocked;
-        return;
-      }
-    }
-    const LocalDiameter::Near rho = diameter_.near(middle, half_diagonal);
-    cell.finest = level >= shape_.levels + rho.halvings;
-    if (cell.finest) {
-      const LocalDiameter::Needed needed = diameter_.at(middle);
-      cell.child_or_zone = needed.zone;
-      cell.state = cell.clearance >= needed.radius ? State::kFree : State::kBlocked;
-    } else if (cell.clearance - half_diagonal >=
-               rho.greatest + kLayer * std::ldexp(shape_.step, -rho.halvings)) {
+// Half the diagonal, with room for the rounding of centres and faces.
+double FloodGrid::half_diagonal(int level) const {
+  return 0.8660254037844387 * edge(level) * (1.0 + 1e-9) + rounding();
+}
+
+void FloodGrid::classify(Entry& cell, const Eigen::Vector3d& middle,
+                         const SurfaceDistance& d) const {
+  const int level = cell.level;
+  const double reach = half_diagonal(level);
+  cell.clearance = std::max(0.0, sub_down(d.lower, padding_));
+  // What no zone can change is known without looking for zones.
+  if (level < shape_.levels) {
+    if (cell.clearance - reach >= diameter_.radius() + kLayer * shape_.step) {
       cell.state = State::kFree;
-    } else if (d.upper - padding_ + half_diagonal < rho.least) {
-      cell.state = State::kBlocked;
-    } else {
-      cell.state = State::kRefined;
+      return;
     }
-  };
+    if (d.upper - padding_ + reach < diameter_.least_radius()) {
+      cell.state = State::kBlocked;
+      return;
+    }
+  }
+  const LocalDiameter::Near rho = diameter_.near(middle, reach);
+  cell.finest = level >= shape_.levels + rho.halvings;
+  if (cell.finest) {
+    const LocalDiameter::Needed needed = diameter_.at(middle);
+    cell.child_or_zone = needed.zone;
+    cell.state = cell.clearance >= needed.radius ? State::kFree : State::kBlocked;
+  } else if (cell.clearance - reach >=
+             rho.greatest + kLayer * std::ldexp(shape_.step, -rho.halvings)) {
+    cell.state = State::kFree;
+  } else if (d.upper - padding_ + reach < rho.least) {
+    cell.state = State::kBlocked;
+  } else {
+    cell.state = State::kRefined;
+  }
+}
+
+void FloodGrid::examine(std::size_t begin) {
   // Children of one cell: what is near to one is not much further from the others.
-  const auto begin = level_begin_[static_cast<std::size_t>(level)];
-  const double apart = 4.0 * half_diagonal;
   tbb::parallel_for(begin, cells_.size(), std::size_t{8}, [&](std::size_t first) {
     double limit = std::numeric_limits<double>::infinity();
+    double gap = 0.0;
     for (std::size_t i = first; i < std::min(first + 8, cells_.size()); ++i) {
       const Eigen::Vector3d middle = center(cells_[i]);
-      const SurfaceDistance d = distance(middle, limit);
-      limit = d.upper + apart;
-      examine_cell(cells_[i], middle, d);
+      const SurfaceDistance d = distance_(middle, limit);
+      limit = d.upper + 4.0 * half_diagonal(cells_[i].level);
+      gap = std::max(gap, d.upper - d.lower);
+      classify(cells_[i], middle, d);
+    }
+    double known = widest_bounds_;
+    while (gap > known && !widest_bounds_.compare_exchange_weak(known, gap)) {
     }
   });
 }
@@ -193,28 +208,58 @@ bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& fa
          (has_room(diameter_.least_radius()) && has_room(diameter_.on_way(start, face)));
 }
 
-void FloodGrid::flood() {
-  const auto outside = static_cast<std::uint32_t>(cells_.size());
-  DisjointSets sets(cells_.size() + 1);
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    const Entry& cell = cells_[i];
-    if (cell.state != State::kFree) continue;
-    const auto self = static_cast<std::uint32_t>(i);
-    const int level = cell.level;
-    for_each_face_neighbour(level, decode(cell.code), [&](std::size_t other, const Index& index) {
-      if (other == cells_.size()) {
-        sets.unite(self, outside);
-      } else if (cells_[other].state == State::kFree) {
-        const Eigen::Vector3d face = (center(cell) + center(level, index)) / 2.0;
-        if (passes(cell, cells_[other], face)) sets.unite(self, static_cast<std::uint32_t>(other));
+bool FloodGrid::passes_by_bisection(const Entry& a, const Entry& b) const {
+  const Sphere from{center(a), a.clearance};
+  const Sphere to{center(b), b.clearance};
+  return way_.passes(from, to, diameter_.on_way(from.center, to.center));
+}
+
+void FloodGrid::connect(std::size_t cell) {
+  const Entry& self = cells_[cell];
+  if (self.state != State::kFree) return;
+  const Index at = decode(self.code);
+  for_each_face_neighbour(self.level, at, [&](std::size_t other, const Index& index) {
+    if (other == cells_.size()) {
+      sets_.unite(0, element(cell));
+    } else if (cells_[other].state == State::kFree) {
+      const Eigen::Vector3d face = (center(self) + center(self.level, index)) / 2.0;
+      if (passes(self, cells_[other], face)) {
+        sets_.unite(element(cell), element(other));
+      } else {
+        doubtful_.emplace_back(static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(other));
       }
+    }
+  });
+}
+
+void FloodGrid::reach_on() {
+  std::vector<Pair> tried;
+  std::vector<char> passes;
+  do {
+    tried.clear();
+    std::erase_if(doubtful_, [&](const Pair& pair) {
+      const bool first = is_reached(pair.first);
+      const bool second = is_reached(pair.second);
+      if (first != second) tried.push_back(pair);
+      return first || second;
     });
-  }
-  const std::uint32_t reached = sets.find(outside);
+    passes.assign(tried.size(), 0);
+    tbb::parallel_for(std::size_t{0}, tried.size(), [&](std::size_t i) {
+      passes[i] = passes_by_bisection(cells_[tried[i].first], cells_[tried[i].second]) ? 1 : 0;
+    });
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+      if (passes[i] != 0) sets_.unite(element(tried[i].first), element(tried[i].second));
+    }
+  } while (!tried.empty());
   for (std::size_t i = 0; i < cells_.size(); ++i) {
-    cells_[i].reached =
-        cells_[i].state == State::kFree && sets.find(static_cast<std::uint32_t>(i)) == reached;
+    cells_[i].reached = cells_[i].state == State::kFree && is_reached(i);
   }
+}
+
+void FloodGrid::flood() {
+  sets_.grow(cells_.size() + 1);
+  for (std::size_t i = 0; i < cells_.size(); ++i) connect(i);
+  reach_on();
 }
 
 std::vector<FloodGrid::Cell> FloodGrid::reached_cells() const {

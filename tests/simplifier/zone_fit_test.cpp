@@ -192,12 +192,12 @@ TEST(Tool, DIsTheDiameterOfItsSmallestBall) {
 }
 
 // The theorem of guarantee.md. Let h be the grid step. A tool whose every ball (c, r), r >= rho,
-// keeps a room of m = 0.634 closing_slack = 1.733 h > 2 sqrt(3)/2 h beyond r all the way in meets
-// nothing of S, not even by the scallops: take a point p of the ball and c' between c and p, p
-// within rho of c', where the room is still rho + m. As m is more than closing_slack / 2, the grid
-// reaches the cell of c'. If that is a node x, |x - c'| <= 0.867 h, then d(x) >= rho + m - 0.867 h
-// > rho + 0.866 h >= |p - x|; if it is a coarse cell of half diagonal g, then d(x) >= rho + g +
-// 1.2 h > |p - x|. So p lies in the ball kept for that cell, which is open, and not in S.
+// keeps a room of m = 1.733 h > 2 sqrt(3)/2 h beyond r all the way in meets nothing of S, not even
+// by the scallops: take a point p of the ball and c' between c and p, p within rho of c', where the
+// room is still rho + m. As m is more than the 1.367 h that the flood asks for, the grid reaches
+// the cell of c'. If that is a node x, |x - c'| <= 0.867 h, then d(x) >= rho + m - 0.867 h > rho +
+// 0.866 h >= |p - x|; if it is a coarse cell of half diagonal g, then d(x) >= rho + g + 1.2 h >
+// |p - x|. So p lies in the ball kept for that cell, which is open, and not in S.
 class Walk {
  public:
   Walk(const MeshDistance& distance, const std::vector<Sphere>& tool, double room)
@@ -272,7 +272,7 @@ void expect_nothing_met(const std::vector<Sphere>& tool, const Eigen::Isometry3d
   }
 }
 
-constexpr double kRoom = 0.6341;  // of closing_slack
+constexpr double kRoom = 1.733;  // of the grid step
 
 TEST(Tool, AToolThatDIsMadeForMeetsNothingOfTheSolidUnlessItMeetsTheMesh) {
   const std::vector<Sphere> tool = rod();
@@ -282,7 +282,7 @@ TEST(Tool, AToolThatDIsMadeForMeetsNothingOfTheSolidUnlessItMeetsTheMesh) {
   for (const TriangleMesh& mesh : {cube_mesh(1.5), l_bracket(), pipe(0.8, 0.6, 1.0, 16)}) {
     const ExternalSpheres external = externals_for(tool, mesh);
     const MeshDistance distance(mesh);
-    const Walk walk(distance, tool, kRoom * external.closing_slack);
+    const Walk walk(distance, tool, kRoom * external.grid_step);
     for (int i = 0; i < effort(60, 8); ++i) {
       const Vector3d target = random.in_box(external.box);
       Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
@@ -305,14 +305,14 @@ TEST(Tool, ANarrowSlotIsOpenForTheToolThatFits) {
     radius = std::max(radius, ball.radius + std::abs(ball.center.y()));
   }
   const double step = 0.02;
-  const double slack = externals_for(tool, cube_mesh()).closing_slack;
-  const double half = radius + kRoom * slack + step / 2.0 + 0.01;
+  const double grid = externals_for(tool, cube_mesh()).grid_step;
+  const double half = radius + kRoom * grid + step / 2.0 + 0.01;
   const TriangleMesh mesh = joined(box_mesh({-0.5, half, -1}, {0.5, half + 0.2, 1}),
                                    box_mesh({-0.5, -half - 0.2, -1}, {0.5, -half, 1}));
   const ExternalSpheres external = externals_for(tool, mesh);
-  ASSERT_EQ(external.closing_slack, slack);
+  ASSERT_EQ(external.grid_step, grid);
   const MeshDistance distance(mesh);
-  const Walk walk(distance, tool, kRoom * slack);
+  const Walk walk(distance, tool, kRoom * grid);
   Random random(92);
   int inside = 0;
   for (int i = 0; i < effort(20, 5); ++i) {
