@@ -205,12 +205,18 @@ int cover_links(const RobotArguments& arguments) {
   }
   const std::vector<PostureContact> contacts =
       contacts_in_postures(robot, semantics, spheres, measured);
+  SrdfJudgement judgement;
+  if (measured.pairs != nullptr) judgement = judge_srdf(robot.model, semantics, *measured.pairs);
   Json summary = robot_summary(arguments.urdf, result, seconds.count());
   if (measured.pairs != nullptr) {
     summary["link_pairs"] = pair_summary(*measured.pairs, robot.model, measured.pair_seconds);
   }
   summary["false_alarms"] = false_alarm_summary(measured, robot.model);
   summary["posture_contacts"] = to_json(contacts);
+  if (!judgement.pairs.empty()) summary["disabled_pairs"] = Json::array();
+  for (const JudgedPair& judged : judgement.pairs) {
+    summary["disabled_pairs"].push_back(to_json(judged, robot.model));
+  }
   write_uninterrupted([&] {
     write_robot_files(plan, robot, spheres, measured.pairs.get());
     write_file_atomically(plan.report(robot), robot_report(summary, result));
@@ -223,6 +229,9 @@ int cover_links(const RobotArguments& arguments) {
     for (const std::string& warning : link.warnings) {
       std::cerr << "spherule: warning: link " << link.link << ": " << warning << "\n";
     }
+  }
+  for (const std::string& warning : wrong_pairs(judgement, robot.model)) {
+    std::cerr << "spherule: warning: " << warning << "\n";
   }
   for (const PostureContact& contact : contacts) {
     std::cerr << "spherule: warning: " << describe(contact) << "\n";
@@ -300,16 +309,19 @@ void add_robot(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember(robot_format_names()));
   command
       ->add_option("--srdf", arguments->srdf,
-                   "The robot's SRDF: its disabled pairs are ignored, and all but its spheres "
-                   "is kept")
+                   "The robot's SRDF: its disabled pairs are ignored; all but its spheres is kept, "
+                   "and pairs that need no test are added")
       ->type_name(kFile);
   command
       ->add_option("--curobo", arguments->curobo,
-                   "The robot's cuRobo file, of which all but the spheres is kept")
+                   "The robot's cuRobo file, of which all but the spheres is kept; pairs that need "
+                   "no test are added")
       ->type_name(kFile);
   command
-      ->add_option("--xrdf", arguments->xrdf,
-                   "The robot's XRDF, of which all but the spheres is kept")
+      ->add_option(
+          "--xrdf", arguments->xrdf,
+          "The robot's XRDF, of which all but the spheres is kept; pairs that need no test "
+          "are added")
       ->type_name(kFile);
   command
       ->add_option("--tool-link", arguments->tool_link,

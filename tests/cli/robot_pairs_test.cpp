@@ -108,5 +108,60 @@ TEST_F(RobotPairsTest, NamedStatesThatTouchAreTold) {
       << result.err;
 }
 
+// The proved pair is added to each, its reason too; what was written is kept as it is.
+TEST_F(RobotPairsTest, FilesThatAreKeptGetThePairsOnce) {
+  write("gantry.urdf", gantry("0"));
+  write("my.srdf", "<robot name=\"gantry\">\n  <!-- mine -->\n</robot>\n");
+  write("my.yml", "kinematics:\n  collision_link_names: [tool]  # mine\n  collision_spheres:\n");
+  write("my.xrdf",
+        "format: xrdf\nformat_version: 1.0\ncollision: {geometry: g}  # mine\nself_collision:\n"
+        "  geometry: g\n  ignore:\n    tool: [other]\ngeometry:\n  g:\n    spheres: {}\n");
+  const Outcome result = cover({"--srdf", "my.srdf", "--curobo", "my.yml", "--xrdf", "my.xrdf"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string reason = "Never (proved within the limits)";
+  EXPECT_EQ(read("out/gantry.srdf")
+                .find("<robot name=\"gantry\">\n  <!-- mine -->\n"
+                      "    <disable_collisions link1=\"block\" link2=\"tool\" "
+                      "reason=\"" +
+                      reason + "\"/>\n"),
+            0U)
+      << read("out/gantry.srdf");
+  EXPECT_EQ(read("out/gantry.curobo.yml")
+                .find("kinematics:\n  self_collision_ignore:\n    tool: [block]  # " + reason +
+                      ": block\n  collision_link_names: [tool, block]  # mine\n"),
+            0U)
+      << read("out/gantry.curobo.yml");
+  EXPECT_NE(read("out/gantry.xrdf")
+                .find("  ignore:\n    tool: [other]\n    block: [tool]  # " + reason + ": tool\n"),
+            std::string::npos)
+      << read("out/gantry.xrdf");
+
+  const std::vector<std::string> files = {"out/gantry.srdf", "out/gantry.curobo.yml",
+                                          "out/gantry.xrdf"};
+  std::vector<std::string> texts;
+  for (const std::string& file : files) write("again" + file.substr(10), read(file));
+  for (const std::string& file : files) texts.push_back(read(file));
+  ASSERT_EQ(cover({"--srdf", "again.srdf", "--curobo", "again.curobo.yml", "--xrdf", "again.xrdf"})
+                .exit_code,
+            0);
+  for (std::size_t i = 0; i < files.size(); ++i) EXPECT_EQ(read(files[i]), texts[i]);
+}
+
+TEST_F(RobotPairsTest, DisabledPairsThatTouchAreAWarning) {
+  write("gantry.urdf", gantry("-0.05"));
+  const auto warnings = [&](const std::string& reason) {
+    write("gantry.srdf", R"(<robot name="gantry"><disable_collisions link1="tool" link2="block")" +
+                             reason + "/></robot>");
+    return cover({"--srdf", "gantry.srdf"}).err;
+  };
+  EXPECT_NE(warnings(R"( reason="Never")")
+                .find(R"(the SRDF disables tool and block ("Never"), which touch at slide -0.0)"),
+            std::string::npos);
+  const json judged = read_json("out/gantry.report.json")["disabled_pairs"][0];
+  EXPECT_TRUE(judged["wrong"]);
+  EXPECT_LT(judged["witness"]["slide"], -0.0199);
+  EXPECT_EQ(warnings(R"( reason="User")"), "");
+}
+
 }  // namespace
 }  // namespace spherule

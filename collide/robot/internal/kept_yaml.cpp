@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/internal/format_text.h"
 #include "collide/robot/internal/sphere_documents.h"
+#include "collide/robot/internal/yaml_compare.h"
 #include "collide/robot/internal/yaml_edit.h"
 #include "collide/robot/internal/yaml_nodes.h"
 #include "collide/robot/internal/yaml_rewriter.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <set>
 
@@ -85,45 +85,6 @@ Node parent_of(const Node& root, const Keys& keys) {
   return at;
 }
 
-// Whether two documents say the same, whatever the order of keys. False, too, for those that are
-// deeper or hold more nodes than a text of this length does without anchors.
-class Comparison {
- public:
-  explicit Comparison(std::size_t text_length) : nodes_left_(2 * text_length) {}
-
-  bool same(const Node& a, const Node& b, int depth = 0) {
-    constexpr int kDeepest = 64;
-    if (depth > kDeepest || nodes_left_ == 0 || a.Type() != b.Type() || a.size() != b.size()) {
-      return false;
-    }
-    --nodes_left_;
-    if (a.IsScalar()) return a.Scalar() == b.Scalar() && a.Tag() == b.Tag();
-    if (a.IsSequence()) {
-      for (std::size_t i = 0; i < a.size(); ++i) {
-        if (!same(a[i], b[i], depth + 1)) return false;
-      }
-      return true;
-    }
-    return !a.IsMap() || same_members(a, b, depth);
-  }
-
- private:
-  bool same_members(const Node& a, const Node& b, int depth) {
-    std::map<std::string, Node> others;
-    for (const auto& member : b) {
-      if (!member.first.IsScalar()) return false;
-      others.insert({member.first.Scalar(), member.second});
-    }
-    return std::all_of(a.begin(), a.end(), [&](const auto& member) {
-      if (!member.first.IsScalar()) return false;
-      const auto found = others.find(member.first.Scalar());
-      return found != others.end() && same(member.second, found->second, depth + 1);
-    });
-  }
-
-  std::size_t nodes_left_;
-};
-
 // Makes the changes twice, in the text and in what was read of it, which must then agree.
 class KeptYaml {
  public:
@@ -133,7 +94,7 @@ class KeptYaml {
         places_(places),
         gathered_(gathered),
         document_(yaml_document(text, gathered)),
-        expected_(YAML::Clone(document_)),
+        expected_(unshared_yaml(document_, text.size())),
         edit_(text),
         length_(text.size()) {}
 
@@ -151,8 +112,8 @@ class KeptYaml {
     std::string text = edit_.result();
     try {
       const std::vector<Node> read = YAML::LoadAll(text);
-      Comparison comparison(length_ + text.size());
-      if (read.size() == 1 && comparison.same(read.front(), expected_)) return text;
+      const std::size_t length = length_ + text.size();
+      if (read.size() == 1 && is_same_yaml(read.front(), expected_, length)) return text;
     } catch (const YAML::Exception&) {
       return std::nullopt;  // an anchor stood where the changes were made
     }

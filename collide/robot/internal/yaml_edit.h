@@ -3,12 +3,13 @@
 
 // Changes to the text of a YAML document that leave all other bytes as they are.
 
+#include "collide/robot/internal/yaml_nodes.h"
+
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-#include <yaml-cpp/yaml.h>
 
 namespace spherule::internal {
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "collide/robot/internal/sphere_documents.h"
+#include "collide/robot/internal/yaml_nodes.h"
 
 #include <string>
 #include <vector>
-#include <yaml-cpp/yaml.h>
 
 namespace spherule::internal {
 

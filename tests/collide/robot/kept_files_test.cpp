@@ -196,6 +196,17 @@ TEST_F(KeptFiles, StylesThatDoNotTakeLinesAreWrittenAnew) {
   }
 }
 
+// A list that stands at two places is changed at one.
+TEST_F(KeptFiles, ListsOfAnAnchorAreToldApart) {
+  const std::string text =
+      kept(SphereFormat::kCurobo,
+           "kinematics:\n  self_collision_ignore:\n    other: &l [x]\n    base: *l\n"
+           "  collision_spheres: {}\n");
+  EXPECT_NE(text.find("    other:\n    - x\n    base:\n    - x\n    - arm  # Adjacent\n"),
+            std::string::npos)
+      << text;
+}
+
 TEST_F(KeptFiles, Srdf) {
   const std::string balls = R"(  <link_sphere_approximation link="base">
       <sphere center="0.0 0.0 0.0" radius="0.5"/>
