@@ -22,7 +22,8 @@ Json pair_summary(const LinkPairs& pairs, const RobotModel& robot, double second
 // What touches in postures.
 Json to_json(const std::vector<PostureContact>& contacts);
 
-// A pair of an SRDF with its verdict, the posture in which the two touch and the smallest gap found.
+// A pair of an SRDF with its verdict, the posture in which the two touch and the smallest gap
+// found.
 Json to_json(const JudgedPair& judged, const RobotModel& robot);
 
 // `link_2 and link_6 ("Never")`.

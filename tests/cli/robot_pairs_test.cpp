@@ -18,9 +18,10 @@ class RobotPairsTest : public CommandTest {
     line.insert(line.end(), more.begin(), more.end());
     return run(line);
   }
-  Outcome check(const std::vector<std::string>& more) {
+  Outcome check(const std::vector<std::string>& more,
+                const std::string& path = "slide, turn\n0, 0\n0.1, 0.5\n") {
     write("empty.json", R"({"format": "spherule-scene", "version": 1})");
-    write("path.csv", "slide, turn\n0, 0\n0.1, 0.5\n");
+    write("path.csv", path);
     std::vector<std::string> line = {"check",    "gantry.urdf", "empty.json",
                                      "path.csv", "--spheres",   "out/gantry.spheres.json"};
     line.insert(line.end(), more.begin(), more.end());
@@ -88,13 +89,74 @@ TEST_F(RobotPairsTest, CheckTakesTheProofs) {
   EXPECT_LT(pair["witness"]["slide"], -0.0199);
 
   EXPECT_EQ(check({"--edges"}).exit_code, 1);
-  EXPECT_EQ(check({"--edges", "--pairs", "out/gantry.pairs"}).exit_code, 0);
+  const Outcome proved = check({"--edges", "--pairs", "out/gantry.pairs"});
+  EXPECT_EQ(proved.exit_code, 0);
+  EXPECT_NE(
+      proved.out.find("free though spheres overlap: tool and block (free in boxes), in 2 of 2"),
+      std::string::npos)
+      << proved.out;
   // For other limits nothing was proved.
   write("gantry.urdf", gantry("-0.06"));
   const Outcome other = check({"--pairs", "out/gantry.pairs"});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.err.find("the limits of joint 'slide' are wider"), std::string::npos)
       << other.err;
+}
+
+TEST_F(RobotPairsTest, CheckSaysOfWhatKindPairsAre) {
+  write("gantry.urdf", gantry("-0.05"));
+  ASSERT_EQ(cover().exit_code, 0);
+  const std::string path = "slide, turn\n-0.04, 0\n0, 0\n";
+  const Outcome table = check({"--pairs", "out/gantry.pairs"}, path);
+  EXPECT_EQ(table.exit_code, 1);
+  EXPECT_NE(table.out.find("kind\n"), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("  can touch\n"), std::string::npos) << table.out;
+  const json found = json::parse(check({"--pairs", "out/gantry.pairs", "--json"}, path).out);
+  ASSERT_EQ(found["pairs"].size(), 1U);
+  EXPECT_EQ(found["pairs"][0]["count"], 1);
+  EXPECT_EQ(found["pairs"][0]["kind"], "can touch");
+  ASSERT_EQ(found["proved_free"].size(), 1U);
+  EXPECT_EQ(found["proved_free"][0]["count"], 1);
+  EXPECT_EQ(found["proved_free"][0]["kind"], "free in boxes");
+  const json without = json::parse(check({"--json"}, path).out);
+  EXPECT_EQ(without["pairs"][0]["count"], 2);
+  EXPECT_FALSE(without["pairs"][0].contains("kind"));
+  EXPECT_TRUE(without["proved_free"].empty());
+}
+
+TEST_F(RobotPairsTest, AuditTellsPairsApart) {
+  const auto audit = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> line = {"audit-robot", "gantry.urdf", "out/gantry.spheres.json"};
+    line.insert(line.end(), more.begin(), more.end());
+    return run(line);
+  };
+  write("gantry.urdf", gantry("0"));
+  ASSERT_EQ(cover().exit_code, 0);
+  EXPECT_EQ(audit({}).out.find("pairs of links"), std::string::npos);
+  const Outcome never = audit({"--pairs", "out/gantry.pairs"});
+  EXPECT_EQ(never.exit_code, 0) << never.err;
+  EXPECT_NE(never.out.find("pairs of links: 1; 1 proved never\n"), std::string::npos) << never.out;
+  EXPECT_NE(never.out.find("block  tool  proved never  never   100.0 %\n"), std::string::npos)
+      << never.out;
+
+  write("gantry.urdf", gantry("-0.05"));
+  ASSERT_EQ(cover().exit_code, 0);
+  write("gantry.srdf", R"(<robot name="gantry">
+<disable_collisions link1="tool" link2="block" reason="Never"/></robot>)");
+  const json boxes = json::parse(audit({"--pairs", "out/gantry.pairs", "--json"}).out)["pairs"][0];
+  EXPECT_EQ(boxes["kind"], "free in boxes");
+  EXPECT_EQ(boxes["verdict"], "touching");
+  EXPECT_LT(boxes["free_share"], 1.0);
+  const Outcome given = audit({"--srdf", "gantry.srdf", "--json"});
+  EXPECT_EQ(given.exit_code, 0) << given.err;
+  EXPECT_NE(given.err.find("disables tool and block (\"Never\"), which touch at slide"),
+            std::string::npos)
+      << given.err;
+  const json judged = json::parse(given.out);
+  EXPECT_EQ(judged["pairs"][0]["kind"], "given");
+  EXPECT_EQ(judged["pairs"][0]["verdict"], "touching");
+  EXPECT_LT(judged["pairs"][0]["witness"]["slide"], -0.0199);
+  EXPECT_TRUE(judged["disabled_pairs"][0]["wrong"]);
 }
 
 TEST_F(RobotPairsTest, NamedStatesThatTouchAreTold) {
