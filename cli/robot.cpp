@@ -113,17 +113,18 @@ std::vector<NextStep> next_steps(const RobotArguments& arguments,
     return file.string().ends_with(".spheres.json");
   });
   if (spheres == written.end()) return {};
-  std::vector<std::string> view = {"view", arguments.urdf, spheres->string(), "-o",
-                                   beside(spheres->string(), ".html")};
+  std::vector<std::string> view = {"view", arguments.urdf, spheres->string()};
   std::vector<std::string> check = {"check",    arguments.urdf, "SCENE.json",
                                     "PATH.csv", "--spheres",    spheres->string()};
   const auto pairs = std::find_if(written.begin(), written.end(), [](const fs::path& file) {
     return file.extension() == ".pairs";
   });
-  // Proofs of links with padding are not those that check takes.
+  // Proofs of links with padding are not those that these take.
   if (pairs != written.end() && !has_padding(arguments)) {
+    view.push_back(pairs->string());
     check.insert(check.end(), {"--pairs", pairs->string()});
   }
+  view.insert(view.end(), {"-o", beside(spheres->string(), ".html")});
   for (std::vector<std::string>* step : {&view, &check}) {
     repeat_robot_options(arguments.geometry, arguments.packages, *step);
   }

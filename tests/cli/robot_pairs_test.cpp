@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What `spherule robot` proves of pairs of links and writes, and `spherule check` takes.
 #include "tests/cli/gantry.h"
+#include "tests/cli/view_scene.h"
 
 #include <string>
 #include <vector>
@@ -157,6 +158,40 @@ TEST_F(RobotPairsTest, AuditTellsPairsApart) {
   EXPECT_EQ(judged["pairs"][0]["verdict"], "touching");
   EXPECT_LT(judged["pairs"][0]["witness"]["slide"], -0.0199);
   EXPECT_TRUE(judged["disabled_pairs"][0]["wrong"]);
+}
+
+TEST_F(RobotPairsTest, ThePageHasThePairsOfTheFirstSpheres) {
+  const auto page = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> line = {"view", "gantry.urdf", "out/gantry.spheres.json"};
+    line.insert(line.end(), more.begin(), more.end());
+    line.insert(line.end(), {"-o", "page.html"});
+    const Outcome result = run(line);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return scene_of(read("page.html"))["robot"];
+  };
+  write("gantry.urdf", gantry("-0.05"));
+  ASSERT_EQ(cover().exit_code, 0);
+  EXPECT_EQ(page({})["pairs"], json::parse(R"([{"links": [0, 2], "kind": "tested"}])"));
+  EXPECT_EQ(page({})["pairs_of"], "out/gantry.spheres.json");
+  const json pair = page({"out/gantry.pairs"})["pairs"][0];
+  EXPECT_EQ(pair["kind"], "free in boxes");
+  EXPECT_EQ(pair["verdict"], "touching");
+  // Halved by one of the variables first.
+  EXPECT_EQ(pair["boxes"]["variables"].size(), 2U);
+  EXPECT_EQ(pair["boxes"]["variables"][0]["upper"], 0.5);
+  const std::string nodes = pair["boxes"]["nodes"];
+  EXPECT_GE(nodes.front(), 'C');
+  EXPECT_EQ(nodes.find_first_not_of("ABCD"), std::string::npos);
+
+  write("gantry.srdf", R"(<robot name="gantry">
+<disable_collisions link1="tool" link2="block" reason="User"/></robot>)");
+  const json given = page({"gantry.srdf", "out/gantry.pairs"})["pairs"][0];
+  EXPECT_EQ(given["kind"], "given");
+  EXPECT_EQ(given["verdict"], "touching");
+  EXPECT_FALSE(given.contains("boxes"));
+  const Outcome bare = run({"view", "gantry.urdf", "out/gantry.pairs", "-o", "page.html"});
+  EXPECT_EQ(bare.exit_code, 2);
+  EXPECT_NE(bare.err.find("name a file of them"), std::string::npos) << bare.err;
 }
 
 TEST_F(RobotPairsTest, NamedStatesThatTouchAreTold) {
