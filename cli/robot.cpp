@@ -91,6 +91,20 @@ std::vector<std::pair<std::string, std::string>> names_of(const std::vector<Disa
   return names;
 }
 
+// What is false is not handed on to other files as a reason.
+std::vector<DisabledPair> without_refuted_reasons(std::vector<DisabledPair> pairs,
+                                                  const SrdfJudgement& judgement) {
+  for (DisabledPair& pair : pairs) {
+    const bool is_wrong =
+        std::any_of(judgement.pairs.begin(), judgement.pairs.end(), [&](const JudgedPair& judged) {
+          return judged.is_wrong && judged.pair.link_a == pair.link_a &&
+                 judged.pair.link_b == pair.link_b;
+        });
+    if (is_wrong) pair.reason = "given, though they can touch";
+  }
+  return pairs;
+}
+
 std::vector<std::string> links_to_cover(const RobotDescription& robot, LinkGeometry geometry) {
   std::vector<std::string> names;
   for (const LinkDescription& link : robot.links) {
@@ -198,16 +212,17 @@ int cover_links(const RobotArguments& arguments) {
   const RobotCover& result = measured.cover;
   if (measured.pairs == nullptr) std::erase(plan.formats, kPairsFormat);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  SrdfJudgement judgement;
+  if (measured.pairs != nullptr) judgement = judge_srdf(robot.model, semantics, *measured.pairs);
   RobotSpheres spheres = robot_spheres(robot, result);
-  add_missing_pairs(disabled, robot.model, spheres.self_collision_ignore);
   if (measured.pairs != nullptr) {
     add_missing_pairs(pairs_proved_never(robot.model, *measured.pairs), robot.model,
                       spheres.self_collision_ignore);
   }
+  add_missing_pairs(without_refuted_reasons(disabled, judgement), robot.model,
+                    spheres.self_collision_ignore);
   const std::vector<PostureContact> contacts =
       contacts_in_postures(robot, semantics, spheres, measured);
-  SrdfJudgement judgement;
-  if (measured.pairs != nullptr) judgement = judge_srdf(robot.model, semantics, *measured.pairs);
   Json summary = robot_summary(arguments.urdf, result, seconds.count());
   if (measured.pairs != nullptr) {
     summary["link_pairs"] = pair_summary(*measured.pairs, robot.model, measured.pair_seconds);

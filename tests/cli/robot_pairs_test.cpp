@@ -244,6 +244,16 @@ TEST_F(RobotPairsTest, FilesThatAreKeptGetThePairsOnce) {
   for (std::size_t i = 0; i < files.size(); ++i) EXPECT_EQ(read(files[i]), texts[i]);
 }
 
+TEST_F(RobotPairsTest, WhatIsProvedIsTheReasonInNewFiles) {
+  write("gantry.urdf", gantry("0"));
+  write("my.srdf", R"(<robot name="gantry">
+<disable_collisions link1="tool" link2="block" reason="Never"/></robot>)");
+  ASSERT_EQ(cover({"--srdf", "my.srdf"}).exit_code, 0);
+  EXPECT_NE(read("out/gantry.xrdf").find("# Never (proved within the limits): tool\n"),
+            std::string::npos);
+  EXPECT_NE(read("out/gantry.srdf").find("link2=\"block\" reason=\"Never\"/>"), std::string::npos);
+}
+
 TEST_F(RobotPairsTest, DisabledPairsThatTouchAreAWarning) {
   write("gantry.urdf", gantry("-0.05"));
   const auto warnings = [&](const std::string& reason) {
@@ -257,6 +267,8 @@ TEST_F(RobotPairsTest, DisabledPairsThatTouchAreAWarning) {
   const json judged = read_json("out/gantry.report.json")["disabled_pairs"][0];
   EXPECT_TRUE(judged["wrong"]);
   EXPECT_LT(judged["witness"]["slide"], -0.0199);
+  EXPECT_NE(read("out/gantry.xrdf").find("# given, though they can touch: tool\n"),
+            std::string::npos);
   EXPECT_EQ(warnings(R"( reason="User")"), "");
 }
 
