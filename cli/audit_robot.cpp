@@ -8,6 +8,8 @@
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
+#include "cli/pair_kinds.h"
+#include "cli/pair_report.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
@@ -40,6 +42,7 @@ struct AuditRobotArguments {
   std::string link;
   std::optional<std::size_t> level;
   std::string repaired;
+  PairSources pairs;
   std::optional<double> max_error;
   std::optional<double> min_external;
   bool json = false;
@@ -104,7 +107,8 @@ std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, boo
 
 int audit(const AuditRobotArguments& arguments) {
   const bool mend = !arguments.repaired.empty();
-  check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses});
+  check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses,
+                                       arguments.pairs.srdf, arguments.pairs.pairs});
   const LinkGeometry geometry = geometry_named(arguments.geometry);
   const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
   SphereInput given = read_spheres_of(robot, geometry, arguments.spheres,
@@ -112,7 +116,8 @@ int audit(const AuditRobotArguments& arguments) {
   RobotAuditReport report{.file = std::move(given.file),
                           .audit = {},
                           .repaired_file = arguments.repaired,
-                          .repair = std::nullopt};
+                          .repair = std::nullopt,
+                          .pairs = std::nullopt};
   const RobotSpheres& spheres = report.file.spheres;
   const bool is_shrunk =
       spheres.collision_buffer < 0.0 ||
@@ -134,10 +139,18 @@ int audit(const AuditRobotArguments& arguments) {
                                     .progress = options.progress});
     }
   }
+  if (!arguments.pairs.is_empty()) {
+    report.pairs = pair_kinds(robot, spheres, geometry, arguments.pairs, true);
+  }
   if (mend) {
     write_uninterrupted([&] { write_repaired(arguments, report.file, *report.repair); });
   }
   std::cout << (arguments.json ? to_text(audit_json(report)) : audit_table(report));
+  if (report.pairs) {
+    for (const std::string& warning : wrong_pairs(report.pairs->judgement, robot.model)) {
+      std::cerr << "spherule: warning: " << warning << "\n";
+    }
+  }
   if (is_shrunk) {
     std::cerr << "spherule: " << arguments.spheres
               << ": spheres were certified as its buffers below 0 shrink them\n";
@@ -181,6 +194,15 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
       ->add_option("--poses", arguments->poses,
                    "Configurations (CSV) in which spheres of other links may cover too; the "
                    "exit code is then about these")
+      ->type_name(kFile);
+  command
+      ->add_option("--srdf", arguments->pairs.srdf,
+                   "The robot's SRDF: tell the pairs of links apart, and judge those it disables")
+      ->type_name(kFile);
+  command
+      ->add_option("--pairs", arguments->pairs.pairs,
+                   "What is proved of the pairs of links (NAME.pairs of robot, covered without "
+                   "padding): tell them apart by it; without it --srdf proves them first")
       ->type_name(kFile);
   command->add_option("--link", arguments->link,
                       "Whose spheres they are, if the file names no link");

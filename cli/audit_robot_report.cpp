@@ -82,6 +82,17 @@ void put_links(std::ostream& out, const std::vector<LinkAudit>& links) {
       yes(covered));
 }
 
+void put_repair(std::ostream& out, const RobotAuditReport& report) {
+  if (!report.repair) return;
+  out << "repaired into " << report.repaired_file << "\n";
+  for (const LinkRepair& link : report.repair->links) {
+    out << "  " << link.link << ": " << link.repair.grown << " spheres grown, by at most "
+        << in_mm(link.repair.largest_growth) << ", and " << link.repair.added
+        << " added; allowed to protrude by " << in_mm(link.max_error) << "; "
+        << (link.certificate.covered ? "covered (proved)" : "NOT proved to cover") << "\n";
+  }
+}
+
 Json json_of(const LinkAudit& link) {
   Json json;
   json["link"] = link.link;
@@ -108,14 +119,8 @@ std::string audit_table(const RobotAuditReport& report) {
           << configuration.deepest_link << "\n";
     }
   }
-  if (!report.repair) return out.str();
-  out << "repaired into " << report.repaired_file << "\n";
-  for (const LinkRepair& link : report.repair->links) {
-    out << "  " << link.link << ": " << link.repair.grown << " spheres grown, by at most "
-        << in_mm(link.repair.largest_growth) << ", and " << link.repair.added
-        << " added; allowed to protrude by " << in_mm(link.max_error) << "; "
-        << (link.certificate.covered ? "covered (proved)" : "NOT proved to cover") << "\n";
-  }
+  put_repair(out, report);
+  if (report.pairs) out << describe(*report.pairs);
   return out.str();
 }
 
@@ -135,6 +140,7 @@ Json audit_json(const RobotAuditReport& report) {
                                         {"deepest_link", configuration.deepest_link}});
     }
   }
+  if (report.pairs) json.update(to_json(*report.pairs));
   if (!report.repair) return json;
   json["repair"] = {{"file", report.repaired_file}, {"links", Json::array()}};
   for (const LinkRepair& link : report.repair->links) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/json.h"
+#include "cli/pair_kinds.h"
 #include "collide/robot/audit_robot.h"
 #include "collide/robot/sphere_formats.h"
 
@@ -15,9 +16,11 @@ struct RobotAuditReport {
   RobotAudit audit;
   std::string repaired_file;  // where the mended spheres went; empty if nowhere
   std::optional<RobotRepair> repair;
+  std::optional<PairKinds> pairs;  // if they were asked for
 };
 
-// A table of the links, the configurations and the repair, lengths in millimetres.
+// A table of the links, the configurations, the repair and the pairs of links, lengths in
+// millimetres.
 std::string audit_table(const RobotAuditReport& report);
 
 Json audit_json(const RobotAuditReport& report);

@@ -123,9 +123,13 @@ void require_provable(const Trajectory& trajectory, const std::string& file) {
 
 class TrajectoryCheck {
  public:
-  TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory, int threads,
-                  Progress progress)
-      : checker_(checker), trajectory_(trajectory), progress_(std::move(progress)) {
+  // Where `has_proofs`, pairs that these alone keep apart are counted, too.
+  TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory, bool has_proofs,
+                  int threads, Progress progress)
+      : checker_(checker),
+        trajectory_(trajectory),
+        has_proofs_(has_proofs),
+        progress_(std::move(progress)) {
     const unsigned count = threads > 0 ? static_cast<unsigned>(threads)
                                        : std::max(1u, std::thread::hardware_concurrency());
     for (unsigned i = 0; i < count; ++i) scratches_.emplace_back(checker);
@@ -139,6 +143,7 @@ class TrajectoryCheck {
       checker_.check_configs(all.subspan(first * trajectory_.width, count * trajectory_.width),
                              scratches_, std::span(free).subspan(first, count));
     });
+    count_proved_free();
     for (std::size_t i = 0; i < free.size(); ++i) {
       if (free[i] != 0) continue;
       ++report_.colliding;
@@ -160,6 +165,7 @@ class TrajectoryCheck {
       results.insert(results.end(), some.begin(), some.end());
     });
     report_.motions = count;
+    count_proved_free();
     for (std::size_t i = 0; i < count; ++i) {
       TrajectoryPoint at{.line = trajectory_.lines[i], .to_line = trajectory_.lines[i + 1]};
       if (results[i].verdict == Verdict::kCollision) {
@@ -195,6 +201,18 @@ class TrajectoryCheck {
     return result;
   }
 
+  void count_proved_free() {
+    constexpr std::size_t kMost = 10000;  // enough to see which pairs they are
+    if (!has_proofs_) return;
+    report_.explained = std::min(kMost, trajectory_.size());
+    for (std::size_t i = 0; i < report_.explained; ++i) {
+      for (const CheckedContact& contact : checker_.explain(
+               trajectory_.configuration(i), scratches_.front(), {.proved_free = true})) {
+        if (contact.is_proved_free) report_.add({{.line = trajectory_.lines[i]}, contact});
+      }
+    }
+  }
+
   void explain(std::span<const double> configuration, const TrajectoryPoint& at) {
     for (const CheckedContact& contact : checker_.explain(configuration, scratches_.front())) {
       report_.add({at, contact});
@@ -203,6 +221,7 @@ class TrajectoryCheck {
 
   const RobotChecker& checker_;
   const Trajectory& trajectory_;
+  bool has_proofs_;
   Progress progress_;
   std::vector<RobotChecker::Scratch> scratches_;
   CheckReport report_;
@@ -255,18 +274,25 @@ int check(const CheckArguments& arguments) {
   AllowedCollisions allowed = prepared.scene.allowed_collisions();
   for (const DisabledPair& pair : spheres.ignored) allowed.allow(pair.link_a, pair.link_b);
   prepared.scene.set_allowed_collisions(std::move(allowed));
+  std::shared_ptr<const LinkPairs> proofs;
   if (!arguments.pairs.empty()) {
-    prepared.scene.set_link_pairs(std::make_shared<const LinkPairs>(
-        load_link_pairs(arguments.pairs, robot.model, covered_bodies(robot, options))));
+    proofs = std::make_shared<const LinkPairs>(
+        load_link_pairs(arguments.pairs, robot.model, covered_bodies(robot, options)));
+    prepared.scene.set_link_pairs(proofs);
   }
 
   const RobotChecker checker = prepared.scene.snapshot();
-  TrajectoryCheck trajectory_check(checker, trajectory, options.threads, bar.callback());
+  TrajectoryCheck trajectory_check(checker, trajectory, proofs != nullptr, options.threads,
+                                   bar.callback());
   CheckReport report = arguments.edges && trajectory.size() > 1
                            ? std::move(trajectory_check).motions(arguments.resolution)
                            : std::move(trajectory_check).configurations();
   bar.clear();
   report.is_whole = is_whole;
+  if (proofs != nullptr) {
+    const RobotModel& model = checker.robot();
+    report.tell_kinds(model, pair_statuses(model, prepared.scene.allowed_collisions(), proofs));
+  }
   std::cout << (arguments.json ? check_json(report)
                                : check_table(report) + advice(arguments, report));
   return report.is_free() ? kYes : kNo;

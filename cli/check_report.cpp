@@ -2,6 +2,7 @@
 #include "cli/check_report.h"
 
 #include "cli/json.h"
+#include "cli/print.h"
 #include "cli/units.h"
 
 #include <algorithm>
@@ -79,38 +80,80 @@ std::string text_of(const Eigen::Vector3d& point) {
   return text.str();
 }
 
-// Columns as wide as their widest cell, the last one ragged.
-std::string aligned(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+// -1 for what is no link.
+int link_of(const RobotModel& robot, const CheckedBody& body) {
+  return body.kind == CheckedBody::Kind::kLink ? robot.find_link(body.name) : -1;
+}
+
+// Free boxes of the two do not matter where they touch.
+std::string kind_of_contact(const PairStatus& status) {
+  switch (*status.verdict) {
+    case PairVerdict::kNever:
+      return "never within the limits";
+    case PairVerdict::kTouching:
+      return "can touch";
+    case PairVerdict::kUnknown:
+      break;
   }
+  return "unknown";
+}
+
+std::string in_mm(double metres) {
   std::ostringstream text;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const bool last = i + 1 == row.size();
-      text << std::left << std::setw(last ? 0 : static_cast<int>(widths[i] + 2)) << row[i];
-    }
-    text << "\n";
-  }
+  text << std::fixed << std::setprecision(2) << metres * kMillimetresPerMetre;
   return text.str();
+}
+
+// Pairs whose spheres overlap though they are free, a line each.
+void put_proved_free(std::ostream& out, const CheckReport& report) {
+  for (const TouchingPair& pair : report.proved_free) {
+    const CheckedContact& worst = pair.worst.contact;
+    out << "free though spheres overlap: " << worst.first.name << " and " << worst.second.name
+        << (pair.kind.empty() ? "" : " (" + pair.kind + ")") << ", in " << pair.count << " of "
+        << report.explained << " configurations, up to " << in_mm(worst.overlap_depth) << " mm\n";
+  }
+}
+
+Json to_json(const TouchingPair& pair) {
+  Json json{{"first", pair.first.contact.first.name},
+            {"second", pair.first.contact.second.name},
+            {"count", pair.count},
+            {"first_contact", to_json(pair.first)},
+            {"worst_contact", to_json(pair.worst)}};
+  if (!pair.kind.empty()) json["kind"] = pair.kind;
+  return json;
 }
 
 }  // namespace
 
 void CheckReport::add(const FoundContact& found) {
-  const auto known = std::find_if(pairs.begin(), pairs.end(), [&](const TouchingPair& pair) {
+  std::vector<TouchingPair>& list = found.contact.is_proved_free ? proved_free : pairs;
+  const auto known = std::find_if(list.begin(), list.end(), [&](const TouchingPair& pair) {
     return pair.first.contact.first.name == found.contact.first.name &&
            pair.first.contact.second.name == found.contact.second.name;
   });
   const std::size_t at_start = found.at.fraction == 0.0 ? 1 : 0;
-  if (known == pairs.end()) {
-    pairs.push_back({1, at_start, found, found});
+  if (known == list.end()) {
+    list.push_back({1, at_start, found, found});
     return;
   }
   ++known->count;
   known->at_start += at_start;
   if (found.contact.overlap_depth > known->worst.contact.overlap_depth) known->worst = found;
+}
+
+void CheckReport::tell_kinds(const RobotModel& robot, const std::vector<PairStatus>& statuses) {
+  for (std::vector<TouchingPair>* const list : {&pairs, &proved_free}) {
+    for (TouchingPair& pair : *list) {
+      const std::pair<int, int> links = std::minmax(link_of(robot, pair.first.contact.first),
+                                                    link_of(robot, pair.first.contact.second));
+      const auto status = std::find_if(statuses.begin(), statuses.end(), [&](const auto& other) {
+        return links == std::pair(other.first, other.second);
+      });
+      if (status == statuses.end() || !status->verdict) continue;
+      pair.kind = list == &proved_free ? std::string(kind_of(*status)) : kind_of_contact(*status);
+    }
+  }
 }
 
 std::vector<TouchingPair> always_touching(const CheckReport& report) {
@@ -134,18 +177,20 @@ std::string check_table(const CheckReport& report) {
     text << ", " << report.colliding << " of them collide\n";
   }
   if (!report.pairs.empty()) {
-    std::vector<std::vector<std::string>> rows = {
-        {"body", "touches", "times", "first at line", "deepest at line", "depth/mm", "where/m"}};
+    const bool has_kinds = std::any_of(report.pairs.begin(), report.pairs.end(),
+                                       [](const TouchingPair& pair) { return !pair.kind.empty(); });
+    std::vector<std::vector<std::string>> rows = {{"body", "touches", "times", "first at line",
+                                                   "deepest at line", "depth/mm", "where/m",
+                                                   has_kinds ? "kind" : ""}};
     for (const TouchingPair& pair : report.pairs) {
       const CheckedContact& worst = pair.worst.contact;
-      std::ostringstream depth;
-      depth << std::fixed << std::setprecision(2) << worst.overlap_depth * kMillimetresPerMetre;
       rows.push_back({worst.first.name, worst.second.name, std::to_string(pair.count),
-                      text_of(pair.first.at), text_of(pair.worst.at), depth.str(),
-                      text_of(worst.world_point)});
+                      text_of(pair.first.at), text_of(pair.worst.at), in_mm(worst.overlap_depth),
+                      text_of(worst.world_point), pair.kind});
     }
     text << aligned(rows);
   }
+  put_proved_free(text, report);
   constexpr std::size_t kMost = 20;
   for (std::size_t i = 0; i < std::min(kMost, report.not_proved.size()); ++i) {
     text << "not proved beyond line " << text_of(report.not_proved[i]) << "\n";
@@ -164,12 +209,10 @@ std::string check_json(const CheckReport& report) {
   json["first_contact"] = worst ? to_json(report.pairs.front().first) : Json(nullptr);
   json["worst_contact"] = worst ? to_json(worst->worst) : Json(nullptr);
   json["pairs"] = Json::array();
-  for (const TouchingPair& pair : report.pairs) {
-    json["pairs"].push_back({{"first", pair.first.contact.first.name},
-                             {"second", pair.first.contact.second.name},
-                             {"count", pair.count},
-                             {"first_contact", to_json(pair.first)},
-                             {"worst_contact", to_json(pair.worst)}});
+  for (const TouchingPair& pair : report.pairs) json["pairs"].push_back(to_json(pair));
+  json["proved_free"] = Json::array();
+  for (const TouchingPair& pair : report.proved_free) {
+    json["proved_free"].push_back(to_json(pair));
   }
   json["not_proved"] = Json::array();
   for (const TrajectoryPoint& point : report.not_proved) {

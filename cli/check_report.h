@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/robot/pair_status.h"
 #include "collide/robot/robot_checker.h"
 
 #include <cstddef>
@@ -28,6 +29,7 @@ struct TouchingPair {
   std::size_t at_start = 0;  // of these, where nothing before the contact is free
   FoundContact first;        // on the trajectory
   FoundContact worst;        // the deepest
+  std::string kind{};        // of two links with proofs: what is known of them
 };
 
 // What a check of a trajectory found.
@@ -37,11 +39,17 @@ struct CheckReport {
   std::size_t colliding = 0;                  // of the motions, or of the configurations
   std::vector<TrajectoryPoint> not_proved{};  // motions, and up to where they are free
   std::vector<TouchingPair> pairs{};          // in the order of the first contacts
+  // Whose spheres overlap while they are proved free, in the configurations that were looked at.
+  std::vector<TouchingPair> proved_free{};
+  std::size_t explained = 0;  // configurations that were looked at for these, the first ones
 
   bool is_whole = true;  // no part of the robot was left out
 
   bool is_free() const { return colliding == 0 && not_proved.empty() && is_whole; }
+  // Where it belongs.
   void add(const FoundContact& found);
+  // Says of the pairs of links of what kind they are.
+  void tell_kinds(const RobotModel& robot, const std::vector<PairStatus>& statuses);
 };
 
 // Pairs of the robot's own bodies that touch in every configuration, or at the start of every

@@ -36,14 +36,6 @@ struct CheckSrdfArguments {
   bool json = false;
 };
 
-std::string names_of(const JudgedPair& judged) {
-  return judged.pair.link_a + " and " + judged.pair.link_b;
-}
-
-std::string reason_of(const JudgedPair& judged) {
-  return judged.pair.reason.empty() ? "no reason" : "\"" + judged.pair.reason + "\"";
-}
-
 std::size_t count_of(const SrdfJudgement& judgement, DisabledVerdict verdict) {
   return static_cast<std::size_t>(
       std::count_if(judgement.pairs.begin(), judgement.pairs.end(),
@@ -54,8 +46,7 @@ void describe_touching(const SrdfJudgement& judgement, const RobotModel& robot, 
                        std::ostream& out) {
   for (const JudgedPair& judged : judgement.pairs) {
     if (judged.verdict != DisabledVerdict::kTouches || judged.is_wrong != is_wrong) continue;
-    out << "  " << names_of(judged) << " (" << reason_of(judged)
-        << "): " << describe_posture(robot, judged.witness) << "\n";
+    out << "  " << describe(judged.pair) << ": " << describe_posture(robot, judged.witness) << "\n";
   }
 }
 
@@ -71,13 +62,13 @@ std::string describe(const SrdfJudgement& judgement, const RobotModel& robot) {
     describe_touching(judgement, robot, true, out);
   }
   if (count_of(judgement, DisabledVerdict::kTouches) > wrong) {
-    out << "touching by somebody's decision (Adjacent, Default, Always, User):\n";
+    out << "touching by somebody's decision (Default, Always, User):\n";
     describe_touching(judgement, robot, false, out);
   }
   if (count_of(judgement, DisabledVerdict::kUnknown) > 0) out << "neither proved nor touching:\n";
   for (const JudgedPair& judged : judgement.pairs) {
     if (judged.verdict != DisabledVerdict::kUnknown) continue;
-    out << "  " << names_of(judged) << " (" << reason_of(judged) << ")";
+    out << "  " << describe(judged.pair);
     if (std::isfinite(judged.smallest_gap)) {
       out << ": " << std::setprecision(3) << judged.smallest_gap * kMillimetresPerMetre
           << " mm apart at the nearest posture found";
@@ -107,16 +98,7 @@ Json judgement_json(const SrdfJudgement& judgement, const RobotModel& robot) {
   json["format"] = "spherule-srdf-check";
   json["version"] = 1;
   json["pairs"] = Json::array();
-  for (const JudgedPair& judged : judgement.pairs) {
-    Json pair;
-    pair["links"] = {judged.pair.link_a, judged.pair.link_b};
-    pair["reason"] = judged.pair.reason;
-    pair["verdict"] = name_of(judged.verdict);
-    pair["wrong"] = judged.is_wrong;
-    if (!judged.witness.empty()) pair["witness"] = posture_json(robot, judged.witness);
-    pair["smallest_gap"] = to_json(judged.smallest_gap);
-    json["pairs"].push_back(std::move(pair));
-  }
+  for (const JudgedPair& judged : judgement.pairs) json["pairs"].push_back(to_json(judged, robot));
   json["could_be_added"] = Json::array();
   for (const auto& [first, second] : judgement.could_be_added) {
     json["could_be_added"].push_back({link_name(robot, first), link_name(robot, second)});
@@ -174,7 +156,8 @@ void add_check_srdf(CLI::App& app, int& exit_code) {
       {.text =
            "A pair is proved never to touch within the limits of the joints, by the meshes with "
            "their insides, or a posture is shown in which it does. Touching is wrong for pairs "
-           "with the reason Never or none; Adjacent, Default, Always and User are decisions.",
+           "with the reason Never or none, and for Adjacent ones that no joint joins; Default, "
+           "Always and User are decisions.",
        .exit_codes = "0 every pair that is not disabled by decision is proved never to touch; 1 "
                      "some touch, or nothing is proved of them",
        .examples = {"spherule check-srdf robot.urdf robot.srdf",

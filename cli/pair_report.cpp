@@ -61,6 +61,32 @@ Json to_json(const std::vector<PostureContact>& contacts) {
   return json;
 }
 
+Json to_json(const JudgedPair& judged, const RobotModel& robot) {
+  Json json;
+  json["links"] = {judged.pair.link_a, judged.pair.link_b};
+  json["reason"] = judged.pair.reason;
+  json["verdict"] = name_of(judged.verdict);
+  json["wrong"] = judged.is_wrong;
+  if (!judged.witness.empty()) json["witness"] = posture_json(robot, judged.witness);
+  json["smallest_gap"] = to_json(judged.smallest_gap);
+  return json;
+}
+
+std::string describe(const DisabledPair& pair) {
+  const std::string reason = pair.reason.empty() ? "no reason" : "\"" + pair.reason + "\"";
+  return pair.link_a + " and " + pair.link_b + " (" + reason + ")";
+}
+
+std::vector<std::string> wrong_pairs(const SrdfJudgement& judgement, const RobotModel& robot) {
+  std::vector<std::string> warnings;
+  for (const JudgedPair& judged : judgement.pairs) {
+    if (!judged.is_wrong) continue;
+    warnings.push_back("the SRDF disables " + describe(judged.pair) + ", which touch at " +
+                       describe_posture(robot, judged.witness));
+  }
+  return warnings;
+}
+
 std::string describe_link_pairs(const LinkPairs& pairs, double seconds) {
   if (pairs.pairs().empty()) return {};
   std::ostringstream out;

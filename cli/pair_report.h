@@ -4,6 +4,7 @@
 #include "cli/json.h"
 #include "collide/robot/link_pairs.h"
 #include "collide/robot/named_postures.h"
+#include "collide/robot/srdf_judgement.h"
 
 #include <string>
 #include <vector>
@@ -20,6 +21,16 @@ Json pair_summary(const LinkPairs& pairs, const RobotModel& robot, double second
 
 // What touches in postures.
 Json to_json(const std::vector<PostureContact>& contacts);
+
+// A pair of an SRDF with its verdict, the posture in which the two touch and the smallest gap
+// found.
+Json to_json(const JudgedPair& judged, const RobotModel& robot);
+
+// `link_2 and link_6 ("Never")`.
+std::string describe(const DisabledPair& pair);
+
+// What is wrong with the disabled pairs of an SRDF, a warning each: two links that touch.
+std::vector<std::string> wrong_pairs(const SrdfJudgement& judgement, const RobotModel& robot);
 
 // The counts, for a person.
 std::string describe_link_pairs(const LinkPairs& pairs, double seconds);

@@ -6,6 +6,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace spherule {
 
@@ -14,5 +15,9 @@ std::string describe(const Certificate& certificate, const std::string& solid);
 
 // A line for every level.
 std::string describe(std::span<const CoverLevel> levels);
+
+// A table of rows of as many cells each, of which there is one at least: columns as wide as their
+// widest cell, no blanks at the ends of lines.
+std::string aligned(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace spherule

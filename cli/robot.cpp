@@ -91,6 +91,20 @@ std::vector<std::pair<std::string, std::string>> names_of(const std::vector<Disa
   return names;
 }
 
+// What is false is not handed on to other files as a reason.
+std::vector<DisabledPair> without_refuted_reasons(std::vector<DisabledPair> pairs,
+                                                  const SrdfJudgement& judgement) {
+  for (DisabledPair& pair : pairs) {
+    const bool is_wrong =
+        std::any_of(judgement.pairs.begin(), judgement.pairs.end(), [&](const JudgedPair& judged) {
+          return judged.is_wrong && judged.pair.link_a == pair.link_a &&
+                 judged.pair.link_b == pair.link_b;
+        });
+    if (is_wrong) pair.reason = "given, though they can touch";
+  }
+  return pairs;
+}
+
 std::vector<std::string> links_to_cover(const RobotDescription& robot, LinkGeometry geometry) {
   std::vector<std::string> names;
   for (const LinkDescription& link : robot.links) {
@@ -113,17 +127,18 @@ std::vector<NextStep> next_steps(const RobotArguments& arguments,
     return file.string().ends_with(".spheres.json");
   });
   if (spheres == written.end()) return {};
-  std::vector<std::string> view = {"view", arguments.urdf, spheres->string(), "-o",
-                                   beside(spheres->string(), ".html")};
+  std::vector<std::string> view = {"view", arguments.urdf, spheres->string()};
   std::vector<std::string> check = {"check",    arguments.urdf, "SCENE.json",
                                     "PATH.csv", "--spheres",    spheres->string()};
   const auto pairs = std::find_if(written.begin(), written.end(), [](const fs::path& file) {
     return file.extension() == ".pairs";
   });
-  // Proofs of links with padding are not those that check takes.
+  // Proofs of links with padding are not those that these take.
   if (pairs != written.end() && !has_padding(arguments)) {
+    view.push_back(pairs->string());
     check.insert(check.end(), {"--pairs", pairs->string()});
   }
+  view.insert(view.end(), {"-o", beside(spheres->string(), ".html")});
   for (std::vector<std::string>* step : {&view, &check}) {
     repeat_robot_options(arguments.geometry, arguments.packages, *step);
   }
@@ -197,12 +212,15 @@ int cover_links(const RobotArguments& arguments) {
   const RobotCover& result = measured.cover;
   if (measured.pairs == nullptr) std::erase(plan.formats, kPairsFormat);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  SrdfJudgement judgement;
+  if (measured.pairs != nullptr) judgement = judge_srdf(robot.model, semantics, *measured.pairs);
   RobotSpheres spheres = robot_spheres(robot, result);
-  add_missing_pairs(disabled, robot.model, spheres.self_collision_ignore);
   if (measured.pairs != nullptr) {
     add_missing_pairs(pairs_proved_never(robot.model, *measured.pairs), robot.model,
                       spheres.self_collision_ignore);
   }
+  add_missing_pairs(without_refuted_reasons(disabled, judgement), robot.model,
+                    spheres.self_collision_ignore);
   const std::vector<PostureContact> contacts =
       contacts_in_postures(robot, semantics, spheres, measured);
   Json summary = robot_summary(arguments.urdf, result, seconds.count());
@@ -211,6 +229,10 @@ int cover_links(const RobotArguments& arguments) {
   }
   summary["false_alarms"] = false_alarm_summary(measured, robot.model);
   summary["posture_contacts"] = to_json(contacts);
+  if (!judgement.pairs.empty()) summary["disabled_pairs"] = Json::array();
+  for (const JudgedPair& judged : judgement.pairs) {
+    summary["disabled_pairs"].push_back(to_json(judged, robot.model));
+  }
   write_uninterrupted([&] {
     write_robot_files(plan, robot, spheres, measured.pairs.get());
     write_file_atomically(plan.report(robot), robot_report(summary, result));
@@ -223,6 +245,9 @@ int cover_links(const RobotArguments& arguments) {
     for (const std::string& warning : link.warnings) {
       std::cerr << "spherule: warning: link " << link.link << ": " << warning << "\n";
     }
+  }
+  for (const std::string& warning : wrong_pairs(judgement, robot.model)) {
+    std::cerr << "spherule: warning: " << warning << "\n";
   }
   for (const PostureContact& contact : contacts) {
     std::cerr << "spherule: warning: " << describe(contact) << "\n";
@@ -305,16 +330,19 @@ void add_robot(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember(robot_format_names()));
   command
       ->add_option("--srdf", arguments->srdf,
-                   "The robot's SRDF: its disabled pairs are ignored, and all but its spheres "
-                   "is kept")
+                   "The robot's SRDF: its disabled pairs are ignored; all but its spheres is kept, "
+                   "and pairs that need no test are added")
       ->type_name(kFile);
   command
       ->add_option("--curobo", arguments->curobo,
-                   "The robot's cuRobo file, of which all but the spheres is kept")
+                   "The robot's cuRobo file, of which all but the spheres is kept; pairs that need "
+                   "no test are added")
       ->type_name(kFile);
   command
-      ->add_option("--xrdf", arguments->xrdf,
-                   "The robot's XRDF, of which all but the spheres is kept")
+      ->add_option(
+          "--xrdf", arguments->xrdf,
+          "The robot's XRDF, of which all but the spheres is kept; pairs that need no test "
+          "are added")
       ->type_name(kFile);
   command
       ->add_option("--tool-link", arguments->tool_link,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robot_files.h"
 
+#include "collide/robot/ignored_pairs.h"
 #include "collide/robot/link_pairs_file.h"
 #include "collide/robot/named_postures.h"
 #include "spheretree/build.h"
@@ -141,6 +142,9 @@ void rehearse_robot_files(const RobotFilePlan& plan, const RobotDescription& rob
   RobotSpheres spheres;
   spheres.robot = robot.name;
   for (const std::string& link : links) {
+    for (const LinkSpheres& other : spheres.links) {
+      spheres.self_collision_ignore.push_back({other.link, link, std::string(kProvedNeverReason)});
+    }
     spheres.links.push_back({link, {Sphere{Eigen::Vector3d::Zero(), 1.0}}});
   }
   write_robot_files(rehearsal, robot, spheres, nullptr);

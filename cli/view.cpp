@@ -72,7 +72,7 @@ void add_view(CLI::App& app, int& exit_code) {
       ->add_option(
           "files", arguments->files,
           "Meshes, spheres (JSON), trees, reports of `fit`, what `audit --json` printed, in "
-          "one unit; a robot's URDF and files of its spheres")
+          "one unit; a robot's URDF, files of its spheres, its SRDF and NAME.pairs")
       ->required()
       ->type_name(kFile);
   command->add_option("-o,--output", arguments->page, "Where the page goes (HTML)")

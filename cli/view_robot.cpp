@@ -4,6 +4,7 @@
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
 #include "cli/view_files.h"
+#include "cli/view_pairs.h"
 #include "collide/robot/link_mesh.h"
 #include "collide/robot/sphere_formats.h"
 #include "spheretree/atomic_file.h"
@@ -15,7 +16,9 @@
 #include <cctype>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 namespace spherule {
 namespace {
@@ -176,7 +179,7 @@ bool is_robot_file(const std::string& file) {
                                            json.value("format", Json()) == "spherule-spheres");
     return !json.is_null() && !ours;
   }
-  if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") return true;
+  if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf" || ending == ".pairs") return true;
   return read_file(file).find("<robot") != std::string::npos;
 }
 
@@ -195,8 +198,16 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
     item.shown = name == options.geometry.front();
     if (!item.parts.empty()) scene.items.push_back(std::move(item));
   }
+  PairSources pairs;
+  std::optional<RobotSpheres> first_spheres;  // to which the pairs belong
   for (const std::string& file : files) {
     if (file == *urdf && !has_balls(robot)) continue;
+    if (file != *urdf && is_of_pairs_alone(file)) {
+      std::string& source = fs::path(file).extension() == ".pairs" ? pairs.pairs : pairs.srdf;
+      if (!source.empty()) throw Error(file, "is the second file of pairs of links; one is shown");
+      source = file;
+      continue;
+    }
     if (const Json json = json_in(file); is_by_links(json)) {
       try {
         std::vector<ViewItem> items = report_items(robot, json, file);
@@ -207,8 +218,17 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
       continue;
     }
     const LinkGeometry geometry = geometry_named(options.geometry.front());
-    const SphereInput spheres = read_spheres_of(robot, geometry, file);
+    SphereInput spheres = read_spheres_of(robot, geometry, file);
     scene.items.push_back(sphere_item(robot, spheres.file.spheres, file));
+    if (first_spheres) continue;
+    first_spheres = std::move(spheres.file.spheres);
+    scene.robot["pairs_of"] = file;
+  }
+  if (first_spheres) {
+    scene.robot["pairs"] = view_pairs(
+        pair_kinds(robot, *first_spheres, geometry_named(options.geometry.front()), pairs, false));
+  } else if (!pairs.is_empty()) {
+    throw Error(*urdf, "pairs of its links are told apart with its spheres: name a file of them");
   }
 }
 

@@ -13,14 +13,16 @@ struct RobotViewOptions {
   std::vector<std::string> geometry;  // names, the first is shown at first
 };
 
-// Whether a file is of a robot: a URDF, its spheres in any format, or a certificate by links.
+// Whether a file is of a robot: a URDF, its spheres in any format, what is known of the pairs of
+// its links (NAME.pairs, SRDF), or a certificate by links.
 // Meshes, and what view_items() knows otherwise, are not. Throws Error if it cannot be read.
 bool is_robot_file(const std::string& file);
 
 // Adds the robot of the first URDF among the files, the meshes of its links, and what the other
-// files hold for them: spheres as trees, so that the page has levels of them, and leaks. What is
-// said of links that the robot has not is left out and counted. Throws Error, naming the file, for
-// files without a URDF among them and for spheres of which none are of a link of the robot.
+// files hold for them: spheres as trees, so that the page has levels of them, and leaks; of the
+// first spheres also what is known of the pairs of links. What is said of links that the robot has
+// not is left out and counted. Throws Error, naming the file, for files without a URDF among them
+// and for spheres of which none are of a link of the robot.
 void add_robot(const std::vector<std::string>& files, const RobotViewOptions& options,
                ViewScene& scene);
 

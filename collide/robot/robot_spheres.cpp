@@ -222,9 +222,12 @@ RobotSpheres robot_spheres(const RobotDescription& robot, const RobotCover& cove
           internal::Joined::kFurther) {
         continue;
       }
+      const std::string_view reason =
+          internal::are_neighbours(robot.model, first, second, has_spheres) ? kAdjacentReason
+                                                                            : kRigidReason;
       result.self_collision_ignore.push_back({cover.links[static_cast<std::size_t>(first)].link,
                                               cover.links[static_cast<std::size_t>(second)].link,
-                                              "Adjacent"});
+                                              std::string(reason)});
     }
   }
   return result;

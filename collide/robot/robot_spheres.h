@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace spherule {
@@ -80,11 +81,16 @@ RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& o
 // Names of the links for which not everything promised is proved, in their order.
 std::vector<std::string> links_not_proved(const RobotCover& cover);
 
+// Why pairs of links are not to be checked, in lists of ignored pairs.
+inline constexpr std::string_view kAdjacentReason = "Adjacent";
+inline constexpr std::string_view kRigidReason = "Rigid (no joint moves them)";
+
 // The spheres of all links, as the writers of formats take them: none for a link without geometry.
 // Pairs of links that are not to be checked against each other are those that no joint moves
 // against each other, and those that one joint joins, directly or past links without spheres:
-// covers of neighbours overlap at their joint in any configuration. Whether others may touch is
-// for an SRDF to say.
+// covers of neighbours overlap at their joint in any configuration. Links with one that has spheres
+// between them are no neighbours: their reason is kRigidReason. Whether others may touch is for an
+// SRDF to say.
 RobotSpheres robot_spheres(const RobotDescription& robot, const RobotCover& cover);
 
 }  // namespace spherule

@@ -122,8 +122,13 @@ struct SphereFileContext {
 // - kUrdf: `context.urdf`, with the collision elements of each link of `spheres` replaced by one
 //   for each ball, and leaves that stand for one ball of such a link (above) taken out; everything
 //   else is kept. Relative paths of meshes and textures are made relative to the new place.
-// - kSrdf, kCurobo, kXrdf: what `context.original` holds beside the balls is kept, comments of YAML
-//   excepted; pairs and buffers of `spheres` go into a new file only.
+// - kSrdf, kCurobo, kXrdf: what `context.original` holds beside the balls is kept, byte by byte
+// (but
+//   YAML in which a changed part stands in a line with others, or in an anchor, is written anew,
+//   without comments). Pairs of `spheres` that it does not list yet, in either order, are added:
+//   with their reason, in YAML as a comment; to cuRobo's files that have `kinematics`, to XRDF that
+//   has `self_collision`, and to an SRDF that does not enable them. Buffers go into a new file
+//   only.
 // - A link without balls: in SRDF, one ball of radius 0 says so; in a URDF it has no <collision>.
 // Throws Error for balls that are not usable or (but for kSpherule) have no extent, names that are
 // empty, twice, not UTF-8 or have control characters, numbers that are not finite, links that the

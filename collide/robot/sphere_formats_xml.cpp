@@ -19,8 +19,6 @@ namespace fs = std::filesystem;
 using tinyxml2::XMLDocument;
 using tinyxml2::XMLElement;
 
-constexpr const char* kApproximation = "link_sphere_approximation";
-
 // A file that has been read as XML before.
 std::unique_ptr<XMLDocument> parsed(const fs::path& path) {
   const std::string text = read_file(path);
@@ -138,37 +136,10 @@ std::string sphere_urdf(const RobotSpheres& spheres, const SphereFileContext& co
 }
 
 std::string sphere_srdf(const RobotSpheres& spheres, const SphereFileContext& context) {
-  auto document = std::make_unique<XMLDocument>();
-  XMLElement* robot = nullptr;
-  if (!context.original.empty()) {
-    const XmlFile file(context.original, "robot");  // refuses what is no SRDF
-    document = parsed(context.original);
-    robot = document->RootElement();
-    remove_children(*robot, kApproximation);
-  } else {
-    document->InsertEndChild(document->NewDeclaration());
-    robot = document->NewElement("robot");
-    document->InsertEndChild(robot);
-    robot->SetAttribute("name", spheres.robot.c_str());
-    for (const DisabledPair& pair : spheres.self_collision_ignore) {
-      XMLElement* disabled = robot->InsertNewChildElement("disable_collisions");
-      disabled->SetAttribute("link1", pair.link_a.c_str());
-      disabled->SetAttribute("link2", pair.link_b.c_str());
-      if (!pair.reason.empty()) disabled->SetAttribute("reason", pair.reason.c_str());
-    }
-  }
-  for (const LinkSpheres& link : spheres.links) {
-    XMLElement* approximation = robot->InsertNewChildElement(kApproximation);
-    approximation->SetAttribute("link", link.link.c_str());
-    const auto add = [&](const Sphere& ball) {
-      XMLElement* sphere = approximation->InsertNewChildElement("sphere");
-      sphere->SetAttribute("center", decimals(ball.center, " ").c_str());
-      sphere->SetAttribute("radius", decimal(ball.radius).c_str());
-    };
-    for (const Sphere& ball : link.spheres) add(ball);
-    if (link.spheres.empty()) add({});
-  }
-  return printed(*document);
+  if (!context.original.empty()) return kept_srdf(spheres, context.original);
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<robot name=\"" + xml_escaped(spheres.robot) +
+         "\">\n" + srdf_pairs(spheres.self_collision_ignore, "    ") +
+         srdf_spheres(spheres.links, "    ") + "</robot>\n";
 }
 
 }  // namespace spherule::internal

@@ -14,7 +14,7 @@ namespace spherule {
 namespace {
 
 bool is_decision(std::string_view reason) {
-  constexpr std::array<std::string_view, 4> kDecisions = {"Adjacent", "Default", "Always", "User"};
+  constexpr std::array<std::string_view, 3> kDecisions = {"Default", "Always", "User"};
   return std::find(kDecisions.begin(), kDecisions.end(), reason) != kDecisions.end();
 }
 

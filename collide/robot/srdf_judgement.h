@@ -33,8 +33,8 @@ struct JudgedPair {
   std::vector<double> witness{};  // where they touch: a configuration
   double smallest_gap = std::numeric_limits<double>::infinity();  // found, in metres; of kUnknown
   // Two links touch that are neither joined nor, by the reason that the SRDF gives, meant to
-  // ("Adjacent", "Default", "Always" and "User" are somebody's decision; "Never" is a statement,
-  // and no reason is none).
+  // ("Default", "Always" and "User" are somebody's decision; "Never" is a statement, as is
+  // "Adjacent", which is false of links that are not joined, and no reason is none).
   bool is_wrong = false;
   // Nothing is known of them, though the SRDF states it.
   bool is_open = false;

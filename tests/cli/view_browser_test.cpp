@@ -144,7 +144,7 @@ TEST_F(ViewBrowserTest, Robot) {
   EXPECT_GT(count(shown.picture, is_red), 60u);
   // The joint stands in the middle of its limits, which do not hold zero.
   for (const char* text : {">arm<", "2 links, 1 joint", "joint hip", "85.9°", "collision geometry",
-                           "2 spheres", ">boom<"}) {
+                           "2 spheres", ">boom<", "No two links overlap by their spheres."}) {
     EXPECT_NE(shown.dom.find(text), std::string::npos) << text;
   }
 }

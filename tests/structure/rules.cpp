@@ -69,7 +69,7 @@ const std::vector<Room>& rooms() {
         {"urdfdom", "collide/robot/urdf.cpp"},
         {"tinyxml2", "collide/robot/internal/xml_file.cpp"},
         {"tinyxml2", "collide/robot/sphere_formats_xml.cpp"},
-        {"yaml-cpp", "collide/robot/sphere_formats_yaml.cpp"}}},
+        {"yaml-cpp", "collide/robot/internal/yaml_nodes.h"}}},
       {"collide/fcl", kCores, {"Eigen", "fcl", "ccd"}, {}},
       {"collide/ompl",
        {"spheretree", "simplifier", "collide", "collide/robot"},

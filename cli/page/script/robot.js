@@ -42,6 +42,9 @@ function rest_position(joint) {
 }
 const configuration = variable_joints.map(rest_position);
 
+// Called where the robot has moved.
+const pose_listeners = [];
+
 function place_links() {
   for (const {joint, frame, axis} of joint_frames.filter(Boolean)) {
     if (joint.variable < 0) continue;
@@ -53,5 +56,6 @@ function place_links() {
     }
   }
   world.updateMatrixWorld(true);
+  for (const listener of pose_listeners) listener();
 }
 place_links();

@@ -107,5 +107,6 @@ function add_robot() {
   for (const id of ["joints", "links"]) panel_part(id).hidden = !robot_data;
   if (!robot_data) return;
   add_joints();
+  add_pairs();
   add_links();
 }

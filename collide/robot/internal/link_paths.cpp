@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/robot/internal/link_paths.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace spherule::internal {
@@ -30,20 +31,26 @@ std::vector<int> joints_between(const RobotModel& robot, int first, int second) 
   return up;
 }
 
+bool are_neighbours(const RobotModel& robot, int first, int second,
+                    const std::function<bool(int)>& has_spheres) {
+  int link = first;
+  for (const int index : joints_between(robot, first, second)) {
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
+    link = joint.child_link == link ? joint.parent_link : joint.child_link;
+    if (link != second && has_spheres(link)) return false;
+  }
+  return true;
+}
+
 Joined how_joined(const RobotModel& robot, int first, int second,
                   const std::function<bool(int)>& has_spheres) {
   const std::vector<int> joints = joints_between(robot, first, second);
-  int moving = 0;
-  bool passes_spheres = false;
-  int link = first;
-  for (const int index : joints) {
-    const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
-    moving += joint.moves() ? 1 : 0;
-    link = joint.child_link == link ? joint.parent_link : joint.child_link;
-    passes_spheres |= link != second && has_spheres(link);
-  }
+  const auto moving = std::count_if(joints.begin(), joints.end(), [&](int index) {
+    return robot.joints()[static_cast<std::size_t>(index)].moves();
+  });
   if (moving == 0) return Joined::kRigidly;
-  return moving == 1 && !passes_spheres ? Joined::kByOneJoint : Joined::kFurther;
+  const bool is_next = moving == 1 && are_neighbours(robot, first, second, has_spheres);
+  return is_next ? Joined::kByOneJoint : Joined::kFurther;
 }
 
 }  // namespace spherule::internal

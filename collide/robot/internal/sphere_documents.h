@@ -8,8 +8,11 @@
 
 #include <filesystem>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace spherule::internal {
 
@@ -51,10 +54,17 @@ RobotSpheres read_sphere_urdf(const std::filesystem::path& path);
 std::string sphere_urdf(const RobotSpheres& spheres, const SphereFileContext& context,
                         const std::filesystem::path& path);
 std::string sphere_srdf(const RobotSpheres& spheres, const SphereFileContext& context);
+// An SRDF with other balls, and with the pairs that it neither disables nor enables yet; all other
+// bytes as they are.
+std::string kept_srdf(const RobotSpheres& spheres, const std::filesystem::path& original);
+// Its elements for pairs and balls, each line indented and ended.
+std::string srdf_pairs(std::span<const DisabledPair> pairs, const std::string& indent);
+std::string srdf_spheres(std::span<const LinkSpheres> links, const std::string& indent);
 
 // YAML: cuRobo or XRDF.
 SphereFormatFile read_sphere_yaml(std::string_view text, const std::filesystem::path& path);
-// What a file holds beside the balls, written anew with these balls.
+// A file with other balls, and with the pairs that it does not ignore yet: all other bytes as they
+// are or, where its style does not allow that, written anew without its comments.
 std::string with_spheres(std::string_view text, const std::filesystem::path& path,
                          const RobotSpheres& spheres, SphereFormat format);
 // A new file.
@@ -62,6 +72,21 @@ std::string sphere_curobo(const RobotSpheres& spheres, const SphereFileContext& 
 std::string sphere_xrdf(const RobotSpheres& spheres, const SphereFileContext& context);
 // The balls of all links as a block of YAML, each line indented by `indent` spaces and ended.
 std::string yaml_spheres(const RobotSpheres& spheres, int indent);
+
+// Links that are not tested against a first one, with a reason each.
+struct IgnoredLinks {
+  std::string first;
+  std::vector<std::string> others{};
+  std::vector<std::string> reasons{};
+};
+// The first one of a pair is the one that comes first in `order`: cuRobo looks for it there only.
+std::vector<IgnoredLinks> ignored_links(std::span<const DisabledPair> pairs,
+                                        const std::vector<std::string>& order);
+// "first: [a, b]", and "# REASON: a, b" for the end of the line.
+std::string yaml_ignored(const IgnoredLinks& list);
+std::string yaml_reasons(const IgnoredLinks& list);
+// A comment without control characters, which readers refuse.
+std::string yaml_comment(std::string text);
 
 // JSON: all of the others but Bradshaw's.
 SphereFormatFile read_sphere_json(std::string_view text, const std::filesystem::path& path,

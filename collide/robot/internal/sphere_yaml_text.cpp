@@ -3,8 +3,8 @@
 #include "collide/robot/internal/sphere_documents.h"
 
 #include <algorithm>
-#include <functional>
 #include <map>
+#include <utility>
 
 namespace spherule::internal {
 namespace {
@@ -37,55 +37,13 @@ std::string buffers(const std::map<std::string, double>& lengths, const std::str
   return text;
 }
 
-// Why others are ignored, to the end of the line; in ASCII, which no reader refuses.
-std::string comment(const std::vector<std::string>& others,
-                    const std::vector<std::string>& reasons) {
-  std::vector<std::pair<std::string, std::string>> groups;  // reasons, and whom they are of
-  for (std::size_t i = 0; i < others.size(); ++i) {
-    const auto known = std::find_if(groups.begin(), groups.end(),
-                                    [&](const auto& group) { return group.first == reasons[i]; });
-    if (known == groups.end()) {
-      groups.emplace_back(reasons[i], others[i]);
-    } else {
-      known->second += ", " + others[i];
-    }
-  }
-  std::string text;
-  for (const auto& [reason, whom] : groups) {
-    text += (text.empty() ? "  # " : "; ") + reason + ": " + whom;
-  }
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
-  return text + "\n";
-}
-
-// Under the link that comes first: cuRobo looks for a pair there only.
 std::string ignored(const RobotSpheres& spheres, const std::string& indent) {
   if (spheres.self_collision_ignore.empty()) return " {}\n";
-  std::map<std::string, std::size_t> order;
-  for (const LinkSpheres& link : spheres.links) order.emplace(link.link, order.size());
-  struct List {
-    std::string first;
-    std::vector<std::string> others{};
-    std::vector<std::string> reasons{};
-  };
-  std::vector<List> lists;
-  for (const DisabledPair& pair : spheres.self_collision_ignore) {
-    std::string first = pair.link_a;
-    std::string second = pair.link_b;
-    const auto a = order.find(first);
-    const auto b = order.find(second);
-    if (a != order.end() && b != order.end() && b->second < a->second) std::swap(first, second);
-    auto list = std::find_if(lists.begin(), lists.end(),
-                             [&](const List& entry) { return entry.first == first; });
-    if (list == lists.end()) list = lists.insert(lists.end(), {first});
-    list->others.push_back(second);
-    list->reasons.push_back(pair.reason.empty() ? "given" : pair.reason);
-  }
+  std::vector<std::string> order;
+  for (const LinkSpheres& link : spheres.links) order.push_back(link.link);
   std::string text = "\n";
-  for (const List& list : lists) {
-    text += indent + yaml_text(list.first) + ": " + names(list.others) +
-            comment(list.others, list.reasons);
+  for (const IgnoredLinks& list : ignored_links(spheres.self_collision_ignore, order)) {
+    text += indent + yaml_ignored(list) + "  " + yaml_reasons(list) + "\n";
   }
   return text;
 }
@@ -101,6 +59,53 @@ constexpr double kAcceleration = 15.0;
 constexpr double kJerk = 500.0;
 
 }  // namespace
+
+std::vector<IgnoredLinks> ignored_links(std::span<const DisabledPair> pairs,
+                                        const std::vector<std::string>& order) {
+  const auto place = [&](const std::string& link) {
+    return std::find(order.begin(), order.end(), link) - order.begin();
+  };
+  std::vector<IgnoredLinks> lists;
+  for (const DisabledPair& pair : pairs) {
+    const bool is_turned = place(pair.link_b) < place(pair.link_a);
+    const std::string& first = is_turned ? pair.link_b : pair.link_a;
+    auto list = std::find_if(lists.begin(), lists.end(),
+                             [&](const IgnoredLinks& entry) { return entry.first == first; });
+    if (list == lists.end()) list = lists.insert(lists.end(), {first});
+    list->others.push_back(is_turned ? pair.link_a : pair.link_b);
+    list->reasons.push_back(pair.reason.empty() ? "given" : pair.reason);
+  }
+  return lists;
+}
+
+std::string yaml_ignored(const IgnoredLinks& list) {
+  return yaml_text(list.first) + ": " + names(list.others);
+}
+
+std::string yaml_reasons(const IgnoredLinks& list) {
+  std::vector<std::pair<std::string, std::string>> groups;  // reasons, and whom they are of
+  for (std::size_t i = 0; i < list.others.size(); ++i) {
+    const auto known = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+      return group.first == list.reasons[i];
+    });
+    if (known == groups.end()) {
+      groups.emplace_back(list.reasons[i], list.others[i]);
+    } else {
+      known->second += ", " + list.others[i];
+    }
+  }
+  std::string text;
+  for (const auto& [reason, whom] : groups) {
+    text += (text.empty() ? "# " : "; ") + reason + ": " + whom;
+  }
+  return yaml_comment(std::move(text));
+}
+
+std::string yaml_comment(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
+  return text;
+}
 
 std::string yaml_spheres(const RobotSpheres& spheres, int indent) {
   const std::string space(static_cast<std::size_t>(indent), ' ');

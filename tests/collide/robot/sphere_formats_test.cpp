@@ -177,14 +177,14 @@ TEST_F(SphereFormats, ExistingFilesKeepTheRest) {
       "      - {center: [0, 0, 0], radius: 9}\n    cspace:\n      joint_names: [j]\n  more: {}\n");
   write_robot_spheres(spheres, SphereFormat::kCurobo, {.original = yml}, file("new.yml"));
   const std::string kept = read_file(file("new.yml"));
-  EXPECT_EQ(kept,
-            "robot_cfg:\n  kinematics:\n    usd_path: null\n    flag: true\n    quoted: \"1.0\"\n"
-            "    version: 2.0\n    collision_link_names:\n    - a\n    - \"b: c\"\n    - new\n"
-            "    lists:\n    -\n      - 1\n      - 2\n    -\n        x: 3\n"
-            "    text: \"two\\U0000000Alines\\U0000000A\"\n    collision_spheres:\n      a:\n"
-            "        - {center: [1.0, 2.0, 3.0], radius: 0.5}\n      new:\n"
-            "        - {center: [1.0, 0.0, 0.0], radius: 2.0}\n    cspace:\n      joint_names:\n"
-            "      - j\n  more: {}\n");
+  EXPECT_EQ(
+      kept,
+      "robot_cfg:\n  kinematics:\n    usd_path: null\n    flag: true\n    \"quoted\": \"1.0\"\n"
+      "    version: 2.0\n    collision_link_names: [a, \"b: c\", new]\n"
+      "    lists: [[1, 2], {x: 3}]\n    text: |\n      two\n      lines\n    collision_spheres:\n"
+      "      a:\n        - {center: [1.0, 2.0, 3.0], radius: 0.5}\n      new:\n"
+      "        - {center: [1.0, 0.0, 0.0], radius: 2.0}\n    cspace:\n"
+      "      joint_names: [j]\n  more: {}\n");
   EXPECT_EQ(difference(read_robot_spheres(file("new.yml")).spheres.links, spheres.links), "");
 
   RobotSpheres first = spheres;

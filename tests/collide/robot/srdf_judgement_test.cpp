@@ -55,14 +55,14 @@ class SrdfJudged : public testing::Test {
 };
 
 TEST_F(SrdfJudged, WhatTouchesIsWrongUnlessItIsADecision) {
-  for (const char* const reason : {"Never", "", "Sampled"}) {
+  for (const char* const reason : {"Never", "", "Sampled", "Adjacent"}) {
     const JudgedPair judged = judge("lid", "block", reason);
     EXPECT_EQ(judged.verdict, DisabledVerdict::kTouches);
     EXPECT_TRUE(judged.is_wrong) << reason;
     ASSERT_EQ(judged.witness.size(), 3U);
     EXPECT_LE(judged.witness[0] + judged.witness[1], 0.2 + 1e-9);
   }
-  for (const char* const reason : {"Adjacent", "Default", "Always", "User"}) {
+  for (const char* const reason : {"Default", "Always", "User"}) {
     EXPECT_FALSE(judge("lid", "block", reason).is_wrong) << reason;
   }
 }
