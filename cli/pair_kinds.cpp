@@ -45,12 +45,6 @@ bool is_joined(const PairStatus& pair) {
   return pair.reason == AllowedReason::kRigid || pair.reason == AllowedReason::kAdjacent;
 }
 
-std::string percent(double share) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(1) << share * 100.0 << " %";
-  return out.str();
-}
-
 }  // namespace
 
 PairKinds pair_kinds(const RobotDescription& robot, const RobotSpheres& spheres,
@@ -92,7 +86,7 @@ std::string describe(const PairKinds& kinds) {
     rows.push_back({link_name(kinds.model, pair.first), link_name(kinds.model, pair.second),
                     std::string(kind_of(pair)),
                     std::string(pair.verdict ? name_of(*pair.verdict) : "-"),
-                    pair.verdict ? percent(pair.free_share) : "-"});
+                    pair.verdict ? percent(pair.free_share, 1) : "-"});
   }
   return out.str() + (rows.size() > 1 ? aligned(rows) : "");
 }

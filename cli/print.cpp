@@ -56,6 +56,12 @@ std::string describe(std::span<const CoverLevel> levels) {
   return out.str();
 }
 
+std::string percent(double share, int digits) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(digits) << 100.0 * share << " %";
+  return out.str();
+}
+
 std::string aligned(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const auto& row : rows) {

@@ -16,6 +16,9 @@ std::string describe(const Certificate& certificate, const std::string& solid);
 // A line for every level.
 std::string describe(std::span<const CoverLevel> levels);
 
+// A share in per cent.
+std::string percent(double share, int digits);
+
 // A table of rows of as many cells each, of which there is one at least: columns as wide as their
 // widest cell, no blanks at the ends of lines.
 std::string aligned(const std::vector<std::vector<std::string>>& rows);
