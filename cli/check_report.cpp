@@ -98,7 +98,7 @@ std::string kind_of_contact(const PairStatus& status) {
   return "unknown";
 }
 
-std::string in_mm(double metres) {
+std::string overlap_in_mm(double metres) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(2) << metres * kMillimetresPerMetre;
   return text.str();
@@ -110,7 +110,8 @@ void put_proved_free(std::ostream& out, const CheckReport& report) {
     const CheckedContact& worst = pair.worst.contact;
     out << "free though spheres overlap: " << worst.first.name << " and " << worst.second.name
         << (pair.kind.empty() ? "" : " (" + pair.kind + ")") << ", in " << pair.count << " of "
-        << report.explained << " configurations, up to " << in_mm(worst.overlap_depth) << " mm\n";
+        << report.explained << " configurations, up to " << overlap_in_mm(worst.overlap_depth)
+        << " mm\n";
   }
 }
 
@@ -185,8 +186,8 @@ std::string check_table(const CheckReport& report) {
     for (const TouchingPair& pair : report.pairs) {
       const CheckedContact& worst = pair.worst.contact;
       rows.push_back({worst.first.name, worst.second.name, std::to_string(pair.count),
-                      text_of(pair.first.at), text_of(pair.worst.at), in_mm(worst.overlap_depth),
-                      text_of(worst.world_point), pair.kind});
+                      text_of(pair.first.at), text_of(pair.worst.at),
+                      overlap_in_mm(worst.overlap_depth), text_of(worst.world_point), pair.kind});
     }
     text << aligned(rows);
   }
