@@ -19,10 +19,6 @@ constexpr std::size_t kShownPairs = 5;
 // Meshes nearer to each other than this part of the E of their links together touch, for spheres.
 constexpr double kReallyClose = 1.0 / 16.0;
 
-std::string in_percent(double share) {
-  return percent(share, 2);
-}
-
 std::string millimetres(double length) {
   std::ostringstream out;
   const double value = length * kMillimetresPerMetre;
@@ -72,7 +68,7 @@ std::string remedy(const PairAlarms& pair, const RobotCover& cover) {
 void describe_pairs(const FalseAlarms& alarms, const RobotModel& robot, const RobotCover& cover,
                     std::ostream& out) {
   const auto of_free = [&](std::size_t count) {
-    return in_percent(RefusedShare{alarms.free, count}.share());
+    return percent(RefusedShare{alarms.free, count}.share());
   };
   for (std::size_t i = 0; i < std::min(kShownPairs, alarms.pairs.size()); ++i) {
     const PairAlarms& pair = alarms.pairs[i];
@@ -99,11 +95,11 @@ std::string_view words_for(PairProofs proofs) {
 
 void describe_choice(const MeasuredCover& measured, std::ostream& out) {
   const LinkErrorChoice& choice = *measured.choice;
-  out << "  goal " << in_percent(*measured.goal) << ": "
+  out << "  goal " << percent(*measured.goal) << ": "
       << (choice.is_reached ? "reached" : "not reached") << " with " << choice.spheres
       << " spheres; E of " << millimetres(measured.cover.options.max_error)
       << " everywhere would take " << choice.coarsest_spheres << " and refuse "
-      << in_percent(choice.coarsest.refused_share().share()) << "\n";
+      << percent(choice.coarsest.refused_share().share()) << "\n";
   if (!choice.is_reached && measured.random.refused_share().share() <= *measured.goal) {
     out << "  so few postures do not show it: try more (--postures)\n";
   }
@@ -139,17 +135,17 @@ std::string describe_false_alarms(const MeasuredCover& measured, const RobotMode
   if (measured.random.postures == 0) return {};
   const FalseAlarms& alarms = measured.random;
   std::ostringstream out;
-  out << "false alarms: " << in_percent(alarms.refused_share().share()) << " of " << alarms.free
+  out << "false alarms: " << percent(alarms.refused_share().share()) << " of " << alarms.free
       << " free postures (of " << alarms.postures
       << " random ones) are refused because of spheres, "
-      << "at most " << in_percent(measured.upper_bound) << " of all with "
+      << "at most " << percent(measured.upper_bound) << " of all with "
       << std::lround(100.0 * LinkErrorChoice::kConfidence) << " % confidence";
   if (alarms.proofs != PairProofs::kNone) {
-    out << "; " << in_percent(alarms.refused_share(PairProofs::kNone).share()) << " "
+    out << "; " << percent(alarms.refused_share(PairProofs::kNone).share()) << " "
         << words_for(PairProofs::kNone);
   }
   if (alarms.proofs == PairProofs::kBoxes) {
-    out << ", " << in_percent(alarms.refused_share(PairProofs::kNever).share()) << " "
+    out << ", " << percent(alarms.refused_share(PairProofs::kNever).share()) << " "
         << words_for(PairProofs::kBoxes);
   }
   out << "\n";
@@ -160,7 +156,7 @@ std::string describe_false_alarms(const MeasuredCover& measured, const RobotMode
   if (measured.choice) describe_choice(measured, out);
   describe_pairs(alarms, robot, measured.cover, out);
   if (measured.given.postures > 0) {
-    out << "  given postures: " << in_percent(measured.given.refused_share().share()) << " of "
+    out << "  given postures: " << percent(measured.given.refused_share().share()) << " of "
         << measured.given.free << " free ones (of " << measured.given.postures << ")\n";
     describe_pairs(measured.given, robot, measured.cover, out);
   }

@@ -179,9 +179,12 @@ int fit(const FitArguments& arguments) {
             << result.options.min_external_diameter << ", padding " << result.external.padding
             << (model.cad ? " (chord error and rounding" : " (rounding")
             << " of the file included)\n"
-            << "external spheres: " << result.external.balls.size() << ", ways into the part that "
-            << "are wider than " << result.options.min_external_diameter << " by "
-            << result.external.closing_slack << " stay open (proved)\n";
+            << "external spheres: " << result.external.balls.size();
+  if (result.options.external == ExternalPlacement::kReachable) {
+    std::cout << ", ways into the part that are wider than " << result.options.min_external_diameter
+              << " by " << result.external.closing_slack << " stay open (proved)";
+  }
+  std::cout << "\n";
   if (options.keep_concave_edges) {
     std::cout << "zones along sharp concave edges: " << result.external.concave_edges.size()
               << "\n";

@@ -17,7 +17,7 @@ std::string describe(const Certificate& certificate, const std::string& solid);
 std::string describe(std::span<const CoverLevel> levels);
 
 // A share in per cent.
-std::string percent(double share, int digits);
+std::string percent(double share, int digits = 2);
 
 // A table of rows of as many cells each, of which there is one at least: columns as wide as their
 // widest cell, no blanks at the ends of lines.

@@ -73,6 +73,7 @@ struct ExternalSpheres {
   // lies, as its centre, in a ball of `balls` that was reached, at most 2.6 grid steps from that
   // one's centre. So a gap may be wider than D by no more than that and have been closed. For the d
   // of a zone the same share of d holds. At most `tightness` of D, unless memory ends first.
+  // 0 for the other placements, of which nothing is proved.
   double closing_slack = 0.0;
   // What keep_concave_edges added.
   std::vector<Zone> concave_edges;

@@ -10,8 +10,7 @@
 namespace spherule {
 
 std::vector<DisabledPair> pairs_proved_never(const RobotModel& robot, const LinkPairs& proofs) {
-  internal::require_proofs_of(proofs, robot);
-  internal::require_never_within(proofs, internal::position_limits(robot));
+  internal::require_never_holds(proofs, robot);
   std::vector<DisabledPair> result;
   for (const LinkPair& pair : proofs.pairs()) {
     if (pair.verdict != PairVerdict::kNever) continue;

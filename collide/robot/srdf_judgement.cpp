@@ -54,8 +54,7 @@ std::string_view name_of(DisabledVerdict verdict) {
 
 SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& semantics,
                          const LinkPairs& proofs) {
-  internal::require_proofs_of(proofs, robot);
-  internal::require_never_within(proofs, internal::position_limits(robot));
+  internal::require_never_holds(proofs, robot);
   std::set<int> with_body;
   for (const LinkPair& pair : proofs.pairs()) with_body.insert({pair.first, pair.second});
   const auto has_body = [&](int link) { return with_body.contains(link); };

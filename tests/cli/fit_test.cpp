@@ -139,6 +139,16 @@ TEST_F(FitTest, ReportHoldsTheSimplifiedSolid) {
   }
 }
 
+// What is not filled is proved of the flood alone.
+TEST_F(FitTest, TellsWhatStaysOpenWhereThatIsProved) {
+  for (const std::string external : {"reachable", "random", "none"}) {
+    const Outcome result = run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--effort",
+                                "0", "--external", external, "--external-limit", "300"});
+    const bool is_told = result.out.find("stay open (proved)") != std::string::npos;
+    EXPECT_EQ(is_told, external == "reachable") << result.out << result.err;
+  }
+}
+
 // G7: equal bytes on any number of threads, and in a second run.
 TEST_F(FitTest, ThreadsDoNotChangeTheOutput) {
   if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;

@@ -22,11 +22,6 @@ using Eigen::Vector3d;
 
 constexpr double kDiameter = 1.0;
 
-TriangleMesh moved(TriangleMesh mesh, const Eigen::Isometry3d& by) {
-  for (Vector3d& vertex : mesh.vertices) vertex = by * vertex;
-  return mesh;
-}
-
 Eigen::Isometry3d random_pose(Random& random) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = random.rotation().toRotationMatrix();
@@ -108,28 +103,28 @@ class FineFlood {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       count_[axis] = static_cast<int>(std::ceil(size[static_cast<int>(axis)] / step)) + 1;
     }
-    for (int k = 0; k < count_[2]; ++k) {
-      for (int j = 0; j < count_[1]; ++j) {
-        for (int i = 0; i < count_[0]; ++i) {
-          room_.push_back(static_cast<double>(judged_mesh_distance(at(i, j, k), mesh)) - radius);
-        }
-      }
-    }
+    for_each_node([&](int i, int j, int k) {
+      room_.push_back(static_cast<double>(judged_mesh_distance(at(i, j, k), mesh)) - radius);
+    });
     flood();
   }
 
   template <typename Visit>
   void for_each_reached(Visit visit) const {
-    for (int k = 0; k < count_[2]; ++k) {
-      for (int j = 0; j < count_[1]; ++j) {
-        for (int i = 0; i < count_[0]; ++i) {
-          if (reached_[index(i, j, k)]) visit(at(i, j, k));
-        }
-      }
-    }
+    for_each_node([&](int i, int j, int k) {
+      if (reached_[index(i, j, k)]) visit(at(i, j, k));
+    });
   }
 
  private:
+  template <typename Visit>
+  void for_each_node(Visit visit) const {
+    for (int k = 0; k < count_[2]; ++k) {
+      for (int j = 0; j < count_[1]; ++j) {
+        for (int i = 0; i < count_[0]; ++i) visit(i, j, k);
+      }
+    }
+  }
   Vector3d at(int i, int j, int k) const { return origin_ + step_ * Vector3d(i, j, k); }
   std::size_t index(int i, int j, int k) const {
     return static_cast<std::size_t>((k * count_[1] + j) * count_[0] + i);

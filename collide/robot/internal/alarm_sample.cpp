@@ -3,6 +3,7 @@
 
 #include "collide/collide.h"
 #include "collide/robot/internal/link_pieces.h"
+#include "collide/robot/internal/proof_scope.h"
 #include "collide/robot/internal/random_configuration.h"
 #include "collide/robot/internal/shared_work.h"
 #include "collide/robot/kinematics.h"
@@ -61,9 +62,11 @@ AlarmJudge::AlarmJudge(const RobotModel& robot, std::span<const LinkBody> bodies
     }
     bodies_[static_cast<std::size_t>(body.link)].push_back(body);
   }
-  if (proofs != nullptr && (proofs->mechanism() != mechanism_fingerprint(robot) ||
-                            proofs->bodies() != bodies_fingerprint(bodies))) {
-    throw Error("pairs of links", "what is proved of them holds for another robot or other bodies");
+  if (proofs != nullptr) {
+    require_proofs_of(*proofs, robot);
+    if (proofs->bodies() != bodies_fingerprint(bodies)) {
+      throw Error("proofs of pairs", "they are of other bodies");
+    }
   }
   for (int first = 0; first < count; ++first) {
     for (int second = first + 1; second < count; ++second) {

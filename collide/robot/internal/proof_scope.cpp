@@ -49,4 +49,9 @@ void require_never_within(const LinkPairs& pairs, std::span<const PositionLimits
   }
 }
 
+void require_never_holds(const LinkPairs& pairs, const RobotModel& robot) {
+  require_proofs_of(pairs, robot);
+  require_never_within(pairs, position_limits(robot));
+}
+
 }  // namespace spherule::internal

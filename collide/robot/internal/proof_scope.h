@@ -27,5 +27,7 @@ void require_proofs_of(const LinkPairs& pairs, const RobotModel& robot, int tool
 // Throws Error unless each two links that are proved never to touch are so wherever these limits
 // let the joints be.
 void require_never_within(const LinkPairs& pairs, std::span<const PositionLimits> limits);
+// Both, of a robot's links and limits.
+void require_never_holds(const LinkPairs& pairs, const RobotModel& robot);
 
 }  // namespace spherule::internal
