@@ -2,6 +2,7 @@
 #include "cli/check_length.h"
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/interruption.h"
 #include "cli/json.h"
 #include "cli/model_file.h"
 #include "cli/next_step.h"
@@ -72,19 +73,17 @@ Json json_of(const Certificate& certificate, const std::optional<ExternalSpheres
 struct Repaired {
   SphereFile file;
   Repair repair;
-  double max_error = 0.0;
   Certificate certificate;
 };
 
 Repaired repaired(const AuditArguments& arguments, const ModelFile& model,
                   const ModelReadOptions& reading, const SphereFile& file,
-                  const SimplifyOptions& options, const Certificate& before,
-                  const CertifyOptions& certify_options) {
+                  const SimplifyOptions& options, const CertifyOptions& certify_options) {
   Repaired result;
-  result.max_error = arguments.max_error.value_or(
-      std::max(options.max_error, before.protrusion_over_simplified_max.value_or(0.0)));
+  // E as the spheres were fitted, if the file says so.
+  const double max_error = file.options.contains("max-error") ? options.max_error : 0.0;
   result.repair = repair(model.mesh, *certify_options.external, file.spheres,
-                         {.max_error = result.max_error,
+                         {.max_error = arguments.max_error.value_or(max_error),
                           .zones = options.zones,
                           .seed = options.seed,
                           .effort = std::min(options.effort, SimplifyOptions{}.effort),
@@ -94,7 +93,7 @@ Repaired repaired(const AuditArguments& arguments, const ModelFile& model,
                  option_record(options, reading.scale)};
   store_reading(reading, model, result.file);
   result.file.options.erase("levels");
-  result.file.options["repair-max-error"] = result.max_error;
+  result.file.options["repair-max-error"] = result.repair.max_error;
   return result;
 }
 
@@ -131,7 +130,9 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
     if (!certificate.covered) json["leaks"] = json_of(leak_points(mesh, file.spheres));
     if (mended) {
       json["repair"] = {{"file", arguments.repaired},
-                        {"max_error", to_json(mended->max_error)},
+                        {"max_error", to_json(mended->repair.max_error)},
+                        {"protrusion_before", to_json(mended->repair.protrusion_before)},
+                        {"protrusion_after", to_json(mended->repair.protrusion_after)},
                         {"grown", mended->repair.grown},
                         {"largest_growth", to_json(mended->repair.largest_growth)},
                         {"total_growth", to_json(mended->repair.total_growth)},
@@ -148,7 +149,9 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
   }
   std::cout << "repair: " << mended->repair.grown << " spheres grown, by at most "
             << mended->repair.largest_growth << ", and " << mended->repair.added
-            << " added; allowed to protrude by " << mended->max_error << "\n"
+            << " added; these protrude by at most " << mended->repair.max_error << ", all by "
+            << mended->repair.protrusion_after << " (before: " << mended->repair.protrusion_before
+            << ")\n"
             << describe(mended->certificate, name_of(external));
 }
 
@@ -198,7 +201,7 @@ int audit(const AuditArguments& arguments) {
   const Certificate certificate = certify(mesh, file.spheres, certify_options);
   std::optional<Repaired> mended;
   if (mend) {
-    mended = repaired(arguments, model, reading, file, options, certificate, certify_options);
+    mended = repaired(arguments, model, reading, file, options, certify_options);
     write_uninterrupted([&] { save_spheres(mended->file, arguments.repaired); });
   }
   bar.clear();
@@ -233,8 +236,8 @@ void add_audit(CLI::App& app, int& exit_code) {
           ->type_name(kFile);
   command
       ->add_option("--max-error", arguments->max_error,
-                   "How far a repaired sphere may protrude (default: E as the spheres were fitted, "
-                   "or as far as they do)")
+                   "How far a repaired sphere may protrude (default: as the spheres were fitted, "
+                   "or as far as half of them do)")
       ->check(CLI::PositiveNumber)
       ->check(check_length)
       ->needs(repair);

@@ -5,6 +5,7 @@
 #include "cli/check_length.h"
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/interruption.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
@@ -217,8 +218,8 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
   command
       ->add_option("--max-error", arguments->max_error,
                    "E, metres: for which the spheres were made (default 0.01), and how far a "
-                   "repaired one may protrude (default: 1 % of the link's box diagonal, or as far "
-                   "as its spheres do)")
+                   "repaired one may protrude (default: as far as half of the link's spheres do, "
+                   "and at least 1 % of its box diagonal)")
       ->check(CLI::PositiveNumber)
       ->check(check_length);
   command

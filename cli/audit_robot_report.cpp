@@ -88,7 +88,9 @@ void put_repair(std::ostream& out, const RobotAuditReport& report) {
   for (const LinkRepair& link : report.repair->links) {
     out << "  " << link.link << ": " << link.repair.grown << " spheres grown, by at most "
         << in_mm(link.repair.largest_growth) << ", and " << link.repair.added
-        << " added; allowed to protrude by " << in_mm(link.max_error) << "; "
+        << " added; these protrude by at most " << in_mm(link.repair.max_error) << ", all by "
+        << in_mm(link.repair.protrusion_after)
+        << " (before: " << in_mm(link.repair.protrusion_before) << "); "
         << (link.certificate.covered ? "covered (proved)" : "NOT proved to cover") << "\n";
   }
 }
@@ -144,12 +146,15 @@ Json audit_json(const RobotAuditReport& report) {
   if (!report.repair) return json;
   json["repair"] = {{"file", report.repaired_file}, {"links", Json::array()}};
   for (const LinkRepair& link : report.repair->links) {
-    json["repair"]["links"].push_back({{"link", link.link},
-                                       {"max_error", to_json(link.max_error)},
-                                       {"grown", link.repair.grown},
-                                       {"largest_growth", to_json(link.repair.largest_growth)},
-                                       {"added", link.repair.added},
-                                       {"certificate", to_json(link.certificate)}});
+    json["repair"]["links"].push_back(
+        {{"link", link.link},
+         {"max_error", to_json(link.repair.max_error)},
+         {"protrusion_before", to_json(link.repair.protrusion_before)},
+         {"protrusion_after", to_json(link.repair.protrusion_after)},
+         {"grown", link.repair.grown},
+         {"largest_growth", to_json(link.repair.largest_growth)},
+         {"added", link.repair.added},
+         {"certificate", to_json(link.certificate)}});
   }
   return json;
 }

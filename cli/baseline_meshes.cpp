@@ -2,6 +2,7 @@
 #include "cli/baseline.h"
 #include "cli/check_length.h"
 #include "cli/command.h"
+#include "cli/interruption.h"
 #include "cli/mesh_output.h"
 #include "cli/output.h"
 #include "cli/progress.h"

@@ -3,6 +3,7 @@
 
 #include "cli/check_length.h"
 #include "cli/command.h"
+#include "cli/interruption.h"
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_length.h"
 #include "cli/command.h"
-#include "cli/cover_analysis.h"
 #include "cli/fit_report.h"
 #include "cli/help.h"
+#include "cli/interruption.h"
 #include "cli/model_file.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"
+#include "cli/report_content.h"
 #include "cli/second_phase.h"
 #include "cli/view_page.h"
 #include "simplifier/cover_breakdown.h"
@@ -47,6 +48,7 @@ struct FitArguments {
   std::string tool;
   std::string zones;
   std::string levels;
+  ReportContent report_content = ReportContent::kNoExternalSpheres;
   std::string method = fit_method_names().front();
   std::string external = placement_names().front();
   ModelReadOptions reading;
@@ -116,6 +118,12 @@ std::vector<NextStep> next_steps(const FitArguments& arguments, bool is_covered)
   return steps;
 }
 
+std::string describe_lower_bound(const SphereCover& cover) {
+  if (cover.lower_bound == 0) return {};
+  return "lower bound: no cover at this error has fewer than " + std::to_string(cover.lower_bound) +
+         " spheres\n";
+}
+
 // Fails (kNo) if a promise about the spheres is not proved; the files are written nevertheless and
 // say so.
 int fit(const FitArguments& arguments) {
@@ -125,7 +133,7 @@ int fit(const FitArguments& arguments) {
   choose_method(arguments.method, options);
   options.external = placement_named(arguments.external);
   if (!arguments.levels.empty()) options.levels = levels_named(arguments.levels);
-  options.history = options.lower_bound = !arguments.report.empty();
+  options.history = !arguments.report.empty();
   if (!arguments.zones.empty()) options.zones = read_zones(arguments.zones);
   if (!arguments.tool.empty()) {
     const SphereFile tool = load_spheres(arguments.tool);
@@ -146,7 +154,10 @@ int fit(const FitArguments& arguments) {
               << kCrack * report.box.diagonal().norm() << " shuts them\n";
   }
 
-  Simplification result = [&] {
+  StopOnInterruption interruption;
+  options.on_proved = [&](std::size_t) { interruption.have_answer(); };
+  options.stop = interruption.token();
+  const Simplification result = [&] {
     ProgressBar bar;
     options.progress = bar.callback();
     return blaming_file(arguments.zones, "zone ", [&] { return simplify(mesh, options); });
@@ -158,16 +169,17 @@ int fit(const FitArguments& arguments) {
     store_reading(arguments.reading, model, file);
     save_spheres(file, arguments.spheres);
   });
-  std::optional<CoverAnalysis> analysis;
+  std::optional<CoverBreakdown> breakdown;
   if (!arguments.report.empty()) {
-    ProgressBar bar;
-    analysis = analyse(mesh, result, bar.callback());
+    breakdown = cover_breakdown(mesh, result.external, result.cover.spheres,
+                                result.options.max_error, options.threads);
   }
 
   write_uninterrupted([&] {
-    if (analysis) {
-      write_file_atomically(arguments.report, fit_report(arguments.mesh, model, report, result,
-                                                         *analysis, arguments.reading.scale));
+    if (breakdown) {
+      write_file_atomically(arguments.report,
+                            fit_report(arguments.mesh, model, report, result, *breakdown,
+                                       arguments.reading.scale, arguments.report_content));
     }
     std::optional<SphereTree> tree;
     if (!arguments.tree.empty() || !arguments.view.empty()) tree = sphere_tree(result);
@@ -191,9 +203,9 @@ int fit(const FitArguments& arguments) {
   }
   std::cout << "spheres: " << result.cover.spheres.size() << "\n"
             << describe(result.certificate, "the simplified solid") << describe(result.levels)
-            << (analysis ? describe(*analysis, result) : "") << "seconds: external "
-            << result.times.external << ", cover " << result.times.cover << ", levels "
-            << result.times.levels << ", certify " << result.times.certify << "\n";
+            << (breakdown ? describe(*breakdown) : "") << describe_lower_bound(result.cover)
+            << "seconds: external " << result.times.external << ", cover " << result.times.cover
+            << ", levels " << result.times.levels << ", certify " << result.times.certify << "\n";
   warn_of_thin_parts(arguments, mesh, result);
   const std::string broken = broken_promises(result);
   std::cout << describe(next_steps(arguments, result.certificate.covered));
@@ -302,8 +314,12 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--report", arguments->report,
-                   "Where the full report goes (JSON): external spheres, history, times")
+                   "Where the report goes (JSON): the mesh, where the spheres go, history, times")
       ->type_name(kFile);
+  add_external_spheres_flag(*command, arguments->report_content);
+  command->add_flag("--lower-bound", options.lower_bound,
+                    "Prove, too, how few spheres any cover must have (with cover); takes several "
+                    "times as long as the first answer");
   command->add_option("--tree", arguments->tree, "Where the sphere tree goes")->type_name(kFile);
   command->add_option("--view", arguments->view, "Where a page to look at goes (HTML)")
       ->type_name(kFile);

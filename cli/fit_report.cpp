@@ -3,6 +3,8 @@
 
 #include "cli/json.h"
 
+#include <sstream>
+
 namespace spherule {
 namespace {
 
@@ -63,11 +65,19 @@ Json to_json(std::span<const CoverLevel> levels) {
   return list;
 }
 
+Json to_json(const CoverBreakdown& breakdown) {
+  return {{"spheres_by_role",
+           {{"edges", breakdown.edges},
+            {"thin", breakdown.thin},
+            {"faces", breakdown.faces},
+            {"inside", breakdown.inside}}}};
+}
+
 }  // namespace
 
 std::string fit_report(const std::string& mesh_file, const ModelFile& model,
                        const MeshReport& report, const Simplification& result,
-                       const CoverAnalysis& analysis, double scale) {
+                       const CoverBreakdown& breakdown, double scale, ReportContent content) {
   Json json;
   json["format"] = "spherule-report";
   json["version"] = 1;
@@ -79,12 +89,19 @@ std::string fit_report(const std::string& mesh_file, const ModelFile& model,
                      {"levels", result.times.levels},
                      {"certify", result.times.certify}};
   json["certificate"] = spherule::to_json(result.certificate);
-  json["simplified_solid"] = spherule::to_json(result.external);
+  json["simplified_solid"] = spherule::to_json(result.external, content);
   json["cover"] = to_json(result.cover);
-  json["analysis"] = spherule::to_json(analysis);
+  json["analysis"] = to_json(breakdown);
   json["levels"] = to_json(result.levels);
   // Indented, hundreds of thousands of external spheres would take three times the room.
   return to_text(json, Layout::kCompact);
+}
+
+std::string describe(const CoverBreakdown& breakdown) {
+  std::ostringstream out;
+  out << "where the spheres go: " << breakdown.edges << " along sharp edges, " << breakdown.thin
+      << " in thin parts, " << breakdown.faces << " on faces, " << breakdown.inside << " inside\n";
+  return out.str();
 }
 
 }  // namespace spherule

@@ -67,14 +67,16 @@ Json to_json(const Certificate& certificate) {
   return json;
 }
 
-Json to_json(const ExternalSpheres& external) {
-  return {{"box", to_json(external.box)},
-          {"min_external_diameter", to_json(external.min_external_diameter)},
-          {"padding", external.padding},
-          {"grid_step", external.grid_step},
-          {"closing_slack", to_json(external.closing_slack)},
-          {"nodes_examined", external.nodes_examined},
-          {"external_spheres", to_json(external.balls)}};
+Json to_json(const ExternalSpheres& external, ReportContent content) {
+  Json json = {{"box", to_json(external.box)},
+               {"min_external_diameter", to_json(external.min_external_diameter)},
+               {"padding", external.padding},
+               {"grid_step", external.grid_step},
+               {"closing_slack", to_json(external.closing_slack)},
+               {"nodes_examined", external.nodes_examined},
+               {"external_sphere_count", external.balls.size()}};
+  if (content == ReportContent::kAll) json["external_spheres"] = to_json(external.balls);
+  return json;
 }
 
 std::string to_text(const Json& json, Layout layout) {

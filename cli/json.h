@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/report_content.h"
 #include "simplifier/certificate.h"
 #include "simplifier/simplify.h"
 
@@ -23,9 +24,8 @@ Json to_json(const std::map<std::string, OptionValue>& options);
 // Everything a certificate says; the keys that SPHERES.json has too mean the same there.
 Json to_json(const Certificate& certificate);
 
-// The simplified solid with all external spheres kept, so that anyone can judge what was
-// simplified away.
-Json to_json(const ExternalSpheres& external);
+// The simplified solid; with all external spheres kept anyone can judge what was simplified away.
+Json to_json(const ExternalSpheres& external, ReportContent content);
 
 template <class T>
 Json to_json(const std::optional<T>& value) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/interruption.h"
 #include "cli/outline.h"
-#include "cli/output.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 

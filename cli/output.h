@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <vector>
 
 namespace spherule {
@@ -11,9 +10,5 @@ namespace spherule {
 // it is asked for, is one of `inputs`, or is named twice. Empty paths are files not asked for.
 void check_outputs(const std::vector<std::filesystem::path>& outputs,
                    const std::vector<std::filesystem::path>& inputs);
-
-// Runs `write`, which writes files beside their place and renames them, to its end even if the user
-// interrupts, and obeys the interruption afterwards: Ctrl-C leaves no half-written file.
-void write_uninterrupted(const std::function<void()>& write);
 
 }  // namespace spherule

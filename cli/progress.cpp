@@ -10,12 +10,14 @@ namespace {
 
 constexpr int kBarWidth = 30;
 constexpr std::chrono::milliseconds kRedrawInterval{100};
+constexpr std::chrono::seconds kLogInterval{10};
 // Return to the first column and erase the line.
 constexpr const char* kEraseLine = "\r\x1b[K";
 
 }  // namespace
 
-ProgressBar::ProgressBar() : on_terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar()
+    : on_terminal_(isatty(STDERR_FILENO) == 1), last_time_(std::chrono::steady_clock::now()) {}
 
 ProgressBar::~ProgressBar() {
   clear();
@@ -28,16 +30,31 @@ void ProgressBar::clear() {
 }
 
 void ProgressBar::announce(const char* what) {
-  if (on_terminal_) show(-1.0, what);
+  show(-1.0, what);
 }
 
 Progress ProgressBar::callback() {
-  if (!on_terminal_) return {};
   return [this](double share, const char* what) { show(share, what); };
 }
 
 void ProgressBar::show(double share, const char* what) {
   const std::lock_guard lock(mutex_);
+  on_terminal_ ? draw(share, what) : log(share, what);
+}
+
+void ProgressBar::log(double share, const char* what) {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_time_ < kLogInterval) return;
+  last_time_ = now;
+  if (share < 0.0) {
+    std::fprintf(stderr, "spherule: %s\n", what);
+  } else {
+    std::fprintf(stderr, "spherule: %s (%d %%)\n", what,
+                 static_cast<int>(std::min(share, 1.0) * 100.0));
+  }
+}
+
+void ProgressBar::draw(double share, const char* what) {
   const auto now = std::chrono::steady_clock::now();
   if (drawn_ && last_what_ == what && now - last_time_ < kRedrawInterval) return;
   drawn_ = true;

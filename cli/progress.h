@@ -9,7 +9,8 @@
 
 namespace spherule {
 
-// A progress bar on standard error, if that is a terminal; nothing at all elsewhere.
+// Tells on standard error how far long work is: by a bar, if that is a terminal; elsewhere by a
+// line every ten seconds, so that logs of long work are not silent, and short work prints nothing.
 class ProgressBar {
  public:
   ProgressBar();
@@ -17,8 +18,7 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  // For the `progress` field of options; empty where nothing would be shown. It refers to this bar
-  // and may be called from any thread.
+  // For the `progress` field of options. It refers to this bar and may be called from any thread.
   Progress callback();
 
   // Shows work of which no share is known.
@@ -29,11 +29,14 @@ class ProgressBar {
 
  private:
   void show(double share, const char* what);
+  void draw(double share, const char* what);
+  void log(double share, const char* what);
 
   bool on_terminal_ = false;
   bool drawn_ = false;
   std::mutex mutex_;
   std::string last_what_;
+  // Of the last line, or of the start.
   std::chrono::steady_clock::time_point last_time_;
 };
 

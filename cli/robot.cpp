@@ -3,11 +3,13 @@
 #include "cli/command.h"
 #include "cli/false_alarm_report.h"
 #include "cli/help.h"
+#include "cli/interruption.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/pair_report.h"
 #include "cli/progress.h"
+#include "cli/report_content.h"
 #include "cli/robot_false_alarms.h"
 #include "cli/robot_files.h"
 #include "cli/robot_options.h"
@@ -53,6 +55,7 @@ struct RobotArguments {
   std::string tool_link;
   bool json = false;
   bool has_max_error = false;
+  ReportContent report_content = ReportContent::kNoExternalSpheres;
   FalseAlarmArguments false_alarms;
   RobotCoverOptions options;
 };
@@ -204,6 +207,11 @@ int cover_links(const RobotArguments& arguments) {
   add_missing_pairs(semantics.disabled_pairs, robot.model, disabled);
   const FalseAlarmRun run(arguments.false_alarms, robot);
 
+  StopOnInterruption interruption;
+  options.stop = interruption.token();
+  // The first answers of all links are a matter of seconds; the search for a goal has none before
+  // its end.
+  if (arguments.false_alarms.goal.empty()) interruption.have_answer();
   const MeasuredCover measured = [&] {
     ProgressBar bar;
     options.progress = bar.callback();
@@ -235,7 +243,8 @@ int cover_links(const RobotArguments& arguments) {
   }
   write_uninterrupted([&] {
     write_robot_files(plan, robot, spheres, measured.pairs.get());
-    write_file_atomically(plan.report(robot), robot_report(summary, result));
+    write_file_atomically(plan.report(robot),
+                          robot_report(summary, result, arguments.report_content));
   });
 
   std::cout << (arguments.json ? to_text(summary)
@@ -351,6 +360,7 @@ void add_robot(CLI::App& app, int& exit_code) {
       ->type_name("LINK");
   add_false_alarm_options(*command, arguments->false_alarms);
   add_search_options(*command, arguments);
+  add_external_spheres_flag(*command, arguments->report_content);
   command->add_flag("--json", arguments->json, "Print the summary as JSON, lengths in metres");
   command->footer(to_text(
       {.text = "Writes NAME.spheres.urdf, NAME.srdf, NAME.curobo.yml, NAME.xrdf, NAME.foam.json, "

@@ -95,9 +95,12 @@ FalseAlarmRun::FalseAlarmRun(const FalseAlarmArguments& arguments, const RobotDe
 void FalseAlarmRun::prove(const RobotCoverOptions& options, MeasuredCover& result) const {
   if (proofs_ == PairProofs::kNone) return;
   const auto start = std::chrono::steady_clock::now();
-  result.pairs = std::make_shared<const LinkPairs>(prove_link_pairs(
-      robot_.model, result.bodies,
-      {.seed = options.seed, .threads = options.threads, .progress = options.progress}));
+  result.pairs =
+      std::make_shared<const LinkPairs>(prove_link_pairs(robot_.model, result.bodies,
+                                                         {.seed = options.seed,
+                                                          .threads = options.threads,
+                                                          .stop = options.stop,
+                                                          .progress = options.progress}));
   result.pair_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -138,9 +141,10 @@ MeasuredCover FalseAlarmRun::cover(
     return result;
   }
   result.cover = cover_robot(robot_, options);
-  if (robot_.model.variable_count() == 0) return result;
+  if (robot_.model.variable_count() == 0 || options.stop.stop_requested()) return result;
   prove(options, result);
   const RobotModel model = with_spheres(robot_.model, robot_spheres(robot_, result.cover).links);
+  if (options.stop.stop_requested()) return result;
   AllowedCollisions allowed(model);
   allowed.allow(disabled);
   result.random = measure_false_alarms(model, result.bodies, allowed, result.pairs.get(), sample);

@@ -139,11 +139,11 @@ Json robot_summary(const std::string& urdf, const RobotCover& cover, double seco
   return json;
 }
 
-std::string robot_report(const Json& summary, const RobotCover& cover) {
+std::string robot_report(const Json& summary, const RobotCover& cover, ReportContent content) {
   Json json = summary;
   for (std::size_t i = 0; i < cover.links.size(); ++i) {
     if (!cover.links[i].fit) continue;
-    json["links"][i]["simplified_solid"] = to_json(cover.links[i].fit->external);
+    json["links"][i]["simplified_solid"] = to_json(cover.links[i].fit->external, content);
   }
   return to_text(json, Layout::kCompact);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/interruption.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"

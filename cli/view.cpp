@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/interruption.h"
 #include "cli/outline.h"
 #include "cli/output.h"
+#include "cli/robot_options.h"
 #include "cli/view_files.h"
 #include "cli/view_page.h"
-#ifdef SPHERULE_HAS_ROBOT
-#include "cli/robot_options.h"
 #include "cli/view_robot.h"
-#endif
 #include "spheretree/atomic_file.h"
 
 #include <CLI/CLI.hpp>

@@ -45,10 +45,12 @@ std::vector<ViewItem> report_items(const Json& report, const std::string& file) 
         {.name = name.str(), .parts = {{spheres_of(level.at("spheres"), file)}}, .shown = false});
   }
   const Json& solid = report.at("simplified_solid");
-  items.push_back({.name = "external spheres",
-                   .parts = {{spheres_of(solid.at("external_spheres"), file)}},
-                   .external = true,
-                   .shown = false});
+  if (const auto spheres = solid.find("external_spheres"); spheres != solid.end()) {
+    items.push_back({.name = "external spheres",
+                     .parts = {{spheres_of(*spheres, file)}},
+                     .external = true,
+                     .shown = false});
+  }
   if (!report.at("certificate").at("covered").get<bool>()) {
     items.push_back(leak_item(report.at("certificate"), file));
   }

@@ -142,8 +142,10 @@ std::vector<ViewItem> report_items(const RobotDescription& robot, const Json& js
     }
     if (!certificate->at("covered").get<bool>()) ++leaking;
     leaks.parts.push_back({leaks_of(*certificate, file), link});
-    if (const auto solid = entry.find("simplified_solid"); solid != entry.end()) {
-      external.parts.push_back({spheres_of(solid->at("external_spheres"), file), link});
+    const auto solid = entry.find("simplified_solid");
+    if (solid == entry.end()) continue;
+    if (const auto spheres = solid->find("external_spheres"); spheres != solid->end()) {
+      external.parts.push_back({spheres_of(*spheres, file), link});
     }
   }
   leaks.facts = leaking == 0

@@ -8,6 +8,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <stop_token>
 #include <vector>
 
 namespace spherule {
@@ -39,13 +41,20 @@ struct CoverOptions {
   // kCover: no new round begins after so many seconds, either; 0 sets no limit. The result then
   // depends on the machine.
   double seconds = 0.0;
-  // kCover: prove a lower bound of the count, too (SphereCover::lower_bound), once a first answer
-  // is proved: that takes longer than the answer. Not with a min_radius, which lets balls protrude.
+  // kCover: prove a lower bound of the count, too (SphereCover::lower_bound), after the search:
+  // that takes several times as long as the first answer. Not with a min_radius, which lets balls
+  // protrude.
   bool lower_bound = false;
   // kPaper: record the history (costs some time).
   bool history = false;
   int threads = 0;  // 0: all
   Progress progress = {};
+  // kCover: called with the count whenever fewer balls are proved to cover S, the first answer
+  // included, from one thread at a time.
+  std::function<void(std::size_t)> on_proved = {};
+  // kCover: once a stop is requested, the search ends with the fewest balls proved so far, after
+  // the first answer at the earliest. The result then depends on when that was.
+  std::stop_token stop = {};
 };
 
 // One step of the paper's loop, for its figures 6 to 8. "Before" and "after" refer to inflating
@@ -88,8 +97,8 @@ struct SphereCover {
 // where the ball reaches into that zone, unless min_radius is larger; where external balls close S
 // by a hair and no point of S is found, a ball of 0.02 E may stand, and certify() says how far it
 // protrudes. Deterministic for equal input and options on any number of threads, unless `seconds`
-// is set. Throws Error for a mesh that validate() refuses, for options out of range, and for an E
-// too small for the rounding of the coordinates.
+// is set or a stop is requested. Throws Error for a mesh that validate() refuses, for options out
+// of range, and for an E too small for the rounding of the coordinates.
 SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                   const CoverOptions& options);
 

@@ -6,6 +6,8 @@
 #include "simplifier/internal/cover_checks.h"
 #include "simplifier/internal/cover_fitter.h"
 #include "simplifier/internal/local_error.h"
+#include "simplifier/internal/mesh_box.h"
+#include "simplifier/internal/protrusion.h"
 #include "simplifier/internal/solid_cells.h"
 #include "simplifier/internal/thread_limit.h"
 #include "simplifier/internal/usable_spheres.h"
@@ -16,6 +18,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <string>
 
@@ -32,11 +35,19 @@ constexpr double kLeakReserve = 0.02;  // about a point that is found open
 // Of points found open, after which all balls that could matter about them grow fully.
 constexpr int kRounds = 40;
 
+constexpr double kLeastError = 0.01;  // chosen, of the box diagonal
+
 void check(std::span<const Sphere> spheres, const RepairOptions& options) {
   internal::check_usable(spheres);
-  internal::check_max_error(options.max_error);
-  check_zones(options.zones, options.max_error, std::numeric_limits<double>::infinity());
+  if (options.max_error != 0.0) internal::check_max_error(options.max_error);
   if (options.effort < 0) throw Error("effort", "must not be negative");
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 // The largest radius of each ball with which it protrudes by at most `max_error`, as certified
@@ -100,11 +111,19 @@ Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
   const Clearance clearance(external, distance);
-  const internal::LocalError error(options.max_error, options.zones);
+  Repair result;
+  const std::vector<double> before = internal::protrusions_over_solid(clearance, distance, spheres);
+  result.protrusion_before = internal::greatest(before);
+  result.max_error =
+      options.max_error > 0.0
+          ? options.max_error
+          : std::max(median(before), kLeastError * internal::box_of(mesh).diagonal().norm());
+  check_zones(options.zones, result.max_error, std::numeric_limits<double>::infinity());
+  const internal::LocalError error(result.max_error, options.zones);
   std::vector<Sphere> limit(spheres.begin(), spheres.end());
   const std::vector<double> limits = limits_of(clearance, distance, spheres, error);
   for (std::size_t i = 0; i < limit.size(); ++i) limit[i].radius = limits[i];
-  const CoverOptions cover_options{.max_error = options.max_error,
+  const CoverOptions cover_options{.max_error = result.max_error,
                                    .zones = options.zones,
                                    .seed = options.seed,
                                    .effort = options.effort,
@@ -112,9 +131,7 @@ Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
   const std::vector<Sphere> added =
       internal::CoverFitter(clearance, distance, cover_options, limit).run();
   if (options.progress) options.progress(-1.0, "growing");
-  Repair result;
-  result.spheres =
-      grown_balls(clearance, distance, spheres, limit, added, options.max_error, error);
+  result.spheres = grown_balls(clearance, distance, spheres, limit, added, result.max_error, error);
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const double by = result.spheres[i].radius - spheres[i].radius;
     if (by > 0.0) ++result.grown;
@@ -123,6 +140,8 @@ Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
   }
   result.added = added.size();
   result.spheres = joined(std::move(result.spheres), added);
+  result.protrusion_after =
+      internal::greatest(internal::protrusions_over_solid(clearance, distance, result.spheres));
   return result;
 }
 

@@ -83,7 +83,9 @@ CoverOptions cover_options(const SimplifyOptions& options) {
           .lower_bound = options.lower_bound,
           .history = options.history,
           .threads = options.threads,
-          .progress = options.progress};
+          .progress = options.progress,
+          .on_proved = options.on_proved,
+          .stop = options.stop};
 }
 
 class Stopwatch {
@@ -128,8 +130,9 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   const Stopwatch levels_time;
   if (used.levels.size() > 1) {
     const std::span<const double> coarser = std::span(used.levels).first(used.levels.size() - 1);
-    result.levels =
-        fit_levels(mesh, result.external, result.cover.spheres, coarser, cover_options(used));
+    CoverOptions level_options = cover_options(used);
+    level_options.on_proved = {};
+    result.levels = fit_levels(mesh, result.external, result.cover.spheres, coarser, level_options);
   }
   result.times.levels = levels_time.seconds();
 

@@ -15,6 +15,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,8 @@ struct SimplifyOptions {
   bool history = false;                // of the paper's loop
   int threads = 0;                     // 0: all; the result does not depend on it
   Progress progress = {};
+  std::function<void(std::size_t)> on_proved = {};  // CoverOptions::on_proved, of the cover of E
+  std::stop_token stop = {};                        // CoverOptions::stop, of the levels, too
 };
 
 // Wall-clock seconds of the parts.

@@ -222,15 +222,9 @@ Certificate audited(const LinkParts& part, const LinkDescription& link,
 LinkRepair repaired(const LinkParts& part, const RobotRepairOptions& options) {
   SimplifyOptions lengths{.max_error = options.max_error, .threads = options.threads};
   const SimplifiedSolid solid(*part.mesh, lengths);
-  LinkRepair result{
-      .link = part.link, .max_error = lengths.max_error, .repair = {}, .certificate = {}};
-  if (options.max_error == 0.0) {
-    const Certificate before = certify(*part.mesh, part.spheres, solid.certify_options);
-    result.max_error =
-        std::max(result.max_error, before.protrusion_over_simplified_max.value_or(0.0));
-  }
+  LinkRepair result{.link = part.link, .repair = {}, .certificate = {}};
   result.repair = repair(*part.mesh, solid.external, part.spheres,
-                         {.max_error = result.max_error, .threads = options.threads});
+                         {.max_error = options.max_error, .threads = options.threads});
   result.certificate = certify(*part.mesh, result.repair.spheres, solid.certify_options);
   return result;
 }

@@ -75,8 +75,8 @@ RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSphere
 // How a robot's spheres are repaired.
 struct RobotRepairOptions {
   LinkGeometry geometry = LinkGeometry::kCollision;
-  // E: how far a sphere that is grown or added may protrude, metres; 0 chooses, for each link, 1 %
-  // of its mesh's box diagonal or as far as its spheres do protrude, whichever is more.
+  // E: how far a sphere that is grown or added may protrude, metres; 0 chooses for each link, as
+  // RepairOptions::max_error does.
   double max_error = 0.0;
   int threads = 0;
   Progress progress = {};  // the word on what is being done is a link's name
@@ -85,7 +85,6 @@ struct RobotRepairOptions {
 // The repair of one link's spheres.
 struct LinkRepair {
   std::string link;
-  double max_error = 0.0;   // as used
   Repair repair;            // its spheres are those of RobotRepair::spheres
   Certificate certificate;  // of these, against the simplified solid with D = 4 E
 };

@@ -45,7 +45,9 @@ LinkPair prove(const RobotModel& robot, int first, int second,
                std::span<const internal::LinkPieces> pieces, const LinkPairOptions& options,
                Clock::time_point end) {
   LinkPair result{.first = first, .second = second};
-  const auto is_over = [&] { return options.seconds > 0.0 && Clock::now() >= end; };
+  const auto is_over = [&] {
+    return options.stop.stop_requested() || (options.seconds > 0.0 && Clock::now() >= end);
+  };
   const auto space =
       internal::make_pair_space(robot, first, second, pieces[static_cast<std::size_t>(first)],
                                 pieces[static_cast<std::size_t>(second)]);

@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <string_view>
 #include <vector>
 
@@ -54,7 +55,7 @@ struct LinkPair {
 };
 
 // How long is searched. Equal options give equal results on any number of threads, unless `seconds`
-// is set.
+// is set or a stop is requested.
 struct LinkPairOptions {
   std::size_t boxes = 8000;              // for each pair that touches
   std::size_t undecided_boxes = 100000;  // for each pair without a witness
@@ -64,6 +65,8 @@ struct LinkPairOptions {
   double seconds = 0.0;  // limit for all pairs together; what is left then is kUnknown. 0: none
   std::uint64_t seed = 1;
   int threads = 0;  // 0: all
+  // Once requested, what is not decided is kUnknown.
+  std::stop_token stop{};
   // Called with the share of the pairs that are done and a word, from one thread at a time.
   std::function<void(double share, const char* what)> progress{};
 };

@@ -66,6 +66,7 @@ SimplifyOptions options_for(const std::string& link, const RobotCoverOptions& op
   result.seed = options.seed;
   result.effort = options.effort;
   result.seconds = options.seconds;
+  result.stop = options.stop;
   const auto own = options.links.find(link);
   if (own == options.links.end()) return result;
   result.max_error = own->second.max_error.value_or(result.max_error);
@@ -193,6 +194,7 @@ RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& o
     tell();
     result.links[task.link] = cover_link(name, task);
     result.links[task.link].fit->options.progress = {};
+    result.links[task.link].fit->options.stop = {};
     ++done;
     tell();
   });

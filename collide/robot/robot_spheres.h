@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,9 @@ struct RobotCoverOptions {
   double seconds = 0.0;                // and its limit in time, for each link; 0: none
   int threads = 0;                     // 0: all; the result does not depend on it
   Progress progress = {};              // the word on what is being done is a link's name
+  // CoverOptions::stop: every link then gets the fewest balls proved so far, those whose turn has
+  // not come their first answer.
+  std::stop_token stop = {};
 };
 
 // One link's cover and what is proved of it. Lengths in metres, in the frame of the link.
@@ -71,7 +75,7 @@ struct RobotCover {
 // its vertex error and the padding (link_mesh.h), so that exact primitives are covered too; their
 // tessellation lies outside of them by at most E / 16, which counts as mesh. S is that mesh
 // simplified for things not smaller than D. Equal input and options give equal spheres on any
-// number of threads, unless `seconds` is set.
+// number of threads, unless `seconds` is set or a stop is requested.
 //
 // Throws Error for options out of range, an option for a link that does not exist or has no such
 // geometry, a robot without any, a link more than 10,000 E across (its mesh is probably in

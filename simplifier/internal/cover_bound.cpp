@@ -9,8 +9,10 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -49,6 +51,7 @@ class Packing {
         error_(input.max_error),
         least_external_(input.clearance.least_external()),
         slack_(slack_of(input)),
+        stop_(input.stop),
         points_(std::move(points)),
         grid_(points_, kCube * error_),
         weights_(points_.size(), 1.0) {
@@ -99,8 +102,9 @@ class Packing {
   }
 
   // Divides each weight by that of the heaviest ball there may be about the point, if that is
-  // heavier than 1, and returns the sum. What cells of such balls hold is left in `heavy`.
-  double prove(std::vector<Rows>& heavy) {
+  // heavier than 1, and returns the sum. What cells of such balls hold is left in `heavy`. Nothing
+  // is proved, and 0 returned, where a stop was requested before the end.
+  double prove(std::vector<Rows>& heavy, const std::function<void(double)>& tell) {
     std::vector<BoxCell> cells{BoxCell::around(grown_box())};
     while (cells.size() < kTasks) {
       std::vector<BoxCell> next;
@@ -109,6 +113,7 @@ class Packing {
       }
       cells = std::move(next);
     }
+    std::atomic<std::size_t> done = 0;
     const Heaviest none{std::vector<double>(points_.size(), 1.0), {}};
     // In the same parts whatever the threads: what is news depends on what a part saw before.
     Heaviest heaviest = tbb::parallel_deterministic_reduce(
@@ -116,6 +121,7 @@ class Packing {
         [&](const tbb::blocked_range<std::size_t>& range, Heaviest found) {
           for (std::size_t i = range.begin(); i < range.end(); ++i) {
             search(cells[i], nullptr, found);
+            tell(static_cast<double>(++done) / static_cast<double>(cells.size()));
           }
           return found;
         },
@@ -126,6 +132,7 @@ class Packing {
           a.held.insert(a.held.end(), b.held.begin(), b.held.end());
           return a;
         });
+    if (stop_.stop_requested()) return 0.0;
     double sum = 0.0;
     for (std::size_t r = 0; r < points_.size(); ++r) sum += weights_[r] /= heaviest.about[r];
     heavy = std::move(heaviest.held);
@@ -216,6 +223,7 @@ class Packing {
   // Of the balls with a centre in the cell; `near` holds all points that they hold, if that is
   // known.
   void search(const BoxCell& cell, const Rows* near, Heaviest& found) const {
+    if (stop_.stop_requested()) return;
     const double reach = cell.reach();
     const ClearanceAt at = clearance_(cell.center, kTolerance * reach);
     if (at.upper + reach < -error_) return;
@@ -244,6 +252,7 @@ class Packing {
   double error_;
   double least_external_;
   double slack_;
+  std::stop_token stop_;
   std::vector<Vector3d> points_;
   PointGrid grid_;
   std::vector<double> weights_;
@@ -265,10 +274,12 @@ std::size_t cover_bound(const CoverBoundInput& input) {
   if (points.empty()) return 1;
   Packing packing(input, std::move(points));
   double best = 1.0;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kRounds && !input.stop.stop_requested(); ++round) {
     packing.balance();
     std::vector<Rows> heavy;
-    best = std::max(best, packing.prove(heavy));
+    best = std::max(best, packing.prove(heavy, [&](double share) {
+      if (input.progress) input.progress((round + share) / kRounds, "proving a lower bound");
+    }));
     packing.learn(std::move(heavy));
   }
   return static_cast<std::size_t>(std::ceil(best * (1.0 - kRounding) - kRounding));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "simplifier/external_spheres.h"
 #include "simplifier/internal/clearance.h"
 #include "simplifier/mesh_distance.h"
 
@@ -8,6 +9,7 @@
 
 #include <cstddef>
 #include <span>
+#include <stop_token>
 
 namespace spherule::internal {
 
@@ -19,6 +21,9 @@ struct CoverBoundInput {
   std::span<const Eigen::Vector3d> points;
   // Centres of balls that a cover might use: the better they are, the better the bound.
   std::span<const Eigen::Vector3d> centers;
+  // Once requested, what is proved so far is returned, 1 at least.
+  std::stop_token stop = {};
+  Progress progress = {};
 };
 
 // A lower bound of the number of balls in any cover of S that protrudes from it by at most E

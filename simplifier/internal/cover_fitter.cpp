@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <numeric>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 
@@ -115,16 +116,16 @@ std::vector<Sphere> CoverFitter::run() {
     return std::max(rounds, elapsed.count() / options_.seconds);
   };
   begin();
-  bound();
   int in_vain = 0;
   for (int round = 0; round < options_.effort && best_.spheres.size() > 1; ++round) {
     const double share = share_done(round);
-    if (share >= 1.0) break;
+    if (share >= 1.0 || options_.stop.stop_requested()) break;
     report(share);
     in_vain = improve() ? 0 : in_vain + 1;
     if (in_vain >= kPatience && refine()) in_vain = 0;
     if (in_vain >= kConverged) break;
   }
+  bound();
   return best_.spheres;
 }
 
@@ -144,7 +145,7 @@ bool CoverFitter::improve() {
   if (search()) {
     spread(clearance_, problem_, solution_);
     prove_or_learn();
-  } else {
+  } else if (!options_.stop.stop_requested()) {
     widen();
   }
   if (problem_.entries() > kForgetting * first_entries_) forget();
@@ -188,6 +189,7 @@ void CoverFitter::know_from(std::size_t row) {
 
 void CoverFitter::bound() {
   if (!options_.lower_bound || options_.min_radius > 0.0 || !given_.empty()) return;
+  if (options_.stop.stop_requested()) return;
   Points points;
   for (const CoverProblem::Row& row : problem_.rows()) points.push_back(row.point);
   Points centers;
@@ -196,20 +198,23 @@ void CoverFitter::bound() {
   }
   points = some_of(points, kBoundPoints * best_.spheres.size() + kMinBoundPoints);
   centers = some_of(centers, kBoundCenters * best_.spheres.size() + kMinBoundCenters);
-  lower_bound_ = cover_bound({clearance_, distance_, error_, points, centers});
+  lower_bound_ = cover_bound(
+      {clearance_, distance_, error_, points, centers, options_.stop, options_.progress});
 }
 
 bool CoverFitter::search() {
   const std::array<std::size_t, 2> targets{goal_.target(), goal_.easier()};
   std::array<std::optional<LazyCoverSearch>, 2> searches;
   std::array<bool, 2> covers{};
-  std::array<std::atomic<bool>, 2> unneeded{};  // the second, if the first succeeds
+  // The second, if the first succeeds; both, if a stop is requested.
+  std::array<std::atomic<bool>, 2> unneeded{};
+  const std::stop_callback quit(options_.stop, [&] { unneeded[0] = unneeded[1] = true; });
   const std::uint64_t entries_per_row = problem_.entries() / problem_.rows().size();
   const std::uint64_t work = kWork * entries_per_row * known_.rows.size();
   tbb::parallel_for(std::size_t{0}, searches.size(), [&](std::size_t i) {
     searches[i].emplace(problem_.instance(), problem_.columns_of(), known_, solution_);
     covers[i] = searches[i]->reach(targets[i], work, options_.seed + seeds_used_ + i, unneeded[i]);
-    if (i == 0) unneeded[1] = covers[0];
+    if (i == 0 && covers[0]) unneeded[1] = true;
   });
   seeds_used_ += searches.size();
   const LazyCoverSearch& chosen = *searches[covers[0] ? 0 : 1];
@@ -233,6 +238,7 @@ void CoverFitter::prove_or_learn() {
   if (!best_.spheres.empty() && balls.spheres.size() >= best_.spheres.size()) return;
   goal_.reached(balls.spheres.size());
   best_ = std::move(balls);
+  if (options_.on_proved) options_.on_proved(given_.size() + best_.spheres.size());
 }
 
 void CoverFitter::widen() {

@@ -65,6 +65,25 @@ TEST_F(OutputTest, InterruptionLeavesNoHalfWrittenFile) {
   }
 }
 
+// Once there is a proved answer, an interruption of the search for a better one does not lose it.
+TEST_F(OutputTest, InterruptedSearchWritesWhatIsProved) {
+  for (int milliseconds = 500;; milliseconds *= 2) {
+    ASSERT_LT(milliseconds, 100000);
+    const pid_t process = start({"fit", "box.stl", "-o", "out.json", "--max-error", "0.5",
+                                 "--effort", "1000000", "--tree", "out.tree"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    kill(process, SIGINT);
+    const Outcome outcome = finish(process);
+    ASSERT_EQ(outcome.exit_code, -SIGINT) << outcome.out << outcome.err;
+    if (!exists("out.json")) continue;  // there was no answer yet
+    EXPECT_NE(outcome.err.find("spherule: interrupted: "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.out.find("(proved)"), std::string::npos) << outcome.out;
+    break;
+  }
+  EXPECT_EQ(files(), (Files{"box.stl", "out.json", "out.tree"}));
+  EXPECT_EQ(run({"audit", "box.stl", "out.json"}).exit_code, 0);
+}
+
 // Interrupted at any moment, a command that writes leaves the old file, or the new one whole.
 TEST_F(OutputTest, InterruptionWhileWriting) {
   std::vector<std::array<double, 4>> many;

@@ -7,11 +7,14 @@
 #include "tests/collide/robot/cover_oracle.h"
 #include "tests/support/effort.h"
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
+#include <signal.h>
 #include <string>
+#include <thread>
 #include <variant>
 #include <vector>
 
@@ -204,6 +207,7 @@ TEST_F(RobotTest, TellsInTableJsonAndReportWhatIsProved) {
   EXPECT_EQ(summary.at("total").at("sphere_count"), count);
 
   // The report has what judges of the simplification need.
+  ASSERT_EQ(run(command({"--format", "json", "--external-spheres"})).exit_code, 0);
   const json report = read_json("out/arm_1.report.json");
   for (const json& link : report.at("links")) {
     if (link.at("sphere_count") == 0) continue;
@@ -211,6 +215,23 @@ TEST_F(RobotTest, TellsInTableJsonAndReportWhatIsProved) {
     EXPECT_EQ(solid.at("min_external_diameter"), 0.24);
     EXPECT_FALSE(solid.at("external_spheres").empty());
   }
+}
+
+TEST_F(RobotTest, InterruptedSearchWritesWhatIsProvedOfEveryLink) {
+  const pid_t process = start({"robot", "arm.urdf", "-o", "out", "--max-error", "0.01", "--effort",
+                               "1000000", "--package", "parts=parts"});
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  kill(process, SIGTERM);
+  const Outcome outcome = finish(process);
+  EXPECT_EQ(outcome.exit_code, -SIGTERM) << outcome.err;
+  EXPECT_NE(outcome.err.find("spherule: interrupted: "), std::string::npos) << outcome.err;
+  const json report = read_json("out/arm_1.report.json");
+  EXPECT_EQ(report.at("total").at("covered"), true);
+  EXPECT_EQ(report.at("total").at("links"), 3);
+  EXPECT_EQ(run({"audit-robot", "arm.urdf", "out/arm_1.spheres.json", "--max-error", "0.01",
+                 "--package", "parts=parts"})
+                .exit_code,
+            0);
 }
 
 TEST_F(RobotTest, OptionsOfOneLinkAndOfAnSrdfCount) {

@@ -23,9 +23,6 @@ TEST_F(SecondPhaseTest, FitsAndAnAuditProvesTheFile) {
     EXPECT_LE(file["certificate"]["protrusion_over_simplified_max"], error);
     const nlohmann::json report = read_json("report.json");
     EXPECT_EQ(report["cover"]["spheres_before_inflation"].size(), file["spheres"].size());
-    // Made by the same method.
-    EXPECT_TRUE(report["analysis"]["at_twice_the_error"]["covered"]);
-    EXPECT_LT(report["analysis"]["at_twice_the_error"]["sphere_count"], file["spheres"].size());
     EXPECT_EQ(run({"audit", "box.stl", "box.json"}).exit_code, 0);
     EXPECT_EQ(run({"audit", "box.stl", "box.json", "--repair", "mended.json"}).exit_code, 0);
     EXPECT_EQ(read_json("mended.json")["options"]["method"], method);

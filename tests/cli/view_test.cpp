@@ -86,7 +86,7 @@ TEST_F(ViewTest, LeaksOfAnAudit) {
 TEST_F(ViewTest, ReportHoldsExternalSpheres) {
   write_box("box.stl", {4, 2, 1});
   ASSERT_EQ(run({"fit", "box.stl", "--max-error", "0.5", "--min-external", "3", "--effort", "0",
-                 "-o", "box.json", "--report", "report.json"})
+                 "-o", "box.json", "--report", "report.json", "--external-spheres"})
                 .exit_code,
             0);
   ASSERT_EQ(run({"view", "box.stl", "box.json", "report.json", "-o", "page.html"}).exit_code, 0);

@@ -160,7 +160,7 @@ TEST_F(AuditRobot, RepairCovers) {
     ASSERT_EQ(mended.links.size(), 2u);
     for (const LinkRepair& link : mended.links) {
       EXPECT_TRUE(link.certificate.covered) << link.link;
-      EXPECT_EQ(link.max_error, 0.02);
+      EXPECT_EQ(link.repair.max_error, 0.02);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_EQ(mended.spheres[0].spheres[k].center, spheres[0].spheres[k].center);
