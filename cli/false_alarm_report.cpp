@@ -46,7 +46,7 @@ Json counts_of(const FalseAlarms& alarms, const RobotModel& robot) {
         {{"links", {link_name(robot, pair.first), link_name(robot, pair.second)}},
          {"refused", pair.refused},
          {"refused_alone", pair.refused_alone},
-         {"median_gap", to_json(pair.median_gap)}});
+         {"median_gap", spherule::to_json(pair.median_gap)}});
   }
   return json;
 }

@@ -12,6 +12,7 @@
 #include "cli/progress.h"
 #include "cli/report_content.h"
 #include "cli/second_phase.h"
+#include "cli/unit_warnings.h"
 #include "cli/view_page.h"
 #include "simplifier/cover_breakdown.h"
 #include "simplifier/simplify.h"
@@ -77,6 +78,12 @@ auto blaming_file(const std::string& file, std::string_view subject, Use use) {
   } catch (const Error& error) {
     if (file.empty() || !error.subject().starts_with(subject)) throw;
     throw Error(file, error.what());
+  }
+}
+
+void warn(const std::string& file, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    std::cerr << "spherule: warning: " << file << ": " << warning << "\n";
   }
 }
 
@@ -154,6 +161,7 @@ int fit(const FitArguments& arguments) {
               << kCrack * report.box.diagonal().norm() << " shuts them\n";
   }
 
+  warn(arguments.mesh, length_warnings(report, options));
   StopOnInterruption interruption;
   options.on_proved = [&](std::size_t) { interruption.have_answer(); };
   options.stop = interruption.token();
@@ -207,6 +215,7 @@ int fit(const FitArguments& arguments) {
             << "seconds: external " << result.times.external << ", cover " << result.times.cover
             << ", levels " << result.times.levels << ", certify " << result.times.certify << "\n";
   warn_of_thin_parts(arguments, mesh, result);
+  warn(arguments.mesh, volume_warnings(result));
   const std::string broken = broken_promises(result);
   std::cout << describe(next_steps(arguments, result.certificate.covered));
   if (broken.empty()) return model.cad && !model.cad->proved ? kNo : kYes;

@@ -116,11 +116,12 @@ std::vector<std::string> links_to_cover(const RobotDescription& robot, LinkGeome
   return names;
 }
 
-bool has_padding(const RobotArguments& arguments) {
+// Whether the links are as other commands read them: neither padded nor welded.
+bool has_plain_links(const RobotArguments& arguments) {
   const auto links = link_options(arguments.links);
-  return arguments.options.padding > 0.0 ||
-         std::any_of(links.begin(), links.end(),
-                     [](const auto& link) { return link.second.padding.value_or(0.0) > 0.0; });
+  return arguments.options.padding == 0.0 && arguments.options.weld == 0.0 &&
+         std::none_of(links.begin(), links.end(),
+                      [](const auto& link) { return link.second.padding.value_or(0.0) > 0.0; });
 }
 
 // With the file of all links that the other commands read, if it was asked for.
@@ -136,8 +137,8 @@ std::vector<NextStep> next_steps(const RobotArguments& arguments,
   const auto pairs = std::find_if(written.begin(), written.end(), [](const fs::path& file) {
     return file.extension() == ".pairs";
   });
-  // Proofs of links with padding are not those that these take.
-  if (pairs != written.end() && !has_padding(arguments)) {
+  // Proofs of other links are not those that these take.
+  if (pairs != written.end() && has_plain_links(arguments)) {
     view.push_back(pairs->string());
     check.insert(check.end(), {"--pairs", pairs->string()});
   }
@@ -320,6 +321,11 @@ void add_robot(CLI::App& app, int& exit_code) {
                    "of D (default: 0.03)")
       ->check(CLI::Range(0.001, ExternalOptions::kNoTightness));
   command->add_option("--padding", options.padding, "Grow every link by so many metres")
+      ->check(check_length);
+  command
+      ->add_option("--weld", options.weld,
+                   "Join vertices that are no further apart, in metres, so that cracks which "
+                   "rounding has left do not open meshes; added to the padding")
       ->check(check_length);
   add_geometry_option(*command, "What is covered: collision (default) or visual geometry",
                       arguments->geometry);

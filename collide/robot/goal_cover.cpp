@@ -80,7 +80,8 @@ std::vector<LinkBody> covered_bodies(const RobotDescription& robot,
     const double padding = own == options.links.end()
                                ? options.padding
                                : own->second.padding.value_or(options.padding);
-    auto body = link_body(robot, static_cast<int>(i), {.geometry = options.geometry}, padding);
+    auto body = link_body(robot, static_cast<int>(i),
+                          {.geometry = options.geometry, .weld = options.weld}, padding);
     if (body) result.push_back(std::move(*body));
   }
   return result;

@@ -12,7 +12,8 @@
 namespace spherule {
 
 // The bodies that the spheres of cover_robot() cover: the meshes of the links, of the geometry that
-// is asked for, each grown by the padding of its link. Throws Error as link_bodies().
+// is asked for, welded as asked and each grown by the padding of its link. Throws Error as
+// link_bodies().
 std::vector<LinkBody> covered_bodies(const RobotDescription& robot,
                                      const RobotCoverOptions& options);
 

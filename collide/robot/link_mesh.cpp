@@ -56,13 +56,14 @@ void append(TriangleMesh& mesh, const TriangleMesh& part, const std::string& sub
 
 struct MeshOf {
   double chord_error;
+  double weld;
   const std::string& subject;
 
   TriangleMesh operator()(const MeshFile& file) const {
     if (!file.scale.allFinite() || file.scale.cwiseAbs().minCoeff() == 0.0) {
       throw Error(subject, "the scale of " + file.path.string() + " must be finite and not 0");
     }
-    TriangleMesh mesh = read_mesh(file.path);
+    TriangleMesh mesh = read_mesh(file.path, {.weld = weld / file.scale.cwiseAbs().maxCoeff()});
     scale(mesh, file.scale);
     validate(mesh, file.path.string() + " as scaled");
     return mesh;
@@ -84,7 +85,8 @@ std::optional<TriangleMesh> link_mesh(const LinkDescription& link, const LinkMes
   const std::string subject = "link '" + link.name + "'";
   TriangleMesh mesh;
   for (const LinkShape& shape : shapes) {
-    TriangleMesh part = std::visit(MeshOf{options.chord_error, subject}, shape.geometry);
+    TriangleMesh part =
+        std::visit(MeshOf{options.chord_error, options.weld, subject}, shape.geometry);
     place(part, shape.link_from_shape);
     append(mesh, part, subject);
   }

@@ -20,6 +20,10 @@ struct LinkMeshOptions {
   LinkGeometry geometry = LinkGeometry::kCollision;
   // How far triangles for a ball, cylinder or capsule may lie outside of it; positive, in metres.
   double chord_error = 0.0005;
+  // Vertices of a mesh file that are no further apart than this become one, as with
+  // MeshReadOptions::weld, but in metres; under a scale with different factors along the axes less
+  // is joined. It counts in `vertex_error`.
+  double weld = 0.0;
 };
 
 // The shapes of that geometry, as the description lists them. There is no falling back from one to

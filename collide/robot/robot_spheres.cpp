@@ -21,6 +21,9 @@ namespace {
 constexpr double kChordErrorOfError = 1.0 / 16.0;
 // Nobody wants the hundred million spheres that such a link asks for.
 constexpr double kMostErrorsAcross = 1e4;
+constexpr double kMostMetresAcross = 100.0;
+// Of a link's box diagonal: how far apart rounding leaves what was one vertex.
+constexpr double kCrack = 1e-6;
 
 // A link that has something to cover.
 struct Task {
@@ -111,8 +114,9 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
     Task& task = tasks[i];
     const LinkDescription& link = robot.links[task.link];
     const double max_error = task.options.max_error;
-    task.mesh = *link_mesh(
-        link, {.geometry = options.geometry, .chord_error = kChordErrorOfError * max_error});
+    task.mesh = *link_mesh(link, {.geometry = options.geometry,
+                                  .chord_error = kChordErrorOfError * max_error,
+                                  .weld = options.weld});
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& v : task.mesh.vertices) box.extend(v);
     const double across = box.diagonal().norm();
@@ -125,14 +129,26 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
   return tasks;
 }
 
-std::vector<std::string> warnings_of(const MeshReport& report, const Simplification& fit) {
+std::vector<std::string> warnings_of(const MeshReport& report, const Simplification& fit,
+                                     double weld) {
   std::vector<std::string> warnings;
+  const double across = report.box.diagonal().norm();
+  if (across > kMostMetresAcross) {
+    std::ostringstream text;
+    text << "it is " << across << " m across: if its meshes are in millimetres, they need a scale "
+         << "of 0.001";
+    warnings.push_back(text.str());
+  }
   if (!report.closed) {
     std::ostringstream text;
     text << "its mesh is open (" << report.boundary_edges << " edges with one triangle, "
          << report.non_manifold_edges
          << " with more than two): the surface is covered in any case, but space that things of "
             "the size D can get into counts as outside";
+    if (report.boundary_edges > 0 && weld == 0.0) {
+      text << "; if rounding has left cracks, welding within " << kCrack * across
+           << " m (--weld) shuts them";
+    }
     warnings.push_back(text.str());
   }
   const std::string broken = broken_promises(fit);
@@ -140,7 +156,7 @@ std::vector<std::string> warnings_of(const MeshReport& report, const Simplificat
   return warnings;
 }
 
-LinkCover cover_link(const std::string& link, const Task& task) {
+LinkCover cover_link(const std::string& link, const Task& task, double weld) {
   const auto start = std::chrono::steady_clock::now();
   LinkCover cover;
   cover.link = link;
@@ -148,7 +164,8 @@ LinkCover cover_link(const std::string& link, const Task& task) {
   cover.spheres = cover.fit->cover.spheres;
   cover.triangles = task.mesh.triangles.size();
   cover.vertex_error = task.mesh.vertex_error;
-  cover.warnings = warnings_of(mesh_report(task.mesh, {.self_intersections = false}), *cover.fit);
+  cover.warnings =
+      warnings_of(mesh_report(task.mesh, {.self_intersections = false}), *cover.fit, weld);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   cover.seconds = seconds.count();
   return cover;
@@ -192,7 +209,7 @@ RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& o
     if (options.progress) task.options.progress = [&tell](double, const char*) { tell(); };
     task.options.threads = threads.within;
     tell();
-    result.links[task.link] = cover_link(name, task);
+    result.links[task.link] = cover_link(name, task, options.weld);
     result.links[task.link].fit->options.progress = {};
     result.links[task.link].fit->options.stop = {};
     ++done;

@@ -37,6 +37,7 @@ struct RobotCoverOptions {
   double min_external_diameter = 0.0;
   double tightness = SimplifyOptions{}.tightness;
   double padding = 0.0;
+  double weld = 0.0;  // LinkMeshOptions::weld
   LinkGeometry geometry = LinkGeometry::kCollision;
   std::map<std::string, LinkCoverOptions> links = {};  // by the link's name
   std::uint64_t seed = 1;

@@ -234,6 +234,29 @@ TEST_F(RobotTest, InterruptedSearchWritesWhatIsProvedOfEveryLink) {
             0);
 }
 
+TEST_F(RobotTest, WeldingShutsACrackInMillimetresOrMetres) {
+  std::string text = read("lug.stl");
+  const std::string corner = "vertex 50 40 30";
+  ASSERT_NE(text.find(corner), std::string::npos);
+  text.replace(text.find(corner), corner.size(), "vertex 50.00001 40 30");
+  write("lug.stl", text);
+  const Outcome open = run(command({"--format", "json"}));
+  EXPECT_EQ(open.exit_code, 0) << open.err;
+  EXPECT_NE(open.err.find("link upper arm: its mesh is open"), std::string::npos) << open.err;
+  EXPECT_NE(open.err.find("(--weld) shuts them"), std::string::npos) << open.err;
+  const auto without = read_json("out/arm_1.report.json").at("links").at(1);
+  EXPECT_TRUE(without.at("certificate").at("volume_ratio").is_null());
+
+  const Outcome shut = run(command({"--format", "json", "--weld", "1e-7"}));
+  EXPECT_EQ(shut.exit_code, 0) << shut.err;
+  EXPECT_EQ(shut.err.find("its mesh is open"), std::string::npos) << shut.err;
+  const auto welded = read_json("out/arm_1.report.json").at("links").at(1);
+  EXPECT_TRUE(welded.at("certificate").at("volume_ratio").is_number());
+  EXPECT_GE(welded.at("vertex_error"), 1e-8) << "the vertices moved";
+
+  expect_refusal(command({"--weld", "-1"}), "--weld");
+}
+
 TEST_F(RobotTest, OptionsOfOneLinkAndOfAnSrdfCount) {
   write("arm.srdf", R"(<robot name="arm_1"><group name="hand"><link name="finger"/></group>
     <disable_collisions link1="finger" link2="base" reason="Never"/>
