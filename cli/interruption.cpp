@@ -10,6 +10,7 @@
 #include <optional>
 #include <semaphore.h>
 #include <signal.h>
+#include <unistd.h>
 
 namespace spherule {
 namespace {
@@ -86,7 +87,9 @@ StopOnInterruption::StopOnInterruption() {
     while (sem_wait(&stop_state.wake) != 0) {
     }
     if (stop_state.signal_number == 0) return;
-    std::cerr << "\nspherule: interrupted: what is proved so far will be written; interrupt again "
+    // Below a progress bar, where there may be one.
+    if (isatty(STDERR_FILENO) == 1) std::cerr << "\n";
+    std::cerr << "spherule: interrupted: what is proved so far will be written; interrupt again "
                  "to end at once\n";
     source_.request_stop();
   });

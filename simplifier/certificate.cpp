@@ -8,6 +8,7 @@
 #include "simplifier/internal/protrusion.h"
 #include "simplifier/internal/thread_limit.h"
 #include "simplifier/internal/usable_spheres.h"
+#include "simplifier/internal/volume_ratio.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
@@ -146,7 +147,7 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   }
   if (options.volume && !spheres.empty() &&
       mesh_report(mesh, {.self_intersections = false}).closed) {
-    result.volume_ratio = internal::estimate_volume_ratio(distance, balls);
+    result.volume_ratio = internal::estimate_volume_ratio(mesh, spheres);
   }
   return result;
 }

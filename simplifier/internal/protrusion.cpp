@@ -3,13 +3,12 @@
 
 #include "simplifier/internal/box_cell.h"
 #include "simplifier/internal/medial_ascent.h"
-#include "simplifier/internal/random.h"
+#include "simplifier/internal/mesh_box.h"
 #include "spheretree/rounding.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -30,15 +29,6 @@ double distance_to_solid(const Clearance& clearance, const MeshDistance& distanc
     if (step.clearance >= 0.0) nearest = std::min(nearest, distance_upper(c, step.point));
   }
   return nearest;
-}
-
-Eigen::AlignedBox3d box_of(std::span<const Sphere> balls) {
-  Eigen::AlignedBox3d box;
-  for (const Sphere& s : balls) {
-    box.extend(Vector3d(s.center - Vector3d::Constant(s.radius)));
-    box.extend(Vector3d(s.center + Vector3d::Constant(s.radius)));
-  }
-  return box;
 }
 
 struct Cell {
@@ -127,31 +117,6 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
     }
   }
   return result;
-}
-
-double estimate_volume_ratio(const MeshDistance& distance, const BallsToProve& balls) {
-  constexpr std::size_t kSamples = 200'000;
-  constexpr double kMaxTriangleTests = 1e8;
-  const auto share = [](const Eigen::AlignedBox3d& box, std::size_t samples, auto inside) {
-    Random random(1);
-    std::vector<Vector3d> points(samples);
-    for (Vector3d& p : points) p = random.in(box);
-    std::vector<char> hit(samples);
-    tbb::parallel_for(std::size_t{0}, samples,
-                      [&](std::size_t i) { hit[i] = inside(points[i]) ? 1 : 0; });
-    const auto count = std::count(hit.begin(), hit.end(), char{1});
-    return static_cast<double>(count) / static_cast<double>(samples) * box.volume();
-  };
-  const auto triangles = static_cast<double>(distance.triangle_count());
-  const auto few = static_cast<std::size_t>(
-      std::clamp(kMaxTriangleTests / triangles, 2000.0, static_cast<double>(kSamples)));
-  const double solid = share(distance.box(), few, [&](const Vector3d& p) {
-    return std::abs(distance.winding_number(p)) > 0.5;
-  });
-  const double covered = share(box_of(balls.balls), kSamples, [&](const Vector3d& p) {
-    return balls.hierarchy.nearest(p, 0.0).index >= 0;
-  });
-  return covered / solid;
 }
 
 }  // namespace spherule::internal

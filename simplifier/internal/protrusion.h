@@ -33,7 +33,4 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
                             const Clearance& clearance, const BallsToProve& balls,
                             double tolerance);
 
-// Volume of the union of the balls over the volume inside of a closed mesh, from fixed samples.
-double estimate_volume_ratio(const MeshDistance& distance, const BallsToProve& balls);
-
 }  // namespace spherule::internal

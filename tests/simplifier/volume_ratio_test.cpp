@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/internal/volume_ratio.h"
+
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kBall = 4.0 / 3.0 * std::numbers::pi;
+
+double ratio(const TriangleMesh& mesh, const std::vector<Sphere>& balls) {
+  return internal::estimate_volume_ratio(mesh, balls);
+}
+
+TEST(VolumeRatio, WhatSeveralBallsHoldCountsOnce) {
+  const TriangleMesh cube = cube_mesh();
+  const Sphere ball{Vector3d::Constant(0.5), 1.0};
+  EXPECT_NEAR(ratio(cube, {ball}), kBall, 0.01 * kBall);
+  EXPECT_NEAR(ratio(cube, {ball, ball}), kBall, 0.01 * kBall);
+  // Two unit balls whose centres are 1 apart share a lens of 5 pi / 12.
+  const double both = 2.0 * kBall - 5.0 * std::numbers::pi / 12.0;
+  EXPECT_NEAR(ratio(cube, {ball, {ball.center + Vector3d::UnitX(), 1.0}}), both, 0.01 * both);
+}
+
+TEST(VolumeRatio, OverlapsOfTheMeshCountOnceAndHollowsNot) {
+  const std::vector<Sphere> ball{{Vector3d::Zero(), 1.0}};
+  const TriangleMesh cube = cube_mesh();
+  const TriangleMesh overlapping =
+      joined(cube, box_mesh(Vector3d(0.5, 0.0, 0.0), Vector3d(1.5, 1.0, 1.0)));
+  EXPECT_NEAR(kBall / ratio(overlapping, ball), 1.5, 0.015);
+  EXPECT_NEAR(kBall / ratio(inverted(cube), ball), 1.0, 0.01);
+  const TriangleMesh hollow =
+      joined(cube, inverted(box_mesh(Vector3d::Constant(0.25), Vector3d::Constant(0.75))));
+  EXPECT_NEAR(kBall / ratio(hollow, ball), 0.875, 0.009);
+}
+
+TEST(VolumeRatio, ThinPlatesAndPipesInAnyDirection) {
+  const std::vector<Sphere> ball{{Vector3d::Zero(), 1.0}};
+  for (int axis = 0; axis < 3; ++axis) {
+    Vector3d size(4.0, 3.0, 2.0);
+    size[axis] = 0.01;
+    const TriangleMesh plate = box_mesh(Vector3d::Zero(), size);
+    EXPECT_NEAR(kBall / ratio(plate, ball), size.prod(), 0.01 * size.prod()) << axis;
+  }
+  const double ring = 60.0 * std::sin(2.0 * std::numbers::pi / 60.0) / 2.0 * (1.0 - 0.9 * 0.9);
+  EXPECT_NEAR(kBall / ratio(pipe(1.0, 0.9, 10.0, 60), ball), 10.0 * ring, 0.02 * 10.0 * ring);
+}
+
+}  // namespace
+}  // namespace spherule::test
