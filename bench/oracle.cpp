@@ -2,7 +2,7 @@
 #include "bench/oracle.h"
 
 #include "bench/fcl_solid.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 
 #include <algorithm>
 #include <utility>

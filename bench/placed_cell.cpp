@@ -2,7 +2,7 @@
 #include "bench/placed_cell.h"
 
 #include "bench/scenes/solids.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 
 namespace spherule {
 namespace {

@@ -2,7 +2,7 @@
 #include "bench/scene_files.h"
 
 #include "bench/placed_cell.h"
-#include "simplifier/mesh_io.h"
+#include "mesh/io/mesh_io.h"
 #include "spheretree/sphere_file.h"
 
 namespace spherule {

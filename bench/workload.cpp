@@ -5,7 +5,7 @@
 #include "bench/scenes/table.h"
 #include "bench/scenes/torch.h"
 #include "bench/scenes/workpiece.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 
 #include <utility>
 

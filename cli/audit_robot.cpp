@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/robot/audit_robot.h"
+#include "robot/cover/audit_robot.h"
 
 #include "cli/audit_robot_report.h"
 #include "cli/check_length.h"
@@ -15,9 +15,9 @@
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
 #include "cli/view_robot.h"
-#include "collide/robot/sphere_formats.h"
-#include "collide/robot/trajectory_file.h"
-#include "collide/robot/urdf.h"
+#include "robot/files/trajectory_file.h"
+#include "robot/files/urdf.h"
+#include "robot/formats/sphere_formats.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>

@@ -3,8 +3,8 @@
 
 #include "cli/json.h"
 #include "cli/pair_kinds.h"
-#include "collide/robot/audit_robot.h"
-#include "collide/robot/sphere_formats.h"
+#include "robot/cover/audit_robot.h"
+#include "robot/formats/sphere_formats.h"
 
 #include <string>
 

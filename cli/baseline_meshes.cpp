@@ -6,11 +6,11 @@
 #include "cli/mesh_output.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "mesh/io/mesh_io.h"
+#include "mesh/mesh_report.h"
 #include "simplifier/baseline/convex_decomposition.h"
 #include "simplifier/baseline/convex_hull.h"
 #include "simplifier/baseline/decimation.h"
-#include "simplifier/mesh_io.h"
-#include "simplifier/mesh_report.h"
 
 #include <CLI/CLI.hpp>
 

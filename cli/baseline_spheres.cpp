@@ -7,9 +7,9 @@
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"
+#include "mesh/io/mesh_io.h"
 #include "simplifier/baseline/made_conservative.h"
 #include "simplifier/certificate.h"
-#include "simplifier/mesh_io.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/robot/pair_status.h"
-#include "collide/robot/robot_checker.h"
+#include "robot/check/pair_status.h"
+#include "robot/check/robot_checker.h"
 
 #include <cstddef>
 #include <optional>

@@ -7,9 +7,9 @@
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "cli/units.h"
-#include "collide/robot/link_bodies.h"
-#include "collide/robot/srdf_judgement.h"
-#include "collide/robot/urdf.h"
+#include "robot/cover/link_bodies.h"
+#include "robot/files/urdf.h"
+#include "robot/pairs/srdf_judgement.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>

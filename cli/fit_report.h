@@ -3,8 +3,8 @@
 
 #include "cli/model_file.h"
 #include "cli/report_content.h"
+#include "mesh/mesh_report.h"
 #include "simplifier/cover_breakdown.h"
-#include "simplifier/mesh_report.h"
 #include "simplifier/simplify.h"
 
 #include <string>

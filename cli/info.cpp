@@ -4,7 +4,7 @@
 #include "cli/model_file.h"
 #include "cli/outline.h"
 #include "cli/recognize.h"
-#include "simplifier/mesh_report.h"
+#include "mesh/mesh_report.h"
 #include "spheretree/check.h"
 #include "spheretree/enclosing_sphere.h"
 #include "spheretree/sphere_file.h"

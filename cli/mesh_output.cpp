@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/mesh_output.h"
 
+#include "mesh/io/mesh_io.h"
 #include "simplifier/baseline/convex_decomposition.h"
-#include "simplifier/mesh_io.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "spheretree/triangle_mesh.h"
+#include "mesh/triangle_mesh.h"
 
 #include <filesystem>
 #include <span>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/model_file.h"
 
-#include "simplifier/mesh_io.h"
+#include "mesh/io/mesh_io.h"
 #include "spheretree/error.h"
 
 #include <cmath>

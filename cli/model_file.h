@@ -2,9 +2,9 @@
 #pragma once
 
 #include "cli/json.h"
+#include "mesh/triangle_mesh.h"
 #include "simplifier/cad/cad_file.h"
 #include "spheretree/sphere_file.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <filesystem>
 #include <optional>

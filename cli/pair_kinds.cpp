@@ -4,10 +4,10 @@
 #include "cli/pair_report.h"
 #include "cli/print.h"
 #include "cli/progress.h"
-#include "collide/robot/ignored_pairs.h"
-#include "collide/robot/link_bodies.h"
-#include "collide/robot/link_pairs_file.h"
-#include "collide/robot/scene_setup.h"
+#include "robot/check/scene_setup.h"
+#include "robot/cover/link_bodies.h"
+#include "robot/pairs/ignored_pairs.h"
+#include "robot/pairs/link_pairs_file.h"
 
 #include <algorithm>
 #include <iomanip>

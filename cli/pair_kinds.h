@@ -2,11 +2,11 @@
 #pragma once
 
 #include "cli/json.h"
-#include "collide/robot/link_mesh.h"
-#include "collide/robot/pair_status.h"
-#include "collide/robot/robot_description.h"
-#include "collide/robot/sphere_formats.h"
-#include "collide/robot/srdf_judgement.h"
+#include "robot/check/pair_status.h"
+#include "robot/cover/link_mesh.h"
+#include "robot/formats/sphere_formats.h"
+#include "robot/model/robot_description.h"
+#include "robot/pairs/srdf_judgement.h"
 
 #include <memory>
 #include <optional>

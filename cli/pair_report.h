@@ -2,9 +2,9 @@
 #pragma once
 
 #include "cli/json.h"
-#include "collide/robot/link_pairs.h"
-#include "collide/robot/named_postures.h"
-#include "collide/robot/srdf_judgement.h"
+#include "robot/check/named_postures.h"
+#include "robot/pairs/link_pairs.h"
+#include "robot/pairs/srdf_judgement.h"
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 #include "cli/robot_false_alarms.h"
 
 #include "cli/outline.h"
-#include "collide/robot/scene_setup.h"
+#include "robot/check/scene_setup.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>

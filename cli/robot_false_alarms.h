@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/robot/goal_cover.h"
-#include "collide/robot/trajectory_file.h"
+#include "robot/cover/goal_cover.h"
+#include "robot/files/trajectory_file.h"
 
 #include <cstddef>
 #include <memory>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robot_files.h"
 
-#include "collide/robot/ignored_pairs.h"
-#include "collide/robot/link_pairs_file.h"
-#include "collide/robot/named_postures.h"
+#include "robot/check/named_postures.h"
+#include "robot/pairs/ignored_pairs.h"
+#include "robot/pairs/link_pairs_file.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/tree_file.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/robot/link_pairs.h"
-#include "collide/robot/robot_description.h"
-#include "collide/robot/sphere_formats.h"
+#include "robot/formats/sphere_formats.h"
+#include "robot/model/robot_description.h"
+#include "robot/pairs/link_pairs.h"
 
 #include <filesystem>
 #include <string>

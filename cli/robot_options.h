@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/robot/robot_spheres.h"
-#include "collide/robot/urdf.h"
+#include "robot/cover/robot_spheres.h"
+#include "robot/files/urdf.h"
 
 #include <map>
 #include <string>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/json.h"
-#include "collide/robot/robot_spheres.h"
+#include "robot/cover/robot_spheres.h"
 
 #include <string>
 

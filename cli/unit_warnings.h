@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/mesh_report.h"
+#include "mesh/mesh_report.h"
 #include "simplifier/simplify.h"
 
 #include <string>

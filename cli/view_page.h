@@ -2,9 +2,9 @@
 #pragma once
 
 #include "cli/json.h"
+#include "mesh/triangle_mesh.h"
 #include "simplifier/leak_points.h"
 #include "spheretree/sphere_tree.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <optional>
 #include <span>

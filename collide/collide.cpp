@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/collide.h"
 
-#include "collide/internal/ball_leaves.h"
-#include "collide/internal/box_gap.h"
-#include "collide/internal/queries.h"
+#include "collide/search/ball_leaves.h"
+#include "collide/search/box_gap.h"
+#include "collide/search/queries.h"
 
 namespace spherule {
 

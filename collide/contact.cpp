@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/contact.h"
 
-#include "collide/internal/ball_leaves.h"
-#include "collide/internal/listed_triangles.h"
-#include "collide/internal/tree_pair.h"
+#include "collide/meshes/listed_triangles.h"
+#include "collide/search/ball_leaves.h"
+#include "collide/search/tree_pair.h"
 
 #include <algorithm>
 #include <queue>

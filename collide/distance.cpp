@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/distance.h"
 
-#include "collide/internal/ball_leaves.h"
-#include "collide/internal/pair_space.h"
+#include "collide/search/ball_leaves.h"
+#include "collide/search/pair_space.h"
 
 namespace spherule {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/mechanism_check.h"
 
-#include "collide/internal/mechanism_parts.h"
+#include "collide/mechanism/mechanism_parts.h"
 #include "spheretree/error.h"
 
 #include <algorithm>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/mesh_contact.h"
 
-#include "collide/internal/ball_leaves.h"
-#include "collide/internal/box_gap.h"
-#include "collide/internal/cover_proof.h"
-#include "collide/internal/listed_triangles.h"
-#include "collide/internal/patch_trees.h"
-#include "collide/internal/traversal.h"
-#include "collide/internal/triangle_leaves.h"
+#include "collide/meshes/cover_proof.h"
+#include "collide/meshes/listed_triangles.h"
+#include "collide/meshes/patch_trees.h"
+#include "collide/meshes/triangle_leaves.h"
+#include "collide/search/ball_leaves.h"
+#include "collide/search/box_gap.h"
+#include "collide/search/traversal.h"
 #include "spheretree/error.h"
 
 #include <optional>

@@ -8,7 +8,7 @@
 #include "collide/collide.h"
 #include "collide/mesh_tree.h"
 #include "collide/solid_mesh.h"
-#include "spheretree/triangle_mesh.h"
+#include "mesh/triangle_mesh.h"
 
 #include <cstdint>
 #include <limits>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/mesh_tree.h"
 
-#include "collide/internal/mesh_search.h"
-#include "collide/internal/packed_mesh.h"
-#include "collide/internal/pair_space.h"
-#include "collide/internal/queries.h"
-#include "collide/internal/triangle_leaves.h"
+#include "collide/meshes/mesh_search.h"
+#include "collide/meshes/packed_mesh.h"
+#include "collide/meshes/triangle_leaves.h"
+#include "collide/search/pair_space.h"
+#include "collide/search/queries.h"
 #include "collide/within.h"
 #include "spheretree/build.h"
 #include "spheretree/enclosing_sphere.h"

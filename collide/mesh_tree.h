@@ -3,7 +3,7 @@
 
 #include "collide/collide.h"
 #include "collide/distance.h"
-#include "spheretree/triangle_mesh.h"
+#include "mesh/triangle_mesh.h"
 
 #include <array>
 #include <cstdint>

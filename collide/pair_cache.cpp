@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/pair_cache.h"
 
-#include "collide/internal/free_time.h"
+#include "collide/motion/free_time.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/primitive.h"
 
-#include "collide/internal/ball_space.h"
-#include "collide/internal/deadline.h"
-#include "collide/internal/one_tree.h"
-#include "collide/internal/solid_pose.h"
+#include "collide/search/ball_space.h"
+#include "collide/search/deadline.h"
+#include "collide/search/one_tree.h"
+#include "collide/solids/solid_pose.h"
 #include "collide/within.h"
 #include "spheretree/error.h"
 

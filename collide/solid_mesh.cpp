@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/solid_mesh.h"
 
-#include "collide/internal/ball_space.h"
-#include "collide/internal/balls_inside.h"
-#include "collide/internal/mesh_inside.h"
-#include "collide/internal/mesh_search.h"
-#include "collide/internal/one_tree.h"
+#include "collide/meshes/mesh_search.h"
+#include "collide/search/ball_space.h"
+#include "collide/search/one_tree.h"
+#include "collide/solids/balls_inside.h"
+#include "collide/solids/mesh_inside.h"
 #include "collide/within.h"
-#include "spheretree/point_triangle.h"
+#include "mesh/point_triangle.h"
 
 #include <algorithm>
 

@@ -5,8 +5,8 @@
 #include "collide/distance.h"
 #include "collide/mesh_tree.h"
 #include "collide/solid_contact.h"
+#include "mesh/triangle_mesh.h"
 #include "spheretree/pose.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <memory>
 #include <optional>

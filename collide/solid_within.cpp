@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/solid_within.h"
 
-#include "collide/internal/mesh_inside.h"
-#include "collide/internal/one_tree.h"
-#include "collide/internal/queries.h"
-#include "collide/internal/separating_axis.h"
-#include "collide/internal/solid_pose.h"
-#include "collide/internal/triangle_field.h"
-#include "collide/internal/triangle_pair.h"
+#include "collide/search/one_tree.h"
+#include "collide/search/queries.h"
+#include "collide/solids/mesh_inside.h"
+#include "collide/solids/solid_pose.h"
+#include "collide/solids/triangle_field.h"
 #include "collide/within.h"
-#include "spheretree/point_triangle.h"
+#include "mesh/geometry/separating_axis.h"
+#include "mesh/geometry/triangle_pair.h"
+#include "mesh/point_triangle.h"
 
 #include <algorithm>
 #include <cstddef>

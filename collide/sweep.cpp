@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/sweep.h"
 
-#include "collide/internal/free_time.h"
-#include "collide/internal/gap_rate.h"
+#include "collide/motion/free_time.h"
+#include "collide/motion/gap_rate.h"
 #include "collide/within.h"
 #include "spheretree/error.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/within.h"
 
-#include "collide/internal/ball_leaves.h"
-#include "collide/internal/queries.h"
+#include "collide/search/ball_leaves.h"
+#include "collide/search/queries.h"
 #include "spheretree/error.h"
 
 namespace spherule {

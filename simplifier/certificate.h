@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/triangle_mesh.h"
 #include "simplifier/external_spheres.h"
 #include "simplifier/zones.h"
 #include "spheretree/sphere.h"
 #include "spheretree/sphere_file.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
 #include <optional>
@@ -69,9 +69,10 @@ struct Certificate {
   std::size_t cells = 0;   // cells of space examined
 };
 
-// Certifies any set of balls against a mesh, ours or not (guarantee.md, G1 and G2). Independent of
-// how the balls were found. Throws Error for a mesh that validate() refuses, for balls that are not
-// usable and for options out of range; an empty set of balls is certified (as covering nothing).
+// Certifies any set of balls against a mesh, ours or not (docs/guarantee.md, G1 and G2).
+// Independent of how the balls were found. Throws Error for a mesh that validate() refuses, for
+// balls that are not usable and for options out of range; an empty set of balls is certified (as
+// covering nothing).
 Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                     const CertifyOptions& options = {});
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cover.h"
 
-#include "simplifier/internal/clearance.h"
-#include "simplifier/internal/cover_checks.h"
-#include "simplifier/internal/cover_fitter.h"
-#include "simplifier/internal/internal_spheres.h"
-#include "simplifier/internal/thread_limit.h"
-#include "simplifier/mesh_distance.h"
-#include "spheretree/triangle_mesh.h"
+#include "mesh/mesh_distance.h"
+#include "mesh/triangle_mesh.h"
+#include "simplifier/solid/clearance.h"
+#include "simplifier/stage2/cover_checks.h"
+#include "simplifier/stage2/cover_fitter.h"
+#include "simplifier/stage2/internal_spheres.h"
+#include "simplifier/support/thread_limit.h"
 
 namespace spherule {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/triangle_mesh.h"
 #include "simplifier/external_spheres.h"
 #include "simplifier/zones.h"
 #include "spheretree/sphere.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -89,8 +89,8 @@ struct SphereCover {
   std::size_t seeds_rejected = 0;
 };
 
-// Stage 2: covers S with balls that protrude from it by at most E (covering.md, sections 1, 4 and
-// 8; the paper, Algorithm 1). On return the union of the balls contains S: the search ends only
+// Stage 2: covers S with balls that protrude from it by at most E (the paper,
+// Algorithm 1; docs/covering.md). On return the union of the balls contains S: the search ends only
 // with what an octree over S has proved; certify() proves it again, by a search of its own. Every
 // ball's radius is at most E plus the distance of its centre, a point of S (up to rounding, for
 // which a reserve is kept), to the outside of S, and at most a zone's error plus that distance

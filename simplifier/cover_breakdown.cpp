@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cover_breakdown.h"
 
-#include "simplifier/internal/clearance.h"
-#include "simplifier/internal/cover_checks.h"
-#include "simplifier/internal/cube.h"
-#include "simplifier/internal/local_error.h"
-#include "simplifier/internal/point_grid.h"
-#include "simplifier/internal/solid_cells.h"
-#include "simplifier/internal/thread_limit.h"
-#include "simplifier/mesh_distance.h"
+#include "mesh/geometry/point_grid.h"
+#include "mesh/mesh_distance.h"
+#include "simplifier/solid/clearance.h"
+#include "simplifier/solid/cube.h"
+#include "simplifier/stage2/cover_checks.h"
+#include "simplifier/stage2/local_error.h"
+#include "simplifier/stage2/solid_cells.h"
+#include "simplifier/support/thread_limit.h"
 
 #include <Eigen/Geometry>
 #include <tbb/parallel_for.h>

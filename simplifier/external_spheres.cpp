@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/external_spheres.h"
 
+#include "mesh/mesh_distance.h"
+#include "mesh/mesh_report.h"
 #include "simplifier/concave_edges.h"
-#include "simplifier/internal/ball_way.h"
-#include "simplifier/internal/flood_grid.h"
-#include "simplifier/internal/local_diameter.h"
-#include "simplifier/internal/random_placement.h"
-#include "simplifier/internal/thread_limit.h"
-#include "simplifier/mesh_distance.h"
-#include "simplifier/mesh_report.h"
+#include "simplifier/stage1/ball_way.h"
+#include "simplifier/stage1/flood_grid.h"
+#include "simplifier/stage1/local_diameter.h"
+#include "simplifier/stage1/random_placement.h"
+#include "simplifier/support/thread_limit.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/triangle_mesh.h"
 #include "simplifier/zones.h"
 #include "spheretree/sphere.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <Eigen/Geometry>
 
@@ -79,7 +79,7 @@ struct ExternalSpheres {
   std::vector<Zone> concave_edges;
 };
 
-// Stage 1 (paper, section II and Algorithm 1; covering.md section 2). Deterministic for equal
+// Stage 1 (paper, section II and Algorithm 1; docs/covering.md). Deterministic for equal
 // options. Throws Error for a mesh that validate() refuses and for options out of range (D must be
 // positive and finite unless nothing is placed, padding finite and not negative, the grid not finer
 // than the resolution of the coordinates or 2^20 steps, zones usable and their values not above D

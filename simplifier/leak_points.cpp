@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/leak_points.h"
 
-#include "simplifier/internal/ball_hierarchy.h"
-#include "simplifier/internal/mesh_box.h"
-#include "simplifier/internal/point_grid.h"
-#include "simplifier/internal/surface_piece.h"
-#include "simplifier/internal/usable_spheres.h"
+#include "mesh/geometry/mesh_box.h"
+#include "mesh/geometry/point_grid.h"
+#include "simplifier/proof/surface_piece.h"
+#include "simplifier/solid/ball_hierarchy.h"
+#include "simplifier/support/usable_spheres.h"
 #include "spheretree/error.h"
 
 #include <algorithm>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/levels.h"
 
-#include "simplifier/internal/clearance.h"
-#include "simplifier/internal/level_fitter.h"
-#include "simplifier/internal/protrusion.h"
-#include "simplifier/internal/thread_limit.h"
-#include "simplifier/mesh_distance.h"
+#include "mesh/mesh_distance.h"
+#include "simplifier/proof/protrusion.h"
+#include "simplifier/solid/clearance.h"
+#include "simplifier/stage2/level_fitter.h"
+#include "simplifier/support/thread_limit.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/triangle_mesh.h"
 #include "simplifier/cover.h"
 #include "simplifier/external_spheres.h"
 #include "spheretree/level_tree.h"
 #include "spheretree/sphere.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
 #include <span>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/simplify.h"
 
-#include "simplifier/internal/mesh_box.h"
-#include "simplifier/internal/thread_limit.h"
-#include "simplifier/mesh_report.h"
+#include "mesh/geometry/mesh_box.h"
+#include "mesh/mesh_report.h"
+#include "simplifier/support/thread_limit.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/triangle_mesh.h"
 #include "simplifier/certificate.h"
 #include "simplifier/cover.h"
 #include "simplifier/external_spheres.h"
 #include "simplifier/levels.h"
 #include "simplifier/zones.h"
 #include "spheretree/sphere_file.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -107,8 +107,8 @@ std::string broken_promises(const Simplification& simplification);
 
 // D for a tool that is a union of balls: the diameter of the smallest. If all of them are free of M
 // at a place to which the tool gets from outside, they are external balls themselves, so that it
-// does not meet S either (guarantee.md, up to the grid's tightness: it has to get there with room
-// to spare all around, 1.74 of ExternalSpheres::grid_step). Throws Error with the subject
+// does not meet S either (docs/guarantee.md, up to the grid's tightness: it has to get there with
+// room to spare all around, 1.74 of ExternalSpheres::grid_step). Throws Error with the subject
 // "tool" if there is no ball, one is not usable, or has the radius 0.
 double tool_diameter(std::span<const Sphere> tool);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/zones.h"
 
+#include "mesh/point_triangle.h"
 #include "spheretree/error.h"
-#include "spheretree/point_triangle.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>

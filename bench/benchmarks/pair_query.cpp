@@ -4,7 +4,7 @@
 
 #include "collide/collide.h"
 #include "collide/distance.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 #include "spheretree/build.h"
 
 #include <benchmark/benchmark.h>

@@ -3,9 +3,9 @@
 
 #include "bench/paper/figures.h"
 #include "bench/scenes/shapes.h"
+#include "mesh/io/mesh_io.h"
+#include "mesh/mesh_report.h"
 #include "simplifier/baseline/made_conservative.h"
-#include "simplifier/mesh_io.h"
-#include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
 
 #include <algorithm>

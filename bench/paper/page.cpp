@@ -2,7 +2,7 @@
 #include "bench/paper/page.h"
 
 #include "bench/paper/machine.h"
-#include "collide/robot/internal/xml_file.h"
+#include "robot/files/internal/xml_file.h"
 #include "spheretree/atomic_file.h"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/robot/robot_model.h"
+#include "robot/model/robot_model.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/planning/planner.h"
 
+#include "adapters/ompl/motion_validator.h"
+#include "adapters/ompl/state_validity_checker.h"
 #include "bench/planning/joint_space.h"
 #include "bench/planning/processor_time.h"
-#include "collide/ompl/motion_validator.h"
-#include "collide/ompl/state_validity_checker.h"
 
 #include <memory>
 #include <ompl/base/PlannerTerminationCondition.h>

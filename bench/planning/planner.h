@@ -3,7 +3,7 @@
 
 #include "bench/configuration.h"
 #include "bench/planning/problems.h"
-#include "collide/robot/robot_checker.h"
+#include "robot/check/robot_checker.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -5,7 +5,7 @@
 #include "bench/scenes/program.h"
 #include "bench/scenes/spherical_wrist.h"
 #include "bench/scenes/weld_pass.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 #include "spheretree/error.h"
 
 #include <Eigen/Geometry>

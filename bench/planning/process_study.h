@@ -3,7 +3,7 @@
 
 #include "bench/measure.h"
 #include "bench/planning/process_points.h"
-#include "collide/robot/robot_checker.h"
+#include "robot/check/robot_checker.h"
 
 #include <cstddef>
 #include <string>

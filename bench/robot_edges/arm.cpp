@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/robot_edges/arm.h"
 
-#include "collide/robot/link_bodies.h"
-#include "collide/robot/urdf.h"
-#include "simplifier/mesh_io.h"
+#include "mesh/io/mesh_io.h"
+#include "robot/cover/link_bodies.h"
+#include "robot/files/urdf.h"
 #include "spheretree/build.h"
 #include "spheretree/enclosing_sphere.h"
 

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "collide/mesh_contact.h"
-#include "collide/robot/allowed_collisions.h"
-#include "collide/robot/link_pairs.h"
-#include "collide/robot/robot_model.h"
+#include "mesh/triangle_mesh.h"
+#include "robot/model/robot_model.h"
+#include "robot/pairs/allowed_collisions.h"
+#include "robot/pairs/link_pairs.h"
 #include "spheretree/sphere.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
 #include <filesystem>

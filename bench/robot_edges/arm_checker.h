@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/robot_edges/arm.h"
-#include "collide/robot/allowed_collisions.h"
+#include "robot/pairs/allowed_collisions.h"
 
 #include <cstddef>
 #include <span>

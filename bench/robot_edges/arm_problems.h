@@ -4,7 +4,7 @@
 #include "bench/planning/problems.h"
 #include "bench/robot_edges/fcl_arm.h"
 #include "bench/studies/random_numbers.h"
-#include "collide/robot/robot_checker.h"
+#include "robot/check/robot_checker.h"
 
 #include <cstddef>
 #include <vector>

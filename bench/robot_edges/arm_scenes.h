@@ -2,8 +2,8 @@
 #pragma once
 
 #include "collide/primitive.h"
+#include "mesh/triangle_mesh.h"
 #include "spheretree/pose.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
 #include <string>

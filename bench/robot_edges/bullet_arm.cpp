@@ -2,7 +2,7 @@
 #include "bench/robot_edges/bullet_arm.h"
 
 #include "bench/bullet_pair_test.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 
 #include <algorithm>
 #include <bullet/BulletCollision/Gimpact/btGImpactShape.h>

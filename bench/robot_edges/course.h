@@ -9,7 +9,7 @@
 #include "bench/robot_edges/fcl_arm.h"
 #include "bench/robot_edges/flat_arm.h"
 #include "bench/studies/random_numbers.h"
-#include "collide/robot/robot_checker.h"
+#include "robot/check/robot_checker.h"
 
 #include <cstddef>
 #include <memory>

@@ -3,7 +3,7 @@
 
 #include "bench/configuration.h"
 #include "bench/studies/random_numbers.h"
-#include "collide/robot/robot_model.h"
+#include "robot/model/robot_model.h"
 
 #include <vector>
 

@@ -3,7 +3,7 @@
 
 #include "bench/fcl_models.h"
 #include "bench/fcl_solid.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/shape/box.h>

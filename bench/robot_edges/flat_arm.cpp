@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/robot_edges/flat_arm.h"
 
-#include "collide/robot/kinematics.h"
 #include "collide/solid_fields.h"
+#include "robot/model/kinematics.h"
 
 #include <variant>
 

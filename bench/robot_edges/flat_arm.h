@@ -3,7 +3,7 @@
 
 #include "bench/robot_edges/arm.h"
 #include "bench/robot_edges/arm_scenes.h"
-#include "collide/robot/allowed_collisions.h"
+#include "robot/pairs/allowed_collisions.h"
 
 #include <cstddef>
 #include <span>

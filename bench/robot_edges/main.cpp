@@ -17,7 +17,7 @@
 #include "bench/robot_edges/shares.h"
 #include "bench/robot_edges/times.h"
 #include "bench/studies/random_numbers.h"
-#include "collide/robot/robot_scene.h"
+#include "robot/check/robot_scene.h"
 
 #include <algorithm>
 #include <cstdio>

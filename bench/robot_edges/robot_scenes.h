@@ -3,7 +3,7 @@
 
 #include "bench/robot_edges/arm.h"
 #include "bench/robot_edges/arm_scenes.h"
-#include "collide/robot/robot_scene.h"
+#include "robot/check/robot_scene.h"
 
 namespace spherule {
 

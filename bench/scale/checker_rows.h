@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/scale/tally.h"
-#include "collide/robot/robot_scene.h"
+#include "robot/check/robot_scene.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,8 +2,8 @@
 #include "bench/scale/checker_scene.h"
 
 #include "collide/collide.h"
-#include "collide/robot/kinematics.h"
 #include "collide/solid_mesh.h"
+#include "robot/model/kinematics.h"
 #include "spheretree/build.h"
 #include "spheretree/refit.h"
 #include "spheretree/rounding.h"

@@ -2,7 +2,7 @@
 #include "bench/scale/scale_robot.h"
 
 #include "collide/collide.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 
 #include <algorithm>
 #include <cmath>

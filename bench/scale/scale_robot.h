@@ -3,7 +3,7 @@
 
 #include "bench/scale/exact_oracle.h"
 #include "bench/scale/random_scene.h"
-#include "collide/robot/robot_scene.h"
+#include "robot/check/robot_scene.h"
 
 #include <memory>
 #include <optional>

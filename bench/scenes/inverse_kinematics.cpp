@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scenes/inverse_kinematics.h"
 
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 
 #include <Eigen/Cholesky>
 

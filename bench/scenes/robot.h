@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/robot/robot_model.h"
-#include "spheretree/triangle_mesh.h"
+#include "mesh/triangle_mesh.h"
+#include "robot/model/robot_model.h"
 
 #include <array>
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // spherule_link_pairs ROBOT.urdf BOXES POSTURES [COVER...]: what is proved of the pairs of a
 // robot's links, and the share of its free postures that covers refuse without and with the proofs.
-#include "collide/robot/link_pairs.h"
+#include "robot/pairs/link_pairs.h"
 
-#include "collide/robot/allowed_collisions.h"
-#include "collide/robot/false_alarms.h"
-#include "collide/robot/kinematics.h"
-#include "collide/robot/link_bodies.h"
-#include "collide/robot/link_pairs_file.h"
-#include "collide/robot/sphere_formats.h"
-#include "collide/robot/urdf.h"
 #include "collide/solid_within.h"
+#include "robot/cover/false_alarms.h"
+#include "robot/cover/link_bodies.h"
+#include "robot/files/urdf.h"
+#include "robot/formats/sphere_formats.h"
+#include "robot/model/kinematics.h"
+#include "robot/pairs/allowed_collisions.h"
+#include "robot/pairs/link_pairs_file.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 

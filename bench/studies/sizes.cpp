@@ -5,7 +5,7 @@
 #include "bench/studies/turns.h"
 #include "bench/tree_checker.h"
 #include "collide/collide.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 #include "spheretree/build.h"
 
 #include <memory>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/kernels/compiled_plan.h"
 
-#include "collide/internal/mechanism_input.h"
-#include "collide/internal/single_precision.h"
 #include "collide/kernels/plan_shapes.h"
+#include "collide/mechanism/mechanism_input.h"
+#include "collide/search/single_precision.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 

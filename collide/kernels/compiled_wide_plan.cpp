@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/kernels/compiled_wide_plan.h"
 
-#include "collide/internal/single_precision.h"
+#include "collide/search/single_precision.h"
 
 #include <algorithm>
 #include <limits>

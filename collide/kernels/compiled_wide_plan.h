@@ -3,9 +3,9 @@
 
 // A WidePlan with what it points to, and the memory that its kernel writes to.
 
-#include "collide/internal/packed_tree.h"
 #include "collide/kernels/compiled_plan.h"
 #include "collide/kernels/wide_plan.h"
+#include "collide/search/packed_tree.h"
 
 #include <cstddef>
 #include <cstdint>

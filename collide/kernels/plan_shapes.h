@@ -3,9 +3,9 @@
 
 // Obstacles as a CheckPlan has them, rounded outward. The proofs are in plan_shapes.cpp.
 
-#include "collide/internal/single_precision.h"
 #include "collide/kernels/check_plan.h"
 #include "collide/kernels/check_plan_source.h"
+#include "collide/search/single_precision.h"
 #include "spheretree/rounding.h"
 #include "spheretree/sphere.h"
 

@@ -4,8 +4,8 @@
 // Eight numbers side by side, in single or double precision. Part of the kernels, see
 // plan_kernel_impl.h.
 
-#include "collide/internal/kernel_vectors.h"
 #include "collide/kernels/check_plan.h"
+#include "collide/mechanism/kernel_vectors.h"
 
 #include <cstdint>
 #include <type_traits>

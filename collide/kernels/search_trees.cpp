@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/kernels/search_trees.h"
 
-#include "collide/internal/solid_spheres.h"
+#include "collide/solids/solid_spheres.h"
 #include "spheretree/build.h"
 
 #include <utility>

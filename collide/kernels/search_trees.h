@@ -4,7 +4,7 @@
 // The trees over a set of spheres that compiled checks search, in the coordinates of the spheres:
 // what takes time to build, once for every set.
 
-#include "collide/internal/culling_spheres.h"
+#include "collide/search/culling_spheres.h"
 #include "collide/solid_mesh.h"
 #include "spheretree/sphere_tree.h"
 

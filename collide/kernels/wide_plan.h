@@ -4,8 +4,8 @@
 // What a CheckPlan is for one configuration: the lanes are obstacles, bodies, or eight children of
 // a node, in place of eight configurations. Plain data.
 
-#include "collide/internal/packed_node.h"
 #include "collide/kernels/check_plan.h"
+#include "collide/search/packed_node.h"
 
 #include <cstdint>
 

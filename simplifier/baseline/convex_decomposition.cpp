@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/convex_decomposition.h"
 
+#include "mesh/geometry/mesh_box.h"
+#include "mesh/mesh_report.h"
 #include "simplifier/baseline/convex_hull.h"
-#include "simplifier/internal/mesh_box.h"
-#include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
 
 #include <Eigen/Geometry>

@@ -4,8 +4,8 @@
 // concavity asked for. measure_deviation() tells by how much.
 #pragma once
 
+#include "mesh/triangle_mesh.h"
 #include "simplifier/baseline/mesh_deviation.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <optional>
 #include <vector>

@@ -2,7 +2,7 @@
 // Convex hull: conservative (proved, with outward rounding).
 #pragma once
 
-#include "spheretree/triangle_mesh.h"
+#include "mesh/triangle_mesh.h"
 
 #include <Eigen/Core>
 

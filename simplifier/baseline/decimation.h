@@ -3,8 +3,8 @@
 // hollow, both unbounded by its estimate of the error; measure_deviation() tells by how much.
 #pragma once
 
+#include "mesh/triangle_mesh.h"
 #include "simplifier/baseline/mesh_deviation.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
 #include <limits>

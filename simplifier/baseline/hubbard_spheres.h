@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/triangle_mesh.h"
 #include "simplifier/baseline/sphere_levels.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
 #include <cstdint>

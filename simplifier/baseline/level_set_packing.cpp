@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/level_set_packing.h"
 
+#include "mesh/geometry/mesh_box.h"
 #include "simplifier/baseline/internal/sampling_checks.h"
-#include "simplifier/internal/mesh_box.h"
-#include "simplifier/internal/thread_limit.h"
+#include "simplifier/support/thread_limit.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/made_conservative.h"
 
-#include "simplifier/internal/mesh_box.h"
+#include "mesh/geometry/mesh_box.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 

@@ -7,7 +7,7 @@
 #include "simplifier/baseline/internal/sampling_checks.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
 #include "simplifier/baseline/internal/surface_samples.h"
-#include "simplifier/internal/thread_limit.h"
+#include "simplifier/support/thread_limit.h"
 #include "spheretree/enclosing_sphere.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"

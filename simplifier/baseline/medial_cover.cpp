@@ -5,9 +5,9 @@
 #include "simplifier/baseline/internal/medial_spheres.h"
 #include "simplifier/baseline/internal/simplified_probe.h"
 #include "simplifier/baseline/internal/simplified_solid.h"
-#include "simplifier/internal/inscribed_balls.h"
-#include "simplifier/internal/protrusion.h"
-#include "simplifier/internal/thread_limit.h"
+#include "simplifier/proof/protrusion.h"
+#include "simplifier/stage2/inscribed_balls.h"
+#include "simplifier/support/thread_limit.h"
 #include "spheretree/rounding.h"
 
 #include <array>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/mesh_deviation.h"
 
-#include "simplifier/internal/mesh_box.h"
-#include "simplifier/mesh_distance.h"
-#include "simplifier/mesh_report.h"
+#include "mesh/geometry/mesh_box.h"
+#include "mesh/mesh_distance.h"
+#include "mesh/mesh_report.h"
+#include "mesh/point_triangle.h"
 #include "spheretree/error.h"
-#include "spheretree/point_triangle.h"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/octree_spheres.h"
 
+#include "mesh/mesh_distance.h"
 #include "simplifier/baseline/internal/cell_octree.h"
 #include "simplifier/baseline/internal/cell_options.h"
-#include "simplifier/internal/cover_checks.h"
-#include "simplifier/mesh_distance.h"
+#include "simplifier/stage2/cover_checks.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 

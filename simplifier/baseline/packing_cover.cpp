@@ -2,9 +2,9 @@
 #include "simplifier/baseline/packing_cover.h"
 
 #include "simplifier/baseline/internal/simplified_solid.h"
-#include "simplifier/internal/cover_checks.h"
-#include "simplifier/internal/inscribed_balls.h"
-#include "simplifier/internal/thread_limit.h"
+#include "simplifier/stage2/cover_checks.h"
+#include "simplifier/stage2/inscribed_balls.h"
+#include "simplifier/support/thread_limit.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/sphere_packing.h"
 
-#include "simplifier/internal/cover_checks.h"
+#include "simplifier/stage2/cover_checks.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 

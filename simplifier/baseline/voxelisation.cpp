@@ -3,7 +3,7 @@
 
 #include "simplifier/baseline/internal/cell_octree.h"
 #include "simplifier/baseline/internal/cell_options.h"
-#include "simplifier/internal/cover_checks.h"
+#include "simplifier/stage2/cover_checks.h"
 #include "spheretree/error.h"
 
 #include <cstdint>

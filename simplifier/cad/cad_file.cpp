@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cad/cad_file.h"
 
+#include "mesh/geometry/raw_mesh.h"
 #include "simplifier/cad/internal/cad_shape.h"
 #include "simplifier/cad/internal/surface_deviation.h"
-#include "simplifier/internal/raw_mesh.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 

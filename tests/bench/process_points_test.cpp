@@ -7,7 +7,7 @@
 #include "bench/scenes/torch.h"
 #include "bench/scenes/workpiece.h"
 #include "bench/tree_checker.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 #include "tests/bench/surface_balls.h"
 #include "tests/support/effort.h"
 

@@ -5,7 +5,7 @@
 #include "bench/scenes/inverse_kinematics.h"
 #include "bench/scenes/torch.h"
 #include "bench/scenes/workpiece.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "bench/scene_reach.h"
 #include "bench/scenes/robot.h"
 #include "bench/tree_checker.h"
-#include "collide/robot/kinematics.h"
+#include "robot/model/kinematics.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "tests/support/random.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/robot/sphere_formats.h"
+#include "robot/formats/sphere_formats.h"
 #include "tests/cli/command_test_support.h"
 #include "tests/support/effort.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/robot/sphere_formats.h"
+#include "robot/formats/sphere_formats.h"
 #include "tests/cli/gantry.h"
 
 #include <string>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/robot/sphere_formats.h"
-#include "collide/robot/urdf.h"
+#include "robot/files/urdf.h"
+#include "robot/formats/sphere_formats.h"
 #include "spheretree/check.h"
 #include "spheretree/tree_file.h"
 #include "tests/cli/command_test_support.h"
-#include "tests/collide/robot/cover_oracle.h"
+#include "tests/robot/cover/cover_oracle.h"
 #include "tests/support/effort.h"
 
 #include <chrono>

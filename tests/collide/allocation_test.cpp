@@ -3,11 +3,11 @@
 // on trees that build_tree makes, and answers right where no memory is to be had.
 
 #include "collide/collide.h"
-#include "collide/internal/traversal.h"
 #include "collide/mechanism_check.h"
 #include "collide/mesh_contact.h"
 #include "collide/mesh_tree.h"
 #include "collide/pair_cache.h"
+#include "collide/search/traversal.h"
 #include "collide/sweep.h"
 #include "collide/within.h"
 #include "spheretree/build.h"

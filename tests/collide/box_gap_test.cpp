@@ -2,7 +2,7 @@
 // The looks at two trees before a search, where ball and box or two boxes meet or nearly so:
 // against exact gaps, and verdicts against the canonical test of all pairs.
 
-#include "collide/internal/box_gap.h"
+#include "collide/search/box_gap.h"
 
 #include "collide/collide.h"
 #include "collide/within.h"

@@ -3,7 +3,7 @@
 
 #include "collide/collide.h"
 
-#include "collide/internal/relative_pose.h"
+#include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
 #include "tests/collide/exact_scene.h"
 #include "tests/collide/trees.h"

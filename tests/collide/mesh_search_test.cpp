@@ -2,12 +2,12 @@
 // Spheres against triangles on every instruction set, judged in 100 digits and by the test in
 // double for all pairs.
 
-#include "collide/internal/mesh_search.h"
+#include "collide/meshes/mesh_search.h"
 
-#include "collide/internal/ball_triangle.h"
-#include "collide/internal/packed_mesh.h"
-#include "collide/internal/relative_pose.h"
 #include "collide/mesh_contact.h"
+#include "collide/meshes/ball_triangle.h"
+#include "collide/meshes/packed_mesh.h"
+#include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
 #include "tests/collide/exact_triangles.h"
 #include "tests/collide/tetrahedra.h"

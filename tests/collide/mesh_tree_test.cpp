@@ -3,7 +3,7 @@
 
 #include "collide/mesh_tree.h"
 
-#include "collide/internal/relative_pose.h"
+#include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "tests/collide/exact_triangles.h"

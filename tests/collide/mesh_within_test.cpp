@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Balls and triangles that come within a clearance, against 100 digits.
 
-#include "collide/internal/mesh_search.h"
-#include "collide/internal/relative_pose.h"
-#include "collide/internal/triangle_leaves.h"
 #include "collide/mesh_tree.h"
+#include "collide/meshes/mesh_search.h"
+#include "collide/meshes/triangle_leaves.h"
+#include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
 #include "tests/collide/exact_triangles.h"
 #include "tests/collide/trees.h"

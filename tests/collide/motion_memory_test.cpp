@@ -2,7 +2,7 @@
 // What a check of a mechanism remembers from one configuration to the next: it saves questions and
 // searches, and changes no answer.
 
-#include "collide/internal/motion_memory.h"
+#include "collide/mechanism/motion_memory.h"
 
 #include "collide/mechanism_check.h"
 #include "tests/collide/scene_random.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How far points of a ball move, against where they are.
 
-#include "collide/internal/moved_ball.h"
+#include "collide/mechanism/moved_ball.h"
 
 #include "tests/collide/scene_random.h"
 

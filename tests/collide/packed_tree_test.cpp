@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/internal/packed_tree.h"
+#include "collide/search/packed_tree.h"
 
 #include "spheretree/build.h"
 #include "tests/collide/exact_scene.h"

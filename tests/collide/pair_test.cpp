@@ -2,7 +2,7 @@
 // G4 and G5 on single pairs of balls, against exact arithmetic.
 
 #include "collide/collide.h"
-#include "collide/internal/relative_pose.h"
+#include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
 #include "tests/collide/exact_scene.h"
 #include "tests/collide/scene_random.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trees of boxes over the triangles under a sphere.
 
-#include "collide/internal/patch_trees.h"
+#include "collide/meshes/patch_trees.h"
 
 #include "spheretree/rounding.h"
 #include "tests/collide/exact_scene.h"

@@ -3,7 +3,7 @@
 
 #include "collide/primitive.h"
 
-#include "collide/internal/solid_pose.h"
+#include "collide/solids/solid_pose.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "tests/collide/exact_solids.h"

@@ -3,10 +3,10 @@
 // contact, where the pads decide: balls against balls, against triangles, and against needles,
 // whose distance in double is loose.
 
-#include "collide/internal/ball_leaves.h"
-#include "collide/internal/queries.h"
-#include "collide/internal/triangle_leaves.h"
 #include "collide/mesh_tree.h"
+#include "collide/meshes/triangle_leaves.h"
+#include "collide/search/ball_leaves.h"
+#include "collide/search/queries.h"
 #include "spheretree/build.h"
 #include "tests/collide/trees.h"
 

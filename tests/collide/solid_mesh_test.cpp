@@ -4,7 +4,7 @@
 
 #include "collide/solid_mesh.h"
 
-#include "collide/internal/relative_pose.h"
+#include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "tests/collide/exact_triangles.h"

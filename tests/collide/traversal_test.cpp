@@ -2,7 +2,7 @@
 // The stack of the traversal on the deepest trees there can be: within its proved bound, and
 // nothing dropped.
 
-#include "collide/internal/traversal.h"
+#include "collide/search/traversal.h"
 
 #include "collide/collide.h"
 #include "tests/collide/trees.h"

@@ -2,7 +2,7 @@
 #include "tests/collide_truth/fitted_model.h"
 
 #include "bench/scenes/shapes.h"
-#include "simplifier/mesh_io.h"
+#include "mesh/io/mesh_io.h"
 #include "simplifier/simplify.h"
 #include "spheretree/build.h"
 #include "spheretree/rounding.h"

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bench/fcl_solid.h"
+#include "mesh/triangle_mesh.h"
 #include "spheretree/sphere_tree.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <Eigen/Core>
 

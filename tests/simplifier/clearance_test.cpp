@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/internal/clearance.h"
+#include "simplifier/solid/clearance.h"
 
-#include "simplifier/internal/ball_hierarchy.h"
-#include "tests/simplifier/distance_oracle.h"
+#include "simplifier/solid/ball_hierarchy.h"
+#include "tests/mesh/distance_oracle.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The moves between two searches of cover(), and what more of them are worth.
-#include "simplifier/internal/cover_moves.h"
+#include "simplifier/stage2/cover_moves.h"
 
-#include "simplifier/internal/cover_shift.h"
+#include "simplifier/stage2/cover_shift.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

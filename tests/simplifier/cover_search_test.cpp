@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/internal/cover_search.h"
+#include "simplifier/stage2/cover_search.h"
 
-#include "simplifier/internal/lazy_cover_search.h"
+#include "simplifier/stage2/lazy_cover_search.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// G7 (guarantee.md): equal input gives equal bits on every machine, compiler and optimisation
+// G7 (docs/guarantee.md): equal input gives equal bits on every machine, compiler and optimisation
 // level. If a stage is changed on purpose, put the value that the failing test prints here and say
 // so in CHANGELOG.md: spheres fitted before will differ from spheres fitted after.
 #include "spheretree/crc64.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/internal/surface_extent.h"
+#include "simplifier/stage2/surface_extent.h"
 
 #include "simplifier/external_spheres.h"
 

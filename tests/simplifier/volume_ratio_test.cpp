@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/internal/volume_ratio.h"
+#include "simplifier/proof/volume_ratio.h"
 
 #include "tests/support/zoo.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Covers with zones of their own E: the balls keep both errors, the certificate knows it, and the
 // tool that made D does not notice the simplification.
-#include "simplifier/mesh_distance.h"
+#include "mesh/mesh_distance.h"
 #include "simplifier/simplify.h"
 #include "spheretree/error.h"
 #include "tests/simplifier/fitting.h"
@@ -191,13 +191,14 @@ TEST(Tool, DIsTheDiameterOfItsSmallestBall) {
   EXPECT_THROW(tool_diameter(std::vector<Sphere>{{{0, 0, 0}, -2.0}}), Error);
 }
 
-// The theorem of guarantee.md. Let h be the grid step. A tool whose every ball (c, r), r >= rho,
-// keeps a room of m = 1.733 h > 2 sqrt(3)/2 h beyond r all the way in meets nothing of S, not even
-// by the scallops: take a point p of the ball and c' between c and p, p within rho of c', where the
-// room is still rho + m. As m is more than the 1.367 h that the flood asks for, the grid reaches
-// the cell of c'. If that is a node x, |x - c'| <= 0.867 h, then d(x) >= rho + m - 0.867 h > rho +
-// 0.866 h >= |p - x|; if it is a coarse cell of half diagonal g, then d(x) >= rho + g + 1.2 h >
-// |p - x|. So p lies in the ball kept for that cell, which is open, and not in S.
+// "Nothing is lost by simplifying, for the right tool" (docs/guarantee.md). Let h be the grid step.
+// A tool whose every ball (c, r), r >= rho, keeps a room of m = 1.733 h > 2 sqrt(3)/2 h beyond r
+// all the way in meets nothing of S, not even by the scallops: take a point p of the ball and c'
+// between c and p, p within rho of c', where the room is still rho + m. As m is more than the 1.367
+// h that the flood asks for, the grid reaches the cell of c'. If that is a node x, |x - c'| <=
+// 0.867 h, then d(x) >= rho + m - 0.867 h > rho + 0.866 h >= |p - x|; if it is a coarse cell of
+// half diagonal g, then d(x) >= rho + g + 1.2 h > |p - x|. So p lies in the ball kept for that
+// cell, which is open, and not in S.
 class Walk {
  public:
   Walk(const MeshDistance& distance, const std::vector<Sphere>& tool, double room)

@@ -2,7 +2,7 @@
 // The shapes of zones against long double, and the file they come in.
 #include "simplifier/zones.h"
 
-#include "simplifier/internal/local_error.h"
+#include "simplifier/stage2/local_error.h"
 #include "spheretree/error.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"

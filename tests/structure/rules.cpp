@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/structure/rules.h"
 
+#include "tests/structure/rooms.h"
+
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -16,81 +18,6 @@ namespace spherule {
 namespace {
 
 namespace fs = std::filesystem;
-
-using Names = std::vector<std::string_view>;
-
-// A room, the rooms it may include besides itself, and the third parties that all of it may see;
-// those that only named files may see stand in `files_that_see`.
-struct Room {
-  std::string_view folder;
-  Names rooms;
-  Names third_parties;
-  std::vector<std::pair<std::string_view, std::string_view>> files_that_see;
-};
-
-const std::vector<Room>& rooms() {
-  static const Names kCores = {"spheretree", "simplifier", "collide"};
-  static const Names kLibraries = {"spheretree",     "simplifier",  "simplifier/baseline",
-                                   "simplifier/cad", "collide",     "collide/robot",
-                                   "collide/fcl",    "collide/ompl"};
-  static const std::vector<Room> kRooms = {
-      {"spheretree", {}, {"Eigen"}, {{"nlohmann", "spheretree/sphere_file.cpp"}}},
-      {"simplifier",
-       {"spheretree"},
-       {"Eigen", "tbb"},
-       {{"assimp", "simplifier/internal/scene_file.cpp"},
-        {"assimp", "simplifier/internal/check_collada.cpp"},
-        {"expat", "simplifier/internal/xml_events.cpp"},
-        {"nlohmann", "simplifier/internal/check_gltf.cpp"},
-        {"nlohmann", "simplifier/zone_file.cpp"},
-        {"zlib", "simplifier/internal/zip_member.cpp"}}},
-      {"simplifier/baseline",
-       {"spheretree", "simplifier"},
-       {"Eigen", "tbb"},
-       {{"meshoptimizer", "simplifier/baseline/decimation.cpp"},
-        {"OpenMesh", "simplifier/baseline/decimation.cpp"},
-        {"openvdb", "simplifier/baseline/level_set_packing.cpp"},
-        {"qhull", "simplifier/baseline/convex_hull.cpp"},
-        {"qhull", "simplifier/baseline/internal/voronoi.cpp"},
-        {"bullet", "simplifier/baseline/convex_decomposition.cpp"}}},
-      {"simplifier/cad",
-       {"spheretree", "simplifier"},
-       {"Eigen"},
-       {{"opencascade", "simplifier/cad/internal/cad_entities.cpp"},
-        {"opencascade", "simplifier/cad/internal/cad_entities.h"},
-        {"opencascade", "simplifier/cad/internal/cad_shape.cpp"},
-        {"opencascade", "simplifier/cad/internal/occt_geometry.cpp"}}},
-      {"collide", {"spheretree"}, {"Eigen"}, {}},
-      {"collide/robot",
-       kCores,
-       {"Eigen"},
-       {{"nlohmann", "collide/robot/scene_file.cpp"},
-        {"nlohmann", "collide/robot/sphere_formats_json.cpp"},
-        {"urdfdom", "collide/robot/urdf.cpp"},
-        {"tinyxml2", "collide/robot/internal/xml_file.cpp"},
-        {"tinyxml2", "collide/robot/sphere_formats_xml.cpp"},
-        {"yaml-cpp", "collide/robot/internal/yaml_nodes.h"}}},
-      {"collide/fcl", kCores, {"Eigen", "fcl", "ccd"}, {}},
-      {"collide/ompl",
-       {"spheretree", "simplifier", "collide", "collide/robot"},
-       {"Eigen", "ompl"},
-       {}},
-      {"cli", kLibraries, {"Eigen", "CLI", "nlohmann"}, {}},
-      {"bench",
-       kLibraries,
-       {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann", "ompl"},
-       {{"boost", "bench/scale/exact_oracle.cpp"}}},
-      {"tests",
-       {"spheretree", "simplifier", "simplifier/baseline", "simplifier/cad", "collide",
-        "collide/robot", "collide/fcl", "collide/ompl", "bench"},
-       {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "ompl", "tbb",
-        "tinyxml2", "urdfdom", "zlib", "opencascade"},
-       {}},
-      // Users of the installed package: they see the library from outside.
-      {"tests/consumer", {}, {"Eigen", "fcl", "ompl", "spherule"}, {}},
-  };
-  return kRooms;
-}
 
 // The first part of an include in angle brackets (its end, for what begins with a dot), and the
 // third party it stands for. What is not listed and has a slash or ends in .h is unknown, and so
@@ -137,22 +64,12 @@ constexpr std::string_view kSystemHeaders[] = {"fcntl.h",     "semaphore.h", "si
                                                "stdlib.h",    "unistd.h",    "sys/stat.h",
                                                "sys/types.h", "sys/wait.h",  "sys/resource.h"};
 constexpr std::string_view kSimdHeaders[] = {"emmintrin.h", "immintrin.h", "arm_neon.h", "cpuid.h"};
-constexpr std::string_view kSimdFolders[] = {"collide/internal/", "collide/kernels/"};
+constexpr std::string_view kSimdFolders[] = {"collide/kernels/", "collide/mechanism/",
+                                             "collide/meshes/", "collide/search/"};
 
 template <class Range>
 bool contains(const Range& range, std::string_view value) {
   return std::find(std::begin(range), std::end(range), value) != std::end(range);
-}
-
-// The innermost room that holds `path`, or null.
-const Room* room_of(std::string_view path) {
-  const Room* best = nullptr;
-  for (const Room& room : rooms()) {
-    const bool inside = path.starts_with(room.folder) && path.size() > room.folder.size() &&
-                        path[room.folder.size()] == '/';
-    if (inside && (!best || room.folder.size() > best->folder.size())) best = &room;
-  }
-  return best;
 }
 
 std::string check_own_include(const Room& room, std::string_view target) {
@@ -162,10 +79,12 @@ std::string check_own_include(const Room& room, std::string_view target) {
     return "points the wrong way: " + std::string(room.folder) + " may not include " +
            std::string(included->folder);
   }
+  const std::string_view library = library_of(target);
   const bool looks_inside = room.folder == "tests" || room.folder == "bench" ||
                             room.folder == "simplifier/baseline" || room.folder == "simplifier/cad";
-  if (included != &room && target.find("/internal/") != std::string_view::npos && !looks_inside) {
-    return "is private to " + std::string(included->folder);
+  if (library != library_of(room.folder) && target.find("/internal/") != std::string_view::npos &&
+      !looks_inside) {
+    return "is private to " + std::string(library);
   }
   return {};
 }
@@ -177,7 +96,7 @@ std::string check_foreign_include(const std::string& path, const Room& room,
     const bool is_there =
         std::any_of(std::begin(kSimdFolders), std::end(kSimdFolders),
                     [&](std::string_view folder) { return path.starts_with(folder); });
-    return is_there ? "" : "is for collide/internal/ and collide/kernels/ only";
+    return is_there ? "" : "is for the kernels of collide/ only";
   }
   for (const auto& [start, third_party] : kPrefixes) {
     if (!(start.starts_with('.') ? target.ends_with(start) : target.starts_with(start))) continue;
@@ -275,20 +194,21 @@ std::vector<std::string> check_public_headers(const std::string& folder, std::st
   const std::set<std::string> listed{std::istream_iterator<std::string>(list), {}};
   std::vector<std::string> problems;
   for (const std::string& header : headers) {
-    // kernels/ is for the components of collide, too, but not for users.
-    const bool is_private = header.starts_with("internal/") || header.starts_with("kernels/");
+    const Room* room = room_of(folder + "/" + header);
+    const bool is_private =
+        (room && room->is_private) || ("/" + header).find("/internal/") != std::string::npos;
     if (is_private == listed.contains(header)) {
       problems.push_back(folder + "/" + header +
                          (is_private ? ": is private and must not be in HEADERS"
-                                     : ": is neither in HEADERS nor in internal/"));
+                                     : ": is neither in HEADERS nor in a private room"));
     }
   }
   return problems;
 }
 
 std::vector<std::string> check_sources(const fs::path& root, std::size_t& files) {
-  static constexpr std::array kTop = {".ci",        "bench",      "cli",  "collide",
-                                      "simplifier", "spheretree", "tests"};
+  static constexpr std::array kTop = {".ci",  "adapters", "bench",      "cli",        "collide",
+                                      "mesh", "robot",    "simplifier", "spheretree", "tests"};
   std::vector<std::string> problems;
   files = 0;
   std::map<std::string, std::string> libraries;  // CMakeLists.txt of each, by folder

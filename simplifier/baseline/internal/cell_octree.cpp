@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/cell_octree.h"
 
+#include "mesh/geometry/mesh_box.h"
+#include "mesh/shells/disjoint_sets.h"
 #include "simplifier/baseline/internal/triangle_cube.h"
-#include "simplifier/internal/disjoint_sets.h"
-#include "simplifier/internal/mesh_box.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 

@@ -2,7 +2,7 @@
 #include "simplifier/baseline/internal/medial_spheres.h"
 
 #include "simplifier/baseline/internal/voronoi.h"
-#include "simplifier/internal/ball_hierarchy.h"
+#include "simplifier/solid/ball_hierarchy.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/mesh_probe.h"
 
-#include "simplifier/internal/solid_angle.h"
+#include "mesh/geometry/solid_angle.h"
 
 #include <algorithm>
 #include <cmath>

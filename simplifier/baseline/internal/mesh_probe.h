@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/mesh_distance.h"
+#include "mesh/triangle_mesh.h"
 #include "simplifier/baseline/internal/solid_probe.h"
-#include "simplifier/mesh_distance.h"
-#include "spheretree/triangle_mesh.h"
 
 #include <Eigen/Core>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/mesh_distance.h"
 #include "simplifier/baseline/internal/solid_probe.h"
-#include "simplifier/internal/clearance.h"
-#include "simplifier/mesh_distance.h"
+#include "simplifier/solid/clearance.h"
 
 namespace spherule::internal {
 

@@ -2,9 +2,9 @@
 #include "simplifier/baseline/internal/simplified_solid.h"
 
 #include "simplifier/baseline/internal/surface_samples.h"
-#include "simplifier/internal/cover_checks.h"
-#include "simplifier/internal/cube.h"
-#include "simplifier/internal/inscribed_balls.h"
+#include "simplifier/solid/cube.h"
+#include "simplifier/stage2/cover_checks.h"
+#include "simplifier/stage2/inscribed_balls.h"
 
 #include <algorithm>
 #include <set>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/mesh_distance.h"
+#include "mesh/triangle_mesh.h"
 #include "simplifier/cover.h"
 #include "simplifier/external_spheres.h"
-#include "simplifier/internal/clearance.h"
-#include "simplifier/internal/local_error.h"
-#include "simplifier/internal/solid_cells.h"
-#include "simplifier/mesh_distance.h"
-#include "spheretree/triangle_mesh.h"
+#include "simplifier/solid/clearance.h"
+#include "simplifier/stage2/local_error.h"
+#include "simplifier/stage2/solid_cells.h"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/surface_samples.h"
 
-#include "simplifier/internal/random.h"
+#include "simplifier/support/random.h"
 #include "spheretree/error.h"
 
 #include <Eigen/Geometry>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cad/internal/cad_shape.h"
 
+#include "mesh/geometry/raw_mesh.h"
 #include "simplifier/cad/internal/cad_entities.h"
 #include "simplifier/cad/internal/occt_geometry.h"
-#include "simplifier/internal/raw_mesh.h"
 #include "spheretree/error.h"
 
 #include <BRepBndLib.hxx>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cad/internal/surface_deviation.h"
 
-#include "spheretree/point_triangle.h"
+#include "mesh/point_triangle.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/mesh_distance.h"
 #include "simplifier/cad/internal/surface_bounds.h"
-#include "simplifier/mesh_distance.h"
 
 #include <Eigen/Core>
 

@@ -2,7 +2,7 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 
 #include <iostream>
-#include <spherule/collide/fcl/broadphase_callback.h>
+#include <spherule/adapters/fcl/broadphase_callback.h>
 
 namespace api = spherule::fcl_api;
 

@@ -2,9 +2,9 @@
 #include <memory>
 #include <ompl/base/ScopedState.h>
 #include <ompl/base/SpaceInformation.h>
-#include <spherule/collide/ompl/motion_validator.h>
-#include <spherule/collide/ompl/state_validity_checker.h>
-#include <spherule/collide/robot/robot_scene.h>
+#include <spherule/adapters/ompl/motion_validator.h>
+#include <spherule/adapters/ompl/state_validity_checker.h>
+#include <spherule/robot/check/robot_scene.h>
 #include <spherule/spheretree/build.h>
 #include <vector>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
-#include <spherule/collide/robot/kinematics.h>
-#include <spherule/collide/robot/urdf.h>
+#include <spherule/robot/files/urdf.h>
+#include <spherule/robot/model/kinematics.h>
 
 // Reads an arm and turns it by a quarter: it then points along y.
 int main() {

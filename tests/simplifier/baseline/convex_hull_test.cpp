@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/convex_hull.h"
 
-#include "simplifier/mesh_report.h"
+#include "mesh/mesh_report.h"
 #include "spheretree/error.h"
 #include "tests/simplifier/baseline/hull_oracle.h"
 #include "tests/support/effort.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/mesh_distance.h"
+#include "mesh/mesh_report.h"
 #include "simplifier/certificate.h"
-#include "simplifier/mesh_distance.h"
-#include "simplifier/mesh_report.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/decimation.h"
 
-#include "simplifier/mesh_report.h"
+#include "mesh/mesh_report.h"
 #include "spheretree/error.h"
 #include "tests/support/zoo.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/level_set_packing.h"
 
-#include "simplifier/mesh_distance.h"
+#include "mesh/mesh_distance.h"
 #include "spheretree/error.h"
 #include "tests/support/zoo.h"
 

@@ -2,7 +2,7 @@
 #include "simplifier/baseline/mesh_deviation.h"
 
 #include "spheretree/error.h"
-#include "tests/simplifier/distance_oracle.h"
+#include "tests/mesh/distance_oracle.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/octree_spheres.h"
 
+#include "mesh/mesh_distance.h"
 #include "simplifier/certificate.h"
-#include "simplifier/mesh_distance.h"
 #include "spheretree/check.h"
 #include "spheretree/error.h"
 #include "tests/simplifier/baseline/cover_check.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cad/cad_file.h"
 
-#include "simplifier/mesh_distance.h"
-#include "simplifier/mesh_io.h"
-#include "simplifier/mesh_report.h"
+#include "mesh/io/mesh_io.h"
+#include "mesh/mesh_distance.h"
+#include "mesh/mesh_report.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "tests/simplifier/cad/cad_parts.h"

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "adapters/fcl/sphere_model.h"
+#include "collide/distance.h"
+#include "spheretree/pose.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+// What the templates of collide.h rest on, for either precision of FCL.
+namespace spherule::fcl_api::internal {
+
+inline constexpr std::intptr_t kNone = -1;
+
+struct PlacedPart {
+  const CoveredPart& part;
+  Pose world_from_part;
+};
+
+// In double.
+struct PartContact {
+  // Two triangles that touch, or two spheres where no triangles are asked; kNone for a body that
+  // lies inside the other without touching its triangles.
+  std::intptr_t b1 = kNone;
+  std::intptr_t b2 = kNone;
+  // Only if details are asked for.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  double depth = 0.0;
+};
+
+struct PartDistance {
+  DistanceResult bounds;
+  Eigen::Vector3d points[2];  // of the two spheres that are nearest, nearest to each other
+};
+
+// None exactly if the parts are free of each other; otherwise at least one and at most `most` (at
+// least 1), of different pairs.
+std::vector<PartContact> contacts(const PlacedPart& a, const PlacedPart& b, std::size_t most,
+                                  bool details);
+
+PartDistance distance(const PlacedPart& a, const PlacedPart& b, double tolerance);
+
+}  // namespace spherule::fcl_api::internal

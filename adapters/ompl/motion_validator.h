@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "adapters/ompl/robot_states.h"
+#include "collide/edge.h"
+
+#include <algorithm>
+#include <atomic>
+#include <ompl/base/MotionValidator.h>
+#include <ompl/base/SpaceInformation.h>
+#include <utility>
+
+namespace spherule {
+
+// A motion is valid only if it is proved free at every point of it, its ends included (G6): there
+// is no step width, and setStateValidityCheckingResolution() changes nothing. What is not proved at
+// the resolution of the request is not valid. A motion whose end is out of the bounds of the space
+// is not valid. Threads may share it.
+class MotionValidator : public ompl::base::MotionValidator {
+ public:
+  // Throws Error as RobotStates and require_resolution() do.
+  MotionValidator(const ompl::base::SpaceInformationPtr& information, RobotChecker checker,
+                  const EdgeRequest& request = {})
+      : ompl::base::MotionValidator(information),
+        states_(std::move(checker), information->getStateSpace()),
+        request_(request) {
+    require_resolution(request.resolution);
+  }
+
+  // True if the motion is proved free and its end lies within the bounds.
+  bool checkMotion(const ompl::base::State* s1, const ompl::base::State* s2) const override {
+    return count(si_->satisfiesBounds(s2) && check(s1, s2, request_).verdict == Verdict::kFree);
+  }
+
+  // If the motion is not valid, lastValid.second is a fraction up to which it is proved free, hence
+  // not beyond the first contact, and lastValid.first, where it is not null, is the state there,
+  // which is valid as well; s1 and 0 if nothing is proved.
+  bool checkMotion(const ompl::base::State* s1, const ompl::base::State* s2,
+                   std::pair<ompl::base::State*, double>& lastValid) const override {
+    double free_until = 0.0;
+    if (si_->satisfiesBounds(s2)) {
+      EdgeRequest request = request_;
+      request.first = true;
+      const EdgeResult result = check(s1, s2, request);
+      if (result.verdict == Verdict::kFree) return count(true);
+      free_until = result.free_until;
+    }
+    lastValid.second = last_valid(s1, s2, free_until, lastValid.first);
+    return count(false);
+  }
+
+ private:
+  EdgeResult check(const ompl::base::State* s1, const ompl::base::State* s2,
+                   const EdgeRequest& request) const {
+    const RobotStates::Loan loan(states_);
+    auto& [scratch, from, to] = *loan;
+    states_.read(s1, from);
+    states_.read_end(s2, from, to);
+    return states_.checker().check_edge(from, to, scratch, request);
+  }
+
+  // What is proved ends before `free_until`, and a state is rounded: so it is asked for itself, and
+  // one before it if it is not free.
+  double last_valid(const ompl::base::State* s1, const ompl::base::State* s2, double free_until,
+                    ompl::base::State* state) const {
+    constexpr double kStep = 1e-6;
+    constexpr int kTries = 8;
+    ompl::base::State* const tried = state ? state : si_->allocState();
+    double fraction = std::min(free_until, 1.0);
+    for (int i = 0; i < kTries && fraction > 0.0; ++i) {
+      si_->getStateSpace()->interpolate(s1, s2, fraction, tried);
+      if (is_free(tried)) break;
+      fraction = i + 1 < kTries ? std::max(0.0, fraction - kStep * (1 << (2 * i))) : 0.0;
+    }
+    if (!(fraction > 0.0)) si_->copyState(tried, s1);
+    if (!state) si_->freeState(tried);
+    return fraction;
+  }
+
+  bool is_free(const ompl::base::State* state) const {
+    const RobotStates::Loan loan(states_);
+    auto& [scratch, configuration, unused] = *loan;
+    states_.read(state, configuration);
+    return states_.checker().check_config(configuration, scratch);
+  }
+
+  bool count(bool valid) const {
+    std::atomic_ref(valid ? valid_ : invalid_).fetch_add(1, std::memory_order_relaxed);
+    return valid;
+  }
+
+  RobotStates states_;
+  EdgeRequest request_;
+};
+
+}  // namespace spherule

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/check/robot_checker.h"
+#include "spheretree/error.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <numbers>
+#include <ompl/base/SpaceInformation.h>
+#include <ompl/base/StateSpace.h>
+#include <ompl/base/spaces/RealVectorStateSpace.h>
+#include <ompl/base/spaces/SO2StateSpace.h>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+
+// The states of a space of OMPL as configurations of a robot, and what queries about them write to,
+// lent to one thread at a time.
+//
+// The space is a RealVectorStateSpace, an SO2StateSpace (for a joint that turns), or a compound of
+// these and of such compounds. Their numbers, in their order, are those of a configuration. Motions
+// between states are those of these spaces: straight, and by the shorter way round in SO2. A class
+// of the user's own that overrides interpolate() is not seen as such; its motions are not those
+// that are answered for.
+class RobotStates {
+ public:
+  // Throws Error for a space of another kind, if it has not as many numbers as the robot has
+  // variables, and for a number of SO2 whose turn by 2 pi is not the same pose: one that moves a
+  // joint that does not turn, or that mimics with a multiplier that is no integer.
+  RobotStates(RobotChecker checker, ompl::base::StateSpacePtr space)
+      : checker_(std::move(checker)), space_(std::move(space)) {
+    if (!space_) throw Error("state space", "there is none");
+    list_turns(*space_);
+    const auto variables = static_cast<std::size_t>(checker_.robot().variable_count());
+    if (turns_.size() != variables) {
+      throw Error("state space", "it has " + std::to_string(turns_.size()) +
+                                     " numbers, the robot has " + std::to_string(variables) +
+                                     " variables");
+    }
+    for (const Joint& joint : checker_.robot().joints()) {
+      if (!joint.moves() || turns_[static_cast<std::size_t>(joint.variable)] == 0) continue;
+      if (joint.turns() && joint.multiplier == std::trunc(joint.multiplier)) continue;
+      throw Error("state space", "a number of SO2 moves joint " + joint.name +
+                                     ", for which a turn by 2 pi is not the same pose: use a real "
+                                     "one");
+    }
+  }
+
+  // The snapshot that the states are checked with.
+  const RobotChecker& checker() const { return checker_; }
+
+  // What one query writes to.
+  struct Memory {
+    // For this checker and its copies.
+    explicit Memory(const RobotChecker& checker) : scratch(checker) {}
+
+    RobotChecker::Scratch scratch;
+    std::vector<double> from;
+    std::vector<double> to;
+  };
+
+  // Gives the memory back when it ends. The last one given back is the first to be lent again, so
+  // that a lone thread keeps what its scratch remembers.
+  class Loan {
+   public:
+    // Takes memory that is free, or makes some, and gives it back at the end.
+    explicit Loan(const RobotStates& lender) : lender_(lender), memory_(lender.take()) {}
+    ~Loan() { lender_.give_back(std::move(memory_)); }
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+
+    // The memory lent.
+    Memory& operator*() const { return *memory_; }
+
+   private:
+    const RobotStates& lender_;
+    std::unique_ptr<Memory> memory_;
+  };
+
+  // The configuration of a state, in the order of the robot's variables.
+  void read(const ompl::base::State* state, std::vector<double>& configuration) const {
+    configuration.clear();
+    append(*space_, state, configuration);
+  }
+
+  // The end of a motion from `from`, such that the straight way to it is the motion's. Where that
+  // leads over the ends of SO2, the end is moved by 2 pi, rounded: the way is within 1e-15 of the
+  // motion's.
+  void read_end(const ompl::base::State* state, const std::vector<double>& from,
+                std::vector<double>& to) const {
+    constexpr double kPi = std::numbers::pi;
+    read(state, to);
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      if (!turns_[i]) continue;
+      const double way = to[i] - from[i];
+      if (way > kPi) to[i] -= 2.0 * kPi;
+      if (way < -kPi) to[i] += 2.0 * kPi;
+    }
+  }
+
+ private:
+  // A space that is derived from one of these may move in another way: one that does not say so by
+  // its type cannot be told, one that does (SE2 of cars) is refused.
+  void list_turns(const ompl::base::StateSpace& space) {
+    using namespace ompl::base;
+    const int type = space.getType();
+    const auto* compound = dynamic_cast<const CompoundStateSpace*>(&space);
+    if (type == STATE_SPACE_REAL_VECTOR && dynamic_cast<const RealVectorStateSpace*>(&space)) {
+      turns_.insert(turns_.end(), space.getDimension(), std::uint8_t{0});
+    } else if (type == STATE_SPACE_SO2 && dynamic_cast<const SO2StateSpace*>(&space)) {
+      turns_.push_back(1);
+    } else if (type == STATE_SPACE_UNKNOWN && compound) {
+      for (unsigned i = 0; i < compound->getSubspaceCount(); ++i) {
+        list_turns(*compound->getSubspace(i));
+      }
+    } else {
+      throw Error("state space", "'" + space.getName() + "' is neither real, SO2 nor of these");
+    }
+  }
+
+  static void append(const ompl::base::StateSpace& space, const ompl::base::State* state,
+                     std::vector<double>& configuration) {
+    if (space.getType() == ompl::base::STATE_SPACE_REAL_VECTOR) {
+      const double* values = state->as<ompl::base::RealVectorStateSpace::StateType>()->values;
+      configuration.insert(configuration.end(), values, values + space.getDimension());
+    } else if (space.getType() == ompl::base::STATE_SPACE_SO2) {
+      configuration.push_back(state->as<ompl::base::SO2StateSpace::StateType>()->value);
+    } else {
+      const auto& compound = *space.as<ompl::base::CompoundStateSpace>();
+      const auto* parts = state->as<ompl::base::CompoundState>();
+      for (unsigned i = 0; i < compound.getSubspaceCount(); ++i) {
+        append(*compound.getSubspace(i), parts->components[i], configuration);
+      }
+    }
+  }
+
+  std::unique_ptr<Memory> take() const {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!idle_.empty()) {
+        std::unique_ptr<Memory> memory = std::move(idle_.back());
+        idle_.pop_back();
+        return memory;
+      }
+    }
+    return std::make_unique<Memory>(checker_);
+  }
+
+  void give_back(std::unique_ptr<Memory> memory) const {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(memory));
+  }
+
+  RobotChecker checker_;
+  ompl::base::StateSpacePtr space_;
+  std::vector<std::uint8_t> turns_;  // 1 for a number of SO2
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<Memory>> idle_;
+};
+
+}  // namespace spherule

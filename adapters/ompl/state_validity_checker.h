@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "adapters/ompl/robot_states.h"
+
+#include <limits>
+#include <ompl/base/SpaceInformation.h>
+#include <ompl/base/StateValidityChecker.h>
+#include <utility>
+
+namespace spherule {
+
+// A state is valid if it is within the bounds of its space and the robot's checker finds it free:
+// of obstacles and of itself, certainly (G4). Threads may share it.
+class StateValidityChecker : public ompl::base::StateValidityChecker {
+ public:
+  // Throws Error as RobotStates does.
+  StateValidityChecker(const ompl::base::SpaceInformationPtr& information, RobotChecker checker)
+      : ompl::base::StateValidityChecker(information),
+        states_(std::move(checker), information->getStateSpace()) {
+    specs_.clearanceComputationType = ompl::base::StateValidityCheckerSpecs::BOUNDED_APPROXIMATE;
+  }
+
+  using ompl::base::StateValidityChecker::clearance;
+  using ompl::base::StateValidityChecker::isValid;
+
+  // True if the state lies within the bounds and is free.
+  bool isValid(const ompl::base::State* state) const override {
+    if (!si_->satisfiesBounds(state)) return false;
+    const RobotStates::Loan loan(states_);
+    auto& [scratch, configuration, unused] = *loan;
+    states_.read(state, configuration);
+    return states_.checker().check_config(configuration, scratch);
+  }
+
+  // A lower bound of the gap, in metres of the robot's world and not in the measure of the space,
+  // to the nearest contact; 0 where there is one. Bounds of the space are not asked. Infinite if
+  // nothing is tested.
+  double clearance(const ompl::base::State* state) const override {
+    const RobotStates::Loan loan(states_);
+    auto& [scratch, configuration, unused] = *loan;
+    states_.read(state, configuration);
+    return states_.checker().clearance(configuration, scratch).lower;
+  }
+
+ private:
+  RobotStates states_;
+};
+
+}  // namespace spherule

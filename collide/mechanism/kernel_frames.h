@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Kinematics of one configuration in double precision. Part of the kernels, see
+// mechanism_kernel_impl.h.
+//
+// Of an angle x with |x| <= 100 (MechanismCheck::kLargestVariable), k = x 2 / pi
+// rounded is at most 64, and x - k pi / 2 in two steps errs by less than 64 (2^-53 + 2^-106 ...) <
+// 2e-14; the remainder lies within pi / 4 + 1e-13. The sine's series up to r^11 errs by r^13 / 13!
+// < 7.0e-12, the cosine's up to r^12 by r^14 / 14! < 4e-13; a few roundings of numbers below one,
+// 1e-15. Together both err by less than 7.1e-12, the pair by less than kSineError = 2e-11.
+
+#include "collide/mechanism/kernel_search.h"
+
+namespace spherule::internal::SPHERULE_KERNEL {
+namespace {
+
+typedef float Float4 __attribute__((vector_size(16), may_alias));
+typedef double Double4 __attribute__((vector_size(32), may_alias));
+typedef std::int64_t Long4 __attribute__((vector_size(32), may_alias));
+
+SPHERULE_INLINE Double4 load(const double* p) {
+  return *reinterpret_cast<const Double4*>(p);
+}
+
+// The first `count` of four numbers at p, the others zero.
+SPHERULE_INLINE Double4 load_some(const double* p, std::int32_t count) {
+  if (count >= 4) {
+    Double4 x;
+    __builtin_memcpy(&x, p, sizeof x);
+    return x;
+  }
+  return Double4{p[0], count > 1 ? p[1] : 0.0, count > 2 ? p[2] : 0.0, 0.0};
+}
+
+// The series are summed in pairs of terms: a chain of terms would have to wait for each.
+SPHERULE_INLINE void sine_and_cosine(Double4 x, double* sines, double* cosines) {
+  const Double4 shifted = x * kTwoOverPi + kRound;
+  const Double4 k = shifted - kRound;
+  const Double4 r = (x - k * kHalfPi) - k * kHalfPiRest;
+  const Double4 r2 = r * r;
+  const Double4 r4 = r2 * r2;
+  const Double4 sine =
+      r + (r * r2) * ((r2 * (1.0 / 120) - 1.0 / 6) +
+                      r4 * ((r2 * (1.0 / 362880) - 1.0 / 5040) + r4 * (-1.0 / 39916800)));
+  const Double4 cosine =
+      (1.0 - 0.5 * r2) +
+      r4 * ((r2 * (-1.0 / 720) + 1.0 / 24) +
+            r4 * ((r2 * (-1.0 / 3628800) + 1.0 / 40320) + r4 * (1.0 / 479001600)));
+  Long4 quarter;
+  __builtin_memcpy(&quarter, &shifted, sizeof quarter);
+  const Long4 odd = -(quarter & 1);
+  const Long4 sine_bits = reinterpret_cast<const Long4&>(sine);
+  const Long4 cosine_bits = reinterpret_cast<const Long4&>(cosine);
+  const Long4 s = ((sine_bits & ~odd) | (cosine_bits & odd)) ^ ((quarter & 2) << 62);
+  const Long4 c = ((cosine_bits & ~odd) | (sine_bits & odd)) ^ (((quarter + 1) & 2) << 62);
+  __builtin_memcpy(sines, &s, sizeof s);
+  __builtin_memcpy(cosines, &c, sizeof c);
+}
+
+// Where a variable has its frame in the parent's. To memory, from where one number at a time is
+// read again for all lanes: to spread lanes of a vector takes longer.
+SPHERULE_INLINE void place_in_parent(const KernelFrame& frame, double position, double sine,
+                                     double cosine, KernelPose& pose) {
+  const Double4 f0 = load(frame.rotation[0]);
+  const Double4 f1 = load(frame.rotation[1]);
+  const Double4 f2 = load(frame.rotation[2]);
+  const Double4 origin = load(frame.origin);
+  auto* const result = reinterpret_cast<Double4*>(pose.columns);
+  result[2] = f2;
+  if (frame.prismatic) {
+    result[0] = f0;
+    result[1] = f1;
+    result[3] = origin + position * f2;
+  } else {
+    result[0] = cosine * f0 + sine * f1;
+    result[1] = cosine * f1 - sine * f0;
+    result[3] = origin;
+  }
+}
+
+// The poses of all frames. What does not depend on the parent is computed first: the chain from
+// frame to frame is what takes the time.
+SPHERULE_INLINE void place_frames(const KernelProblem& problem, const double* configuration,
+                                  const KernelScratch& scratch) {
+  for (std::int32_t i = 0; i < problem.variable_count; i += 4) {
+    sine_and_cosine(load_some(configuration + i, problem.variable_count - i), scratch.sines + i,
+                    scratch.cosines + i);
+  }
+  for (std::int32_t i = 0; i < problem.frame_count; ++i) {
+    const KernelFrame& frame = problem.frames[i];
+    place_in_parent(frame, configuration[frame.variable], scratch.sines[frame.variable],
+                    scratch.cosines[frame.variable], scratch.poses[i]);
+  }
+  Double4 p0 = {};
+  Double4 p1 = {};
+  Double4 p2 = {};
+  Double4 p3 = {};
+  for (std::int32_t i = 0; i < problem.frame_count; ++i) {
+    const std::int32_t parent = problem.frames[i].parent;
+    double(*const at)[4] = scratch.poses[i].columns;
+    auto* const result = reinterpret_cast<Double4*>(at);
+    if (parent < 0) {
+      p0 = result[0];
+      p1 = result[1];
+      p2 = result[2];
+      p3 = result[3];
+      continue;
+    }
+    if (parent != i - 1) {
+      const auto* const from = reinterpret_cast<const Double4*>(scratch.poses[parent].columns);
+      p0 = from[0];
+      p1 = from[1];
+      p2 = from[2];
+      p3 = from[3];
+    }
+    const Double4 r0 = p0 * at[0][0] + p1 * at[0][1] + p2 * at[0][2];
+    const Double4 r1 = p0 * at[1][0] + p1 * at[1][1] + p2 * at[1][2];
+    const Double4 r2 = p0 * at[2][0] + p1 * at[2][1] + p2 * at[2][2];
+    const Double4 r3 = p3 + p0 * at[3][0] + p1 * at[3][1] + p2 * at[3][2];
+    result[0] = p0 = r0;
+    result[1] = p1 = r1;
+    result[2] = p2 = r2;
+    result[3] = p3 = r3;
+  }
+}
+
+SPHERULE_INLINE Placement in_single_precision(const KernelPose& pose) {
+  Placement at;
+  for (int column = 0; column < 4; ++column) {
+    const Float4 rounded = __builtin_convertvector(load(pose.columns[column]), Float4);
+    __builtin_memcpy(at.columns[column], &rounded, sizeof rounded);
+  }
+  return at;
+}
+
+// The ball around all of every body.
+SPHERULE_INLINE void place_roots(const KernelProblem& problem, const KernelScratch& scratch) {
+  for (std::int32_t i = 0; i < problem.body_count; ++i) {
+    const KernelBody& body = problem.bodies[i];
+    const auto* const at = reinterpret_cast<const Double4*>(scratch.poses[body.frame].columns);
+    const Double4 center =
+        at[0] * body.center[0] + at[1] * body.center[1] + at[2] * body.center[2] + at[3];
+    Float4 ball = __builtin_convertvector(center, Float4);
+    ball[3] = body.radius;
+    KernelTask& root = scratch.roots[i];
+    static_assert(__builtin_offsetof(KernelTask, radius) == 12);
+    __builtin_memcpy(&root, &ball, sizeof ball);
+    root.body = 0;
+    root.obstacle = 0;
+  }
+}
+
+}  // namespace
+}  // namespace spherule::internal::SPHERULE_KERNEL

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Sixteen configurations side by side, in as many vectors of the machine as that takes: numbers,
+// and the kinematics in single precision. Part of the kernels, see mechanism_kernel_impl.h.
+//
+// Error budget, v = 2^-24. Angles are reduced in double: with kernel_frames.h the remainder errs by
+// less than 2e-14 and lies within pi / 4 + 1e-13; rounding it to single costs 0.8 v. The sine's
+// series up to r^9 errs by r^11 / 11! < 0.03 v, the cosine's up to r^8 by r^10 / 10! < 0.42 v;
+// evaluating them by less than 3 v. Each errs by less than 4 v, the pair by less than 6 v.
+// Of a frame in its parent's, over all nine entries of a rotation (Frobenius):
+//   the frame's rotation rounded           2 v
+//   product with the parent's              9 v   three terms an entry, 3 v by Cauchy, nine entries
+//   turn by the variable                   4 v   two terms an entry, 2 v, of two columns
+//   sine and cosine                        6 v
+// and of its origin, where W bounds the lengths of the chain together: rounded v W (twice for a
+// shift, the variable rounded v W more), product and sum 7 v W. A point that the frame carries, at
+// no more than W from it, moves by less than 21 v W and 10 v W: 31 v W a frame, and a fifth more
+// for what the norms of rounded rotations grow by in chains of up to kLongestLaneChain frames.
+
+#include "collide/mechanism/kernel_frames.h"
+
+namespace spherule::internal::SPHERULE_KERNEL {
+namespace {
+
+#if defined(__AVX512F__)
+constexpr int kPartBytes = 64;
+#elif defined(__AVX__)
+constexpr int kPartBytes = 32;
+#else
+constexpr int kPartBytes = 16;
+#endif
+constexpr int kParts = kLanes * 4 / kPartBytes;
+constexpr unsigned kAllLanes = (1U << kLanes) - 1;
+
+typedef float FloatPart __attribute__((vector_size(kPartBytes), may_alias));
+typedef std::int32_t IntPart __attribute__((vector_size(kPartBytes), may_alias));
+typedef std::int32_t HalfIntPart __attribute__((vector_size(kPartBytes / 2), may_alias));
+typedef float HalfFloatPart __attribute__((vector_size(kPartBytes / 2), may_alias));
+typedef double DoublePart __attribute__((vector_size(kPartBytes), may_alias));
+
+#define SPHERULE_EACH_PART _Pragma("GCC unroll 4") for (int i = 0; i < kParts; ++i)
+
+struct Floats {
+  FloatPart part[kParts];
+
+  static SPHERULE_INLINE Floats all(float x) {
+    Floats result;
+    SPHERULE_EACH_PART result.part[i] = x - FloatPart{};
+    return result;
+  }
+  static SPHERULE_INLINE Floats at(const float* p) {
+    Floats result;
+    SPHERULE_EACH_PART result.part[i] = reinterpret_cast<const FloatPart*>(p)[i];
+    return result;
+  }
+  SPHERULE_INLINE void put(float* p) const {
+    SPHERULE_EACH_PART reinterpret_cast<FloatPart*>(p)[i] = part[i];
+  }
+};
+
+SPHERULE_INLINE Floats operator+(const Floats& a, const Floats& b) {
+  Floats result;
+  SPHERULE_EACH_PART result.part[i] = a.part[i] + b.part[i];
+  return result;
+}
+SPHERULE_INLINE Floats operator-(const Floats& a, const Floats& b) {
+  Floats result;
+  SPHERULE_EACH_PART result.part[i] = a.part[i] - b.part[i];
+  return result;
+}
+SPHERULE_INLINE Floats operator*(const Floats& a, const Floats& b) {
+  Floats result;
+  SPHERULE_EACH_PART result.part[i] = a.part[i] * b.part[i];
+  return result;
+}
+SPHERULE_INLINE Floats operator-(const Floats& a, float b) {
+  Floats result;
+  SPHERULE_EACH_PART result.part[i] = a.part[i] - b;
+  return result;
+}
+SPHERULE_INLINE Floats operator+(const Floats& a, float b) {
+  Floats result;
+  SPHERULE_EACH_PART result.part[i] = a.part[i] + b;
+  return result;
+}
+SPHERULE_INLINE Floats operator*(float a, const Floats& b) {
+  Floats result;
+  SPHERULE_EACH_PART result.part[i] = a * b.part[i];
+  return result;
+}
+
+// A bit for every lane of a that is at most b.
+SPHERULE_INLINE unsigned at_most(const Floats& a, float b) {
+#if defined(__AVX512F__)
+  return _mm512_cmp_ps_mask(reinterpret_cast<__m512>(a.part[0]), _mm512_set1_ps(b), _CMP_LE_OQ);
+#elif defined(__AVX__)
+  return mask_of(a.part[0] <= b) | mask_of(a.part[1] <= b) << 8;
+#else
+  Int8 low, high;
+  const IntPart set[4] = {a.part[0] <= b, a.part[1] <= b, a.part[2] <= b, a.part[3] <= b};
+  __builtin_memcpy(&low, set, sizeof low);
+  __builtin_memcpy(&high, set + 2, sizeof high);
+  return mask_of(low) | mask_of(high) << 8;
+#endif
+}
+
+template <class Vector>
+SPHERULE_INLINE Vector larger(Vector a, Vector b) {
+  return a > b ? a : b;
+}
+
+// The largest of the lanes that are live; zero if that is less.
+SPHERULE_INLINE float largest(const Floats& a, unsigned live) {
+  alignas(64) float lanes[kLanes];
+#if defined(__AVX512F__)
+  _mm512_store_ps(lanes, _mm512_maskz_mov_ps(static_cast<__mmask16>(live),
+                                             reinterpret_cast<__m512>(a.part[0])));
+#else
+  a.put(lanes);
+  for (unsigned dead = kAllLanes & ~live; dead != 0; dead &= dead - 1) {
+    lanes[__builtin_ctz(dead)] = 0.0F;
+  }
+#endif
+  const Float8 eight = larger(load(lanes), load(lanes + 8));
+  __builtin_memcpy(lanes, &eight, sizeof eight);
+  const Float4 four =
+      larger(*reinterpret_cast<const Float4*>(lanes), *reinterpret_cast<const Float4*>(lanes + 4));
+  const float low = four[0] > four[1] ? four[0] : four[1];
+  const float high = four[2] > four[3] ? four[2] : four[3];
+  const float both = low > high ? low : high;
+  return both > 0.0F ? both : 0.0F;
+}
+
+// Rounds to single precision; returns the lanes with a number of at most kLargestKernelVariable.
+SPHERULE_INLINE unsigned in_range(const double* exact, float* rounded) {
+#pragma GCC unroll 8
+  for (int i = 0; i < 2 * kParts; ++i) {
+    const DoublePart x = reinterpret_cast<const DoublePart*>(exact)[i];
+    reinterpret_cast<HalfFloatPart*>(rounded)[i] = __builtin_convertvector(x, HalfFloatPart);
+  }
+#if defined(__AVX512F__)
+  unsigned usual = 0;
+  for (int i = 0; i < 2; ++i) {
+    const __m512d size = _mm512_abs_pd(_mm512_load_pd(exact + 8 * i));
+    const __mmask8 set =
+        _mm512_cmp_pd_mask(size, _mm512_set1_pd(kLargestKernelVariable), _CMP_LE_OQ);
+    usual |= static_cast<unsigned>(set) << (8 * i);
+  }
+  return usual;
+#else
+  unsigned usual = 0;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const bool is_usual = __builtin_fabs(exact[lane]) <= kLargestKernelVariable;
+    usual |= (is_usual ? 1U : 0U) << lane;
+  }
+  return usual;
+#endif
+}
+
+// Angles less the nearest multiple of pi / 2, and that multiple. To memory, and read again when
+// all are done: vectors of other widths that are read at once would have to wait.
+SPHERULE_INLINE void reduce(const double* angles, float* remainders, std::int32_t* quarters) {
+#pragma GCC unroll 8
+  for (int i = 0; i < 2 * kParts; ++i) {
+    const DoublePart x = reinterpret_cast<const DoublePart*>(angles)[i];
+    const DoublePart k = (x * kTwoOverPi + kRound) - kRound;
+    const DoublePart r = (x - k * kHalfPi) - k * kHalfPiRest;
+    reinterpret_cast<HalfFloatPart*>(remainders)[i] = __builtin_convertvector(r, HalfFloatPart);
+    reinterpret_cast<HalfIntPart*>(quarters)[i] = __builtin_convertvector(k, HalfIntPart);
+  }
+}
+
+SPHERULE_INLINE void sines_and_cosines(const float* remainders, const std::int32_t* quarters,
+                                       Floats& sines, Floats& cosines) {
+  SPHERULE_EACH_PART {
+    const FloatPart r = reinterpret_cast<const FloatPart*>(remainders)[i];
+    const IntPart quarter = reinterpret_cast<const IntPart*>(quarters)[i];
+    const FloatPart r2 = r * r;
+    const FloatPart sine =
+        r + r * r2 * (-1.0F / 6 + r2 * (1.0F / 120 + r2 * (-1.0F / 5040 + r2 * (1.0F / 362880))));
+    const FloatPart cosine =
+        1.0F - 0.5F * r2 + r2 * r2 * (1.0F / 24 + r2 * (-1.0F / 720 + r2 * (1.0F / 40320)));
+    const IntPart odd = -(quarter & 1);
+    const IntPart s = reinterpret_cast<const IntPart&>(sine);
+    const IntPart c = reinterpret_cast<const IntPart&>(cosine);
+    const IntPart turned_sine = ((s & ~odd) | (c & odd)) ^ ((quarter & 2) << 30);
+    const IntPart turned_cosine = ((c & ~odd) | (s & odd)) ^ (((quarter + 1) & 2) << 30);
+    __builtin_memcpy(&sines.part[i], &turned_sine, sizeof turned_sine);
+    __builtin_memcpy(&cosines.part[i], &turned_cosine, sizeof turned_cosine);
+  }
+}
+
+struct Vectors {
+  Floats x, y, z;
+};
+
+// A column or the origin of a pose.
+SPHERULE_INLINE Vectors column(const KernelLanePose& pose, int which) {
+  const float(*const at)[kLanes] = pose.columns[which];
+  return {Floats::at(at[0]), Floats::at(at[1]), Floats::at(at[2])};
+}
+
+SPHERULE_INLINE void put(const Vectors& v, float (*at)[kLanes]) {
+  v.x.put(at[0]);
+  v.y.put(at[1]);
+  v.z.put(at[2]);
+}
+
+SPHERULE_INLINE Vectors operator*(float a, const Vectors& v) {
+  return {a * v.x, a * v.y, a * v.z};
+}
+
+SPHERULE_INLINE Vectors operator+(const Vectors& v, const Vectors& w) {
+  return {v.x + w.x, v.y + w.y, v.z + w.z};
+}
+
+// The image of a point's coordinates under the columns of a pose, without its origin. Most
+// coordinates of most frames are zero.
+SPHERULE_INLINE Vectors combined(const KernelLanePose& pose, const float* by) {
+  Vectors sum;
+  bool is_empty = true;
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i) {
+    if (by[i] == 0.0F) continue;
+    const Vectors term = by[i] * column(pose, i);
+    sum = is_empty ? term : sum + term;
+    is_empty = false;
+  }
+  if (is_empty) sum = {Floats::all(0.0F), Floats::all(0.0F), Floats::all(0.0F)};
+  return sum;
+}
+
+SPHERULE_INLINE Vectors image(const KernelLanePose& pose, const float* point) {
+  return point[0] * column(pose, 0) +
+         (point[1] * column(pose, 1) + (point[2] * column(pose, 2) + column(pose, 3)));
+}
+
+SPHERULE_INLINE Vectors constant(const float* v) {
+  return {Floats::all(v[0]), Floats::all(v[1]), Floats::all(v[2])};
+}
+
+// Puts the variables of the configurations side by side, with what the kinematics need of them;
+// returns the lanes with a number that is out of range or none. Those have zeros.
+SPHERULE_INLINE unsigned gather(const KernelProblem& problem, const double* const* configurations,
+                                KernelLaneVariable* variables) {
+  for (std::int32_t i = 0; i < problem.variable_count; ++i) {
+#pragma GCC unroll 16
+    for (int lane = 0; lane < kLanes; ++lane) variables[i].exact[lane] = configurations[lane][i];
+  }
+  unsigned usual = kAllLanes;
+  for (std::int32_t i = 0; i < problem.variable_count; ++i) {
+    usual &= in_range(variables[i].exact, variables[i].rounded);
+  }
+  for (std::int32_t i = 0; i < problem.variable_count; ++i) {
+    for (unsigned refused = kAllLanes & ~usual; refused != 0; refused &= refused - 1) {
+      variables[i].exact[__builtin_ctz(refused)] = 0.0;
+      variables[i].rounded[__builtin_ctz(refused)] = 0.0F;
+    }
+    reduce(variables[i].exact, variables[i].remainder, variables[i].quarter);
+  }
+  return kAllLanes & ~usual;
+}
+
+// The poses of all frames.
+SPHERULE_INLINE void place_lane_frames(const KernelProblem& problem,
+                                       const KernelLaneVariable* variables, KernelLanePose* poses) {
+  for (std::int32_t f = 0; f < problem.frame_count; ++f) {
+    const KernelLaneFrame& frame = problem.lane_frames[f];
+    const KernelLaneVariable& variable = variables[frame.variable];
+    KernelLanePose& pose = poses[f];
+    Vectors m0, m1, m2, origin;
+    if (frame.parent < 0) {
+      m0 = constant(frame.rotation[0]);
+      m1 = constant(frame.rotation[1]);
+      m2 = constant(frame.rotation[2]);
+      origin = constant(frame.origin);
+    } else {
+      const KernelLanePose& parent = poses[frame.parent];
+      m0 = combined(parent, frame.rotation[0]);
+      m1 = combined(parent, frame.rotation[1]);
+      m2 = combined(parent, frame.rotation[2]);
+      origin = combined(parent, frame.origin) + column(parent, 3);
+    }
+    put(m2, pose.columns[2]);
+    if (frame.prismatic) {
+      const Floats shift = Floats::at(variable.rounded);
+      put(m0, pose.columns[0]);
+      put(m1, pose.columns[1]);
+      put({origin.x + shift * m2.x, origin.y + shift * m2.y, origin.z + shift * m2.z},
+          pose.columns[3]);
+      continue;
+    }
+    Floats s, c;
+    sines_and_cosines(variable.remainder, variable.quarter, s, c);
+    put({c * m0.x + s * m1.x, c * m0.y + s * m1.y, c * m0.z + s * m1.z}, pose.columns[0]);
+    put({c * m1.x - s * m0.x, c * m1.y - s * m0.y, c * m1.z - s * m0.z}, pose.columns[1]);
+    put(origin, pose.columns[3]);
+  }
+}
+
+}  // namespace
+}  // namespace spherule::internal::SPHERULE_KERNEL

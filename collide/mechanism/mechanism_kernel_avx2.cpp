@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// For x86 processors with AVX2 and fused multiply-add; compiled for these.
+#include "collide/mechanism/mechanism_kernel.h"
+
+#include <cstddef>
+
+#define SPHERULE_KERNEL avx2
+#include "collide/mechanism/mechanism_kernel_impl.h"
+
+namespace spherule::internal {
+
+const Kernels& avx2_kernels() {
+  return avx2::kKernels;
+}
+
+}  // namespace spherule::internal

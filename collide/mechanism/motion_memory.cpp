@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/mechanism/motion_memory.h"
+
+#include "collide/search/packed_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+// A configuration is near the one before if no point has moved by more than this part of how far
+// the bodies reach.
+constexpr double kNearStep = 0.125;
+// What clearance is looked for: a bit more than the last one that was found, twice as much where
+// that was for few steps; after a look that fails less, as long as it lasts for some steps.
+constexpr double kMostSteps = 1024.0;
+constexpr double kFewestSteps = 2.0;
+constexpr double kFirstSteps = 8.0;
+constexpr double kMore = 1.25;
+constexpr float kLess = 0.5F;
+constexpr int kLooks = 2;
+
+// The way starts anew beyond 2^10 near steps: every addition errs by less than 2^-42 near steps,
+// which kStepRest, a part of every step, covers. So do the sums that it is compared with.
+constexpr double kStepUp = 1.0 + 1e-9;
+constexpr double kStepRest = 0x1p-38;
+constexpr double kLongestWay = 1024.0;
+
+// As a body that is grown by g' is apart: MechanismCheck::within() says why.
+constexpr double kGrowthDown = 1.0 - 0x1p-18;
+
+double length(const double* v) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+// Of any point of a body from a joint that carries it, at most, summed up for each variable.
+std::vector<double> reaches(const KernelProblem& problem) {
+  std::vector<double> of_frame(static_cast<std::size_t>(problem.frame_count), 0.0);
+  for (std::int32_t i = 0; i < problem.body_count; ++i) {
+    const KernelBody& body = problem.bodies[i];
+    double distance = length(body.center) + static_cast<double>(body.radius);
+    for (std::int32_t f = body.frame; f >= 0; f = problem.frames[f].parent) {
+      const KernelFrame& frame = problem.frames[f];
+      double& reach = of_frame[static_cast<std::size_t>(f)];
+      reach = std::max(reach, frame.prismatic ? 1.0 : distance);
+      distance += length(frame.origin) + (frame.prismatic ? kLargestKernelVariable : 0.0);
+    }
+  }
+  std::vector<double> result(static_cast<std::size_t>(problem.variable_count), 0.0);
+  for (std::int32_t f = 0; f < problem.frame_count; ++f) {
+    result[static_cast<std::size_t>(problem.frames[f].variable)] +=
+        of_frame[static_cast<std::size_t>(f)] * kStepUp;
+  }
+  return result;
+}
+
+double largest(std::span<const double> numbers) {
+  return numbers.empty() ? 0.0 : *std::max_element(numbers.begin(), numbers.end());
+}
+
+bool never(void*, std::int32_t, KernelPair, std::int32_t, std::int32_t) {
+  return false;
+}
+
+}  // namespace
+
+MotionMemory::MotionMemory(const KernelProblem& problem, std::span<const double> reach,
+                           std::span<const double> tilt)
+    : reach_(reaches(problem)),
+      near_step_(kNearStep * largest(reach)),
+      last_(reach_.size(), 1e300),
+      contact_(problem.frames, static_cast<std::size_t>(problem.frame_count),
+               4.0 * largest(tilt) * std::max(1.0, largest(reach))),
+      is_due_(static_cast<std::size_t>(problem.body_count), 0) {
+  bodies_.assign(static_cast<std::size_t>(problem.body_count), Body{.ball = contact_});
+  due_.reserve(bodies_.size());
+  pairs_.reserve(static_cast<std::size_t>(problem.pair_count));
+}
+
+bool MotionMemory::check(const Kernels& kernels, const KernelProblem& problem,
+                         const double* configuration, const KernelScratch& scratch,
+                         ConfirmContact confirm, void* context) {
+  struct Asking {
+    explicit Asking(bool& flag) : is_asking(flag) { is_asking = true; }
+    ~Asking() { is_asking = false; }
+    bool& is_asking;
+  };
+  const Asking asking(is_asking_);
+  return kernels.check(problem, configuration, scratch, confirm, context);
+}
+
+// Whether the configuration is near the one before, as that was near its own.
+bool MotionMemory::follow(const double* configuration) {
+  double step = kStepRest * near_step_;
+  for (std::size_t i = 0; i < last_.size(); ++i) {
+    step += std::abs(configuration[i] - last_[i]) * reach_[i];
+    last_[i] = configuration[i];
+  }
+  const bool was_near = was_near_;
+  was_near_ = step <= near_step_;
+  is_following_ = was_near_ && was_near;
+  way_ = knows_ ? way_ + step : 0.0;
+  queries_ += 1.0;
+  if (knows_ && (!is_following_ || way_ > kLongestWay * near_step_)) forget();
+  return is_following_;
+}
+
+void MotionMemory::forget() {
+  for (Body& body : bodies_) body.forget();
+  depth_ = -1.0;
+  way_ = 0.0;
+  queries_ = 0.0;
+  knows_ = false;
+}
+
+// Lists the bodies that may have moved by more than their clearance; false if there are none.
+bool MotionMemory::find_due(const double* configuration) {
+  due_.clear();
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Body& body = bodies_[i];
+    if (way_ <= body.free_until) continue;
+    body.wanted = 0.0F;
+    if (body.placed_at >= 0.0) {
+      const double moved = body.ball.way_to(configuration);
+      if (moved <= body.clearance) {
+        body.free_until = way_ + (body.clearance - moved);
+        continue;
+      }
+      body.step = moved / (queries_ - body.placed_at);
+      if (body.ambition <= 0.0) body.ambition = kFirstSteps * body.step;
+      const double wanted = std::min({body.ambition, kMostSteps * body.step, near_step_});
+      if (wanted >= kFewestSteps * body.step) body.wanted = static_cast<float>(wanted);
+    }
+    due_.push_back(static_cast<std::int32_t>(i));
+  }
+  return !due_.empty();
+}
+
+// Puts the mechanism in its place and looks which bodies that are due are apart when grown; those
+// are due no more. True if one touches for sure.
+bool MotionMemory::grow_due(const Kernels& kernels, const KernelProblem& problem,
+                            const double* configuration, const KernelScratch& scratch) {
+  if (std::none_of(due_.begin(), due_.end(), [&](std::int32_t i) {
+        return bodies_[static_cast<std::size_t>(i)].wanted > 0.0F;
+      })) {
+    return false;
+  }
+  kernels.place(problem, configuration, scratch);
+  std::size_t left = 0;
+  for (const std::int32_t index : due_) {
+    Body& body = bodies_[static_cast<std::size_t>(index)];
+    KernelFinding finding = KernelFinding::kNear;
+    const float few = static_cast<float>(kFewestSteps * body.step);
+    int looks = 0;
+    for (float growth = body.wanted; growth > 0.0F; growth *= kLess) {
+      if (growth < few || looks == kLooks) break;
+      finding = look(kernels, problem, index, growth, scratch);
+      ++looks;
+      if (finding == KernelFinding::kTouch) return true;
+      if (finding == KernelFinding::kNear) continue;
+      place(problem, index, configuration, scratch, static_cast<double>(growth) * kGrowthDown);
+      body.ambition =
+          looks == 1 ? static_cast<double>(growth) * kMore : static_cast<double>(growth);
+      break;
+    }
+    if (finding == KernelFinding::kApart) continue;
+    if (looks > 0) body.ambition = static_cast<double>(kLess * body.wanted);
+    if (looks == 0) body.ambition = kFirstSteps * body.step;
+    due_[left++] = index;
+  }
+  due_.resize(left);
+  return false;
+}
+
+std::optional<bool> MotionMemory::is_free_along(const Kernels& kernels,
+                                                const KernelProblem& problem, const double* from,
+                                                const double* to, const double* middle,
+                                                const KernelScratch& scratch) {
+  if (!follow(middle)) return std::nullopt;
+  // From the middle to either end.
+  double half = kStepRest * near_step_;
+  for (std::size_t i = 0; i < last_.size(); ++i) {
+    half += std::max(std::abs(from[i] - middle[i]), std::abs(to[i] - middle[i])) * reach_[i];
+  }
+  if (!(half <= near_step_)) return std::nullopt;
+  bool is_placed = false;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Body& body = bodies_[i];
+    if (way_ + half <= body.free_until) continue;
+    if (body.placed_at >= 0.0 && body.ball.way_along(from, to) <= body.clearance) continue;
+    if (!std::exchange(is_placed, true)) kernels.place(problem, middle, scratch);
+    if (!grow_along(kernels, problem, static_cast<std::int32_t>(i), from, to, middle, scratch)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Whether the body is apart, grown by what it moves from the middle or, to know more for the next
+// motions, by more.
+bool MotionMemory::grow_along(const Kernels& kernels, const KernelProblem& problem,
+                              std::int32_t index, const double* from, const double* to,
+                              const double* middle, const KernelScratch& scratch) {
+  Body& body = bodies_[static_cast<std::size_t>(index)];
+  place(problem, index, middle, scratch, 0.0);
+  const double moved = body.ball.way_along(from, to) + kStepRest * near_step_;
+  if (!(moved <= near_step_)) return false;
+  const double needed = moved * (1.0 + 1e-5);  // above what kGrowthDown takes
+  const double wanted = std::clamp(body.ambition, needed, std::max(needed, near_step_));
+  for (const double growth : {wanted, needed}) {
+    if (look(kernels, problem, index, static_cast<float>(growth), scratch) ==
+        KernelFinding::kApart) {
+      place(problem, index, middle, scratch, growth * kGrowthDown);
+      const bool is_more = growth > needed;
+      body.ambition = is_more ? kMore * growth : wanted > needed ? needed : kFirstSteps * needed;
+      return true;
+    }
+    if (growth <= needed) break;
+  }
+  body.forget();
+  return false;
+}
+
+KernelFinding MotionMemory::look(const Kernels& kernels, const KernelProblem& problem,
+                                 std::int32_t body, float growth, const KernelScratch& scratch) {
+  for (std::int32_t i = 0; i < problem.pair_count; ++i) {
+    if (problem.pairs[i].body != body) continue;
+    const KernelFinding finding =
+        kernels.look(problem, problem.pairs[i], growth, scratch, &never, nullptr);
+    if (finding != KernelFinding::kApart) return finding;
+  }
+  return KernelFinding::kApart;
+}
+
+void MotionMemory::place(const KernelProblem& problem, std::int32_t index,
+                         const double* configuration, const KernelScratch& scratch,
+                         double clearance) {
+  const KernelBody& of = problem.bodies[index];
+  Body& body = bodies_[static_cast<std::size_t>(index)];
+  body.ball.place(of.frame, of.center, static_cast<double>(of.radius), scratch.poses,
+                  configuration);
+  body.clearance = clearance - kStepRest * near_step_;
+  body.free_until = way_ + body.clearance;
+  body.placed_at = queries_;
+  knows_ = true;
+}
+
+bool MotionMemory::collides(const Kernels& kernels, const KernelProblem& problem,
+                            const double* configuration, const KernelScratch& scratch,
+                            ConfirmContact confirm, void* context) {
+  if (!follow(configuration)) {
+    return check(kernels, problem, configuration, scratch, confirm, context);
+  }
+  if (depth_ >= 0.0 && contact_.way_to(configuration) <= depth_) return true;
+  depth_ = -1.0;
+  if (!find_due(configuration)) return false;
+  if (grow_due(kernels, problem, configuration, scratch)) return true;
+  if (due_.empty()) return false;
+  pairs_.clear();
+  for (const std::int32_t index : due_) is_due_[static_cast<std::size_t>(index)] = 1;
+  for (std::int32_t i = 0; i < problem.pair_count; ++i) {
+    if (is_due_[static_cast<std::size_t>(problem.pairs[i].body)] != 0) {
+      pairs_.push_back(problem.pairs[i]);
+    }
+  }
+  for (const std::int32_t index : due_) is_due_[static_cast<std::size_t>(index)] = 0;
+  KernelProblem rest = problem;
+  rest.pairs = pairs_.data();
+  rest.pair_count = static_cast<std::int32_t>(pairs_.size());
+  const bool touches = check(kernels, rest, configuration, scratch, confirm, context);
+  for (const std::int32_t index : due_) {
+    if (touches) {
+      bodies_[static_cast<std::size_t>(index)].forget();
+    } else {
+      place(problem, index, configuration, scratch, 0.0);
+    }
+  }
+  return touches;
+}
+
+void MotionMemory::remember_contact(std::int32_t frame, const Sphere& ball, double depth,
+                                    const KernelScratch& scratch) {
+  if (!is_following()) return;
+  contact_.place(frame, ball.center.data(), ball.radius, scratch.poses, last_.data());
+  depth_ = depth;
+  knows_ = true;
+}
+
+}  // namespace spherule::internal

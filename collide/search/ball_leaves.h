@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/search/nearest_first.h"
+#include "collide/search/relative_pose.h"
+#include "collide/search/tree_pair.h"
+
+namespace spherule::internal {
+
+// Leaf test of two sphere trees.
+class BallLeaves {
+ public:
+  BallLeaves(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
+             double clearance = 0.0)
+      : a_(a), b_(b), pose_(pose), clearance_(clearance) {}
+
+  bool touches(NodePair pair) const {
+    return pose_.touches(ball_a(pair), ball_b(pair), clearance_);
+  }
+  double gap(NodePair pair) const { return pose_.gap(ball_a(pair), ball_b(pair)); }
+  GapInterval interval(NodePair pair) const { return {gap(pair), gap(pair)}; }
+
+ private:
+  Sphere ball_a(NodePair pair) const { return a_.ball(pair.index(0)); }
+  Sphere ball_b(NodePair pair) const { return b_.ball(pair.index(1)); }
+
+  const SphereTree& a_;
+  const SphereTree& b_;
+  const RelativePose& pose_;
+  const double clearance_;
+};
+
+}  // namespace spherule::internal

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/search/packed_tree.h"
+
+#include "collide/search/single_precision.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace spherule::internal {
+namespace {
+
+// Far from everything, with a square that does not overflow.
+constexpr float kNowhere = 3e18F;
+constexpr double kAbsolute = 0x1p-60;
+
+Sphere packed(const Sphere& ball, double inflation) {
+  const Eigen::Vector3d center(in_single_precision(ball.center.x()),
+                               in_single_precision(ball.center.y()),
+                               in_single_precision(ball.center.z()));
+  const double moved = distance_upper(center, ball.center);
+  const double radius =
+      mul_up(add_up(add_up(ball.radius, moved), inflation), 1.0 + 8.0 * kFloatRoundoff);
+  return {center, static_cast<double>(rounded_up_to_single(add_up(radius, kAbsolute)))};
+}
+
+PackedNode empty_node() {
+  PackedNode node;
+  std::fill_n(node.x, PackedNode::kWidth, kNowhere);
+  std::fill_n(node.y, PackedNode::kWidth, kNowhere);
+  std::fill_n(node.z, PackedNode::kWidth, kNowhere);
+  std::fill_n(node.radius, PackedNode::kWidth, 0.0F);
+  std::fill_n(node.child, PackedNode::kWidth, -1);
+  return node;
+}
+
+void set_lane(PackedNode& node, int lane, const Sphere& ball, std::int32_t child) {
+  node.x[lane] = static_cast<float>(ball.center.x());
+  node.y[lane] = static_cast<float>(ball.center.y());
+  node.z[lane] = static_cast<float>(ball.center.z());
+  node.radius[lane] = static_cast<float>(ball.radius);
+  node.child[lane] = child;
+}
+
+}  // namespace
+
+PackedTree::PackedTree(const SphereTree& tree, double inflation)
+    : PackedTree(tree, CullingSpheres(tree), Pose(), inflation) {}
+
+PackedTree::PackedTree(const SphereTree& tree, const CullingSpheres& culling, const Pose& pose,
+                       double inflation) {
+  assert(tree.branching() <= PackedNode::kWidth);
+  const auto placed = [&](const Sphere& sphere) {
+    return Sphere{pose * sphere.center, sphere.radius};
+  };
+  root_ = packed(placed(culling[0]), inflation);
+  depth_ = std::max(1, tree.depth());
+  for (const Sphere& sphere : tree.spheres()) {
+    const Sphere leaf = packed(placed(sphere), inflation);
+    largest_growth_ = std::max(largest_growth_, sub_up(leaf.radius, sphere.radius));
+    leaves_.push_back({{static_cast<float>(leaf.center.x()), static_cast<float>(leaf.center.y()),
+                        static_cast<float>(leaf.center.z())},
+                       static_cast<float>(leaf.radius)});
+  }
+  // Inner nodes in the order of the tree, so that a node's number is the count of those before it.
+  std::vector<std::int32_t> number(tree.node_count());
+  std::int32_t inner = 0;
+  for (std::size_t node = 0; node < tree.node_count(); ++node) {
+    number[node] = tree.is_leaf(node) ? ~tree.sphere_index(node) : inner++;
+  }
+  if (inner == 0) {
+    nodes_.push_back(empty_node());
+    set_lane(nodes_.back(), 0, root_, number[0]);
+  }
+  nodes_.reserve(static_cast<std::size_t>(inner) + 1);
+  for (std::size_t node = 0; node < tree.node_count(); ++node) {
+    if (tree.is_leaf(node)) continue;
+    nodes_.push_back(empty_node());
+    for (std::int32_t lane = 0; lane < tree.child_count(node); ++lane) {
+      const auto child = static_cast<std::size_t>(tree.first_child(node) + lane);
+      set_lane(nodes_.back(), lane, packed(placed(culling[child]), inflation), number[child]);
+    }
+  }
+  nodes_.push_back(empty_node());
+  set_lane(nodes_.back(), 0, root_, 0);
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/search/relative_pose.h"
+#include "collide/solid_mesh.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace spherule::internal {
+
+// Which balls of a placed tree are inside a placed mesh.
+//
+// A ball that no triangle meets lies on one side of the surface, whole; so do two of them that
+// share a point. So all below a node are outside if its ball meets no triangle and its centre is
+// outside; and a sphere that meets no triangle is outside if it overlaps a ball that is. Rays are
+// cast for what remains.
+//
+// In the terms of relative_pose.h, a centre's image errs by at most 136 u T. MeshInside::contains()
+// is given that as 144 u T. A node's ball of radius R meets no triangle if the image is more than R
+// + 160 u T from all of them, which leaves 24 u T for the roundings of the distance to the ball of
+// a node of the mesh: 3.5 u of at most 2 T, and 2 u T of the sum.
+class BallsInside {
+ public:
+  BallsInside(const SphereTree& tree, const SolidMesh& solid, const RelativePose& pose);
+
+  Eigen::Vector3d in_mesh(const Eigen::Vector3d& p) const { return mesh_from_tree_(p); }
+  // How far the image may be off.
+  double error() const { return error_; }
+  // Whether a point, given in the mesh's frame and off by error(), is inside, or too near the
+  // surface to tell.
+  bool contains(const Eigen::Vector3d& in_mesh) const;
+  // Whether it is inside for sure.
+  bool certainly_contains(const Eigen::Vector3d& in_mesh) const;
+  // True only if no point of the inside is in the ball, which is off by error().
+  bool is_outside_box(const Eigen::Vector3d& in_mesh, double radius) const;
+  // True only if no triangle meets the ball, which is off by error().
+  bool is_clear(const Eigen::Vector3d& in_mesh, double radius) const;
+
+  // The first sphere that is inside, of a tree of whose spheres none meets a triangle; -1 if none.
+  std::int32_t find() const;
+
+ private:
+  const SphereTree& tree_;
+  const SolidMesh& solid_;
+  const FrameChange mesh_from_tree_;
+  const double error_;
+  const double pad_;
+};
+
+}  // namespace spherule::internal

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "collide/solids/solid_spheres.h"
+
+#include "collide/search/one_tree.h"
+#include "collide/solids/balls_inside.h"
+#include "collide/solids/mesh_inside.h"
+#include "spheretree/build.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+// Cells at the surface are split down to this part of the mean radius of the triangles' balls, as
+// long as there are not more of them than so many for each triangle.
+constexpr double kSmallestCell = 1.0;
+constexpr std::size_t kCellsATriangle = 4;
+constexpr std::size_t kFewestCells = 512;
+constexpr int kMostLevels = 12;
+
+struct Cell {
+  Vector3d center;
+  double half;
+
+  // Halves are powers of two of the first one, but centres err by a few units in the last place.
+  Sphere ball() const {
+    return {center, half * 1.7320508075688774 * (1.0 + 1e-9) + 1e-14 * center.cwiseAbs().sum()};
+  }
+};
+
+// Whether the ball around one triangle holds all of another ball.
+class FindHolder {
+ public:
+  FindHolder(const SphereTree& tree, const Sphere& ball) : tree_(tree), ball_(ball) {}
+
+  bool afford(std::int32_t, std::int32_t) const { return true; }
+  bool enters(std::int32_t node) const {
+    const Sphere around = tree_.ball(static_cast<std::size_t>(node));
+    return add_up(distance_upper(around.center, ball_.center), ball_.radius) <= around.radius;
+  }
+  bool leaf(std::int32_t) {
+    found_ = true;
+    return false;
+  }
+  bool found() const { return found_; }
+
+ private:
+  const SphereTree& tree_;
+  const Sphere ball_;
+  bool found_ = false;
+};
+
+bool is_held(const SolidMesh& solid, const Sphere& ball) {
+  FindHolder query(solid.mesh().tree(), ball);
+  search_tree(solid.mesh().tree(), query);
+  return query.found();
+}
+
+}  // namespace
+
+std::vector<Sphere> spheres_around(const SolidMesh& solid) {
+  std::vector<Sphere> spheres;
+  double sum = 0.0;
+  for (const Sphere& ball : solid.mesh().tree().spheres()) {
+    sum += ball.radius;
+    spheres.push_back(
+        {ball.center, solid.growth() > 0.0 ? add_up(ball.radius, solid.growth()) : ball.radius});
+  }
+  if (!solid.has_inside()) return spheres;
+  const Eigen::AlignedBox3d& box = solid.inside().box();
+  // A little more than half of the longest side, for the rounding of cells.
+  const double reach = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+  std::vector<Cell> cells = {
+      {0.5 * (box.min() + box.max()), 0.5 * box.sizes().maxCoeff() * (1.0 + 1e-9) + 1e-12 * reach}};
+  const Sphere around = cells.front().ball();
+  const SphereTree frame = build_tree({&around, 1});
+  const Pose same;  // kept by reference
+  const RelativePose pose(frame, same, solid.mesh().tree(), same);
+  const BallsInside balls(frame, solid, pose);
+  const double smallest = kSmallestCell * sum / static_cast<double>(spheres.size());
+  const std::size_t most = std::max(kFewestCells, kCellsATriangle * spheres.size());
+  for (int level = 0; !cells.empty(); ++level) {
+    std::vector<Cell> at_surface;
+    for (const Cell& cell : cells) {
+      const Sphere ball = cell.ball();
+      if (balls.is_outside_box(cell.center, ball.radius)) continue;
+      if (!balls.is_clear(cell.center, ball.radius)) {
+        if (!is_held(solid, ball)) at_surface.push_back(cell);
+      } else if (balls.contains(cell.center)) {
+        spheres.push_back(ball);
+      }
+    }
+    // Of the eight parts of a cell at the surface four are there as well.
+    const bool is_last = level == kMostLevels || 4 * at_surface.size() > most ||
+                         (!at_surface.empty() && at_surface.front().ball().radius <= smallest);
+    cells.clear();
+    for (const Cell& cell : at_surface) {
+      if (is_last) {
+        spheres.push_back(cell.ball());
+        continue;
+      }
+      for (int part = 0; part < 8; ++part) {
+        const double quarter = 0.5 * cell.half;
+        const Vector3d to((part & 1) == 0 ? -quarter : quarter,
+                          (part & 2) == 0 ? -quarter : quarter,
+                          (part & 4) == 0 ? -quarter : quarter);
+        cells.push_back({cell.center + to, quarter * (1.0 + 1e-12)});
+      }
+    }
+  }
+  return spheres;
+}
+
+}  // namespace spherule::internal

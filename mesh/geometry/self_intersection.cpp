@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/geometry/self_intersection.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace spherule::internal {
+namespace {
+
+using Box = Eigen::AlignedBox3d;
+
+constexpr double kTouching = 1e-14;
+constexpr std::size_t kLeafTriangles = 4;
+
+// Whether the projections on `axis` are apart by more than rounding. Coordinates are relative to a
+// corner of `a`, so that `size` bounds what they can lose.
+bool separated(const Corners& a, const Corners& b, const Eigen::Vector3d& axis, double size) {
+  const auto [a_low, a_high] = std::minmax({a[0].dot(axis), a[1].dot(axis), a[2].dot(axis)});
+  const auto [b_low, b_high] = std::minmax({b[0].dot(axis), b[1].dot(axis), b[2].dot(axis)});
+  const double slack = kTouching * size * axis.norm();
+  return a_high + slack < b_low || b_high + slack < a_low;
+}
+
+// Binary hierarchy of boxes over the triangles; children of inner node i stand at i + 1 and
+// nodes[i].second.
+class BoxTree {
+ public:
+  explicit BoxTree(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
+    std::iota(order_.begin(), order_.end(), 0);
+    boxes_.reserve(order_.size());
+    for (const Eigen::Vector3i& t : mesh.triangles) {
+      Box& box = boxes_.emplace_back();
+      for (int k = 0; k < 3; ++k) box.extend(mesh.vertices[static_cast<std::size_t>(t[k])]);
+    }
+    build(0, order_.size());
+  }
+
+  std::size_t count_pairs(std::size_t limit) {
+    limit_ = limit;
+    count_ = 0;
+    within(0);
+    return count_;
+  }
+
+ private:
+  struct Node {
+    Box box;
+    std::size_t begin, end;  // its triangles in order_
+    std::size_t second = 0;  // 0 for a leaf
+  };
+
+  std::size_t build(std::size_t begin, std::size_t end) {
+    const std::size_t index = nodes_.size();
+    nodes_.push_back({Box(), begin, end});
+    Box box, centers;
+    for (std::size_t i = begin; i < end; ++i) {
+      box.extend(boxes_[order_[i]]);
+      centers.extend(boxes_[order_[i]].center());
+    }
+    nodes_[index].box = box;
+    if (end - begin <= kLeafTriangles) return index;
+    int axis = 0;
+    centers.sizes().maxCoeff(&axis);
+    const std::size_t middle = begin + (end - begin) / 2;
+    const auto at = [this](std::size_t i) {
+      return order_.begin() + static_cast<std::ptrdiff_t>(i);
+    };
+    std::nth_element(at(begin), at(middle), at(end), [&](std::size_t a, std::size_t b) {
+      return boxes_[a].center()[axis] < boxes_[b].center()[axis];
+    });
+    build(begin, middle);
+    const std::size_t second = build(middle, end);
+    nodes_[index].second = second;
+    return index;
+  }
+
+  // Pairs inside one node. Halving bounds the depth by log2 of the number of triangles.
+  void within(std::size_t i) {
+    if (nodes_[i].second == 0) {
+      leaf_pairs(i, i);
+      return;
+    }
+    within(i + 1);
+    within(nodes_[i].second);
+    between(i + 1, nodes_[i].second);
+  }
+
+  void between(std::size_t i, std::size_t j) {
+    const Node& a = nodes_[i];
+    const Node& b = nodes_[j];
+    if (count_ >= limit_ || !a.box.intersects(b.box)) return;
+    if (a.second == 0 && b.second == 0) {
+      leaf_pairs(i, j);
+    } else if (b.second == 0 || (a.second != 0 && a.end - a.begin >= b.end - b.begin)) {
+      between(i + 1, j);
+      between(a.second, j);
+    } else {
+      between(i, j + 1);
+      between(i, b.second);
+    }
+  }
+
+  void leaf_pairs(std::size_t i, std::size_t j) {
+    for (std::size_t p = nodes_[i].begin; p < nodes_[i].end; ++p) {
+      for (std::size_t q = i == j ? p + 1 : nodes_[j].begin; q < nodes_[j].end; ++q) {
+        if (count_ < limit_ && is_intersection(order_[p], order_[q])) ++count_;
+      }
+    }
+  }
+
+  bool is_intersection(std::size_t p, std::size_t q) const {
+    if (!boxes_[p].intersects(boxes_[q])) return false;
+    const Eigen::Vector3i& s = mesh_.triangles[p];
+    const Eigen::Vector3i& t = mesh_.triangles[q];
+    for (int k = 0; k < 3; ++k) {
+      if ((t.array() == s[k]).any()) return false;
+    }
+    return triangles_meet(corners(s), corners(t));
+  }
+
+  Corners corners(const Eigen::Vector3i& t) const {
+    const auto at = [&](int k) { return mesh_.vertices[static_cast<std::size_t>(t[k])]; };
+    return {at(0), at(1), at(2)};
+  }
+
+  const TriangleMesh& mesh_;
+  std::vector<std::size_t> order_;
+  std::vector<Box> boxes_;
+  std::vector<Node> nodes_;
+  std::size_t limit_ = 0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+// Separating axes: two triangles are disjoint exactly if they are separated along a normal, a cross
+// product of two edges, or, where they lie in one plane, a normal of an edge in that plane.
+bool triangles_meet(const Corners& a, const Corners& b) {
+  Corners p, q;
+  double size = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    p[k] = a[k] - a[0];
+    q[k] = b[k] - a[0];
+    size = std::max({size, p[k].norm(), q[k].norm()});
+  }
+  const auto edge = [](const Corners& t, std::size_t k) -> Eigen::Vector3d {
+    return t[(k + 1) % 3] - t[k];
+  };
+  const Eigen::Vector3d p_normal = edge(p, 0).cross(edge(p, 1));
+  const Eigen::Vector3d q_normal = edge(q, 0).cross(edge(q, 1));
+  if (separated(p, q, p_normal, size) || separated(p, q, q_normal, size)) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (separated(p, q, edge(p, i).cross(edge(q, j)), size)) return false;
+    }
+    if (separated(p, q, p_normal.cross(edge(p, i)), size)) return false;
+    if (separated(p, q, q_normal.cross(edge(q, i)), size)) return false;
+    // Only triangles without area need these.
+    if (separated(p, q, edge(p, i), size) || separated(p, q, edge(q, i), size)) return false;
+  }
+  return true;
+}
+
+std::size_t count_self_intersections(const TriangleMesh& mesh, std::size_t limit) {
+  return BoxTree(mesh).count_pairs(limit);
+}
+
+}  // namespace spherule::internal

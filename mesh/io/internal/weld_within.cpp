@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/io/internal/weld_within.h"
+
+#include "mesh/geometry/mesh_box.h"
+#include "mesh/geometry/point_grid.h"
+#include "mesh/geometry/raw_mesh.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace spherule::internal {
+namespace {
+
+// Of the box diagonal: the grid's cubes are counted in integers.
+constexpr double kFinestCube = 0x1p-20;
+
+}  // namespace
+
+TriangleMesh weld_within(const TriangleMesh& input, double tolerance) {
+  TriangleMesh mesh = weld(input);
+  if (tolerance == 0.0 || mesh.triangles.empty()) return mesh;
+  const double edge = std::max(tolerance, kFinestCube * box_of(mesh).diagonal().norm());
+  const std::vector<Eigen::Vector3d> places = mesh.vertices;
+  const PointGrid grid(places, edge);
+  std::vector<char> is_placed(places.size(), 0);
+  std::vector<std::uint32_t> near;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (is_placed[i] != 0) continue;
+    near.clear();
+    grid.find(places[i], tolerance, near);
+    for (const std::uint32_t k : near) {
+      if (is_placed[k] != 0 || distance_upper(places[i], places[k]) > tolerance) continue;
+      is_placed[k] = 1;
+      mesh.vertices[k] = places[i];
+    }
+    is_placed[i] = 1;
+  }
+  mesh.vertex_error = add_up(mesh.vertex_error, tolerance);
+  return weld(mesh);
+}
+
+}  // namespace spherule::internal

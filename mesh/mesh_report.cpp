@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/mesh_report.h"
+
+#include "mesh/geometry/raw_mesh.h"
+#include "mesh/geometry/self_intersection.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+// Below this share of the square of the longest edge, twice an area is rounding.
+constexpr double kZeroArea = 1e-14;
+// A volume of this share of area times size is rounding.
+constexpr double kZeroVolume = 1e-12;
+
+const Eigen::Vector3d& corner(const TriangleMesh& mesh, const Eigen::Vector3i& t, int k) {
+  return mesh.vertices[static_cast<std::size_t>(t[k])];
+}
+
+bool has_repeated_corner(const Eigen::Vector3i& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+bool is_degenerate(const TriangleMesh& mesh, const Eigen::Vector3i& t) {
+  const Eigen::Vector3d e = corner(mesh, t, 1) - corner(mesh, t, 0);
+  const Eigen::Vector3d f = corner(mesh, t, 2) - corner(mesh, t, 0);
+  const double longest = std::max({e.squaredNorm(), f.squaredNorm(), (f - e).squaredNorm()});
+  return e.cross(f).norm() <= kZeroArea * longest;
+}
+
+std::size_t count_duplicates(const TriangleMesh& mesh) {
+  std::vector<std::array<int, 3>> sorted;
+  sorted.reserve(mesh.triangles.size());
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    std::array<int, 3>& key = sorted.emplace_back(std::array<int, 3>{t[0], t[1], t[2]});
+    std::sort(key.begin(), key.end());
+  }
+  std::sort(sorted.begin(), sorted.end());
+  const auto last = std::unique(sorted.begin(), sorted.end());
+  return static_cast<std::size_t>(sorted.end() - last);
+}
+
+// A use of the edge low-high by a triangle, `forward` if it runs from low to high.
+struct EdgeUse {
+  int low, high;
+  bool forward;
+  friend auto operator<=>(const EdgeUse&, const EdgeUse&) = default;
+};
+
+// Sorted. A triangle with a repeated corner runs along an edge and back: as a chain it is zero, and
+// it is left out.
+std::vector<EdgeUse> edge_uses(const TriangleMesh& mesh) {
+  std::vector<EdgeUse> uses;
+  uses.reserve(3 * mesh.triangles.size());
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    if (has_repeated_corner(t)) continue;
+    for (int k = 0; k < 3; ++k) {
+      const int from = t[k], to = t[(k + 1) % 3];
+      uses.push_back({std::min(from, to), std::max(from, to), from < to});
+    }
+  }
+  std::sort(uses.begin(), uses.end());
+  return uses;
+}
+
+// Union-find over the vertices.
+class Components {
+ public:
+  explicit Components(const TriangleMesh& mesh) : parent_(mesh.vertices.size()) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+    for (const Eigen::Vector3i& t : mesh.triangles) {
+      parent_[static_cast<std::size_t>(root(t[1]))] = root(t[0]);
+      parent_[static_cast<std::size_t>(root(t[2]))] = root(t[0]);
+    }
+  }
+
+  int root(int vertex) {
+    auto v = static_cast<std::size_t>(vertex);
+    while (parent_[v] != static_cast<int>(v)) {
+      parent_[v] = parent_[static_cast<std::size_t>(parent_[v])];
+      v = static_cast<std::size_t>(parent_[v]);
+    }
+    return static_cast<int>(v);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+struct Component {
+  bool used = false;
+  bool closed = true;
+  double area = 0.0;
+  double volume = 0.0;
+};
+
+// Counts the edges and marks the components that are not closed.
+void count_edges(const TriangleMesh& mesh, Components& components, std::vector<Component>& parts,
+                 MeshReport& report) {
+  const std::vector<EdgeUse> uses = edge_uses(mesh);
+  for (std::size_t i = 0; i < uses.size();) {
+    std::size_t forward = 0, backward = 0, j = i;
+    for (; j < uses.size() && uses[j].low == uses[i].low && uses[j].high == uses[i].high; ++j) {
+      ++(uses[j].forward ? forward : backward);
+    }
+    const std::size_t count = j - i;
+    report.boundary_edges += count == 1;
+    report.non_manifold_edges += count > 2;
+    report.misoriented_edges += count == 2 && forward != backward;
+    if (forward != backward) {
+      report.closed = false;
+      parts[static_cast<std::size_t>(components.root(uses[i].low))].closed = false;
+    }
+    i = j;
+  }
+}
+
+void add_line(std::ostringstream& out, std::size_t count, const char* one, const char* many,
+              const char* remark) {
+  if (count == 0) return;
+  out << "\n" << count << " " << (count == 1 ? one : many) << remark;
+}
+
+}  // namespace
+
+MeshReport mesh_report(const TriangleMesh& input, const MeshReportOptions& options) {
+  validate(input, "mesh");
+  const TriangleMesh mesh = internal::weld(input);
+  MeshReport report;
+  report.vertices = mesh.vertices.size();
+  report.triangles = mesh.triangles.size();
+  for (const Eigen::Vector3d& v : mesh.vertices) report.box.extend(v);
+
+  Components components(mesh);
+  std::vector<Component> parts(mesh.vertices.size());
+  const Eigen::Vector3d center = report.box.center();  // keeps the terms of the volume small
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const Eigen::Vector3d a = corner(mesh, t, 0) - center;
+    const Eigen::Vector3d b = corner(mesh, t, 1) - center;
+    const Eigen::Vector3d c = corner(mesh, t, 2) - center;
+    Component& part = parts[static_cast<std::size_t>(components.root(t[0]))];
+    part.used = true;
+    part.area += 0.5 * (b - a).cross(c - a).norm();
+    part.volume += a.dot(b.cross(c)) / 6.0;
+    report.degenerate_triangles += is_degenerate(mesh, t);
+  }
+  report.duplicate_triangles = count_duplicates(mesh);
+  report.closed = true;
+  count_edges(mesh, components, parts, report);
+  for (const Component& part : parts) {
+    if (!part.used) continue;
+    ++report.components;
+    report.area += part.area;
+    report.volume += part.volume;
+    const double rounding = kZeroVolume * part.area * report.box.diagonal().norm();
+    report.inverted_components += part.closed && part.volume < -rounding;
+  }
+  if (options.self_intersections) {
+    report.self_intersections = internal::count_self_intersections(mesh, kMaxSelfIntersections);
+  }
+  return report;
+}
+
+std::string describe(const MeshReport& report) {
+  std::ostringstream out;
+  const Eigen::Vector3d size = report.box.sizes();
+  out << report.triangles << (report.triangles == 1 ? " triangle, " : " triangles, ")
+      << report.vertices << " vertices, "
+      << (report.components == 1 ? "one piece" : std::to_string(report.components) + " pieces")
+      << ", size " << size.x() << " x " << size.y() << " x " << size.z() << ", area "
+      << report.area;
+  if (report.closed) {
+    out << ", volume " << report.volume << "\nclosed";
+  } else {
+    out << "\nnot closed: the mesh does not bound a volume, only its surface is certain";
+  }
+  add_line(out, report.degenerate_triangles, "triangle", "triangles", " without area");
+  add_line(out, report.duplicate_triangles, "triangle is", "triangles are", " there before");
+  add_line(out, report.boundary_edges, "edge", "edges", " with a triangle on one side only");
+  add_line(out, report.non_manifold_edges, "edge", "edges", " of more than two triangles");
+  add_line(out, report.misoriented_edges, "edge", "edges",
+           " between triangles of opposite orientation");
+  add_line(out, report.inverted_components, "closed piece is", "closed pieces are",
+           " turned inside out (a cavity, or the wrong way round)");
+  if (report.self_intersections >= kMaxSelfIntersections) out << "\nat least";
+  add_line(out, report.self_intersections, "pair", "pairs",
+           " of triangles that meet without a common corner");
+  return out.str();
+}
+
+}  // namespace spherule

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/shells/mesh_shells.h"
+
+#include "mesh/shells/turned_sets.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+
+namespace spherule::internal {
+namespace {
+
+using Corners = std::array<int, 3>;
+using Eigen::Vector3d;
+
+bool is_degenerate(const Corners& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+// Whether the corners go round in ascending order.
+bool ascends(const Corners& t) {
+  return (t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0]) == 2;
+}
+
+struct EdgeUse {
+  int low, high;  // corners
+  int triangle;
+  int turn;  // +1 from low to high, -1 back
+};
+
+// The two sides of a triangle, as elements of sets: that from which its corners go round
+// anticlockwise, and the other one.
+int front_of(int triangle) {
+  return 2 * triangle;
+}
+int back_of(int triangle) {
+  return 2 * triangle + 1;
+}
+
+class ShellFinder {
+ public:
+  ShellFinder(const std::vector<Corners>& triangles, std::span<const Vector3d> vertices)
+      : triangles_(triangles),
+        vertices_(vertices),
+        shells_(triangles.size()),
+        patches_(triangles.size()),
+        sides_(2 * triangles.size()),
+        is_first_(triangles.size(), 0),
+        cancels_(triangles.size(), 0),
+        remains_(triangles.size(), 0),
+        has_junction_(triangles.size(), 0),
+        is_open_shell_(triangles.size(), 0),
+        is_open_patch_(triangles.size(), 0) {
+    sort_edges();
+    for_each_edge([&](std::span<const EdgeUse> uses) {
+      for (const EdgeUse& use : uses) shells_.join(use.triangle, uses[0].triangle);
+    });
+    compare_alike();
+    for_each_edge([&](std::span<const EdgeUse> uses) {
+      weigh_shell(uses);
+      take_firsts(uses);
+      join_patches();
+    });
+    std::vector<int> balance(triangles.size(), 0);
+    for_each_edge([&](std::span<const EdgeUse> uses) {
+      if (is_plain(shell_of(uses[0].triangle))) return;
+      take_firsts(uses);
+      weigh_patches(balance);
+      join_sides();
+    });
+  }
+
+  MeshShells run() {
+    MeshShells result;
+    result.roles.resize(triangles_.size());
+    std::vector<std::int32_t> of_shell(triangles_.size(), -1), of_patch = of_shell,
+                                                               of_cell(2 * triangles_.size(), -1);
+    std::int32_t count = 0;
+    const auto number = [&](std::int32_t& of) { return of >= 0 ? of : of = count++; };
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      if (is_degenerate(triangles_[i])) continue;
+      const auto triangle = static_cast<int>(i);
+      const std::size_t shell = shell_of(triangle);
+      TriangleRole& role = result.roles[i];
+      if (!is_open_shell_[shell] && remains_[shell]) role.shell = number(of_shell[shell]);
+      if (is_plain(shell) || !is_first_[i]) continue;
+      const TurnedSets::Place place = patches_.find(triangle);
+      const auto patch = static_cast<std::size_t>(place.root);
+      role.turn = place.turn;
+      if (!is_open_patch_[patch]) role.patch = number(of_patch[patch]);
+      const int front = sides_.find(front_of(triangle)).root;
+      const int back = sides_.find(back_of(triangle)).root;
+      if (front != back) {
+        role.front = number(of_cell[static_cast<std::size_t>(front)]);
+        role.back = number(of_cell[static_cast<std::size_t>(back)]);
+      }
+      const bool counts_as_turned = !cancels_[shell] && !is_open_shell_[shell];
+      result.are_closed = result.are_closed && (counts_as_turned || role.encloses());
+    }
+    return result;
+  }
+
+ private:
+  std::size_t shell_of(int triangle) {
+    return static_cast<std::size_t>(shells_.find(triangle).root);
+  }
+  // Whether the shell says all there is to say.
+  bool is_plain(std::size_t shell) const {
+    return !cancels_[shell] && !has_junction_[shell] && !is_open_shell_[shell];
+  }
+
+  void sort_edges() {
+    edges_.reserve(3 * triangles_.size());
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      const Corners& t = triangles_[i];
+      if (is_degenerate(t)) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int from = t[k], to = t[(k + 1) % 3];
+        edges_.push_back(
+            {std::min(from, to), std::max(from, to), static_cast<int>(i), from < to ? 1 : -1});
+      }
+    }
+    std::sort(edges_.begin(), edges_.end(), [](const EdgeUse& a, const EdgeUse& b) {
+      return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+    });
+  }
+
+  template <typename Function>
+  void for_each_edge(const Function& function) {
+    for (std::size_t i = 0, end = 0; i < edges_.size(); i = end) {
+      while (end < edges_.size() && edges_[end].low == edges_[i].low &&
+             edges_[end].high == edges_[i].high) {
+        ++end;
+      }
+      function(std::span(edges_).subspan(i, end - i));
+    }
+  }
+
+  // Of triangles with the same corners: which is the first, whether they are turned both ways, and
+  // whether one way is more frequent.
+  void compare_alike() {
+    std::vector<std::pair<Corners, int>> sorted;
+    sorted.reserve(triangles_.size());
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      if (is_degenerate(triangles_[i])) continue;
+      Corners corners = triangles_[i];
+      std::sort(corners.begin(), corners.end());
+      sorted.emplace_back(corners, static_cast<int>(i));
+    }
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t i = 0, end = 0; i < sorted.size(); i = end) {
+      std::size_t ascending = 0;
+      for (; end < sorted.size() && sorted[end].first == sorted[i].first; ++end) {
+        ascending += ascends(triangles_[static_cast<std::size_t>(sorted[end].second)]);
+      }
+      const std::size_t descending = end - i - ascending;
+      const std::size_t shell = shell_of(sorted[i].second);
+      is_first_[static_cast<std::size_t>(sorted[i].second)] = 1;
+      if (ascending > 0 && descending > 0) cancels_[shell] = 1;
+      if (ascending != descending) remains_[shell] = 1;
+    }
+  }
+
+  void weigh_shell(std::span<const EdgeUse> uses) {
+    int sum = 0;
+    for (const EdgeUse& use : uses) sum += use.turn;
+    if (sum != 0) is_open_shell_[shell_of(uses[0].triangle)] = 1;
+  }
+
+  // Those of an edge that do not repeat another triangle.
+  void take_firsts(std::span<const EdgeUse> uses) {
+    firsts_.clear();
+    for (const EdgeUse& use : uses) {
+      if (is_first_[static_cast<std::size_t>(use.triangle)]) firsts_.push_back(use);
+    }
+  }
+
+  void join_patches() {
+    if (firsts_.size() > 2) has_junction_[shell_of(firsts_[0].triangle)] = 1;
+    if (firsts_.size() != 2) return;
+    patches_.join(firsts_[0].triangle, firsts_[1].triangle, -firsts_[0].turn * firsts_[1].turn);
+  }
+
+  // `balance`, of every patch, is zero before and after.
+  void weigh_patches(std::vector<int>& balance) {
+    const auto for_each_patch = [&](const auto& function) {
+      for (const EdgeUse& use : firsts_) {
+        const TurnedSets::Place place = patches_.find(use.triangle);
+        function(static_cast<std::size_t>(place.root), use.turn * place.turn);
+      }
+    };
+    for_each_patch([&](std::size_t patch, int turn) { balance[patch] += turn; });
+    for_each_patch([&](std::size_t patch, int) {
+      if (balance[patch] != 0) is_open_patch_[patch] = 1;
+      balance[patch] = 0;
+    });
+  }
+
+  // Seen along the edge, the triangles in the order of their angles: what faces anticlockwise of
+  // one faces the next one. A triangle that passes the edge from low to high has its front there.
+  void join_sides() {
+    if (firsts_.size() > 2) sort_by_angle();
+    for (std::size_t i = 0; i < firsts_.size(); ++i) {
+      const EdgeUse& use = firsts_[i];
+      const EdgeUse& next = firsts_[(i + 1) % firsts_.size()];
+      sides_.join(use.turn > 0 ? front_of(use.triangle) : back_of(use.triangle),
+                  next.turn > 0 ? back_of(next.triangle) : front_of(next.triangle));
+    }
+  }
+
+  void sort_by_angle() {
+    const Vector3d& origin = vertex(firsts_[0].low);
+    const Vector3d edge = vertex(firsts_[0].high) - origin;
+    // Of a length that neither overflows nor vanishes when squared.
+    const Vector3d axis = (edge / edge.lpNorm<Eigen::Infinity>()).normalized();
+    const Vector3d right = axis.unitOrthogonal();
+    const Vector3d up = axis.cross(right);
+    angles_.clear();
+    for (const EdgeUse& use : firsts_) {
+      const Corners& t = triangles_[static_cast<std::size_t>(use.triangle)];
+      const int third = *std::find_if(
+          t.begin(), t.end(), [&](int corner) { return corner != use.low && corner != use.high; });
+      const Vector3d beside = vertex(third) - origin;
+      angles_.emplace_back(std::atan2(up.dot(beside), right.dot(beside)), use);
+    }
+    std::sort(angles_.begin(), angles_.end(), [](const auto& a, const auto& b) {
+      return std::tie(a.first, a.second.triangle) < std::tie(b.first, b.second.triangle);
+    });
+    for (std::size_t i = 0; i < firsts_.size(); ++i) firsts_[i] = angles_[i].second;
+  }
+  const Vector3d& vertex(int corner) const { return vertices_[static_cast<std::size_t>(corner)]; }
+
+  const std::vector<Corners>& triangles_;
+  const std::span<const Vector3d> vertices_;
+  std::vector<EdgeUse> edges_;
+  std::vector<EdgeUse> firsts_;                     // of one edge
+  std::vector<std::pair<double, EdgeUse>> angles_;  // of these
+  TurnedSets shells_, patches_;                     // of triangles
+  TurnedSets sides_;                                // of them
+  std::vector<char> is_first_;  // of a triangle: among those with the same corners
+  // Of a shell, by the triangle that stands for it: whether triangles are turned both ways, and
+  // whether some are left if those are taken away in pairs; whether more than two meet at an edge.
+  std::vector<char> cancels_, remains_, has_junction_;
+  std::vector<char> is_open_shell_, is_open_patch_;
+};
+
+}  // namespace
+
+MeshShells find_shells(const std::vector<std::array<int, 3>>& triangles,
+                       std::span<const Vector3d> vertices) {
+  return ShellFinder(triangles, vertices).run();
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// What a RobotChecker and its scratch consist of.
+
+#include "robot/check/internal/body_pairs.h"
+#include "robot/check/internal/lane_check.h"
+#include "robot/check/internal/standing_trees.h"
+#include "robot/check/robot_checker.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+
+struct RobotChecker::Parts {
+  struct Named {
+    CheckedBody::Kind kind;
+    std::string name;
+  };
+
+  Parts(RobotModel model, const RobotCheckerOptions& options, internal::BodyPairs all,
+        std::vector<Named> body_names, std::vector<Named> obstacle_names)
+      : robot(std::move(model)),
+        enforces_limits(options.enforce_limits),
+        pairs(std::move(all)),
+        lanes(pairs, options.instructions),
+        bodies(std::move(body_names)),
+        obstacles(std::move(obstacle_names)) {
+    if (pairs.tested() == pairs.pairs().size()) return;
+    standing.emplace(pairs, options.instructions);
+  }
+  // `lanes` and `standing` refer to `pairs`.
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+
+  // Whether neither `standing` nor BodyPairs::is_usual() refuses numbers that are not finite.
+  bool requires_finite() const { return enforces_limits || (!standing && pairs.tested() == 0); }
+
+  RobotModel robot;
+  bool enforces_limits;
+  // All pairs. Those behind pairs.tested() are of static trees: `standing` tests them in
+  // configurations.
+  internal::BodyPairs pairs;
+  internal::LaneCheck lanes;  // of these
+  std::optional<internal::StandingTrees> standing;
+  std::vector<Named> bodies;     // of CheckedPiece::body
+  std::vector<Named> obstacles;  // of pairs.obstacles()
+};
+
+struct RobotChecker::Scratch::Memory {
+  Memory(std::shared_ptr<const Parts> parts, const internal::LaneCheck& check)
+      : owner(std::move(parts)), lanes(check) {}
+
+  std::shared_ptr<const Parts> owner;
+  internal::LaneCheck::Memory lanes;
+  internal::BodyPairs::Memory pairs{};
+  std::optional<internal::StandingTrees::Memory> standing{};
+};
+
+}  // namespace spherule

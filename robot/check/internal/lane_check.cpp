@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/check/internal/lane_check.h"
+
+#include "collide/kernels/plan_kernels.h"
+#include "robot/check/internal/plan_source.h"
+#include "robot/model/internal/moving_frames.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace spherule::internal {
+
+LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
+    : pairs_(pairs), positions_(pairs.robot()), kernels_(plan_kernels_for(instructions)) {
+  RobotPlanSource all = make_plan_source(pairs, pairs.pairs().size());
+  RobotPlanSource tested = make_plan_source(pairs, pairs.tested());
+  single_ = std::make_shared<const CompiledPlan<float>>(all.source);
+  exact_ = std::make_unique<const CompiledPlan<double>>(all.source);
+  const bool is_all = pairs.tested() == pairs.pairs().size();
+  configurations_ = is_all ? single_ : std::make_shared<const CompiledPlan<float>>(tested.source);
+  one_ = std::make_unique<const CompiledWidePlan>(tested.source, *configurations_);
+  pair_of_test_ = std::move(all.pair_of_test);
+  decide_fixed_pairs(all.fixed_pairs);
+  find_never_ranges();
+}
+
+void LaneCheck::find_never_ranges() {
+  for (const CheckedPair& pair : pairs_.pairs()) {
+    if (pair.boxes == nullptr || !pair.boxes->is_all_free()) continue;
+    for (const FreeBoxes::Variable& variable : pair.boxes->variables()) {
+      if (variable.wraps) continue;  // all positions are proved
+      const auto index = static_cast<std::size_t>(variable.index);
+      auto known = std::find_if(never_ranges_.begin(), never_ranges_.end(),
+                                [&](const Range& range) { return range.variable == index; });
+      if (known == never_ranges_.end()) {
+        known = never_ranges_.insert(known, {index, variable.lower, variable.upper});
+      }
+      known->lower = std::max(known->lower, variable.lower);
+      known->upper = std::min(known->upper, variable.upper);
+    }
+  }
+}
+
+// Ranges are intervals: on a straight motion it is enough to ask for both ends.
+bool LaneCheck::never_touch(std::span<const double> configuration) const {
+  return std::all_of(never_ranges_.begin(), never_ranges_.end(), [&](const Range& range) {
+    const double value = configuration[range.variable];
+    return range.lower <= value && value <= range.upper;
+  });
+}
+
+// Pairs that no joint moves: of static ones the canonical poses are always the same. Those that
+// move together are apart in all configurations if they are in one by far more than rounding; the
+// others are asked for each.
+void LaneCheck::decide_fixed_pairs(std::span<const std::size_t> pairs) {
+  // Of both bodies, in both configurations, with the slack of the canonical test: 4.
+  constexpr double kFar = 8.0;
+  BodyPairs::Memory memory;
+  pairs_.place(std::vector<double>(static_cast<std::size_t>(pairs_.robot().variable_count())),
+               memory);
+  const MovingFrames frames(pairs_.robot());
+  for (const std::size_t pair : pairs) {
+    const CheckedPiece& piece =
+        pairs_.pieces()[static_cast<std::size_t>(pairs_.pairs()[pair].piece)];
+    const bool is_static = frames.frame_of_link[static_cast<std::size_t>(piece.link)] < 0;
+    if (is_static && pairs_.touches(pair, memory)) {
+      always_ = true;
+      always_tested_ = always_tested_ || pair < pairs_.tested();
+    }
+    if (!is_static && pairs_.is_near(pair, kFar * pairs_.pose_error(), memory)) {
+      rigid_pairs_.push_back(pair);
+    }
+  }
+}
+
+template <class Real>
+LaneCheck::Memory::Stage<Real>::Stage(const CompiledPlan<Real>& compiled, const WidePlan* wide,
+                                      const WideScratch* wide_scratch)
+    : plan(compiled, wide, wide_scratch),
+      open(static_cast<std::size_t>(compiled.plan().word_count) * kPlanLanes),
+      near(open.size()) {}
+
+LaneCheck::Memory::Memory(const LaneCheck& check)
+    : one_(check.configurations_->plan(), *check.one_),
+      configurations_(*check.configurations_, &check.one_->plan(), &one_.view()),
+      single_(*check.single_,
+              check.single_ == check.configurations_ ? &check.one_->plan() : nullptr, &one_.view()),
+      exact_(*check.exact_, nullptr, nullptr),
+      room_(check.positions_.room_for(kLanes)),
+      proofs_(check.pairs_) {
+  const auto positions =
+      static_cast<std::size_t>(std::max(1, check.single_->plan().position_count));
+  from_.resize(positions);
+  to_.resize(positions);
+  variables_.resize(static_cast<std::size_t>(check.pairs_.robot().variable_count()));
+}
+
+namespace {
+
+// The configurations of the lanes, for the canonical tests.
+struct ConfigurationClient {
+  const BodyPairs& pairs;
+  const CompiledPlan<float>& plan;
+  std::span<const std::size_t> pair_of_test;
+  std::span<const std::span<const double>> configurations;
+  BodyPairs::Memory& memory;
+  int placed = -1;
+
+  static bool touches(void* context, int lane, std::int32_t test) {
+    auto& self = *static_cast<ConfigurationClient*>(context);
+    if (std::exchange(self.placed, lane) != lane) {
+      self.pairs.place(self.configurations[static_cast<std::size_t>(lane)], self.memory);
+    }
+    return self.pairs.touches(self.pair_of(test), self.memory);
+  }
+  static bool is_proved_free(void* context, int lane, std::int32_t test) {
+    const auto& self = *static_cast<ConfigurationClient*>(context);
+    return self.pairs.pairs()[self.pair_of(test)].boxes->contains(
+        self.configurations[static_cast<std::size_t>(lane)]);
+  }
+
+  std::size_t pair_of(std::int32_t test) const {
+    return pair_of_test[static_cast<std::size_t>(plan.source_test(test))];
+  }
+  // For one evaluation.
+  PlanClient client(bool skips_never) {
+    return {&touches, nullptr, &is_proved_free, nullptr, nullptr, this, skips_never};
+  }
+};
+
+}  // namespace
+
+bool LaneCheck::rigid_pairs_touch(std::span<const double> configuration,
+                                  BodyPairs::Memory& exact) const {
+  if (rigid_pairs_.empty()) return false;
+  pairs_.place(configuration, exact);
+  return std::any_of(rigid_pairs_.begin(), rigid_pairs_.end(),
+                     [&](std::size_t pair) { return pairs_.touches(pair, exact); });
+}
+
+unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurations,
+                             Memory& memory, BodyPairs::Memory& exact) const {
+  const unsigned all = (1U << configurations.size()) - 1;
+  if (always_tested_) return all;
+  unsigned rigid = 0;
+  for (std::size_t i = 0; i < configurations.size() && !rigid_pairs_.empty(); ++i) {
+    rigid |= (rigid_pairs_touch(configurations[i], exact) ? 1U : 0U) << i;
+  }
+  const CheckPlan<float>& plan = configurations_->plan();
+  if (plan.test_count == 0) return rigid;
+  const PlanScratch<float>& scratch = memory.configurations_.view();
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const std::size_t i = std::min(lane, configurations.size() - 1);
+    const std::span<const double> at = positions_.of(configurations[i], memory.room_, lane);
+    for (std::size_t p = 0; p < at.size(); ++p) scratch.positions[p].lane[lane] = at[p];
+  }
+  ConfigurationClient client{pairs_, *configurations_, pair_of_test_, configurations, exact};
+  const bool skips_never = std::all_of(
+      configurations.begin(), configurations.end(),
+      [&](std::span<const double> configuration) { return never_touch(configuration); });
+  return rigid | kernels_.check_lanes(plan, scratch, all & ~rigid, client.client(skips_never));
+}
+
+bool LaneCheck::touches(std::span<const double> configuration, Memory& memory,
+                        BodyPairs::Memory& exact) const {
+  if (always_tested_ || rigid_pairs_touch(configuration, exact)) return true;
+  const CheckPlan<float>& plan = configurations_->plan();
+  if (plan.test_count == 0) return false;
+  const WideScratch& scratch = memory.one_.view();
+  const std::span<const double> at = positions_.of(configuration, memory.room_);
+  std::copy(at.begin(), at.end(), scratch.positions);
+  ConfigurationClient client{pairs_, *configurations_, pair_of_test_, {&configuration, 1}, exact};
+  return kernels_.check_one(plan, one_->plan(), scratch, client.client(never_touch(configuration)));
+}
+
+}  // namespace spherule::internal

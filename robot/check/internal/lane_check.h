@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// The fast check of all pairs of a RobotChecker: configurations and motions in lanes, in single
+// precision, with the canonical tests of BodyPairs where that leaves something undecided.
+
+#include "collide/instruction_set.h"
+#include "collide/kernels/compiled_plan.h"
+#include "collide/kernels/compiled_wide_plan.h"
+#include "robot/check/internal/body_pairs.h"
+#include "robot/check/internal/edge_proofs.h"
+#include "robot/check/internal/part_stack.h"
+#include "robot/model/joint_positions.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace spherule::internal {
+
+class LaneCheck {
+ public:
+  // `pairs` must outlive it. Throws Error for instructions that this machine has not got, and for
+  // what reaches too far.
+  LaneCheck(const BodyPairs& pairs, InstructionSet instructions);
+
+  // What a query writes to.
+  class Memory {
+   public:
+    explicit Memory(const LaneCheck& check);
+
+   private:
+    friend class LaneCheck;
+    // Of motions, evaluated in Real.
+    template <class Real>
+    struct Stage {
+      Stage(const CompiledPlan<Real>& plan, const WidePlan* wide, const WideScratch* wide_scratch);
+      PlanMemory<Real> plan;
+      PartStack waiting;
+      std::vector<std::uint64_t> open;
+      std::vector<std::uint64_t> near;
+    };
+    WideMemory one_;
+    PlanMemory<float> configurations_;
+    Stage<float> single_;
+    Stage<double> exact_;
+    JointPositions::Room room_;
+    std::vector<double> from_;  // positions
+    std::vector<double> to_;
+    std::vector<double> variables_;
+    EdgeProofs proofs_;
+    std::vector<std::uint64_t> undecided_;
+  };
+
+  // Configurations that are checked side by side.
+  static constexpr std::size_t kLanes = kPlanLanes;
+
+  // A bit for each of up to kLanes configurations in which any of the first `tested()` pairs of
+  // BodyPairs touches, by the canonical tests. Each must be is_usual().
+  unsigned contacts(std::span<const std::span<const double>> configurations, Memory& memory,
+                    BodyPairs::Memory& exact) const;
+
+  // The same of one configuration.
+  bool touches(std::span<const double> configuration, Memory& memory,
+               BodyPairs::Memory& exact) const;
+
+  // The straight motion up to the fraction `end`, all pairs of BodyPairs, as RobotChecker says of
+  // check_edge(). Both ends must be is_usual(), the resolution above zero.
+  EdgeResult check_edge(std::span<const double> from, std::span<const double> to, double end,
+                        const EdgeRequest& request, Memory& memory, BodyPairs::Memory& exact) const;
+
+ private:
+  class Edge;
+
+  // Of the pairs that never touch: the ranges of variables in which all of them are proved.
+  struct Range {
+    std::size_t variable = 0;
+    double lower = 0.0;
+    double upper = 0.0;
+  };
+  void find_never_ranges();
+  bool never_touch(std::span<const double> configuration) const;
+  void decide_fixed_pairs(std::span<const std::size_t> pairs);
+  bool rigid_pairs_touch(std::span<const double> configuration, BodyPairs::Memory& exact) const;
+
+  const BodyPairs& pairs_;
+  JointPositions positions_;
+  const PlanKernelSet& kernels_;
+  // Rigid pairs that are so near that the rounding of their poses decides.
+  std::vector<std::size_t> rigid_pairs_;
+  std::vector<std::size_t> pair_of_test_;  // of the source
+  std::vector<Range> never_ranges_;
+  std::shared_ptr<const CompiledPlan<float>> configurations_;  // of the first tested() pairs
+  std::unique_ptr<const CompiledWidePlan> one_;
+  std::shared_ptr<const CompiledPlan<float>> single_;  // of all
+  std::unique_ptr<const CompiledPlan<double>> exact_;
+  bool always_tested_ = false;  // a static pair among the first tested() touches
+  bool always_ = false;         // any static pair does
+};
+
+}  // namespace spherule::internal

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/check/robot_checker.h"
+
+#include "collide/mechanism_check.h"
+#include "robot/check/internal/checker_parts.h"
+#include "robot/check/internal/configuration_batch.h"
+#include "robot/model/internal/shared_work.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+// Edges that a thread takes at a time, and configurations: whole blocks of MechanismCheck, and so
+// many that what a scratch remembers is worth something. To start and end a thread takes 40 to 75
+// us on a small cloud machine, a configuration against standing trees of an easy cell 41 ns: for
+// kFewestShared the second thread saves what it costs. Others take longer: more than one piece of
+// them is worth a thread.
+constexpr std::size_t kEdgesAPiece = 16;
+constexpr std::size_t kPiece = 512;
+constexpr std::size_t kFewestShared = 4096;
+static_assert(kPiece % MechanismCheck::kBlock == 0 &&
+              RobotChecker::kLargestPosition == MechanismCheck::kLargestVariable);
+
+void require_size(const RobotModel& robot, std::span<const double> configuration) {
+  if (configuration.size() != static_cast<std::size_t>(robot.variable_count())) {
+    throw Error("configuration", "it has " + std::to_string(configuration.size()) +
+                                     " numbers where the robot has " +
+                                     std::to_string(robot.variable_count()) + " variables");
+  }
+}
+
+void require_finite(std::span<const double> configuration) {
+  if (!std::all_of(configuration.begin(), configuration.end(),
+                   [](double position) { return std::isfinite(position); })) {
+    throw Error("configuration", "a position is not finite");
+  }
+}
+
+// Of a joint that has limits.
+double position_of(const Joint& joint, std::span<const double> configuration) {
+  return joint.multiplier * configuration[static_cast<std::size_t>(joint.variable)] + joint.offset;
+}
+
+bool has_limits(const Joint& joint) {
+  return joint.moves() && joint.type != JointType::kContinuous;
+}
+
+bool is_within_limits(const RobotModel& robot, std::span<const double> configuration) {
+  return std::all_of(robot.joints().begin(), robot.joints().end(), [&](const Joint& joint) {
+    if (!has_limits(joint)) return true;
+    const double position = position_of(joint, configuration);
+    return joint.lower <= position && position <= joint.upper;
+  });
+}
+
+// Up to this fraction a motion that starts within the limits stays there; above 1 if it does not
+// leave them. What rounding leaves in doubt at the end counts as inside it.
+double leaves_limits_at(const RobotModel& robot, std::span<const double> from,
+                        std::span<const double> to) {
+  double first = std::numeric_limits<double>::infinity();
+  for (const Joint& joint : robot.joints()) {
+    if (!has_limits(joint)) continue;
+    const double start = position_of(joint, from);
+    const double end = position_of(joint, to);
+    const double limit = end > joint.upper ? joint.upper : joint.lower;
+    if (joint.lower <= end && end <= joint.upper) continue;
+    const double at = (limit - start) / (end - start);
+    first = std::min(first, std::clamp(at * (1.0 - 1e-12), 0.0, 1.0));
+  }
+  return first;
+}
+
+}  // namespace
+
+RobotChecker::RobotChecker(std::shared_ptr<const Parts> parts) : parts_(std::move(parts)) {}
+
+const RobotModel& RobotChecker::robot() const {
+  return parts_->robot;
+}
+
+RobotChecker::Scratch::Scratch(const RobotChecker& checker)
+    : memory_(std::make_unique<Memory>(checker.parts_, checker.parts_->lanes)) {
+  if (checker.parts_->standing) memory_->standing.emplace(*checker.parts_->standing);
+}
+RobotChecker::Scratch::~Scratch() = default;
+RobotChecker::Scratch::Scratch(Scratch&&) noexcept = default;
+RobotChecker::Scratch& RobotChecker::Scratch::operator=(Scratch&&) noexcept = default;
+
+// A scratch keeps what it was made for, so that no later snapshot is at its address.
+void RobotChecker::require_own(const Scratch& scratch) const {
+  if (!scratch.memory_ || scratch.memory_->owner != parts_) {
+    throw Error("scratch", "it was made for another checker");
+  }
+}
+
+// Numbers that are not finite are refused where that costs nothing: by StandingTrees, and where
+// BodyPairs::is_usual() has been asked.
+bool RobotChecker::check_config(std::span<const double> configuration, Scratch& scratch) const {
+  require_own(scratch);
+  require_size(parts_->robot, configuration);
+  if (parts_->requires_finite()) require_finite(configuration);
+  if (parts_->enforces_limits && !is_within_limits(parts_->robot, configuration)) return false;
+  Scratch::Memory& memory = *scratch.memory_;
+  if (parts_->standing && parts_->standing->touch(configuration, *memory.standing)) return false;
+  return is_free_of_itself(configuration, scratch);
+}
+
+// Of itself, and of all that is not a static tree.
+bool RobotChecker::is_free_of_itself(std::span<const double> configuration,
+                                     Scratch& scratch) const {
+  if (parts_->pairs.tested() == 0) return true;
+  Scratch::Memory& memory = *scratch.memory_;
+  if (parts_->pairs.is_usual(configuration)) {
+    return !parts_->lanes.touches(configuration, memory.lanes, memory.pairs);
+  }
+  require_finite(configuration);
+  parts_->pairs.place(configuration, memory.pairs);
+  return !parts_->pairs.any_touches(memory.pairs);
+}
+
+void RobotChecker::check_configs(std::span<const double> configurations, Scratch& scratch,
+                                 std::span<std::uint8_t> free) const {
+  require_own(scratch);
+  const std::size_t variables = internal::require_sizes(parts_->robot, configurations, free);
+  const auto configuration = [&](std::size_t i) {
+    return configurations.subspan(i * variables, variables);
+  };
+  Scratch::Memory& memory = *scratch.memory_;
+  if (parts_->standing) {
+    parts_->standing->touch(configurations, *memory.standing, free);
+    if (parts_->pairs.tested() == 0 && !parts_->enforces_limits) {
+      for (std::uint8_t& answer : free) answer ^= 1U;
+      return;
+    }
+  } else {
+    if (parts_->requires_finite()) require_finite(configurations);
+    std::fill(free.begin(), free.end(), std::uint8_t{0});
+  }
+  // Those that are left wait until the lanes are full.
+  constexpr std::size_t kLanes = internal::LaneCheck::kLanes;
+  std::array<std::span<const double>, kLanes> waiting;
+  std::array<std::size_t, kLanes> index{};
+  std::size_t count = 0;
+  const auto settle = [&] {
+    if (count == 0) return;
+    const unsigned contacts =
+        parts_->lanes.contacts({waiting.data(), count}, memory.lanes, memory.pairs);
+    for (std::size_t i = 0; i < count; ++i) {
+      free[index[i]] = (contacts >> i & 1U) == 0 ? std::uint8_t{1} : std::uint8_t{0};
+    }
+    count = 0;
+  };
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const bool collides = free[i] != 0;
+    free[i] = 0;
+    if (collides) continue;
+    if (parts_->enforces_limits && !is_within_limits(parts_->robot, configuration(i))) continue;
+    if (!parts_->pairs.is_usual(configuration(i))) {
+      free[i] = is_free_of_itself(configuration(i), scratch) ? 1 : 0;
+      continue;
+    }
+    waiting[count] = configuration(i);
+    index[count] = i;
+    if (++count == kLanes) settle();
+  }
+  settle();
+}
+
+void RobotChecker::check_configs(std::span<const double> configurations,
+                                 std::span<Scratch> scratches, std::span<std::uint8_t> free) const {
+  const std::size_t variables = internal::require_sizes(parts_->robot, configurations, free);
+  for (const Scratch& scratch : scratches) require_own(scratch);
+  const internal::Sharing sharing{
+      .piece = kPiece, .fewest = parts_->pairs.tested() == 0 ? kFewestShared : kPiece + 1};
+  internal::share_configurations(
+      configurations, variables, sharing, scratches, free,
+      [&](std::span<const double> piece, Scratch& scratch, std::span<std::uint8_t> its_answers) {
+        check_configs(piece, scratch, its_answers);
+      });
+}
+
+EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<const double> to,
+                                    Scratch& scratch, const EdgeRequest& request) const {
+  require_own(scratch);
+  for (const std::span<const double> end : {from, to}) {
+    require_size(parts_->robot, end);
+    if (!parts_->pairs.is_usual(end)) {
+      require_finite(end);
+      throw Error("edge", "a joint's position is beyond " + std::to_string(kLargestPosition) +
+                              " in magnitude");
+    }
+  }
+  require_resolution(request.resolution);
+  if (!parts_->enforces_limits) return check_within_limits(from, to, 1.0, scratch, request);
+  if (!is_within_limits(parts_->robot, from)) {
+    return {.verdict = Verdict::kCollision, .contact_at = 0.0};
+  }
+  const double leaves_at = leaves_limits_at(parts_->robot, from, to);
+  if (leaves_at > 1.0) return check_within_limits(from, to, 1.0, scratch, request);
+  if (!request.first) return {.verdict = Verdict::kCollision, .contact_at = 1.0};
+  EdgeResult result = check_within_limits(from, to, leaves_at, scratch, request);
+  result.verdict = Verdict::kCollision;
+  result.contact_at = std::min(result.contact_at, 1.0);
+  return result;
+}
+
+// The motion up to the fraction `end`, whatever the limits.
+EdgeResult RobotChecker::check_within_limits(std::span<const double> from,
+                                             std::span<const double> to, double end,
+                                             Scratch& scratch, const EdgeRequest& request) const {
+  Scratch::Memory& memory = *scratch.memory_;
+  // Against standing trees alone, what the last motions have shown often decides the next one.
+  if (end == 1.0 && request.max_configurations > 0 && parts_->standing &&
+      parts_->pairs.tested() == 0) {
+    using Finding = internal::StandingTrees::AlongFinding;
+    switch (parts_->standing->look_along(from, to, !request.first, *memory.standing)) {
+      case Finding::kFree:
+        return {.verdict = Verdict::kFree, .free_until = 1.0, .configurations = 1};
+      case Finding::kTouchesInTheMiddle:
+        return {.verdict = Verdict::kCollision, .contact_at = 0.5, .configurations = 1};
+      case Finding::kUndecided:
+        break;
+    }
+  }
+  return parts_->lanes.check_edge(from, to, end, request, memory.lanes, memory.pairs);
+}
+
+std::vector<EdgeResult> RobotChecker::check_edges(std::span<const double> from,
+                                                  std::span<const double> to,
+                                                  std::span<Scratch> scratches,
+                                                  const EdgeRequest& request) const {
+  const auto variables = static_cast<std::size_t>(parts_->robot.variable_count());
+  if (from.size() != to.size() || (variables == 0 ? !from.empty() : from.size() % variables != 0)) {
+    throw Error("edges", std::to_string(from.size()) + " numbers for their starts and " +
+                             std::to_string(to.size()) + " for their ends, on a robot with " +
+                             std::to_string(variables) + " variables");
+  }
+  if (scratches.empty()) throw Error("edges", "there is no scratch to judge them with");
+  for (const Scratch& scratch : scratches) require_own(scratch);
+  const std::size_t count = variables == 0 ? 0 : from.size() / variables;
+  std::vector<EdgeResult> results(count);
+  const std::size_t pieces = (count + kEdgesAPiece - 1) / kEdgesAPiece;
+  internal::share_work(pieces, scratches.size(), [&](std::size_t worker, std::size_t piece) {
+    const std::size_t last = std::min(count, (piece + 1) * kEdgesAPiece);
+    for (std::size_t i = piece * kEdgesAPiece; i < last; ++i) {
+      results[i] = check_edge(from.subspan(i * variables, variables),
+                              to.subspan(i * variables, variables), scratches[worker], request);
+    }
+  });
+  return results;
+}
+
+double RobotChecker::measure_edge(std::span<const double> from, std::span<const double> to,
+                                  Scratch& scratch, double resolution) const {
+  return check_edge(from, to, scratch, {.resolution = resolution, .first = true}).free_until;
+}
+
+}  // namespace spherule

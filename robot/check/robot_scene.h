@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/primitive.h"
+#include "robot/check/robot_checker.h"
+#include "robot/model/robot_model.h"
+#include "robot/pairs/allowed_collisions.h"
+#include "spheretree/pose.h"
+#include "spheretree/sphere_tree.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace spherule {
+
+class LinkPairs;
+class SolidMesh;
+
+// What may stand in the way, in metres. A cloud of points is the tree that point_cloud_tree() makes
+// of it.
+using ObstacleShape =
+    std::variant<std::shared_ptr<const SphereTree>, std::shared_ptr<const SolidMesh>, Primitive>;
+
+// A sphere of a link or an attached object.
+struct BodySphere {
+  std::size_t tree = 0;     // among the link's; 0 for an attached object
+  std::int32_t sphere = 0;  // index into the tree's spheres()
+  // In the order of the members.
+  friend auto operator<=>(const BodySphere&, const BodySphere&) = default;
+};
+
+// A named part of a link or of an attached object: the tip of a wire, the jaws of a gripper.
+struct Region {
+  std::string body;
+  std::string name;
+};
+
+// A robot and what is around it, to be edited; snapshot() makes what is asked. Lengths in metres.
+//
+// Names. Links, attached objects and obstacles share one space of names: a name that is taken, or
+// is not there, is an Error that says so. Links and attached objects are bodies.
+//
+// What is tested: every body against every obstacle; and two bodies against each other if a joint
+// moves one against the other, unless both are links and AllowedCollisions allows them. An attached
+// object moves with its link but has no part in what that link is allowed: a long tool is tested
+// against the links next to its flange. Contacts that are intended are taken out, by
+// allow_contact().
+class RobotScene {
+ public:
+  // The spheres are those that the robot's links carry. Allowed at first: what AllowedCollisions
+  // allows by itself.
+  explicit RobotScene(RobotModel robot, const Pose& world_from_root = {});
+
+  // What the scene was made with and what was set last.
+  const RobotModel& robot() const { return robot_; }
+  const AllowedCollisions& allowed_collisions() const { return allowed_; }
+  // What they allow as rigid or adjacent, though it is not so by this robot's own joints and
+  // spheres (they may come from a model whose links had no spheres yet), is tested again. Throws
+  // Error for those of a robot with other links.
+  void set_allowed_collisions(AllowedCollisions allowed);
+
+  // What is proved of the pairs of links (prove_link_pairs()); null, as at first: nothing. Where
+  // two links are proved free of each other they are free whatever their spheres say: in the
+  // configurations of their boxes, and on motions that stay in these. The bodies that the proofs
+  // are about have to be what the spheres of the links stand for: all of them. Pairs with padding
+  // are tested everywhere. Throws Error for proofs of another robot, or of a tool.
+  void set_link_pairs(std::shared_ptr<const LinkPairs> pairs);
+  // The same for an attached object and all links, by prove_attached_pairs(); forgotten with the
+  // object. That tool, in its link's frame, has to be what the object's spheres stand for where the
+  // object is attached: the scene knows spheres alone and cannot compare. Throws Error, too, for an
+  // unknown object, and for proofs of a tool on another link.
+  void set_attached_pairs(std::string_view object, std::shared_ptr<const LinkPairs> pairs);
+  // Why two links are not tested against each other, or not everywhere: what is allowed, and then
+  // what is proved. Throws Error for names that are no links.
+  AllowedReason reason(std::string_view first, std::string_view second) const;
+
+  // Throws Error for a name that is taken or empty, a missing tree or mesh, or a primitive that
+  // require_primitive() refuses.
+  void add(std::string name, ObstacleShape shape, const Pose& world_from_shape = {});
+  void move(std::string_view obstacle, const Pose& world_from_shape);
+  // Forgets the contacts and paddings that name it, too.
+  void remove(std::string_view obstacle);
+  std::vector<std::string> obstacles() const;
+
+  // Spheres that move with a link. Throws Error as add() does, and for an unknown link.
+  void attach(std::string name, std::string_view link, std::shared_ptr<const SphereTree> tree,
+              const Pose& link_from_object = {});
+  // Forgets the contacts, paddings and regions that name it, too.
+  void detach(std::string_view object);
+  std::vector<std::string> attached() const;
+
+  // Every sphere of the body grows by so much. At least 0, otherwise Error; 0 at first.
+  void set_padding(std::string_view body, double padding);
+  // The two are kept apart by so much more: two bodies, or a body and an obstacle.
+  void set_padding(std::string_view body, std::string_view other, double padding);
+
+  // Names some spheres of a body; a region of that name that was there is replaced. Regions may
+  // share spheres. Throws Error for spheres that are not there, and for none.
+  void define_region(Region region, std::span<const BodySphere> spheres);
+  // Those whose centre lies in `around`, a ball in the frame of the link, or of the object.
+  void define_region(Region region, const Sphere& around);
+
+  // A body and an obstacle, or two bodies, may touch: they are not tested any more.
+  void allow_contact(std::string_view body, std::string_view other);
+  // Only the region may touch; the rest of the body is tested as before.
+  void allow_contact(const Region& region, std::string_view other);
+  // Takes that back. What was not allowed stays as it is.
+  void forbid_contact(std::string_view body, std::string_view other);
+  void forbid_contact(const Region& region, std::string_view other);
+
+  // What is asked, as of now: later edits do not change it. Trees and meshes are shared, not
+  // copied, but for those of bodies that have padding or regions. Throws Error for what reaches
+  // too far to be computed with, a mesh of the options that is missing, and instructions that this
+  // machine has not got.
+  RobotChecker snapshot(const RobotCheckerOptions& options = {}) const;
+
+ private:
+  class Snapshot;
+  struct Obstacle {
+    ObstacleShape shape;
+    Pose world_from_shape;
+  };
+  struct Attached {
+    std::string link;
+    std::shared_ptr<const SphereTree> tree;
+    Pose link_from_object;
+    std::shared_ptr<const LinkPairs> pairs{};
+  };
+  // An intended contact: of a body, or its region unless that name is empty, and another.
+  struct Intended {
+    std::string body;
+    std::string region;
+    std::string other;
+    friend auto operator<=>(const Intended&, const Intended&) = default;
+  };
+  using NamePair = std::pair<std::string, std::string>;
+
+  bool is_body(std::string_view name) const;
+  void require_free_name(const std::string& name) const;
+  void require_body(std::string_view name) const;
+  // That the two can meet: a body, and an obstacle or another body.
+  void require_pair(std::string_view body, std::string_view other) const;
+  void require_region(const Region& region) const;
+  // The trees whose spheres a body consists of.
+  std::vector<std::shared_ptr<const SphereTree>> trees_of(std::string_view body) const;
+  void forget(std::string_view name);
+  double padding_of(std::string_view body) const;
+  double padding_between(std::string_view body, std::string_view other) const;
+  // Whether two bodies are kept apart by more than nothing: proofs do not hold for that.
+  bool is_padded(std::string_view first, std::string_view second) const;
+
+  RobotModel robot_;
+  Pose world_from_root_;
+  AllowedCollisions allowed_;
+  std::shared_ptr<const LinkPairs> link_pairs_;
+  std::map<std::string, Obstacle, std::less<>> obstacles_;
+  std::map<std::string, Attached, std::less<>> attached_;
+  std::map<std::string, double, std::less<>> padding_;
+  std::map<NamePair, double> pair_padding_;              // names in their order
+  std::map<NamePair, std::vector<BodySphere>> regions_;  // of a body and a region, sorted
+  std::set<Intended> intended_;
+};
+
+}  // namespace spherule

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/check/robot_scene.h"
+#include "robot/cover/robot_spheres.h"
+#include "robot/files/scene_file.h"
+#include "robot/model/link_spheres.h"
+#include "robot/model/robot_model.h"
+#include "spheretree/sphere.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// The robot with a sphere tree on every link that has spheres. Throws Error for spheres of a link
+// that it has not got, or that build_tree() refuses.
+RobotModel with_spheres(RobotModel robot, std::span<const LinkSpheres> spheres);
+
+// What stands for a cloud of points: balls of which one contains the ball of the source's radius
+// about each point as it is written in the file, scaled exactly; with cells one for those of a
+// cell. Throws Error as read_point_cloud() and point_cloud_spheres().
+std::vector<Sphere> point_balls(const PointsSource& source);
+
+// A scene, and what a person should know of it.
+struct PreparedScene {
+  RobotScene scene;
+  // Meshes that are open, and so are surfaces without an inside; attached meshes whose spheres
+  // protrude by more than was asked for.
+  std::vector<std::string> warnings;
+};
+
+// Reads the files that a scene names and puts everything in its place. `robot` carries its spheres.
+//
+// Obstacles: a mesh becomes a SolidMesh, grown by what reading and scaling it cost; points become
+// spheres grown by the same. Attached meshes are covered with spheres by cover_robot(), with their
+// own max error or else that of `cover`, and proved to be covered. Of the pairs that the SRDF
+// disables those of other robots' links are passed over.
+//
+// Throws Error naming the file, or what in the scene is of no use: as the readers, link_mesh(),
+// cover_robot(), point_cloud_tree() and RobotScene do, and for an attached mesh of which the
+// spheres are not proved to cover all.
+PreparedScene prepare_scene(RobotModel robot, const SceneDescription& scene,
+                            const RobotCoverOptions& cover = {});
+
+}  // namespace spherule

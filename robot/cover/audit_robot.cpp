@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/cover/audit_robot.h"
+
+#include "robot/model/kinematics.h"
+#include "simplifier/simplify.h"
+#include "spheretree/error.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kSharePoints = 20000;
+// Of E: how closely curved primitives are tessellated, as cover_robot() does it.
+constexpr double kChordErrorOfError = 1.0 / 16.0;
+// Up to which positions kinematics_error_bound() holds.
+constexpr double kLargestPosition = 100.0;
+
+struct LinkParts {
+  std::string link;
+  std::size_t index = 0;  // of the link in the description
+  std::optional<TriangleMesh> mesh;
+  std::vector<Sphere> spheres;
+};
+
+// Meshes and spheres of all links, checked; the links that the robot has not got go to `unknown`.
+std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
+                                LinkGeometry geometry, std::vector<std::string>* unknown) {
+  std::vector<LinkParts> parts;
+  std::map<std::string, std::size_t> index;
+  for (const LinkDescription& link : robot.links) {
+    index[link.name] = parts.size();
+    parts.push_back({link.name, parts.size(), link_mesh(link, {.geometry = geometry}), {}});
+  }
+  if (std::none_of(parts.begin(), parts.end(), [](const auto& part) { return part.mesh; })) {
+    throw Error("robot \"" + robot.name + "\"", geometry == LinkGeometry::kVisual
+                                                    ? "has no visual geometry"
+                                                    : "has no collision geometry");
+  }
+  std::set<std::string> seen;
+  for (const LinkSpheres& link : spheres) {
+    const std::string subject = "link \"" + link.link + "\"";
+    if (!seen.insert(link.link).second) throw Error(subject, "has spheres twice");
+    if (!std::all_of(link.spheres.begin(), link.spheres.end(), is_usable)) {
+      throw Error(subject, "has a sphere that is not usable");
+    }
+    const auto found = index.find(link.link);
+    if (found != index.end()) {
+      parts[found->second].spheres = link.spheres;
+    } else if (unknown && !link.spheres.empty()) {
+      unknown->push_back(link.link);
+    }
+  }
+  return parts;
+}
+
+// Points spread over the surface: one in every equal share of its area, the place in the triangle
+// by a sequence that fills the unit square evenly.
+double uncovered_share(const TriangleMesh& mesh, std::span<const Sphere> spheres) {
+  std::vector<double> area_up_to;
+  double area = 0.0;
+  const auto corner = [&](const Eigen::Vector3i& triangle, int k) -> const Vector3d& {
+    return mesh.vertices[static_cast<std::size_t>(triangle[k])];
+  };
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    area += (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).norm() / 2.0;
+    area_up_to.push_back(area);
+  }
+  std::size_t outside = 0;
+  std::size_t triangle = 0;
+  for (std::size_t i = 0; i < kSharePoints; ++i) {
+    const double place = area * (static_cast<double>(i) + 0.5) / static_cast<double>(kSharePoints);
+    while (triangle + 1 < area_up_to.size() && area_up_to[triangle] < place) ++triangle;
+    constexpr double kStepU = 0.7548776662466927;  // 1/g and 1/g^2, g^3 = g + 1
+    constexpr double kStepV = 0.5698402909980532;
+    double u = std::fmod(kStepU * static_cast<double>(i), 1.0);
+    double v = std::fmod(kStepV * static_cast<double>(i), 1.0);
+    if (u + v > 1.0) {
+      u = 1.0 - u;
+      v = 1.0 - v;
+    }
+    const Eigen::Vector3i& t = mesh.triangles[triangle];
+    const Vector3d point =
+        corner(t, 0) + u * (corner(t, 1) - corner(t, 0)) + v * (corner(t, 2) - corner(t, 0));
+    const bool held = std::any_of(spheres.begin(), spheres.end(), [&](const Sphere& ball) {
+      return (point - ball.center).squaredNorm() <= ball.radius * ball.radius;
+    });
+    outside += held ? 0 : 1;
+  }
+  return static_cast<double>(outside) / static_cast<double>(kSharePoints);
+}
+
+double reach_of(const LinkParts& part) {
+  double reach = 0.0;
+  for (const Sphere& ball : part.spheres) reach = std::max(reach, norm_upper(ball.center));
+  if (!part.mesh) return reach;
+  for (const Vector3d& vertex : part.mesh->vertices) reach = std::max(reach, norm_upper(vertex));
+  return reach;
+}
+
+// Of a point mapped by a computed pose: that of the pose (kinematics.h) and of the mapping, 40 u of
+// the point's and the frame's distance (pose.h).
+double map_error(double kinematics_error, double reach, const Pose& world_from_link) {
+  return add_up(kinematics_error,
+                48.0 * kUnitRoundoff * (reach + norm_upper(world_from_link.translation())));
+}
+
+// All parts in the frame of the world, in one configuration. Meshes get the error of the mapping on
+// top of their vertex error, balls lose it of their radius; those that vanish cover nothing.
+class PlacedRobot {
+ public:
+  PlacedRobot(const RobotDescription& robot, std::span<const LinkParts> parts,
+              std::span<const double> configuration) {
+    forward_kinematics(robot.model, configuration, world_from_link_);
+    for (const LinkParts& part : parts) {
+      const double reach = reach_of(part);
+      const Pose& pose = world_from_link_[part.index];
+      const double error = map_error(kinematics_error_bound(robot.model, reach), reach, pose);
+      errors_.push_back(error);
+      largest_error_ = std::max(largest_error_, error);
+      for (const Sphere& ball : part.spheres) {
+        const double radius = sub_down(ball.radius, error);
+        if (radius >= 0.0) spheres_.push_back({pose * ball.center, radius});
+      }
+    }
+  }
+
+  // The mesh of a part.
+  TriangleMesh mesh(const LinkParts& part) const {
+    TriangleMesh mesh = *part.mesh;
+    for (Vector3d& vertex : mesh.vertices) vertex = world_from_link_[part.index] * vertex;
+    mesh.vertex_error = add_up(mesh.vertex_error, errors_[part.index]);
+    return mesh;
+  }
+
+  // By how much a leak that is found may be shallower on the exact mechanism.
+  double error_of_leak(const LinkParts& part) const {
+    return add_up(errors_[part.index], largest_error_);
+  }
+
+  std::span<const Sphere> spheres() const { return spheres_; }
+
+ private:
+  std::vector<Pose> world_from_link_;
+  std::vector<double> errors_;
+  double largest_error_ = 0.0;
+  std::vector<Sphere> spheres_;
+};
+
+ConfigurationAudit audit_placed(const PlacedRobot& placed, std::span<const LinkParts> parts,
+                                const std::vector<LinkAudit>& links, int threads) {
+  ConfigurationAudit result;
+  Bounds deepest;
+  for (const LinkParts& part : parts) {
+    // What a link's own spheres cover they cover everywhere.
+    if (!part.mesh || links[part.index].certificate->covered) continue;
+    const Certificate certificate =
+        certify(placed.mesh(part), placed.spheres(),
+                {.protrusion_tolerance = 0.0, .volume = false, .threads = threads});
+    if (certificate.covered) continue;
+    const Bounds depth = {
+        std::max(0.0, sub_down(certificate.uncovered_depth.lower, placed.error_of_leak(part))),
+        certificate.uncovered_depth.upper};
+    if (result.deepest_link.empty() ||
+        std::pair(depth.lower, depth.upper) > std::pair(deepest.lower, deepest.upper)) {
+      deepest = depth;
+      result.deepest_link = part.link;
+    }
+    result.uncovered_depth.lower = std::max(result.uncovered_depth.lower, depth.lower);
+    result.uncovered_depth.upper = std::max(result.uncovered_depth.upper, depth.upper);
+  }
+  return result;
+}
+
+// How simplify() makes S of a mesh, and looks at its cover.
+struct SimplifiedSolid {
+  SimplifiedSolid(const TriangleMesh& mesh, SimplifyOptions& lengths) {
+    complete_lengths(lengths, mesh);
+    external = place_external_spheres(mesh, external_options(lengths));
+    certify_options = {
+        .external = &external,
+        .resolution = proof_resolution(lengths.max_error, external.box.diagonal().norm()),
+        .protrusion_tolerance = 0.0,
+        .volume = false,
+        .threads = lengths.threads};
+  }
+  SimplifiedSolid(const SimplifiedSolid&) = delete;
+  SimplifiedSolid& operator=(const SimplifiedSolid&) = delete;
+
+  ExternalSpheres external;
+  CertifyOptions certify_options;
+};
+
+Certificate audited(const LinkParts& part, const LinkDescription& link,
+                    const RobotAuditOptions& options) {
+  Certificate certificate = certify(*part.mesh, part.spheres, {.threads = options.threads});
+  if (certificate.covered || certificate.uncovered_depth.lower > 0.0 || part.spheres.empty()) {
+    return certificate;
+  }
+  const auto mesh = link_mesh(
+      link, {.geometry = options.geometry, .chord_error = options.max_error * kChordErrorOfError});
+  SimplifyOptions lengths{.max_error = options.max_error,
+                          .min_external_diameter = options.min_external_diameter,
+                          .threads = options.threads};
+  const SimplifiedSolid solid(*mesh, lengths);
+  Certificate of_solid = certify(*mesh, part.spheres, solid.certify_options);
+  if (!of_solid.covered) return certificate;
+  of_solid.protrusion_over_mesh = certificate.protrusion_over_mesh;
+  of_solid.volume_ratio = certificate.volume_ratio;
+  return of_solid;
+}
+
+LinkRepair repaired(const LinkParts& part, const RobotRepairOptions& options) {
+  SimplifyOptions lengths{.max_error = options.max_error, .threads = options.threads};
+  const SimplifiedSolid solid(*part.mesh, lengths);
+  LinkRepair result{.link = part.link, .repair = {}, .certificate = {}};
+  result.repair = repair(*part.mesh, solid.external, part.spheres,
+                         {.max_error = options.max_error, .threads = options.threads});
+  result.certificate = certify(*part.mesh, result.repair.spheres, solid.certify_options);
+  return result;
+}
+
+// Before long work is done for nothing.
+void check_configurations(const RobotDescription& robot,
+                          const std::vector<std::vector<double>>& configurations) {
+  std::vector<Pose> world_from_link;
+  for (const std::vector<double>& configuration : configurations) {
+    forward_kinematics(robot.model, configuration, world_from_link);
+    for (const Joint& joint : robot.model.joints()) {
+      if (!(std::abs(joint.position(configuration)) <= kLargestPosition)) {
+        throw Error("configuration", "the position of joint " + joint.name + " is beyond 100");
+      }
+    }
+  }
+}
+
+void report(const Progress& progress, std::size_t done, std::size_t all, const std::string& link) {
+  if (progress) progress(static_cast<double>(done) / static_cast<double>(all), link.c_str());
+}
+
+}  // namespace
+
+RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
+                       const RobotAuditOptions& options) {
+  RobotAudit result;
+  if (!(options.max_error > 0.0 && options.max_error <= kMaxCoordinate)) {
+    throw Error("max error", "must be positive and finite");
+  }
+  check_configurations(robot, options.configurations);
+  const std::vector<LinkParts> parts =
+      parts_of(robot, spheres, options.geometry, &result.unknown_links);
+  const std::size_t steps = parts.size() + options.configurations.size();
+  result.links_covered = true;
+  for (const LinkParts& part : parts) {
+    report(options.progress, part.index, steps, part.link);
+    LinkAudit audit{part.link, part.spheres.size(), std::nullopt, 0.0};
+    if (part.mesh) {
+      audit.certificate = audited(part, robot.links[part.index], options);
+      if (!audit.certificate->covered) {
+        audit.uncovered_share = uncovered_share(*part.mesh, part.spheres);
+        result.links_covered = false;
+      }
+    }
+    result.links.push_back(std::move(audit));
+  }
+  result.configurations_covered = true;
+  for (const std::vector<double>& configuration : options.configurations) {
+    report(options.progress, parts.size() + result.configurations.size(), steps, "configurations");
+    const PlacedRobot placed(robot, parts, configuration);
+    result.configurations.push_back(audit_placed(placed, parts, result.links, options.threads));
+    if (result.configurations.back().uncovered_depth.upper > 0.0) {
+      result.configurations_covered = false;
+    }
+  }
+  return result;
+}
+
+RobotRepair repair_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
+                         const RobotRepairOptions& options) {
+  RobotRepair result;
+  result.spheres.assign(spheres.begin(), spheres.end());
+  const std::vector<LinkParts> parts = parts_of(robot, spheres, options.geometry, nullptr);
+  for (const LinkParts& part : parts) {
+    report(options.progress, part.index, parts.size(), part.link);
+    if (!part.mesh) continue;
+    result.links.push_back(repaired(part, options));
+    const std::vector<Sphere>& mended = result.links.back().repair.spheres;
+    const auto there =
+        std::find_if(result.spheres.begin(), result.spheres.end(),
+                     [&](const LinkSpheres& link) { return link.link == part.link; });
+    if (there != result.spheres.end()) {
+      there->spheres = mended;
+    } else {
+      result.spheres.push_back({part.link, mended});
+    }
+  }
+  return result;
+}
+
+}  // namespace spherule

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/cover/link_mesh.h"
+#include "robot/model/link_spheres.h"
+#include "robot/model/robot_description.h"
+#include "simplifier/certificate.h"
+#include "simplifier/external_spheres.h"
+#include "simplifier/repair.h"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// How a robot's spheres are certified.
+struct RobotAuditOptions {
+  LinkGeometry geometry = LinkGeometry::kCollision;
+  // Spheres that cover a simplified solid S with little to spare need not cover everything that
+  // certify() cannot tell from |M|: it reaches the mesh to within some 1/256 of its diagonal. Where
+  // it finds no leak and no proof, spheres are judged once more by S as cover_robot() makes it for
+  // this E and D (0: 4 E). S holds M and |M| whatever E and D are, so that this is proof as well.
+  double max_error = 0.01;
+  double min_external_diameter = 0.0;
+  // Configurations in which the robot is judged as a whole (radians and metres).
+  std::vector<std::vector<double>> configurations = {};
+  int threads = 0;         // 0: all
+  Progress progress = {};  // the word on what is being done is a link's name
+};
+
+// What is proved of a link's spheres against its own mesh. Lengths in metres, in the link's frame.
+struct LinkAudit {
+  std::string link;
+  std::size_t spheres = 0;
+  // Of the mesh and its inside, as written in the mesh files; of S (see the options) if that is
+  // what is proved. Absent for a link without geometry.
+  std::optional<Certificate> certificate;
+  // Share of the surface that no sphere holds, estimated from points spread evenly over it.
+  double uncovered_share = 0.0;
+};
+
+// The deepest leak of the robot in a configuration, all spheres of all links counted. Lengths in
+// metres.
+struct ConfigurationAudit {
+  Bounds uncovered_depth;    // over all links, of their meshes and insides
+  std::string deepest_link;  // by the lower bound, else by the upper; empty if all are covered
+};
+
+// What is proved of a robot's spheres.
+struct RobotAudit {
+  std::vector<LinkAudit> links;  // of every link, in the order of the description
+  std::vector<ConfigurationAudit> configurations;
+  // Links that have spheres and are none of the robot's.
+  std::vector<std::string> unknown_links;
+  // Proved: the spheres of each link cover its mesh, and what is inside (G1).
+  bool links_covered = false;
+  // Proved: the same of all spheres and all meshes, in every one of the configurations.
+  bool configurations_covered = false;
+};
+
+// Certifies the spheres of a robot, of any origin, against its own meshes: link by link, by
+// certify(), and as a whole in configurations. There, a link may be covered by spheres of its
+// neighbours; what the rounding of kinematics and poses can do is charged to the mesh and to the
+// spheres, so that a cover that is proved holds for the exact mechanism. Spheres of links that the
+// robot has not got count nowhere.
+// Throws Error: as link_mesh() and forward_kinematics(), for an E or D out of range, for spheres
+// that are not usable (naming the link), a link named twice, a robot without any such geometry, and
+// a configuration that takes a joint's position, a mimic's too, beyond 100.
+RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
+                       const RobotAuditOptions& options = {});
+
+// How a robot's spheres are repaired.
+struct RobotRepairOptions {
+  LinkGeometry geometry = LinkGeometry::kCollision;
+  // E: how far a sphere that is grown or added may protrude, metres; 0 chooses for each link, as
+  // RepairOptions::max_error does.
+  double max_error = 0.0;
+  int threads = 0;
+  Progress progress = {};  // the word on what is being done is a link's name
+};
+
+// The repair of one link's spheres.
+struct LinkRepair {
+  std::string link;
+  Repair repair;            // its spheres are those of RobotRepair::spheres
+  Certificate certificate;  // of these, against the simplified solid with D = 4 E
+};
+
+// A robot's spheres, repaired.
+struct RobotRepair {
+  // Of all links of the input in their order, then of those that had none and needed some.
+  std::vector<LinkSpheres> spheres;
+  std::vector<LinkRepair> links;  // of the links with geometry, in the order of the description
+};
+
+// Makes the spheres of every link cover its mesh, by repair(): no sphere is moved or shrunk.
+// Spheres of links without geometry stay as they are. Throws Error as audit_robot() and repair().
+RobotRepair repair_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
+                         const RobotRepairOptions& options = {});
+
+}  // namespace spherule

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/primitive.h"
+#include "mesh/triangle_mesh.h"
+
+#include <string>
+
+namespace spherule::internal {
+
+// A closed mesh about a solid primitive, seen counter-clockwise from outside. In exact arithmetic
+// it encloses every point of the primitive and lies within `chord_error` of it; the mesh's
+// vertex_error bounds what rounding moved. A box comes out exactly.
+//
+// A curved primitive is a polygon, tangent to its outline, that is turned about z: rings of equal
+// regular polygons whose sides touch the outline's circles. The directions come from halving
+// angles by square roots, so that they are the same on every machine.
+//
+// Throws Error, naming `subject`, for a half-space, sizes that require_primitive() refuses, a
+// chord error that is not positive, and one that asks for more than 1024 sides.
+TriangleMesh mesh_around(const Primitive& primitive, double chord_error,
+                         const std::string& subject);
+
+}  // namespace spherule::internal

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mesh/triangle_mesh.h"
+#include "robot/model/robot_description.h"
+
+#include <optional>
+#include <span>
+
+namespace spherule {
+
+// Which of the two geometries that a URDF has for every link.
+enum class LinkGeometry {
+  kCollision,  // what the author of the robot means collision checks to see
+  kVisual      // mostly the exact shape
+};
+
+// How the shapes of a link become one mesh.
+struct LinkMeshOptions {
+  LinkGeometry geometry = LinkGeometry::kCollision;
+  // How far triangles for a ball, cylinder or capsule may lie outside of it; positive, in metres.
+  double chord_error = 0.0005;
+  // Vertices of a mesh file that are no further apart than this become one, as with
+  // MeshReadOptions::weld, but in metres; under a scale with different factors along the axes less
+  // is joined. It counts in `vertex_error`.
+  double weld = 0.0;
+};
+
+// The shapes of that geometry, as the description lists them. There is no falling back from one to
+// the other: a link without collision geometry is one that its author lets pass through things.
+std::span<const LinkShape> link_shapes(const LinkDescription& link, LinkGeometry geometry);
+
+// All shapes of a link in the frame of the link, in metres, as one mesh; empty for a link without
+// such geometry. Mesh files are read as read_mesh() does it (a DAE file in its own unit turned to
+// metres, its axes as they stand), then scaled, by other factors along each axis and mirrored where
+// the description says so, the triangles turned so that they face as before.
+//
+// With M the mesh returned and t its `vertex_error`: M grown by t contains every point of the
+// meshes as written in their files, scaled and posed in exact arithmetic, and |M| grown by t every
+// point of the solid primitives, exactly. t bounds what reading, scale, pose and the rounding of
+// tessellation cost. Curved primitives get tessellations from outside, which therefore add nothing
+// to t; they lie within `chord_error` of the primitive.
+//
+// Throws Error: as read_mesh(); naming the link, for a scale that is zero or not finite, a
+// primitive of unusable size, a half-space, and a chord error that is not positive or asks for
+// more than 1024 sides around; for coordinates beyond kMaxCoordinate.
+std::optional<TriangleMesh> link_mesh(const LinkDescription& link,
+                                      const LinkMeshOptions& options = {});
+
+}  // namespace spherule

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/cover/robot_spheres.h"
+
+#include "mesh/mesh_report.h"
+#include "robot/model/internal/link_paths.h"
+#include "robot/model/internal/shared_work.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <numeric>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+constexpr double kChordErrorOfError = 1.0 / 16.0;
+// Nobody wants the hundred million spheres that such a link asks for.
+constexpr double kMostErrorsAcross = 1e4;
+constexpr double kMostMetresAcross = 100.0;
+// Of a link's box diagonal: how far apart rounding leaves what was one vertex.
+constexpr double kCrack = 1e-6;
+
+// A link that has something to cover.
+struct Task {
+  std::size_t link = 0;  // index
+  TriangleMesh mesh;
+  SimplifyOptions options;
+};
+
+std::string subject_of(const std::string& link) {
+  return "link '" + link + "'";
+}
+
+void require(bool ok, const std::string& subject, const std::string& what) {
+  if (!ok) throw Error(subject, what);
+}
+
+// What simplify() would take for a default, or refuse under a name that is not the link's.
+void check_lengths(double max_error, double min_external_diameter, double padding,
+                   const std::string& prefix) {
+  const auto usable = [](double x) { return x >= 0.0 && x <= kMaxCoordinate; };
+  require(max_error > 0.0 && usable(max_error), prefix + "max error",
+          "must be positive and finite");
+  require(usable(min_external_diameter), prefix + "min external diameter",
+          "must be finite and not negative");
+  require(usable(padding), prefix + "padding", "must be finite and not negative");
+}
+
+template <typename Work>
+void blaming_link(const std::string& link, Work work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    throw Error(subject_of(link), error.what());
+  }
+}
+
+SimplifyOptions options_for(const std::string& link, const RobotCoverOptions& options) {
+  SimplifyOptions result;
+  result.max_error = options.max_error;
+  result.min_external_diameter = options.min_external_diameter;
+  result.tightness = options.tightness;
+  result.padding = options.padding;
+  result.seed = options.seed;
+  result.effort = options.effort;
+  result.seconds = options.seconds;
+  result.stop = options.stop;
+  const auto own = options.links.find(link);
+  if (own == options.links.end()) return result;
+  result.max_error = own->second.max_error.value_or(result.max_error);
+  result.min_external_diameter =
+      own->second.min_external_diameter.value_or(result.min_external_diameter);
+  result.padding = own->second.padding.value_or(result.padding);
+  result.zones = own->second.zones;
+  check_lengths(result.max_error, result.min_external_diameter, result.padding,
+                subject_of(link) + " ");
+  blaming_link(link, [&] {
+    SimplifyOptions complete = result;
+    complete_lengths(complete, {});
+    check_zones(complete.zones, complete.max_error, complete.min_external_diameter);
+  });
+  return result;
+}
+
+void check_options(const RobotDescription& robot, const RobotCoverOptions& options) {
+  check_lengths(options.max_error, options.min_external_diameter, options.padding, "");
+  for (const auto& [name, own] : options.links) {
+    const auto link = std::find_if(robot.links.begin(), robot.links.end(),
+                                   [&](const LinkDescription& l) { return l.name == name; });
+    require(link != robot.links.end(), subject_of(name), "the robot has no such link");
+    require(!link_shapes(*link, options.geometry).empty(), subject_of(name),
+            "has options and no geometry to cover");
+  }
+}
+
+std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOptions& options,
+                             std::size_t threads) {
+  std::vector<Task> tasks;
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    const LinkDescription& link = robot.links[i];
+    if (link_shapes(link, options.geometry).empty()) continue;
+    tasks.push_back({.link = i, .mesh = {}, .options = options_for(link.name, options)});
+  }
+  const bool collision = options.geometry == LinkGeometry::kCollision;
+  require(!tasks.empty(), robot.name,
+          std::string("no link has ") + (collision ? "collision" : "visual") +
+              " geometry; try the other one, " + (collision ? "visual" : "collision"));
+  internal::share_work(tasks.size(), threads, [&](std::size_t, std::size_t i) {
+    Task& task = tasks[i];
+    const LinkDescription& link = robot.links[task.link];
+    const double max_error = task.options.max_error;
+    task.mesh = *link_mesh(link, {.geometry = options.geometry,
+                                  .chord_error = kChordErrorOfError * max_error,
+                                  .weld = options.weld});
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& v : task.mesh.vertices) box.extend(v);
+    const double across = box.diagonal().norm();
+    if (across <= kMostErrorsAcross * max_error) return;
+    std::ostringstream reason;
+    reason << "is " << across << " m across, too much for a max error of " << max_error
+           << " m: are its meshes in millimetres? Then they need a scale of 0.001";
+    throw Error(subject_of(link.name), reason.str());
+  });
+  return tasks;
+}
+
+std::vector<std::string> warnings_of(const MeshReport& report, const Simplification& fit,
+                                     double weld) {
+  std::vector<std::string> warnings;
+  const double across = report.box.diagonal().norm();
+  if (across > kMostMetresAcross) {
+    std::ostringstream text;
+    text << "it is " << across << " m across: if its meshes are in millimetres, they need a scale "
+         << "of 0.001";
+    warnings.push_back(text.str());
+  }
+  if (!report.closed) {
+    std::ostringstream text;
+    text << "its mesh is open (" << report.boundary_edges << " edges with one triangle, "
+         << report.non_manifold_edges
+         << " with more than two): the surface is covered in any case, but space that things of "
+            "the size D can get into counts as outside";
+    if (report.boundary_edges > 0 && weld == 0.0) {
+      text << "; if rounding has left cracks, welding within " << kCrack * across
+           << " m (--weld) shuts them";
+    }
+    warnings.push_back(text.str());
+  }
+  const std::string broken = broken_promises(fit);
+  if (!broken.empty()) warnings.push_back(broken);
+  return warnings;
+}
+
+LinkCover cover_link(const std::string& link, const Task& task, double weld) {
+  const auto start = std::chrono::steady_clock::now();
+  LinkCover cover;
+  cover.link = link;
+  blaming_link(link, [&] { cover.fit = simplify(task.mesh, task.options); });
+  cover.spheres = cover.fit->cover.spheres;
+  cover.triangles = task.mesh.triangles.size();
+  cover.vertex_error = task.mesh.vertex_error;
+  cover.warnings =
+      warnings_of(mesh_report(task.mesh, {.self_intersections = false}), *cover.fit, weld);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  cover.seconds = seconds.count();
+  return cover;
+}
+
+// Links are covered side by side by some of the threads; the others help within links, which is
+// what is left to do when the last links are long ones.
+struct ThreadShares {
+  explicit ThreadShares(int threads)
+      : all(internal::thread_count(threads)),
+        links((all + 1) / 2),
+        within(static_cast<int>(all - links + 1)) {}
+
+  std::size_t all;
+  std::size_t links;  // at once
+  int within;         // threads of simplify(), the link's own and those that all links share
+};
+
+}  // namespace
+
+RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& options) {
+  check_options(robot, options);
+  const ThreadShares threads(options.threads);
+  std::vector<Task> tasks = read_links(robot, options, threads.all);
+
+  RobotCover result{.robot = robot.name, .links = {}, .options = options};
+  for (const LinkDescription& link : robot.links) result.links.push_back({.link = link.name});
+
+  // The longest first, so that none of them is left at the end. The order changes no result.
+  std::stable_sort(tasks.begin(), tasks.end(), [](const Task& a, const Task& b) {
+    return a.mesh.triangles.size() > b.mesh.triangles.size();
+  });
+  std::atomic<std::size_t> done = 0;
+  internal::share_work(tasks.size(), threads.links, [&](std::size_t, std::size_t i) {
+    Task& task = tasks[i];
+    const std::string& name = robot.links[task.link].name;
+    const auto tell = [&] {
+      const double share = static_cast<double>(done) / static_cast<double>(tasks.size());
+      if (options.progress) options.progress(share, name.c_str());
+    };
+    if (options.progress) task.options.progress = [&tell](double, const char*) { tell(); };
+    task.options.threads = threads.within;
+    tell();
+    result.links[task.link] = cover_link(name, task, options.weld);
+    result.links[task.link].fit->options.progress = {};
+    result.links[task.link].fit->options.stop = {};
+    ++done;
+    tell();
+  });
+  return result;
+}
+
+std::vector<std::string> links_not_proved(const RobotCover& cover) {
+  std::vector<std::string> names;
+  for (const LinkCover& link : cover.links) {
+    if (link.fit && !broken_promises(*link.fit).empty()) names.push_back(link.link);
+  }
+  return names;
+}
+
+RobotSpheres robot_spheres(const RobotDescription& robot, const RobotCover& cover) {
+  RobotSpheres result;
+  result.robot = cover.robot;
+  for (const LinkCover& link : cover.links) result.links.push_back({link.link, link.spheres});
+  const auto has_spheres = [&](int link) {
+    return !cover.links[static_cast<std::size_t>(link)].spheres.empty();
+  };
+  const int count = static_cast<int>(cover.links.size());
+  for (int first = 0; first < count; ++first) {
+    for (int second = first + 1; second < count; ++second) {
+      if (!has_spheres(first) || !has_spheres(second)) continue;
+      if (internal::how_joined(robot.model, first, second, has_spheres) ==
+          internal::Joined::kFurther) {
+        continue;
+      }
+      const std::string_view reason =
+          internal::are_neighbours(robot.model, first, second, has_spheres) ? kAdjacentReason
+                                                                            : kRigidReason;
+      result.self_collision_ignore.push_back({cover.links[static_cast<std::size_t>(first)].link,
+                                              cover.links[static_cast<std::size_t>(second)].link,
+                                              std::string(reason)});
+    }
+  }
+  return result;
+}
+
+}  // namespace spherule

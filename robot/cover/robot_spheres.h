@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/cover/link_mesh.h"
+#include "robot/formats/sphere_formats.h"
+#include "robot/model/robot_description.h"
+#include "simplifier/simplify.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spherule {
+
+// What is other for one link than for the rest; what is absent is as for the rest. Metres, zones in
+// the frame of the link. With a max error of its own and no D of its own, a link has D = 4 E,
+// unless the robot's D is given.
+struct LinkCoverOptions {
+  std::optional<double> max_error = std::nullopt;
+  std::optional<double> min_external_diameter = std::nullopt;
+  std::optional<double> padding = std::nullopt;
+  std::vector<Zone> zones = {};
+};
+
+// Lengths in metres.
+struct RobotCoverOptions {
+  // E of every link. A centimetre is what planners commonly leave as clearance anyway, and an arm
+  // of human size gets a few hundred spheres.
+  double max_error = 0.01;
+  // D of every link; 0 chooses 4 E, the natural ratio: 90-degree edges ask for balls of radius 2 E,
+  // and what is narrower than the smallest ball of a tool made with the same E need not be kept.
+  double min_external_diameter = 0.0;
+  double tightness = SimplifyOptions{}.tightness;
+  double padding = 0.0;
+  double weld = 0.0;  // LinkMeshOptions::weld
+  LinkGeometry geometry = LinkGeometry::kCollision;
+  std::map<std::string, LinkCoverOptions> links = {};  // by the link's name
+  std::uint64_t seed = 1;
+  int effort = CoverOptions{}.effort;  // of the covering search, for each link
+  double seconds = 0.0;                // and its limit in time, for each link; 0: none
+  int threads = 0;                     // 0: all; the result does not depend on it
+  Progress progress = {};              // the word on what is being done is a link's name
+  // CoverOptions::stop: every link then gets the fewest balls proved so far, those whose turn has
+  // not come their first answer.
+  std::stop_token stop = {};
+};
+
+// One link's cover and what is proved of it. Lengths in metres, in the frame of the link.
+struct LinkCover {
+  std::string link;
+  std::vector<Sphere> spheres = {};  // empty for a link without geometry
+  // Of the fit and the proof; absent for a link without geometry.
+  std::optional<Simplification> fit = std::nullopt;
+  std::size_t triangles = 0;  // of the link's mesh, tessellated primitives included
+  double vertex_error = 0.0;  // of that mesh; in the fit's padding
+  double seconds = 0.0;       // on the wall clock
+  // For a person: an open mesh, promises that are not proved.
+  std::vector<std::string> warnings = {};
+};
+
+// A robot's links with their spheres.
+struct RobotCover {
+  std::string robot;             // its name
+  std::vector<LinkCover> links;  // of every link, in the order of the description
+  RobotCoverOptions options;     // as used
+};
+
+// Covers the geometry of every link with spheres, each link by simplify(), and certifies them: the
+// one function behind `spherule robot`. Promises G1 and G2 (docs/guarantee.md) for each link whose
+// `fit` says so; links_not_proved() names the others. What is covered is the link's mesh grown by
+// its vertex error and the padding (link_mesh.h), so that exact primitives are covered too; their
+// tessellation lies outside of them by at most E / 16, which counts as mesh. S is that mesh
+// simplified for things not smaller than D. Equal input and options give equal spheres on any
+// number of threads, unless `seconds` is set or a stop is requested.
+//
+// Throws Error for options out of range, an option for a link that does not exist or has no such
+// geometry, a robot without any, a link more than 10,000 E across (its mesh is probably in
+// millimetres), and as link_mesh(). All files are read before the first link is covered.
+RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& options = {});
+
+// Names of the links for which not everything promised is proved, in their order.
+std::vector<std::string> links_not_proved(const RobotCover& cover);
+
+// Why pairs of links are not to be checked, in lists of ignored pairs.
+inline constexpr std::string_view kAdjacentReason = "Adjacent";
+inline constexpr std::string_view kRigidReason = "Rigid (no joint moves them)";
+
+// The spheres of all links, as the writers of formats take them: none for a link without geometry.
+// Pairs of links that are not to be checked against each other are those that no joint moves
+// against each other, and those that one joint joins, directly or past links without spheres:
+// covers of neighbours overlap at their joint in any configuration. Links with one that has spheres
+// between them are no neighbours: their reason is kRigidReason. Whether others may touch is for an
+// SRDF to say.
+RobotSpheres robot_spheres(const RobotDescription& robot, const RobotCover& cover);
+
+}  // namespace spherule

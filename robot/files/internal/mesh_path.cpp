@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/files/internal/mesh_path.h"
+
+#include "robot/files/internal/xml_file.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+#include <system_error>
+
+namespace spherule::internal {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+// One that cannot be read is the root of nothing that is looked for.
+bool is_package(const fs::path& folder, const std::string& name) {
+  const fs::path manifest = folder / "package.xml";
+  if (!is_file(manifest)) return false;
+  try {
+    const XmlFile file(manifest, "package");
+    const auto element = file.root().child("name");
+    return element && element->text() == name;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+MeshPaths::MeshPaths(const fs::path& urdf, const UrdfOptions& options)
+    : folder_(fs::absolute(urdf).parent_path()), packages_(options.packages) {}
+
+fs::path MeshPaths::package_root(const std::string& package) const {
+  for (fs::path at = folder_;; at = at.parent_path()) {
+    if (is_package(at, package)) return at;
+    if (is_package(at / package, package)) return at / package;
+    if (at == at.parent_path()) break;
+  }
+  throw Error("package://" + package,
+              "the folder of this package is not given (--package " + package +
+                  "=FOLDER, UrdfOptions::packages), and no package.xml of that name stands in a "
+                  "folder above the URDF file or beside one of them");
+}
+
+fs::path MeshPaths::find(const std::string& name) {
+  constexpr std::string_view kPackage = "package://";
+  constexpr std::string_view kFile = "file://";
+  const std::string_view view = name;
+  fs::path path;
+  if (view.starts_with(kPackage)) {
+    const std::size_t slash = std::min(view.find('/', kPackage.size()), view.size());
+    const std::string package(view.substr(kPackage.size(), slash - kPackage.size()));
+    if (package.empty()) throw Error(name, "it names no package");
+    auto root = packages_.find(package);
+    if (root == packages_.end()) root = packages_.emplace(package, package_root(package)).first;
+    path = root->second / view.substr(std::min(slash + 1, view.size()));
+  } else if (view.starts_with(kFile)) {
+    path = folder_ / view.substr(kFile.size());
+  } else if (view.find("://") != std::string_view::npos) {
+    throw Error(name, "only package:// and file:// can be followed");
+  } else {
+    path = folder_ / view;
+  }
+  path = path.lexically_normal();
+  if (!is_file(path)) throw Error(name, "there is no such file: " + path.string());
+  return path;
+}
+
+}  // namespace spherule::internal

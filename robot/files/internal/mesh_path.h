@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/files/urdf.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace spherule::internal {
+
+// Where the files are that a URDF file names.
+class MeshPaths {
+ public:
+  MeshPaths(const std::filesystem::path& urdf, const UrdfOptions& options);
+
+  // Throws Error, whose subject is the name, for a file or package that cannot be found.
+  std::filesystem::path find(const std::string& name);
+
+ private:
+  std::filesystem::path package_root(const std::string& package) const;
+
+  std::filesystem::path folder_;
+  std::map<std::string, std::filesystem::path> packages_;  // given, and found since
+};
+
+}  // namespace spherule::internal

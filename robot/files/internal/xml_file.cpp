@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/files/internal/xml_file.h"
+
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <tinyxml2.h>
+
+namespace spherule::internal {
+namespace {
+
+constexpr std::string_view kSpace = " \t\r\n";
+constexpr std::size_t kQuotedLength = 60;
+
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = text.find_first_not_of(kSpace); at != std::string_view::npos;) {
+    const std::size_t end = std::min(text.find_first_of(kSpace, at), text.size());
+    words.push_back(text.substr(at, end - at));
+    at = text.find_first_not_of(kSpace, end);
+  }
+  return words;
+}
+
+// Independent of the locale.
+std::optional<double> number_of(std::string_view word) {
+  if (word.starts_with('+')) {
+    word.remove_prefix(1);
+    if (word.starts_with('-')) return {};
+  }
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const bool is_whole = end == word.data() + word.size() && error == std::errc();
+  return is_whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+// By the lengths of its sequences; forms that are too long and surrogates do no harm here.
+bool is_utf8(std::string_view text) {
+  std::size_t follow = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (follow > 0) {
+      if ((byte & 0xC0U) != 0x80U) return false;
+      --follow;
+    } else if (byte >= 0x80U) {
+      if ((byte & 0xE0U) == 0xC0U) {
+        follow = 1;
+      } else if ((byte & 0xF0U) == 0xE0U) {
+        follow = 2;
+      } else if ((byte & 0xF8U) == 0xF0U) {
+        follow = 3;
+      } else {
+        return false;
+      }
+    }
+  }
+  return follow == 0;
+}
+
+}  // namespace
+
+std::string_view XmlElement::tag() const {
+  return element_->Name();
+}
+
+std::string_view XmlElement::text() const {
+  const char* const text = element_->GetText();
+  return text == nullptr ? std::string_view() : text;
+}
+
+std::vector<XmlElement> XmlElement::children(std::string_view tag) const {
+  std::vector<XmlElement> result;
+  for (const auto* child = element_->FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    if (tag.empty() || tag == child->Name()) result.emplace_back(*child, *file_);
+  }
+  return result;
+}
+
+std::optional<XmlElement> XmlElement::child(std::string_view tag) const {
+  const std::vector<XmlElement> found = children(tag);
+  if (found.empty()) return {};
+  if (found.size() > 1) found[1].refuse("there is one already");
+  return found.front();
+}
+
+XmlElement XmlElement::needed_child(std::string_view tag) const {
+  const auto found = child(tag);
+  if (!found) refuse("it has no <" + std::string(tag) + ">");
+  return *found;
+}
+
+std::optional<std::string> XmlElement::attribute(std::string_view name) const {
+  const char* const value = element_->Attribute(std::string(name).c_str());
+  if (value == nullptr) return {};
+  if (!is_utf8(value)) refuse(std::string(name) + " is no text in UTF-8");
+  return value;
+}
+
+std::string XmlElement::needed(std::string_view name) const {
+  const auto value = attribute(name);
+  if (!value || value->empty()) refuse("it has no " + std::string(name));
+  return *value;
+}
+
+std::optional<std::vector<double>> XmlElement::numbers(std::string_view name) const {
+  const auto text = attribute(name);
+  if (!text) return {};
+  std::vector<double> result;
+  for (const std::string_view word : words_of(*text)) {
+    const auto number = number_of(word);
+    if (!number) refuse(std::string(name) + ": " + name_in_quotes(word) + " is no finite number");
+    result.push_back(*number);
+  }
+  return result;
+}
+
+std::optional<std::vector<double>> XmlElement::numbers(std::string_view name,
+                                                       std::size_t count) const {
+  auto result = numbers(name);
+  if (result && result->size() != count) {
+    refuse(std::string(name) + " has " + std::to_string(result->size()) + " numbers where " +
+           std::to_string(count) + " belong");
+  }
+  return result;
+}
+
+std::vector<double> XmlElement::needed_numbers(std::string_view name) const {
+  auto result = numbers(name);
+  if (!result || result->empty()) refuse("it has no " + std::string(name));
+  return *std::move(result);
+}
+
+double XmlElement::needed_number(std::string_view name) const {
+  const auto result = numbers(name, 1);
+  if (!result) refuse("it has no " + std::string(name));
+  return result->front();
+}
+
+Eigen::Vector3d XmlElement::needed_vector(std::string_view name) const {
+  const auto result = numbers(name, 3);
+  if (!result) refuse("it has no " + std::string(name));
+  return Eigen::Vector3d(result->data());
+}
+
+void XmlElement::require_attributes(std::initializer_list<std::string_view> known) const {
+  for (const auto* a = element_->FirstAttribute(); a != nullptr; a = a->Next()) {
+    if (std::find(known.begin(), known.end(), a->Name()) == known.end()) {
+      refuse("it has an attribute " + name_in_quotes(a->Name()) + " of unknown meaning");
+    }
+  }
+}
+
+void XmlElement::refuse(const std::string& reason) const {
+  std::string place = "line " + std::to_string(element_->GetLineNum()) + ": ";
+  // The nearest element with a name, below the root.
+  for (const tinyxml2::XMLNode* node = element_; node->Parent() != nullptr; node = node->Parent()) {
+    const tinyxml2::XMLElement* const around = node->ToElement();
+    const bool is_root = node->Parent()->ToDocument() != nullptr;
+    const char* const name = around && !is_root ? around->Attribute("name") : nullptr;
+    if (name == nullptr || *name == '\0') continue;
+    place += std::string(around->Name()) + " " + name_in_quotes(name) + ": ";
+    break;
+  }
+  throw Error(*file_, place + "<" + element_->Name() + ">: " + reason);
+}
+
+XmlFile::XmlFile(const std::filesystem::path& path, std::string_view tag)
+    : name_(path.string()), document_(std::make_unique<tinyxml2::XMLDocument>()) {
+  const std::string text = read_file(path);
+  if (text.find('\0') != std::string::npos) throw Error(name_, "it holds a zero byte");
+  if (document_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    throw Error(name_, "line " + std::to_string(document_->ErrorLineNum()) + ": it is no XML (" +
+                           document_->ErrorName() + ")");
+  }
+  const tinyxml2::XMLElement* const root = document_->RootElement();
+  if (root == nullptr || tag != root->Name()) {
+    throw Error(name_, "its root is no <" + std::string(tag) + ">");
+  }
+  if (root->NextSiblingElement() != nullptr) throw Error(name_, "it has more than one root");
+}
+
+XmlFile::~XmlFile() = default;
+
+XmlElement XmlFile::root() const {
+  return {*document_->RootElement(), name_};
+}
+
+std::string name_in_quotes(std::string_view text) {
+  std::string result("'");
+  result.append(text.substr(0, kQuotedLength));
+  return result.append(text.size() > kQuotedLength ? "...'" : "'");
+}
+
+std::string xml_escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+}  // namespace spherule::internal

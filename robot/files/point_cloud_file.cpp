@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/files/point_cloud_file.h"
+
+#include "robot/files/internal/format_text.h"
+#include "robot/files/internal/ply_points.h"
+#include "robot/files/internal/text_lines.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+
+// So that the scale is off by no more than u = 2^-53 of itself: no subnormal number.
+constexpr double kLeastScale = 1e-300;
+
+// Reading a coordinate from decimals rounds it once. Scaling rounds twice: the scale itself, which
+// was decimals, too, and the product. Each is by u of what comes out, so n of them move a
+// coordinate as stored by no more than n u (1 + 4 u) `largest`, and the point by sqrt(3) times
+// that, which is less than 2 n u `largest`; that product is exact. What underflows is off by
+// 2^-1075, times a scale of up to 1e15.
+double point_error(bool is_rounded, bool is_scaled, double largest) {
+  const int roundings = (is_rounded ? 1 : 0) + (is_scaled ? 2 : 0);
+  return roundings == 0 ? 0.0 : 2.0 * roundings * kUnitRoundoff * largest + kUnderflow;
+}
+
+std::vector<Vector3d> text_points(std::string_view text, const std::string& file) {
+  std::vector<Vector3d> points;
+  internal::TextLines lines(text);
+  while (lines.next()) {
+    const auto refuse = [&](const std::string& reason) {
+      throw Error(file, "line " + std::to_string(lines.number()) + ": " + reason);
+    };
+    if (lines.words().size() < 3) refuse("has no x, y and z");
+    Vector3d point;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::optional<double> number = internal::number_of(lines.words()[k]);
+      if (!number) refuse(internal::quoted(lines.words()[k]) + " is not a finite number");
+      point[static_cast<Eigen::Index>(k)] = *number;
+    }
+    points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace
+
+PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale) {
+  static constexpr std::array<std::string_view, 5> kTextExtensions = {".xyz", ".txt", ".csv",
+                                                                      ".asc", ".pts"};
+  const std::string file = path.string();
+  if (!(scale >= kLeastScale && scale <= kMaxCoordinate)) {
+    throw Error(file, "the scale is not a number from 1e-300 to 1e15");
+  }
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  const bool is_ply = extension == ".ply";
+  if (!is_ply && std::find(kTextExtensions.begin(), kTextExtensions.end(), extension) ==
+                     kTextExtensions.end()) {
+    throw Error(file, "points are read from files named .ply, .xyz, .txt, .csv, .asc or .pts");
+  }
+  const std::string content = read_file(path);
+  PointCloudFile cloud;
+  bool is_rounded = true;
+  if (is_ply) {
+    internal::PlyPoints read = internal::read_ply_points(content, file);
+    cloud.points = std::move(read.points);
+    is_rounded = read.is_text;
+  } else {
+    cloud.points = text_points(content, file);
+  }
+  if (cloud.points.empty()) throw Error(file, "it has no points");
+  double largest = 0.0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    Vector3d& point = cloud.points[i];
+    point *= scale;
+    if (!is_usable_point(point)) {
+      throw Error(file, "point " + std::to_string(i) + " is beyond 1e15 or not finite");
+    }
+    largest = std::max(largest, point.lpNorm<Eigen::Infinity>());
+  }
+  cloud.point_error = point_error(is_rounded, scale != 1.0, largest);
+  return cloud;
+}
+
+}  // namespace spherule

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/primitive.h"
+#include "robot/model/robot_description.h"
+#include "spheretree/pose.h"
+#include "spheretree/sphere.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace spherule {
+
+// SPHERES.json (spheretree/sphere_file.h).
+struct SpheresSource {
+  std::filesystem::path path;
+};
+
+// A sphere tree (spheretree/tree_file.h).
+struct TreeSource {
+  std::filesystem::path path;
+};
+
+// A cloud of points (robot/files/point_cloud_file.h), in the file's own unit, which `scale` turns
+// into metres; radius and voxel as point_cloud_tree() takes them, in metres.
+struct PointsSource {
+  std::filesystem::path path;
+  double radius = 0.0;
+  double voxel = 0.0;
+  double scale = 1.0;
+};
+
+// An obstacle as the file describes it.
+struct SceneObstacle {
+  std::string name;
+  std::variant<Primitive, MeshFile, SpheresSource, TreeSource, PointsSource> shape;
+  Pose world_from_shape{};
+};
+
+// A tool or a part that moves with a link.
+struct SceneAttachment {
+  std::string name;
+  std::string link;
+  std::variant<MeshFile, SpheresSource, TreeSource> shape;
+  // E of the spheres that cover a mesh; 0: as those of the robot.
+  double max_error = 0.0;
+  Pose link_from_object{};
+};
+
+// A named part of a link or an attached object: the spheres with their centre in a ball, given in
+// the frame of the link or object.
+struct SceneRegion {
+  std::string body;
+  std::string name;
+  Sphere around;
+};
+
+// A body, or only its region unless that is empty, that may touch another body or an obstacle.
+struct SceneContact {
+  std::string body;
+  std::string region;
+  std::string other;
+};
+
+// By how much a body grows, or, where `other` is not empty, how much farther the two are kept from
+// each other.
+struct ScenePadding {
+  std::string body;
+  std::string other;
+  double padding = 0.0;
+};
+
+// What a scene file says is around a robot. Metres.
+struct SceneDescription {
+  Pose world_from_root{};                     // where the robot stands
+  std::optional<std::filesystem::path> srdf;  // whose disabled pairs are not tested
+  std::vector<SceneObstacle> obstacles{};
+  std::vector<SceneAttachment> attached{};
+  std::vector<SceneRegion> regions{};
+  std::vector<SceneContact> allowed_contacts{};
+  std::vector<ScenePadding> padding{};
+};
+
+// Reads a scene (JSON, docs/scene-file.md). Paths in it are from the folder of the scene file; the
+// files they name are not looked at. Every key must be one that the format knows, so that a word
+// that is misspelt does not place an obstacle elsewhere than it was meant.
+//
+// Throws Error, whose subject is the file and whose reason names the place in it: for a file that
+// cannot be read, is no JSON (with the line), or is of another format or a newer version of it;
+// keys that are unknown, missing or there twice; values of a wrong type; numbers out of range;
+// names that are empty or taken; and regions of bodies that the scene and contacts of regions that
+// it has not. Links are not known here.
+SceneDescription read_scene(const std::filesystem::path& path);
+
+}  // namespace spherule

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/files/srdf.h"
+
+#include "robot/files/internal/xml_file.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+using internal::XmlElement;
+
+std::vector<std::string> names_of(const XmlElement& group, std::string_view tag) {
+  std::vector<std::string> names;
+  for (const XmlElement& child : group.children(tag)) names.push_back(child.needed("name"));
+  return names;
+}
+
+// Refuses what was there before.
+template <class Key>
+void remember(std::set<Key>& known, Key key, const XmlElement& element) {
+  if (!known.insert(std::move(key)).second) element.refuse("there is one of that name already");
+}
+
+JointGroup group_of(const XmlElement& element) {
+  JointGroup group{.name = element.needed("name"),
+                   .links = names_of(element, "link"),
+                   .joints = names_of(element, "joint"),
+                   .subgroups = names_of(element, "group")};
+  for (const XmlElement& chain : element.children("chain")) {
+    group.chains.push_back({chain.needed("base_link"), chain.needed("tip_link")});
+  }
+  return group;
+}
+
+// Refuses groups that are not there and, by taking away again and again those whose groups are
+// known to end, groups within themselves.
+void check_subgroups(const std::vector<XmlElement>& elements,
+                     const std::vector<JointGroup>& groups) {
+  std::map<std::string_view, std::size_t> index;
+  for (std::size_t i = 0; i < groups.size(); ++i) index[groups[i].name] = i;
+  std::vector<std::vector<std::size_t>> parents(groups.size());
+  std::vector<std::size_t> open(groups.size(), 0);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    for (const std::string& name : groups[i].subgroups) {
+      const auto found = index.find(name);
+      if (found == index.end()) elements[i].refuse("there is no group '" + name + "'");
+      parents[found->second].push_back(i);
+      ++open[i];
+    }
+  }
+  std::vector<std::size_t> ended;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (open[i] == 0) ended.push_back(i);
+  }
+  for (std::size_t next = 0; next < ended.size(); ++next) {
+    for (const std::size_t parent : parents[ended[next]]) {
+      if (--open[parent] == 0) ended.push_back(parent);
+    }
+  }
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (open[i] > 0) elements[i].refuse("it is within itself, or a group in it is");
+  }
+}
+
+GroupState state_of(const XmlElement& element) {
+  GroupState state{.name = element.needed("name"), .group = element.needed("group")};
+  std::set<std::string> known;
+  for (const XmlElement& joint : element.children("joint")) {
+    state.joints.push_back({joint.needed("name"), joint.needed_numbers("value")});
+    remember(known, state.joints.back().joint, joint);
+  }
+  return state;
+}
+
+DisabledPair pair_of(const XmlElement& element) {
+  DisabledPair pair{element.needed("link1"), element.needed("link2"),
+                    element.attribute("reason").value_or("")};
+  if (pair.link_a == pair.link_b) element.refuse("it is a link with itself");
+  return pair;
+}
+
+LinkSpheres spheres_of(const XmlElement& element) {
+  LinkSpheres result{element.needed("link"), {}};
+  for (const XmlElement& sphere : element.children("sphere")) {
+    const Sphere ball{sphere.needed_vector("center"), sphere.needed_number("radius")};
+    if (ball.radius < 0.0) sphere.refuse("its radius is below zero");
+    if (ball.radius > kMaxCoordinate || ball.center.cwiseAbs().maxCoeff() > kMaxCoordinate) {
+      sphere.refuse("its numbers are too large");
+    }
+    if (ball.radius > 0.0) result.spheres.push_back(ball);
+  }
+  return result;
+}
+
+// Collects names that a robot has not got.
+class NameCheck {
+ public:
+  NameCheck(const RobotModel& robot, std::vector<std::string>& unknown)
+      : robot_(robot), unknown_(unknown) {}
+
+  void link(const std::string& where, const std::string& name) const {
+    if (robot_.find_link(name) < 0) unknown_.push_back(where + ": there is no link " + name);
+  }
+  void joint(const std::string& where, const std::string& name) const {
+    if (robot_.find_joint(name) < 0) unknown_.push_back(where + ": there is no joint " + name);
+  }
+
+ private:
+  const RobotModel& robot_;
+  std::vector<std::string>& unknown_;
+};
+
+}  // namespace
+
+SemanticDescription read_srdf(const std::filesystem::path& path) {
+  const internal::XmlFile file(path, "robot");
+  const XmlElement root = file.root();
+  SemanticDescription result{.robot_name = root.needed("name")};
+
+  const std::vector<XmlElement> groups = root.children("group");
+  std::set<std::string> group_names;
+  for (const XmlElement& element : groups) {
+    result.groups.push_back(group_of(element));
+    remember(group_names, result.groups.back().name, element);
+  }
+  check_subgroups(groups, result.groups);
+  const auto require_group = [&](const std::string& name, const XmlElement& element) {
+    if (!group_names.contains(name)) element.refuse("there is no group '" + name + "'");
+  };
+
+  std::set<std::pair<std::string, std::string>> state_names;
+  for (const XmlElement& element : root.children("group_state")) {
+    const GroupState& state = result.group_states.emplace_back(state_of(element));
+    require_group(state.group, element);
+    remember(state_names, {state.group, state.name}, element);
+  }
+  std::set<std::string> effector_names;
+  for (const XmlElement& element : root.children("end_effector")) {
+    const EndEffector& effector = result.end_effectors.emplace_back(
+        EndEffector{element.needed("name"), element.needed("group"), element.needed("parent_link"),
+                    element.attribute("parent_group").value_or("")});
+    require_group(effector.group, element);
+    if (!effector.parent_group.empty()) require_group(effector.parent_group, element);
+    remember(effector_names, effector.name, element);
+  }
+  for (const XmlElement& element : root.children("disable_collisions")) {
+    result.disabled_pairs.push_back(pair_of(element));
+  }
+  std::set<std::string> approximated;
+  for (const XmlElement& element : root.children("link_sphere_approximation")) {
+    result.sphere_approximations.push_back(spheres_of(element));
+    remember(approximated, result.sphere_approximations.back().link, element);
+  }
+  return result;
+}
+
+std::vector<std::string> unknown_names(const SemanticDescription& semantics,
+                                       const RobotModel& robot) {
+  std::vector<std::string> unknown;
+  const NameCheck check(robot, unknown);
+  for (const JointGroup& group : semantics.groups) {
+    const std::string where = "group " + group.name;
+    for (const std::string& link : group.links) check.link(where, link);
+    for (const std::string& joint : group.joints) check.joint(where, joint);
+    for (const LinkChain& chain : group.chains) {
+      check.link(where, chain.base_link);
+      check.link(where, chain.tip_link);
+    }
+  }
+  for (const GroupState& state : semantics.group_states) {
+    for (const JointState& joint : state.joints) check.joint("state " + state.name, joint.joint);
+  }
+  for (const EndEffector& effector : semantics.end_effectors) {
+    check.link("end effector " + effector.name, effector.parent_link);
+  }
+  for (const DisabledPair& pair : semantics.disabled_pairs) {
+    check.link("disabled pair", pair.link_a);
+    check.link("disabled pair", pair.link_b);
+  }
+  for (const LinkSpheres& spheres : semantics.sphere_approximations) {
+    check.link("sphere approximation", spheres.link);
+  }
+  return unknown;
+}
+
+}  // namespace spherule

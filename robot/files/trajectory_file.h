@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/model/robot_model.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// Configurations of a robot, in the order of a file.
+struct Trajectory {
+  std::size_t width = 0;             // numbers of a configuration: the robot's variable_count()
+  std::vector<double> positions{};   // one configuration behind the other
+  std::vector<std::size_t> lines{};  // of the file, for each configuration; the first line is 1
+
+  // How many configurations there are, and one of them.
+  std::size_t size() const { return lines.size(); }
+  std::span<const double> configuration(std::size_t index) const {
+    return std::span(positions).subspan(index * width, width);
+  }
+};
+
+// Reads a trajectory: text with a configuration on each line, numbers in radians and metres that
+// are separated by commas, semicolons or blanks. If the first line has a word that is no number, it
+// names the joints, in any order: each that moves and mimics no other once; a column named "time"
+// is passed over. Without it the numbers are those of a configuration, in their order. Empty lines
+// and what follows a # are passed over.
+//
+// Throws Error, whose subject is the file and whose reason names the line: for a file that cannot
+// be read, a joint that is unknown, fixed, a mimic, missing or there twice, a line with too few or
+// too many numbers, what is no finite number, and a file without configurations.
+Trajectory read_trajectory(const std::filesystem::path& path, const RobotModel& robot);
+
+}  // namespace spherule

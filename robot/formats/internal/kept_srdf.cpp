@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/files/internal/format_text.h"
+#include "robot/files/internal/xml_file.h"
+#include "robot/formats/internal/sphere_documents.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace spherule::internal {
+namespace {
+
+constexpr std::string_view kBlank = " \t\r";
+constexpr std::string_view kIndent = "    ";  // where no line shows how far
+
+// An element that is a child of the root, as its bytes from `begin` to before `end`.
+struct XmlPart {
+  std::string_view tag;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+// What stands where in a well-formed document.
+struct XmlParts {
+  std::vector<XmlPart> children;
+  std::size_t root_end = 0;  // where the root's end tag starts, or the "/>" of a root without one
+  bool has_end_tag = true;
+};
+
+// Behind the end of a tag that starts before `at`; its values may hold what would end it.
+std::size_t behind_tag(std::string_view text, std::size_t at) {
+  char quote = 0;
+  for (; at < text.size(); ++at) {
+    if (quote != 0) {
+      if (text[at] == quote) quote = 0;
+    } else if (text[at] == '"' || text[at] == '\'') {
+      quote = text[at];
+    } else if (text[at] == '>') {
+      return at + 1;
+    }
+  }
+  return at;
+}
+
+// Behind a comment, a declaration or another thing that is no element, if one starts at `at`.
+std::size_t behind_other(std::string_view text, std::size_t at) {
+  constexpr std::pair<std::string_view, std::string_view> kOthers[] = {
+      {"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}, {"<!", ">"}};
+  for (const auto& [start, stop] : kOthers) {
+    if (!text.substr(at).starts_with(start)) continue;
+    const std::size_t found = text.find(stop, at + start.size());
+    return found == std::string_view::npos ? text.size() : found + stop.size();
+  }
+  return at;
+}
+
+XmlParts parts_of(std::string_view text) {
+  XmlParts parts;
+  int depth = 0;
+  for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at)) {
+    const std::size_t other = behind_other(text, at);
+    if (other != at) {
+      at = other;
+      continue;
+    }
+    const std::size_t end = behind_tag(text, at);
+    const bool closes = text[at + 1] == '/';
+    const bool is_whole = !closes && text[end - 2] == '/';
+    if (closes) --depth;
+    if (depth == 0 && (closes || is_whole)) {
+      parts.root_end = closes ? at : end - 2;
+      parts.has_end_tag = closes;
+      break;
+    }
+    if (depth == 1 && !closes) {
+      const std::string_view tag = text.substr(at + 1, end - at - 1);
+      parts.children.push_back({tag.substr(0, tag.find_first_of(" \t\r\n/>")), at, end});
+    }
+    if (depth == 1 && closes) parts.children.back().end = end;
+    if (!closes && !is_whole) ++depth;
+    at = end;
+  }
+  return parts;
+}
+
+// The line around a place: where it starts, and behind its end.
+std::size_t line_start(std::string_view text, std::size_t at) {
+  const std::size_t found = at == 0 ? std::string_view::npos : text.rfind('\n', at - 1);
+  return found == std::string_view::npos ? 0 : found + 1;
+}
+
+bool is_first_on_line(std::string_view text, std::size_t at) {
+  const std::size_t start = line_start(text, at);
+  return text.substr(start, at - start).find_first_not_of(kBlank) == std::string_view::npos;
+}
+
+// Behind the end of the line if nothing more stands on it, else `at`.
+std::size_t behind_line(std::string_view text, std::size_t at) {
+  const std::size_t end = text.find_first_not_of(kBlank, at);
+  return end != std::string_view::npos && text[end] == '\n' ? end + 1 : at;
+}
+
+std::string indent_at(std::string_view text, std::size_t at) {
+  const std::size_t start = line_start(text, at);
+  return std::string(is_first_on_line(text, at) ? text.substr(start, at - start) : kIndent);
+}
+
+// Replaces [begin, end) of a text, by lines of their own unless `is_raw`.
+struct Change {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::string text{};
+  bool is_raw = false;
+};
+
+std::string changed(std::string_view text, std::vector<Change> changes) {
+  const std::string_view line_end = text.find("\r\n") == std::string_view::npos ? "\n" : "\r\n";
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const Change& a, const Change& b) { return a.begin < b.begin; });
+  std::string result;
+  std::size_t at = 0;
+  for (const Change& change : changes) {
+    if (change.begin > at) result.append(text.substr(at, change.begin - at));
+    at = std::max(at, change.end);
+    const bool starts_line = result.empty() || result.back() == '\n';
+    if (!change.is_raw && !change.text.empty() && !starts_line) result += line_end;
+    for (const char c : change.text) result.append(c == '\n' ? line_end : std::string_view(&c, 1));
+  }
+  return result.append(text.substr(at));
+}
+
+using Names = std::pair<std::string, std::string>;
+
+// Pairs of which the file says that they are not tested, or that they are.
+std::set<Names> decided_pairs(const std::filesystem::path& path) {
+  const XmlFile file(path, "robot");
+  std::set<Names> pairs;
+  for (const char* const tag : {"disable_collisions", "enable_collisions"}) {
+    for (const XmlElement& element : file.root().children(tag)) {
+      pairs.insert(std::minmax(element.needed("link1"), element.needed("link2")));
+    }
+  }
+  return pairs;
+}
+
+}  // namespace
+
+std::string srdf_pairs(std::span<const DisabledPair> pairs, const std::string& indent) {
+  std::string text;
+  for (const DisabledPair& pair : pairs) {
+    text += indent + "<disable_collisions link1=\"" + xml_escaped(pair.link_a) + "\" link2=\"" +
+            xml_escaped(pair.link_b) + "\"";
+    if (!pair.reason.empty()) text += " reason=\"" + xml_escaped(pair.reason) + "\"";
+    text += "/>\n";
+  }
+  return text;
+}
+
+std::string srdf_spheres(std::span<const LinkSpheres> links, const std::string& indent) {
+  std::string text;
+  for (const LinkSpheres& link : links) {
+    const auto put = [&](const Sphere& ball) {
+      text += indent + std::string(kIndent) + "<sphere center=\"" + decimals(ball.center, " ") +
+              "\" radius=\"" + decimal(ball.radius) + "\"/>\n";
+    };
+    text += indent + "<link_sphere_approximation link=\"" + xml_escaped(link.link) + "\">\n";
+    for (const Sphere& ball : link.spheres) put(ball);
+    if (link.spheres.empty()) put({});
+    text += indent + "</link_sphere_approximation>\n";
+  }
+  return text;
+}
+
+std::string kept_srdf(const RobotSpheres& spheres, const std::filesystem::path& original) {
+  const std::set<Names> decided = decided_pairs(original);  // refuses what is no SRDF
+  std::vector<DisabledPair> missing;
+  for (const DisabledPair& pair : spheres.self_collision_ignore) {
+    if (!decided.contains(std::minmax(pair.link_a, pair.link_b))) missing.push_back(pair);
+  }
+  const std::string text = read_file(original);
+  const XmlParts parts = parts_of(text);
+  std::vector<Change> changes;
+  std::size_t end = parts.root_end;
+  if (!parts.has_end_tag) {
+    end += 2;
+    changes.push_back({parts.root_end, end, ">", true});
+  } else if (is_first_on_line(text, end)) {
+    end = line_start(text, end);
+  }
+  std::size_t pairs_at = end;
+  std::size_t spheres_at = end;
+  std::string indent(kIndent);
+  if (!parts.children.empty()) indent = indent_at(text, parts.children.front().begin);
+  std::string pairs_indent = indent;
+  for (const XmlPart& part : parts.children) {
+    if (part.tag == "disable_collisions") {
+      pairs_at = behind_line(text, part.end);
+      pairs_indent = indent_at(text, part.begin);
+    } else if (part.tag == "link_sphere_approximation") {
+      Change removal{part.begin, behind_line(text, part.end)};
+      const bool is_whole_line = removal.end > part.end && is_first_on_line(text, part.begin);
+      if (is_whole_line) removal.begin = line_start(text, part.begin);
+      if (!is_whole_line) removal.end = part.end;
+      if (spheres_at == end) {
+        spheres_at = removal.begin;
+        indent = indent_at(text, part.begin);
+      }
+      changes.push_back(removal);
+    }
+  }
+  changes.push_back({pairs_at, pairs_at, srdf_pairs(missing, pairs_indent)});
+  changes.push_back({spheres_at, spheres_at, srdf_spheres(spheres.links, indent)});
+  if (!parts.has_end_tag) changes.push_back({end, end, "</robot>", true});
+  return changed(text, std::move(changes));
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/formats/internal/sphere_documents.h"
+#include "spheretree/error.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spherule::internal {
+
+void SphereGatherer::refuse(const std::string& place, const std::string& reason) const {
+  throw Error(file_, place.empty() ? reason : place + ": " + reason);
+}
+
+void SphereGatherer::begin_link(const std::string& name, const std::string& place) {
+  unless(links_.insert(name).second, place, "the link \"" + name + "\" is there twice");
+  spheres.links.push_back({name, {}});
+}
+
+void SphereGatherer::add(const Eigen::Vector3d& center, double radius, const std::string& place) {
+  if (radius <= 0.0) {
+    ++spheres.switched_off;
+    return;
+  }
+  const Sphere ball{center, radius};
+  unless(is_usable(ball), place, "a number is beyond 1e15");
+  spheres.links.back().spheres.push_back(ball);
+}
+
+void SphereGatherer::ignore(const std::string& link_a, const std::string& link_b) {
+  if (link_a == link_b || !ignored_.insert(std::minmax(link_a, link_b)).second) return;
+  spheres.self_collision_ignore.push_back({link_a, link_b, {}});
+}
+
+// With u = 2^-53: sines and cosines are within 1 u of values of at most 1 (2 u for a library that
+// rounds less well), so that an entry of the product of three rotations, a sum of two products of
+// at most three factors, is within 16 u; a row of it times the centre within 32 u of the centre's
+// norm, the three rows within 56 u of it, and the sum with the translation adds 1 u of both. Half a
+// dozen more u for the bounds' own rounding.
+Sphere moved_ball(const Sphere& ball, const Eigen::Vector3d& roll_pitch_yaw,
+                  const Eigen::Vector3d& translation) {
+  if (ball.center.isZero(0.0)) return {translation, ball.radius};  // exact, however it turns
+  const Eigen::Vector3d& angles = roll_pitch_yaw;
+  const double sr = std::sin(angles.x()), cr = std::cos(angles.x());
+  const double sp = std::sin(angles.y()), cp = std::cos(angles.y());
+  const double sy = std::sin(angles.z()), cy = std::cos(angles.z());
+  Eigen::Matrix3d rotation;
+  rotation << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,  //
+      sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,          //
+      -sp, cp * sr, cp * cr;
+  const double error =
+      64.0 * kUnitRoundoff * (norm_upper(ball.center) + norm_upper(translation)) + kUnderflow;
+  return {rotation * ball.center + translation, add_up(ball.radius, error)};
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/formats/sphere_formats.h"
+
+#include "robot/files/internal/format_text.h"
+#include "robot/formats/internal/sphere_documents.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FormatFacts {
+  SphereFormat format;
+  std::string_view name;
+  std::string_view option;  // of the command; empty where the format is not written
+  std::string_view ending;  // of the file's name, after the robot's
+};
+
+constexpr FormatFacts kFacts[] = {
+    {SphereFormat::kUrdf, "spherized URDF", "urdf", ".spheres.urdf"},
+    {SphereFormat::kSrdf, "SRDF", "srdf", ".srdf"},
+    {SphereFormat::kCurobo, "cuRobo yml", "curobo", ".curobo.yml"},
+    {SphereFormat::kXrdf, "XRDF", "xrdf", ".xrdf"},
+    {SphereFormat::kFoam, "foam JSON", "foam", ".foam.json"},
+    {SphereFormat::kSpherule, "spherule JSON", "json", ".spheres.json"},
+    {SphereFormat::kBallpark, "ballpark JSON", "", ""},
+    {SphereFormat::kMorphit, "MorphIt JSON", "", ""},
+    {SphereFormat::kIrmv, "IRMV JSON", "", ""},
+    {SphereFormat::kBradshaw, "sphere tree (.sph)", "", ""},
+    {SphereFormat::kSphereFile, "spherule JSON of one mesh", "", ""},
+};
+
+const FormatFacts& facts(SphereFormat format) {
+  return *std::find_if(std::begin(kFacts), std::end(kFacts),
+                       [&](const FormatFacts& row) { return row.format == format; });
+}
+
+void check_name(const std::string& name, const std::string& what, const std::string& file) {
+  const std::string fault = internal::fault_of_name(name);
+  if (!fault.empty()) throw Error(file, what + " " + fault);
+}
+
+void check_writable(const RobotSpheres& spheres, SphereFormat format, const std::string& file) {
+  if (spheres.links.empty()) throw Error(file, "there are no links to be written");
+  if (!spheres.robot.empty()) check_name(spheres.robot, "the robot's name", file);
+  std::set<std::string> names;
+  for (const LinkSpheres& link : spheres.links) {
+    check_name(link.link, "the name of a link", file);
+    const std::string subject = "link \"" + link.link + "\"";
+    if (!names.insert(link.link).second) throw Error(file, subject + " is there twice");
+    for (const Sphere& ball : link.spheres) {
+      if (!is_usable(ball)) throw Error(file, subject + " has a sphere that is not usable");
+      if (format != SphereFormat::kSpherule && ball.radius == 0.0) {
+        throw Error(file, subject + " has a sphere of radius 0, which means none in this format");
+      }
+    }
+  }
+  for (const DisabledPair& pair : spheres.self_collision_ignore) {
+    check_name(pair.link_a, "the name of an ignored link", file);
+    check_name(pair.link_b, "the name of an ignored link", file);
+    if (!pair.reason.empty()) check_name(pair.reason, "a reason", file);
+  }
+  bool finite = std::isfinite(spheres.collision_buffer);
+  for (const auto* buffers : {&spheres.self_collision_buffer, &spheres.collision_buffers}) {
+    for (const auto& [link, length] : *buffers) {
+      check_name(link, "the name of a link with a buffer", file);
+      finite = finite && std::isfinite(length);
+    }
+  }
+  if (!finite) throw Error(file, "a buffer is not finite");
+}
+
+void check_context(const SphereFileContext& context, SphereFormat format, const std::string& file) {
+  if (format != SphereFormat::kCurobo && format != SphereFormat::kXrdf) return;
+  for (const std::string& name : context.joint_names) check_name(name, "a joint's name", file);
+  for (const std::string& name : {context.base_link, context.tool_link}) {
+    if (!name.empty()) check_name(name, "the name of a link", file);
+  }
+  for (const double position : context.joint_positions) {
+    if (!std::isfinite(position)) throw Error(file, "a joint's position is not finite");
+  }
+}
+
+std::string written(const RobotSpheres& spheres, SphereFormat format,
+                    const SphereFileContext& context, const fs::path& path) {
+  const fs::path& original = context.original;
+  switch (format) {
+    case SphereFormat::kUrdf:
+      return internal::sphere_urdf(spheres, context, path);
+    case SphereFormat::kSrdf:
+      return internal::sphere_srdf(spheres, context);
+    case SphereFormat::kFoam:
+      return internal::sphere_foam(spheres);
+    case SphereFormat::kSpherule:
+      return internal::sphere_json(spheres);
+    case SphereFormat::kCurobo:
+      return original.empty()
+                 ? internal::sphere_curobo(spheres, context)
+                 : internal::with_spheres(read_file(original), original, spheres, format);
+    case SphereFormat::kXrdf:
+      return original.empty()
+                 ? internal::sphere_xrdf(spheres, context)
+                 : internal::with_spheres(read_file(original), original, spheres, format);
+    default:
+      throw Error(path.string(), std::string(name_of(format)) + " is read only");
+  }
+}
+
+// An SRDF's pairs and balls; a radius of zero is its way to say that there is none.
+RobotSpheres read_sphere_srdf(const fs::path& path) {
+  const SemanticDescription semantics = read_srdf(path);
+  internal::SphereGatherer gathered(path.string());
+  gathered.unless(!semantics.sphere_approximations.empty(), {}, "has no link_sphere_approximation");
+  for (const LinkSpheres& link : semantics.sphere_approximations) {
+    gathered.begin_link(link.link, {});
+    for (const Sphere& ball : link.spheres) {
+      gathered.add(ball.center, ball.radius, "link \"" + link.link + "\"");
+    }
+  }
+  gathered.spheres.robot = semantics.robot_name;
+  gathered.spheres.self_collision_ignore = semantics.disabled_pairs;
+  return std::move(gathered.spheres);
+}
+
+}  // namespace
+
+std::string_view name_of(SphereFormat format) {
+  return facts(format).name;
+}
+
+bool is_written(SphereFormat format) {
+  return !facts(format).option.empty();
+}
+
+std::optional<SphereFormat> sphere_format_named(std::string_view name) {
+  for (const FormatFacts& row : kFacts) {
+    if (!name.empty() && row.option == name) return row.format;
+  }
+  return std::nullopt;
+}
+
+std::string sphere_file_name(std::string_view robot, SphereFormat format) {
+  std::string fault = internal::fault_of_name(robot);
+  if (robot.find_first_of("/\\") != std::string_view::npos) fault = "has a slash";
+  if (robot.size() > 200) fault = "is too long";
+  if (!fault.empty())
+    throw Error("the robot's name", fault + ", so that no file is named after it");
+  if (!is_written(format)) throw Error(std::string(name_of(format)), "is read only");
+  return std::string(robot) + std::string(facts(format).ending);
+}
+
+SphereFormatFile read_robot_spheres(const fs::path& path, const SphereReadOptions& options) {
+  const std::string bytes = read_file(path);
+  std::string_view text = bytes;
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  if (start == std::string_view::npos) throw Error(path.string(), "is empty");
+  const std::string file = path.string();
+  switch (text[start]) {
+    case '<':
+      if (internal::is_srdf(path)) return {SphereFormat::kSrdf, read_sphere_srdf(path)};
+      return {SphereFormat::kUrdf, internal::read_sphere_urdf(path)};
+    case '{':
+    case '[':
+      return internal::read_sphere_json(text, path, options);
+    default:
+      break;
+  }
+  if (internal::is_bradshaw(text)) {
+    return {SphereFormat::kBradshaw, internal::read_bradshaw(text, file, options)};
+  }
+  return internal::read_sphere_yaml(text, path);
+}
+
+bool is_of_one_mesh(const SphereFormatFile& file) {
+  return file.spheres.links.size() == 1 && file.spheres.links.front().link.empty();
+}
+
+std::vector<LinkSpheres> shrunk_by_buffers(const RobotSpheres& spheres) {
+  std::vector<LinkSpheres> links;
+  for (const LinkSpheres& link : spheres.links) {
+    const auto own = spheres.collision_buffers.find(link.link);
+    const double buffer =
+        own == spheres.collision_buffers.end() ? spheres.collision_buffer : own->second;
+    links.push_back({link.link, {}});
+    for (Sphere ball : link.spheres) {
+      if (buffer < 0.0) ball.radius = add_down(ball.radius, buffer);
+      if (ball.radius >= 0.0) links.back().spheres.push_back(ball);
+    }
+  }
+  return links;
+}
+
+void write_robot_spheres(const RobotSpheres& spheres, SphereFormat format,
+                         const SphereFileContext& context, const fs::path& path) {
+  check_writable(spheres, format, path.string());
+  check_context(context, format, path.string());
+  write_file_atomically(path, written(spheres, format, context, path));
+}
+
+}  // namespace spherule

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/files/internal/format_text.h"
+#include "robot/formats/internal/sphere_documents.h"
+#include "robot/formats/internal/yaml_nodes.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+namespace fs = std::filesystem;
+using YAML::Node;
+
+// A quoted number is a text to every reader of YAML.
+double number(const Node& node, const std::string& what, const SphereGatherer& gathered) {
+  std::optional<double> value;
+  if (node.IsScalar() && node.Tag() != "!") value = number_of(node.Scalar());
+  if (!value) gathered.refuse(place_of(node), what + " is not a number");
+  return *value;
+}
+
+void read_ball(const Node& node, SphereGatherer& gathered) {
+  const YamlMembers ball = yaml_members(node, "a sphere", gathered);
+  const auto center = find_member(ball, "center");
+  gathered.unless(center && center->IsSequence() && center->size() == 3, place_of(node),
+                  "\"center\" is not [x, y, z]");
+  Eigen::Vector3d point;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    point[static_cast<Eigen::Index>(axis)] = number((*center)[axis], "a coordinate", gathered);
+  }
+  const auto radius = find_member(ball, "radius");
+  if (!radius) gathered.refuse(place_of(node), "\"radius\" is missing");
+  gathered.add(point, number(*radius, "\"radius\"", gathered), place_of(node));
+}
+
+void read_balls(const Node& node, SphereGatherer& gathered) {
+  for (const auto& [link, key, balls] : yaml_members(node, "the spheres", gathered)) {
+    gathered.begin_link(link, place_of(key));
+    if (balls.IsNull()) continue;
+    gathered.unless(balls.IsSequence(), place_of(balls), "spheres of a link are not a list");
+    for (const auto& ball : balls) read_ball(ball, gathered);
+  }
+}
+
+void read_ignored(const YamlMembers& ignored, SphereGatherer& gathered) {
+  for (const auto& [link, key, others] : ignored) {
+    if (others.IsNull()) continue;
+    gathered.unless(others.IsSequence(), place_of(others), "ignored links are not a list");
+    for (const auto& other : others) {
+      gathered.ignore(link, yaml_scalar(other, "an ignored link", gathered));
+    }
+  }
+}
+
+std::map<std::string, double> read_buffers(const YamlMembers& buffers, SphereGatherer& gathered) {
+  std::map<std::string, double> lengths;
+  for (const auto& [link, key, length] : buffers) {
+    lengths[link] = number(length, "a buffer", gathered);
+  }
+  return lengths;
+}
+
+// cuRobo looks at the balls of the links it is told to and no others.
+void switch_off_unlisted(const YamlMembers& kinematics, SphereGatherer& gathered) {
+  const auto listed = find_member(kinematics, "collision_link_names");
+  if (!listed) return;
+  gathered.unless(listed->IsSequence(), place_of(*listed),
+                  "\"collision_link_names\" is not a list");
+  std::set<std::string> names;
+  for (const auto& name : *listed) names.insert(yaml_scalar(name, "a link's name", gathered));
+  for (LinkSpheres& link : gathered.spheres.links) {
+    if (names.contains(link.link)) continue;
+    gathered.spheres.switched_off += link.spheres.size();
+    link.spheres.clear();
+  }
+}
+
+void read_curobo(const YamlMembers& root, const fs::path& path, SphereGatherer& gathered) {
+  const YamlMembers configuration = members_if_there(root, "robot_cfg", gathered);
+  YamlMembers kinematics =
+      members_if_there(configuration.empty() ? root : configuration, "kinematics", gathered);
+  if (kinematics.empty()) kinematics = root;
+  const auto balls = find_member(kinematics, "collision_spheres");
+  if (!balls) gathered.refuse({}, "has no \"collision_spheres\" and is no XRDF");
+  if (balls->IsScalar()) {
+    const fs::path side = path.parent_path() / balls->Scalar();
+    SphereGatherer beside(side.string());
+    const YamlMembers there =
+        yaml_members(yaml_document(read_file(side), beside), "the file", beside);
+    const auto found = find_member(there, "collision_spheres");
+    if (!found) beside.refuse({}, "has no \"collision_spheres\"");
+    read_balls(*found, beside);
+    gathered.spheres = std::move(beside.spheres);
+  } else {
+    read_balls(*balls, gathered);
+  }
+  switch_off_unlisted(kinematics, gathered);
+  const auto robot = find_member(root, "robot");
+  if (robot && robot->IsScalar()) gathered.spheres.robot = robot->Scalar();
+  read_ignored(members_if_there(kinematics, "self_collision_ignore", gathered), gathered);
+  gathered.spheres.self_collision_buffer =
+      read_buffers(members_if_there(kinematics, "self_collision_buffer", gathered), gathered);
+  const auto buffer = find_member(kinematics, "collision_sphere_buffer");
+  if (buffer && buffer->IsMap()) {
+    gathered.spheres.collision_buffers =
+        read_buffers(yaml_members(*buffer, "collision_sphere_buffer", gathered), gathered);
+  } else if (buffer) {
+    gathered.spheres.collision_buffer = number(*buffer, "\"collision_sphere_buffer\"", gathered);
+  }
+}
+
+void read_xrdf(const YamlMembers& root, SphereGatherer& gathered) {
+  const auto version = find_member(root, "format_version");
+  if (!version) gathered.refuse({}, "\"format_version\" is missing");
+  const double number_of_version = number(*version, "\"format_version\"", gathered);
+  gathered.unless(number_of_version >= 1.0 && number_of_version < 2.0, place_of(*version),
+                  "is of a version of XRDF other than 1");
+  const std::string name = xrdf_geometry(root, gathered);
+  const YamlMembers geometries = members_if_there(root, "geometry", gathered);
+  const auto geometry = find_member(geometries, name);
+  if (!geometry) gathered.refuse({}, "has no geometry \"" + name + "\"");
+  const auto balls = find_member(yaml_members(*geometry, "the geometry", gathered), "spheres");
+  if (!balls) gathered.refuse(place_of(*geometry), "the geometry has no spheres");
+  read_balls(*balls, gathered);
+  const YamlMembers collision = members_if_there(root, "collision", gathered);
+  gathered.spheres.collision_buffers =
+      read_buffers(members_if_there(collision, "buffer_distance", gathered), gathered);
+  const YamlMembers self = members_if_there(root, "self_collision", gathered);
+  gathered.spheres.self_collision_buffer =
+      read_buffers(members_if_there(self, "buffer_distance", gathered), gathered);
+  read_ignored(members_if_there(self, "ignore", gathered), gathered);
+}
+
+}  // namespace
+
+SphereFormatFile read_sphere_yaml(std::string_view text, const fs::path& path) {
+  SphereGatherer gathered(path.string());
+  const YamlMembers root = yaml_members(yaml_document(text, gathered), "the file", gathered);
+  const auto format = find_member(root, "format");
+  const bool xrdf = format && format->IsScalar() && format->Scalar() == "xrdf";
+  if (xrdf) {
+    read_xrdf(root, gathered);
+  } else {
+    read_curobo(root, path, gathered);
+  }
+  return {xrdf ? SphereFormat::kXrdf : SphereFormat::kCurobo, std::move(gathered.spheres)};
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/mechanism_check.h"
+#include "robot/model/robot_model.h"
+#include "spheretree/rounding.h"
+
+#include <cmath>
+
+namespace spherule::internal {
+
+// Positions that bounds of errors hold for: the larger ones are for no fast check.
+inline constexpr double kLargestPosition = MechanismCheck::kLargestVariable;
+
+// How far the computed position p of a joint is from the exact one, for |p| <= kLargestPosition =
+// P; zero unless the joint mimics another. With m the multiplier, o the offset, q the variable and
+// u = 2^-53, the product errs by u |m q| and the sum by u |p|, and |m q| <= P + |o| up to terms of
+// second order, so that the sum is at most u (2 P + |o|); the factor covers those terms.
+inline double mimic_error(const Joint& joint) {
+  if (joint.mimics < 0) return 0.0;
+  return 1.001 * kUnitRoundoff * (2.0 * kLargestPosition + std::abs(joint.offset));
+}
+
+// How far apart two of these can be anywhere on a motion that is straight in the variables, with
+// both its ends within P: the exact position m q + o; the computed one, of the exact q or of a q
+// that was computed at that place as (1 - t) q_0 + t q_1; and the position on the straight line
+// from one end's computed position to the other's, as computed by the same formula or exactly. With
+// e = mimic_error(), the line is within e of the exact position, because its ends are; computing a
+// place on it errs by 3 u 2 P; and a computed q errs by 3 u (|q_0| + |q_1|), which moves m q + o by
+// 6 u (P + |o|), beside e for rounding. All together at most 2 e + u (12 P + 6 |o|) <= 8 e.
+inline double mimic_error_on_edges(const Joint& joint) {
+  return 8.0 * mimic_error(joint);
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/model/robot_model.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// From configurations to what a check made from MovingFrames is asked for, the positions of the
+// joints that move. Where no joint mimics another, both are the same numbers and nothing is done.
+class JointPositions {
+ public:
+  // Of the joints of this robot.
+  explicit JointPositions(const RobotModel& robot);
+
+  // What is written to: the positions of several configurations.
+  struct Room {
+    std::vector<double> positions{};
+  };
+  // Room for so many configurations.
+  Room room_for(std::size_t configurations) const;
+
+  // The positions in a configuration of as many numbers as the robot has variables, kept at a
+  // `place` below the number that the room was made for. Allocates nothing.
+  std::span<const double> of(std::span<const double> configuration, Room& room,
+                             std::size_t place = 0) const {
+    return has_mimics_ ? computed(configuration, room, place) : configuration;
+  }
+
+ private:
+  std::span<const double> computed(std::span<const double> configuration, Room& room,
+                                   std::size_t place) const;
+
+  bool has_mimics_;
+  std::vector<Joint> moving_{};
+};
+
+}  // namespace spherule

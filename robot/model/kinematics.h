@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/model/robot_model.h"
+
+#include <span>
+#include <vector>
+
+namespace spherule {
+
+// Poses world_from_link of all links, in the order of RobotModel::links(), for a configuration of
+// variable_count() positions (radians or metres; limits are not enforced) and a placed root.
+// `world_from_link` is resized and reused, so that a warm call does not allocate.
+// `world_from_root` must not be an element of it.
+// Throws Error for a configuration of the wrong size or with a number that is not finite, and for
+// one that moves a link beyond kMaxCoordinate from the world's origin.
+void forward_kinematics(const RobotModel& robot, std::span<const double> configuration,
+                        std::vector<Pose>& world_from_link, const Pose& world_from_root = {});
+
+// Bound on the distance between a point at distance at most `reach` from a link's frame mapped by
+// the computed pose and by the exact mechanism (the joints exactly as the model stores them), in
+// metres, for any configuration with joint positions of at most 100 in magnitude and a root at
+// distance at most `root_distance` from the world's origin. The error budget stands in
+// kinematics.cpp.
+double kinematics_error_bound(const RobotModel& robot, double reach, double root_distance = 0.0);
+
+}  // namespace spherule

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/primitive.h"
+#include "robot/model/robot_model.h"
+#include "spheretree/pose.h"
+
+#include <Eigen/Core>
+
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace spherule {
+
+// A mesh in a file, in the file's own unit: times `scale`, coordinate by coordinate, it is in
+// metres. A negative factor mirrors.
+struct MeshFile {
+  std::filesystem::path path;
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+};
+
+// A shape that is rigidly attached to a link.
+struct LinkShape {
+  std::string name;  // often empty
+  Pose link_from_shape{};
+  std::variant<MeshFile, Primitive> geometry;
+};
+
+// What a link looks like and what stands for it in collision checks, in metres.
+struct LinkDescription {
+  std::string name;
+  std::vector<LinkShape> visual{};
+  std::vector<LinkShape> collision{};
+};
+
+// A robot as a file describes it. No mesh is read and no tree is built yet: `model` has no trees.
+struct RobotDescription {
+  std::string name;
+  RobotModel model;
+  std::vector<LinkDescription> links{};  // in the order of model.links()
+};
+
+}  // namespace spherule

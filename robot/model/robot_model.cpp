@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/model/robot_model.h"
+
+#include "collide/kernels/check_cache.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+Eigen::Vector3d unit_axis(const Eigen::Vector3d& axis, const std::string& name) {
+  const double scale = axis.cwiseAbs().maxCoeff();
+  if (!axis.allFinite() || !(scale > 0.0)) {
+    throw Error("joint " + name, "the axis is zero or not finite");
+  }
+  return (axis / scale).normalized();
+}
+
+}  // namespace
+
+RobotModel::RobotModel(std::string root_link)
+    : check_cache_(std::make_shared<internal::CheckCache>()) {
+  links_.push_back({std::move(root_link), -1, {}});
+}
+
+int RobotModel::add_link(std::string name, std::string_view parent_link, Joint joint) {
+  if (find_link(name) >= 0) throw Error("link " + name, "the name is taken");
+  if (!joint.name.empty() && std::any_of(joints_.begin(), joints_.end(), [&](const Joint& other) {
+        return other.name == joint.name;
+      })) {
+    throw Error("joint " + joint.name, "the name is taken");
+  }
+  const int parent = find_link(parent_link);
+  if (parent < 0) {
+    throw Error("link " + name, "there is no parent link " + std::string(parent_link));
+  }
+  if (joint.type == JointType::kContinuous) {
+    joint.lower = -std::numbers::pi;
+    joint.upper = std::numbers::pi;
+  }
+  if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || joint.lower > joint.upper) {
+    throw Error("joint " + joint.name, "the limits are not finite or reversed");
+  }
+  joint.axis = joint.type == JointType::kFixed ? Eigen::Vector3d::UnitZ()
+                                               : unit_axis(joint.axis, joint.name);
+  joint.parent_from_joint = Pose(unit_rotation(joint.parent_from_joint.rotation()),
+                                 joint.parent_from_joint.translation());
+  joint.parent_link = parent;
+  joint.child_link = static_cast<int>(links_.size());
+  joint.mimics = -1;
+  links_.push_back({std::move(name), static_cast<int>(joints_.size()), {}});
+  joints_.push_back(std::move(joint));
+  follow_.emplace_back();
+  number_variables();
+  return static_cast<int>(links_.size()) - 1;
+}
+
+std::size_t RobotModel::require_moving_joint(std::string_view name) const {
+  const int index = find_joint(name);
+  const std::string subject = "joint " + std::string(name);
+  if (index < 0) throw Error(subject, "there is no such joint");
+  if (joints_[static_cast<std::size_t>(index)].type == JointType::kFixed) {
+    throw Error(subject, "it is fixed, so that it neither mimics nor is mimicked");
+  }
+  return static_cast<std::size_t>(index);
+}
+
+// Whether the joint is the other, or mimics it directly or through others.
+bool RobotModel::follows(std::size_t joint, std::size_t other) const {
+  while (joint != other && joints_[joint].mimics >= 0) {
+    joint = static_cast<std::size_t>(joints_[joint].mimics);
+  }
+  return joint == other;
+}
+
+void RobotModel::mimic(std::string_view joint, std::string_view other, double multiplier,
+                       double offset) {
+  const std::size_t follower = require_moving_joint(joint);
+  const std::size_t leader = require_moving_joint(other);
+  const std::string subject = "joint " + std::string(joint);
+  if (joints_[follower].mimics >= 0) throw Error(subject, "it mimics a joint already");
+  if (follows(leader, follower)) throw Error(subject, "it would mimic itself");
+  if (!std::isfinite(multiplier) || !std::isfinite(offset)) {
+    throw Error(subject, "the multiplier or offset of its mimic is not finite");
+  }
+  RobotModel changed = *this;
+  changed.joints_[follower].mimics = static_cast<int>(leader);
+  changed.follow_[follower] = {multiplier, offset};
+  changed.number_variables();
+  *this = std::move(changed);
+}
+
+void RobotModel::number_variables() {
+  variable_joints_.clear();
+  has_mimics_ = false;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    Joint& joint = joints_[i];
+    joint.variable = -1;
+    joint.multiplier = 1.0;
+    joint.offset = 0.0;
+    if (joint.type == JointType::kFixed || joint.mimics >= 0) continue;
+    joint.variable = variable_count();
+    variable_joints_.push_back(static_cast<int>(i));
+  }
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    Joint& joint = joints_[i];
+    if (joint.mimics < 0) continue;
+    has_mimics_ = true;
+    std::size_t at = i;
+    while (joints_[at].mimics >= 0) {
+      joint.offset += joint.multiplier * follow_[at].offset;
+      joint.multiplier *= follow_[at].multiplier;
+      at = static_cast<std::size_t>(joints_[at].mimics);
+    }
+    joint.variable = joints_[at].variable;
+    if (!std::isfinite(joint.multiplier) || !std::isfinite(joint.offset)) {
+      throw Error("joint " + joint.name, "the multipliers of what it mimics are too large");
+    }
+  }
+}
+
+void RobotModel::attach(std::string_view link, std::shared_ptr<const SphereTree> tree) {
+  const int index = find_link(link);
+  if (index < 0) throw Error("link " + std::string(link), "there is no such link");
+  if (!tree) throw Error("link " + std::string(link), "the tree to attach is null");
+  links_[static_cast<std::size_t>(index)].trees.push_back(std::move(tree));
+}
+
+int RobotModel::find_link(std::string_view name) const {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (links_[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+int RobotModel::find_joint(std::string_view name) const {
+  if (name.empty()) return -1;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (joints_[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+}  // namespace spherule

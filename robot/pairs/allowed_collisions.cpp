@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/pairs/allowed_collisions.h"
+
+#include "robot/model/internal/link_paths.h"
+#include "robot/pairs/internal/proof_scope.h"
+#include "robot/pairs/link_pairs.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+
+namespace spherule {
+namespace {
+
+AllowedReason by_structure(const RobotModel& robot, int first, int second) {
+  const auto has_spheres = [&](int link) {
+    return !robot.links()[static_cast<std::size_t>(link)].trees.empty();
+  };
+  switch (internal::how_joined(robot, first, second, has_spheres)) {
+    case internal::Joined::kRigidly:
+      return AllowedReason::kRigid;
+    case internal::Joined::kByOneJoint:
+      return AllowedReason::kAdjacent;
+    case internal::Joined::kFurther:
+      break;
+  }
+  return AllowedReason::kTested;
+}
+
+}  // namespace
+
+std::string_view name_of(AllowedReason reason) {
+  switch (reason) {
+    case AllowedReason::kRigid:
+      return "rigid";
+    case AllowedReason::kAdjacent:
+      return "adjacent";
+    case AllowedReason::kGiven:
+      return "given";
+    case AllowedReason::kNever:
+      return "never in the sample";
+    case AllowedReason::kAlways:
+      return "always in the sample";
+    case AllowedReason::kProvedNever:
+      return "proved never";
+    case AllowedReason::kFreeInBoxes:
+      return "free in boxes";
+    case AllowedReason::kTested:
+      break;
+  }
+  return "tested";
+}
+
+AllowedCollisions::AllowedCollisions(const RobotModel& robot)
+    : mechanism_(mechanism_fingerprint(robot)), limits_(internal::position_limits(robot)) {
+  for (const Link& link : robot.links()) names_.push_back(link.name);
+  const int count = static_cast<int>(names_.size());
+  bits_.resize((names_.size() * names_.size() + 63) / 64);
+  reasons_.resize(names_.size() * names_.size(), AllowedReason::kTested);
+  for (int first = 0; first < count; ++first) {
+    for (int second = first; second < count; ++second) {
+      set(first, second, by_structure(robot, first, second));
+    }
+  }
+}
+
+int AllowedCollisions::link(std::string_view name) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  if (found == names_.end()) throw Error("link " + std::string(name), "there is no such link");
+  return static_cast<int>(found - names_.begin());
+}
+
+void AllowedCollisions::set(int first, int second, AllowedReason reason) {
+  for (const std::size_t i : {index(first, second), index(second, first)}) {
+    const std::uint64_t bit = std::uint64_t{1} << (i % 64);
+    bits_[i / 64] = reason == AllowedReason::kTested ? bits_[i / 64] & ~bit : bits_[i / 64] | bit;
+    reasons_[i] = reason;
+  }
+}
+
+void AllowedCollisions::allow(std::string_view first, std::string_view second) {
+  allow(link(first), link(second), AllowedReason::kGiven);
+}
+
+void AllowedCollisions::allow(std::span<const std::pair<std::string, std::string>> pairs) {
+  std::vector<std::pair<int, int>> found;
+  for (const auto& [first, second] : pairs) found.emplace_back(link(first), link(second));
+  for (const auto& [first, second] : found) allow(first, second, AllowedReason::kGiven);
+}
+
+void AllowedCollisions::allow(int first, int second, AllowedReason reason) {
+  const int count = static_cast<int>(names_.size());
+  if (first < 0 || second < 0 || first >= count || second >= count) {
+    throw Error("allowed collisions", "link " + std::to_string(first) + " or " +
+                                          std::to_string(second) + " is not there: the robot has " +
+                                          std::to_string(count) + " links");
+  }
+  if (reason == AllowedReason::kTested || reason == AllowedReason::kFreeInBoxes) {
+    throw Error("allowed collisions", "a pair that is tested is not allowed");
+  }
+  if (!allows(first, second)) set(first, second, reason);
+}
+
+void AllowedCollisions::allow(const LinkPairs& pairs) {
+  internal::require_proofs_of(pairs, mechanism_, names_.size(), limits_.size());
+  internal::require_never_within(pairs, limits_);
+  for (const LinkPair& pair : pairs.pairs()) {
+    if (pair.verdict != PairVerdict::kNever) continue;
+    allow(pair.first, pair.second, AllowedReason::kProvedNever);
+  }
+}
+
+void AllowedCollisions::allow_all() {
+  const int count = static_cast<int>(names_.size());
+  for (int first = 0; first < count; ++first) {
+    for (int second = first + 1; second < count; ++second) {
+      allow(first, second, AllowedReason::kGiven);
+    }
+  }
+}
+
+void AllowedCollisions::forbid(std::string_view first, std::string_view second) {
+  const int a = link(first);
+  const int b = link(second);
+  if (a == b) throw Error("link " + names_[static_cast<std::size_t>(a)], "it cannot meet itself");
+  set(a, b, AllowedReason::kTested);
+}
+
+bool AllowedCollisions::allows(std::string_view first, std::string_view second) const {
+  return allows(link(first), link(second));
+}
+
+void AllowedCollisions::require_robot(const RobotModel& robot) const {
+  if (!std::equal(names_.begin(), names_.end(), robot.links().begin(), robot.links().end(),
+                  [](const std::string& name, const Link& link) { return name == link.name; })) {
+    throw Error("allowed collisions", "they are those of a robot with other links");
+  }
+  if (std::find(reasons_.begin(), reasons_.end(), AllowedReason::kProvedNever) == reasons_.end()) {
+    return;
+  }
+  const std::vector<std::pair<double, double>> limits = internal::position_limits(robot);
+  if (mechanism_fingerprint(robot) != mechanism_ ||
+      !std::equal(limits.begin(), limits.end(), limits_.begin(), limits_.end(),
+                  [](const auto& asked, const auto& proved) {
+                    return proved.first <= asked.first && asked.second <= proved.second;
+                  })) {
+    throw Error("allowed collisions",
+                "pairs in them are proved for a robot with other joints or tighter limits");
+  }
+}
+
+std::vector<AllowedCollisions::Pair> AllowedCollisions::pairs() const {
+  std::vector<Pair> result;
+  const int count = static_cast<int>(names_.size());
+  for (int first = 0; first < count; ++first) {
+    for (int second = first + 1; second < count; ++second) {
+      if (allows(first, second)) result.push_back({first, second, reason(first, second)});
+    }
+  }
+  return result;
+}
+
+}  // namespace spherule

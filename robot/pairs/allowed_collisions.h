@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/model/robot_model.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+
+class LinkPairs;
+
+// Why two links are not tested against each other, or not everywhere.
+enum class AllowedReason : std::uint8_t {
+  kTested,       // they are
+  kRigid,        // no joint moves them against each other
+  kAdjacent,     // one joint joins them, directly or past links without spheres
+  kGiven,        // by name: an SRDF, or the user
+  kNever,        // touched in none of the sampled configurations: likely, not proved
+  kAlways,       // touched in all of the sampled configurations
+  kProvedNever,  // proved never to touch within the limits of the joints (link_pairs.h)
+  kFreeInBoxes,  // tested, but in configurations in which they are proved free (link_pairs.h)
+};
+
+// For people: what stands in tables and files.
+std::string_view name_of(AllowedReason reason);
+
+// Which pairs of a robot's links may touch each other, and why: a symmetric matrix, of which a
+// query reads a bit by the indices of two links; names are looked up when it is made. A link and
+// itself are never tested. A copy is a value of its own.
+class AllowedCollisions {
+ public:
+  // All pairs are tested but those of links that no joint moves against each other, and those that
+  // one joint joins: directly, or past links that carry no spheres and that other joints do not
+  // move.
+  explicit AllowedCollisions(const RobotModel& robot);
+
+  // The links, in the order of their indices.
+  const std::vector<std::string>& link_names() const { return names_; }
+
+  // What is allowed already keeps its reason. Throws Error for names that are no links, or indices
+  // out of range.
+  void allow(std::string_view first, std::string_view second);
+  // The pairs that an SRDF disables. Throws Error for names that are no links, before any is taken.
+  void allow(std::span<const std::pair<std::string, std::string>> pairs);
+  void allow(int first, int second, AllowedReason reason);
+  // The pairs that are proved never to touch, as kProvedNever: beyond the limits of the joints, or
+  // with padding, they are not tested either. A scene that is given the proofs
+  // (RobotScene::set_link_pairs()) tests them there. Throws Error for proofs of other links, joints
+  // or tighter limits, and those of an attached tool, before any is taken.
+  void allow(const LinkPairs& pairs);
+  // Every pair, as given: links are tested against obstacles and attached objects alone.
+  void allow_all();
+  // Tests them again. Throws Error as allow() does, and for a link and itself.
+  void forbid(std::string_view first, std::string_view second);
+
+  // Indices of links, in range.
+  bool allows(int first, int second) const noexcept {
+    const std::size_t i = index(first, second);
+    return (bits_[i / 64] >> (i % 64) & 1U) != 0;
+  }
+  // Throws Error for names that are no links.
+  bool allows(std::string_view first, std::string_view second) const;
+  AllowedReason reason(int first, int second) const noexcept {
+    return reasons_[index(first, second)];
+  }
+
+  // Two links, and why they are allowed to touch.
+  struct Pair {
+    int first = 0;  // the smaller index
+    int second = 0;
+    AllowedReason reason = AllowedReason::kTested;
+  };
+  // All pairs of two links that are allowed, in order.
+  std::vector<Pair> pairs() const;
+
+  // Throws Error for a robot with other links; where pairs are proved, also for one with other
+  // joints, or limits beyond those of the robot it was made for.
+  void require_robot(const RobotModel& robot) const;
+
+ private:
+  std::size_t index(int first, int second) const noexcept {
+    return static_cast<std::size_t>(first) * names_.size() + static_cast<std::size_t>(second);
+  }
+  int link(std::string_view name) const;
+  void set(int first, int second, AllowedReason reason);
+
+  std::vector<std::string> names_;
+  // What proofs hold for: mechanism_fingerprint(), and the limits of each variable.
+  std::uint64_t mechanism_;
+  std::vector<std::pair<double, double>> limits_;
+  std::vector<std::uint64_t> bits_;
+  std::vector<AllowedReason> reasons_;
+};
+
+// How configurations are sampled.
+struct SampleCollisionsOptions {
+  std::size_t configurations = 10000;  // drawn evenly between the joint limits
+  std::uint64_t seed = 1;
+};
+
+// How often two links touched.
+struct SampledPair {
+  int first = 0;  // the smaller index
+  int second = 0;
+  std::size_t touched = 0;                        // in so many configurations
+  AllowedReason reason = AllowedReason::kTested;  // kNever, kAlways, or neither
+};
+
+// What sampling found.
+struct SampledCollisions {
+  std::size_t configurations = 0;
+  std::vector<SampledPair> pairs;  // all that were tested, in order
+};
+
+// Counts how often links touch whose pair `allowed` does not hold already: what MoveIt's setup
+// assistant does. It is a sample: a pair that never touched in it may touch elsewhere, and what is
+// then allowed because of it is no longer proved free. Turning joints without limits are drawn from
+// a whole turn. Equal for equal input and seed. Throws Error for no configurations.
+SampledCollisions sample_collisions(const RobotModel& robot, const AllowedCollisions& allowed,
+                                    const SampleCollisionsOptions& options = {});
+
+// Allows what never touched, and what always did.
+void allow_sampled(const SampledCollisions& sampled, AllowedCollisions& allowed);
+
+}  // namespace spherule

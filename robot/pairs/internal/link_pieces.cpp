@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/pairs/internal/link_pieces.h"
+
+#include "collide/solid_within.h"
+#include "collide/within.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kTrianglesOfPiece = 8;
+// Meshes whose corners stand before their triangles by less are treated as convex, in metres.
+constexpr double kConvexDefect = 0.001;
+
+// A triangle, or a sphere of which only the first corner counts.
+struct Element {
+  std::array<Vector3d, 3> corners;
+  int corner_count;
+  double radius;
+  Vector3d middle;
+};
+
+bool before(const Vector3d& a, const Vector3d& b) {
+  return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
+}
+
+void make_unique(std::vector<Vector3d>& points) {
+  std::sort(points.begin(), points.end(), before);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+}
+
+std::vector<Element> elements_of(std::span<const LinkBody> bodies) {
+  std::vector<Element> result;
+  for (const LinkBody& body : bodies) {
+    if (body.mesh != nullptr) {
+      const MeshTree& mesh = body.mesh->mesh();
+      const auto count = static_cast<std::int32_t>(mesh.tree().spheres().size());
+      for (std::int32_t i = 0; i < count; ++i) {
+        const auto& corners = mesh.triangle(i);
+        result.push_back(
+            {corners, 3, body.mesh->growth(), (corners[0] + corners[1] + corners[2]) / 3.0});
+      }
+    } else {
+      for (const Sphere& sphere : body.spheres->spheres()) {
+        result.push_back(
+            {{sphere.center, sphere.center, sphere.center}, 1, sphere.radius, sphere.center});
+      }
+    }
+  }
+  return result;
+}
+
+class Builder {
+ public:
+  Builder(std::vector<Element> elements, LinkPieces& pieces)
+      : elements_(std::move(elements)), pieces_(pieces) {}
+
+  void build() {
+    pieces_.nodes.emplace_back();
+    build(0, 0, elements_.size());
+  }
+
+ private:
+  void build(std::size_t node, std::size_t first, std::size_t last) {
+    Vector3d low = elements_[first].corners[0];
+    Vector3d high = low;
+    double radius = 0.0;
+    bool all_triangles = true;
+    for (std::size_t i = first; i < last; ++i) {
+      for (int c = 0; c < elements_[i].corner_count; ++c) {
+        const Vector3d& corner = elements_[i].corners[static_cast<std::size_t>(c)];
+        low = low.cwiseMin(corner);
+        high = high.cwiseMax(corner);
+      }
+      radius = std::max(radius, elements_[i].radius);
+      all_triangles &= elements_[i].corner_count == 3;
+    }
+    const bool is_one_sphere = last - first == 1 && !all_triangles;
+    Sphere ball{0.5 * (low + high), 0.0};
+    for (std::size_t i = first; i < last; ++i) {
+      for (int c = 0; c < elements_[i].corner_count; ++c) {
+        const Vector3d& corner = elements_[i].corners[static_cast<std::size_t>(c)];
+        ball.radius =
+            std::max(ball.radius, add_up(distance_upper(ball.center, corner), elements_[i].radius));
+      }
+    }
+    pieces_.nodes[node].ball = ball;
+    const std::size_t count = last - first;
+    if (is_one_sphere || (all_triangles && count <= kTrianglesOfPiece)) {
+      std::vector<Vector3d> points;
+      for (std::size_t i = first; i < last; ++i) {
+        points.insert(points.end(), elements_[i].corners.begin(),
+                      elements_[i].corners.begin() + elements_[i].corner_count);
+      }
+      make_unique(points);
+      pieces_.nodes[node].first_point = static_cast<std::int32_t>(pieces_.points.size());
+      pieces_.nodes[node].point_count = static_cast<std::int32_t>(points.size());
+      pieces_.nodes[node].radius = radius;
+      pieces_.points.insert(pieces_.points.end(), points.begin(), points.end());
+    }
+    if (count == 1) return;
+    Eigen::Index axis = 0;
+    (high - low).maxCoeff(&axis);
+    const std::size_t middle = (first + last) / 2;
+    const auto at = [&](std::size_t i) {
+      return elements_.begin() + static_cast<std::ptrdiff_t>(i);
+    };
+    std::nth_element(at(first), at(middle), at(last), [&](const Element& a, const Element& b) {
+      return a.middle[axis] < b.middle[axis];
+    });
+    const std::size_t child = pieces_.nodes.size();
+    pieces_.nodes[node].first_child = static_cast<std::int32_t>(child);
+    pieces_.nodes.resize(child + 2);
+    build(child, first, middle);
+    build(child + 1, middle, last);
+  }
+
+  std::vector<Element> elements_;
+  LinkPieces& pieces_;
+};
+
+// Whether no corner stands before the plane of a triangle by more than kConvexDefect.
+bool looks_convex(const std::vector<Element>& elements, const std::vector<Vector3d>& hull) {
+  return std::all_of(elements.begin(), elements.end(), [&](const Element& element) {
+    const Vector3d normal =
+        (element.corners[1] - element.corners[0]).cross(element.corners[2] - element.corners[0]);
+    const double length = normal.norm();
+    if (element.corner_count == 1) return elements.size() == 1;
+    return length < 1e-12 || std::all_of(hull.begin(), hull.end(), [&](const Vector3d& p) {
+             return normal.dot(p - element.corners[0]) <= kConvexDefect * length;
+           });
+  });
+}
+
+bool bodies_touch(const LinkBody& a, const Pose& world_from_a, const LinkBody& b,
+                  const Pose& world_from_b, double clearance) {
+  if (a.mesh != nullptr && b.mesh != nullptr) {
+    return within(*a.mesh, world_from_a, *b.mesh, world_from_b, clearance);
+  }
+  if (b.mesh != nullptr) return within(*a.spheres, world_from_a, *b.mesh, world_from_b, clearance);
+  if (a.mesh != nullptr) return within(*b.spheres, world_from_b, *a.mesh, world_from_a, clearance);
+  return within(*a.spheres, world_from_a, *b.spheres, world_from_b, clearance);
+}
+
+}  // namespace
+
+bool touches(std::span<const LinkBody> a, const Pose& world_from_a, std::span<const LinkBody> b,
+             const Pose& world_from_b, double clearance) {
+  return std::any_of(a.begin(), a.end(), [&](const LinkBody& of_a) {
+    return std::any_of(b.begin(), b.end(), [&](const LinkBody& of_b) {
+      return bodies_touch(of_a, world_from_a, of_b, world_from_b, clearance);
+    });
+  });
+}
+
+LinkPieces make_link_pieces(std::span<const LinkBody> bodies) {
+  LinkPieces result;
+  result.bodies.assign(bodies.begin(), bodies.end());
+  std::vector<Element> elements = elements_of(bodies);
+  for (const Element& element : elements) {
+    result.hull.insert(result.hull.end(), element.corners.begin(),
+                       element.corners.begin() + element.corner_count);
+    result.hull_radius = std::max(result.hull_radius, element.radius);
+    for (const Vector3d& corner : element.corners) {
+      result.reach = std::max(result.reach, add_up(norm_upper(corner), element.radius));
+    }
+  }
+  make_unique(result.hull);
+  result.is_convex = looks_convex(elements, result.hull);
+  Builder(std::move(elements), result).build();
+  return result;
+}
+
+bool touches(const LinkPieces& a, const Pose& world_from_a, const LinkPieces& b,
+             const Pose& world_from_b, double clearance) {
+  return touches(a.bodies, world_from_a, b.bodies, world_from_b, clearance);
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/pairs/link_pairs.h"
+#include "spheretree/sphere.h"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace spherule::internal {
+
+// The bodies of one link as a binary tree of pieces, for bounds of motion. Its leaves are triangles
+// and spheres. A piece is the convex hull of points, each grown by `radius`: of a few neighbouring
+// triangles, or of one sphere; it holds all that is below its node. Every point of the surface of a
+// mesh grown by its growth lies in a leaf, and every point of a sphere.
+struct LinkPieces {
+  struct Node {
+    Sphere ball;                    // holds all leaves below
+    std::int32_t first_child = -1;  // the second one follows it; -1 for a leaf
+    std::int32_t first_point = 0;   // of a piece
+    std::int32_t point_count = 0;   // 0 if the node is none
+    double radius = 0.0;            // by which its points are grown
+  };
+
+  std::vector<Node> nodes;              // the root first
+  std::vector<Eigen::Vector3d> points;  // of the pieces
+  // The corners that can be extreme: each point of any body lies within hull_radius of their convex
+  // hull.
+  std::vector<Eigen::Vector3d> hull;
+  double hull_radius = 0.0;
+  double reach = 0.0;  // no point of the bodies is farther from the origin of the frame
+  // Whether the hull is, up to a millimetre, all that pieces could tell.
+  bool is_convex = false;
+  std::vector<LinkBody> bodies;
+};
+
+LinkPieces make_link_pieces(std::span<const LinkBody> bodies);
+
+// Whether any bodies of two links come within a clearance of each other, inside counted, under
+// poses of the frames of the links: never false if they do, and true beyond that by the rounding of
+// the tests only.
+bool touches(std::span<const LinkBody> a, const Pose& world_from_a, std::span<const LinkBody> b,
+             const Pose& world_from_b, double clearance);
+
+// Whether two links have a point in common, inside counted, under poses of their frames: never
+// false if they have, and true beyond that by the rounding of the mesh tests only.
+bool touches(const LinkPieces& a, const Pose& world_from_a, const LinkPieces& b,
+             const Pose& world_from_b, double clearance);
+
+}  // namespace spherule::internal

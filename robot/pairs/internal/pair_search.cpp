@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/pairs/internal/pair_search.h"
+
+#include "robot/model/kinematics.h"
+#include "robot/pairs/internal/pair_bound.h"
+#include "robot/pairs/internal/pair_front.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+// A pair that touches at the middles of all of so many boxes is given up: links that always touch.
+constexpr std::size_t kAlwaysTouching = 1000;
+
+// What halves are worth beside their whole, and beside that if the links touch at its middle: where
+// they mostly touch, there is less to prove.
+constexpr double kHalf = 0.5;
+constexpr double kWhereTouching = 0.5;
+
+using Bounds = std::array<double, FreeBoxes::kMostVariables>;
+
+struct Box {
+  Bounds lower{};
+  Bounds upper{};
+  std::size_t node = 0;
+  Vector3d direction = Vector3d::UnitX();  // that separated the hulls at the middle of the whole
+  std::vector<PieceNodes> front{{0, 0}};
+  double worth = 1.0;
+
+  // The heap's order: what is worth most first, then what came first.
+  friend bool operator<(const Box& a, const Box& b) {
+    return a.worth < b.worth || (a.worth == b.worth && a.node > b.node);
+  }
+};
+
+enum class Outcome { kFree, kOpen, kTouching };
+
+class Search {
+ public:
+  Search(const PairSpace& space, const PairSearchLimits& limits)
+      : space_(space),
+        limits_(limits),
+        bound_(*space.robot, space.joints, space.error),
+        configuration_(static_cast<std::size_t>(space.robot->variable_count()), 0.0),
+        half_widths_(configuration_.size(), 0.0) {}
+
+  PairSearchResult run() {
+    PairSearchResult result;
+    Box whole;
+    for (std::size_t i = 0; i < space_.variables.size(); ++i) {
+      whole.lower[i] = space_.variables[i].lower;
+      whole.upper[i] = space_.variables[i].upper;
+    }
+    tree_.emplace_back();
+    std::vector<Box> open;
+    open.push_back(std::move(whole));
+    bool always = true;
+    bool touching = limits_.is_touching;
+    while (!open.empty()) {
+      if (result.boxes >= (touching ? limits_.boxes_once_touching : limits_.boxes)) break;
+      if (result.boxes % 16 == 0 && limits_.is_over && limits_.is_over()) break;
+      if (always && result.boxes >= kAlwaysTouching) break;
+      std::pop_heap(open.begin(), open.end());
+      Box box = std::move(open.back());
+      open.pop_back();
+      ++result.boxes;
+      place(box);
+      const Outcome outcome = judge(box);
+      always &= outcome == Outcome::kTouching;
+      if (outcome == Outcome::kFree) {
+        tree_[box.node].state = FreeBoxes::kFree;
+        continue;
+      }
+      if (outcome == Outcome::kTouching && result.witness.empty()) {
+        result.witness = configuration_;
+        touching = true;
+      }
+      box.worth *= outcome == Outcome::kTouching ? kHalf * kWhereTouching : kHalf;
+      halve(std::move(box), open);
+    }
+    write(0, result.nodes);
+    return result;
+  }
+
+ private:
+  struct Node {
+    std::uint8_t state = FreeBoxes::kNotProved;
+    std::size_t first = 0;  // the second half follows it
+  };
+
+  const Pose& first_pose() const { return poses_[static_cast<std::size_t>(space_.first)]; }
+  const Pose& second_pose() const { return poses_[static_cast<std::size_t>(space_.second)]; }
+
+  void place(const Box& box) {
+    for (std::size_t i = 0; i < space_.variables.size(); ++i) {
+      const auto index = static_cast<std::size_t>(space_.variables[i].index);
+      const double middle = 0.5 * (box.lower[i] + box.upper[i]);
+      configuration_[index] = middle;
+      half_widths_[index] = std::max(sub_up(box.upper[i], middle), sub_up(middle, box.lower[i]));
+    }
+    forward_kinematics(*space_.robot, configuration_, poses_);
+    bound_.place(poses_, half_widths_);
+  }
+
+  bool touch_at_middle() const {
+    return touches(*space_.of_first, first_pose(), *space_.of_second, second_pose(), 0.0);
+  }
+
+  Outcome judge(Box& box) {
+    const LinkPieces& a = *space_.of_first;
+    const LinkPieces& b = *space_.of_second;
+    const double radii = add_up(a.hull_radius, b.hull_radius);
+    const PlacedPair placed{a, first_pose(), b, second_pose(), bound_};
+    const double gap = placed.direction_between(a.hull, b.hull, box.direction) - radii;
+    if (gap > 0.0 &&
+        bound_.are_apart(box.direction, first_pose(), a.hull, second_pose(), b.hull, radii)) {
+      return Outcome::kFree;
+    }
+    if (gap > 0.0 && a.is_convex && b.is_convex) return Outcome::kOpen;
+    if (gap <= 0.0 && touch_at_middle()) return Outcome::kTouching;
+    if (!clear_front(placed, box.front)) return Outcome::kOpen;
+    return gap <= 0.0 || !touch_at_middle() ? Outcome::kFree : Outcome::kTouching;
+  }
+
+  void halve(Box box, std::vector<Box>& open) {
+    const Vector3d first = first_pose() * space_.of_first->nodes[0].ball.center;
+    const Vector3d second = second_pose() * space_.of_second->nodes[0].ball.center;
+    const double radius =
+        std::min(space_.of_first->nodes[0].ball.radius, space_.of_second->nodes[0].ball.radius);
+    std::array<double, FreeBoxes::kMostVariables> motions{};
+    double sum = 0.0;
+    for (std::size_t step = 0; step < space_.joints.size(); ++step) {
+      const Joint& joint = space_.robot->joints()[static_cast<std::size_t>(space_.joints[step])];
+      const double scale = joint.mimics < 0 ? 1.0 : std::abs(joint.multiplier);
+      const double half = half_widths_[static_cast<std::size_t>(joint.variable)] * scale;
+      const double motion =
+          bound_.motion(step, first, second) + (joint.turns() ? half * radius : 0.0);
+      sum += motion;
+      for (std::size_t i = 0; i < space_.variables.size(); ++i) {
+        if (space_.variables[i].index == joint.variable) motions[i] += motion;
+      }
+    }
+    if (!(sum > limits_.smallest_motion)) return;
+    const auto v = static_cast<std::size_t>(
+        std::max_element(motions.begin(), motions.begin() + std::ssize(space_.variables)) -
+        motions.begin());
+    const double middle = 0.5 * (box.lower[v] + box.upper[v]);
+    if (!(box.lower[v] < middle && middle < box.upper[v])) return;
+    tree_[box.node].state = static_cast<std::uint8_t>(FreeBoxes::kFirstHalving + v);
+    tree_[box.node].first = tree_.size();
+    Box other = box;
+    box.node = tree_.size();
+    box.upper[v] = middle;
+    other.node = tree_.size() + 1;
+    other.lower[v] = middle;
+    tree_.resize(tree_.size() + 2);
+    open.push_back(std::move(box));
+    std::push_heap(open.begin(), open.end());
+    open.push_back(std::move(other));
+    std::push_heap(open.begin(), open.end());
+  }
+
+  void write(std::size_t index, std::string& nodes) const {
+    nodes.push_back(static_cast<char>(tree_[index].state));
+    if (tree_[index].state < FreeBoxes::kFirstHalving) return;
+    write(tree_[index].first, nodes);
+    write(tree_[index].first + 1, nodes);
+  }
+
+  const PairSpace& space_;
+  const PairSearchLimits& limits_;
+  PairBound bound_;
+  std::vector<double> configuration_;  // of the middle
+  std::vector<double> half_widths_;
+  std::vector<Pose> poses_;
+  std::vector<Node> tree_;
+};
+
+}  // namespace
+
+PairSearchResult search_free_boxes(const PairSpace& space, const PairSearchLimits& limits) {
+  return Search(space, limits).run();
+}
+
+}  // namespace spherule::internal

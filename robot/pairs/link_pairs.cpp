@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/pairs/link_pairs.h"
+
+#include "robot/model/internal/shared_work.h"
+#include "robot/pairs/internal/link_pieces.h"
+#include "robot/pairs/internal/pair_search.h"
+#include "robot/pairs/internal/pair_space.h"
+#include "robot/pairs/internal/pair_witness.h"
+#include "spheretree/crc64.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <string>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void check(const RobotModel& robot, std::span<const LinkBody> bodies,
+           const LinkPairOptions& options) {
+  for (const LinkBody& body : bodies) {
+    if (body.link < 0 || static_cast<std::size_t>(body.link) >= robot.links().size()) {
+      throw Error("link pairs", "a body is of link " + std::to_string(body.link) + " of " +
+                                    std::to_string(robot.links().size()));
+    }
+    if ((body.mesh == nullptr) == (body.spheres == nullptr)) {
+      throw Error("link pairs", "a body of link '" +
+                                    robot.links()[static_cast<std::size_t>(body.link)].name +
+                                    "' needs a mesh or spheres, and not both");
+    }
+  }
+  if (!(options.smallest_motion >= 0.0) || !std::isfinite(options.smallest_motion) ||
+      !(options.seconds >= 0.0) || !std::isfinite(options.seconds) || options.threads < 0) {
+    throw Error("link pairs", "an option is negative or not finite");
+  }
+}
+
+LinkPair prove(const RobotModel& robot, int first, int second,
+               std::span<const internal::LinkPieces> pieces, const LinkPairOptions& options,
+               Clock::time_point end) {
+  LinkPair result{.first = first, .second = second};
+  const auto is_over = [&] {
+    return options.stop.stop_requested() || (options.seconds > 0.0 && Clock::now() >= end);
+  };
+  const auto space =
+      internal::make_pair_space(robot, first, second, pieces[static_cast<std::size_t>(first)],
+                                pieces[static_cast<std::size_t>(second)]);
+  if (!space || is_over()) return result;
+  // Of its own for each pair, so that no thread and no other pair matters.
+  const std::uint64_t seed = options.seed * 0x9E3779B97F4A7C15U +
+                             static_cast<std::uint64_t>(first) * robot.links().size() +
+                             static_cast<std::uint64_t>(second);
+  internal::PairWitness witness = internal::find_witness(*space, options.samples, seed);
+  internal::PairSearchLimits limits{.boxes = options.undecided_boxes,
+                                    .boxes_once_touching = options.boxes,
+                                    .is_touching = witness.touches(),
+                                    .smallest_motion = options.smallest_motion,
+                                    .is_over = is_over};
+  internal::PairSearchResult found = internal::search_free_boxes(*space, limits);
+  result.searched_boxes = found.boxes;
+  result.boxes = FreeBoxes(space->variables, found.nodes);
+  result.smallest_gap = witness.gap;
+  if (witness.touches()) result.witness = std::move(witness.configuration);
+  if (!found.witness.empty() && result.witness.empty()) {
+    result.smallest_gap = 0.0;
+    result.witness = std::move(found.witness);
+  }
+  if (result.boxes.is_all_free()) {
+    result.witness.clear();  // within the rounding of the mesh test, if there was one
+    if (internal::take_all_positions(robot, space->variables)) result.verdict = PairVerdict::kNever;
+  } else if (!result.witness.empty()) {
+    result.verdict = PairVerdict::kTouching;
+  }
+  return result;
+}
+
+class Bytes {
+ public:
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+  void add(const Eigen::Vector3d& v) {
+    for (const double value : v) add(value);
+  }
+  void add(std::uint64_t value) {
+    for (int i = 0; i < 8; ++i) bytes_.push_back(static_cast<char>(value >> (8 * i) & 0xFFU));
+  }
+  void add(int value) { add(static_cast<std::uint64_t>(static_cast<std::int64_t>(value))); }
+  void add(std::string_view text) {
+    add(std::uint64_t{text.size()});
+    bytes_ += text;
+  }
+  std::uint64_t sum() const { return crc64(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+}  // namespace
+
+std::string_view name_of(PairVerdict verdict) {
+  switch (verdict) {
+    case PairVerdict::kNever:
+      return "never";
+    case PairVerdict::kTouching:
+      return "touching";
+    case PairVerdict::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+LinkPairs::LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t mechanism,
+                     std::uint64_t bodies, int tool_link)
+    : pairs_(std::move(pairs)),
+      link_count_(link_count),
+      mechanism_(mechanism),
+      bodies_(bodies),
+      tool_link_(tool_link) {
+  if (tool_link < -1 || tool_link >= static_cast<int>(link_count)) {
+    throw Error("link pairs", "the link of a tool is not there");
+  }
+  std::pair<int, int> last{-1, -1};
+  for (const LinkPair& pair : pairs_) {
+    if (pair.first < 0 || pair.first >= pair.second ||
+        static_cast<std::size_t>(pair.second) >= link_count ||
+        !(last < std::pair(pair.first, pair.second))) {
+      throw Error("link pairs", "the pairs are not in order");
+    }
+    if (tool_link >= 0 && pair.first != tool_link && pair.second != tool_link) {
+      throw Error("link pairs", "a pair is not of the tool's link");
+    }
+    const bool is_touching = pair.verdict == PairVerdict::kTouching;
+    if (is_touching == pair.witness.empty() || (is_touching && pair.boxes.is_all_free()) ||
+        (pair.verdict == PairVerdict::kNever && !pair.boxes.is_all_free())) {
+      throw Error("link pairs", "a verdict contradicts its proof");
+    }
+    last = {pair.first, pair.second};
+  }
+}
+
+const LinkPair* LinkPairs::find(int first, int second) const noexcept {
+  const std::pair<int, int> key(std::min(first, second), std::max(first, second));
+  const auto found = std::lower_bound(
+      pairs_.begin(), pairs_.end(), key,
+      [](const LinkPair& pair, const auto& k) { return std::pair(pair.first, pair.second) < k; });
+  if (found == pairs_.end() || std::pair(found->first, found->second) != key) return nullptr;
+  return &*found;
+}
+
+namespace {
+
+// Of all pairs, or those of a link that a tool stands for (-1: all).
+LinkPairs prove_pairs_of(int only, const RobotModel& robot, std::span<const LinkBody> bodies,
+                         const LinkPairOptions& options) {
+  check(robot, bodies, options);
+  const Clock::time_point end =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>(std::min(options.seconds, 1e9)));
+  const std::size_t count = robot.links().size();
+  const std::size_t threads = internal::thread_count(options.threads);
+  std::vector<std::vector<LinkBody>> bodies_of(count);
+  for (const LinkBody& body : bodies) {
+    bodies_of[static_cast<std::size_t>(body.link)].push_back(body);
+  }
+  std::vector<internal::LinkPieces> pieces(count);
+  internal::share_work(count, threads, [&](std::size_t, std::size_t link) {
+    if (!bodies_of[link].empty()) pieces[link] = internal::make_link_pieces(bodies_of[link]);
+  });
+  std::vector<LinkPair> pairs;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = i + 1; j < count; ++j) {
+      const int first = static_cast<int>(i);
+      const int second = static_cast<int>(j);
+      if (bodies_of[i].empty() || bodies_of[j].empty()) continue;
+      if (only >= 0 && first != only && second != only) continue;
+      if (internal::moving_joints(robot, first, second).empty()) continue;
+      pairs.push_back({.first = first, .second = second});
+    }
+  }
+  std::mutex progress_lock;
+  std::size_t done = 0;
+  internal::share_work(pairs.size(), threads, [&](std::size_t, std::size_t i) {
+    pairs[i] = prove(robot, pairs[i].first, pairs[i].second, pieces, options, end);
+    if (!options.progress) return;
+    const std::scoped_lock lock(progress_lock);
+    options.progress(static_cast<double>(++done) / static_cast<double>(pairs.size()),
+                     "pairs of links");
+  });
+  return LinkPairs(std::move(pairs), count, mechanism_fingerprint(robot),
+                   bodies_fingerprint(bodies), only);
+}
+
+}  // namespace
+
+LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
+                           const LinkPairOptions& options) {
+  return prove_pairs_of(-1, robot, bodies, options);
+}
+
+LinkPairs prove_attached_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
+                               const LinkBody& tool, const LinkPairOptions& options) {
+  std::vector<LinkBody> all;
+  for (const LinkBody& body : bodies) {
+    if (body.link != tool.link) all.push_back(body);
+  }
+  all.push_back(tool);
+  return prove_pairs_of(tool.link, robot, all, options);
+}
+
+std::uint64_t mechanism_fingerprint(const RobotModel& robot) {
+  Bytes bytes;
+  for (const Link& link : robot.links()) bytes.add(link.name);
+  for (const Joint& joint : robot.joints()) {
+    bytes.add(joint.name);
+    bytes.add(static_cast<int>(joint.type));
+    bytes.add(joint.parent_link);
+    bytes.add(joint.child_link);
+    const Eigen::Quaterniond rotation = joint.parent_from_joint.rotation();
+    for (const double value : rotation.coeffs()) bytes.add(value);
+    bytes.add(joint.parent_from_joint.translation());
+    bytes.add(joint.axis);
+    bytes.add(joint.variable);
+    bytes.add(joint.multiplier);
+    bytes.add(joint.offset);
+    bytes.add(joint.mimics);
+  }
+  return bytes.sum();
+}
+
+std::uint64_t bodies_fingerprint(std::span<const LinkBody> bodies) {
+  Bytes bytes;
+  for (const LinkBody& body : bodies) {
+    bytes.add(body.link);
+    if (body.mesh != nullptr) {
+      bytes.add(body.mesh->growth());
+      const MeshTree& mesh = body.mesh->mesh();
+      const auto count = static_cast<std::int32_t>(mesh.tree().spheres().size());
+      bytes.add(static_cast<int>(count));
+      for (std::int32_t i = 0; i < count; ++i) {
+        for (const Eigen::Vector3d& corner : mesh.triangle(i)) bytes.add(corner);
+      }
+    } else if (body.spheres != nullptr) {
+      bytes.add(-1);
+      for (const Sphere& sphere : body.spheres->spheres()) {
+        bytes.add(sphere.center);
+        bytes.add(sphere.radius);
+      }
+    }
+  }
+  return bytes.sum();
+}
+
+}  // namespace spherule

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "collide/solid_mesh.h"
+#include "robot/model/robot_model.h"
+#include "robot/pairs/free_boxes.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <string_view>
+#include <vector>
+
+namespace spherule {
+
+// What a link, or a tool that is fixed to it, is made of, in the frame of the link, in metres. One
+// of the two: a mesh with its inside (its growth counts), or spheres, of which each is solid.
+struct LinkBody {
+  int link = 0;
+  std::shared_ptr<const SolidMesh> mesh{};
+  std::shared_ptr<const SphereTree> spheres{};
+};
+
+// What is known of two links, wherever the limits let the joints be. Continuous joints take every
+// position.
+enum class PairVerdict : std::uint8_t {
+  kNever,     // proved: they have no point in common in any configuration
+  kTouching,  // they have one in the configuration `witness`, up to the rounding of mesh tests
+  kUnknown,   // neither was found
+};
+
+// For people: what stands in tables.
+std::string_view name_of(PairVerdict verdict);
+
+// Two links that joints move against each other. Inside counts: a link within a closed other one
+// touches it.
+struct LinkPair {
+  int first = 0;  // indices of links, the smaller one first
+  int second = 0;
+  PairVerdict verdict = PairVerdict::kUnknown;
+  std::vector<double> witness{};  // a configuration of the whole robot; empty unless they touch
+  // An upper bound of the smallest gap found, up to rounding, in metres; 0 where they touch. Of
+  // kUnknown, mainly: the search for a witness gives it.
+  double smallest_gap = std::numeric_limits<double>::infinity();
+  // Proved: in no configuration of these boxes the two have a point in common, of the exact
+  // mechanism, or under the poses that forward_kinematics() computes with the root at the world's
+  // origin. All of the ranges for kNever. For kUnknown that is so, too, where the ranges are not
+  // all that the joints can do: of a continuous joint that a mimic follows.
+  FreeBoxes boxes{};
+  std::size_t searched_boxes = 0;
+};
+
+// How long is searched. Equal options give equal results on any number of threads, unless `seconds`
+// is set or a stop is requested.
+struct LinkPairOptions {
+  std::size_t boxes = 8000;              // for each pair that touches
+  std::size_t undecided_boxes = 100000;  // for each pair without a witness
+  std::size_t samples = 300;             // configurations from which a witness is searched
+  // Boxes in which the two move against each other by less are not halved, in metres.
+  double smallest_motion = 1e-4;
+  double seconds = 0.0;  // limit for all pairs together; what is left then is kUnknown. 0: none
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: all
+  // Once requested, what is not decided is kUnknown.
+  std::stop_token stop{};
+  // Called with the share of the pairs that are done and a word, from one thread at a time.
+  std::function<void(double share, const char* what)> progress{};
+};
+
+// The pairs of a robot's links that joints move against each other, and what is proved of each.
+// Immutable; threads may share it.
+class LinkPairs {
+ public:
+  LinkPairs() = default;
+  // Pairs in the order of their indices, each once, first before second, and the fingerprints of
+  // what they hold for. Where they are of a tool, `tool_link` is the link that carries it, and one
+  // of each pair. Throws Error otherwise, for indices beyond the number of links, and a verdict
+  // that contradicts the boxes or the witness.
+  LinkPairs(std::vector<LinkPair> pairs, std::size_t link_count, std::uint64_t mechanism,
+            std::uint64_t bodies, int tool_link = -1);
+
+  // In the order of their indices.
+  const std::vector<LinkPair>& pairs() const { return pairs_; }
+  // Of the robot that they were proved for.
+  std::size_t link_count() const { return link_count_; }
+  // The fingerprints of that robot and its bodies.
+  std::uint64_t mechanism() const { return mechanism_; }
+  std::uint64_t bodies() const { return bodies_; }
+  // The link for which a tool that it carries stands alone (prove_attached_pairs()); -1: none.
+  int tool_link() const { return tool_link_; }
+
+  // The pair of two links in either order, or null: rigidly joined, or a link without a body. Who
+  // asks often keeps it: a binary search.
+  const LinkPair* find(int first, int second) const noexcept;
+
+  // Whether two links are proved free in a configuration, or on all of the straight edge between
+  // two. False where nothing is proved. Neither allocates.
+  bool is_free(int first, int second, std::span<const double> configuration) const noexcept {
+    const LinkPair* const pair = find(first, second);
+    return pair != nullptr && pair->boxes.contains(configuration);
+  }
+  bool is_edge_free(int first, int second, std::span<const double> from,
+                    std::span<const double> to) const noexcept {
+    const LinkPair* const pair = find(first, second);
+    return pair != nullptr && pair->boxes.contains_edge(from, to);
+  }
+
+ private:
+  std::vector<LinkPair> pairs_;
+  std::size_t link_count_ = 0;
+  std::uint64_t mechanism_ = 0;
+  std::uint64_t bodies_ = 0;
+  int tool_link_ = -1;
+};
+
+// Proves what it can of all pairs of links with bodies, within the limits of the joints; continuous
+// joints take all positions, but where a mimic follows one, boxes reach from -pi to pi, and the
+// pair is kUnknown even if all of that is free. Pairs with more than 16 joints between them or
+// positions beyond 100 stay kUnknown. Several bodies of a link count together. The trees of the
+// robot's links are not looked at. The proof is in internal/pair_bound.h and
+// internal/pair_search.h. Throws Error for a body without or with both shapes, a link out of range,
+// and options that are negative or not finite.
+LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
+                           const LinkPairOptions& options = {});
+
+// The same for a tool that is fixed to a link, or what a gripper holds: the pairs of its link with
+// all others, in which the tool alone stands for that link. `bodies` are those of the links; those
+// of links that do not move against the tool are of no matter. Throws Error as above.
+LinkPairs prove_attached_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
+                               const LinkBody& tool, const LinkPairOptions& options = {});
+
+// Of links, joints, origins, axes and mimics, not of limits and trees, bit by bit.
+std::uint64_t mechanism_fingerprint(const RobotModel& robot);
+// Of triangles, spheres and growth, bit by bit.
+std::uint64_t bodies_fingerprint(std::span<const LinkBody> bodies);
+
+}  // namespace spherule

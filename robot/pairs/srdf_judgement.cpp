@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/pairs/srdf_judgement.h"
+
+#include "robot/model/internal/link_paths.h"
+#include "robot/pairs/internal/proof_scope.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <set>
+#include <string>
+
+namespace spherule {
+namespace {
+
+bool is_decision(std::string_view reason) {
+  constexpr std::array<std::string_view, 3> kDecisions = {"Default", "Always", "User"};
+  return std::find(kDecisions.begin(), kDecisions.end(), reason) != kDecisions.end();
+}
+
+DisabledVerdict verdict_of(PairVerdict verdict) {
+  switch (verdict) {
+    case PairVerdict::kNever:
+      return DisabledVerdict::kNever;
+    case PairVerdict::kTouching:
+      return DisabledVerdict::kTouches;
+    case PairVerdict::kUnknown:
+      break;
+  }
+  return DisabledVerdict::kUnknown;
+}
+
+}  // namespace
+
+std::string_view name_of(DisabledVerdict verdict) {
+  switch (verdict) {
+    case DisabledVerdict::kTouches:
+      return "touches";
+    case DisabledVerdict::kNever:
+      return "never";
+    case DisabledVerdict::kAdjacent:
+      return "adjacent";
+    case DisabledVerdict::kRigid:
+      return "rigid";
+    case DisabledVerdict::kNoBody:
+      return "no body";
+    case DisabledVerdict::kOtherRobot:
+      return "of another robot";
+    case DisabledVerdict::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& semantics,
+                         const LinkPairs& proofs) {
+  internal::require_never_holds(proofs, robot);
+  std::set<int> with_body;
+  for (const LinkPair& pair : proofs.pairs()) with_body.insert({pair.first, pair.second});
+  const auto has_body = [&](int link) { return with_body.contains(link); };
+  SrdfJudgement result;
+  std::set<std::pair<int, int>> listed;
+  for (const DisabledPair& pair : semantics.disabled_pairs) {
+    JudgedPair& judged = result.pairs.emplace_back();
+    judged.pair = pair;
+    const int first = robot.find_link(pair.link_a);
+    const int second = robot.find_link(pair.link_b);
+    if (first < 0 || second < 0) {
+      judged.verdict = DisabledVerdict::kOtherRobot;
+      continue;
+    }
+    listed.insert(std::minmax(first, second));
+    const internal::Joined joined = internal::how_joined(robot, first, second, has_body);
+    const LinkPair* const proved = proofs.find(first, second);
+    if (joined == internal::Joined::kRigidly) {
+      judged.verdict = DisabledVerdict::kRigid;
+    } else if (proved == nullptr) {
+      judged.verdict = DisabledVerdict::kNoBody;
+    } else if (proved->verdict != PairVerdict::kNever && joined == internal::Joined::kByOneJoint) {
+      judged.verdict = DisabledVerdict::kAdjacent;
+    } else {
+      judged.verdict = verdict_of(proved->verdict);
+      judged.witness = proved->witness;
+      judged.smallest_gap = proved->smallest_gap;
+      const bool is_stated = !is_decision(pair.reason);
+      judged.is_wrong = judged.verdict == DisabledVerdict::kTouches && is_stated;
+      judged.is_open = judged.verdict == DisabledVerdict::kUnknown && is_stated;
+    }
+  }
+  for (const LinkPair& pair : proofs.pairs()) {
+    if (pair.verdict == PairVerdict::kNever && !listed.contains({pair.first, pair.second})) {
+      result.could_be_added.emplace_back(pair.first, pair.second);
+    }
+  }
+  return result;
+}
+
+}  // namespace spherule

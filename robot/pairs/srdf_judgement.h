@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/files/srdf.h"
+#include "robot/pairs/link_pairs.h"
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+
+// What is true of two links that an SRDF disables.
+enum class DisabledVerdict : std::uint8_t {
+  kTouches,     // they do, in a posture within the limits
+  kUnknown,     // neither a contact nor a proof was found
+  kNever,       // proved: they never do within the limits
+  kAdjacent,    // one joint joins them, directly or past links without bodies
+  kRigid,       // no joint moves them against each other
+  kNoBody,      // one of them has no body: there is nothing to test
+  kOtherRobot,  // one of them is no link of the robot
+};
+
+// For people: what stands in tables.
+std::string_view name_of(DisabledVerdict verdict);
+
+// A pair of an SRDF, judged.
+struct JudgedPair {
+  DisabledPair pair;
+  DisabledVerdict verdict = DisabledVerdict::kUnknown;
+  std::vector<double> witness{};  // where they touch: a configuration
+  double smallest_gap = std::numeric_limits<double>::infinity();  // found, in metres; of kUnknown
+  // Two links touch that are neither joined nor, by the reason that the SRDF gives, meant to
+  // ("Default", "Always" and "User" are somebody's decision; "Never" is a statement, as is
+  // "Adjacent", which is false of links that are not joined, and no reason is none).
+  bool is_wrong = false;
+  // Nothing is known of them, though the SRDF states it.
+  bool is_open = false;
+};
+
+// An SRDF's list of disabled pairs, judged.
+struct SrdfJudgement {
+  std::vector<JudgedPair> pairs{};  // in the order of the file
+  // Pairs of links that are proved never to touch and are not in the list, by their indices.
+  std::vector<std::pair<int, int>> could_be_added{};
+};
+
+// Judges the disabled pairs of a semantic description by what is proved of the robot's links.
+// Throws Error for proofs of another robot, of tighter limits, or of an attached tool.
+SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& semantics,
+                         const LinkPairs& proofs);
+
+}  // namespace spherule

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mesh/mesh_distance.h"
+#include "mesh/triangle_mesh.h"
+#include "simplifier/solid/ball_hierarchy.h"
+#include "simplifier/solid/clearance.h"
+#include "spheretree/sphere.h"
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <functional>
+#include <span>
+
+namespace spherule::internal {
+
+// What a subdivision proved about a set of points X and the union of a set of balls.
+struct CoverageProof {
+  // Bounds of the uncovered depth of X; upper is 0 exactly if X is proved to be covered.
+  double lower = 0.0;
+  double upper = 0.0;
+  Eigen::Vector3d deepest = Eigen::Vector3d::Zero();  // witness of `lower`, if that is positive
+  std::size_t examined = 0;
+
+  // Joins the proofs of two parts of X. The first of equal witnesses is kept.
+  void join(const CoverageProof& other) {
+    if (other.lower > lower) {
+      lower = other.lower;
+      deepest = other.deepest;
+    }
+    upper = std::max(upper, other.upper);
+    examined += other.examined;
+  }
+};
+
+// The balls with their search structure.
+struct BallsToProve {
+  std::span<const Sphere> balls;
+  const BallHierarchy& hierarchy;
+};
+
+// X = the triangles. They are halved at their longest edge until a piece
+// lies in a single ball (a ball is convex: corners in it, piece in it) or is smaller than `finest`,
+// at least 2^-40 of the largest coordinate.
+CoverageProof prove_surface(const TriangleMesh& mesh, const BallsToProve& balls, double finest);
+
+// X = S. Cells of its box are halved until one lies in a single ball or outside of S, or is smaller
+// than `finest` (where its centre is outside of S, than the shares of it in solid_query.h).
+// `is_witness` tells whether a point of S may be reported as a leak.
+CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
+                          const BallsToProve& balls, double finest,
+                          const std::function<bool(const Eigen::Vector3d&)>& is_witness);
+
+}  // namespace spherule::internal

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/proof/protrusion.h"
+
+#include "mesh/geometry/mesh_box.h"
+#include "simplifier/solid/box_cell.h"
+#include "simplifier/solid/medial_ascent.h"
+#include "spheretree/rounding.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRelativeTolerance = 0.02;
+
+// Distance from `c` to some point of S.
+double distance_to_solid(const Clearance& clearance, const MeshDistance& distance,
+                         const Vector3d& c, double radius) {
+  double nearest = distance(c).upper;
+  for (const AscentStep& step :
+       ascend(clearance, c, {.first_step = 0.01 * radius, .least_step = 1e-4 * radius})) {
+    if (step.clearance >= 0.0) nearest = std::min(nearest, distance_upper(c, step.point));
+  }
+  return nearest;
+}
+
+struct Cell {
+  BoxCell box;
+  double upper;  // no point of the cell is further from M
+  bool outside;  // known to be free of M and in no shell
+};
+
+bool below(const Cell& a, const Cell& b) {
+  return a.upper < b.upper;
+}
+
+}  // namespace
+
+std::vector<double> protrusions_over_solid(const Clearance& clearance, const MeshDistance& distance,
+                                           std::span<const Sphere> balls) {
+  std::vector<double> each(balls.size());
+  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
+    const Sphere& ball = balls[i];
+    const double d = clearance(ball.center).lower;
+    each[i] = d >= 0.0 ? sub_up(ball.radius, d)
+                       : add_up(ball.radius,
+                                distance_to_solid(clearance, distance, ball.center, ball.radius));
+  });
+  return each;
+}
+
+double greatest(std::span<const double> protrusions) {
+  return std::accumulate(protrusions.begin(), protrusions.end(), 0.0,
+                         [](double a, double b) { return std::max(a, b); });
+}
+
+double greatest_in(const Zone& zone, std::span<const Sphere> balls,
+                   std::span<const double> protrusions) {
+  double result = 0.0;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    if (balls[i].radius < distance_lower(zone.shape, balls[i].center)) continue;
+    result = std::max(result, protrusions[i]);
+  }
+  return result;
+}
+
+Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& shells,
+                            const Clearance& clearance, const BallsToProve& balls,
+                            double tolerance) {
+  Bounds result;
+  if (balls.balls.empty()) return result;
+  std::vector<Cell> heap{
+      {BoxCell::around(box_of(balls.balls)), std::numeric_limits<double>::infinity(), false}};
+  // The greatest distance met in the balls at a point that is not known to be inside: where the
+  // search for the upper bound may stop. It goes on for the lower one, whose witnesses are outside
+  // of S, while the inside of an open mesh has been looked at by then.
+  double met = 0.0;
+  bool is_bounded = false;
+  const auto is_near = [tolerance](double upper, double lower) {
+    return upper <= lower + std::max(tolerance, kRelativeTolerance * lower);
+  };
+  while (!heap.empty()) {
+    std::pop_heap(heap.begin(), heap.end(), below);
+    Cell cell = heap.back();
+    heap.pop_back();
+    if (!is_bounded && is_near(cell.upper, met)) {
+      result.upper = std::max(cell.upper, 0.0);
+      is_bounded = true;
+    }
+    if (is_bounded && is_near(cell.upper, result.lower)) break;
+    const Vector3d& q = cell.box.center;
+    const double reach = cell.box.reach();
+    const NearestBall gap = balls.hierarchy.nearest(q);
+    if (gap.lower > reach) continue;
+    const SurfaceDistance d = distance(q);
+    if (!cell.outside && d.lower > reach) {
+      if (shells.contain(q)) continue;
+      cell.outside = true;
+    }
+    cell.upper = std::min(cell.upper, add_up(d.upper, reach));
+    if (gap.upper <= 0.0) {
+      if (d.lower > met && (cell.outside || !shells.contain(q))) met = d.lower;
+      if (d.lower > result.lower && clearance(q).upper < 0.0) result.lower = d.lower;
+    }
+    // Small cells are left as they are: S may come to a point that no centre gets beyond.
+    if (is_bounded && (reach <= tolerance / 2.0 || clearance(q).lower >= reach)) continue;
+    for (const BoxCell& half : cell.box.halves()) {
+      heap.push_back({half, cell.upper, cell.outside});
+      std::push_heap(heap.begin(), heap.end(), below);
+    }
+  }
+  return result;
+}
+
+}  // namespace spherule::internal

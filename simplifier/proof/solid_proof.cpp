@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/proof/proof.h"
+#include "simplifier/proof/subdivision.h"
+#include "simplifier/solid/box_cell.h"
+#include "simplifier/solid/solid_query.h"
+#include "spheretree/rounding.h"
+
+#include <vector>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Cell {
+  BoxCell box;
+  bool inside = false;  // wholly in S
+};
+
+void halve(const Cell& cell, std::vector<Cell>& parts) {
+  for (const BoxCell& half : cell.box.halves()) parts.push_back({half, cell.inside});
+}
+
+}  // namespace
+
+CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
+                          const BallsToProve& balls, double finest,
+                          const std::function<bool(const Vector3d&)>& is_witness) {
+  const double rounding = mesh_point_error(distance);
+  const double least = std::max(kFinestPinch * finest, least_reach(clearance.box()));
+  const auto examine = [&](Cell& cell) {
+    Finding found;
+    found.point = cell.box.center;
+    const double reach = cell.box.reach();
+    const NearestBall gap = balls.hierarchy.nearest(found.point);
+    if (gap.index >= 0 &&
+        certainly_contains(balls.balls[static_cast<std::size_t>(gap.index)], found.point, reach)) {
+      found.settled = true;
+      return found;
+    }
+    bool center_inside = cell.inside;
+    if (!cell.inside) {
+      const CellState state = classify(clearance, cell.box);
+      found.settled = state.outside;
+      cell.inside = state.inside;
+      center_inside = state.center_inside;
+    }
+    const auto note = [&](const Vector3d& point, double depth) {
+      found.point = point;
+      found.depth = depth;
+      found.witness = depth > 0.0 && is_witness(point);
+    };
+    if (center_inside) {
+      note(cell.box.center, gap.lower);
+      found.smallest = reach <= finest;
+    } else if (const auto on_mesh =
+                   reach <= finest ? mesh_point_in(distance, cell.box) : std::nullopt) {
+      note(*on_mesh, sub_down(balls.hierarchy.nearest(*on_mesh).lower, rounding));
+      found.smallest = true;
+    } else if (const auto in_solid = reach <= kFinestOutside * finest
+                                         ? solid_point_near(clearance, cell.box, finest)
+                                         : std::nullopt) {
+      note(*in_solid, balls.hierarchy.nearest(*in_solid).lower);
+      found.smallest = true;
+    } else {
+      found.smallest = reach <= least;
+    }
+    found.upper = add_up(gap.upper, reach);
+    return found;
+  };
+  return Subdivision<Cell, decltype(examine), decltype(&halve)>(finest, examine, &halve)
+      .prove({{BoxCell::around(clearance.box())}});
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/proof/proof.h"
+#include "spheretree/rounding.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace spherule::internal {
+
+// What was found out about a piece of the set X to be covered.
+struct Finding {
+  bool settled = false;   // in a single ball, or no part of X: nothing remains to be proved
+  bool smallest = false;  // not to be split further
+  double upper = 0.0;     // no point of the piece is further from the balls
+  double depth = -std::numeric_limits<double>::infinity();  // of `point`, if that is in X
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  bool witness = false;  // `point` may be reported
+};
+
+// Proves the coverage of X, given as pieces, by splitting what `examine` leaves open with `split`
+// (which appends the parts of a piece to a list). A piece that is proved not to be deeper than the
+// deepest point met, within `finest` or kDepthTolerance of that depth, is left as it is: it changes
+// neither verdict nor depth.
+//
+// The deepest pieces are looked at first, so that a leak is soon known; what remains after
+// kBestFirst pieces is divided into fixed blocks for the threads, so that the result does not
+// depend on their number.
+template <typename Piece, typename Examine, typename Split>
+class Subdivision {
+ public:
+  Subdivision(double finest, Examine examine, Split split)
+      : finest_(finest), examine_(std::move(examine)), split_(std::move(split)) {}
+
+  CoverageProof prove(const std::vector<Piece>& pieces) const {
+    State state;
+    std::vector<Open> heap;
+    std::uint64_t made = 0;
+    for (const Piece& piece : pieces) {
+      heap.push_back({piece, std::numeric_limits<double>::infinity(), made++});
+    }
+    const auto below = [](const Open& a, const Open& b) {
+      return a.upper < b.upper || (a.upper == b.upper && a.order > b.order);
+    };
+    std::make_heap(heap.begin(), heap.end(), below);
+    std::vector<Piece> parts;
+    while (!heap.empty() && state.proof.examined < std::max(kBestFirst, 2 * pieces.size())) {
+      std::pop_heap(heap.begin(), heap.end(), below);
+      const Open open = std::move(heap.back());
+      heap.pop_back();
+      double upper = open.upper;
+      if (!step(open.piece, state, upper, parts)) continue;
+      for (const Piece& part : parts) {
+        heap.push_back({part, upper, made++});
+        std::push_heap(heap.begin(), heap.end(), below);
+      }
+    }
+    std::sort(heap.begin(), heap.end(), below);
+    prove_in_blocks(heap, state);
+    return state.proof;
+  }
+
+ private:
+  static constexpr std::size_t kBestFirst = 20'000;
+  static constexpr std::size_t kBlocks = 64;
+  static constexpr double kDepthTolerance = 0.02;
+
+  struct Open {
+    Piece piece;
+    double upper;
+    std::uint64_t order;
+  };
+  struct State {
+    CoverageProof proof;
+    double seen = 0.0;  // greatest depth met, whether or not its point may be reported
+  };
+
+  // Examines one piece; true if it was split into `parts`.
+  bool step(const Piece& piece, State& state, double& upper, std::vector<Piece>& parts) const {
+    ++state.proof.examined;
+    Piece open = piece;
+    const Finding found = examine_(open);
+    if (found.settled) return false;
+    if (found.depth > state.seen) state.seen = found.depth;
+    if (found.witness && found.depth > state.proof.lower) {
+      state.proof.lower = found.depth;
+      state.proof.deepest = found.point;
+    }
+    upper = std::min(upper, std::max(0.0, found.upper));
+    const double close = std::max(finest_, kDepthTolerance * state.seen);
+    if (found.smallest || (state.seen > 0.0 && upper <= state.seen + close)) {
+      state.proof.upper = std::max({state.proof.upper, upper, kUnderflow});
+      return false;
+    }
+    parts.clear();
+    split_(open, parts);
+    return true;
+  }
+
+  void prove_in_blocks(const std::vector<Open>& open, State& state) const {
+    std::vector<State> states(std::min(kBlocks, open.size()));
+    for (State& s : states) s.seen = state.seen;
+    tbb::parallel_for(std::size_t{0}, states.size(), [&](std::size_t block) {
+      std::vector<Piece> waiting;
+      std::vector<Piece> parts;
+      for (std::size_t i = block; i < open.size(); i += states.size()) {
+        waiting.assign(1, open[i].piece);
+        while (!waiting.empty()) {
+          const Piece piece = waiting.back();
+          waiting.pop_back();
+          double upper = std::numeric_limits<double>::infinity();
+          if (step(piece, states[block], upper, parts)) {
+            waiting.insert(waiting.end(), parts.begin(), parts.end());
+          }
+        }
+      }
+    });
+    for (const State& s : states) state.proof.join(s.proof);
+  }
+
+  double finest_;
+  Examine examine_;
+  Split split_;
+};
+
+}  // namespace spherule::internal

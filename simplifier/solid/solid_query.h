@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mesh/mesh_distance.h"
+#include "simplifier/solid/box_cell.h"
+#include "simplifier/solid/clearance.h"
+
+#include <Eigen/Geometry>
+
+#include <optional>
+
+// What the searches and proofs over cells of space ask about S; what they make of the answers is
+// theirs.
+
+namespace spherule::internal {
+
+// A cell whose centre is outside of S is halved further than others, down to this share of what is
+// the finest elsewhere, to see whether S is there at all: a ball placed for it would protrude for
+// nothing.
+inline constexpr double kFinestOutside = 1.0 / 64.0;
+// Where not even a point of S is found near such a cell, it is halved down to this share: external
+// balls that close S by a hair leave none, and the next point of S may be far.
+inline constexpr double kFinestPinch = 0x1p-16;
+
+// No cell smaller than this is looked at: clearances there are mostly rounding (BallHierarchy: 32 u
+// times the largest coordinate, for balls within the box), and halving no longer makes cells
+// smaller (BoxCell: 8 u).
+double least_reach(const Eigen::AlignedBox3d& box);
+
+// Where a cell lies. A cell of S may be neither wholly inside nor have its centre inside.
+struct CellState {
+  bool outside = false;        // no point of it is in S
+  bool inside = false;         // all of it is in S
+  bool center_inside = false;  // its centre is in S
+};
+
+// From the clearance at the centre of a cell of half diagonal `reach`.
+inline CellState state_of(const ClearanceAt& at, double reach) {
+  return {at.upper <= -reach, at.lower >= reach, at.lower >= 0.0};
+}
+
+// As closely as it matters for a cell of this size.
+CellState classify(const Clearance& clearance, const BoxCell& cell);
+
+// A point of the mesh within the half diagonal of the cell's centre: S may be as thin as the mesh,
+// which is in it. As computed, off the mesh by up to mesh_point_error().
+std::optional<Eigen::Vector3d> mesh_point_in(const MeshDistance& distance, const BoxCell& cell);
+double mesh_point_error(const MeshDistance& distance);
+
+// A point of S at most `within` from the centre of the cell, which is outside of S; found by moving
+// away from the contacts, so there may be one where none is returned.
+std::optional<Eigen::Vector3d> solid_point_near(const Clearance& clearance, const BoxCell& cell,
+                                                double within);
+
+}  // namespace spherule::internal

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mesh/mesh_distance.h"
+#include "spheretree/rounding.h"
+#include "spheretree/sphere.h"
+
+namespace spherule::internal {
+
+// Whether a ball of radius rho provably passes on the straight way between the centres of two
+// spheres that are free of the mesh grown by the padding: by bisection, up to 2^8 pieces. On a
+// piece of length g between clearances c1 and c2 the clearance is at least (c1 + c2 - g) / 2. It
+// fails only where the clearance comes below rho + (length of the way) / 2^8 somewhere.
+class BallWay {
+ public:
+  BallWay(const MeshDistance& distance, double padding) : distance_(distance), padding_(padding) {}
+
+  bool passes(const Sphere& a, const Sphere& b, double rho, int depth = 0) const {
+    constexpr int kMaxDepth = 8;
+    const double gap = distance_upper(a.center, b.center);
+    if (sub_down(add_down(a.radius, b.radius), gap) >= 2.0 * rho * kRelativeUp) return true;
+    if (depth == kMaxDepth) return false;
+    Sphere middle{(a.center + b.center) / 2.0, 0.0};
+    middle.radius = sub_down(distance_(middle.center).lower, padding_);
+    return middle.radius >= rho && passes(a, middle, rho, depth + 1) &&
+           passes(middle, b, rho, depth + 1);
+  }
+
+ private:
+  const MeshDistance& distance_;
+  double padding_;
+};
+
+}  // namespace spherule::internal

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Makes the flood tight where that matters.
+//
+// What is proved. Let T(x) = (1 + s) rho(x), R the places to which a ball of radius T can be moved
+// from outside the cube: its centre passes points of clearance >= T alone. A leaf is *possible* if
+// its clearance may be T somewhere: the clearance at its centre, rounded up, and half its diagonal
+// make the least T in it; a coarse leaf that is free is, one that is blocked is not. The way of the
+// centre to a place of R passes possible leaves alone. Points of clearance above (1 - 1e-9) T form
+// an open set, in which the way can be moved off edges and corners, so that it passes from leaf to
+// leaf through faces. So each leaf that meets R belongs to the possible leaves that are connected
+// with the outside through faces of possible or reached leaves: *open* leaves. Once each open leaf
+// is reached, or lies as a whole in the ball of a reached leaf that touches it, each place of R
+// lies in a reached leaf or in such a ball. That ball's centre is at most half a diagonal of its
+// leaf and a diagonal of the open one away: 2.6 h, of the coarser of the two (of a coarse free
+// cell: its ball holds more than its leaf).
+//
+// Where it is not so, those of the open leaves that are left and lie at the front of what is
+// reached are halved, with the possible leaves around them in two rings, so that what is reached
+// beside them can be followed. Between open leaves of edge h that share a face the clearance on the
+// straight way of their centres is at least T - 1.37 h: they are free and passed once 1.37 h is
+// less than s rho. Should halving end before (by memory, or the resolution of coordinates), a
+// larger s is stated for which no open leaf is left, at most that of the grid as it is.
+
+#include "simplifier/stage1/flood_grid.h"
+#include "spheretree/rounding.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace spherule::internal {
+namespace {
+
+// Half of the closing slack of a grid that is not refined, in steps: a place has its cell's centre
+// within sqrt(3) / 2, and the passage rule takes half a step more. Where a zone makes the grid
+// finer, the step only shrinks, between cells of two sizes too, and a node then has the clearance
+// rho + h / 2 that suffices to get to the face of any free cell.
+constexpr double kUniform = 0.8661 + 0.5;
+constexpr int kRings = 2;
+// Morton codes have room for 21.
+constexpr int kMostLevels = 20;
+
+}  // namespace
+
+class FloodGrid::Refinement {
+ public:
+  explicit Refinement(FloodGrid& grid) : grid_(grid) {}
+
+  // Takes all leaves into account for a share, from now on.
+  void begin(double share) {
+    share_ = share;
+    is_possible_.clear();
+    doubted_.clear();
+    doubt_from(0);
+  }
+
+  // The open leaves that are not held, in order. The leaves that are held count as outside: more
+  // may be named so, never fewer. What is not open never will be, and is not possible from now on.
+  const std::vector<std::size_t>& lost() {
+    std::vector<char> is_first(doubted_.size());
+    tbb::parallel_for(std::size_t{0}, doubted_.size(),
+                      [&](std::size_t k) { is_first[k] = meets_outside(doubted_[k]) ? 1 : 0; });
+    std::vector<char> is_open = is_first;
+    front_.clear();
+    std::vector<std::size_t> waiting;
+    for (std::size_t k = 0; k < doubted_.size(); ++k) {
+      if (is_first[k] == 0) continue;
+      waiting.push_back(k);
+      front_.push_back(doubted_[k]);
+    }
+    while (!waiting.empty()) {
+      const std::size_t k = waiting.back();
+      waiting.pop_back();
+      for_each_touching(doubted_[k], true, [&](std::size_t other) {
+        const auto found = std::lower_bound(doubted_.begin(), doubted_.end(), other);
+        if (found == doubted_.end() || *found != other) return;
+        const auto at = static_cast<std::size_t>(found - doubted_.begin());
+        if (std::exchange(is_open[at], 1) == 0) waiting.push_back(at);
+      });
+    }
+    std::vector<std::size_t> open;
+    for (std::size_t k = 0; k < doubted_.size(); ++k) {
+      if (is_open[k] != 0) {
+        open.push_back(doubted_[k]);
+      } else {
+        is_possible_[doubted_[k]] = 0;
+      }
+    }
+    doubted_ = std::move(open);
+    return doubted_;
+  }
+
+  // Halves those of the leaves that are lost that lie at the front of what is reached, and the
+  // possible ones around them, and floods on. False if none can be halved.
+  bool refine() {
+    std::vector<char> is_chosen(cells().size());
+    std::vector<std::size_t> chosen;
+    const auto choose = [&](std::size_t i) {
+      const Entry& cell = cells()[i];
+      if (is_chosen[i] != 0 || is_possible_[i] == 0 || !cell.finest || !can_be_halved(cell)) return;
+      is_chosen[i] = 1;
+      chosen.push_back(i);
+    };
+    for_each_at_the_front(choose);
+    for (int n = 0; n < kRings; ++n) {
+      const std::vector<std::size_t> inner = chosen;
+      for (const std::size_t i : inner) for_each_touching(i, false, choose);
+    }
+    if (chosen.empty() || cells().size() + 8 * chosen.size() > kMaxCells) return false;
+    std::sort(chosen.begin(), chosen.end());
+    const std::size_t begin = cells().size();
+    for (const std::size_t i : chosen) grid_.halve(i);
+    grid_.examine(begin);
+    grid_.sets_.grow(cells().size() + 1);
+    std::erase_if(grid_.doubtful_, [&](const Pair& pair) {
+      return cells()[pair.first].state == State::kRefined ||
+             cells()[pair.second].state == State::kRefined;
+    });
+    for (std::size_t i = begin; i < cells().size(); ++i) grid_.connect(i);
+    connect_finer(begin);
+    grid_.reach_on();
+    for (const std::size_t i : chosen) is_possible_[i] = 0;
+    doubt_from(begin);
+    return true;
+  }
+
+ private:
+  const std::vector<Entry>& cells() const { return grid_.cells_; }
+
+  bool can_be_halved(const Entry& cell) const {
+    return cell.level < kMostLevels && grid_.edge(cell.level + 1) > 1e3 * grid_.rounding();
+  }
+
+  bool is_at_boundary(const Entry& cell) const {
+    const std::uint32_t last = (std::uint32_t{1} << cell.level) - 1;
+    const Index index = decode(cell.code);
+    return std::any_of(index.begin(), index.end(),
+                       [&](std::uint32_t i) { return i == 0 || i == last; });
+  }
+
+  // Whether a doubted leaf ends the cube, or shares a face with a leaf that is reached, or possible
+  // and held.
+  bool meets_outside(std::size_t cell) const {
+    if (is_at_boundary(cells()[cell])) return true;
+    bool found = false;
+    for_each_touching(cell, true, [&](std::size_t other) {
+      found = found || cells()[other].reached ||
+              (is_possible_[other] != 0 &&
+               !std::binary_search(doubted_.begin(), doubted_.end(), other));
+    });
+    return found;
+  }
+
+  // Drops the doubted leaves that are none any more, and adds those from a cell on that are
+  // possible and not held.
+  void doubt_from(std::size_t begin) {
+    is_possible_.resize(cells().size());
+    tbb::parallel_for(begin, cells().size(),
+                      [&](std::size_t i) { is_possible_[i] = is_possible(cells()[i]) ? 1 : 0; });
+    std::vector<std::size_t> asked = std::move(doubted_);
+    for (std::size_t i = begin; i < cells().size(); ++i) {
+      if (is_possible_[i] != 0) asked.push_back(i);
+    }
+    std::vector<char> is_doubted(asked.size());
+    tbb::parallel_for(std::size_t{0}, asked.size(), [&](std::size_t k) {
+      const Entry& cell = cells()[asked[k]];
+      is_doubted[k] = cell.state != State::kRefined && !cell.reached && !is_held(asked[k]) ? 1 : 0;
+    });
+    doubted_.clear();
+    for (std::size_t k = 0; k < asked.size(); ++k) {
+      if (is_doubted[k] != 0) doubted_.push_back(asked[k]);
+    }
+  }
+
+  bool is_possible(const Entry& cell) const {
+    if (cell.reached || cell.state == State::kRefined) return false;
+    if (!cell.finest) return cell.state == State::kFree;
+    const double reach = grid_.half_diagonal(cell.level);
+    const double most = add_up(cell.clearance + grid_.widest_bounds_, reach);
+    const auto suffices = [&](double rho) { return most >= (1.0 + share_) * rho * (1.0 - 1e-9); };
+    if (!suffices(grid_.diameter_.least_radius())) return false;
+    return suffices(grid_.diameter_.near(grid_.center(cell), reach).least);
+  }
+
+  // Whether the cell lies as a whole in the ball of a reached leaf that touches it.
+  bool is_held(std::size_t cell) const {
+    return is_held_by(cell, [](const Entry& other) { return other.reached; });
+  }
+  template <typename Counts>
+  bool is_held_by(std::size_t cell, Counts counts) const {
+    const Eigen::Vector3d middle = grid_.center(cells()[cell]);
+    const double reach = grid_.half_diagonal(cells()[cell].level);
+    bool found = false;
+    for_each_touching(cell, false, [&](std::size_t other) {
+      if (found || !counts(cells()[other])) return;
+      found = add_up(distance_upper(middle, grid_.center(cells()[other])), reach) <=
+              cells()[other].clearance;
+    });
+    return found;
+  }
+
+  // Calls visit(leaf) for the leaves that are lost from the reached ones on, up to where there is
+  // room: what is behind a free leaf matters once that is reached, and needs no finer cells until
+  // then.
+  template <typename Visit>
+  void for_each_at_the_front(Visit visit) const {
+    const auto is_lost = [&](std::size_t i) {
+      return std::binary_search(doubted_.begin(), doubted_.end(), i);
+    };
+    const auto has_room = [](const Entry& other) { return other.state == State::kFree; };
+    std::vector<char> seen(cells().size());
+    std::vector<std::size_t> waiting = front_;
+    for (const std::size_t i : waiting) seen[i] = 1;
+    while (!waiting.empty()) {
+      const std::size_t i = waiting.back();
+      waiting.pop_back();
+      visit(i);
+      if (has_room(cells()[i]) || is_held_by(i, has_room)) continue;
+      for_each_touching(i, true, [&](std::size_t other) {
+        if (seen[other] != 0 || !is_lost(other)) return;
+        seen[other] = 1;
+        waiting.push_back(other);
+      });
+    }
+  }
+
+  // Connects new cells with finer ones at their faces that were there before.
+  void connect_finer(std::size_t begin) const {
+    for (std::size_t i = begin; i < cells().size(); ++i) {
+      if (cells()[i].state != State::kFree) continue;
+      for_each_touching(i, true, [&](std::size_t other) {
+        if (other >= begin || cells()[other].state != State::kFree ||
+            cells()[other].level <= cells()[i].level) {
+          return;
+        }
+        grid_.doubtful_.emplace_back(static_cast<std::uint32_t>(i),
+                                     static_cast<std::uint32_t>(other));
+      });
+    }
+  }
+
+  // Calls visit(leaf) for the leaves that share a point with a cell, or a face (not an edge or a
+  // corner alone). Not for itself.
+  template <typename Visit>
+  void for_each_touching(std::size_t cell, bool by_faces, Visit visit) const {
+    const Entry& self = cells()[cell];
+    const Index index = decode(self.code);
+    // In units of the finest cells that there can be.
+    std::array<std::uint32_t, 3> low{};
+    const std::uint32_t size = std::uint32_t{1} << (kMostLevels - self.level);
+    for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = index[axis] * size;
+    const auto descend = [&](const auto& descend_on, std::size_t node, const Index& node_low,
+                             std::uint32_t node_size) -> void {
+      int apart_by_none = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::uint32_t begin = std::max(low[axis], node_low[axis]);
+        const std::uint32_t end = std::min(low[axis] + size, node_low[axis] + node_size);
+        if (begin > end) return;
+        apart_by_none += begin == end ? 1 : 0;
+      }
+      if (by_faces && apart_by_none > 1) return;
+      if (cells()[node].state != State::kRefined) {
+        if (node != cell) visit(node);
+        return;
+      }
+      const std::uint32_t half = node_size / 2;
+      for (std::uint32_t k = 0; k < 8; ++k) {
+        const Index child_low = {node_low[0] + (k & 1U) * half, node_low[1] + (k >> 1 & 1U) * half,
+                                 node_low[2] + (k >> 2 & 1U) * half};
+        descend_on(descend_on, cells()[node].child_or_zone + k, child_low, half);
+      }
+    };
+    descend(descend, 0, {0, 0, 0}, std::uint32_t{1} << kMostLevels);
+  }
+
+  FloodGrid& grid_;
+  double share_ = 0.0;
+  std::vector<char> is_possible_;     // of each cell
+  std::vector<std::size_t> doubted_;  // possible and not held, in order
+  std::vector<std::size_t> front_;    // those of them that meet the outside
+};
+
+double FloodGrid::tighten(double share, const Progress& progress) {
+  const double uniform = kUniform * shape_.step / diameter_.radius();
+  if (uniform <= share) return uniform;
+  Refinement refinement(*this);
+  refinement.begin(share);
+  while (true) {
+    if (refinement.lost().empty()) return share;
+    if (progress) progress(0.95, "looking for narrow ways");
+    if (!refinement.refine()) break;
+  }
+  // For how much more room it does hold.
+  while (share < uniform) {
+    share *= 1.1;
+    refinement.begin(share);
+    if (refinement.lost().empty()) break;
+  }
+  return std::min(share, uniform);
+}
+
+}  // namespace spherule::internal

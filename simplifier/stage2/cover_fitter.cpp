@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/stage2/cover_fitter.h"
+
+#include "simplifier/stage2/cover_bound.h"
+#include "simplifier/stage2/cover_checks.h"
+#include "simplifier/stage2/cover_moves.h"
+#include "simplifier/stage2/lazy_cover_search.h"
+#include "simplifier/stage2/surface_extent.h"
+#include "simplifier/support/random.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <numeric>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+// Half diagonal of the cells that rows stand for, as a share of E or of how far balls reach
+// (SolidCells): at the start the first for which there are not too few of them, in the end the
+// first for which there are many.
+constexpr std::array kSpacings{0.7, 0.5, 0.3, 0.2, 0.14};
+constexpr std::size_t kFewCells = 10000;
+constexpr std::size_t kManyCells = 30000;
+// Rounds without a better answer, after which cells become finer, or which end the search.
+constexpr int kPatience = 3;
+constexpr int kConverged = 40;
+
+// Surroundings of rows: the radii as shares of the cells' spacing and, in all, of E; the discs as
+// shares of how much further than E balls reach.
+constexpr double kCellRadius = 0.3;
+constexpr double kCellDisc = 0.05;
+constexpr double kLargestDisc = 0.5;  // of E: a ball about the point itself contains them all
+constexpr double kLeakRadius = 0.1;   // of the rows that leaks become
+constexpr double kLeakDisc = 0.015;
+
+// Shares of E.
+constexpr double kFinest = 0.01;       // smallest cell of the proof
+constexpr double kLeakSpacing = 0.15;  // leaks become rows this far apart
+constexpr double kTolerance = 0.02;    // of the clearances of rows
+
+constexpr std::size_t kStartsPerRow = 10;  // a start for so many rows
+constexpr std::size_t kMinStarts = 2000;
+constexpr std::size_t kMaxStarts = 10000;
+// Times that candidates are grown, again from where no ball of those before covers: what is still
+// left gets a small ball of its own, of which large thin parts would need a great many.
+constexpr int kPasses = 5;
+
+constexpr std::uint64_t kWork = 60;     // of a search: visits per entry of the rows it begins with
+constexpr std::size_t kSampling = 10;   // a search begins with one of so many rows
+constexpr std::size_t kForgetting = 4;  // times as large as it was the problem may grow
+// So many leaks more than there are balls to gain may still be mended by fewer balls.
+constexpr std::size_t kHopefulLeaks = 8;
+constexpr std::size_t kOpenRows = 100;  // that candidates are made for in a round
+
+// What a lower bound is made of, for every ball proved and at least.
+constexpr std::size_t kBoundPoints = 40;
+constexpr std::size_t kMinBoundPoints = 2000;
+constexpr std::size_t kBoundCenters = 20;
+constexpr std::size_t kMinBoundCenters = 1000;
+
+// At most `count` of the items, evenly picked.
+template <typename Item>
+std::vector<Item> some_of(const std::vector<Item>& items, std::size_t count) {
+  if (items.size() <= count) return items;
+  std::vector<Item> picked;
+  for (std::size_t i = 0; i < count; ++i) picked.push_back(items[i * items.size() / count]);
+  return picked;
+}
+
+}  // namespace
+
+void CoverFitter::Balls::append(const Balls& other) {
+  places.insert(places.end(), other.places.begin(), other.places.end());
+  spheres.insert(spheres.end(), other.spheres.begin(), other.spheres.end());
+}
+
+double CoverFitter::finest(double max_error) {
+  return kFinest * max_error;
+}
+
+double CoverFitter::leak_spacing(double max_error) {
+  return kLeakSpacing * max_error;
+}
+
+CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distance,
+                         const CoverOptions& options, std::span<const Sphere> given)
+    : clearance_(clearance),
+      distance_(distance),
+      options_(options),
+      error_(options.max_error),
+      local_(options.max_error, options.zones),
+      problem_(options.max_error, options.min_radius, options.zones),
+      given_(given.begin(), given.end()) {
+  check_resolved(clearance, tightest_error(options.zones, options.max_error), kFinest);
+}
+
+std::vector<Sphere> CoverFitter::run() {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  // Of what the options allow for the search.
+  const auto share_done = [&](int round) {
+    const double rounds = static_cast<double>(round) / std::max(1, options_.effort);
+    if (options_.seconds == 0.0) return rounds;
+    const std::chrono::duration<double> elapsed = Clock::now() - start;
+    return std::max(rounds, elapsed.count() / options_.seconds);
+  };
+  begin();
+  int in_vain = 0;
+  for (int round = 0; round < options_.effort && best_.spheres.size() > 1; ++round) {
+    const double share = share_done(round);
+    if (share >= 1.0 || options_.stop.stop_requested()) break;
+    report(share);
+    in_vain = improve() ? 0 : in_vain + 1;
+    if (in_vain >= kPatience && refine()) in_vain = 0;
+    if (in_vain >= kConverged) break;
+  }
+  bound();
+  return best_.spheres;
+}
+
+void CoverFitter::begin() {
+  for (;; ++spacing_) {
+    cells_.emplace(clearance_, distance_, local_, error_, kSpacings[spacing_]);
+    if (cells_->size() >= kFewCells || spacing_ + 1 == kSpacings.size()) break;
+  }
+  pose({});
+  first_entries_ = problem_.entries();
+  solution_ = greedy_set_cover(problem_.instance());
+  prove_or_learn();
+}
+
+bool CoverFitter::improve() {
+  const std::size_t before = best_.spheres.size();
+  if (search()) {
+    spread(clearance_, problem_, solution_);
+    prove_or_learn();
+  } else if (!options_.stop.stop_requested()) {
+    widen();
+  }
+  if (problem_.entries() > kForgetting * first_entries_) forget();
+  return best_.spheres.size() < before;
+}
+
+bool CoverFitter::refine() {
+  if (cells_made_ > kManyCells || spacing_ + 1 == kSpacings.size()) return false;
+  ++spacing_;
+  const std::vector<CoverProblem::Row> rows = problem_.rows();
+  const std::size_t learned = sampled_;
+  cells_.emplace(clearance_, distance_, local_, error_, kSpacings[spacing_]);
+  pose(best_.places);
+  problem_.add_rows(std::span(rows).subspan(learned));
+  add_own(problem_, sampled_);
+  know_from(sampled_);
+  first_entries_ = problem_.entries();
+  solution_.resize(best_.places.size());
+  std::iota(solution_.begin(), solution_.end(), std::size_t{0});
+  goal_.restart();
+  return true;
+}
+
+void CoverFitter::pose(const std::vector<Candidate>& candidates) {
+  problem_ = CoverProblem(error_, options_.min_radius, options_.zones);
+  problem_.add_candidates(candidates);
+  cells_made_ = cells_->size();
+  Points sample = cells_->sample();
+  const BallHierarchy given(given_);
+  std::erase_if(sample, [&](const Vector3d& p) { return given.nearest(p, 0.0).upper < 0.0; });
+  sampled_ = sample.size();
+  add_rows(problem_, sample, {kCellRadius * kSpacings[spacing_], kCellDisc},
+           some_of(sample, std::clamp(sampled_ / kStartsPerRow, kMinStarts, kMaxStarts)));
+  known_ = {};
+  for (std::size_t row = 0; row < sampled_; row += kSampling) known_.add(row);
+}
+
+void CoverFitter::know_from(std::size_t row) {
+  for (; row < problem_.rows().size(); ++row) known_.add(row);
+}
+
+void CoverFitter::bound() {
+  if (!options_.lower_bound || options_.min_radius > 0.0 || !given_.empty()) return;
+  if (options_.stop.stop_requested()) return;
+  Points points;
+  for (const CoverProblem::Row& row : problem_.rows()) points.push_back(row.point);
+  Points centers;
+  for (std::size_t c = 0; c < problem_.instance().columns.size(); ++c) {
+    centers.push_back(problem_.candidate(c).center);
+  }
+  points = some_of(points, kBoundPoints * best_.spheres.size() + kMinBoundPoints);
+  centers = some_of(centers, kBoundCenters * best_.spheres.size() + kMinBoundCenters);
+  lower_bound_ = cover_bound(
+      {clearance_, distance_, error_, points, centers, options_.stop, options_.progress});
+}
+
+bool CoverFitter::search() {
+  const std::array<std::size_t, 2> targets{goal_.target(), goal_.easier()};
+  std::array<std::optional<LazyCoverSearch>, 2> searches;
+  std::array<bool, 2> covers{};
+  // The second, if the first succeeds; both, if a stop is requested.
+  std::array<std::atomic<bool>, 2> unneeded{};
+  const std::stop_callback quit(options_.stop, [&] { unneeded[0] = unneeded[1] = true; });
+  const std::uint64_t entries_per_row = problem_.entries() / problem_.rows().size();
+  const std::uint64_t work = kWork * entries_per_row * known_.rows.size();
+  tbb::parallel_for(std::size_t{0}, searches.size(), [&](std::size_t i) {
+    searches[i].emplace(problem_.instance(), problem_.columns_of(), known_, solution_);
+    covers[i] = searches[i]->reach(targets[i], work, options_.seed + seeds_used_ + i, unneeded[i]);
+    if (i == 0 && covers[0]) unneeded[1] = true;
+  });
+  seeds_used_ += searches.size();
+  const LazyCoverSearch& chosen = *searches[covers[0] ? 0 : 1];
+  solution_ = chosen.columns();
+  known_ = chosen.known();
+  if (!covers[0]) goal_.failed();
+  return covers[0] || covers[1];
+}
+
+void CoverFitter::prove_or_learn() {
+  Balls balls = balls_of(problem_, solution_);
+  SolidCells::Leaks leaks = leaks_of(balls.spheres);
+  const std::size_t leak_count = leaks.in_solid.size() + leaks.pinched.size();
+  const std::size_t rows = problem_.rows().size();
+  if (leak_count > 0) learn(problem_, leaks);
+  know_from(rows);
+  if (!best_.spheres.empty() &&
+      balls.spheres.size() + leak_count >= best_.spheres.size() + kHopefulLeaks)
+    return;
+  balls = mended(std::move(balls), std::move(leaks));
+  if (!best_.spheres.empty() && balls.spheres.size() >= best_.spheres.size()) return;
+  goal_.reached(balls.spheres.size());
+  best_ = std::move(balls);
+  if (options_.on_proved) options_.on_proved(given_.size() + best_.spheres.size());
+}
+
+void CoverFitter::widen() {
+  const std::vector<std::uint32_t> open =
+      some_of(open_rows(problem_.instance(), solution_), kOpenRows);
+  Points points;
+  for (const std::uint32_t row : open) points.push_back(problem_.rows()[row].point);
+  // Where few are left open it takes new places for other balls, too.
+  Random random(options_.seed + seeds_used_++);
+  while (points.size() < kOpenRows) {
+    points.push_back(problem_.rows()[random.index(problem_.rows().size())].point);
+  }
+  problem_.add_candidates(reach_for(clearance_, problem_, solution_, open));
+  problem_.add_candidates(
+      candidates_from(clearance_, points, error_, options_.seed + seeds_used_++, local_));
+}
+
+CoverFitter::Balls CoverFitter::mended(Balls balls, SolidCells::Leaks leaks) {
+  for (; !leaks.empty(); leaks = leaks_of(balls.spheres)) {
+    CoverProblem rest(error_, options_.min_radius, options_.zones);
+    learn(rest, leaks);
+    balls.append(balls_of(rest, greedy_set_cover(rest.instance())));
+  }
+  return balls;
+}
+
+// The columns of the solution stay, one for every row, and of the others the newer half.
+void CoverFitter::forget() {
+  const std::size_t count = problem_.instance().columns.size();
+  std::vector<char> kept(count, 0);
+  for (const std::size_t c : solution_) kept[c] = 1;
+  for (const std::vector<std::uint32_t>& columns : problem_.columns_of()) kept[columns.front()] = 1;
+  std::fill(kept.begin() + static_cast<std::ptrdiff_t>(count / 2), kept.end(), 1);
+  const std::vector<std::size_t> number = problem_.keep_only(kept);
+  for (std::size_t& c : solution_) c = number[c];
+}
+
+void CoverFitter::learn(CoverProblem& problem, const SolidCells::Leaks& leaks) {
+  add_rows(problem, leaks.in_solid, {kLeakRadius * kSpacings[spacing_], kLeakDisc}, leaks.in_solid);
+  const std::size_t first = problem.rows().size();
+  std::vector<CoverProblem::Row> rows;
+  for (const Vector3d& p : leaks.pinched) {
+    rows.push_back({.point = p, .radius = kFinest * error_ * local_.scale(p), .pinched = true});
+  }
+  problem.add_rows(rows);
+  add_own(problem, first);
+}
+
+void CoverFitter::add_rows(CoverProblem& problem, const Points& points,
+                           const Surroundings& surroundings, const Points& starts) {
+  const std::size_t first = problem.rows().size();
+  std::vector<CoverProblem::Row> rows(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    const Vector3d& p = points[i];
+    const double error = error_ * local_.scale(p);
+    const ClearanceAt at = clearance_(p, kTolerance * error);
+    const double width = cap_width_at(clearance_, p, at, error);
+    const double disc = std::min(surroundings.disc * (width - error), kLargestDisc * error);
+    rows[i] = {p, surroundings.radius * error, disc, at.away};
+  });
+  problem.add_rows(rows);
+  Points grown_from = starts;
+  for (int pass = 0; pass < kPasses && !grown_from.empty(); ++pass) {
+    problem.add_candidates(
+        candidates_from(clearance_, grown_from, error_, options_.seed + seeds_used_++, local_));
+    grown_from = some_of(uncoverable(problem, first), kMaxStarts);
+  }
+  add_own(problem, first);
+}
+
+CoverFitter::Points CoverFitter::uncoverable(const CoverProblem& problem, std::size_t row) {
+  Points points;
+  for (; row < problem.rows().size(); ++row) {
+    if (problem.columns_of()[row].empty()) points.push_back(problem.rows()[row].point);
+  }
+  return points;
+}
+
+void CoverFitter::add_own(CoverProblem& problem, std::size_t row) const {
+  std::vector<Candidate> own;
+  for (; row < problem.rows().size(); ++row) {
+    if (!problem.columns_of()[row].empty()) continue;
+    const auto& [point, radius, disc, normal, pinched] = problem.rows()[row];
+    own.push_back({point, pinched ? kPinched : std::max(0.0, clearance_(point).lower)});
+  }
+  problem.add_candidates(own);
+}
+
+CoverFitter::Balls CoverFitter::balls_of(const CoverProblem& problem,
+                                         const Columns& columns) const {
+  Balls balls;
+  for (const std::size_t c : columns) {
+    balls.places.push_back(problem.candidate(c));
+    balls.spheres.push_back(problem.ball(c, clearance_));
+  }
+  return balls;
+}
+
+void CoverFitter::report(double share) const {
+  if (!options_.progress) return;
+  options_.progress(share,
+                    ("covering: " + std::to_string(best_.spheres.size()) + " spheres proved" +
+                     (lower_bound_ > 0 ? ", at least " + std::to_string(lower_bound_) : ""))
+                        .c_str());
+}
+
+SolidCells::Leaks CoverFitter::leaks_of(const std::vector<Sphere>& balls) {
+  std::vector<Sphere> all(given_);
+  all.insert(all.end(), balls.begin(), balls.end());
+  const BallHierarchy hierarchy(all);
+  return cells_->find_leaks({all, hierarchy}, finest(error_), leak_spacing(error_));
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mesh/mesh_distance.h"
+#include "simplifier/cover.h"
+#include "simplifier/solid/clearance.h"
+#include "simplifier/stage2/cover_goal.h"
+#include "simplifier/stage2/cover_problem.h"
+#include "simplifier/stage2/cover_search.h"
+#include "simplifier/stage2/local_error.h"
+#include "simplifier/stage2/solid_cells.h"
+#include "spheretree/sphere.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace spherule::internal {
+
+// Few balls that cover S (docs/covering.md): a greedy set cover, mended where it leaks, is the
+// first proved answer; then rounds look for a cover of fewer balls by local search, spread the
+// balls to where they have the most to spare, and prove the result or learn from where it leaks.
+// Where that no longer helps, cells and rows become finer.
+class CoverFitter {
+ public:
+  // What the balls `given` cover need not be covered again. Throws Error for an E too small for the
+  // rounding of the coordinates.
+  CoverFitter(const Clearance& clearance, const MeshDistance& distance, const CoverOptions& options,
+              std::span<const Sphere> given = {});
+
+  // The fewest balls that were proved to cover S, together with those given.
+  std::vector<Sphere> run();
+
+  // After run(): that many balls at least are in any cover that keeps to E; 0 where it was not
+  // asked for or is not known.
+  std::size_t lower_bound() const { return lower_bound_; }
+
+  // Half diagonal of the smallest cells that are told apart, and edge of the cubes of which each
+  // gives one leak at most.
+  static double finest(double max_error);
+  static double leak_spacing(double max_error);
+
+ private:
+  using Columns = CoverProblem::Columns;
+  using Points = std::vector<Eigen::Vector3d>;
+
+  // Balls that stand at candidates.
+  struct Balls {
+    std::vector<Candidate> places;
+    std::vector<Sphere> spheres;
+
+    void append(const Balls& other);
+  };
+
+  // The first proved answer.
+  void begin();
+  // One round; true if fewer balls were proved.
+  bool improve();
+  // Sets out again with cells and rows of the next finer spacing, if that is not too fine; what was
+  // proved and learned stays.
+  bool refine();
+  // Makes the cells of the present spacing, and a problem of their rows and the `candidates`.
+  void pose(const std::vector<Candidate>& candidates);
+  // Looks for columns that cover all rows, for the target and for an easier one side by side; true
+  // if it finds any. What it found, or came to for the easier one, is left in solution_.
+  bool search();
+  // Proves solution_, or makes rows of its leaks; keeps it, mended where it leaks, if it is the
+  // best.
+  void prove_or_learn();
+  // Sets lower_bound_, from the rows and candidates known so far.
+  void bound();
+  // New candidates about the rows that solution_ leaves open.
+  void widen();
+  // With balls added until nothing leaks.
+  Balls mended(Balls balls, SolidCells::Leaks leaks);
+  // Keeps the problem from growing for ever.
+  void forget();
+  // Has the search begin with the rows from this one on.
+  void know_from(std::size_t row);
+
+  void learn(CoverProblem& problem, const SolidCells::Leaks& leaks);
+  // A ball about the point itself for each of the rows from this one on that no candidate covers,
+  // so that every row can be covered.
+  void add_own(CoverProblem& problem, std::size_t row) const;
+  // The points of the rows from this one on that no candidate covers.
+  static Points uncoverable(const CoverProblem& problem, std::size_t row);
+  // Rows at the points, with surroundings of this radius and disc, shares of E and of how much
+  // further than E balls reach there, that can be covered; and candidates grown from the starts and
+  // from what those leave out.
+  struct Surroundings {
+    double radius;
+    double disc;
+  };
+  void add_rows(CoverProblem& problem, const Points& points, const Surroundings& surroundings,
+                const Points& starts);
+
+  Balls balls_of(const CoverProblem& problem, const Columns& columns) const;
+  SolidCells::Leaks leaks_of(const std::vector<Sphere>& balls);
+  void report(double share) const;
+
+  const Clearance& clearance_;
+  const MeshDistance& distance_;
+  const CoverOptions& options_;
+  double error_;             // E
+  LocalError local_;         // and where it is smaller
+  std::size_t spacing_ = 0;  // the number of the cells' spacing
+  std::optional<SolidCells> cells_;
+  std::size_t cells_made_ = 0;  // before the proofs halved some
+  CoverProblem problem_;
+  std::size_t sampled_ = 0;  // rows that stand for cells; the others were learned
+  CoverSearch::Rows known_;  // that the search begins with
+  Columns solution_;         // the last that was tried
+  Balls best_;               // proved
+  CoverGoal goal_;
+  std::vector<Sphere> given_;
+  std::size_t lower_bound_ = 0;
+  std::uint64_t seeds_used_ = 0;
+  std::uint64_t first_entries_ = 0;  // of the problem when its cells were made
+};
+
+}  // namespace spherule::internal

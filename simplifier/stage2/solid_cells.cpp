@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/stage2/solid_cells.h"
+
+#include "simplifier/solid/cube.h"
+#include "simplifier/solid/solid_query.h"
+#include "spheretree/rounding.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <set>
+
+namespace spherule::internal {
+namespace {
+
+// A cell that has shown so many leaks can wait for the next round: the balls that mend them cover
+// most of its parts, which need not be examined then.
+constexpr std::size_t kEnoughLeaks = 3;
+
+constexpr double kGrading = 0.5;  // of the clearance, by which deeper cells are larger
+// Shares of the cells' spacing.
+constexpr double kThinning = 1.2;  // edge of the cubes with one boundary point each
+constexpr double kSampleTolerance = 0.01;
+// Halving the longest edge of a box that is no more than twice as long as another divides its half
+// diagonal by this at most, so that those of the largest cells that are small enough are at least
+// so much less. (Flatter ones may be missed: it decides where rows stand, not what is proved.)
+constexpr double kShrinking = 1.42;
+
+// Cells are only ever halved, along the seams of every set of balls that was examined. From so many
+// times the first number on it is cheaper to begin again.
+constexpr std::size_t kForgetting = 8;
+
+}  // namespace
+
+using Eigen::Vector3d;
+
+SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
+                       const LocalError& error, double max_error, double share, double widest_cap)
+    : clearance_(clearance), distance_(distance), error_(error), spacing_(share * max_error) {
+  // Balls of S that touch the boundary in the cell are large enough for its size, and remain so
+  // this far along it.
+  const auto is_flat = [&](const BoxCell& cell, const ClearanceAt& at, double local_error) {
+    const double width = cell.reach() / share;
+    if (width < local_error || width > widest_cap * local_error) return false;
+    const double inside = inside_radius(width, local_error) + cell.reach();
+    return touched_by(clearance, cell.center, at, inside, local_error);
+  };
+  enum class Step : char { kDrop, kKeep, kHalve };
+  std::vector<Cell> level{{BoxCell::around(clearance.box()), false, false}};
+  std::vector<Step> steps;
+  while (!level.empty()) {
+    steps.assign(level.size(), Step::kDrop);
+    tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
+      Cell& cell = level[i];
+      const double reach = cell.box.reach();
+      const ClearanceAt at = clearance_(cell.box.center, 0.125 * reach, 4.0 * reach);
+      const CellState state = state_of(at, reach);
+      if (state.outside) return;
+      cell.inside = state.inside;
+      cell.center_inside = state.center_inside;
+      const double local_error = max_error * error_.scale(cell.box.center, reach);
+      const double deep = kGrading * std::max(0.0, at.lower);
+      const bool fine = reach <= share * local_error + deep || is_flat(cell.box, at, local_error);
+      steps[i] = fine ? Step::kKeep : Step::kHalve;
+    });
+    std::vector<Cell> next;
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      if (steps[i] == Step::kKeep) cells_.push_back(level[i]);
+      if (steps[i] != Step::kHalve) continue;
+      for (const BoxCell& half : level[i].box.halves()) next.push_back({half, false, false});
+    }
+    level = std::move(next);
+  }
+  first_ = cells_;
+}
+
+std::vector<Vector3d> SolidCells::sample() const {
+  std::vector<Vector3d> points(cells_.size());
+  std::vector<char> usable(cells_.size());
+  tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t i) {
+    points[i] = cells_[i].box.center;
+    usable[i] = 1;
+    if (cells_[i].inside) return;
+    // Onto the boundary: by the clearance towards the contact, or away from it.
+    const double tolerance = kSampleTolerance * spacing_ * error_.scale(points[i]);
+    const ClearanceAt at = clearance_(points[i], tolerance);
+    points[i] -= at.away * at.lower;
+    const ClearanceAt there = clearance_(points[i], tolerance);
+    if (there.lower >= 0.0) return;
+    points[i] += there.away * (-2.0 * there.lower);
+    if (clearance_(points[i], tolerance).lower >= 0.0) return;
+    const auto on_mesh = mesh_point_in(distance_, cells_[i].box);
+    usable[i] = on_mesh ? 1 : 0;
+    if (on_mesh) points[i] = *on_mesh;
+  });
+  std::vector<Vector3d> kept;
+  std::set<GradedCube> taken;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (usable[i] == 0) continue;
+    const auto cube = [&] {
+      const double scale = kShrinking * cells_[i].box.reach() / spacing_;
+      return graded_cube_of(points[i], kThinning * spacing_, scale);
+    };
+    if (cells_[i].inside || taken.insert(cube()).second) {
+      kept.push_back(points[i]);
+    }
+  }
+  return kept;
+}
+
+bool SolidCells::meets_solid(Cell& cell) const {
+  const CellState state =
+      cell.inside ? CellState{false, true, true} : classify(clearance_, cell.box);
+  cell.inside = state.inside;
+  cell.center_inside = state.center_inside;
+  return !state.outside;
+}
+
+std::optional<SolidCells::Leak> SolidCells::leak_in(const Cell& cell, const NearestBall& gap,
+                                                    double finest_elsewhere) const {
+  const double reach = cell.box.reach();
+  const double finest = finest_elsewhere * error_.scale(cell.box.center, reach);
+  if (cell.center_inside) {
+    if (gap.lower > 0.0 || reach <= finest) return Leak{cell.box.center, true};
+    return std::nullopt;
+  }
+  if (reach > finest) return std::nullopt;
+  if (const auto on_mesh = mesh_point_in(distance_, cell.box)) return Leak{*on_mesh, true};
+  if (reach > kFinestOutside * finest) return std::nullopt;
+  if (const auto near = solid_point_near(clearance_, cell.box, finest)) return Leak{*near, true};
+  if (reach > std::max(kFinestPinch * finest, least_reach(clearance_.box()))) return std::nullopt;
+  return Leak{cell.box.center, false};
+}
+
+SolidCells::Refined SolidCells::refine(const Cell& start, const BallsToProve& balls,
+                                       double finest) const {
+  Refined result;
+  std::vector<Cell> waiting{start};
+  while (!waiting.empty()) {
+    const Cell cell = waiting.back();
+    waiting.pop_back();
+    if (result.leaks.size() >= kEnoughLeaks) {
+      result.cells.push_back(cell);
+      continue;
+    }
+    const double reach = cell.box.reach();
+    const NearestBall gap = balls.hierarchy.nearest(cell.box.center);
+    if (gap.index >= 0 && certainly_contains(balls.balls[static_cast<std::size_t>(gap.index)],
+                                             cell.box.center, reach)) {
+      result.cells.push_back(cell);
+      continue;
+    }
+    if (const auto leak = leak_in(cell, gap, finest)) {
+      result.cells.push_back(cell);
+      result.leaks.push_back(*leak);
+      continue;
+    }
+    for (const BoxCell& half : cell.box.halves()) {
+      Cell part{half, cell.inside, false};
+      if (meets_solid(part)) waiting.push_back(part);
+    }
+  }
+  return result;
+}
+
+SolidCells::Leaks SolidCells::find_leaks(const BallsToProve& balls, double finest, double spacing) {
+  std::vector<Refined> refined(cells_.size());
+  tbb::parallel_for(std::size_t{0}, cells_.size(),
+                    [&](std::size_t i) { refined[i] = refine(cells_[i], balls, finest); });
+  cells_.clear();
+  Leaks thinned;
+  std::set<GradedCube> taken;
+  for (const Refined& r : refined) {
+    cells_.insert(cells_.end(), r.cells.begin(), r.cells.end());
+    for (const Leak& leak : r.leaks) {
+      const double scale = error_.scale(leak.point);
+      if (!taken.insert(graded_cube_of(leak.point, spacing, scale)).second) continue;
+      (leak.in_solid ? thinned.in_solid : thinned.pinched).push_back(leak.point);
+    }
+  }
+  if (cells_.size() > kForgetting * first_.size()) cells_ = first_;
+  return thinned;
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mesh/mesh_distance.h"
+#include "simplifier/proof/proof.h"
+#include "simplifier/solid/box_cell.h"
+#include "simplifier/solid/clearance.h"
+#include "simplifier/stage2/local_error.h"
+#include "simplifier/stage2/surface_extent.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <vector>
+
+namespace spherule::internal {
+
+// A partition of S into cells, kept between rounds of a search: which cells meet S does not depend
+// on the balls, and finding that out is what costs.
+class SolidCells {
+ public:
+  // Halves the box of S until a cell lies outside of S (it is forgotten) or its half diagonal is at
+  // most the `share` of E plus half the clearance, since a ball that covers part of the deep inside
+  // covers much of it, or the share of how far balls reach along the boundary there
+  // (surface_extent.h; `widest_cap` times E at most). So the number of cells grows with the edges
+  // and thin parts of S over E, and where S is flat only with its area over E times the radius of
+  // the largest balls in it. This and the other lengths below hold where E does, and shrink with
+  // the error in zones.
+  SolidCells(const Clearance& clearance, const MeshDistance& distance, const LocalError& error,
+             double max_error, double share, double widest_cap = kWidestCap);
+
+  std::size_t size() const { return cells_.size(); }
+
+  // A point of S for every cell: the centre, moved onto the boundary of S where that crosses the
+  // cell; there at most one per cube of about a cell's size. Cells without such a point near their
+  // centre give none.
+  std::vector<Eigen::Vector3d> sample() const;
+
+  // Where the balls do not cover S, at most one point per cube of edge `spacing`. None only if S is
+  // proved to be covered: cells that no single ball contains are halved until one does, or they lie
+  // outside of S. A cell is given up as a leak where its centre is an uncovered point of S or it is
+  // smaller than `finest` (much smaller where no point of S is found near its centre).
+  struct Leaks {
+    std::vector<Eigen::Vector3d> in_solid;
+    // Cells that external balls only just close, if at all: no point of S is known near these.
+    std::vector<Eigen::Vector3d> pinched;
+    bool empty() const { return in_solid.empty() && pinched.empty(); }
+  };
+  Leaks find_leaks(const BallsToProve& balls, double finest, double spacing);
+
+ private:
+  struct Cell {
+    BoxCell box;
+    bool inside;         // wholly in S
+    bool center_inside;  // the centre is in S
+  };
+  struct Leak {
+    Eigen::Vector3d point;
+    bool in_solid;
+  };
+  struct Refined {
+    std::vector<Cell> cells;
+    std::vector<Leak> leaks;
+  };
+
+  bool meets_solid(Cell& cell) const;
+  // The cell as a leak, if it is one or too small to tell; `gap` is its centre's to the balls.
+  std::optional<Leak> leak_in(const Cell& cell, const NearestBall& gap, double finest) const;
+  Refined refine(const Cell& cell, const BallsToProve& balls, double finest) const;
+
+  const Clearance& clearance_;
+  const MeshDistance& distance_;
+  const LocalError& error_;
+  double spacing_;           // the share of E
+  std::vector<Cell> first_;  // as made
+  std::vector<Cell> cells_;
+};
+
+}  // namespace spherule::internal

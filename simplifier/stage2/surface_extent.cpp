@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/stage2/surface_extent.h"
+
+namespace spherule::internal {
+namespace {
+
+constexpr double kSlack = 0.2;      // of E: the ball may protrude by so much
+constexpr double kTolerance = 0.1;  // of E, of the clearance
+constexpr double kFactor = 1.4;
+
+}  // namespace
+
+bool touched_by(const Clearance& clearance, const Eigen::Vector3d& point, const ClearanceAt& at,
+                double inside, double max_error) {
+  const double way = inside - at.lower;
+  if (way <= 0.0) return true;
+  const double tolerance = kTolerance * max_error;
+  const double least = inside - kSlack * max_error;
+  const ClearanceAt there = clearance(point + way * at.away, tolerance, least + 2.0 * tolerance);
+  return there.lower >= least;
+}
+
+double cap_width_at(const Clearance& clearance, const Eigen::Vector3d& point, const ClearanceAt& at,
+                    double max_error) {
+  double width = max_error;
+  while (width * kFactor <= kWidestCap * max_error &&
+         touched_by(clearance, point, at, inside_radius(width * kFactor, max_error), max_error)) {
+    width *= kFactor;
+  }
+  return width;
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two triangles in one frame, against rational numbers.
+
+#include "mesh/geometry/triangle_pair.h"
+
+#include "collide/search/relative_pose.h"
+#include "spheretree/rounding.h"
+#include "tests/collide/exact_triangles.h"
+#include "tests/collide/scene_random.h"
+#include "tests/support/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+using internal::Triangle;
+using internal::triangle_contact;
+using internal::TriangleContact;
+
+struct Scene {
+  Triangle a, b;
+};
+
+double reach(const Triangle& t) {
+  return norm_upper(t[0]) + norm_upper(t[1]) + norm_upper(t[2]);
+}
+
+struct Tally {
+  int apart = 0, touching = 0, doubtful = 0;
+  double widest_doubt = 0.0;  // distance in doubt, as a share of the scene
+};
+
+// Judges every scene in both orders.
+Tally judge(int count, std::uint64_t seed, const std::function<Scene(SceneRandom&)>& make) {
+  SceneRandom random(seed);
+  Tally tally;
+  for (int i = 0; i < count; ++i) {
+    const Scene scene = make(random);
+    const double size = reach(scene.a) + reach(scene.b);
+    const double pad = 76.0 * kUnitRoundoff * size + kUnderflow;
+    const TriangleContact contact = triangle_contact(scene.a, scene.b, pad, size);
+    EXPECT_EQ(contact, triangle_contact(scene.b, scene.a, pad, size));
+    const double gap = exact_gap(scene.a, Pose(), scene.b, Pose());
+    switch (contact) {
+      case TriangleContact::kApart:
+        EXPECT_GT(gap, 0.0) << "missed in case " << i;
+        ++tally.apart;
+        break;
+      case TriangleContact::kTouch:
+        EXPECT_EQ(gap, 0.0) << "invented in case " << i;
+        ++tally.touching;
+        break;
+      case TriangleContact::kDoubt:
+        ++tally.doubtful;
+        tally.widest_doubt = std::max(tally.widest_doubt, gap / size);
+    }
+  }
+  return tally;
+}
+
+Triangle random_triangle(SceneRandom& random) {
+  return {random.point(1.0), random.point(1.0), random.point(1.0)};
+}
+// Its third corner lies near the first edge, or on it up to rounding.
+Triangle needle(SceneRandom& random, double width) {
+  const Vector3d a = random.point(1.0), edge = random.point(1.0);
+  return {a, a + edge, a + random.uniform(0.0, 1.0) * edge + width * random.point(1.0)};
+}
+Vector3d point_of(const Triangle& t, SceneRandom& random) {
+  const double v = random.uniform(0.0, 1.0), w = random.uniform(0.0, 1.0 - v);
+  return t[0] + v * (t[1] - t[0]) + w * (t[2] - t[0]);
+}
+Vector3d point_of_edge(const Triangle& t, SceneRandom& random) {
+  return t[0] + random.uniform(0.0, 1.0) * (t[1] - t[0]);
+}
+// Zero, some units in the last place, or a small distance, on either side.
+double offset(SceneRandom& random) {
+  constexpr double kOffsets[] = {0.0, 0x1p-53, 0x1p-51, 1e-13, 1e-11, 1e-9, 1e-6, 1e-3};
+  return kOffsets[random.whole(0, 7)] * (random.whole(0, 1) == 0 ? -1.0 : 1.0);
+}
+Triangle moved(Triangle t, const Vector3d& by) {
+  for (Vector3d& corner : t) corner += by;
+  return t;
+}
+// So that `from`, a point of t, comes to `to` but for a small distance.
+Triangle brought(const Triangle& t, const Vector3d& from, const Vector3d& to, SceneRandom& random) {
+  return moved(t, to - from + offset(random) * random.point(1.0).normalized());
+}
+
+TEST(TrianglePair, RandomOnesAreDecidedForSure) {
+  const Tally tally = judge(effort(3000, 750), 1, [](SceneRandom& random) -> Scene {
+    return {random_triangle(random), random_triangle(random)};
+  });
+  EXPECT_GT(tally.apart, effort(1000, 200));
+  EXPECT_GT(tally.touching, effort(300, 60));
+  EXPECT_EQ(tally.doubtful, 0);
+}
+
+TEST(TrianglePair, CornerAgainstFace) {
+  const Tally tally = judge(effort(3000, 750), 2, [](SceneRandom& random) -> Scene {
+    const Triangle a = random_triangle(random), b = random_triangle(random);
+    return {a, brought(b, b[0], point_of(a, random), random)};
+  });
+  EXPECT_GT(tally.apart, effort(100, 20));
+  EXPECT_GT(tally.touching, effort(300, 60));
+  EXPECT_GT(tally.doubtful, effort(100, 20));
+  EXPECT_LT(tally.widest_doubt, kSlack);
+}
+
+TEST(TrianglePair, EdgeAgainstEdge) {
+  const Tally tally = judge(effort(3000, 750), 3, [](SceneRandom& random) -> Scene {
+    const Triangle a = random_triangle(random), b = random_triangle(random);
+    return {a, brought(b, point_of_edge(b, random), point_of_edge(a, random), random)};
+  });
+  EXPECT_GT(tally.apart, effort(100, 20));
+  EXPECT_GT(tally.touching, effort(300, 60));
+  EXPECT_GT(tally.doubtful, effort(100, 20));
+  EXPECT_LT(tally.widest_doubt, kSlack);
+}
+
+TEST(TrianglePair, CornerAgainstCornerOrEdge) {
+  const Tally tally = judge(effort(3000, 750), 4, [](SceneRandom& random) -> Scene {
+    const Triangle a = random_triangle(random), b = random_triangle(random);
+    const Vector3d to = random.whole(0, 1) == 0 ? a[2] : point_of_edge(a, random);
+    return {a, brought(b, b[0], to, random)};
+  });
+  EXPECT_GT(tally.apart, effort(500, 100));
+  EXPECT_GT(tally.doubtful, effort(100, 20));
+  EXPECT_LT(tally.widest_doubt, kSlack);
+}
+
+TEST(TrianglePair, InOnePlane) {
+  const Tally tally = judge(effort(2000, 500), 5, [](SceneRandom& random) -> Scene {
+    // On a grid, so that corners and edges often coincide; each along the axes' plane in turn.
+    const int axis = random.whole(0, 2);
+    const auto triangle = [&] {
+      Triangle t;
+      for (Vector3d& corner : t) {
+        corner = Vector3d(random.whole(0, 4), random.whole(0, 4), random.whole(0, 4)) / 4.0;
+        corner[axis] = 0.5;
+      }
+      return t;
+    };
+    Vector3d shift = Vector3d::Zero();
+    if (random.whole(0, 1) == 0) shift[random.whole(0, 2)] = offset(random);
+    return {triangle(), moved(triangle(), shift)};
+  });
+  EXPECT_GT(tally.apart, effort(500, 100));
+  EXPECT_GT(tally.doubtful, effort(500, 100));
+  EXPECT_LT(tally.widest_doubt, kSlack);
+}
+
+TEST(TrianglePair, NeedlesSegmentsAndPoints) {
+  for (const double width : {1e-6, 1e-9, 1e-13, 0.0}) {
+    const Tally tally = judge(effort(1000, 250), 6, [width](SceneRandom& random) -> Scene {
+      const Triangle a = random.whole(0, 1) == 0 ? needle(random, width) : random_triangle(random);
+      Triangle b = needle(random, width);
+      if (random.whole(0, 4) == 0) b = {b[0], b[0], b[random.whole(0, 1)]};
+      const Vector3d from = random.whole(0, 1) == 0 ? b[0] : point_of(b, random);
+      const Vector3d to = random.whole(0, 1) == 0 ? a[1] : point_of(a, random);
+      return {a, brought(b, from, to, random)};
+    });
+    EXPECT_GT(tally.apart, effort(200, 40)) << width;
+    EXPECT_GT(tally.doubtful, effort(50, 10)) << width;
+    EXPECT_LT(tally.widest_doubt, 1e-9) << width;
+  }
+}
+
+TEST(TrianglePair, SmallFarFromTheOrigin) {
+  const Tally tally = judge(effort(2000, 500), 7, [](SceneRandom& random) -> Scene {
+    const Vector3d far = random.point(1e6);
+    const Triangle a = moved(random_triangle(random), far), b = random_triangle(random);
+    return {a, brought(b, b[0], point_of(a, random), random)};
+  });
+  EXPECT_GT(tally.apart, effort(50, 10));
+  EXPECT_GT(tally.doubtful, effort(500, 100));
+  EXPECT_LT(tally.widest_doubt, kSlack);
+}
+
+// Far smaller than the scene, and so small that squares of areas underflow.
+TEST(TrianglePair, TinyOnesAreNotTakenForApart) {
+  for (const double size : {1e-6, 1e-30, 1e-90, 1e-150, 1e-300}) {
+    judge(effort(60, 8), 8, [size](SceneRandom& random) -> Scene {
+      Scene scene{random_triangle(random), random_triangle(random)};
+      for (Vector3d& corner : scene.a) corner *= size;
+      for (Vector3d& corner : scene.b) corner *= random.whole(0, 1) == 0 ? 1.0 : size;
+      return scene;
+    });
+  }
+}
+
+// A triangle that is moved by as much as its depth, in any direction, still touches; by a bit more,
+// in the direction of the least overlap, it does not always.
+TEST(TrianglePair, KeepsTouchingUpToItsDepth) {
+  SceneRandom random(11);
+  int deep = 0, tight = 0;
+  for (int i = 0; i < effort(800, 100); ++i) {
+    const Triangle a = random.whole(0, 2) == 0 ? needle(random, 0.1) : random_triangle(random);
+    Triangle b = random_triangle(random);
+    if (random.whole(0, 1) == 0) b = brought(b, point_of(b, random), point_of(a, random), random);
+    const double size = reach(a) + reach(b);
+    const double pad = 76.0 * kUnitRoundoff * size + kUnderflow;
+    const double depth = internal::triangle_depth(a, b, size);
+    EXPECT_EQ(depth > 0.0, triangle_contact(a, b, pad, size) == TriangleContact::kTouch);
+    if (!(depth > 0.0)) continue;
+    ++deep;
+    bool parted = false;
+    for (int k = 0; k < 8; ++k) {
+      // Each corner by itself: a rigid motion is one case of it.
+      Triangle near = a, away = a;
+      const Vector3d same = random.point(1.0).normalized();
+      for (Vector3d& corner : near) {
+        const Vector3d way = k % 2 == 0 ? same : random.point(1.0).normalized();
+        corner += (1.0 - 1e-9) * depth * way;
+      }
+      for (Vector3d& corner : away) corner += 1.5 * depth * same;
+      EXPECT_EQ(exact_gap(near, Pose(), b, Pose()), 0.0) << i;
+      parted = parted || exact_gap(away, Pose(), b, Pose()) > 0.0;
+    }
+    tight += parted;
+  }
+  EXPECT_GT(deep, effort(100, 12));
+  EXPECT_GT(tight, effort(50, 6));
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "robot/pairs/link_pairs.h"
+#include "tests/collide/scene_random.h"
+
+#include <Eigen/Geometry>
+
+#include <span>
+#include <vector>
+
+namespace spherule::test {
+
+// A robot whose links are boxes along the axes of their frames, one or two each, as meshes.
+struct BoxRobot {
+  RobotModel model;
+  std::vector<std::vector<Eigen::AlignedBox3d>> boxes{};  // of every link
+  std::vector<LinkBody> bodies{};
+
+  // Gives a link a box; two boxes of a link become one mesh of two closed surfaces.
+  void add_boxes(int link, std::vector<Eigen::AlignedBox3d> of_link);
+};
+
+// Joints of all types with limits, mimics where `mimics`, rods and blocks as links.
+BoxRobot random_box_robot(SceneRandom& random, int joints, bool branching, bool mimics);
+
+// Whether solid boxes of two links have a point in common, by the separating axes of boxes, under
+// poses of all links; boxes are shrunk by `margin` on each side first. Nothing of it is shared with
+// the library.
+bool boxes_touch(const BoxRobot& robot, int first, int second, std::span<const Pose> poses,
+                 double margin = 0.0);
+
+}  // namespace spherule::test

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/robot/check/checked_scene.h"
+
+#include "collide/collide.h"
+#include "robot/model/kinematics.h"
+#include "spheretree/build.h"
+#include "tests/collide/trees.h"
+#include "tests/robot/robots.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace spherule::test {
+
+namespace {
+
+RobotChecker checker_of(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+                        const ObstacleOptions& options) {
+  RobotScene scene(robot, options.world_from_root);
+  AllowedCollisions allowed(robot);
+  allowed.allow_all();
+  scene.set_allowed_collisions(std::move(allowed));
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    scene.add(obstacle_name(i), obstacles[i].tree, obstacles[i].world_from_tree);
+  }
+  for (const auto& [link, obstacle] : options.untested) {
+    scene.allow_contact(robot.links()[static_cast<std::size_t>(link)].name,
+                        obstacle_name(obstacle));
+  }
+  return scene.snapshot({.instructions = options.instructions, .meshes = options.meshes});
+}
+
+}  // namespace
+
+ObstacleChecker::ObstacleChecker(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+                                 const ObstacleOptions& options)
+    : RobotChecker(checker_of(robot, obstacles, options)) {}
+
+std::string obstacle_name(std::size_t index) {
+  return "obstacle " + std::to_string(index);
+}
+
+Pose random_root(SceneRandom& random, double size) {
+  const Pose pose = random.pose(size);
+  return Pose(unit_rotation(pose.rotation()), pose.translation());
+}
+
+std::shared_ptr<const SphereTree> random_tree(SceneRandom& random, double size) {
+  const int count = random.whole(1, 60);
+  std::vector<Sphere> spheres = random_spheres(random, count, size, 0.1 * size);
+  return std::make_shared<const SphereTree>(
+      build_tree(spheres, {.branching = random.whole(2, SphereTree::kMaxBranching)}));
+}
+
+RobotModel random_robot_with_trees(SceneRandom& random, double size) {
+  RobotModel robot = random_robot(random, random.whole(1, 8), random.whole(0, 1) == 1);
+  for (std::size_t link = 0; link < robot.links().size(); ++link) {
+    for (int i = random.whole(0, 2); i > 0; --i) {
+      robot.attach(robot.links()[link].name, random_tree(random, size));
+    }
+  }
+  return robot;
+}
+
+std::vector<PlacedTree> random_obstacles(SceneRandom& random) {
+  std::vector<PlacedTree> obstacles;
+  for (int k = random.whole(1, 3); k > 0; --k) {
+    obstacles.push_back({random_tree(random, 1.0), random.pose(2.0)});
+  }
+  return obstacles;
+}
+
+std::optional<Sphere> random_sphere_of(SceneRandom& random, const RobotModel& robot,
+                                       std::span<const Pose> world_from_link) {
+  std::vector<Sphere> spheres;
+  for (std::size_t link = 1; link < robot.links().size(); ++link) {
+    for (const auto& tree : robot.links()[link].trees) {
+      const Sphere& one = tree->spheres()[random.bits() % tree->spheres().size()];
+      spheres.push_back({world_from_link[link] * one.center, one.radius});
+    }
+  }
+  if (spheres.empty()) return std::nullopt;
+  return spheres[random.bits() % spheres.size()];
+}
+
+bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+            std::span<const double> configuration, const ObstacleOptions& options) {
+  std::vector<Pose> world_from_link;
+  forward_kinematics(robot, configuration, world_from_link, options.world_from_root);
+  for (std::size_t link = 0; link < robot.links().size(); ++link) {
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+      const bool is_untested =
+          std::any_of(options.untested.begin(), options.untested.end(), [&](const auto& pair) {
+            return pair.link == static_cast<int>(link) && pair.obstacle == i;
+          });
+      if (is_untested) continue;
+      for (const auto& tree : robot.links()[link].trees) {
+        if (collides(*tree, world_from_link[link], *obstacles[i].tree,
+                     obstacles[i].world_from_tree)) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace spherule::test

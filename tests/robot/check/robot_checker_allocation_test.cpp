@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which queries of a robot's checker allocate.
+
+#include "robot/check/robot_scene.h"
+#include "spheretree/build.h"
+#include "tests/collide/counting_new.h"
+#include "tests/collide/tetrahedra.h"
+#include "tests/collide/trees.h"
+#include "tests/robot/robots.h"
+
+#include <gtest/gtest.h>
+
+namespace spherule::test {
+namespace {
+
+TEST(RobotCheckerAllocation, WarmQueriesAllocateNothing) {
+  SceneRandom random(91);
+  RobotModel robot = random_robot(random, 6, false);
+  const auto spheres = [&](int count, double size) {
+    return std::make_shared<const SphereTree>(
+        build_tree(random_spheres(random, count, size, 0.1 * size)));
+  };
+  for (const Link& link : std::vector<Link>(robot.links())) {
+    robot.attach(link.name, spheres(60, 0.2));
+  }
+  const auto mesh = covered_tetrahedron(random, 0.2);
+  robot.attach("link_4", cover_of(mesh));
+  RobotScene scene(robot);
+  scene.add("tree", spheres(200, 0.5), Pose::from_translation({1, 0, 0}));
+  scene.add("box", Primitive(Box{{0.1, 0.1, 0.1}}), Pose::from_translation({0, 2, 0}));
+  scene.set_padding("link_3", 0.01);
+  scene.attach("tool", "link_6", spheres(30, 0.1));
+  const RobotChecker checker = scene.snapshot({.enforce_limits = true, .meshes = {mesh}});
+  RobotChecker::Scratch scratch(checker);
+  std::vector<std::vector<double>> points;
+  for (int i = 0; i < 60; ++i) points.push_back(random_configuration(random, robot, 1.0));
+  std::vector<double> all;
+  for (const auto& point : points) all.insert(all.end(), point.begin(), point.end());
+  std::vector<std::uint8_t> free(points.size());
+  int collisions = 0;
+  int proved = 0;
+  const auto ask = [&] {
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      collisions += checker.check_config(points[i], scratch) ? 0 : 1;
+      const EdgeResult edge = checker.check_edge(points[i - 1], points[i], scratch,
+                                                 {.resolution = 1e-2, .first = i % 2 == 0});
+      proved += edge.free_until > 0.0 ? 1 : 0;
+    }
+    checker.check_configs(all, scratch, free);
+  };
+  ask();
+  const int before = allocations;
+  ask();
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(collisions, 0);
+  EXPECT_LT(collisions, 2 * static_cast<int>(points.size()) - 4);
+  EXPECT_GT(proved, 0);
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Contacts confirmed on meshes that are not convex against FCL's distances of these meshes and a
+// point-in-solid test: nothing missed, and nothing extra but within rounding.
+
+#include "collide/solid_mesh.h"
+#include "robot/check/robot_scene.h"
+#include "robot/model/kinematics.h"
+#include "spheretree/rounding.h"
+#include "tests/collide/tetrahedra.h"
+#include "tests/collide/trees.h"
+#include "tests/robot/check/voxel_solids.h"
+#include "tests/robot/robots.h"
+#include "tests/support/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+
+// Voxels, or one ball about the origin.
+struct Shape {
+  std::shared_ptr<const VoxelSolid> voxels;  // null: the ball
+  double radius = 0.0;
+  double padding = 0.0;
+
+  std::shared_ptr<const SphereTree> tree() const {
+    return voxels ? cover_of(voxels->covered()) : ball(Vector3d::Zero(), radius);
+  }
+};
+
+double gap_between(const Shape& a, const Pose& world_from_a, const Shape& b,
+                   const Pose& world_from_b) {
+  if (a.voxels && b.voxels) {
+    return distance_between(*a.voxels, world_from_a, *b.voxels, world_from_b);
+  }
+  if (!a.voxels && !b.voxels) {
+    const Vector3d off = world_from_a.translation() - world_from_b.translation();
+    return off.norm() - a.radius - b.radius;
+  }
+  if (!a.voxels) return gap_between(b, world_from_b, a, world_from_a);
+  return a.voxels->distance_from(world_from_a.inverse() * world_from_b.translation()) - b.radius;
+}
+
+// A chain of joints that all move, so that all but the adjacent links are tested, an attached
+// object, and obstacles of the kinds for which an exact distance is known.
+class VoxelScene {
+ public:
+  VoxelScene(SceneRandom& random, int joints) : robot_(make_robot(random, joints)), scene_(robot_) {
+    for (std::size_t link = 0; link < bodies_.size(); ++link) {
+      names_.push_back(robot_.links()[link].name);
+      if (bodies_[link].padding > 0.0) scene_.set_padding(names_[link], bodies_[link].padding);
+    }
+    attached_ = random_shape(random, 0.04);
+    scene_.attach("object", names_.back(), attached_.tree(), at_last_);
+    for (int k = 0; k < 4; ++k) {
+      const Pose pose(random.quaternion(), random.point(1.0));
+      Shape shape = random_shape(random, k == 0 ? 0.6 : 0.08);  // one holds bodies
+      const std::string name = "obstacle " + std::to_string(k);
+      if (k == 3 && shape.voxels) {
+        TriangleMesh mesh = shape.voxels->mesh();
+        mesh.vertex_error = shape.padding = 0.01;
+        scene_.add(name, std::make_shared<const SolidMesh>(mesh), pose);
+      } else if (k == 2 && !shape.voxels) {
+        scene_.add(name, Primitive(Ball{shape.radius}), pose);
+        shape.padding = 0.0;
+      } else {
+        scene_.add(name, shape.tree(), pose);
+        shape.padding = 0.0;
+        if (random.whole(0, 1) == 0) {
+          scene_.set_padding(names_[1], name, kBetween);
+          padded_with_.push_back(static_cast<std::size_t>(k));
+        }
+      }
+      obstacles_.push_back({shape, pose});
+    }
+    scene_.add("floor", Primitive(HalfSpace{}), Pose::from_translation({0.0, 0.0, kFloor}));
+  }
+
+  const RobotModel& robot() const { return robot_; }
+  RobotChecker checker(InstructionSet set, bool is_confirmed) const {
+    return scene_.snapshot(
+        {.instructions = set,
+         .meshes = is_confirmed ? meshes_ : std::vector<std::shared_ptr<const CoveredMesh>>()});
+  }
+
+  // The least distance, less the padding, of all that is tested against each other; -1 where two
+  // have a point in common.
+  double gap(std::span<const double> configuration) const {
+    std::vector<Pose> poses;
+    forward_kinematics(robot_, configuration, poses);
+    double least = 1.0;
+    const auto take = [&](double distance, double padding) {
+      least = std::min(least, distance <= 0.0 ? -1.0 : distance - padding);
+    };
+    const auto against_obstacles = [&](const Shape& body, const Pose& pose, bool is_second) {
+      for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+        const bool is_padded = is_second && std::find(padded_with_.begin(), padded_with_.end(),
+                                                      k) != padded_with_.end();
+        take(gap_between(body, pose, obstacles_[k].shape, obstacles_[k].pose),
+             body.padding + obstacles_[k].shape.padding + (is_padded ? kBetween : 0.0));
+      }
+      const double lowest =
+          body.voxels ? body.voxels->lowest(pose) : pose.translation().z() - body.radius;
+      take(lowest - kFloor, body.padding);
+    };
+    const std::size_t last = bodies_.size() - 1;
+    const Pose object = poses[last] * at_last_;
+    against_obstacles(attached_, object, false);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      against_obstacles(bodies_[i], poses[i], i == 1);
+      for (std::size_t k = i + 2; k < bodies_.size(); ++k) {
+        take(gap_between(bodies_[i], poses[i], bodies_[k], poses[k]),
+             bodies_[i].padding + bodies_[k].padding);
+      }
+      if (i < last) take(gap_between(bodies_[i], poses[i], attached_, object), bodies_[i].padding);
+    }
+    return least;
+  }
+
+ private:
+  struct Placed {
+    Shape shape;
+    Pose pose;
+  };
+  static constexpr double kFloor = -1.2;
+  static constexpr double kBetween = 0.03;
+
+  Shape random_shape(SceneRandom& random, double cell_size) {
+    if (random.whole(0, 4) == 0) return {nullptr, 0.8 * cell_size};
+    const int cells = cell_size > 0.3 ? 1 : random.whole(2, 7);
+    const auto voxels = std::make_shared<const VoxelSolid>(random, cells, cell_size);
+    meshes_.push_back(voxels->covered());
+    return {voxels};
+  }
+
+  RobotModel make_robot(SceneRandom& random, int joints) {
+    RobotModel robot("link 0");
+    for (int i = 0; i < joints; ++i) {
+      Joint joint;
+      joint.name = "joint " + std::to_string(i);
+      joint.type = random.whole(0, 3) == 0 ? JointType::kPrismatic : JointType::kRevolute;
+      joint.parent_from_joint = Pose(random.quaternion(), random.point(0.4));
+      joint.axis = random.point(1.0);
+      joint.lower = -100.0;
+      joint.upper = 100.0;
+      robot.add_link("link " + std::to_string(i + 1), "link " + std::to_string(i), joint);
+    }
+    for (int i = 0; i <= joints; ++i) {
+      Shape body = random_shape(random, random.uniform(0.03, 0.09));
+      if (random.whole(0, 2) == 0) body.padding = random.uniform(0.0, 0.03);
+      robot.attach("link " + std::to_string(i), body.tree());
+      bodies_.push_back(std::move(body));
+    }
+    return robot;
+  }
+
+  std::vector<std::shared_ptr<const CoveredMesh>> meshes_;
+  std::vector<Shape> bodies_;  // one a link
+  RobotModel robot_;
+  RobotScene scene_;
+  std::vector<std::string> names_;
+  Shape attached_;
+  const Pose at_last_ = Pose::from_translation({0.0, 0.0, 0.2});
+  std::vector<Placed> obstacles_;
+  std::vector<std::size_t> padded_with_;  // obstacles from which the second link keeps kBetween
+};
+
+// FCL is no judge nearer to contact.
+constexpr double kUnclear = 1e-6;
+
+TEST(RobotConfirmedTruth, ConfigurationsAgreeWithFcl) {
+  SceneRandom random(271);
+  int counts[2] = {}, alarms = 0;
+  for (int i = 0; i < effort(60, 12); ++i) {
+    const VoxelScene scene(random, random.whole(3, 6));
+    const RobotChecker checker = scene.checker(best_instruction_set(), true);
+    const RobotChecker spheres = scene.checker(best_instruction_set(), false);
+    RobotChecker::Scratch scratch(checker), sphere_scratch(spheres);
+    std::vector<double> asked;
+    std::vector<std::uint8_t> expected;
+    for (int k = 0; k < 40; ++k) {
+      const std::vector<double> at = random_configuration(random, scene.robot(), 1.5);
+      const double gap = scene.gap(at);
+      if (std::abs(gap) < kUnclear) continue;
+      const bool is_free = gap > 0.0;
+      ASSERT_EQ(checker.check_config(at, scratch), is_free) << i << ' ' << k << ' ' << gap;
+      ASSERT_EQ(checker.explain(at, scratch).empty(), is_free) << i << ' ' << k << ' ' << gap;
+      asked.insert(asked.end(), at.begin(), at.end());
+      expected.push_back(is_free ? 1 : 0);
+      ++counts[is_free];
+      alarms += is_free && !spheres.check_config(at, sphere_scratch);
+    }
+    std::vector<std::uint8_t> many(expected.size());
+    checker.check_configs(asked, scratch, many);
+    EXPECT_EQ(many, expected) << i;
+  }
+  EXPECT_GT(counts[0], effort(300, 20));
+  EXPECT_GT(counts[1], effort(300, 20));
+  EXPECT_GT(alarms, effort(100, 5));
+}
+
+TEST(RobotConfirmedTruth, NoContactInAMotionThatIsFree) {
+  SceneRandom random(272);
+  int free = 0, hits = 0, unknown = 0, alarms = 0;
+  for (int i = 0; i < effort(60, 12); ++i) {
+    const VoxelScene scene(random, random.whole(3, 6));
+    const RobotChecker checker = scene.checker(best_instruction_set(), true);
+    const RobotChecker spheres = scene.checker(best_instruction_set(), false);
+    RobotChecker::Scratch scratch(checker), sphere_scratch(spheres);
+    for (int k = 0; k < 8; ++k) {
+      const std::vector<double> from = random_configuration(random, scene.robot(), 1.5);
+      std::vector<double> to =
+          random_configuration(random, scene.robot(), random.uniform(0.0, 0.6));
+      for (std::size_t v = 0; v < to.size(); ++v) to[v] += from[v];
+      if (k % 4 != 0 && scene.gap(from) < 0.0) continue;
+      const EdgeResult result = checker.check_edge(from, to, scratch, {.first = k % 2 == 0});
+      const auto gap_at = [&](double t) {
+        std::vector<double> at;
+        for (std::size_t v = 0; v < to.size(); ++v) at.push_back((1.0 - t) * from[v] + t * to[v]);
+        return scene.gap(at);
+      };
+      constexpr int kSteps = 60;
+      for (int step = 0; step <= kSteps; ++step) {
+        const double t = static_cast<double>(step) / kSteps;
+        if (result.verdict != Verdict::kFree && t >= result.free_until) break;
+        ASSERT_GT(gap_at(t), -kUnclear) << i << ' ' << k << ' ' << t;
+      }
+      if (result.verdict == Verdict::kCollision) {
+        ASSERT_LT(gap_at(result.contact_at), kUnclear) << i << ' ' << k;
+      }
+      (result.verdict == Verdict::kFree        ? free
+       : result.verdict == Verdict::kCollision ? hits
+                                               : unknown) += 1;
+      alarms += result.verdict == Verdict::kFree &&
+                spheres.check_edge(from, to, sphere_scratch).verdict != Verdict::kFree;
+    }
+  }
+  EXPECT_GT(free, effort(40, 5));
+  EXPECT_GT(hits, effort(40, 0));
+  EXPECT_GT(alarms, effort(15, 0));
+  EXPECT_LE(unknown, 1 + (free + hits) / 50);
+}
+
+// No surfaces touch, in configurations and all along a motion.
+TEST(RobotConfirmedTruth, WhatIsInsideTouches) {
+  SceneRandom random(274);
+  const VoxelSolid small(random, 4, 0.05), large(random, 1, 2.0);
+  const std::vector<ObstacleShape> inside = {
+      cover_of(small.covered()),       std::make_shared<const SolidMesh>(small.mesh()),
+      Primitive(Box{{0.1, 0.2, 0.1}}), Primitive(Ball{0.1}),
+      Primitive(Capsule{0.1, 0.1}),    Primitive(Cylinder{0.1, 0.1}),
+      ball(Vector3d::Zero(), 0.1)};
+  const std::vector<ObstacleShape> around = {cover_of(large.covered()),
+                                             std::make_shared<const SolidMesh>(large.mesh())};
+  for (const double padding : {0.0, 0.01}) {
+    for (const bool is_inside : {true, false}) {  // the robot's body is
+      for (const ObstacleShape& shape : is_inside ? around : inside) {
+        RobotModel robot("base");
+        robot.add_link("link", "base", {.name = "joint", .type = JointType::kContinuous});
+        robot.attach("link", cover_of((is_inside ? small : large).covered()));
+        RobotScene scene(robot);
+        scene.set_padding("link", padding);
+        scene.add("shape", shape, Pose(random.quaternion(), random.point(0.1)));
+        const RobotChecker checker = scene.snapshot({.meshes = {small.covered(), large.covered()}});
+        RobotChecker::Scratch scratch(checker);
+        const std::vector<double> from = {0.0}, to = {3.0};
+        EXPECT_FALSE(checker.check_config(from, scratch)) << is_inside << ' ' << padding;
+        EXPECT_FALSE(checker.explain(from, scratch).empty()) << is_inside << ' ' << padding;
+        EXPECT_EQ(checker.check_edge(from, to, scratch).verdict, Verdict::kCollision)
+            << is_inside << ' ' << padding;
+      }
+    }
+  }
+}
+
+// Clearance and padding together may be more than a query of two meshes takes.
+TEST(RobotConfirmedTruth, TheLargestClearanceIsAccepted) {
+  SceneRandom random(273);
+  const VoxelSolid body(random, 4, 0.1);
+  RobotModel robot("base");
+  robot.add_link("link", "base", {.name = "joint", .type = JointType::kContinuous});
+  robot.attach("link", cover_of(body.covered()));
+  RobotScene scene(robot);
+  scene.set_padding("link", 0.01);
+  scene.add("box", Primitive(Box{{0.1, 0.1, 0.1}}), Pose::from_translation({5.0, 0.0, 0.0}));
+  const RobotChecker checker = scene.snapshot({.meshes = {body.covered()}});
+  RobotChecker::Scratch scratch(checker);
+  EXPECT_TRUE(checker.within(std::vector<double>{0.0}, kMaxCoordinate, scratch));
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Straight motions in joint space, against many configurations on them.
+
+#include "robot/model/kinematics.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "tests/collide/trees.h"
+#include "tests/robot/check/checked_scene.h"
+#include "tests/robot/check/edge_oracle.h"
+#include "tests/robot/robots.h"
+#include "tests/support/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+void expect_true(const ObstacleChecker& checker, const std::vector<double>& from,
+                 const std::vector<double>& to, const EdgeResult& result, int steps) {
+  RobotChecker::Scratch scratch(checker);
+  const auto hits = [&](const std::vector<double>& at) { return checker.collides(at, scratch); };
+  expect_so(hits, from, to, result, steps);
+}
+
+TEST(RobotEdge, WhatIsProvedFreeIsFree) {
+  SceneRandom random(51);
+  int free = 0;
+  int hits = 0;
+  int unknown = 0;
+  for (int i = 0; i < effort(1200, 60); ++i) {
+    const RobotModel robot = random_robot_with_trees(random, 0.2);
+    const std::vector<PlacedTree> obstacles = random_obstacles(random);
+    ObstacleOptions options{.world_from_root = i % 2 == 0 ? Pose() : random_root(random, 3.0)};
+    for (const InstructionSet set : instruction_sets()) {
+      options.instructions = set;
+      const ObstacleChecker checker(robot, obstacles, options);
+      RobotChecker::Scratch scratch(checker);
+      const double size = std::pow(10.0, random.uniform(-3.0, 1.0));
+      const std::vector<double> from = random_configuration(random, robot, 3.0);
+      std::vector<double> to = random_configuration(random, robot, size);
+      for (std::size_t k = 0; k < to.size(); ++k) to[k] += from[k];
+      const EdgeRequest request{.resolution = 1e-3, .first = i % 3 == 0};
+      const EdgeResult result = checker.check_edge(from, to, scratch, request);
+      expect_true(checker, from, to, result, effort(1000, 200));
+      if (HasFatalFailure()) return;
+      (result.verdict == Verdict::kFree        ? free
+       : result.verdict == Verdict::kCollision ? hits
+                                               : unknown) += 1;
+    }
+  }
+  EXPECT_GT(free, effort(100, 5));
+  EXPECT_GT(hits, effort(100, 5));
+  EXPECT_LT(unknown, (free + hits) / 20);
+}
+
+// Motions that follow each other in steps of any size, beside what was found near: what the scratch
+// remembers proves many of them, and none that is not free.
+TEST(RobotEdge, WhatIsProvedFreeAlongAPathIsFree) {
+  SceneRandom random(55);
+  int free = 0;
+  int remembered = 0;
+  int hits = 0;
+  int unknown = 0;
+  for (int i = 0; i < effort(300, 20); ++i) {
+    const RobotModel robot = random_robot_with_trees(random, 0.2);
+    if (robot.variable_count() == 0) continue;
+    std::vector<double> at = random_configuration(random, robot, 3.0);
+    std::vector<Pose> links;
+    forward_kinematics(robot, at, links);
+    const std::optional<Sphere> near = random_sphere_of(random, robot, links);
+    if (!near) continue;
+    // A ball that the path begins beside.
+    const double gap = std::pow(10.0, random.uniform(-6.0, -1.0));
+    const Eigen::Vector3d center =
+        near->center + (near->radius + 0.05 + gap) * random.point(1.0).normalized();
+    const ObstacleChecker checker(robot, {{ball(center, 0.05), Pose()}});
+    RobotChecker::Scratch scratch(checker);
+    double step = 0.0;
+    std::vector<double> heading;
+    for (int k = 0; k < 60; ++k) {
+      if (k % 15 == 0) {
+        step = std::pow(10.0, random.uniform(-5.0, -1.5));
+        heading = random_configuration(random, robot, step);
+      }
+      std::vector<double> to = at;
+      for (std::size_t v = 0; v < to.size(); ++v) {
+        to[v] += heading[v] + 0.1 * step * random.uniform(-1.0, 1.0);
+      }
+      const EdgeResult result = checker.check_edge(at, to, scratch, {.first = k % 7 == 0});
+      expect_true(checker, at, to, result, effort(100, 30));
+      if (HasFailure()) return;
+      (result.verdict == Verdict::kFree        ? free
+       : result.verdict == Verdict::kCollision ? hits
+                                               : unknown) += 1;
+      remembered += result.configurations == 1 ? 1 : 0;
+      at = to;
+    }
+  }
+  EXPECT_GT(free, effort(3000, 200));
+  EXPECT_GT(remembered, effort(2000, 100));
+  EXPECT_GT(hits, effort(1000, 50));
+  EXPECT_LT(unknown, (free + hits) / 20);
+}
+
+// A long arm with a small ball at its end.
+RobotModel long_arm() {
+  RobotModel robot("base");
+  robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
+  robot.attach("arm", ball({10, 0, 0}, 1e-3));
+  return robot;
+}
+
+TEST(RobotEdge, NothingIsPassedThrough) {
+  SceneRandom random(52);
+  const RobotModel robot = long_arm();
+  for (int i = 0; i < effort(500, 50); ++i) {
+    const double angle = random.uniform(-40.0, 40.0);
+    const double size = std::pow(10.0, random.uniform(-6.0, -2.0));
+    // Just in the way, or just beside it.
+    const double beside =
+        (1e-3 + size) * (random.whole(0, 1) == 0 ? random.uniform(0.0, 0.999) : 1.3);
+    const Eigen::Vector3d center(10.0 * std::cos(angle), 10.0 * std::sin(angle), beside);
+    const ObstacleChecker checker(robot, {{ball(center, size), Pose()}});
+    RobotChecker::Scratch scratch(checker);
+    const double before = random.uniform(0.1, 50.0);
+    const double after = random.uniform(0.1, 50.0);
+    const std::vector<double> from = {angle - before};
+    const std::vector<double> to = {angle + after};
+    const EdgeRequest request{.resolution = 1e-4, .first = i % 2 == 0};
+    const EdgeResult result = checker.check_edge(from, to, scratch, request);
+    const bool meets = beside < 1e-3 + size;
+    EXPECT_EQ(result.verdict == Verdict::kFree, !meets) << i << ' ' << size;
+    EXPECT_LE(result.free_until, meets ? before / (before + after) : 1.0);
+    expect_true(checker, from, to, result, 100);
+    if (meets && request.first) {
+      const double turns = std::floor(before / (2.0 * 3.14159265358979323846));
+      const double met = (before - turns * 2.0 * 3.14159265358979323846) / (before + after);
+      EXPECT_NEAR(result.free_until, met, 1e-3 / (before + after)) << "the first of many turns";
+    }
+  }
+}
+
+// A shift and a turn of bodies on bodies, at a wall of spheres with no gap.
+TEST(RobotEdge, AWallIsNotPassed) {
+  SceneRandom random(53);
+  std::vector<Sphere> wall;
+  for (int i = -20; i <= 20; ++i) {
+    for (int k = -20; k <= 20; ++k) wall.push_back({{1.0, 0.02 * i, 0.02 * k}, 0.015});
+  }
+  const std::vector<PlacedTree> obstacles = {
+      {std::make_shared<const SphereTree>(build_tree(wall)), Pose()}};
+  for (int i = 0; i < effort(200, 20); ++i) {
+    RobotModel robot("base");
+    robot.add_link("slide", "base",
+                   {.name = "slide", .type = JointType::kPrismatic, .axis = {1, 0, 0}});
+    robot.add_link("drill", "slide",
+                   {.name = "drill", .type = JointType::kRevolute, .axis = {1, 0, 0}});
+    const Eigen::Vector3d offset(0.0, random.uniform(0.0, 0.2), random.uniform(0.0, 0.2));
+    robot.attach("drill", ball(offset, 1e-3));
+    const ObstacleChecker checker(robot, obstacles);
+    RobotChecker::Scratch scratch(checker);
+    const std::vector<double> from = {random.uniform(-60.0, 0.9), random.uniform(-9.0, 9.0)};
+    const std::vector<double> to = {random.uniform(1.1, 60.0), random.uniform(-9.0, 9.0)};
+    const EdgeResult result = checker.check_edge(from, to, scratch, {.first = true});
+    EXPECT_NE(result.verdict, Verdict::kFree);
+    expect_true(checker, from, to, result, 300);
+    const double reached = (1.0 - result.free_until) * from[0] + result.free_until * to[0];
+    EXPECT_NEAR(reached, 0.99, 0.01) << "as far as the wall, and not further";
+  }
+}
+
+TEST(RobotEdge, PassesCloseAtAFineResolution) {
+  const RobotModel robot = long_arm();
+  // Beside the way of the arm's end, at a gap of 2e-4.
+  const ObstacleChecker checker(robot, {{ball({0, 10, 0.0022}, 1e-3), Pose()}});
+  RobotChecker::Scratch scratch(checker);
+  const auto verdict = [&](double resolution) {
+    return checker
+        .check_edge(std::vector<double>{0.0}, std::vector<double>{3.0}, scratch,
+                    {.resolution = resolution})
+        .verdict;
+  };
+  EXPECT_NE(verdict(1e-2), Verdict::kCollision);
+  EXPECT_EQ(verdict(1e-4), Verdict::kFree);
+}
+
+// Halved as often as can be, near the start and then ever closer to a contact.
+TEST(RobotEdge, EndsAtAnyResolution) {
+  const RobotModel robot = long_arm();
+  for (const double angle : {0.5, 1e-9, 1e-15, 3.0}) {
+    const Eigen::Vector3d center(10.0 * std::cos(angle + 2e-4), 10.0 * std::sin(angle + 2e-4), 0.0);
+    const ObstacleChecker checker(robot, {{ball(center, 1e-3), Pose()}});
+    RobotChecker::Scratch scratch(checker);
+    for (const double resolution : {1e-12, 1e-300, std::numeric_limits<double>::denorm_min()}) {
+      const std::vector<double> from = {0.0};
+      const std::vector<double> to = {3.0};
+      const EdgeResult result =
+          checker.check_edge(from, to, scratch, {.resolution = resolution, .first = true});
+      EXPECT_NE(result.verdict, Verdict::kFree);
+      EXPECT_NEAR(result.free_until * 3.0, angle, 1e-6);
+      EXPECT_LE(result.free_until * 3.0, angle + 1e-9);
+    }
+  }
+}
+
+// Past a ball that is touched at the closest approach only: free up to where the resolution ends.
+TEST(RobotEdge, IsFreeUpToWhereItGrazes) {
+  RobotModel robot("base");
+  robot.add_link("slide", "base",
+                 {.name = "slide", .type = JointType::kPrismatic, .axis = {1, 0, 0}});
+  robot.attach("slide", ball({0, 0, 0}, 1.0));
+  const ObstacleChecker checker(robot, {{ball({0, 0, 2}, 1.0), Pose()}});
+  RobotChecker::Scratch scratch(checker);
+  for (const double resolution : {1e-2, 1e-3, 1e-4}) {
+    const EdgeResult result =
+        checker.check_edge(std::vector<double>{-1.0}, std::vector<double>{2.0}, scratch,
+                           {.resolution = resolution, .first = true});
+    EXPECT_NE(result.verdict, Verdict::kFree);
+    EXPECT_NEAR(3.0 * result.free_until, 1.0, 3.0 * resolution);
+  }
+}
+
+TEST(RobotEdge, TakesAnyContactUnlessAskedForTheFirst) {
+  const RobotModel robot = long_arm();
+  const ObstacleChecker checker(
+      robot, {{ball({10.0 * std::cos(0.5), 10.0 * std::sin(0.5), 0}, 0.01), Pose()},
+              {ball({10.0 * std::cos(1.5), 10.0 * std::sin(1.5), 0}, 0.01), Pose()}});
+  RobotChecker::Scratch scratch(checker);
+  const std::vector<double> from = {0.0};
+  const std::vector<double> to = {3.0};
+  const EdgeResult any = checker.check_edge(from, to, scratch);
+  EXPECT_EQ(any.verdict, Verdict::kCollision);
+  const EdgeResult first = checker.check_edge(from, to, scratch, {.first = true});
+  EXPECT_EQ(first.verdict, Verdict::kCollision);
+  EXPECT_NEAR(first.contact_at, 0.5 / 3.0, 1e-3);
+  EXPECT_NEAR(first.free_until, (0.5 - 0.0011) / 3.0, 1e-4);
+  EXPECT_LE(any.configurations, first.configurations);
+}
+
+TEST(RobotEdge, BudgetsAndEnds) {
+  const RobotModel robot = long_arm();
+  const ObstacleChecker checker(robot, {{ball({0, 10, 0.0022}, 1e-3), Pose()}});
+  RobotChecker::Scratch scratch(checker);
+  const std::vector<double> from = {0.0};
+  const std::vector<double> to = {3.0};
+  for (const std::uint64_t budget : {0U, 1U, 7U}) {
+    const EdgeResult result = checker.check_edge(from, to, scratch, {.max_configurations = budget});
+    EXPECT_EQ(result.verdict, Verdict::kUnknown);
+    EXPECT_LE(result.configurations, budget);
+    expect_true(checker, from, to, result, 100);
+  }
+  // A contact that was found counts, however short the budget for what lies before it.
+  const ObstacleChecker met(robot, {{ball({0, 10, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch third(met);
+  const EdgeRequest all{.resolution = 1e-9, .first = true};
+  const std::uint64_t needed = met.check_edge(from, to, third, all).configurations;
+  for (std::uint64_t budget = 0; budget < needed; ++budget) {
+    EdgeRequest request = all;
+    request.max_configurations = budget;
+    const EdgeResult result = met.check_edge(from, to, third, request);
+    EXPECT_LE(result.configurations, budget);
+    EXPECT_EQ(result.verdict == Verdict::kCollision, result.contact_at <= 1.0);
+    expect_true(met, from, to, result, 10);
+  }
+  EXPECT_EQ(checker.check_edge(from, from, scratch).verdict, Verdict::kFree);
+  const ObstacleChecker touched(robot, {{ball({10, 0, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch other(touched);
+  const EdgeResult at_once = touched.check_edge(from, to, other, {.first = true});
+  EXPECT_EQ(at_once.verdict, Verdict::kCollision);
+  EXPECT_EQ(at_once.free_until, 0.0);
+  EXPECT_EQ(touched.check_edge(from, from, other).verdict, Verdict::kCollision);
+  const EdgeResult backwards = touched.check_edge(to, from, other, {.first = true});
+  EXPECT_EQ(backwards.verdict, Verdict::kCollision);
+  EXPECT_GT(backwards.free_until, 0.999);
+}
+
+TEST(RobotEdge, RefusesBadInput) {
+  const ObstacleChecker checker(long_arm(), {{ball({0, 10, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch scratch(checker);
+  const std::vector<double> good = {0.0};
+  RobotModel touching = long_arm();
+  touching.attach("base", ball({0, 10, 0}, 1e-3));
+  const ObstacleChecker standing(touching, {{ball({0, 10, 0}, 1e-3), Pose()}});
+  RobotChecker::Scratch other(standing);
+  EXPECT_EQ(standing.check_edge(good, good, other).verdict, Verdict::kCollision);
+  for (const std::vector<double>& bad : {std::vector<double>{},
+                                         {0.0, 0.0},
+                                         {101.0},
+                                         {std::numeric_limits<double>::quiet_NaN()},
+                                         {std::numeric_limits<double>::infinity()}}) {
+    EXPECT_THROW(checker.check_edge(bad, good, scratch), Error);
+    EXPECT_THROW(checker.check_edge(good, bad, scratch), Error);
+  }
+  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(checker.check_edge(good, good, scratch, {.resolution = bad}), Error);
+    EXPECT_THROW(standing.check_edge(good, good, other, {.resolution = bad}), Error);
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test

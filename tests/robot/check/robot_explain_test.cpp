@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What touches what: non-empty exactly if the robot collides, and what is said of each contact.
+
+#include "collide/collide.h"
+#include "robot/model/kinematics.h"
+#include "spheretree/error.h"
+#include "tests/collide/exact_pose.h"
+#include "tests/collide/tetrahedra.h"
+#include "tests/collide/trees.h"
+#include "tests/robot/check/checked_scene.h"
+#include "tests/robot/robots.h"
+#include "tests/support/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+struct Scene {
+  RobotModel robot{"base"};
+  std::vector<PlacedTree> obstacles{};
+  ObstacleOptions options{};
+
+  const CoveredMesh* mesh_of(const SphereTree& tree) const {
+    for (const auto& mesh : options.meshes) {
+      if (&mesh->cover() == &tree) return mesh.get();
+    }
+    return nullptr;
+  }
+  bool is_tested(std::size_t link, std::size_t obstacle) const {
+    return std::none_of(options.untested.begin(), options.untested.end(), [&](const auto& pair) {
+      return pair.link == static_cast<int>(link) && pair.obstacle == obstacle;
+    });
+  }
+};
+
+// How deep two spheres overlap, to some 18 digits of the scene.
+double overlap(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
+               const Pose& world_from_b, const SpherePair& pair) {
+  using Number = long double;
+  const Sphere& of_a = a.spheres()[static_cast<std::size_t>(pair.a)];
+  const Sphere& of_b = b.spheres()[static_cast<std::size_t>(pair.b)];
+  const Number distance =
+      std::sqrt(squared_distance(transform(world_from_a, exact<Number>(of_a.center)),
+                                 transform(world_from_b, exact<Number>(of_b.center))));
+  return static_cast<double>(Number(of_a.radius) + Number(of_b.radius) - distance);
+}
+
+// By link and obstacle, where they collide: the deepest overlap of two spheres that touch and,
+// where meshes are asked, under which triangles touch, if there are any.
+using Depths = std::map<std::pair<std::size_t, std::size_t>, double>;
+
+Depths expected_depths(const Scene& scene, std::span<const double> configuration) {
+  std::vector<Pose> poses;
+  forward_kinematics(scene.robot, configuration, poses, scene.options.world_from_root);
+  Depths result;
+  for (std::size_t link = 0; link < scene.robot.links().size(); ++link) {
+    for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+      if (!scene.is_tested(link, i)) continue;
+      const SphereTree& other = *scene.obstacles[i].tree;
+      const Pose& world_from_other = scene.obstacles[i].world_from_tree;
+      for (const auto& tree : scene.robot.links()[link].trees) {
+        const CoveredMesh* const mesh = scene.mesh_of(*tree);
+        const CoveredMesh* const other_mesh = scene.mesh_of(other);
+        const bool confirmed = mesh != nullptr && other_mesh != nullptr;
+        if (!collides(*tree, poses[link], other, world_from_other)) continue;
+        if (confirmed && !collides(*mesh, poses[link], *other_mesh, world_from_other)) continue;
+        if (!confirmed && mesh != nullptr &&
+            !collides(other, world_from_other, mesh->solid(), poses[link])) {
+          continue;
+        }
+        if (!confirmed && other_mesh != nullptr &&
+            !collides(*tree, poses[link], other_mesh->solid(), world_from_other)) {
+          continue;
+        }
+        double deepest = -std::numeric_limits<double>::infinity();
+        double deepest_unconfirmed = deepest;
+        for (const SpherePair& pair : collide(*tree, poses[link], other, world_from_other).pairs) {
+          const bool counts = !confirmed || triangles_touch(*mesh, pair.a, poses[link], *other_mesh,
+                                                            pair.b, world_from_other);
+          double& depth = counts ? deepest : deepest_unconfirmed;
+          depth = std::max(depth, overlap(*tree, poses[link], other, world_from_other, pair));
+        }
+        if (!std::isfinite(deepest)) deepest = deepest_unconfirmed;
+        const auto [at, is_new] = result.emplace(std::pair(link, i), deepest);
+        at->second = std::max(at->second, deepest);
+      }
+    }
+  }
+  return result;
+}
+
+struct Count {
+  int none = 0;
+  int one = 0;
+  int many = 0;
+  int inside = 0;
+};
+
+// Asks for all contacts of a configuration and for the first few.
+void expect_explained(const Scene& scene, const ObstacleChecker& checker,
+                      std::span<const double> configuration, RobotChecker::Scratch& scratch,
+                      Count& count) {
+  const Depths expected = expected_depths(scene, configuration);
+  const std::vector<CheckedContact> contacts = checker.explain(configuration, scratch);
+  ASSERT_EQ(!contacts.empty(), checker.collides(configuration, scratch));
+  ASSERT_EQ(contacts.size(), expected.size());
+  std::vector<Pose> poses;
+  forward_kinematics(scene.robot, configuration, poses, scene.options.world_from_root);
+  std::set<std::pair<long, std::size_t>> seen;
+  std::pair<long, std::size_t> before{std::numeric_limits<long>::min(), 0};
+  for (const CheckedContact& found : contacts) {
+    const auto link = static_cast<std::size_t>(scene.robot.find_link(found.first.name));
+    std::size_t obstacle = 0;
+    while (obstacle_name(obstacle) != found.second.name) ++obstacle;
+    const std::pair place(-static_cast<long>(link), obstacle);
+    // Links from the last on; pairs of which one side alone is confirmed come first.
+    if (scene.options.meshes.empty()) {
+      ASSERT_LT(before, place);
+    }
+    ASSERT_TRUE(seen.insert(place).second);
+    before = place;
+    const auto depth = expected.find({link, obstacle});
+    ASSERT_NE(depth, expected.end());
+    const SphereTree& tree = *scene.robot.links()[link].trees.at(found.first.tree);
+    const PlacedTree& other = scene.obstacles.at(obstacle);
+    const SpherePair spheres{found.first.sphere, found.second.sphere};
+    const double slack = collision_slack(tree, poses[link], *other.tree, other.world_from_tree);
+    ASSERT_NEAR(found.overlap_depth, depth->second, 2.0 * slack);
+    ASSERT_LE(found.overlap_depth,
+              overlap(tree, poses[link], *other.tree, other.world_from_tree, spheres));
+    ASSERT_TRUE(
+        spheres_touch(tree, spheres.a, poses[link], *other.tree, spheres.b, other.world_from_tree));
+    const CoveredMesh* const mesh = scene.mesh_of(tree);
+    const CoveredMesh* const other_mesh = scene.mesh_of(*other.tree);
+    if (mesh != nullptr && other_mesh != nullptr) {
+      const bool do_triangles = triangles_touch(*mesh, spheres.a, poses[link], *other_mesh,
+                                                spheres.b, other.world_from_tree);
+      ASSERT_TRUE(do_triangles ||
+                  contains_component(*mesh, poses[link], *other_mesh, other.world_from_tree));
+      count.inside += do_triangles ? 0 : 1;
+    }
+  }
+  for (const std::size_t limit : {0, 1, 2}) {
+    const std::vector<CheckedContact> some =
+        checker.explain(configuration, scratch, {.max_contacts = limit});
+    ASSERT_EQ(some.size(), std::min(limit, contacts.size()));
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      ASSERT_EQ(some[k].first.name, contacts[k].first.name);
+      ASSERT_EQ(some[k].first.tree, contacts[k].first.tree);
+      ASSERT_EQ(some[k].first.sphere, contacts[k].first.sphere);
+      ASSERT_EQ(some[k].second.name, contacts[k].second.name);
+      ASSERT_EQ(some[k].second.sphere, contacts[k].second.sphere);
+    }
+  }
+  (contacts.empty() ? count.none : contacts.size() == 1 ? count.one : count.many) += 1;
+}
+
+// Robots with links that stand and links with several trees; some pairs are not tested; some
+// positions are far out of the usual range.
+TEST(RobotExplain, TellsWhatTouchesWhat) {
+  SceneRandom random(81);
+  Count count;
+  for (int i = 0; i < effort(600, 40); ++i) {
+    Scene scene{.robot = random_robot_with_trees(random, 0.3)};
+    for (int k = 0; k < 2; ++k) {
+      for (const PlacedTree& other : random_obstacles(random)) scene.obstacles.push_back(other);
+    }
+    if (i % 2 == 1) scene.options.world_from_root = random_root(random, 3.0);
+    for (int k = i % 4; k > 0; --k) {
+      scene.options.untested.push_back(
+          {random.whole(0, static_cast<int>(scene.robot.links().size()) - 1),
+           random.bits() % scene.obstacles.size()});
+    }
+    const ObstacleChecker checker(scene.robot, scene.obstacles, scene.options);
+    RobotChecker::Scratch scratch(checker);
+    for (int k = 0; k < 30; ++k) {
+      const double largest = k % 10 == 0 ? 99.0 : k % 10 == 1 ? 300.0 : 3.2;
+      const std::vector<double> at = random_configuration(random, scene.robot, largest);
+      ASSERT_EQ(!checker.explain(at, scratch).empty(),
+                answer(scene.robot, scene.obstacles, at, scene.options));
+      ASSERT_NO_FATAL_FAILURE(expect_explained(scene, checker, at, scratch, count))
+          << i << ' ' << k;
+    }
+  }
+  EXPECT_GT(count.none, effort(1000, 80));
+  EXPECT_GT(count.one, effort(500, 40));
+  EXPECT_GT(count.many, effort(300, 20));
+}
+
+// A sphere of the robot is met by one at a distance that rounding can just tell from contact.
+TEST(RobotExplain, IsEmptyExactlyIfFreeNearContact) {
+  SceneRandom random(82);
+  Count count;
+  for (int i = 0; i < effort(800, 100); ++i) {
+    Scene scene{.robot = random_robot_with_trees(random, 0.3)};
+    if (i % 2 == 1) scene.options.world_from_root = random_root(random, 1000.0);
+    const std::vector<double> at =
+        random_configuration(random, scene.robot, i % 5 == 0 ? 300.0 : 3.2);
+    std::vector<Pose> poses;
+    forward_kinematics(scene.robot, at, poses, scene.options.world_from_root);
+    const std::optional<Sphere> sphere = random_sphere_of(random, scene.robot, poses);
+    if (!sphere) continue;
+    const double gap =
+        (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-17.0, -5.0));
+    const Eigen::Vector3d center =
+        sphere->center + (sphere->radius + 0.1 + gap) * random.point(1.0).normalized();
+    scene.obstacles = {{ball({0, 0, 0}, 0.1), Pose::from_translation(center)}};
+    const ObstacleChecker checker(scene.robot, scene.obstacles, scene.options);
+    RobotChecker::Scratch scratch(checker);
+    ASSERT_NO_FATAL_FAILURE(expect_explained(scene, checker, at, scratch, count)) << i;
+  }
+  EXPECT_GT(count.none, effort(100, 10));
+  EXPECT_GT(count.one, effort(100, 10));
+}
+
+// Along a path, so that the scratch remembers contacts and clearances; a link has a tree without a
+// mesh beside one with, and an obstacle has none.
+TEST(RobotExplain, TellsWhatMeshesTouch) {
+  SceneRandom random(83);
+  Count count;
+  for (int i = 0; i < effort(120, 10); ++i) {
+    Scene scene{.robot = random_robot(random, random.whole(1, 6), i % 2 == 1)};
+    scene.options.world_from_root = random_root(random, 1.0);
+    const auto covered = [&](double size) {
+      scene.options.meshes.push_back(covered_tetrahedron(random, size));
+      return cover_of(scene.options.meshes.back());
+    };
+    for (const Link& link : std::vector<Link>(scene.robot.links())) {
+      scene.robot.attach(link.name, covered(random.uniform(0.05, 0.4)));
+      if (random.whole(0, 3) == 0) scene.robot.attach(link.name, random_tree(random, 0.1));
+    }
+    for (int k = 0; k < 2; ++k) {
+      const double size = k == 0 ? 4.0 : 1.5;  // large enough to hold links
+      scene.obstacles.push_back({covered(random.uniform(0.05, size)), random.pose(1.5)});
+    }
+    scene.obstacles.push_back({random_tree(random, 0.2), random.pose(1.5)});
+    const ObstacleChecker checker(scene.robot, scene.obstacles, scene.options);
+    RobotChecker::Scratch scratch(checker);
+    std::vector<double> at = random_configuration(random, scene.robot, 3.2);
+    const std::vector<double> heading = random_configuration(random, scene.robot, 0.03);
+    for (int k = 0; k < 40; ++k) {
+      if (k % 20 == 19) at = random_configuration(random, scene.robot, k == 19 ? 300.0 : 3.2);
+      for (std::size_t v = 0; v < at.size(); ++v) at[v] += heading[v];
+      ASSERT_NO_FATAL_FAILURE(expect_explained(scene, checker, at, scratch, count))
+          << i << ' ' << k;
+    }
+  }
+  EXPECT_GT(count.none, effort(100, 10));
+  EXPECT_GT(count.one, effort(100, 10));
+  EXPECT_GT(count.many, effort(100, 10));
+  EXPECT_GT(count.inside, effort(20, 1));
+}
+
+TEST(RobotExplain, NamesLinksAndRefusesBadInput) {
+  RobotModel robot("base");
+  robot.attach("base", ball({0, 0, 0}, 0.1));
+  robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
+  robot.attach("arm", ball({5, 0, 0}, 0.1));
+  robot.attach("arm", ball({1, 0, 0}, 0.1));
+  const ObstacleChecker checker(robot,
+                                {{ball({0, 0, 0.15}, 0.1), Pose()},
+                                 {ball({1, 0, 0}, 0.1), Pose::from_translation({0.1, 0, 0})}});
+  RobotChecker::Scratch scratch(checker);
+  const std::vector<CheckedContact> contacts = checker.explain(std::vector<double>{0.0}, scratch);
+  ASSERT_EQ(contacts.size(), 2U);
+  EXPECT_EQ(contacts[0].first.name, "arm");
+  EXPECT_EQ(contacts[0].first.tree, 1U);
+  EXPECT_EQ(contacts[0].second.name, obstacle_name(1));
+  EXPECT_NEAR(contacts[0].overlap_depth, 0.1, 1e-12);
+  EXPECT_TRUE(contacts[0].world_point.isApprox(Eigen::Vector3d(1.05, 0, 0), 1e-12));
+  EXPECT_EQ(contacts[1].first.name, "base");
+  EXPECT_EQ(contacts[1].first.tree, 0U);
+  EXPECT_EQ(contacts[1].second.name, obstacle_name(0));
+  EXPECT_NEAR(contacts[1].overlap_depth, 0.05, 1e-12);
+  EXPECT_THROW(checker.explain(std::vector<double>{}, scratch), Error);
+  EXPECT_THROW(
+      checker.explain(std::vector<double>{std::numeric_limits<double>::quiet_NaN()}, scratch),
+      Error);
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Edits of a scene, intended contacts, and input that is refused.
+
+#include "robot/check/robot_scene.h"
+
+#include "collide/point_cloud.h"
+#include "collide/solid_mesh.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "tests/collide/trees.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <optional>
+
+namespace spherule::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using Configuration = std::vector<double>;
+
+std::shared_ptr<const SphereTree> row(std::vector<Sphere> spheres) {
+  return std::make_shared<const SphereTree>(build_tree(spheres));
+}
+
+// A base of a ball of 0.2, and a slide along x that carries a torch: a nozzle of three spheres and
+// a wire of two, whose tip reaches 0.5 ahead of the slide.
+RobotModel welder() {
+  RobotModel robot("base");
+  robot.add_link("lift", "base",
+                 {.name = "lift_joint", .type = JointType::kPrismatic, .lower = 0.0, .upper = 1.0});
+  robot.add_link("slide", "lift",
+                 {.name = "slide_joint",
+                  .type = JointType::kPrismatic,
+                  .axis = {1, 0, 0},
+                  .lower = -2.0,
+                  .upper = 2.0});
+  robot.attach("base", ball({0, 0, 0}, 0.2));
+  robot.attach("slide", row({{{0.1, 0, 0}, 0.05},
+                             {{0.2, 0, 0}, 0.05},
+                             {{0.3, 0, 0}, 0.05},
+                             {{0.4, 0, 0}, 0.01},
+                             {{0.49, 0, 0}, 0.01}}));
+  return robot;
+}
+
+struct Asked {
+  RobotChecker checker;
+  RobotChecker::Scratch scratch;
+  explicit Asked(const RobotScene& scene) : checker(scene.snapshot()), scratch(checker) {}
+  bool free(double lift, double slide) {
+    return checker.check_config(Configuration{lift, slide}, scratch);
+  }
+};
+
+TEST(RobotScene, ObstaclesComeMoveAndGo) {
+  RobotScene scene(welder());
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.0));
+  EXPECT_FALSE(Asked(scene).free(0.0, -0.3)) << "in the base";
+  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({1, 0, 1}));
+  Asked before(scene);
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.3));
+  EXPECT_FALSE(Asked(scene).free(1.0, 0.6));
+  scene.move("post", Pose::from_translation({0.7, 0, 1}));
+  EXPECT_FALSE(Asked(scene).free(1.0, 0.3));
+  scene.add("board", Primitive(Box{{0.01, 1, 1}}), Pose::from_translation({0.5, 0, 1}));
+  EXPECT_FALSE(Asked(scene).free(1.0, 0.1));
+  EXPECT_EQ(scene.obstacles(), (std::vector<std::string>{"board", "post"}));
+  scene.remove("board");
+  scene.remove("post");
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
+  EXPECT_FALSE(before.free(1.0, 0.6)) << "a snapshot does not change";
+}
+
+// What was an obstacle moves with the robot, and meets what the robot alone would pass.
+TEST(RobotScene, AnObstacleIsPickedUp) {
+  RobotScene scene(welder());
+  const auto part = ball({0, 0, 0}, 0.1);
+  scene.add("part", part, Pose::from_translation({1, 0, 1}));
+  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({1.3, 0, 1.15}));
+  EXPECT_FALSE(Asked(scene).free(1.0, 0.6));
+  scene.remove("part");
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.8));
+  scene.attach("part", "slide", part, Pose::from_translation({0.4, 0, 0}));
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
+  EXPECT_FALSE(Asked(scene).free(1.0, 0.8));
+  Asked asked(scene);
+  const auto told = asked.checker.explain(Configuration{1.0, 0.8}, asked.scratch);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].first.kind, CheckedBody::Kind::kAttached);
+  EXPECT_EQ(told[0].first.name, "part");
+  EXPECT_EQ(told[0].second.name, "post");
+  scene.detach("part");
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.8));
+}
+
+TEST(RobotScene, PaddingKeepsApart) {
+  RobotScene scene(welder());
+  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({1, 0, 1}));
+  // The tip of the wire is 0.02 in front of the post.
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.38));
+  scene.set_padding("slide", 0.015);
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.38));
+  scene.set_padding("slide", "post", 0.01);
+  EXPECT_FALSE(Asked(scene).free(1.0, 0.38)) << "both count";
+  Asked asked(scene);
+  EXPECT_NEAR(asked.checker.clearance(Configuration{1.0, 0.3}, asked.scratch).lower, 0.075, 1e-9);
+  const auto told = asked.checker.explain(Configuration{1.0, 0.38}, asked.scratch);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NEAR(told[0].overlap_depth, 0.005, 1e-9);
+  EXPECT_NEAR(told[0].padding, 0.025, 1e-12);
+  scene.set_padding("slide", 0.0);
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.38));
+}
+
+TEST(RobotScene, CloudsAreTrees) {
+  RobotScene scene(welder());
+  std::vector<Eigen::Vector3d> points;
+  for (int i = -10; i <= 10; ++i) points.emplace_back(1.0, 0.01 * i, 1.0);
+  scene.add("cloud", std::make_shared<const SphereTree>(point_cloud_tree(points, 0.005)), Pose());
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.49));
+  EXPECT_FALSE(Asked(scene).free(1.0, 0.5));
+}
+
+// The tip of the wire may touch the seam, the rest of the wire and the nozzle may not; nor may the
+// tip touch anything else.
+TEST(RobotScene, OnlyARegionMayTouch) {
+  for (const bool is_tree : {true, false}) {
+    RobotScene scene(welder());
+    const ObstacleShape shape =
+        is_tree ? ObstacleShape(ball({0, 0, 0}, 0.02)) : ObstacleShape(Primitive(Ball{0.02}));
+    scene.add("seam", shape, Pose::from_translation({1, 0, 1}));
+    scene.add("clamp", shape, Pose::from_translation({1, 0, 0.5}));
+    EXPECT_FALSE(Asked(scene).free(1.0, 0.5));
+    scene.define_region({"slide", "tip"}, Sphere{{0.49, 0, 0}, 0.02});
+    EXPECT_FALSE(Asked(scene).free(1.0, 0.5)) << "a name alone allows nothing";
+    scene.allow_contact(Region{"slide", "tip"}, "seam");
+    EXPECT_TRUE(Asked(scene).free(1.0, 0.5));
+    EXPECT_FALSE(Asked(scene).free(1.0, 0.6)) << "the wire";
+    EXPECT_FALSE(Asked(scene).free(1.0, 0.7)) << "the nozzle";
+    EXPECT_FALSE(Asked(scene).free(0.5, 0.5)) << "the clamp";
+    Asked asked(scene);
+    const auto told = asked.checker.explain(Configuration{1.0, 0.6}, asked.scratch);
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_EQ(told[0].first.name, "slide");
+    EXPECT_EQ(told[0].first.sphere, 3) << "as the link's tree numbers it";
+    const std::vector<BodySphere> wire = {{0, 3}, {0, 4}};
+    scene.define_region({"slide", "tip"}, wire);
+    EXPECT_TRUE(Asked(scene).free(1.0, 0.6)) << "a region that was replaced";
+    EXPECT_FALSE(Asked(scene).free(1.0, 0.7));
+    scene.allow_contact("slide", "seam");
+    EXPECT_TRUE(Asked(scene).free(1.0, 0.7));
+    scene.forbid_contact("slide", "seam");
+    EXPECT_FALSE(Asked(scene).free(1.0, 0.7));
+    EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
+    scene.forbid_contact(Region{"slide", "tip"}, "seam");
+    EXPECT_FALSE(Asked(scene).free(1.0, 0.6));
+    scene.allow_contact(Region{"slide", "tip"}, "seam");
+    scene.remove("seam");
+    scene.add("seam", shape, Pose::from_translation({1, 0, 1}));
+    EXPECT_FALSE(Asked(scene).free(1.0, 0.5)) << "what was allowed went with the obstacle";
+    // All spheres.
+    scene.define_region({"slide", "tip"}, Sphere{{0, 0, 0}, 9.0});
+    scene.allow_contact(Region{"slide", "tip"}, "seam");
+    EXPECT_TRUE(Asked(scene).free(1.0, 0.7));
+  }
+}
+
+TEST(RobotScene, RegionsOfToolsAndLinks) {
+  RobotScene scene(welder());
+  scene.attach("gripper", "slide", row({{{0.6, 0, 0}, 0.02}, {{0.7, 0, 0}, 0.02}}),
+               Pose::from_translation({0, 0, -0.1}));
+  // At the lift of 0.1 the gripper is level with the base, which it meets coming from the left.
+  EXPECT_TRUE(Asked(scene).free(0.1, -1.0));
+  EXPECT_FALSE(Asked(scene).free(0.1, -0.7));
+  scene.define_region({"gripper", "jaw"}, std::vector<BodySphere>{{0, 1}});
+  scene.allow_contact(Region{"gripper", "jaw"}, "base");
+  EXPECT_TRUE(Asked(scene).free(0.1, -0.9));
+  EXPECT_FALSE(Asked(scene).free(0.1, -0.7)) << "the other sphere";
+  EXPECT_EQ(scene.attached(), std::vector<std::string>{"gripper"});
+  scene.detach("gripper");
+  EXPECT_TRUE(scene.attached().empty());
+  EXPECT_THROW(scene.allow_contact(Region{"gripper", "jaw"}, "base"), Error);
+  scene.attach("gripper", "slide", row({{{0.6, 0, 0}, 0.02}}), Pose());
+  EXPECT_THROW(scene.allow_contact(Region{"gripper", "jaw"}, "base"), Error) << "went with it";
+}
+
+// An attached tool is tested against the link that its flange's link is joined to.
+TEST(RobotScene, AToolHasNoPartInItsLinksRights) {
+  RobotModel robot("base");
+  robot.add_link("wrist", "base",
+                 {.type = JointType::kRevolute, .axis = {0, 1, 0}, .lower = -3.0, .upper = 3.0});
+  robot.attach("base", row({{{0, 0, -0.5}, 0.1}, {{0, 0, 0}, 0.1}}));
+  robot.attach("wrist", ball({0, 0, 0}, 0.1));
+  RobotScene scene(robot);
+  const auto free = [&](double q) {
+    const RobotChecker checker = scene.snapshot();
+    RobotChecker::Scratch scratch(checker);
+    return checker.check_config(Configuration{q}, scratch);
+  };
+  EXPECT_TRUE(free(3.0)) << "adjacent";
+  scene.attach("pole", "wrist", ball({0, 0, 0.5}, 0.05));
+  EXPECT_TRUE(free(0.0));
+  EXPECT_FALSE(free(3.0)) << "the pole is turned onto the base";
+  scene.allow_contact("pole", "base");
+  EXPECT_TRUE(free(3.0));
+  scene.forbid_contact("base", "pole");
+  EXPECT_FALSE(free(3.0));
+}
+
+TEST(RobotScene, EdgesOfAllowedPairs) {
+  RobotModel robot = welder();
+  RobotScene scene(robot);
+  EXPECT_FALSE(Asked(scene).free(0.0, -0.3));
+  AllowedCollisions allowed = scene.allowed_collisions();
+  allowed.allow("base", "slide");
+  scene.set_allowed_collisions(allowed);
+  EXPECT_TRUE(Asked(scene).free(0.0, -0.3));
+  EXPECT_THROW(scene.set_allowed_collisions(AllowedCollisions(RobotModel("other"))), Error);
+}
+
+TEST(RobotScene, RefusesBadEdits) {
+  RobotScene scene(welder());
+  const auto tree = ball({0, 0, 0}, 0.1);
+  scene.add("post", tree, Pose::from_translation({5, 0, 0}));
+  scene.attach("tool", "slide", tree);
+  for (const char* taken : {"base", "post", "tool", ""}) {
+    EXPECT_THROW(scene.add(taken, tree), Error);
+    EXPECT_THROW(scene.attach(taken, "slide", tree), Error);
+  }
+  EXPECT_THROW(scene.add("a", std::shared_ptr<const SphereTree>()), Error);
+  EXPECT_THROW(scene.add("a", std::shared_ptr<const SolidMesh>()), Error);
+  EXPECT_THROW(scene.add("a", Primitive(Ball{0.0})), Error);
+  EXPECT_THROW(scene.add("a", Primitive(Box{{1, 1, kNan}})), Error);
+  EXPECT_THROW(scene.attach("a", "nose", tree), Error);
+  EXPECT_THROW(scene.attach("a", "post", tree), Error);
+  EXPECT_THROW(scene.attach("a", "slide", nullptr), Error);
+  for (const char* none : {"base", "tool", "nose", ""}) {
+    EXPECT_THROW(scene.move(none, Pose()), Error);
+    EXPECT_THROW(scene.remove(none), Error);
+  }
+  for (const char* none : {"base", "post", "nose"}) EXPECT_THROW(scene.detach(none), Error);
+  for (const double bad : {-1e-9, kNan, kInfinity, 1e16}) {
+    EXPECT_THROW(scene.set_padding("slide", bad), Error);
+    EXPECT_THROW(scene.set_padding("slide", "post", bad), Error);
+  }
+  EXPECT_THROW(scene.set_padding("post", 0.1), Error) << "no body";
+  EXPECT_THROW(scene.set_padding("post", "slide", 0.1), Error) << "the body comes first";
+  EXPECT_THROW(scene.set_padding("slide", "slide", 0.1), Error);
+  EXPECT_THROW(scene.set_padding("slide", "nose", 0.1), Error);
+  EXPECT_THROW(scene.allow_contact("nose", "post"), Error);
+  EXPECT_THROW(scene.allow_contact("post", "slide"), Error);
+  EXPECT_THROW(scene.allow_contact("slide", "slide"), Error);
+  EXPECT_THROW(scene.allow_contact(Region{"slide", "tip"}, "post"), Error);
+  EXPECT_THROW(scene.forbid_contact(Region{"slide", "tip"}, "post"), Error);
+  using Spheres = std::vector<BodySphere>;
+  EXPECT_THROW(scene.define_region({"slide", "tip"}, Spheres{}), Error);
+  EXPECT_THROW(scene.define_region({"slide", "tip"}, Spheres{{0, 5}}), Error);
+  EXPECT_THROW(scene.define_region({"slide", "tip"}, Spheres{{0, -1}}), Error);
+  EXPECT_THROW(scene.define_region({"slide", "tip"}, Spheres{{1, 0}}), Error);
+  EXPECT_THROW(scene.define_region({"slide", ""}, Spheres{{0, 0}}), Error);
+  EXPECT_THROW(scene.define_region({"post", "tip"}, Spheres{{0, 0}}), Error);
+  EXPECT_THROW(scene.define_region({"slide", "tip"}, Sphere{{9, 9, 9}, 0.1}), Error);
+  EXPECT_THROW(scene.define_region({"slide", "tip"}, Sphere{{0, 0, 0}, kNan}), Error);
+  EXPECT_EQ(scene.obstacles(), std::vector<std::string>{"post"});
+  EXPECT_EQ(scene.attached(), std::vector<std::string>{"tool"});
+  EXPECT_TRUE(Asked(scene).free(1.0, 0.0));
+  scene.add("far", ball({1e15, 0, 0}, 1.0), Pose::from_translation({1e15, 0, 0}));
+  EXPECT_THROW((void)scene.snapshot(), Error);
+}
+
+TEST(RobotScene, RefusesBadConfigurations) {
+  RobotScene scene(welder());
+  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({5, 0, 0}));
+  for (const bool enforce : {false, true}) {
+    const RobotChecker checker = scene.snapshot({.enforce_limits = enforce});
+    RobotChecker::Scratch scratch(checker);
+    const Configuration good = {1.0, 0.0};
+    std::vector<std::uint8_t> answers(1);
+    for (const Configuration& bad : {Configuration{},
+                                     {1.0},
+                                     {1.0, 0.0, 0.0},
+                                     {kNan, 0.0},
+                                     {0.0, kInfinity},
+                                     {-kInfinity, 0.0}}) {
+      EXPECT_THROW((void)checker.check_config(bad, scratch), Error);
+      EXPECT_THROW(checker.check_configs(bad, scratch, answers), Error);
+      EXPECT_THROW((void)checker.check_edge(bad, good, scratch), Error);
+      EXPECT_THROW((void)checker.check_edge(good, bad, scratch), Error);
+      EXPECT_THROW((void)checker.measure_edge(good, bad, scratch), Error);
+      EXPECT_THROW((void)checker.clearance(bad, scratch), Error);
+      EXPECT_THROW((void)checker.explain(bad, scratch), Error);
+    }
+    EXPECT_THROW((void)checker.check_edge(good, Configuration{1.0, 101.0}, scratch), Error);
+    for (const double bad : {0.0, -1.0, kNan}) {
+      EXPECT_THROW((void)checker.check_edge(good, good, scratch, {.resolution = bad}), Error);
+      EXPECT_THROW((void)checker.measure_edge(good, good, scratch, bad), Error);
+    }
+    EXPECT_THROW(checker.check_configs(good, std::span<RobotChecker::Scratch>(), answers), Error);
+    // A large position is answered all the same.
+    EXPECT_EQ(checker.check_config(Configuration{1.0, 150.0}, scratch), !enforce);
+    EXPECT_EQ(checker.check_config(Configuration{1.5, 0.0}, scratch), !enforce);
+  }
+}
+
+// Of a robot whose links carried no spheres yet, base and tool are adjacent.
+TEST(RobotScene, AdjacencyIsThatOfItsOwnSpheres) {
+  const auto robot = [](bool has_spheres) {
+    RobotModel model("base");
+    model.add_link("arm", "base",
+                   {.name = "turn", .type = JointType::kRevolute, .lower = -3.0, .upper = 3.0});
+    model.add_link("tool", "arm", {.parent_from_joint = Pose::from_translation({1, 0, 0})});
+    if (!has_spheres) return model;
+    model.attach("base", ball({-1, 0, 0}, 0.3));
+    model.attach("arm", ball({0.5, 0, 0}, 0.1));
+    model.attach("tool", ball({0, 0, 0}, 0.1));
+    return model;
+  };
+  RobotScene scene(robot(true));
+  AllowedCollisions bare(robot(false));
+  ASSERT_EQ(bare.reason(0, 2), AllowedReason::kAdjacent);
+  scene.set_allowed_collisions(bare);
+  EXPECT_EQ(scene.allowed_collisions().reason(0, 2), AllowedReason::kTested);
+  EXPECT_EQ(scene.allowed_collisions().reason(0, 1), AllowedReason::kAdjacent);
+  EXPECT_EQ(scene.allowed_collisions().reason(1, 2), AllowedReason::kRigid);
+  const RobotChecker checker = scene.snapshot();
+  RobotChecker::Scratch scratch(checker);
+  EXPECT_FALSE(checker.check_config(Configuration{3.1}, scratch));
+  bare.forbid("base", "tool");
+  bare.allow("base", "tool");
+  scene.set_allowed_collisions(bare);
+  EXPECT_EQ(scene.allowed_collisions().reason(0, 2), AllowedReason::kGiven);
+}
+
+TEST(RobotScene, PaddingsAddUpToNoLess) {
+  RobotScene scene(welder());
+  scene.add("board", Primitive(Box{{1, 1, 1}}));
+  scene.set_padding("slide", 1.0);
+  scene.set_padding("slide", "board", 1e-17);
+  const Asked asked(scene);
+  RobotChecker::Scratch scratch(asked.checker);
+  bool is_found = false;
+  for (const CheckedContact& contact : asked.checker.explain(Configuration{0.0, 0.0}, scratch)) {
+    if (contact.first.name != "slide" || contact.second.name != "board") continue;
+    is_found = true;
+    EXPECT_GT(contact.padding, 1.0);
+  }
+  EXPECT_TRUE(is_found);
+}
+
+// The scene has changed: what a scratch remembers of the old one is of no use.
+TEST(RobotScene, RefusesTheScratchOfAnotherSnapshot) {
+  RobotScene scene(welder());
+  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({5, 0, 0}));
+  std::optional<RobotChecker> before(scene.snapshot());
+  std::vector<RobotChecker::Scratch> old;
+  old.emplace_back(*before);
+  const RobotChecker copy = *before;
+  const Configuration q = {1.0, 0.0};
+  EXPECT_TRUE(copy.check_config(q, old[0]));
+  scene.move("post", Pose::from_translation({0.3, 0, 1}));
+  std::vector<std::uint8_t> answers(1);
+  for (int i = 0; i < 2; ++i) {
+    const RobotChecker checker = scene.snapshot();
+    EXPECT_THROW((void)checker.check_config(q, old[0]), Error);
+    EXPECT_THROW(checker.check_configs(q, old[0], answers), Error);
+    EXPECT_THROW(checker.check_configs(q, old, answers), Error);
+    EXPECT_THROW((void)checker.check_edge(q, q, old[0]), Error);
+    EXPECT_THROW((void)checker.check_edges(q, q, old), Error);
+    EXPECT_THROW((void)checker.measure_edge(q, q, old[0]), Error);
+    EXPECT_THROW((void)checker.clearance(q, old[0]), Error);
+    EXPECT_THROW((void)checker.explain(q, old[0]), Error);
+    before.reset();  // the next may lie where it lay
+  }
+}
+
+// Nothing is tested of a robot without spheres, and nothing in an empty scene.
+TEST(RobotScene, EmptyOnesAreFree) {
+  const RobotChecker checker = RobotScene(RobotModel("alone")).snapshot();
+  RobotChecker::Scratch scratch(checker);
+  EXPECT_TRUE(checker.check_config({}, scratch));
+  EXPECT_EQ(checker.check_edge({}, {}, scratch).verdict, Verdict::kFree);
+  EXPECT_EQ(checker.clearance({}, scratch).lower, kInfinity);
+  EXPECT_TRUE(checker.explain({}, scratch).empty());
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/check/scene_setup.h"
+
+#include "robot/check/robot_checker.h"
+#include "tests/support/temp_dir.h"
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <ostream>
+#include <sstream>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+using Rational = boost::multiprecision::cpp_rational;
+
+// Whether a ball contains the one of the radius about (x, y, z), in exact arithmetic.
+bool contains(const Sphere& ball, const Rational (&point)[3], double radius) {
+  const Rational room = Rational(ball.radius) - Rational(radius);
+  Rational squared = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Rational off = point[axis] - Rational(ball.center[axis]);
+    squared += off * off;
+  }
+  return room >= 0 && squared <= room * room;
+}
+
+// A closed box as the next eight corners of an OBJ file; `first` is the number of the first.
+void put_box(const Eigen::AlignedBox3d& box, int first, std::ostream& obj) {
+  for (int corner = 0; corner < 8; ++corner) {
+    obj << 'v';
+    for (int axis = 0; axis < 3; ++axis) {
+      obj << ' ' << ((corner >> axis & 1) != 0 ? box.max() : box.min())[axis];
+    }
+    obj << '\n';
+  }
+  for (const auto& [a, b, c, d] : std::vector<std::array<int, 4>>{
+           {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+    obj << "f " << first + a << ' ' << first + b << ' ' << first + c << '\n';
+    obj << "f " << first + a << ' ' << first + c << ' ' << first + d << '\n';
+  }
+}
+
+// Two cubes with a gap of 0.2 between them, in which a pin stands: D of the robot fills the gap, D
+// of the object does not. What is said of links is not meant for it.
+TEST(PrepareScene, AttachedMeshesHaveTheirOwnErrorAndD) {
+  const TempDir folder;
+  std::ostringstream obj;
+  put_box({Eigen::Vector3d(-0.2, -0.05, -0.05), Eigen::Vector3d(-0.1, 0.05, 0.05)}, 1, obj);
+  put_box({Eigen::Vector3d(0.1, -0.05, -0.05), Eigen::Vector3d(0.2, 0.05, 0.05)}, 9, obj);
+  RobotModel robot("base");
+  robot.add_link("hand", "base",
+                 {.name = "slide", .type = JointType::kPrismatic, .lower = -1.0, .upper = 1.0});
+  SceneDescription scene;
+  scene.obstacles.push_back({.name = "pin", .shape = Primitive(Ball{.radius = 0.01})});
+  scene.attached.push_back({.name = "fork",
+                            .link = "hand",
+                            .shape = MeshFile{.path = folder.write("fork.obj", obj.str())}});
+  const RobotCoverOptions cover{.max_error = 0.05,
+                                .min_external_diameter = 1.0,
+                                .links = {{"hand", {.max_error = 0.01}}},
+                                .effort = 0};
+  const auto is_free = [&] {
+    const RobotChecker checker = prepare_scene(robot, scene, cover).scene.snapshot();
+    RobotChecker::Scratch scratch(checker);
+    return checker.check_config(std::vector<double>{0.0}, scratch);
+  };
+  EXPECT_FALSE(is_free());
+  scene.attached.front().max_error = 0.03;
+  EXPECT_TRUE(is_free());
+}
+
+// Decimals are rounded when they are read and again when they are scaled: by less than one part in
+// 10^15, but a ball that does not grow by it is too small.
+TEST(PointBalls, ContainThoseAboutThePointsAsWritten) {
+  const TempDir folder;
+  constexpr double kRadius = 0.01;
+  int needed = 0;
+  for (const int scale : {1, 1000}) {
+    for (int i = 1; i <= 40; ++i) {
+      // A tenth of i, 7 i and -3 i, divided by the scale.
+      std::ostringstream line;
+      Rational point[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        const int tenths = i * (axis == 0 ? 1 : axis == 1 ? 7 : -3);
+        line << (tenths < 0 ? "-" : "") << std::abs(tenths) / 10 << '.' << std::abs(tenths) % 10
+             << ' ';
+        point[axis] = Rational(tenths, 10 * scale);
+      }
+      const PointsSource source{
+          .path = folder.write("scan.xyz", line.str()), .radius = kRadius, .scale = 1.0 / scale};
+      const std::vector<Sphere> balls = point_balls(source);
+      ASSERT_EQ(balls.size(), 1U);
+      EXPECT_TRUE(contains(balls[0], point, kRadius)) << i << ' ' << scale;
+      EXPECT_LE(balls[0].radius, kRadius + 1e-13);
+      needed += contains({balls[0].center, kRadius}, point, kRadius) ? 0 : 1;
+    }
+  }
+  EXPECT_GT(needed, 60);
+}
+
+TEST(PointBalls, OneForThoseOfACell) {
+  const TempDir folder;
+  PointsSource source{.path = folder.write("scan.xyz", "1 1 1\n2 1 1\n9 1 1\n"), .radius = 0.01};
+  EXPECT_EQ(point_balls(source).size(), 3U);
+  source.scale = 0.001;
+  source.voxel = 0.005;
+  EXPECT_EQ(point_balls(source).size(), 2U);
+}
+
+}  // namespace
+}  // namespace spherule::test

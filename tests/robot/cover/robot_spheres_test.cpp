@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/cover/robot_spheres.h"
+
+#include "mesh/io/mesh_io.h"
+#include "spheretree/error.h"
+#include "tests/robot/cover/cover_oracle.h"
+#include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/temp_dir.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+// How far outside of all balls a point lies; below 0 within one.
+Wide outside_of(const std::vector<Sphere>& balls, const WidePoint& point) {
+  Wide outside = std::numeric_limits<Wide>::infinity();
+  for (const Sphere& ball : balls) {
+    outside = std::min(outside, (point - ball.center.cast<Wide>()).norm() - Wide(ball.radius));
+  }
+  return outside;
+}
+
+// A point of a link, in its frame: of any of its primitives.
+WidePoint point_of(const LinkDescription& link, Random& random) {
+  const LinkShape& shape = link.collision[random.index(link.collision.size())];
+  return move(shape.link_from_shape, point_of(std::get<Primitive>(shape.geometry), random));
+}
+
+// The farthest that a point of a ball's surface lies from the shapes of the link, over samples.
+Wide sampled_protrusion(const LinkCover& cover, const LinkDescription& link, Random& random) {
+  Wide largest = 0;
+  for (const Sphere& ball : cover.spheres) {
+    for (int k = 0; k < 50; ++k) {
+      const WidePoint p = ball.center.cast<Wide>() +
+                          Wide(ball.radius) * random.direction().cast<Wide>().normalized();
+      Wide nearest = std::numeric_limits<Wide>::infinity();
+      for (const LinkShape& shape : link.collision) {
+        const Pose pose = shape.link_from_shape.inverse();
+        nearest =
+            std::min(nearest, distance_to(std::get<Primitive>(shape.geometry), move(pose, p)));
+      }
+      largest = std::max(largest, nearest);
+    }
+  }
+  return largest;
+}
+
+// The same robot with boxes for its shapes: few triangles are certified quickly.
+RobotDescription boxes_of(RobotDescription robot) {
+  for (LinkDescription& link : robot.links) {
+    for (LinkShape& shape : link.collision) shape.geometry = Box{{0.1, 0.15, 0.2}};
+  }
+  return robot;
+}
+
+RobotCoverOptions quick(double max_error) {
+  return {.max_error = max_error, .effort = 0};
+}
+
+TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
+  Random random(11);
+  for (int i = 0; i < effort(2, 1); ++i) {
+    RobotDescription robot = random_robot(random, 3);
+    if (kSanitized) robot = boxes_of(robot);
+    RobotCoverOptions options = quick(0.06);
+    options.padding = i % 2 == 0 ? 0.005 : 0.0;
+    const RobotCover cover = cover_robot(robot, options);
+    EXPECT_EQ(cover.robot, "chain");
+    EXPECT_TRUE(links_not_proved(cover).empty());
+    ASSERT_EQ(cover.links.size(), robot.links.size());
+    for (std::size_t l = 0; l < robot.links.size(); ++l) {
+      const LinkCover& link = cover.links[l];
+      ASSERT_EQ(link.link, robot.links[l].name);
+      if (robot.links[l].collision.empty()) {
+        EXPECT_TRUE(link.spheres.empty());
+        EXPECT_FALSE(link.fit);
+        continue;
+      }
+      ASSERT_TRUE(link.fit);
+      EXPECT_TRUE(link.fit->certificate.covered);
+      EXPECT_LE(*link.fit->certificate.protrusion_over_simplified_max, 0.06);
+      EXPECT_TRUE(link.warnings.empty()) << link.warnings.front();
+      for (int k = 0; k < 3000; ++k) {
+        WidePoint p = point_of(robot.links[l], random);
+        p += Wide(options.padding) * random.direction().cast<Wide>();
+        ASSERT_LE(outside_of(link.spheres, p), 0) << link.link;
+      }
+      // Over the shapes themselves: a gap between shapes may be filled, which the certificate
+      // bounds, and tessellation adds E / 16.
+      EXPECT_LE(sampled_protrusion(link, robot.links[l], random),
+                link.fit->certificate.protrusion_over_mesh->upper + 0.06 / 16 + options.padding);
+    }
+  }
+}
+
+TEST(RobotSpheres, ABallIsOneBall) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
+  RobotDescription robot;
+  robot.name = "ball";
+  robot.links = {{.name = "base_link",
+                  .visual = {},
+                  .collision = {{.name = "", .link_from_shape = {}, .geometry = Ball{0.05}}}}};
+  const RobotCover cover = cover_robot(robot, quick(0.02));
+  ASSERT_EQ(cover.links[0].spheres.size(), 1U);
+  EXPECT_NEAR(cover.links[0].spheres[0].radius, 0.06, 0.011);
+}
+
+TEST(RobotSpheres, AreEqualOnAnyNumberOfThreads) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
+  Random random(12);
+  const RobotDescription robot = boxes_of(random_robot(random, 3));
+  RobotCoverOptions options = quick(0.05);
+  options.effort = 1;
+  options.threads = 1;
+  const RobotCover alone = cover_robot(robot, options);
+  for (const int threads : {5, 2}) {
+    options.threads = threads;
+    const RobotCover cover = cover_robot(robot, options);
+    for (std::size_t l = 0; l < robot.links.size(); ++l) {
+      EXPECT_EQ(cover.links[l].spheres, alone.links[l].spheres) << threads;
+    }
+  }
+}
+
+TEST(RobotSpheres, OptionsOfALinkAreForThatLink) {
+  Random random(13);
+  const RobotDescription robot = boxes_of(random_robot(random, 3));
+  RobotCoverOptions options = quick(0.05);
+  const RobotCover plain = cover_robot(robot, options);
+  EXPECT_EQ(plain.links[0].fit->options.min_external_diameter, 0.2);
+  options.links["link2"] = {.max_error = 0.025, .padding = 0.004};
+  const RobotCover own = cover_robot(robot, options);
+  EXPECT_EQ(own.links[0].spheres, plain.links[0].spheres);
+  EXPECT_GT(own.links[2].spheres.size(), plain.links[2].spheres.size());
+  EXPECT_EQ(own.links[2].fit->options.max_error, 0.025);
+  EXPECT_EQ(own.links[2].fit->options.min_external_diameter, 0.1);
+  EXPECT_LE(*own.links[2].fit->certificate.protrusion_over_simplified_max, 0.025);
+  for (int k = 0; k < 2000; ++k) {
+    WidePoint p = point_of(robot.links[2], random);
+    p += Wide(0.004) * random.direction().cast<Wide>();
+    ASSERT_LE(outside_of(own.links[2].spheres, p), 0);
+  }
+}
+
+// The robot's D counts where the link has none of its own, whatever its E.
+TEST(RobotSpheres, ZonesOfALinkAreForThatLink) {
+  Random random(13);
+  const RobotDescription robot = boxes_of(random_robot(random, 3));
+  RobotCoverOptions options = quick(0.05);
+  options.min_external_diameter = 0.15;
+  options.links["link2"] = {.max_error = 0.025, .padding = 0.004};
+  Zone zone{.shape = Eigen::AlignedBox3d(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1)),
+            .max_error = 0.04};
+  options.links["link0"].min_external_diameter = 0.08;
+  options.links["link0"].zones = {zone};
+  const RobotCover zoned = cover_robot(robot, options);
+  EXPECT_EQ(zoned.links[2].fit->options.min_external_diameter, 0.15);
+  EXPECT_EQ(zoned.links[0].fit->options.min_external_diameter, 0.08);
+  ASSERT_EQ(zoned.links[0].fit->certificate.protrusion_in_zones.size(), 1U);
+  EXPECT_LE(zoned.links[0].fit->certificate.protrusion_in_zones[0], 0.04);
+  EXPECT_TRUE(zoned.links[2].fit->certificate.protrusion_in_zones.empty());
+}
+
+TEST(RobotSpheres, WarnOfAnOpenMeshAndCoverIt) {
+  const TempDir folder;
+  const std::filesystem::path file = folder.write(
+      "open.obj", "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 2 3 4\nf 1 2 5\n");
+  RobotDescription robot;
+  robot.name = "open";
+  robot.links = {{.name = "base_link",
+                  .visual = {},
+                  .collision = {{.name = "", .link_from_shape = {}, .geometry = MeshFile{file}}}}};
+  const RobotCover cover = cover_robot(robot, quick(0.01));
+  EXPECT_TRUE(cover.links[0].fit->certificate.covered);
+  ASSERT_EQ(cover.links[0].warnings.size(), 1U);
+  EXPECT_NE(cover.links[0].warnings[0].find("open (5 edges"), std::string::npos)
+      << cover.links[0].warnings[0];
+  Random random(14);
+  for (int k = 0; k < 500; ++k) {
+    const WidePoint p(0.1 * random.unit(), 0.1 * random.unit(), 0);
+    ASSERT_LE(outside_of(cover.links[0].spheres, p), 0);
+  }
+}
+
+TEST(RobotSpheres, ProgressGrowsAndNamesLinks) {
+  Random random(15);
+  const RobotDescription robot = boxes_of(random_robot(random, 3));
+  RobotCoverOptions options = quick(0.06);
+  std::mutex mutex;
+  std::vector<double> shares;
+  std::vector<std::string> names;
+  options.progress = [&](double share, const char* what) {
+    const std::lock_guard lock(mutex);
+    shares.push_back(share);
+    names.push_back(what);
+  };
+  options.threads = 1;
+  cover_robot(robot, options);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(shares.front(), 0.0);
+  EXPECT_EQ(shares.back(), 1.0);
+  for (const char* name : {"link0", "link2"}) {
+    EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+  }
+  EXPECT_EQ(std::find(names.begin(), names.end(), "link1"), names.end());
+}
+
+TEST(RobotSpheres, NamesTheLinksWhoseProofFailed) {
+  Random random(16);
+  const RobotDescription robot = boxes_of(random_robot(random, 3));
+  RobotCover cover = cover_robot(robot, quick(0.06));
+  EXPECT_TRUE(links_not_proved(cover).empty());
+  cover.links[2].fit->certificate.covered = false;
+  EXPECT_EQ(links_not_proved(cover), std::vector<std::string>{"link2"});
+
+  const RobotSpheres spheres = robot_spheres(robot, cover);
+  EXPECT_EQ(spheres.robot, "chain");
+  ASSERT_EQ(spheres.links.size(), 3U);
+  EXPECT_EQ(spheres.links[1].link, "link1");
+  EXPECT_TRUE(spheres.links[1].spheres.empty());
+  EXPECT_EQ(spheres.links[2].spheres, cover.links[2].spheres);
+}
+
+// A hand with two fingers and a flange that carries nothing, and a camera fixed to the arm.
+TEST(RobotSpheres, NeighboursAreNotCheckedAgainstEachOther) {
+  RobotDescription robot;
+  robot.model = RobotModel("base");
+  const auto add = [&](const char* name, const char* parent, JointType type) {
+    robot.model.add_link(name, parent, {.name = name, .type = type, .lower = -1, .upper = 1});
+  };
+  add("arm", "base", JointType::kRevolute);
+  add("camera", "arm", JointType::kFixed);
+  add("lens", "camera", JointType::kFixed);
+  add("wrist", "arm", JointType::kRevolute);
+  add("flange", "wrist", JointType::kFixed);
+  add("left", "flange", JointType::kPrismatic);
+  add("right", "flange", JointType::kPrismatic);
+  RobotCover cover;
+  for (const Link& link : robot.model.links()) {
+    robot.links.push_back({.name = link.name});
+    cover.links.push_back({.link = link.name});
+    if (link.name != "flange") cover.links.back().spheres = {Sphere{{0, 0, 0}, 1}};
+  }
+  std::vector<std::string> pairs;
+  for (const DisabledPair& pair : robot_spheres(robot, cover).self_collision_ignore) {
+    pairs.push_back(pair.link_a + " " + pair.link_b);
+    EXPECT_EQ(pair.reason, pairs.back() == "arm lens" ? kRigidReason : kAdjacentReason);
+  }
+  // Not "camera wrist": the arm between them has spheres of its own. Nor "left right".
+  EXPECT_EQ(pairs, (std::vector<std::string>{"base arm", "arm camera", "arm lens", "arm wrist",
+                                             "camera lens", "wrist left", "wrist right"}));
+}
+
+std::string refusal(const RobotDescription& robot, const RobotCoverOptions& options) {
+  try {
+    cover_robot(robot, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(RobotSpheres, RefusesBadOptionsAndNamesThem) {
+  Random random(17);
+  RobotDescription robot = random_robot(random, 3);
+  const auto expect = [&](const RobotCoverOptions& options, const std::string& reason) {
+    const std::string text = refusal(robot, options);
+    EXPECT_NE(text.find(reason), std::string::npos) << text;
+  };
+  const double nan = std::nan("");
+  expect({.max_error = 0.0}, "max error: must be positive");
+  expect({.max_error = -1.0}, "max error: must be positive");
+  expect({.max_error = nan}, "max error: must be positive");
+  expect({.min_external_diameter = -1.0}, "min external diameter: must be");
+  expect({.padding = nan}, "padding: must be");
+  expect({.geometry = LinkGeometry::kVisual},
+         "chain: no link has visual geometry; try the other one, collision");
+  expect({.links = {{"link9", {}}}}, "link 'link9': the robot has no such link");
+  expect({.links = {{"link1", {}}}}, "link 'link1': has options and no geometry to cover");
+  expect({.links = {{"link0", {.max_error = 0.0}}}}, "link 'link0' max error: must be positive");
+  expect({.links = {{"link0", {.padding = -0.1}}}}, "link 'link0' padding: must be");
+  const Zone useless{.shape = Sphere{.center = {0, 0, 0}, .radius = 1.0}};
+  expect({.links = {{"link2", {.zones = {useless}}}}}, "link 'link2': zone 0");
+
+  robot.links[2].collision[0].geometry = Box{{300, 300, 300}};
+  expect({}, " m across");
+  expect({}, "millimetres");
+  robot.links[2].collision[0].geometry = HalfSpace{};
+  expect({}, "link 'link2': a half-space");
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/files/trajectory_file.h"
+
+#include "spheretree/error.h"
+#include "tests/support/temp_dir.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+// Joints a, b (mimics a), fixed and c: two variables.
+RobotModel small_robot() {
+  RobotModel robot("base");
+  const auto add = [&](const char* name, const char* parent, JointType type) {
+    Joint joint;
+    joint.name = name;
+    joint.type = type;
+    joint.lower = -1.0;
+    joint.upper = 1.0;
+    robot.add_link(std::string("link_") + name, parent, joint);
+  };
+  add("a", "base", JointType::kRevolute);
+  add("b", "link_a", JointType::kPrismatic);
+  add("fixed", "link_b", JointType::kFixed);
+  add("c", "link_fixed", JointType::kContinuous);
+  robot.mimic("b", "a", 0.5);
+  return robot;
+}
+
+class TrajectoryFileTest : public testing::Test {
+ protected:
+  Trajectory read(std::string_view text) const {
+    return read_trajectory(folder_.write("path.csv", text), robot_);
+  }
+  // What a text is refused for, without the file's name.
+  std::string fault(std::string_view text) const {
+    const std::filesystem::path path = folder_.write("path.csv", text);
+    try {
+      read_trajectory(path, robot_);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.subject(), path.string());
+      return error.reason();
+    }
+    return "none";
+  }
+
+  const TempDir folder_;
+  const RobotModel robot_ = small_robot();
+};
+
+TEST_F(TrajectoryFileTest, WithoutAHeader) {
+  const Trajectory path = read("\xEF\xBB\xBF# a comment\n0.5, -1e-3\n\n 2;3 # end\r\n4\t5");
+  EXPECT_EQ(path.width, 2u);
+  EXPECT_EQ(path.size(), 3u);
+  EXPECT_EQ(path.positions, (std::vector<double>{0.5, -1e-3, 2, 3, 4, 5}));
+  EXPECT_EQ(path.lines, (std::vector<std::size_t>{2, 4, 5}));
+  EXPECT_EQ(path.configuration(1)[1], 3.0);
+}
+
+TEST_F(TrajectoryFileTest, WithAHeaderInAnyOrder) {
+  const Trajectory path = read("time,c,a\n0,1,2\n0.1,3,4\n");
+  EXPECT_EQ(path.positions, (std::vector<double>{2, 1, 4, 3}));
+  EXPECT_EQ(path.lines, (std::vector<std::size_t>{2, 3}));
+}
+
+// A column of that name is of the joint where there is one.
+TEST_F(TrajectoryFileTest, AJointMayBeCalledTime) {
+  RobotModel robot("base");
+  robot.add_link("hand", "base", {.name = "time", .type = JointType::kContinuous});
+  const Trajectory path = read_trajectory(folder_.write("path.csv", "time\n0.5\n"), robot);
+  EXPECT_EQ(path.positions, std::vector<double>{0.5});
+}
+
+TEST_F(TrajectoryFileTest, RefusesWithTheLine) {
+  EXPECT_EQ(fault(""), "it has no configuration");
+  EXPECT_EQ(fault("a,c\n"), "it has no configuration");
+  EXPECT_EQ(fault("1,2\n3\n"), "line 2: has 1 numbers instead of 2: a, c");
+  EXPECT_EQ(fault("1,2\n\n3,4,5\n"), "line 3: has 3 numbers instead of 2: a, c");
+  EXPECT_EQ(fault("time,a,c\n1,2\n"), "line 2: has 2 numbers instead of 3");
+  EXPECT_EQ(fault("1,2\n3,x\n"), "line 2: \"x\" is not a finite number");
+  EXPECT_EQ(fault("1,2\n3,\n"), "line 2: \"\" is not a finite number");
+  EXPECT_EQ(fault("1,nan\n"), "line 1: \"nan\" is not a finite number");
+  EXPECT_EQ(fault("1,-inf\n"), "line 1: \"-inf\" is not a finite number");
+  EXPECT_EQ(fault("1,2\n1e999,2\n"), "line 2: \"1e999\" is not a finite number");
+  EXPECT_EQ(fault("a,d\n"), "line 1: the robot has no joint \"d\"");
+  EXPECT_EQ(fault("a,b,c\n"), "line 1: joint \"b\" mimics another; leave it out");
+  EXPECT_EQ(fault("a,fixed,c\n"), "line 1: joint \"fixed\" is fixed and has no position");
+  EXPECT_EQ(fault("a,c,a\n"), "line 1: joint \"a\" is there twice");
+  EXPECT_EQ(fault("a\n1\n"), "line 1: joint \"c\" is missing");
+  EXPECT_EQ(fault("a,c\n1,2\na,c\n"), "line 3: \"a\" is not a finite number");
+  EXPECT_THROW(read_trajectory(folder_.path() / "none.csv", robot_), Error);
+  EXPECT_EQ(fault("time,a,c\n0,1,2\nnan,1,2\n"), "line 3: \"nan\" is not a finite number");
+  try {
+    read_trajectory(folder_.write("path.csv", "1\n"), RobotModel());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.reason(), "the robot has no joint that moves");
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test

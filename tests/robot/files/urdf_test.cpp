@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a URDF file says, and what is no URDF file.
+
+#include "robot/files/urdf.h"
+
+#include "spheretree/error.h"
+#include "tests/support/temp_dir.h"
+
+#include <gtest/gtest.h>
+
+#include <console_bridge/console.h>
+#include <locale>
+#include <numbers>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kOneSphere = "<geometry><sphere radius='1'/></geometry>";
+
+std::string robot_of(const std::string& elements) {
+  return "<robot name='r'>" + elements + "</robot>";
+}
+
+// A base, and an arm on a joint.
+std::string arm_of(const std::string& type, const std::string& in_joint) {
+  return robot_of("<link name='base'/><link name='arm'/><joint name='elbow' type='" + type +
+                  "'><parent link='base'/><child link='arm'/>" + in_joint + "</joint>");
+}
+
+std::string link_of(const std::string& in_link) {
+  return robot_of("<link name='base'>" + in_link + "</link>");
+}
+
+RobotDescription read_text(const std::string& text, const UrdfOptions& options = {}) {
+  const TempDir folder;
+  return read_urdf(folder.write("robot.urdf", text), options);
+}
+
+// The reason for which it is refused; the subject has to be the file.
+std::string refusal_of(const std::string& text) {
+  const TempDir folder;
+  const fs::path file = folder.write("robot.urdf", text);
+  try {
+    read_urdf(file);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.subject(), file.string());
+    return error.reason();
+  }
+  return "nothing is wrong";
+}
+
+TEST(ReadUrdf, ReadsJointsOfAllTypes) {
+  const RobotDescription robot = read_text(R"(
+      <robot name="tool">
+        <link name="c"/> <link name="b"/> <link name="a"/> <link name="base"/> <link name="d"/>
+        <joint name="z first" type="revolute">
+          <origin xyz="1 2 3" rpy="0 0 1.5707963267948966"/>
+          <axis xyz="0 3 4"/> <limit lower="-1" upper="2" effort="0" velocity="0"/>
+          <parent link="base"/> <child link="a"/>
+        </joint>
+        <joint name="k" type="continuous"> <parent link="a"/> <child link="b"/> </joint>
+        <joint name="a last" type="prismatic">
+          <axis xyz="0 0 1"/> <limit upper="0.5"/>
+          <parent link="base"/> <child link="c"/>
+        </joint>
+        <joint name="f" type="fixed"> <axis xyz="0 0 0"/> <parent link="c"/> <child link="d"/>
+          <mimic joint="nothing"/>
+        </joint>
+      </robot>)");
+  EXPECT_EQ(robot.name, "tool");
+  std::vector<std::string> links;
+  for (const Link& link : robot.model.links()) links.push_back(link.name);
+  EXPECT_EQ(links, (std::vector<std::string>{"base", "a", "b", "c", "d"}));
+  ASSERT_EQ(robot.links.size(), 5U);
+  EXPECT_EQ(robot.links[3].name, "c");
+  const auto& joints = robot.model.joints();
+  EXPECT_EQ(joints[0].name, "z first");
+  EXPECT_EQ(joints[0].type, JointType::kRevolute);
+  EXPECT_TRUE(joints[0].axis.isApprox(Eigen::Vector3d(0, 0.6, 0.8)));
+  EXPECT_EQ(joints[0].lower, -1.0);
+  EXPECT_EQ(joints[0].upper, 2.0);
+  EXPECT_EQ(joints[0].parent_from_joint.translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE((joints[0].parent_from_joint.matrix() * Eigen::Vector3d::UnitX())
+                  .isApprox(Eigen::Vector3d::UnitY()));
+  EXPECT_EQ(joints[1].type, JointType::kContinuous);
+  EXPECT_EQ(joints[1].axis, Eigen::Vector3d::UnitX());
+  EXPECT_EQ(joints[1].upper, std::numbers::pi);
+  EXPECT_EQ(joints[2].type, JointType::kPrismatic);
+  EXPECT_EQ(joints[2].lower, 0.0);
+  EXPECT_EQ(joints[2].upper, 0.5);
+  EXPECT_EQ(joints[3].type, JointType::kFixed);
+  EXPECT_EQ(robot.model.variable_count(), 3);
+}
+
+TEST(ReadUrdf, ReadsMimics) {
+  const RobotDescription robot = read_text(robot_of(R"(
+      <link name="0"/> <link name="1"/> <link name="2"/> <link name="3"/>
+      <joint name="a" type="continuous"> <parent link="0"/> <child link="1"/>
+        <mimic joint="b" multiplier="2" offset="1"/> </joint>
+      <joint name="b" type="continuous"> <parent link="1"/> <child link="2"/>
+        <mimic joint="c" multiplier="-3"/> </joint>
+      <joint name="c" type="continuous"> <parent link="2"/> <child link="3"/> </joint>)"));
+  EXPECT_EQ(robot.model.variable_count(), 1);
+  const Joint& a = robot.model.joints()[0];
+  EXPECT_EQ(a.variable, 0);
+  EXPECT_EQ(a.multiplier, -6.0);
+  EXPECT_EQ(a.offset, 1.0);
+}
+
+TEST(ReadUrdf, ReadsShapes) {
+  const TempDir folder;
+  fs::create_directories(folder.path() / "meshes");
+  const fs::path mesh = folder.write("meshes/a b.stl", "");
+  const fs::path file = folder.write("robot.urdf", link_of(R"(
+      <inertial/>
+      <visual name="look"> <material/> <origin xyz="0 0 1"/>
+        <geometry> <mesh filename="meshes/a b.stl" scale="0.001 0.001 -1"/> </geometry> </visual>
+      <collision> <geometry> <box size="1 2 3"/> </geometry> </collision>
+      <collision name="round"> <geometry> <cylinder length="4" radius="5"/> </geometry>
+      </collision>
+      <collision> <geometry> <sphere radius="6"/> </geometry> </collision>)"));
+  const RobotDescription robot = read_urdf(file);
+  ASSERT_EQ(robot.links.size(), 1U);
+  const LinkDescription& link = robot.links[0];
+  ASSERT_EQ(link.visual.size(), 1U);
+  EXPECT_EQ(link.visual[0].name, "look");
+  EXPECT_EQ(link.visual[0].link_from_shape.translation(), Eigen::Vector3d(0, 0, 1));
+  const auto& look = std::get<MeshFile>(link.visual[0].geometry);
+  EXPECT_TRUE(fs::equivalent(look.path, mesh));
+  EXPECT_EQ(look.scale, Eigen::Vector3d(0.001, 0.001, -1.0));
+  ASSERT_EQ(link.collision.size(), 3U);
+  const auto solid = [&](std::size_t i) { return std::get<Primitive>(link.collision[i].geometry); };
+  EXPECT_EQ(std::get<Box>(solid(0)).size, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(link.collision[1].name, "round");
+  EXPECT_EQ(std::get<Cylinder>(solid(1)).length, 4.0);
+  EXPECT_EQ(std::get<Cylinder>(solid(1)).radius, 5.0);
+  EXPECT_EQ(std::get<Ball>(solid(2)).radius, 6.0);
+}
+
+TEST(ReadUrdf, FindsMeshes) {
+  const TempDir folder;
+  fs::create_directories(folder.path() / "src/arm/urdf");
+  fs::create_directories(folder.path() / "src/tool/meshes");
+  folder.write("src/arm/package.xml", "<package><name>the_arm</name></package>");
+  folder.write("src/tool/package.xml", "<package><name>tool</name></package>");
+  for (const char* name : {"src/arm/a.stl", "src/tool/meshes/b.stl", "src/arm/urdf/c.stl"}) {
+    folder.write(name, "");
+  }
+  const auto find = [&](const std::string& name, const UrdfOptions& options = {}) {
+    const fs::path file = folder.write(
+        "src/arm/urdf/robot.urdf",
+        link_of("<visual><geometry><mesh filename='" + name + "'/></geometry></visual>"));
+    const RobotDescription robot = read_urdf(file, options);
+    const fs::path path = std::get<MeshFile>(robot.links[0].visual[0].geometry).path;
+    return fs::relative(path, folder.path()).string();
+  };
+  EXPECT_EQ(find("c.stl"), "src/arm/urdf/c.stl");
+  EXPECT_EQ(find("../a.stl"), "src/arm/a.stl");
+  EXPECT_EQ(find("file://" + (folder.path() / "src/arm/a.stl").string()), "src/arm/a.stl");
+  EXPECT_EQ(find("package://the_arm/a.stl"), "src/arm/a.stl");
+  EXPECT_EQ(find("package://the_arm/urdf/c.stl"), "src/arm/urdf/c.stl");
+  EXPECT_EQ(find("package://tool/meshes/b.stl"), "src/tool/meshes/b.stl");
+  const UrdfOptions given{
+      .packages = {{"x", folder.path() / "src"}, {"tool", folder.path() / "src/arm"}}};
+  EXPECT_EQ(find("package://x/tool/meshes/b.stl", given), "src/tool/meshes/b.stl");
+  EXPECT_EQ(find("package://tool/a.stl", given), "src/arm/a.stl");
+  for (const char* missing : {"d.stl", "package://arm/a.stl", "package://the_arm/b.stl",
+                              "package://the_arm", "package://", "model://x/a.stl", "../urdf"}) {
+    EXPECT_THROW(find(missing), Error) << missing;
+  }
+}
+
+TEST(ReadUrdf, KeepsVisualMeshesThatAreMissingIfTold) {
+  const UrdfOptions options{.require_visual_meshes = false};
+  const auto shape = [](const std::string& tag, const std::string& name) {
+    return link_of("<" + tag + "><geometry><mesh filename='" + name + "'/></geometry></" + tag +
+                   ">");
+  };
+  for (const std::string name : {"x.stl", "package://p/x.stl"}) {
+    const RobotDescription robot = read_text(shape("visual", name), options);
+    EXPECT_EQ(std::get<MeshFile>(robot.links[0].visual.at(0).geometry).path, fs::path(name));
+    EXPECT_THROW(read_text(shape("visual", name)), Error);
+    EXPECT_THROW(read_text(shape("collision", name), options), Error);
+  }
+}
+
+struct BadFile {
+  std::string text;
+  std::vector<std::string> reasons;
+};
+
+TEST(ReadUrdf, RefusesBadFiles) {
+  const std::string limit = "<limit effort='1' velocity='1' lower='-1' upper='1'/>";
+  const auto shape = [](const std::string& tag, const std::string& geometry) {
+    return link_of("<" + tag + "><geometry>" + geometry + "</geometry></" + tag + ">");
+  };
+  const std::vector<BadFile> files = {
+      {"", {"no XML"}},
+      {"<robot name='r'>", {"line 1", "no XML"}},
+      {"<robot name='r'><link name='a'/>\n<link name='b</robot>", {"no XML"}},
+      {std::string("<robot name='r'><link name='a'/></robot>\0", 41), {"zero byte"}},
+      {"<model/>", {"no <robot>"}},
+      {"<robot name='r'><link name='a'/></robot><robot name='s'/>", {"more than one root"}},
+      {"<robot><link name='a'/></robot>", {"no name"}},
+      {robot_of(""), {"No link"}},
+      {"<robot name='r' version='2.0'><link name='a'/></robot>", {"version 1.0"}},
+      {robot_of("<link name='a'/><xacro:macro name='m'/>"), {"xacro"}},
+      {link_of("<xacro:shapes/>"), {"xacro"}},
+      {robot_of("<link/>"), {"no name"}},
+      {robot_of("<link name=''/>"), {"no name"}},
+      {robot_of("<link name='a\xFF'/>"), {"UTF-8"}},
+      {robot_of("<link name='a\xF0'/>"), {"UTF-8"}},
+      {robot_of("<link name='a'/><link name='a'/>"), {"link 'a' is not unique"}},
+      {robot_of("<link name='a'/><link name='b'/>"), {"Two root links", "a", "b"}},
+      {robot_of("<link name='a'/><link name='b'/><joint name='j' type='fixed'>"
+                "<parent link='a'/><child link='b'/></joint>"
+                "<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint>"),
+       {"is above itself"}},
+      {robot_of("<link name='a'/><link name='b'/><link name='c'/><joint name='j' type='fixed'>"
+                "<parent link='c'/><child link='b'/></joint>"
+                "<joint name='k' type='fixed'><parent link='b'/><child link='c'/></joint>"),
+       {"is above itself"}},
+      {robot_of("<link name='a'/><link name='b'/><joint name='j' type='fixed'>"
+                "<parent link='a'/><child link='b'/></joint>"
+                "<joint name='k' type='fixed'><parent link='a'/><child link='b'/></joint>"),
+       {"link 'b'", "two joints", "'j'", "'k'"}},
+      {robot_of("<link name='a'/><joint name='j' type='fixed'><parent link='a'/>"
+                "<child link='x'/></joint>"),
+       {"x", "j", "not found"}},
+      {robot_of("<link name='a'/><joint name='j' type='fixed'><parent link='x'/>"
+                "<child link='a'/></joint>"),
+       {"x", "j", "not found"}},
+      {robot_of("<link name='a'/><joint name='j' type='fixed'><child link='a'/></joint>"),
+       {"joint 'j'", "no <parent>"}},
+      {arm_of("fixed", "<child link='base'/>"), {"joint 'elbow'", "there is one already"}},
+      {arm_of("floating", ""), {"elbow", "planar and floating"}},
+      {arm_of("planar", ""), {"elbow", "planar and floating"}},
+      {arm_of("screw", ""), {"elbow", "no known type", "screw"}},
+      {arm_of("%s%n", ""), {"elbow", "no known type"}},
+      {arm_of("", ""), {"elbow", "no type"}},
+      {arm_of("revolute", ""), {"elbow", "no <limit>"}},
+      {arm_of("prismatic", "<axis xyz='0 0 0'/>" + limit), {"elbow", "axis is zero"}},
+      {arm_of("continuous", "<axis xyz='0 0 0'/>"), {"elbow", "axis is zero"}},
+      {arm_of("continuous", "<axis/>"), {"elbow", "<axis>", "no xyz"}},
+      {arm_of("continuous", "<axis xyz='0 1'/>"), {"elbow", "<axis>", "2 numbers"}},
+      {arm_of("continuous", "<axis xyz='0 1 O'/>"), {"elbow", "'O'", "no finite number"}},
+      {arm_of("continuous", "<axis xyz='0 nan 1'/>"), {"elbow", "'nan'"}},
+      {arm_of("revolute", "<limit lower='1' upper='-1'/>"), {"elbow", "reversed"}},
+      {arm_of("revolute", "<limit lower='-inf' upper='1'/>"), {"elbow", "'-inf'"}},
+      {arm_of("revolute", "<limit lower='1,5' upper='2'/>"), {"elbow", "'1,5'"}},
+      {arm_of("revolute", "<limit lower='1e999' upper='2'/>"), {"elbow", "'1e999'"}},
+      {arm_of("revolute", "<limit lower='0x1' upper='2'/>"), {"elbow", "'0x1'"}},
+      {arm_of("revolute", "<limit lower='' upper='2'/>"), {"elbow", "0 numbers"}},
+      {arm_of("revolute", "<limit lower='+-1' upper='2'/>"), {"elbow", "'+-1'"}},
+      {arm_of("fixed", "<origin xyz='1 2'/>"), {"elbow", "<origin>", "2 numbers"}},
+      {arm_of("fixed", "<origin rpy='1 2 %n'/>"), {"elbow", "'%n'"}},
+      {arm_of("fixed", "<origin xyz='1 2 1e16'/>"), {"elbow"}},
+      {arm_of("fixed", "<origin xzy='1 2 3'/>"), {"elbow", "xzy"}},
+      {arm_of("fixed", "<origin quat_xyzw='0 0 0 1'/>"), {"elbow", "quat_xyzw"}},
+      {arm_of("fixed", "<origin/><origin xyz='1 2 3'/>"), {"elbow", "there is one already"}},
+      {arm_of("continuous", "<mimic/>"), {"elbow", "<mimic>", "no joint"}},
+      {arm_of("continuous", "<mimic joint='x'/>"), {"joint x", "no such joint"}},
+      {arm_of("continuous", "<mimic joint='elbow'/>"), {"joint elbow", "mimic itself"}},
+      {arm_of("continuous", "<mimic joint='x' multiplier='two'/>"), {"elbow", "'two'"}},
+      {arm_of("continuous", "<mimic joint='x' factor='2'/>"), {"elbow", "factor"}},
+      {shape("collision", ""), {"base", "<geometry>", "not one shape"}},
+      {shape("collision", "<sphere radius='1'/><sphere radius='2'/>"), {"not one shape"}},
+      {link_of("<collision/>"), {"base", "<collision>", "no <geometry>"}},
+      {link_of("<visual><geometry/></visual>"), {"not one shape"}},
+      {link_of(std::string("<collision>") + kOneSphere + kOneSphere + "</collision>"),
+       {"there is one already"}},
+      {shape("collision", "<capsule radius='1' length='1'/>"), {"<capsule>", "can be read"}},
+      {shape("collision", "<sphere/>"), {"<sphere>", "no radius"}},
+      {shape("collision", "<sphere radius='0'/>"), {"link 'base'"}},
+      {shape("collision", "<sphere radius='-1'/>"), {"link 'base'"}},
+      {shape("collision", "<sphere radius='1 2'/>"), {"base", "2 numbers"}},
+      {shape("collision", "<sphere radius='1' length='2'/>"), {"base", "length"}},
+      {shape("collision", "<cylinder radius='1'/>"), {"no length"}},
+      {shape("collision", "<box size='1 1 0'/>"), {"link 'base'"}},
+      {shape("collision", "<box size='1 1'/>"), {"2 numbers"}},
+      {shape("visual", "<mesh/>"), {"no filename"}},
+      {shape("visual", "<mesh filename='x.stl'/>"), {"link 'base'", "x.stl", "no such file"}},
+      {shape("visual", "<mesh filename='x.stl' scale='1 0 1'/>"), {"base", "scale is zero"}},
+      {shape("visual", "<mesh filename='package://p/x.stl'/>"), {"base", "package://p"}},
+  };
+  for (const BadFile& file : files) {
+    const std::string refusal = refusal_of(file.text);
+    for (const std::string& reason : file.reasons) {
+      EXPECT_NE(refusal.find(reason), std::string::npos)
+          << file.text << "\nis refused because: " << refusal << "\nand not: " << reason;
+    }
+  }
+  EXPECT_THROW(read_urdf("no such file.urdf"), Error);
+}
+
+// Deeper than any parser may recurse.
+TEST(ReadUrdf, RefusesElementsWithinElements) {
+  std::string text;
+  for (int i = 0; i < 100000; ++i) text += "<robot name='r'>";
+  EXPECT_NE(refusal_of(text).find("no XML"), std::string::npos);
+}
+
+TEST(ReadUrdf, TakesALongChain) {
+  std::string text = "<link name='l0'/>";
+  for (int i = 1; i <= 300; ++i) {
+    const std::string n = std::to_string(i);
+    text += "<link name='l" + n + "'/><joint name='j" + n + "' type='continuous'><parent link='l" +
+            std::to_string(i - 1) + "'/><child link='l" + n + "'/>";
+    if (i > 1) text += "<mimic joint='j" + std::to_string(i - 1) + "' multiplier='-1'/>";
+    text += "</joint>";
+  }
+  const RobotDescription robot = read_text(robot_of(text));
+  EXPECT_EQ(robot.model.variable_count(), 1);
+  EXPECT_EQ(robot.model.joints()[299].multiplier, -1.0);
+}
+
+class Listener : public console_bridge::OutputHandler {
+ public:
+  Listener() { console_bridge::useOutputHandler(this); }
+  ~Listener() override { console_bridge::restorePreviousOutputHandler(); }
+  void log(const std::string& text, console_bridge::LogLevel, const char*, int) override {
+    texts.push_back(text);
+  }
+  std::vector<std::string> texts{};
+};
+
+TEST(ReadUrdf, LeavesTheConsoleAlone) {
+  Listener listener;
+  console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
+  EXPECT_NE(refusal_of(robot_of("<link name='a'/><link name='a'/>")).find("not unique"),
+            std::string::npos);
+  EXPECT_EQ(console_bridge::getLogLevel(), console_bridge::CONSOLE_BRIDGE_LOG_NONE);
+  console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_WARN);
+  EXPECT_NE(refusal_of(robot_of("")).find("No link"), std::string::npos);
+  EXPECT_TRUE(listener.texts.empty());
+  EXPECT_EQ(console_bridge::getOutputHandler(), &listener);
+}
+
+class DecimalComma : public std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+};
+
+TEST(ReadUrdf, ReadsNumbersInAnyLocale) {
+  const std::locale before =
+      std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
+  const RobotDescription robot = read_text(link_of(
+      "<visual><origin xyz='0.5 1.5e-3 2'/><geometry><sphere radius='0.25'/></geometry></visual>"));
+  std::locale::global(before);
+  const LinkShape& shape = robot.links[0].visual[0];
+  EXPECT_EQ(shape.link_from_shape.translation(), Eigen::Vector3d(0.5, 1.5e-3, 2.0));
+  EXPECT_EQ(std::get<Ball>(std::get<Primitive>(shape.geometry)).radius, 0.25);
+}
+
+}  // namespace
+}  // namespace spherule::test

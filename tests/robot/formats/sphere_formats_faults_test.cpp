@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/formats/sphere_formats.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+#include "tests/robot/formats/sphere_sets.h"
+#include "tests/support/effort.h"
+#include "tests/support/temp_dir.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace spherule {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TempDir;
+
+constexpr SphereFormat kAll[] = {SphereFormat::kUrdf, SphereFormat::kSrdf, SphereFormat::kCurobo,
+                                 SphereFormat::kXrdf, SphereFormat::kFoam, SphereFormat::kSpherule};
+
+class SphereFormatFaults : public ::testing::Test {
+ protected:
+  // Reads a file of this text.
+  SphereFormatFile read(const std::string& text, const SphereReadOptions& options = {}) {
+    return read_robot_spheres(folder_.write("input", text), options);
+  }
+
+  // The reason why it is refused; the subject has to be the file.
+  std::string refusal(const std::string& text, const SphereReadOptions& options = {}) {
+    try {
+      read(text, options);
+    } catch (const Error& error) {
+      EXPECT_NE(error.subject().find("input"), std::string::npos) << error.what();
+      return error.reason();
+    }
+    return "read";
+  }
+
+  void expect_refusal(const std::string& text, const std::string& reason) {
+    const std::string given = refusal(text);
+    EXPECT_NE(given.find(reason), std::string::npos) << "for " << text << "\ngot: " << given;
+  }
+
+  TempDir folder_;
+};
+
+std::string robot(const std::string& content) {
+  return "<robot name=\"r\">\n" + content + "</robot>";
+}
+std::string collision(const std::string& content) {
+  return robot("<link name=\"a\"><collision>" + content + "</collision></link>");
+}
+
+TEST_F(SphereFormatFaults, Files) {
+  expect_refusal("", "is empty");
+  expect_refusal(" \n\t", "is empty");
+  EXPECT_THROW(read_robot_spheres(folder_.path() / "missing"), Error);
+  EXPECT_THROW(read_robot_spheres(folder_.path()), Error);
+}
+
+TEST_F(SphereFormatFaults, Xml) {
+  expect_refusal("<robot>", "no XML");
+  expect_refusal("<other/>", "no <robot>");
+  expect_refusal("<robot/><robot/>", "more than one root");
+  expect_refusal(robot("<link/>"), "line 2: <link>: it has no name");
+  expect_refusal(robot("<link name=\"a\"/><link name=\"a\"/>"), "there twice");
+  expect_refusal(collision(""), "has no <geometry>");
+  expect_refusal(collision("<geometry/>"), "not one shape");
+  const auto ball_of = [](const std::string& radius) {
+    return collision("<geometry><sphere " + radius + "/></geometry>");
+  };
+  expect_refusal(ball_of(""), "has no radius");
+  for (const char* text : {"x", "nan", "inf", "1e999"}) {
+    expect_refusal(ball_of("radius=\"" + std::string(text) + "\""), "is no finite number");
+  }
+  expect_refusal(ball_of("radius=\"1 2\""), "numbers where");
+  expect_refusal(ball_of("radius=\"1e16\""), "beyond 1e15");
+  expect_refusal(collision("<geometry><sphere radius=\"1\"/><box size=\"1 1 1\"/></geometry>"),
+                 "not one shape");
+  expect_refusal(collision("<geometry><box size=\"1 1 1\"/></geometry>"), "holds no spheres");
+  const std::string ball = "<geometry><sphere radius=\"1\"/></geometry>";
+  expect_refusal(collision(ball + "<origin xyz=\"1 2\"/>"), "numbers where");
+  expect_refusal(collision(ball + "<origin rpy=\"1 2 z\"/>"), "is no finite number");
+  expect_refusal(collision(ball + "<origin/><origin/>"), "there is one already");
+  expect_refusal(collision(ball) + std::string(1, '\0'), "zero byte");
+  const std::string leaf = "<link name=\"a_sphere1\"><collision>" + ball + "</collision></link>";
+  const std::string joint =
+      "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"a_sphere1\"/></joint>";
+  expect_refusal(robot(leaf + joint), "there is no link \"a\"");
+  expect_refusal(robot("<link name=\"a\"/>" + leaf + joint + joint), "is the second joint");
+  expect_refusal(robot("<joint name=\"j\" type=\"fixed\"/>"), "has no <parent>");
+  expect_refusal(robot("<group name=\"g\"/>"), "has no link_sphere_approximation");
+  expect_refusal(robot("<link_sphere_approximation link=\"a\"><sphere center=\"1 2\" radius=\"1\"/>"
+                       "</link_sphere_approximation>"),
+                 "line 2");
+}
+
+TEST_F(SphereFormatFaults, Yaml) {
+  const std::string head = "collision_spheres:\n  a:\n";
+  expect_refusal("a: [1", "line 1: is not YAML");
+  expect_refusal("just words", "the file is not a map");
+  expect_refusal("a: 1\n---\nb: 2", "exactly one YAML document");
+  expect_refusal("a: 1", "has no \"collision_spheres\"");
+  expect_refusal("collision_spheres:\n", "has no \"collision_spheres\"");
+  expect_refusal(head + "    - {center: [0, 0], radius: 1}", "line 3: \"center\" is not [x, y, z]");
+  expect_refusal(head + "    - {center: [0, 0, 0]}", "line 3: \"radius\" is missing");
+  expect_refusal(head + "    - {center: [0, 0, 0], radius: x}",
+                 "line 3: \"radius\" is not a number");
+  expect_refusal(head + "    - {center: [0, 0, 0], radius: \"1\"}", "is not a number");
+  expect_refusal(head + "    - {center: [0, 0, .nan], radius: 1}", "a coordinate is not a number");
+  expect_refusal(head + "    - {center: [0, 0, 1e17], radius: 1}",
+                 "line 3: a number is beyond 1e15");
+  expect_refusal(head + "    - {center: [0, 0, 0], radius: 1, radius: 2}", "\"radius\" twice");
+  expect_refusal(head + "    - [0, 0, 0, 1]", "line 3: a sphere is not a map");
+  expect_refusal(head + "    x: 1", "spheres of a link are not a list");
+  expect_refusal(head + "    - {center: [0, 0, 0], radius: 1}\n  a: []", "line 4");
+  expect_refusal("x: &x {radius: 1}\n" + head + "    - {<<: *x, center: [0, 0, 0]}", "merge keys");
+  EXPECT_THROW(read("collision_spheres: other.yml"), Error);  // a file that is not there
+  expect_refusal("robot_cfg: [1]", "robot_cfg is not a map");
+  const std::string good = head + "    - {center: [0, 0, 0], radius: 1}\n";
+  expect_refusal(good + "collision_link_names: a", "is not a list");
+  expect_refusal(good + "self_collision_ignore: {a: b}", "ignored links are not a list");
+  expect_refusal(good + "self_collision_buffer: 0.1", "self_collision_buffer is not a map");
+  expect_refusal(good + "self_collision_buffer: {a: b}", "a buffer is not a number");
+  expect_refusal(good + "collision_sphere_buffer: [1]", "is not a number");
+  expect_refusal("format: xrdf", "\"format_version\" is missing");
+  expect_refusal("format: xrdf\nformat_version: 2.0", "line 2: is of a version of XRDF");
+  expect_refusal("format: xrdf\nformat_version: 1.0", "names no geometry");
+  expect_refusal("format: xrdf\nformat_version: 1.0\ncollision: {geometry: g}",
+                 "no geometry \"g\"");
+  expect_refusal("format: xrdf\nformat_version: 1.0\ncollision: {geometry: g}\ngeometry: {g: {}}",
+                 "the geometry has no spheres");
+}
+
+TEST_F(SphereFormatFaults, Json) {
+  expect_refusal("{", "is not JSON");
+  expect_refusal("{}", "no known format");
+  expect_refusal("{\"a\": 1}", "no known format");
+  expect_refusal("{\"format\": \"other\"}", "unknown format \"other\"");
+  expect_refusal("[]", "has only 0 levels");
+  expect_refusal("[1]", "is not an object");
+  expect_refusal("[{\"spheres\": [{\"origin\": [0, 0], \"radius\": 1}]}]",
+                 "sphere 0: is not [x, y, z]");
+  expect_refusal("[{\"spheres\": [{\"origin\": [0, 0, 0]}]}]", "\"radius\" is missing");
+  expect_refusal("[{\"spheres\": [{\"origin\": [0, 0, 1e17], \"radius\": 1}]}]", "beyond 1e15");
+  expect_refusal("{\"centers\": [[0, 0, 0]], \"radii\": []}", "other counts");
+  expect_refusal("{\"a\": {\"centers\": [[0, 0, \"x\"]], \"radii\": [1]}}", "is not a number");
+  expect_refusal("{\"a\": {\"BiggesetSphere\": [0, 0, 0, 1], \"SubSpheres\": [1]}}",
+                 "not an object");
+  expect_refusal("{\"a\": {\"centers\": []}, \"a\": {}}", "the key \"a\" is there twice");
+  const std::string own = "{\"format\": \"spherule-robot-spheres\", \"version\": ";
+  expect_refusal(own + "0}", "not a positive integer");
+  expect_refusal(own + "2}", "has format version 2");
+  expect_refusal(own + "1}", "\"robot\" is missing");
+  expect_refusal(
+      own +
+          "1, \"robot\": \"r\", \"links\": [{\"link\": \"a\", \"spheres\": [{\"center\": "
+          "[0, 0, 0], \"radius\": -1}]}]}",
+      "link \"a\", sphere 0: is negative");
+  expect_refusal(own +
+                     "1, \"robot\": \"r\", \"links\": [{\"link\": \"a\", \"spheres\": []}, "
+                     "{\"link\": \"a\", \"spheres\": []}]}",
+                 "there twice");
+  expect_refusal("{\"format\": \"spherule-spheres\", \"version\": 1}", "\"spheres\" is missing");
+}
+
+TEST_F(SphereFormatFaults, SphereTrees) {
+  expect_refusal("2 2\n0 0 0 1 1\n", "line 3: a node is missing");
+  expect_refusal("1 1\n0 0 0 1\n", "line 2: is not \"x y z r occupancy\"");
+  expect_refusal("60 60\n0 0 0 1 1\n", "");
+  EXPECT_NE(refusal("1 1\n0 0 0 1 1\n", {.level = 3}).find("has only 1 levels"), std::string::npos);
+}
+
+TEST_F(SphereFormatFaults, LevelsAndFormatsOfOneMesh) {
+  const std::string two =
+      "[{\"spheres\": [{\"origin\": [1, 0, 0], \"radius\": 1}]},"
+      "{\"spheres\": [{\"origin\": [2, 0, 0], \"radius\": 1}, "
+      "{\"origin\": [3, 0, 0], \"radius\": -1}]}]";
+  const SphereFormatFile finest = read(two, {.link = "arm"});
+  EXPECT_EQ(finest.format, SphereFormat::kFoam);
+  ASSERT_EQ(finest.spheres.links.size(), 1u);
+  EXPECT_EQ(finest.spheres.links[0].link, "arm");
+  ASSERT_EQ(finest.spheres.links[0].spheres.size(), 1u);
+  EXPECT_EQ(finest.spheres.links[0].spheres[0].center.x(), 2.0);
+  EXPECT_EQ(finest.spheres.switched_off, 1u);
+  EXPECT_EQ(read(two, {.level = 0}).spheres.links[0].spheres[0].center.x(), 1.0);
+  EXPECT_NE(refusal(two, {.level = 2}).find("has only 2 levels"), std::string::npos);
+
+  const SphereFormatFile morphit =
+      read("{\"centers\": [[1, 2, 3]], \"radii\": [0.5], \"masses\": [1], \"num_spheres\": 1}");
+  EXPECT_EQ(morphit.format, SphereFormat::kMorphit);
+  EXPECT_EQ(morphit.spheres.links[0].spheres[0], (Sphere{{1, 2, 3}, 0.5}));
+  const SphereFormatFile ballpark = read(
+      "{\"a\": {\"centers\": [[1, 2, 3]], \"radii\": [0.5]}, \"b\": {\"centers\": [], \"radii\": "
+      "[]}}");
+  EXPECT_EQ(ballpark.format, SphereFormat::kBallpark);
+  EXPECT_EQ(ballpark.spheres.links.size(), 2u);
+  const std::string irmv =
+      "{\"a\": {\"BiggesetSphere\": [0, 0, 0, 9], "
+      "\"SubSpheres\": {\"r0\": [1, 2, 3, 0.5], \"r1\": [1, 2, 4, 0.5]}}}";
+  EXPECT_EQ(read(irmv).format, SphereFormat::kIrmv);
+  EXPECT_EQ(read(irmv).spheres.links[0].spheres.size(), 2u);
+  EXPECT_EQ(read(irmv, {.level = 0}).spheres.links[0].spheres[0].radius, 9.0);
+  const std::string tree = "2 2\n0 0 0 9 1\n1 0 0 1 1 0 0 0 0 0\n0 0 0 -1 0\nLevel 1\n";
+  EXPECT_EQ(read(tree).format, SphereFormat::kBradshaw);
+  EXPECT_EQ(read(tree).spheres.links[0].spheres.size(), 1u);
+  EXPECT_EQ(read(tree).spheres.switched_off, 0u);
+  EXPECT_EQ(read(tree, {.level = 0}).spheres.links[0].spheres[0].radius, 9.0);
+  const SphereFormatFile one = read(
+      "{\"format\": \"spherule-spheres\", \"version\": 1, \"spheres\": [{\"center\": [0, 0, 0], "
+      "\"radius\": 1}]}");
+  EXPECT_EQ(one.format, SphereFormat::kSphereFile);
+  EXPECT_EQ(one.spheres.links[0].spheres.size(), 1u);
+}
+
+TEST_F(SphereFormatFaults, CuroboSwitchesBallsOff) {
+  const std::string text =
+      "robot_cfg:\n  kinematics:\n    collision_link_names: [a]\n    collision_spheres:\n"
+      "      a: [{center: [0, 0, 0], radius: -10}, {center: [0, 0, 0], radius: 0.0}, "
+      "{center: [1, 0, 0], radius: 1}]\n      b: [{center: [0, 0, 0], radius: 1}]\n      c:\n";
+  const RobotSpheres read_spheres = read(text).spheres;
+  EXPECT_EQ(read_spheres.switched_off, 3u);  // b is none of the links that cuRobo looks at
+  ASSERT_EQ(read_spheres.links.size(), 3u);
+  EXPECT_EQ(read_spheres.links[0].spheres.size(), 1u);
+  EXPECT_TRUE(read_spheres.links[1].spheres.empty());
+  EXPECT_TRUE(read_spheres.links[2].spheres.empty());
+}
+
+TEST_F(SphereFormatFaults, CuroboSideFile) {
+  fs::create_directory(folder_.path() / "spheres");
+  folder_.write("spheres/a.yml", "collision_spheres: {a: [{center: [1, 2, 3], radius: 4}]}");
+  const SphereFormatFile file = read(
+      "robot_cfg: {kinematics: {collision_spheres: spheres/a.yml, self_collision_ignore: {a: "
+      "[b]}}}");
+  EXPECT_EQ(file.spheres.links[0].spheres[0], (Sphere{{1, 2, 3}, 4}));
+  EXPECT_EQ(file.spheres.self_collision_ignore.size(), 1u);
+  folder_.write("spheres/a.yml", "collision_spheres: input");
+  EXPECT_THROW(read("collision_spheres: spheres/a.yml"), Error);
+}
+
+TEST_F(SphereFormatFaults, Writing) {
+  const fs::path urdf = folder_.write("r.urdf", urdf_text({{"a", {}}}));
+  const fs::path out = folder_.path() / "out";
+  const auto expect_refused = [&](const RobotSpheres& spheres, SphereFormat format) {
+    EXPECT_THROW(write_robot_spheres(spheres, format, {.urdf = urdf}, out), Error)
+        << name_of(format);
+    EXPECT_FALSE(fs::exists(out));
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const SphereFormat format : kAll) {
+    expect_refused({}, format);
+    expect_refused({.links = {{"", {}}}}, format);
+    expect_refused({.links = {{"a", {}}, {"a", {}}}}, format);
+    expect_refused({.links = {{"a\x01", {}}}}, format);
+    expect_refused({.links = {{"a\n", {}}}}, format);
+    expect_refused({.links = {{"\xff", {}}}}, format);
+    expect_refused({.links = {{"\xed\xa0\x80", {}}}}, format);
+    expect_refused({.links = {{"\xc0\x80", {}}}}, format);
+    expect_refused({.links = {{"a", {{{kNan, 0, 0}, 1}}}}}, format);
+    expect_refused({.links = {{"a", {{{0, 0, 0}, -1}}}}}, format);
+    expect_refused({.links = {{"a", {{{0, 0, 0}, 1e16}}}}}, format);
+    expect_refused({.links = {{"a", {}}}, .collision_buffer = kNan}, format);
+    if (format != SphereFormat::kSpherule)
+      expect_refused({.links = {{"a", {{{0, 0, 0}, 0}}}}}, format);
+    const RobotSpheres good{.robot = "r", .links = {{"a", {{{0, 0, 0}, 1}}}}};
+    EXPECT_THROW(write_robot_spheres(good, format, {.urdf = urdf}, out / "no" / "folder"), Error);
+  }
+  expect_refused({.links = {{"b", {{{0, 0, 0}, 1}}}}}, SphereFormat::kUrdf);  // no such link
+  expect_refused({.links = {{"a", {{{0, 0, 0}, 1}}}}}, SphereFormat::kMorphit);
+  EXPECT_EQ(sphere_file_name("panda", SphereFormat::kCurobo), "panda.curobo.yml");
+  EXPECT_EQ(sphere_format_named("json"), SphereFormat::kSpherule);
+  EXPECT_FALSE(sphere_format_named("").has_value());
+  EXPECT_THROW(sphere_file_name("a/b", SphereFormat::kUrdf), Error);
+  EXPECT_THROW(sphere_file_name("", SphereFormat::kUrdf), Error);
+  EXPECT_THROW(sphere_file_name("a", SphereFormat::kMorphit), Error);
+}
+
+// Whatever is done to a file, it is read or refused with an Error; what is read can be written.
+TEST_F(SphereFormatFaults, MutatedFiles) {
+  test::Random random(17);
+  const std::string signs = "<>{}[]\"'&*!|:-#,\n 0e.\x80\xff";
+  for (int round = 0; round < test::effort(4, 1); ++round) {
+    const RobotSpheres spheres = random_spheres(random, 1 + random.index(5));
+    const fs::path urdf = folder_.write("robot.urdf", urdf_text(spheres.links));
+    for (const SphereFormat format : kAll) {
+      const fs::path seed = folder_.path() / "seed";
+      write_robot_spheres(spheres, format, {.urdf = urdf}, seed);
+      const std::string good = read_file(seed);
+      int refused = 0;
+      for (int mutation = 0; mutation < test::effort(40, 15); ++mutation) {
+        std::string bad = good;
+        for (std::size_t edits = 1 + random.index(4); edits-- > 0 && !bad.empty();) {
+          const std::size_t at = random.index(bad.size());
+          switch (random.index(5)) {
+            case 0:
+              bad[at] = signs[random.index(signs.size())];
+              break;
+            case 1:
+              bad.erase(at, 1 + random.index(20));
+              break;
+            case 2:
+              bad.insert(at, 1, signs[random.index(signs.size())]);
+              break;
+            case 3:
+              bad.insert(at, bad.substr(random.index(bad.size()), random.index(60)));
+              break;
+            default:
+              bad.resize(at);
+              break;
+          }
+        }
+        try {
+          const SphereFormatFile file = read(bad);
+          for (const LinkSpheres& link : file.spheres.links) {
+            for (const Sphere& ball : link.spheres)
+              EXPECT_TRUE(is_usable(ball) && ball.radius >= 0.0);
+          }
+        } catch (const Error&) {
+          ++refused;
+        }
+      }
+      EXPECT_GT(refused, 0) << name_of(format);
+    }
+  }
+}
+
+TEST_F(SphereFormatFaults, DeepNesting) {
+  for (const char* part : {"[", "{\"a\":", "a: [", "<robot>", "- "}) {
+    std::string text;
+    for (int depth = 0; depth < 50000; ++depth) text += part;
+    EXPECT_NE(refusal(text), "read") << part;
+  }
+  // An anchor that holds itself, and one that doubles what it holds.
+  folder_.write("loop", "collision_spheres: {a: []}\nloop: &a [*a]\n");
+  const RobotSpheres spheres{.links = {{"a", {}}}};
+  EXPECT_THROW(write_robot_spheres(spheres, SphereFormat::kCurobo,
+                                   {.original = folder_.path() / "loop"}, folder_.path() / "out"),
+               Error);
+}
+
+}  // namespace
+}  // namespace spherule

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/pairs/allowed_collisions.h"
+
+#include "collide/collide.h"
+#include "robot/model/kinematics.h"
+#include "spheretree/error.h"
+#include "tests/collide/trees.h"
+#include "tests/robot/check/checked_scene.h"
+#include "tests/robot/robots.h"
+#include "tests/support/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+// base - (turns) - a - (turns) - flange, without spheres - (fixed) - tool - (turns) - finger, and
+// base - (fixed) - plate.
+RobotModel arm() {
+  RobotModel robot("base");
+  const Joint turning{.type = JointType::kRevolute, .lower = -3.0, .upper = 3.0};
+  robot.add_link("plate", "base", {});
+  robot.add_link("a", "base", turning);
+  robot.add_link("flange", "a", turning);
+  robot.add_link("tool", "flange", {});
+  robot.add_link("finger", "tool", turning);
+  for (const char* link : {"base", "plate", "a", "tool", "finger"}) {
+    robot.attach(link, ball({0, 0, 0}, 0.1));
+  }
+  return robot;
+}
+
+TEST(AllowedCollisions, WhatIsJoinedIsAllowed) {
+  const AllowedCollisions allowed(arm());
+  const std::map<std::pair<std::string, std::string>, AllowedReason> expected = {
+      {{"base", "plate"}, AllowedReason::kRigid}, {{"flange", "tool"}, AllowedReason::kRigid},
+      {{"base", "a"}, AllowedReason::kAdjacent},  {{"a", "flange"}, AllowedReason::kAdjacent},
+      {{"a", "tool"}, AllowedReason::kAdjacent},  {{"tool", "finger"}, AllowedReason::kAdjacent},
+  };
+  const auto& names = allowed.link_names();
+  std::size_t found = 0;
+  for (int i = 0; i < static_cast<int>(names.size()); ++i) {
+    EXPECT_TRUE(allowed.allows(i, i));
+    for (int k = 0; k < static_cast<int>(names.size()); ++k) {
+      EXPECT_EQ(allowed.allows(i, k), allowed.allows(k, i));
+      EXPECT_EQ(allowed.allows(i, k), allowed.allows(names[static_cast<std::size_t>(i)],
+                                                     names[static_cast<std::size_t>(k)]));
+      EXPECT_EQ(allowed.allows(i, k), allowed.reason(i, k) != AllowedReason::kTested);
+      const auto pair =
+          expected.find({names[static_cast<std::size_t>(i)], names[static_cast<std::size_t>(k)]});
+      if (pair == expected.end()) continue;
+      EXPECT_EQ(allowed.reason(i, k), pair->second) << names[static_cast<std::size_t>(i)];
+      ++found;
+    }
+  }
+  EXPECT_EQ(found, expected.size());
+  // plate - a goes past the spheres of the base; flange - finger past those of the tool.
+  EXPECT_EQ(allowed.pairs().size(), expected.size());
+}
+
+TEST(AllowedCollisions, GivenByName) {
+  AllowedCollisions allowed(arm());
+  const std::vector<std::pair<std::string, std::string>> pairs = {{"plate", "a"}, {"a", "base"}};
+  allowed.allow(pairs);
+  EXPECT_TRUE(allowed.allows("plate", "a"));
+  EXPECT_EQ(allowed.reason(1, 2), AllowedReason::kGiven);
+  EXPECT_EQ(allowed.reason(0, 2), AllowedReason::kAdjacent) << "keeps its reason";
+  allowed.forbid("a", "plate");
+  allowed.forbid("a", "base");
+  EXPECT_FALSE(allowed.allows("plate", "a"));
+  EXPECT_FALSE(allowed.allows(0, 2));
+
+  const AllowedCollisions before = allowed;
+  const std::vector<std::pair<std::string, std::string>> half_known = {{"plate", "finger"},
+                                                                       {"a", "nose"}};
+  EXPECT_THROW(allowed.allow(half_known), Error);
+  EXPECT_FALSE(allowed.allows("plate", "finger")) << "nothing is taken of a list that is refused";
+  EXPECT_EQ(allowed.pairs().size(), before.pairs().size());
+  EXPECT_THROW(allowed.allow("a", "nose"), Error);
+  EXPECT_THROW(allowed.forbid("nose", "a"), Error);
+  EXPECT_THROW(allowed.forbid("a", "a"), Error);
+  EXPECT_THROW((void)allowed.allows("nose", "a"), Error);
+  EXPECT_THROW(allowed.allow(0, 6, AllowedReason::kNever), Error);
+  EXPECT_THROW(allowed.allow(-1, 0, AllowedReason::kNever), Error);
+  EXPECT_THROW(allowed.allow(1, 2, AllowedReason::kTested), Error);
+}
+
+// Bits beyond the first word, and no pair is another's.
+TEST(AllowedCollisions, BitsEqualNames) {
+  SceneRandom random(61);
+  RobotModel robot("link_0");
+  for (int i = 1; i < 40; ++i) {
+    robot.add_link("link_" + std::to_string(i), "link_" + std::to_string(random.whole(0, i - 1)),
+                   {.type = JointType::kRevolute, .lower = -1.0, .upper = 1.0});
+    robot.attach("link_" + std::to_string(i), ball({0, 0, 0}, 0.1));
+  }
+  AllowedCollisions allowed(robot);
+  std::vector<std::vector<bool>> expected(40, std::vector<bool>(40));
+  for (int i = 0; i < 40; ++i) {
+    for (int k = 0; k < 40; ++k) {
+      const int joint = robot.links()[static_cast<std::size_t>(i)].parent_joint;
+      const bool is_child =
+          joint >= 0 && robot.joints()[static_cast<std::size_t>(joint)].parent_link == k;
+      if (i == k || is_child) {
+        expected[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] = true;
+        expected[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)] = true;
+      }
+    }
+  }
+  // Siblings below the first link, which has no spheres, are two joints apart.
+  for (int n = 0; n < 600; ++n) {
+    const int i = random.whole(0, 39);
+    const int k = random.whole(0, 39);
+    if (i == k) continue;
+    const bool allows = random.whole(0, 1) == 1;
+    const std::string first = "link_" + std::to_string(i);
+    const std::string second = "link_" + std::to_string(k);
+    allows ? allowed.allow(first, second) : allowed.forbid(first, second);
+    expected[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] = allows;
+    expected[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)] = allows;
+  }
+  for (int i = 0; i < 40; ++i) {
+    for (int k = 0; k < 40; ++k) {
+      EXPECT_EQ(allowed.allows(i, k),
+                expected[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)])
+          << i << ' ' << k;
+    }
+  }
+}
+
+// A finger that reaches the plate in some configurations; a chin that always touches the plate.
+TEST(AllowedCollisions, Sampled) {
+  RobotModel robot = arm();
+  robot.add_link("long", "finger",
+                 {.type = JointType::kPrismatic, .axis = {1, 0, 0}, .lower = 0.0, .upper = 1.0});
+  robot.attach("long", ball({0, 0, 0}, 0.05));
+  robot.add_link("far", "a", {.type = JointType::kPrismatic, .lower = 5.0, .upper = 6.0});
+  robot.attach("far", ball({0, 0, 0}, 0.05));
+  AllowedCollisions allowed(robot);
+  const SampledCollisions sampled =
+      sample_collisions(robot, allowed, {.configurations = 500, .seed = 7});
+  EXPECT_EQ(sampled.configurations, 500U);
+  std::map<std::pair<std::string, std::string>, SampledPair> by_name;
+  const auto& links = robot.links();
+  for (const SampledPair& pair : sampled.pairs) {
+    EXPECT_FALSE(allowed.allows(pair.first, pair.second));
+    by_name[{links[static_cast<std::size_t>(pair.first)].name,
+             links[static_cast<std::size_t>(pair.second)].name}] = pair;
+  }
+  EXPECT_EQ((by_name[{"plate", "a"}].reason), AllowedReason::kAlways);
+  EXPECT_EQ((by_name[{"plate", "a"}].touched), 500U);
+  EXPECT_EQ((by_name[{"plate", "far"}].reason), AllowedReason::kNever);
+  const SampledPair& sometimes = by_name[{"plate", "long"}];
+  EXPECT_EQ(sometimes.reason, AllowedReason::kTested);
+  EXPECT_NEAR(static_cast<double>(sometimes.touched) / 500.0, 0.15, 0.06);
+  EXPECT_EQ(by_name.count({"plate", "flange"}), 0U) << "there are no spheres on it";
+
+  allow_sampled(sampled, allowed);
+  EXPECT_EQ(allowed.reason(robot.find_link("plate"), robot.find_link("a")), AllowedReason::kAlways);
+  EXPECT_EQ(allowed.reason(robot.find_link("plate"), robot.find_link("far")),
+            AllowedReason::kNever);
+  EXPECT_FALSE(allowed.allows("plate", "long"));
+  EXPECT_NE(name_of(AllowedReason::kNever).find("sample"), std::string_view::npos);
+
+  const SampledCollisions again =
+      sample_collisions(robot, AllowedCollisions(robot), {.configurations = 500, .seed = 7});
+  ASSERT_EQ(again.pairs.size(), sampled.pairs.size());
+  for (std::size_t i = 0; i < again.pairs.size(); ++i) {
+    EXPECT_EQ(again.pairs[i].touched, sampled.pairs[i].touched);
+  }
+  EXPECT_THROW((void)sample_collisions(robot, allowed, {.configurations = 0}), Error);
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is proved of pairs of links, against the separating axes of their boxes.
+
+#include "robot/pairs/link_pairs.h"
+
+#include "robot/model/kinematics.h"
+#include "robot/pairs/internal/pair_space.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "tests/robot/box_robots.h"
+#include "tests/support/effort.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+using Configuration = std::vector<double>;
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+AlignedBox3d box(const Vector3d& low, const Vector3d& high) {
+  return {low, high};
+}
+
+// Half of them at places where boxes end: the limits and halves, quarters, ... between them.
+Configuration random_in_ranges(SceneRandom& random, const RobotModel& robot) {
+  Configuration result;
+  for (const int j : robot.variable_joints()) {
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
+    const double part =
+        random.whole(0, 1) == 0 ? random.uniform(0.0, 1.0) : std::ldexp(random.whole(0, 16), -4);
+    double value = joint.lower + (joint.upper - joint.lower) * part;
+    if (joint.type == JointType::kContinuous) value += kTurn * random.whole(-2, 2);
+    result.push_back(value);
+  }
+  return result;
+}
+
+class LinkPairsOfBoxes : public testing::Test {
+ protected:
+  void check_configuration(const BoxRobot& robot, const LinkPairs& pairs, const Configuration& q) {
+    forward_kinematics(robot.model, q, poses_);
+    for (const LinkPair& pair : pairs.pairs()) {
+      const bool proved = pairs.is_free(pair.second, pair.first, q);
+      const bool touch = boxes_touch(robot, pair.first, pair.second, poses_);
+      ASSERT_FALSE(proved && touch) << pair.first << " " << pair.second;
+      proved_ += proved ? 1 : 0;
+      free_ += touch ? 0 : 1;
+    }
+  }
+
+  void check_edge(SceneRandom& random, const BoxRobot& robot, const LinkPairs& pairs) {
+    const Configuration from = random_in_ranges(random, robot.model);
+    Configuration to = from;
+    const double size = random.whole(0, 1) == 0 ? 0.2 : 2.0;
+    for (double& value : to) value += random.uniform(-size, size);
+    for (const LinkPair& pair : pairs.pairs()) {
+      if (!pairs.is_edge_free(pair.first, pair.second, from, to)) continue;
+      ++edges_;
+      Configuration q = from;
+      for (int n = 0; n <= 20; ++n) {
+        for (std::size_t i = 0; i < q.size(); ++i) {
+          q[i] = from[i] + (to[i] - from[i]) * (n / 20.0);
+        }
+        forward_kinematics(robot.model, q, poses_);
+        ASSERT_FALSE(boxes_touch(robot, pair.first, pair.second, poses_));
+      }
+    }
+  }
+
+  std::vector<Pose> poses_;
+  std::size_t proved_ = 0;
+  std::size_t free_ = 0;
+  std::size_t edges_ = 0;
+};
+
+TEST_F(LinkPairsOfBoxes, NoneTouchesWhereItIsProvedFree) {
+  SceneRandom random(41);
+  std::array<int, 3> verdicts{};
+  for (int n = 0; n < effort(60, 6); ++n) {
+    const BoxRobot robot = random_box_robot(random, random.whole(1, 5), n % 2 == 0, n % 3 == 0);
+    const LinkPairs pairs = prove_link_pairs(
+        robot.model, robot.bodies, {.boxes = 400, .undecided_boxes = 2000, .samples = 60});
+    for (const LinkPair& pair : pairs.pairs()) {
+      ++verdicts[static_cast<std::size_t>(pair.verdict)];
+      EXPECT_TRUE(pair.verdict != PairVerdict::kNever || pair.boxes.is_all_free());
+      EXPECT_TRUE(pair.verdict != PairVerdict::kTouching || !pair.boxes.is_all_free());
+      if (pair.verdict != PairVerdict::kTouching) continue;
+      forward_kinematics(robot.model, pair.witness, poses_);
+      EXPECT_TRUE(boxes_touch(robot, pair.first, pair.second, poses_, -1e-9));
+      EXPECT_FALSE(pairs.is_free(pair.first, pair.second, pair.witness));
+    }
+    for (int k = 0; k < 400; ++k) {
+      check_configuration(robot, pairs, random_in_ranges(random, robot.model));
+      check_edge(random, robot, pairs);
+      if (HasFatalFailure()) return;
+    }
+  }
+  EXPECT_GT(verdicts[0], 20 / (kSanitized ? 10 : 1));
+  EXPECT_GT(verdicts[1], 20 / (kSanitized ? 10 : 1));
+  EXPECT_GT(proved_, free_ / 2);
+  EXPECT_GT(edges_, proved_ / 10);
+}
+
+// Two bars in a plane: a post of half-width 0.1 at x = 1, and a bar from the origin up to x = 2,
+// 0.02 to each side, turned about z.
+class TwoBars : public testing::Test {
+ protected:
+  static BoxRobot bars(double lower, double upper) {
+    BoxRobot robot{RobotModel("post")};
+    robot.model.add_link(
+        "bar", "post",
+        {.name = "turn", .type = JointType::kRevolute, .lower = lower, .upper = upper});
+    robot.add_boxes(0, {box({0.9, -0.1, -0.1}, {1.1, 0.1, 0.1})});
+    robot.add_boxes(1, {box({0.0, -0.02, -0.05}, {2.0, 0.02, 0.05})});
+    return robot;
+  }
+  // At the angle a < 0 the post's corner (0.9, -0.1) is 0.9 sin(-a) - 0.1 cos(a) =
+  // hypot(0.9, 0.1) sin(-a - atan2(0.1, 0.9)) from the bar's middle line; no other corner is
+  // nearer. They touch where that is 0.02.
+  static double contact_angle() {
+    return -(std::asin(0.02 / std::hypot(0.9, 0.1)) + std::atan2(0.1, 0.9));
+  }
+};
+
+TEST_F(TwoBars, LimitsShortOfContactAreProved) {
+  const double angle = contact_angle();
+  const BoxRobot robot = bars(-2.0, angle - 1e-4);
+  const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
+  ASSERT_EQ(pairs.pairs().size(), 1U);
+  EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kNever);
+  EXPECT_TRUE(pairs.is_free(0, 1, Configuration{angle - 1e-4}));
+  EXPECT_FALSE(pairs.is_free(0, 1, Configuration{angle - 0.5e-4}));
+  EXPECT_TRUE(pairs.is_edge_free(0, 1, Configuration{-2.0}, Configuration{angle - 1e-4}));
+  EXPECT_FALSE(pairs.is_edge_free(0, 1, Configuration{-2.0}, Configuration{angle}));
+}
+
+TEST_F(TwoBars, ContactAtTheLimitAloneIsFound) {
+  const double angle = contact_angle();
+  const BoxRobot robot = bars(-2.0, angle + 1e-6);
+  const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
+  ASSERT_EQ(pairs.pairs()[0].verdict, PairVerdict::kTouching);
+  EXPECT_GE(pairs.pairs()[0].witness[0], angle - 1e-9);
+  EXPECT_TRUE(pairs.is_free(0, 1, Configuration{angle - 0.01}));
+}
+
+// A part that slides along x, from -0.5 on, in a link that has no body yet.
+BoxRobot with_sliding_part(double upper) {
+  BoxRobot robot{RobotModel("base")};
+  robot.model.add_link("part", "base",
+                       {.name = "slide",
+                        .type = JointType::kPrismatic,
+                        .axis = Vector3d::UnitX(),
+                        .lower = -0.5,
+                        .upper = upper});
+  return robot;
+}
+
+TEST(LinkPairs, APartInsideAClosedOneTouchesIt) {
+  BoxRobot robot = with_sliding_part(3.0);
+  robot.add_boxes(0, {box({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0})});
+  robot.add_boxes(1, {box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})});
+  const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
+  ASSERT_EQ(pairs.pairs()[0].verdict, PairVerdict::kTouching);
+  for (double x = -0.5; x <= 1.1; x += 0.01) EXPECT_FALSE(pairs.is_free(0, 1, Configuration{x}));
+  for (double x = 1.12; x <= 3.0; x += 0.01) EXPECT_TRUE(pairs.is_free(0, 1, Configuration{x}));
+}
+
+// A part between the two prongs of a fork, whose hull it is in: only the pieces tell.
+TEST(LinkPairs, PiecesProveWhatHullsDoNot) {
+  BoxRobot robot = with_sliding_part(0.5);
+  robot.add_boxes(
+      0, {box({-1.0, 0.2, -0.1}, {1.0, 0.3, 0.1}), box({-1.0, -0.3, -0.1}, {1.0, -0.2, 0.1})});
+  robot.add_boxes(1, {box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})});
+  const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
+  EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kNever);
+}
+
+TEST(LinkPairs, ContinuousJointsTakeEveryTurn) {
+  BoxRobot robot{RobotModel("post")};
+  robot.model.add_link("bar", "post", {.name = "turn", .type = JointType::kContinuous});
+  robot.add_boxes(0, {box({0.9, -0.1, -0.1}, {1.1, 0.1, 0.1})});
+  robot.add_boxes(1, {box({0.0, -0.02, -0.05}, {2.0, 0.02, 0.05})});
+  const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
+  for (int turns = -3; turns <= 3; ++turns) {
+    EXPECT_TRUE(pairs.is_free(0, 1, Configuration{1.0 + kTurn * turns}));
+    EXPECT_TRUE(pairs.is_free(0, 1, Configuration{std::numbers::pi + kTurn * turns}));
+    EXPECT_FALSE(pairs.is_free(0, 1, Configuration{kTurn * turns}));
+    EXPECT_TRUE(pairs.is_edge_free(0, 1, Configuration{1.0 + kTurn * turns},
+                                   Configuration{3.0 + kTurn * turns}));
+    EXPECT_FALSE(pairs.is_edge_free(0, 1, Configuration{-1.0 + kTurn * turns},
+                                    Configuration{1.0 + kTurn * turns}));
+  }
+  EXPECT_FALSE(pairs.is_free(0, 1, Configuration{1e9}));
+  EXPECT_FALSE(pairs.is_free(0, 1, Configuration{std::nan("")}));
+}
+
+// A lever that follows a wheel at a tenth of its angle comes to the post after two turns.
+TEST(LinkPairs, WhatFollowsAContinuousJointIsProvedForOneTurn) {
+  BoxRobot robot{RobotModel("post")};
+  robot.model.add_link("wheel", "post", {.name = "turn", .type = JointType::kContinuous});
+  robot.model.add_link("lever", "post", {.name = "follow", .type = JointType::kContinuous});
+  robot.model.mimic("follow", "turn", 0.1);
+  robot.add_boxes(0, {box({-0.1, 0.9, -0.1}, {0.1, 1.1, 0.1})});
+  robot.add_boxes(2, {box({0.0, -0.02, -0.05}, {2.0, 0.02, 0.05})});
+  const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
+  ASSERT_EQ(pairs.pairs().size(), 1U);
+  EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kUnknown);
+  EXPECT_TRUE(pairs.pairs()[0].witness.empty());
+  EXPECT_TRUE(pairs.is_free(0, 2, Configuration{std::numbers::pi}));
+  std::vector<Pose> poses;
+  const Configuration touching{5.0 * std::numbers::pi};
+  forward_kinematics(robot.model, touching, poses);
+  EXPECT_TRUE(boxes_touch(robot, 0, 2, poses));
+  EXPECT_FALSE(pairs.is_free(0, 2, touching));
+}
+
+// Ends of edges may stand beyond the ranges by less than points of edges may.
+TEST(LinkPairs, PointsOfFreeEdgesAreFreeUpToTheRim) {
+  const FreeBoxes boxes(
+      {{.index = 0, .lower = -1.0, .upper = 0.9}, {.index = 1, .lower = -100.0, .upper = 100.0}},
+      std::string(1, '\1'));
+  SceneRandom random(511);
+  int free = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const auto end = [&] {
+      const double beyond = random.uniform(-1.0, 1.0) * FreeBoxes::kTolerance;
+      return Configuration{(random.whole(0, 1) == 0 ? -1.0 : 0.9) + beyond,
+                           random.whole(0, 1) == 0 ? -100.0 : 100.0};
+    };
+    const Configuration from = end();
+    const Configuration to = end();
+    if (!boxes.contains_edge(from, to)) continue;
+    ++free;
+    for (int k = 0; k <= 100; ++k) {
+      const double t = 0.01 * k;
+      ASSERT_TRUE(boxes.contains(
+          Configuration{(1.0 - t) * from[0] + t * to[0], (1.0 - t) * from[1] + t * to[1]}))
+          << from[0] << " " << to[0] << " " << t;
+    }
+  }
+  EXPECT_GT(free, 200);
+}
+
+TEST(LinkPairs, SpheresCountAsSolid) {
+  RobotModel robot("base");
+  robot.add_link("arm", "base",
+                 {.name = "slide",
+                  .type = JointType::kPrismatic,
+                  .axis = Vector3d::UnitX(),
+                  .lower = 0.0,
+                  .upper = 2.0});
+  const auto ball =
+      std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{Vector3d::Zero(), 0.5}}));
+  const std::vector<LinkBody> bodies{{.link = 0, .spheres = ball}, {.link = 1, .spheres = ball}};
+  const LinkPairs pairs = prove_link_pairs(robot, bodies);
+  EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kTouching);
+  EXPECT_FALSE(pairs.is_free(0, 1, Configuration{1.0}));
+  EXPECT_TRUE(pairs.is_free(0, 1, Configuration{1.01}));
+}
+
+TEST(LinkPairs, ThreadsChangeNothing) {
+  SceneRandom random(5);
+  const BoxRobot robot = random_box_robot(random, 5, true, true);
+  double last = 0.0;
+  const LinkPairs one = prove_link_pairs(robot.model, robot.bodies,
+                                         {.boxes = 300,
+                                          .undecided_boxes = 300,
+                                          .threads = 1,
+                                          .progress = [&](double share, const char*) {
+                                            EXPECT_GT(share, last);
+                                            last = share;
+                                          }});
+  EXPECT_EQ(last, 1.0);
+  const LinkPairs many = prove_link_pairs(robot.model, robot.bodies,
+                                          {.boxes = 300, .undecided_boxes = 300, .threads = 4});
+  ASSERT_EQ(one.pairs().size(), many.pairs().size());
+  for (std::size_t i = 0; i < one.pairs().size(); ++i) {
+    EXPECT_EQ(one.pairs()[i].boxes.nodes(), many.pairs()[i].boxes.nodes());
+    EXPECT_EQ(one.pairs()[i].witness, many.pairs()[i].witness);
+  }
+}
+
+TEST(LinkPairs, RefusesWhatItCannotUse) {
+  const RobotModel robot("base");
+  const std::vector<LinkBody> nothing{{.link = 0}};
+  EXPECT_THROW(prove_link_pairs(robot, nothing), Error);
+  const std::vector<LinkBody> beyond{{.link = 1}};
+  EXPECT_THROW(prove_link_pairs(robot, beyond), Error);
+  EXPECT_THROW(prove_link_pairs(robot, {}, {.seconds = -1.0}), Error);
+  EXPECT_TRUE(prove_link_pairs(robot, {}).pairs().empty());
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/structure/rooms.h"
+
+#include <initializer_list>
+
+namespace spherule {
+namespace {
+
+// Rooms that belong to one library: each library has the folder of its CMakeLists.txt.
+constexpr std::string_view kLibraryFolders[] = {
+    "spheretree",     "mesh",    "mesh/io", "simplifier",   "simplifier/baseline",
+    "simplifier/cad", "collide", "robot",   "adapters/fcl", "adapters/ompl"};
+
+Names joined(std::initializer_list<Names> lists) {
+  Names all;
+  for (const Names& names : lists) all.insert(all.end(), names.begin(), names.end());
+  return all;
+}
+
+}  // namespace
+
+const std::vector<Room>& rooms() {
+  static const Names kMesh = {"spheretree", "mesh", "mesh/geometry", "mesh/shells"};
+  static const Names kSimplifier =
+      joined({kMesh,
+              {"simplifier", "simplifier/support", "simplifier/solid", "simplifier/stage1",
+               "simplifier/proof", "simplifier/stage2"}});
+  static const Names kCollide =
+      joined({kMesh,
+              {"collide", "collide/search", "collide/solids", "collide/mechanism", "collide/motion",
+               "collide/meshes", "collide/kernels"}});
+  static const Names kRobot = {"robot/model", "robot/files", "robot/formats",
+                               "robot/pairs", "robot/cover", "robot/check"};
+  static const Names kPublic =
+      joined({{"spheretree", "mesh", "mesh/io", "simplifier", "collide"},
+              kRobot,
+              {"simplifier/baseline", "simplifier/cad", "adapters/fcl", "adapters/ompl"}});
+  static const Names kAll = joined({kPublic, kSimplifier, kCollide, {"bench"}});
+  static const std::vector<Room> kRooms = {
+      {"spheretree", {}, {"Eigen"}, {{"nlohmann", "spheretree/sphere_file.cpp"}}},
+
+      {"mesh", kMesh, {"Eigen"}},
+      {"mesh/geometry", {"spheretree", "mesh"}, {"Eigen"}, {}, true},
+      {"mesh/shells", {"spheretree", "mesh", "mesh/geometry"}, {"Eigen"}, {}, true},
+      {"mesh/io",
+       {"spheretree", "mesh", "mesh/geometry"},
+       {"Eigen"},
+       {{"assimp", "mesh/io/internal/scene_file.cpp"},
+        {"assimp", "mesh/io/internal/check_collada.cpp"},
+        {"expat", "mesh/io/internal/xml_events.cpp"},
+        {"nlohmann", "mesh/io/internal/check_gltf.cpp"},
+        {"zlib", "mesh/io/internal/zip_member.cpp"}}},
+
+      {"simplifier", kSimplifier, {"Eigen", "tbb"}, {{"nlohmann", "simplifier/zone_file.cpp"}}},
+      {"simplifier/support", {"spheretree"}, {"Eigen", "tbb"}, {}, true},
+      {"simplifier/solid",
+       {"spheretree", "mesh", "simplifier", "simplifier/support"},
+       {"Eigen", "tbb"},
+       {},
+       true},
+      {"simplifier/stage1",
+       joined({kMesh, {"simplifier", "simplifier/support", "simplifier/solid"}}),
+       {"Eigen", "tbb"},
+       {},
+       true},
+      {"simplifier/proof",
+       joined({kMesh, {"simplifier", "simplifier/support", "simplifier/solid"}}),
+       {"Eigen", "tbb"},
+       {},
+       true},
+      {"simplifier/stage2",
+       joined(
+           {kMesh, {"simplifier", "simplifier/support", "simplifier/solid", "simplifier/proof"}}),
+       {"Eigen", "tbb"},
+       {},
+       true},
+      {"simplifier/baseline",
+       kSimplifier,
+       {"Eigen", "tbb"},
+       {{"meshoptimizer", "simplifier/baseline/decimation.cpp"},
+        {"OpenMesh", "simplifier/baseline/decimation.cpp"},
+        {"openvdb", "simplifier/baseline/level_set_packing.cpp"},
+        {"qhull", "simplifier/baseline/convex_hull.cpp"},
+        {"qhull", "simplifier/baseline/internal/voronoi.cpp"},
+        {"bullet", "simplifier/baseline/convex_decomposition.cpp"}}},
+      {"simplifier/cad",
+       kSimplifier,
+       {"Eigen"},
+       {{"opencascade", "simplifier/cad/internal/cad_entities.cpp"},
+        {"opencascade", "simplifier/cad/internal/cad_entities.h"},
+        {"opencascade", "simplifier/cad/internal/cad_shape.cpp"},
+        {"opencascade", "simplifier/cad/internal/occt_geometry.cpp"}}},
+
+      {"collide", kCollide, {"Eigen"}},
+      {"collide/search", {"spheretree", "collide"}, {"Eigen"}, {}, true},
+      {"collide/solids", joined({kMesh, {"collide", "collide/search"}}), {"Eigen"}, {}, true},
+      {"collide/mechanism", {"spheretree", "collide", "collide/search"}, {"Eigen"}, {}, true},
+      {"collide/motion", {"spheretree", "collide", "collide/search"}, {"Eigen"}, {}, true},
+      {"collide/meshes",
+       joined({kMesh, {"collide", "collide/search", "collide/solids", "collide/mechanism"}}),
+       {"Eigen"},
+       {},
+       true},
+      {"collide/kernels",
+       {"spheretree", "collide", "collide/search", "collide/solids", "collide/mechanism"},
+       {"Eigen"},
+       {},
+       true},
+
+      {"robot/model", {"spheretree", "collide", "collide/kernels"}, {"Eigen"}},
+      {"robot/files",
+       {"spheretree", "collide", "robot/model"},
+       {"Eigen"},
+       {{"nlohmann", "robot/files/scene_file.cpp"},
+        {"urdfdom", "robot/files/urdf.cpp"},
+        {"tinyxml2", "robot/files/internal/xml_file.cpp"}}},
+      {"robot/formats",
+       {"spheretree", "robot/model", "robot/files"},
+       {"Eigen"},
+       {{"nlohmann", "robot/formats/sphere_formats_json.cpp"},
+        {"tinyxml2", "robot/formats/sphere_formats_xml.cpp"},
+        {"yaml-cpp", "robot/formats/internal/yaml_nodes.h"}}},
+      {"robot/pairs", {"spheretree", "collide", "robot/model", "robot/files"}, {"Eigen"}},
+      {"robot/cover",
+       {"spheretree", "mesh", "mesh/io", "simplifier", "collide", "robot/model", "robot/files",
+        "robot/formats", "robot/pairs"},
+       {"Eigen"}},
+      {"robot/check",
+       {"spheretree", "collide", "collide/kernels", "robot/model", "robot/files", "robot/pairs",
+        "robot/cover"},
+       {"Eigen"}},
+
+      {"adapters/fcl", {"spheretree", "mesh", "simplifier", "collide"}, {"Eigen", "fcl", "ccd"}},
+      {"adapters/ompl", joined({{"spheretree", "collide"}, kRobot}), {"Eigen", "ompl"}},
+
+      {"cli", kPublic, {"Eigen", "CLI", "nlohmann"}},
+      {"bench",
+       kAll,
+       {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann", "ompl"},
+       {{"boost", "bench/scale/exact_oracle.cpp"}}},
+      {"tests",
+       kAll,
+       {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "ompl", "tbb",
+        "tinyxml2", "urdfdom", "zlib", "opencascade"}},
+      // Users of the installed package: they see the library from outside.
+      {"tests/consumer", {}, {"Eigen", "fcl", "ompl", "spherule"}},
+  };
+  return kRooms;
+}
+
+namespace {
+
+bool holds(std::string_view folder, std::string_view path) {
+  return path.starts_with(folder) && (path.size() == folder.size() || path[folder.size()] == '/');
+}
+
+}  // namespace
+
+const Room* room_of(std::string_view path) {
+  const Room* best = nullptr;
+  for (const Room& room : rooms()) {
+    if (holds(room.folder, path) && (!best || room.folder.size() > best->folder.size())) {
+      best = &room;
+    }
+  }
+  return best;
+}
+
+std::string_view library_of(std::string_view path) {
+  std::string_view best;
+  for (const std::string_view folder : kLibraryFolders) {
+    if (holds(folder, path) && folder.size() > best.size()) best = folder;
+  }
+  return best;
+}
+
+}  // namespace spherule
