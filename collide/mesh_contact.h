@@ -28,7 +28,7 @@ class PatchTrees;
 //
 // Inside. A closed surface, triangles in which every directed edge, by positions, is met by as many
 // in the other direction, has an inside: the points about which its winding number is not zero. The
-// surfaces looked at are those of internal/mesh_shells.h, each by itself: all triangles that are
+// surfaces looked at are those of mesh/shells/mesh_shells.h, each by itself: all triangles that are
 // connected by shared edges, as they are turned; the parts of these that are connected where no
 // more than two triangles meet, all turned alike; and what bounds one room where more meet. So a
 // sealed hollow is inside, a double-sided part has the inside of one of its sides, and so have the
@@ -85,7 +85,7 @@ struct TrianglePair {
 // wholly inside the other mesh or wholly outside; one point tells which, and if it is inside, it is
 // in spheres of both, so that two of them touch.
 // If it is true, the exact gap is some units in the last place of the scene: in our tests at most
-// collision_slack() of the covers, and 1e-9 of the scene between needles; internal/triangle_pair.h
+// collision_slack() of the covers, and 1e-9 of the scene between needles; mesh/geometry/triangle_pair.h
 // says why. Equal for every tree over the same spheres, and for swapped arguments but where the gap
 // is below that.
 // Neither throws nor allocates, with the exception that collides() of sphere trees has.

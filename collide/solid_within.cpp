@@ -24,7 +24,7 @@ namespace {
 using Eigen::Vector3d;
 using internal::Triangle;
 
-// An image errs by less than 136 u S (internal/relative_pose.h).
+// An image errs by less than 136 u S (search/relative_pose.h).
 constexpr double kImageError = 136.0 * kUnitRoundoff;
 
 double sum_up(double a, double b) {
