@@ -23,9 +23,9 @@ struct Touching {
 // below them are computed to be: their own gap errs by gap_error(), that of leaves by less.
 class DeepestFirst {
  public:
-  DeepestFirst(const SphereTree& a, const SphereTree& b, const RelativePose& pose)
+  DeepestFirst(const SphereTree& a, const SphereTree& b, const internal::RelativePose& pose)
       : a_(a), b_(b), pose_(pose), trees_(a, b, pose), leaves_(a, b, pose) {
-    wait(NodePair(0, 0), pose.gap(a.ball(0), b.ball(0)));
+    wait(internal::NodePair(0, 0), pose.gap(a.ball(0), b.ball(0)));
   }
 
   std::optional<Touching> next() {
@@ -33,7 +33,7 @@ class DeepestFirst {
       const Waiting first = queue_.top();
       queue_.pop();
       if (first.is_leaf) return Touching{{first.a, first.b}, first.gap};
-      open(NodePair(first.a, first.b));
+      open(internal::NodePair(first.a, first.b));
     }
     return std::nullopt;
   }
@@ -51,8 +51,8 @@ class DeepestFirst {
     }
   };
 
-  void open(NodePair pair) {
-    const OpenedPair opened = trees_.open(pair);
+  void open(internal::NodePair pair) {
+    const internal::OpenedPair opened = trees_.open(pair);
     double gaps[SphereTree::kMaxBranching];
     internal::ball_gaps(trees_.balls(opened.side), opened.first, opened.count, opened.ball, gaps);
     for (std::int32_t i = 0; i < opened.count; ++i) {
@@ -61,7 +61,7 @@ class DeepestFirst {
   }
 
   // `gap` is only looked at for pairs that are not leaves. None that touch are above the node pad.
-  void wait(NodePair pair, double gap) {
+  void wait(internal::NodePair pair, double gap) {
     if (trees_.is_leaf_pair(pair)) {
       if (!leaves_.touches(pair)) return;
       queue_.push({leaves_.gap(pair), true, a_.sphere_index(pair.index(0)),
@@ -73,8 +73,8 @@ class DeepestFirst {
 
   const SphereTree& a_;
   const SphereTree& b_;
-  const RelativePose& pose_;
-  const TreePair trees_;
+  const internal::RelativePose& pose_;
+  const internal::TreePair trees_;
   const internal::BallLeaves leaves_;
   std::priority_queue<Waiting> queue_;
 };
@@ -97,7 +97,7 @@ Eigen::Vector3d middle_of_overlap(const Sphere& a, const Pose& world_from_a, con
 // gap of at most 80 u S, hence an overlap of at least -157 u S.
 Contact contact_of(ContactKind kind, const Touching& touching, const SphereTree& a,
                    const Pose& world_from_a, const SphereTree& b, const Pose& world_from_b,
-                   const RelativePose& pose) {
+                   const internal::RelativePose& pose) {
   const auto sphere = [](const SphereTree& tree, std::int32_t index) {
     return tree.spheres()[static_cast<std::size_t>(index)];
   };
@@ -113,7 +113,7 @@ Contact contact_of(ContactKind kind, const Touching& touching, const SphereTree&
 
 std::optional<Contact> deepest_contact(const SphereTree& a, const Pose& world_from_a,
                                        const SphereTree& b, const Pose& world_from_b) {
-  const RelativePose pose(a, world_from_a, b, world_from_b);
+  const internal::RelativePose pose(a, world_from_a, b, world_from_b);
   const std::optional<Touching> deepest = DeepestFirst(a, b, pose).next();
   if (!deepest) return std::nullopt;
   return contact_of(ContactKind::kSpheres, *deepest, a, world_from_a, b, world_from_b, pose);
@@ -121,7 +121,7 @@ std::optional<Contact> deepest_contact(const SphereTree& a, const Pose& world_fr
 
 std::optional<Contact> deepest_contact(const CoveredMesh& a, const Pose& world_from_a,
                                        const CoveredMesh& b, const Pose& world_from_b) {
-  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  const internal::RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
   DeepestFirst search(a.cover(), b.cover(), pose);
   const std::optional<Touching> deepest = search.next();
   if (!deepest) return std::nullopt;

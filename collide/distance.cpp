@@ -8,11 +8,11 @@ namespace spherule {
 
 DistanceResult distance(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                         const Pose& world_from_b, const DistanceRequest& request) {
-  const RelativePose pose(a, world_from_a, b, world_from_b);
+  const internal::RelativePose pose(a, world_from_a, b, world_from_b);
   const internal::BallLeaves leaves(a, b, pose);
   const internal::PairSpace space(a, b, pose, leaves);
   return internal::NearestFirst(space, pose.gap_error(), request)
-      .run(NodePair(0, 0), pose.gap(a.ball(0), b.ball(0)));
+      .run(internal::NodePair(0, 0), pose.gap(a.ball(0), b.ball(0)));
 }
 
 }  // namespace spherule

@@ -27,7 +27,7 @@ class FindTriangles {
   static constexpr bool kWantsGaps = false;
 
   FindTriangles(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
-                const Pose& world_from_b, const RelativePose& pose)
+                const Pose& world_from_b, const internal::RelativePose& pose)
       : a_(a),
         b_(b),
         world_from_a_(world_from_a),
@@ -35,8 +35,8 @@ class FindTriangles {
         pose_(pose),
         balls_(a.cover(), b.cover(), pose) {}
 
-  bool afford(const OpenedPair&, const auto&) const noexcept { return true; }
-  bool leaves(NodePair pair) noexcept {
+  bool afford(const internal::OpenedPair&, const auto&) const noexcept { return true; }
+  bool leaves(internal::NodePair pair) noexcept {
     if (!balls_.touches(pair)) return true;
     if (!triangles_) triangles_.emplace(a_, world_from_a_, b_, world_from_b_, pose_);
     found_ = triangles_
@@ -53,7 +53,7 @@ class FindTriangles {
   const CoveredMesh& b_;
   const Pose& world_from_a_;
   const Pose& world_from_b_;
-  const RelativePose& pose_;
+  const internal::RelativePose& pose_;
   internal::BallLeaves balls_;
   std::optional<internal::ListedTriangles> triangles_;  // once two spheres touch
   bool found_ = false;
@@ -78,10 +78,10 @@ CoveredMesh::CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereT
 bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
               const Pose& world_from_b) noexcept {
   if (internal::far_apart(a.cover(), world_from_a, b.cover(), world_from_b)) return false;
-  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  const internal::RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
   if (internal::boxes_apart(a.cover(), b.cover(), pose)) return false;
   FindTriangles query(a, world_from_a, b, world_from_b, pose);
-  traverse(a.cover(), b.cover(), pose, query);
+  internal::traverse(a.cover(), b.cover(), pose, query);
   return query.found();
 }
 
@@ -89,21 +89,21 @@ std::optional<TrianglePair> touching_triangles(const CoveredMesh& a, std::int32_
                                                const Pose& world_from_a, const CoveredMesh& b,
                                                std::int32_t sphere_b,
                                                const Pose& world_from_b) noexcept {
-  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  const internal::RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
   return internal::ListedTriangles(a, world_from_a, b, world_from_b, pose)
       .touching(sphere_a, sphere_b);
 }
 
 double contact_depth(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
                      const Pose& world_from_b, const TrianglePair& triangles) noexcept {
-  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  const internal::RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
   return internal::ListedTriangles(a, world_from_a, b, world_from_b, pose).depth(triangles);
 }
 
 double contact_depth(const CoveredMesh& a, std::int32_t triangle_a, const Pose& world_from_a,
                      const SphereTree& b, std::int32_t sphere_b,
                      const Pose& world_from_b) noexcept {
-  const RelativePose pose(b, world_from_b, a.mesh().tree(), world_from_a);
+  const internal::RelativePose pose(b, world_from_b, a.mesh().tree(), world_from_a);
   return internal::TriangleLeaves(b, a.mesh(), pose).depth(sphere_b, triangle_a);
 }
 
@@ -111,7 +111,7 @@ TriangleDepth nearest_triangle(const CoveredMesh& a, std::int32_t sphere_a,
                                const Pose& world_from_a, const SphereTree& b, std::int32_t sphere_b,
                                const Pose& world_from_b) noexcept {
   const std::span<const Sphere> balls = a.mesh().tree().spheres();
-  const RelativePose pose(b, world_from_b, a.mesh().tree(), world_from_a);
+  const internal::RelativePose pose(b, world_from_b, a.mesh().tree(), world_from_a);
   const Eigen::Vector3d center =
       pose.b_from_a()(b.spheres()[static_cast<std::size_t>(sphere_b)].center);
   TriangleDepth result;
@@ -130,7 +130,7 @@ TriangleDepth nearest_triangle(const CoveredMesh& a, std::int32_t sphere_a,
 
 bool contains_component(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
                         const Pose& world_from_b) noexcept {
-  const RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
+  const internal::RelativePose pose(a.cover(), world_from_a, b.cover(), world_from_b);
   return internal::ListedTriangles(a, world_from_a, b, world_from_b, pose).contained();
 }
 

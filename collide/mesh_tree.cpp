@@ -54,22 +54,22 @@ bool within(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
 
 DistanceResult distance(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
                         const Pose& world_from_b, const DistanceRequest& request) {
-  const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
+  const internal::RelativePose pose(a, world_from_a, b.tree(), world_from_b);
   const internal::TriangleLeaves leaves(a, b, pose);
   const internal::PairSpace space(a, b.tree(), pose, leaves);
   return internal::NearestFirst(space, pose.gap_error(), request)
-      .run(NodePair(0, 0), pose.gap(a.ball(0), b.tree().ball(0)));
+      .run(internal::NodePair(0, 0), pose.gap(a.ball(0), b.tree().ball(0)));
 }
 
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
                         const Pose& world_from_b, const CollisionRequest& request) {
-  const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
+  const internal::RelativePose pose(a, world_from_a, b.tree(), world_from_b);
   return internal::all_pairs(a, b.tree(), pose, internal::TriangleLeaves(a, b, pose), request);
 }
 
 bool meets_triangle(const SphereTree& a, std::int32_t sphere, const Pose& world_from_a,
                     const MeshTree& b, std::int32_t triangle, const Pose& world_from_b) noexcept {
-  const RelativePose pose(a, world_from_a, b.tree(), world_from_b);
+  const internal::RelativePose pose(a, world_from_a, b.tree(), world_from_b);
   return internal::TriangleLeaves(a, b, pose).touches(sphere, triangle);
 }
 

@@ -56,7 +56,7 @@ double PairCache::way_between(const Seen& before, const Seen& now) const {
 bool PairCache::collides(const Pose& world_from_a, const Pose& world_from_b) {
   ++counts_.queries;
   ++queries_since_;
-  const RelativePose pose(a_, world_from_a, b_, world_from_b);
+  const internal::RelativePose pose(a_, world_from_a, b_, world_from_b);
   if (witness_) {
     if (pose.touches(a_.spheres()[static_cast<std::size_t>(witness_->a)],
                      b_.spheres()[static_cast<std::size_t>(witness_->b)])) {
@@ -65,7 +65,7 @@ bool PairCache::collides(const Pose& world_from_a, const Pose& world_from_b) {
     }
     witness_.reset();
   }
-  const FrameChange frame = a_moves_ ? pose.b_from_a() : pose.a_from_b();
+  const internal::FrameChange frame = a_moves_ ? pose.b_from_a() : pose.a_from_b();
   Seen now{{}, pose.scene_size(), 0.0};
   std::copy(frame.r, frame.r + 9, now.other_from_mover.begin());
   std::copy(frame.t, frame.t + 3, now.other_from_mover.begin() + 9);

@@ -28,7 +28,7 @@ bool comes_within(const SphereTree& tree, const Pose& world_from_tree, const Sol
     return true;
   }
   if (!solid.has_inside()) return false;
-  const RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
+  const internal::RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
   return BallsInside(tree, solid, pose).find() >= 0;
 }
 
@@ -139,7 +139,7 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
   result.upper = result.upper > solid.growth() ? sub_up(result.upper, solid.growth()) : 0.0;
   // Where a ball may meet a triangle, the lower bound is 0 and the upper one as good as it gets.
   if (!(result.lower > 0.0)) return result;
-  const RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
+  const internal::RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
   const std::int32_t inside = BallsInside(tree, solid, pose).find();
   if (inside >= 0) {
     result.lower = result.upper = 0.0;
@@ -153,7 +153,7 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
 std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
                                             const SolidMesh& solid, const Pose& world_from_solid) {
   if (!collides(tree, world_from_tree, solid, world_from_solid)) return std::nullopt;
-  const RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
+  const internal::RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
   const BallsInside balls(tree, solid, pose);
   FindDeepest query(tree, solid, balls);
   internal::search_tree(tree, query);

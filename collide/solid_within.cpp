@@ -39,7 +39,7 @@ double sum_up(double a, double b) {
 class TrianglePairLeaves {
  public:
   TrianglePairLeaves(const MeshTree& a, const Pose& world_from_a, const MeshTree& b,
-                     const Pose& world_from_b, const RelativePose& pose, double clearance)
+                     const Pose& world_from_b, const internal::RelativePose& pose, double clearance)
       : a_(a),
         b_(b),
         pose_(pose),
@@ -49,7 +49,7 @@ class TrianglePairLeaves {
         clearance_(clearance),
         pad_(pose.leaf_pad() + clearance * (1.0 + 32.0 * kUnitRoundoff)) {}
 
-  bool touches(NodePair pair) const {
+  bool touches(internal::NodePair pair) const {
     const std::int32_t i = a_.tree().sphere_index(pair.index(0));
     const std::int32_t j = b_.tree().sphere_index(pair.index(1));
     if (!pose_.touches(a_.tree().spheres()[static_cast<std::size_t>(i)],
@@ -99,7 +99,7 @@ class TrianglePairLeaves {
 
   const MeshTree& a_;
   const MeshTree& b_;
-  const RelativePose& pose_;
+  const internal::RelativePose& pose_;
   const Eigen::Matrix3d rotation_a_;
   const Eigen::Matrix3d rotation_b_;
   const Vector3d shift_;
@@ -118,7 +118,7 @@ class TrianglePairLeaves {
 class HullSearch {
  public:
   HullSearch(const MeshTree& a, const Pose& world_from_a, const MeshTree& b,
-             const Pose& world_from_b, const RelativePose& pose, double reach)
+             const Pose& world_from_b, const internal::RelativePose& pose, double reach)
       : a_(a),
         b_(b),
         rotation_a_(world_from_a.matrix()),
@@ -180,7 +180,7 @@ class HullSearch {
 
 // A component of `other` lies in the inside of `solid`, if no triangles touch.
 bool holds_a_component(const SolidMesh& solid, const SolidMesh& other,
-                       const FrameChange& solid_from_other, double error) {
+                       const internal::FrameChange& solid_from_other, double error) {
   const std::span<const Vector3d> points = other.inside().component_points();
   return solid.has_inside() && std::any_of(points.begin(), points.end(), [&](const Vector3d& p) {
            return solid.inside().contains(solid.mesh(), solid_from_other(p), error);
@@ -219,7 +219,8 @@ bool comes_within(const SolidMesh& mesh, const Pose& world_from_mesh, const Fiel
                   const Pose& world_from_field, double reach) {
   const internal::SolidPose<Field> pose(mesh.mesh().tree(), world_from_mesh, field,
                                         world_from_field, reach);
-  const RelativePose relative(mesh.mesh().tree(), world_from_mesh, field.reach(), world_from_field);
+  const internal::RelativePose relative(mesh.mesh().tree(), world_from_mesh, field.reach(),
+                                        world_from_field);
   const double error = kImageError * relative.scene_size() + kUnderflow;
   const internal::TriangleField<Field> near(field, reach, error);
   FindTriangle<Field> query(mesh.mesh(), pose, near);
@@ -239,7 +240,7 @@ bool within(const SolidMesh& a, const Pose& world_from_a, const SolidMesh& b,
   const SphereTree& tree_a = a.mesh().tree();
   const SphereTree& tree_b = b.mesh().tree();
   if (internal::far_apart(tree_a, world_from_a, tree_b, world_from_b, reach)) return false;
-  const RelativePose pose(tree_a, world_from_a, tree_b, world_from_b);
+  const internal::RelativePose pose(tree_a, world_from_a, tree_b, world_from_b);
   if (internal::boxes_apart(tree_a, tree_b, pose, reach)) return false;
   if (HullSearch::is_worth_while(a.mesh(), b.mesh()) &&
       HullSearch(a.mesh(), world_from_a, b.mesh(), world_from_b, pose, reach).finds_a_plane()) {

@@ -45,7 +45,7 @@ double largest_slack(const SphereTree& a, const SphereTree& b, const GapRate& ra
                      double pose_errors, double clearance) {
   const double apart = 1.7321 * (rate.farthest_frames() + pose_errors);
   const double scene = ((a.reach() + b.reach()) + apart) * (1.0 + 16.0 * kUnitRoundoff);
-  return kSlack * scene + 16.0 * kUnitRoundoff * clearance + 8.0 * kUnderflow;
+  return internal::kSlack * scene + 16.0 * kUnitRoundoff * clearance + 8.0 * kUnderflow;
 }
 
 class Sweep {
@@ -142,7 +142,7 @@ class Sweep {
   Look look_at(double t, double wanted, double useful) {
     const Pose world_from_a = motion_a_.pose_at(t);
     const Pose world_from_b = motion_b_.pose_at(t);
-    const RelativePose pose(a_, world_from_a, b_, world_from_b);
+    const internal::RelativePose pose(a_, world_from_a, b_, world_from_b);
     internal::FreeTime query(a_, b_, pose, rate_, request_.clearance, reserve_, wanted, useful,
                              limits_);
     const Look look = query.run(decisive_);
@@ -167,7 +167,7 @@ class Sweep {
   // waits, and only those longer than kFinest are divided: 42 at most.
   std::array<Interval, 48> intervals_;
   std::size_t waiting_ = 0;
-  std::optional<NodePair> decisive_;  // of an earlier look
+  std::optional<internal::NodePair> decisive_;  // of an earlier look
   SweepResult result_;
 };
 

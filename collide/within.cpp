@@ -17,7 +17,7 @@ bool within(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
             const Pose& world_from_b, double clearance) {
   require_clearance(clearance);
   if (internal::far_apart(a, world_from_a, b, world_from_b, clearance)) return false;
-  const RelativePose pose(a, world_from_a, b, world_from_b);
+  const internal::RelativePose pose(a, world_from_a, b, world_from_b);
   if (internal::boxes_apart(a, b, pose, clearance)) return false;
   return internal::any_pair_within(a, b, pose, internal::BallLeaves(a, b, pose, clearance),
                                    clearance);
@@ -27,7 +27,7 @@ bool spheres_within(const SphereTree& a, std::int32_t sphere_a, const Pose& worl
                     const SphereTree& b, std::int32_t sphere_b, const Pose& world_from_b,
                     double clearance) {
   require_clearance(clearance);
-  return RelativePose(a, world_from_a, b, world_from_b)
+  return internal::RelativePose(a, world_from_a, b, world_from_b)
       .touches(a.spheres()[static_cast<std::size_t>(sphere_a)],
                b.spheres()[static_cast<std::size_t>(sphere_b)], clearance);
 }
@@ -35,7 +35,7 @@ bool spheres_within(const SphereTree& a, std::int32_t sphere_a, const Pose& worl
 double within_slack(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                     const Pose& world_from_b, double clearance) {
   require_clearance(clearance);
-  return RelativePose(a, world_from_a, b, world_from_b).slack(clearance);
+  return internal::RelativePose(a, world_from_a, b, world_from_b).slack(clearance);
 }
 
 }  // namespace spherule

@@ -128,12 +128,12 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
   for (const internal::JoinedSpheres& body : scene.bodies) {
     body_trees.push_back(build_tree(body.spheres));
     reach.push_back(chains[static_cast<std::size_t>(body.frame)].length +
-                    node_reach(body_trees.back()));
+                    internal::node_reach(body_trees.back()));
     bound = std::max(bound, reach.back());
   }
   for (const internal::JoinedSpheres& obstacle : scene.obstacles) {
     obstacle_trees.push_back(build_tree(obstacle.spheres));
-    bound = std::max(bound, node_reach(obstacle_trees.back()));
+    bound = std::max(bound, internal::node_reach(obstacle_trees.back()));
   }
   for (const MechanismPair& pair : pairs) {
     const MechanismBody& body = bodies[static_cast<std::size_t>(pair.body)];

@@ -63,7 +63,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace spherule {
+namespace spherule::internal {
 
 inline constexpr double kLeafPad = 76.0 * kUnitRoundoff;
 inline constexpr double kSlack = 152.0 * kUnitRoundoff;
@@ -210,4 +210,4 @@ class RelativePose {
   double node_size_;
 };
 
-}  // namespace spherule
+}  // namespace spherule::internal

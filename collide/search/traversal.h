@@ -8,7 +8,7 @@
 #include <memory>
 #include <new>
 
-namespace spherule {
+namespace spherule::internal {
 
 // Entries that a depth-first traversal needs at most, one node of a pair opened per step.
 //
@@ -46,10 +46,10 @@ concept HasMargin = requires(const Policy& policy, NodePair pair) {
 };
 
 // The child of smallest gap among those of the mask, which is not 0.
-inline std::int32_t nearest_of(std::uint32_t mask, const internal::BallArrays& children,
+inline std::int32_t nearest_of(std::uint32_t mask, const BallArrays& children,
                                const OpenedPair& opened) {
   double gaps[SphereTree::kMaxBranching];
-  internal::ball_gaps(children, opened.first, opened.count, opened.ball, gaps);
+  ball_gaps(children, opened.first, opened.count, opened.ball, gaps);
   std::int32_t nearest = std::countr_zero(mask);
   for (mask &= mask - 1; mask != 0; mask &= mask - 1) {
     const std::int32_t i = std::countr_zero(mask);
@@ -83,17 +83,17 @@ bool traverse_with(NodePair* stack, [[maybe_unused]] std::size_t capacity, const
     };
     if (!policy.afford(opened, leaf_pairs)) return false;
 
-    internal::QueryBall padded = opened.ball;
+    QueryBall padded = opened.ball;
     if constexpr (HasMargin<Policy>) {
       padded.radius += node_pad + policy.margin(pair) * kMarginUp;
     } else {
       padded.radius += node_pad;
     }
-    const internal::BallArrays& children = trees.balls(opened.side);
-    std::uint32_t mask = internal::overlap_mask(children, opened.first, opened.count, padded);
+    const BallArrays& children = trees.balls(opened.side);
+    std::uint32_t mask = overlap_mask(children, opened.first, opened.count, padded);
     if constexpr (Policy::kWantsGaps) {
       double gaps[SphereTree::kMaxBranching];
-      internal::ball_gaps(children, opened.first, opened.count, opened.ball, gaps);
+      ball_gaps(children, opened.first, opened.count, opened.ball, gaps);
       for (std::int32_t i = 0; i < opened.count; ++i) {
         if (!(mask >> i & 1u)) policy.pruned(gaps[i]);
       }
@@ -152,4 +152,4 @@ bool traverse(const SphereTree& a, const SphereTree& b, const RelativePose& pose
   return traverse_exhaustively(a, b, trees, policy);
 }
 
-}  // namespace spherule
+}  // namespace spherule::internal

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace spherule {
+namespace spherule::internal {
 
 // A node of a (side 0) and a node of b (side 1), packed into one word, so that a pair that was just
 // put on a stack can be forwarded to the load that takes it off again.
@@ -43,7 +43,7 @@ struct OpenedPair {
   std::int32_t side;   // the tree that was opened: 0 for a, 1 for b
   std::int32_t first;  // children first .. first + count - 1
   std::int32_t count;
-  internal::QueryBall ball;  // radius without pad
+  QueryBall ball;  // radius without pad
 };
 
 // Two placed trees with both changes of frame, ready to be traversed. The descent rule stands here
@@ -53,7 +53,7 @@ class TreePair {
   TreePair(const SphereTree& a, const SphereTree& b, const RelativePose& pose)
       : TreePair(a, b, pose, pose.b_from_a()) {}
 
-  const internal::BallArrays& balls(int side) const { return sides_[side].balls; }
+  const BallArrays& balls(int side) const { return sides_[side].balls; }
   bool is_leaf(int side, std::int32_t node) const { return sides_[side].child_count[node] == 0; }
   bool is_leaf_pair(NodePair pair) const {
     return is_leaf(0, pair.node(0)) & is_leaf(1, pair.node(1));
@@ -91,7 +91,7 @@ class TreePair {
           child_count(tree.data().child_count.data()),
           from_other(change) {}
 
-    internal::BallArrays balls;
+    BallArrays balls;
     const std::int32_t* first_child;
     const std::int32_t* child_count;
     FrameChange from_other;
@@ -104,4 +104,4 @@ class TreePair {
   Side sides_[2];
 };
 
-}  // namespace spherule
+}  // namespace spherule::internal

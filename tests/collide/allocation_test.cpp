@@ -125,7 +125,7 @@ TEST(Allocation, AMechanismsCheckTakesNoMemory) {
 TEST(Allocation, CollidesAnswersWithoutMemoryForTheStack) {
   const SphereTree a = caterpillar(1100, 2, false);
   const SphereTree b = caterpillar(1300, 2, true);
-  ASSERT_GT(traversal_stack_bound(a, b), kInlineStack);
+  ASSERT_GT(internal::traversal_stack_bound(a, b), internal::kInlineStack);
   // The leaves are apart, the boxes around them are not.
   const Pose inside = Pose::from_translation({1.3, 1.3, 1.3});
   const int before = allocations;

@@ -27,7 +27,9 @@ struct Scene {
   SphereTree a, b;
   Pose world_from_a, world_from_b;
 
-  RelativePose pose() const { return RelativePose(a, world_from_a, b, world_from_b); }
+  internal::RelativePose pose() const {
+    return internal::RelativePose(a, world_from_a, b, world_from_b);
+  }
 
   Real exact_gap() const {
     Real least = std::numeric_limits<double>::infinity();
@@ -41,7 +43,7 @@ struct Scene {
 
   // By the canonical test of all pairs.
   bool some_pair_within(double clearance) const {
-    const RelativePose relative = pose();
+    const internal::RelativePose relative = pose();
     for (const Sphere& of_a : a.spheres()) {
       for (const Sphere& of_b : b.spheres()) {
         if (relative.touches(of_a, of_b, clearance)) return true;
@@ -116,7 +118,7 @@ TEST(BoxGap, IsNeverAboveTheExactGap) {
   for (int i = 0; i < effort(1500, 200); ++i) {
     const Scene scene = facing(random, random.uniform(0.0, 2000.0));
     const Real exact = scene.exact_gap();
-    const RelativePose pose = scene.pose();
+    const internal::RelativePose pose = scene.pose();
     const double lowered = internal::box_gap(scene.a, scene.b, pose);
     const double given_away = internal::kBoxError * pose.scene_size();
     ASSERT_LE(lowered, exact) << i;
@@ -138,7 +140,7 @@ TEST(BoxGap, ChangesNoVerdict) {
     const bool close = random.whole(0, 1) == 0;
     const Scene scene =
         facing(random, close ? random.uniform(-200.0, 400.0) : random.uniform(400.0, 4000.0));
-    const RelativePose pose = scene.pose();
+    const internal::RelativePose pose = scene.pose();
     const bool truth = scene.some_pair_within(0.0);
     ASSERT_EQ(collides(scene.a, scene.world_from_a, scene.b, scene.world_from_b), truth) << i;
     const CollisionResult found = collide(scene.a, scene.world_from_a, scene.b, scene.world_from_b);
@@ -159,7 +161,7 @@ TEST(BoxGap, ChangesNoVerdictWithAClearance) {
   int apart_by_boxes = 0;
   for (int i = 0; i < effort(4000, 400); ++i) {
     const Scene scene = facing(random, std::ldexp(1.0, random.whole(0, 52)));
-    const RelativePose pose = scene.pose();
+    const internal::RelativePose pose = scene.pose();
     const double gap = std::max(
         0.0, internal::box_gap(scene.a, scene.b, pose) + internal::kBoxError * pose.scene_size());
     for (const double step : {-1000.0, -100.0, -10.0, -1.0, 0.0, 1.0, 10.0, 100.0}) {

@@ -35,7 +35,7 @@ struct Scene {
 
   // All pairs that the canonical test accepts, in order.
   std::vector<SpherePair> all_pairs() const {
-    const RelativePose pose(a, world_from_a, b, world_from_b);
+    const internal::RelativePose pose(a, world_from_a, b, world_from_b);
     std::vector<SpherePair> pairs;
     for (int i = 0; i < count_a(); ++i) {
       for (int j = 0; j < count_b(); ++j) {

@@ -37,7 +37,9 @@ struct Scene {
     }
     return least < 0 ? Real(0) : least;
   }
-  double error() const { return RelativePose(a, world_from_a, b, world_from_b).gap_error(); }
+  double error() const {
+    return internal::RelativePose(a, world_from_a, b, world_from_b).gap_error();
+  }
 };
 
 Scene random_scene(SceneRandom& random) {

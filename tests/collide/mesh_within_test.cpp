@@ -47,7 +47,7 @@ TEST(MeshTreeTest, KernelsAgreeWithinAClearance) {
     ball.radius = random.whole(0, 1) * random.uniform(0.0, 1.0) * way;
     const double clearance = way - ball.radius;
     const SphereTree tree = tree_of(ball);
-    const RelativePose pose(tree, world_from_a, mesh.tree(), world_from_b);
+    const internal::RelativePose pose(tree, world_from_a, mesh.tree(), world_from_b);
     const bool expected =
         internal::TriangleLeaves(tree, mesh, pose, clearance).touches(std::int32_t{0}, 0);
     ASSERT_TRUE(expected || distance > Real(ball.radius) + clearance) << i;

@@ -169,9 +169,9 @@ TEST(ErrorBudget, CoversTheImagesOfBothFrames) {
         {random.point(size), 0.0}, {random.point(1.0), 0.0}, random.pose(1.0), random.pose(1.0)};
     const SphereTree a = tree_of(balls.a);
     const SphereTree b = tree_of(balls.b);
-    const RelativePose pose(a, balls.world_from_a, b, balls.world_from_b);
+    const internal::RelativePose pose(a, balls.world_from_a, b, balls.world_from_b);
     const double exact = balls.center_distance().convert_to<double>();
-    const auto distance_by = [](const FrameChange& change, const Eigen::Vector3d& x,
+    const auto distance_by = [](const internal::FrameChange& change, const Eigen::Vector3d& x,
                                 const Eigen::Vector3d& y) {
       const Eigen::Vector3d image(change.x(x[0], x[1], x[2]), change.y(x[0], x[1], x[2]),
                                   change.z(x[0], x[1], x[2]));

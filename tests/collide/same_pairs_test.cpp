@@ -21,11 +21,12 @@ namespace {
 // What a search without any pruning reports.
 template <class LeafTest>
 std::vector<SpherePair> pairs_without_pruning(const SphereTree& a, const SphereTree& b,
-                                              const RelativePose& pose, const LeafTest& test) {
+                                              const internal::RelativePose& pose,
+                                              const LeafTest& test) {
   const CollisionRequest request;
   CollisionResult result;
   internal::CollectPairs query(test, a, b, request, result);
-  EXPECT_TRUE(traverse_exhaustively(a, b, TreePair(a, b, pose), query));
+  EXPECT_TRUE(internal::traverse_exhaustively(a, b, internal::TreePair(a, b, pose), query));
   std::sort(result.pairs.begin(), result.pairs.end());
   return result.pairs;
 }
@@ -54,7 +55,7 @@ TEST(SamePairs, OfBallsForEveryTree) {
     for (const int branching : {2, 8, 16}) {
       const SphereTree a = build_tree(first, {.branching = branching});
       const SphereTree b = build_tree(second, {.branching = branching});
-      const RelativePose pose(a, world_from_a, b, world_from_b);
+      const internal::RelativePose pose(a, world_from_a, b, world_from_b);
       const auto all = pairs_without_pruning(a, b, pose, internal::BallLeaves(a, b, pose));
       if (branching == 2) expected = all;
       ASSERT_EQ(all, expected) << "branching " << branching;
@@ -114,7 +115,7 @@ void compare_trees(double thin) {
     std::vector<SpherePair> expected;
     for (const int branching : {2, 8, 16}) {
       const SphereTree a = build_tree(balls, {.branching = branching});
-      const RelativePose pose(a, world_from_a, mesh.tree(), world_from_b);
+      const internal::RelativePose pose(a, world_from_a, mesh.tree(), world_from_b);
       const auto all =
           pairs_without_pruning(a, mesh.tree(), pose, internal::TriangleLeaves(a, mesh, pose));
       if (branching == 2) expected = all;

@@ -19,8 +19,8 @@ struct CountLeaves {
   static constexpr bool kWantsGaps = false;
   std::size_t count = 0;
 
-  bool afford(const OpenedPair&, const auto&) { return true; }
-  bool leaves(NodePair) {
+  bool afford(const internal::OpenedPair&, const auto&) { return true; }
+  bool leaves(internal::NodePair) {
     ++count;
     return true;
   }
@@ -33,13 +33,14 @@ struct Peak {
 
 // Runs on a stack of exactly the proved size, with watched entries behind it.
 Peak traverse_on_tight_stack(const SphereTree& a, const SphereTree& b) {
-  const NodePair untouched(-7, -7);
-  const std::size_t bound = traversal_stack_bound(a, b);
-  std::vector<NodePair> stack(bound + 64, untouched);
+  const internal::NodePair untouched(-7, -7);
+  const std::size_t bound = internal::traversal_stack_bound(a, b);
+  std::vector<internal::NodePair> stack(bound + 64, untouched);
   const Pose origin;
-  const RelativePose pose(a, origin, b, origin);
+  const internal::RelativePose pose(a, origin, b, origin);
   CountLeaves policy;
-  EXPECT_TRUE(traverse_with(stack.data(), bound, TreePair(a, b, pose), pose, policy));
+  EXPECT_TRUE(
+      internal::traverse_with(stack.data(), bound, internal::TreePair(a, b, pose), pose, policy));
   Peak peak{0, policy.count};
   for (std::size_t i = 0; i < stack.size(); ++i) {
     if (!(stack[i] == untouched)) peak.entries = i + 1;
@@ -58,7 +59,7 @@ TEST(Traversal, StaysWithinTheProvedStackAndDropsNothing) {
         EXPECT_EQ(peak.leaf_pairs, a.spheres().size() * b.spheres().size());
         // The bound is no larger than it must be: the worst order reaches it.
         if (!inner_first) {
-          EXPECT_EQ(peak.entries, traversal_stack_bound(a, b));
+          EXPECT_EQ(peak.entries, internal::traversal_stack_bound(a, b));
         }
       }
     }
@@ -69,13 +70,13 @@ TEST(Traversal, StaysWithinTheProvedStackAndDropsNothing) {
 TEST(Traversal, InlineStackIsEnoughForAMillionSpheres) {
   const std::size_t log2 = std::bit_width(std::size_t{1'000'000 - 1});
   const std::size_t deepest = 3 * log2 + 9;
-  EXPECT_GE(kInlineStack, 2 * deepest * (SphereTree::kMaxBranching - 1) + 1);
+  EXPECT_GE(internal::kInlineStack, 2 * deepest * (SphereTree::kMaxBranching - 1) + 1);
 }
 
 TEST(Traversal, TakesTreesThatOutgrowTheInlineStack) {
   const SphereTree a = caterpillar(1100, 2, false);
   const SphereTree b = caterpillar(1300, 2, true);
-  ASSERT_GT(traversal_stack_bound(a, b), kInlineStack);
+  ASSERT_GT(internal::traversal_stack_bound(a, b), internal::kInlineStack);
   EXPECT_TRUE(collides(a, Pose(), b, Pose()));
   const CollisionResult result = collide(a, Pose(), b, Pose());
   EXPECT_EQ(result.pairs.size(), a.spheres().size() * b.spheres().size());
@@ -94,9 +95,9 @@ TEST(Traversal, WithoutAStackFindsTheSamePairs) {
   const SphereTree a = caterpillar(20, 3, false);
   const SphereTree b = caterpillar(30, 4, true);
   const Pose origin;
-  const RelativePose pose(a, origin, b, origin);
+  const internal::RelativePose pose(a, origin, b, origin);
   CountLeaves policy;
-  EXPECT_TRUE(traverse_exhaustively(a, b, TreePair(a, b, pose), policy));
+  EXPECT_TRUE(internal::traverse_exhaustively(a, b, internal::TreePair(a, b, pose), policy));
   EXPECT_EQ(policy.count, a.spheres().size() * b.spheres().size());
 }
 
