@@ -59,10 +59,10 @@ class FindDeepest {
     const Sphere ball = tree_.ball(index);
     if (!pose_.touches(ball)) return true;
     const double gap = pose_.gap(ball);
-    const std::int32_t sphere = tree_.sphere_index(index);
-    if (gap < gap_ || (gap == gap_ && sphere < sphere_)) {
+    const std::int32_t leaf = tree_.sphere_index(index);
+    if (gap < gap_ || (gap == gap_ && leaf < sphere_)) {
       gap_ = gap;
-      sphere_ = sphere;
+      sphere_ = leaf;
     }
     return true;
   }

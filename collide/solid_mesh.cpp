@@ -84,10 +84,10 @@ class FindDeepest {
     const double reach = sub_down(add_down(ball.radius, solid_.growth()), balls_.error());
     const double depth =
         inside ? add_down(reach, to_surface.lower) : sub_down(reach, to_surface.upper);
-    const std::int32_t sphere = tree_.sphere_index(index);
-    if (sphere_ >= 0 && (depth < depth_ || (depth == depth_ && sphere > sphere_))) return true;
+    const std::int32_t leaf = tree_.sphere_index(index);
+    if (sphere_ >= 0 && (depth < depth_ || (depth == depth_ && leaf > sphere_))) return true;
     depth_ = depth;
-    sphere_ = sphere;
+    sphere_ = leaf;
     in_mesh_ = inside ? center : gaps.to_triangle(to_surface.nearest.a).closest;
     return true;
   }

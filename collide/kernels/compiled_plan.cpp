@@ -260,7 +260,7 @@ void CompiledPlan<Real>::compile_tests(const PlanSource& source, const Reach& re
     exact_boxes.push_back(compiled_box<double>(obstacle, reach.largest));
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const Sphere around = reachable(source, static_cast<int>(b), reach.reach[b]);
+    const Sphere around = reachable(source, b, reach.reach[b]);
     const double limit = around.radius + kSlack * reach.reach[b] + 4.0 * source.pose_error;
     bodies_[b].first_group = static_cast<std::int32_t>(groups_.size());
     int lane = kPlanLanes;

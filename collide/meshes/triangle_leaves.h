@@ -48,8 +48,8 @@ class TriangleLeaves {
   bool touches(NodePair pair) const {
     return touches(a_.sphere_index(pair.index(0)), b_.tree().sphere_index(pair.index(1)));
   }
-  bool touches(std::int32_t sphere, std::int32_t triangle) const {
-    const Sphere& ball = a_.spheres()[static_cast<std::size_t>(sphere)];
+  bool touches(std::int32_t index, std::int32_t triangle) const {
+    const Sphere& ball = a_.spheres()[static_cast<std::size_t>(index)];
     return pose_.touches(ball, b_.tree().spheres()[static_cast<std::size_t>(triangle)],
                          clearance_) &&
            !are_apart(b_from_a_(ball.center), b_.triangle(triangle), ball.radius + axis_pad_) &&

@@ -56,7 +56,8 @@ class TreePair {
   const BallArrays& balls(int side) const { return sides_[side].balls; }
   bool is_leaf(int side, std::int32_t node) const { return sides_[side].child_count[node] == 0; }
   bool is_leaf_pair(NodePair pair) const {
-    return is_leaf(0, pair.node(0)) & is_leaf(1, pair.node(1));
+    // Counts are not negative. No branch between the two.
+    return (sides_[0].child_count[pair.node(0)] | sides_[1].child_count[pair.node(1)]) == 0;
   }
 
   // The pair must not be a pair of leaves. Free of branches on data: which ball is larger is a coin

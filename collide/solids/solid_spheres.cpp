@@ -81,17 +81,17 @@ std::vector<Sphere> spheres_around(const SolidMesh& solid) {
   const SphereTree frame = build_tree({&around, 1});
   const Pose same;  // kept by reference
   const RelativePose pose(frame, same, solid.mesh().tree(), same);
-  const BallsInside balls(frame, solid, pose);
+  const BallsInside inside(frame, solid, pose);
   const double smallest = kSmallestCell * sum / static_cast<double>(spheres.size());
   const std::size_t most = std::max(kFewestCells, kCellsATriangle * spheres.size());
   for (int level = 0; !cells.empty(); ++level) {
     std::vector<Cell> at_surface;
     for (const Cell& cell : cells) {
       const Sphere ball = cell.ball();
-      if (balls.is_outside_box(cell.center, ball.radius)) continue;
-      if (!balls.is_clear(cell.center, ball.radius)) {
+      if (inside.is_outside_box(cell.center, ball.radius)) continue;
+      if (!inside.is_clear(cell.center, ball.radius)) {
         if (!is_held(solid, ball)) at_surface.push_back(cell);
-      } else if (balls.contains(cell.center)) {
+      } else if (inside.contains(cell.center)) {
         spheres.push_back(ball);
       }
     }

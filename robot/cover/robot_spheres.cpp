@@ -89,7 +89,8 @@ SimplifyOptions options_for(const std::string& link, const RobotCoverOptions& op
 
 void check_options(const RobotDescription& robot, const RobotCoverOptions& options) {
   check_lengths(options.max_error, options.min_external_diameter, options.padding, "");
-  for (const auto& [name, own] : options.links) {
+  for (const auto& entry : options.links) {
+    const std::string& name = entry.first;
     const auto link = std::find_if(robot.links.begin(), robot.links.end(),
                                    [&](const LinkDescription& l) { return l.name == name; });
     require(link != robot.links.end(), subject_of(name), "the robot has no such link");

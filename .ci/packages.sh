@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The Debian packages that parts of the project need, for scripts to source. Adds to `packages`.
+
+packages=()
+
+# Compiler and build tools, as far as there are none.
+need_build_tools() {
+  command -v cmake >/dev/null || packages+=(cmake)
+  command -v "${CXX:-c++}" >/dev/null || packages+=(g++)
+  command -v ninja >/dev/null || command -v make >/dev/null || packages+=(ninja-build)
+}
+
+# Libraries and command without the adapters. Boost is for OpenVDB's headers.
+need_libraries() {
+  packages+=(libeigen3-dev libassimp-dev libexpat1-dev zlib1g-dev libtbb-dev nlohmann-json3-dev
+    libcli11-dev libbullet-extras-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev libqhull-dev
+    libtinyxml2-dev liburdfdom-dev libyaml-cpp-dev libjs-three libocct-data-exchange-dev
+    libocct-modeling-algorithms-dev)
+}
+
+# OMPL's CMake package names three libraries of Boost that its Debian package does not depend on.
+need_adapters() {
+  packages+=(libfcl-dev libccd-dev libompl-dev libboost-filesystem-dev libboost-serialization-dev
+    libboost-system-dev)
+}
+
+# Bullet is a peer of the benchmarks; its verdicts are tested.
+need_tests() {
+  packages+=(libgtest-dev libgmp-dev libmpfr-dev liborocos-kdl-dev libbullet-dev)
+}
+
+need_benchmarks() {
+  packages+=(libbenchmark-dev libbullet-dev)
+}
