@@ -12,6 +12,7 @@
 #include <chrono>
 #include <numeric>
 #include <sstream>
+#include <string>
 #include <thread>
 #include <utility>
 

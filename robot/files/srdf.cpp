@@ -87,11 +87,11 @@ DisabledPair pair_of(const XmlElement& element) {
 
 LinkSpheres spheres_of(const XmlElement& element) {
   LinkSpheres result{element.needed("link"), {}};
-  for (const XmlElement& sphere : element.children("sphere")) {
-    const Sphere ball{sphere.needed_vector("center"), sphere.needed_number("radius")};
-    if (ball.radius < 0.0) sphere.refuse("its radius is below zero");
+  for (const XmlElement& entry : element.children("sphere")) {
+    const Sphere ball{entry.needed_vector("center"), entry.needed_number("radius")};
+    if (ball.radius < 0.0) entry.refuse("its radius is below zero");
     if (ball.radius > kMaxCoordinate || ball.center.cwiseAbs().maxCoeff() > kMaxCoordinate) {
-      sphere.refuse("its numbers are too large");
+      entry.refuse("its numbers are too large");
     }
     if (ball.radius > 0.0) result.spheres.push_back(ball);
   }
