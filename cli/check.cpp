@@ -14,6 +14,7 @@
 #include "robot/files/trajectory_file.h"
 #include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
+#include "robot/model/link_spheres.h"
 #include "robot/pairs/link_pairs_file.h"
 #include "spheretree/error.h"
 

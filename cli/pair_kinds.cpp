@@ -4,8 +4,8 @@
 #include "cli/pair_report.h"
 #include "cli/print.h"
 #include "cli/progress.h"
-#include "robot/check/scene_setup.h"
 #include "robot/cover/link_bodies.h"
+#include "robot/model/link_spheres.h"
 #include "robot/pairs/ignored_pairs.h"
 #include "robot/pairs/link_pairs_file.h"
 

@@ -2,7 +2,7 @@
 #include "cli/robot_false_alarms.h"
 
 #include "cli/outline.h"
-#include "robot/check/scene_setup.h"
+#include "robot/model/link_spheres.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>

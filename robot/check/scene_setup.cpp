@@ -136,16 +136,6 @@ class Preparation {
 
 }  // namespace
 
-RobotModel with_spheres(RobotModel robot, std::span<const LinkSpheres> spheres) {
-  for (const LinkSpheres& link : spheres) {
-    if (robot.find_link(link.link) < 0) {
-      throw Error("link " + link.link, "the robot has no such link");
-    }
-    if (!link.spheres.empty()) robot.attach(link.link, shared(build_tree(link.spheres)));
-  }
-  return robot;
-}
-
 std::vector<Sphere> point_balls(const PointsSource& source) {
   const PointCloudFile cloud = read_point_cloud(source.path, source.scale);
   return point_cloud_spheres(cloud.points, add_up(source.radius, cloud.point_error),

@@ -4,19 +4,22 @@
 #include "robot/check/robot_scene.h"
 #include "robot/cover/robot_spheres.h"
 #include "robot/files/scene_file.h"
-#include "robot/model/link_spheres.h"
 #include "robot/model/robot_model.h"
 #include "spheretree/sphere.h"
 
-#include <span>
 #include <string>
 #include <vector>
 
-namespace spherule {
+// A robot, its spheres and a scene file become what answers queries:
+//
+//     const RobotDescription robot = read_urdf("robot.urdf");
+//     const SphereFormatFile file = read_robot_spheres("spheres/robot.curobo.yml");
+//     const PreparedScene cell =
+//         prepare_scene(with_spheres(robot.model, file.spheres.links), read_scene("cell.json"));
+//     const RobotChecker checker = cell.scene.snapshot();
+//     const bool hit = checker.check_config(configuration);
 
-// The robot with a sphere tree on every link that has spheres. Throws Error for spheres of a link
-// that it has not got, or that build_tree() refuses.
-RobotModel with_spheres(RobotModel robot, std::span<const LinkSpheres> spheres);
+namespace spherule {
 
 // What stands for a cloud of points: balls of which one contains the ball of the source's radius
 // about each point as it is written in the file, scaled exactly; with cells one for those of a

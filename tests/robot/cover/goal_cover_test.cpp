@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/goal_cover.h"
 
-#include "robot/check/scene_setup.h"
+#include "robot/model/link_spheres.h"
 #include "spheretree/error.h"
 
 #include <gtest/gtest.h>
