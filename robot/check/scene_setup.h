@@ -17,7 +17,8 @@
 //     const PreparedScene cell =
 //         prepare_scene(with_spheres(robot.model, file.spheres.links), read_scene("cell.json"));
 //     const RobotChecker checker = cell.scene.snapshot();
-//     const bool hit = checker.check_config(configuration);
+//     RobotChecker::Scratch scratch(checker);
+//     const bool is_free = checker.check_config(configuration, scratch);
 
 namespace spherule {
 
