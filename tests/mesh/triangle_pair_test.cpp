@@ -111,7 +111,7 @@ TEST(TrianglePair, CornerAgainstFace) {
   EXPECT_GT(tally.apart, effort(100, 20));
   EXPECT_GT(tally.touching, effort(300, 60));
   EXPECT_GT(tally.doubtful, effort(100, 20));
-  EXPECT_LT(tally.widest_doubt, kSlack);
+  EXPECT_LT(tally.widest_doubt, internal::kSlack);
 }
 
 TEST(TrianglePair, EdgeAgainstEdge) {
@@ -122,7 +122,7 @@ TEST(TrianglePair, EdgeAgainstEdge) {
   EXPECT_GT(tally.apart, effort(100, 20));
   EXPECT_GT(tally.touching, effort(300, 60));
   EXPECT_GT(tally.doubtful, effort(100, 20));
-  EXPECT_LT(tally.widest_doubt, kSlack);
+  EXPECT_LT(tally.widest_doubt, internal::kSlack);
 }
 
 TEST(TrianglePair, CornerAgainstCornerOrEdge) {
@@ -133,7 +133,7 @@ TEST(TrianglePair, CornerAgainstCornerOrEdge) {
   });
   EXPECT_GT(tally.apart, effort(500, 100));
   EXPECT_GT(tally.doubtful, effort(100, 20));
-  EXPECT_LT(tally.widest_doubt, kSlack);
+  EXPECT_LT(tally.widest_doubt, internal::kSlack);
 }
 
 TEST(TrianglePair, InOnePlane) {
@@ -154,7 +154,7 @@ TEST(TrianglePair, InOnePlane) {
   });
   EXPECT_GT(tally.apart, effort(500, 100));
   EXPECT_GT(tally.doubtful, effort(500, 100));
-  EXPECT_LT(tally.widest_doubt, kSlack);
+  EXPECT_LT(tally.widest_doubt, internal::kSlack);
 }
 
 TEST(TrianglePair, NeedlesSegmentsAndPoints) {
@@ -181,7 +181,7 @@ TEST(TrianglePair, SmallFarFromTheOrigin) {
   });
   EXPECT_GT(tally.apart, effort(50, 10));
   EXPECT_GT(tally.doubtful, effort(500, 100));
-  EXPECT_LT(tally.widest_doubt, kSlack);
+  EXPECT_LT(tally.widest_doubt, internal::kSlack);
 }
 
 // Far smaller than the scene, and so small that squares of areas underflow.
