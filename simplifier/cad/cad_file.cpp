@@ -110,6 +110,7 @@ CadPart read_cad(const std::filesystem::path& path, const CadReadOptions& option
   part.unproved = std::move(best.unproved);
   part.faces = shape.face_count();
   part.free_edges = shape.free_edge_count();
+  part.stated_unit = shape.stated_unit();
   part.mesh = std::move(best.mesh);
   internal::apply_scale(part.mesh, options.scale);
   part.mesh.vertex_error = add_up(part.mesh.vertex_error, part.chord_error);

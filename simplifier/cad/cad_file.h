@@ -51,6 +51,7 @@ struct CadPart {
   std::vector<UnprovedFace> unproved;
   std::size_t faces = 0;
   std::size_t free_edges = 0;  // of no face: left out, as lines are in mesh files
+  std::string stated_unit;     // of the numbers in the file, as the file names it: "inch"
 };
 
 // Reads STEP (AP203, AP214, AP242) and IGES, told apart by the extension (step, stp, iges, igs).

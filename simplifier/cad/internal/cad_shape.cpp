@@ -14,6 +14,8 @@
 #include <Geom2d_Curve.hxx>
 #include <Geom_Surface.hxx>
 #include <IGESControl_Reader.hxx>
+#include <IGESData_GlobalSection.hxx>
+#include <IGESData_IGESModel.hxx>
 #include <Interface_InterfaceModel.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
@@ -22,6 +24,8 @@
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TColStd_SequenceOfAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
@@ -33,6 +37,7 @@
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <gp_Trsf.hxx>
 #include <limits>
@@ -199,6 +204,24 @@ TopoDS_Shape translated(XSControl_Reader& reader, const std::filesystem::path& p
   return shape;
 }
 
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// The units of length that the file names, as a rule one.
+std::string unit_of(STEPControl_Reader& reader) {
+  TColStd_SequenceOfAsciiString lengths;
+  TColStd_SequenceOfAsciiString angles;
+  TColStd_SequenceOfAsciiString solid_angles;
+  reader.FileUnits(lengths, angles, solid_angles);
+  std::set<std::string> names;
+  for (int i = 1; i <= lengths.Length(); ++i) names.insert(lower_case(lengths(i).ToCString()));
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
 std::size_t count(TopExp_Explorer found) {
   std::size_t number = 0;
   for (; found.More(); found.Next()) ++number;
@@ -221,9 +244,13 @@ CadShape::CadShape(const std::filesystem::path& path, std::string_view bytes)
       check_step_text(bytes, subject_);
       STEPControl_Reader reader;
       shape_->shape = translated(reader, path, "STEP");
+      stated_unit_ = unit_of(reader);
     } else {
       IGESControl_Reader reader;
       shape_->shape = translated(reader, path, "IGES");
+      const Handle(TCollection_HAsciiString) unit =
+          reader.IGESModel()->GlobalSection().UnitName();
+      if (!unit.IsNull()) stated_unit_ = lower_case(unit->ToCString());
     }
   } catch (const Standard_Failure& failure) {
     throw Error(subject_, std::string("could not be read: ") + failure.GetMessageString());

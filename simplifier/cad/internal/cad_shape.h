@@ -30,6 +30,7 @@ class CadShape {
 
   double diagonal() const;   // of the box
   double tolerance() const;  // the largest of its edges, vertices and faces
+  const std::string& stated_unit() const { return stated_unit_; }
   std::size_t face_count() const;
   std::size_t free_edge_count() const;
 
@@ -40,6 +41,7 @@ class CadShape {
   struct Shape;
   std::unique_ptr<Shape> shape_;
   std::string subject_;
+  std::string stated_unit_;
 };
 
 }  // namespace spherule::internal
