@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/check_length.h"
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
 #include "cli/json.h"
 #include "cli/model_file.h"
+#include "cli/model_unit.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
@@ -19,7 +19,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -35,9 +34,10 @@ namespace {
 struct AuditArguments {
   std::string mesh;
   std::string spheres;
-  std::optional<double> scale;
+  UnitArguments unit;
   std::optional<double> min_external;
   std::optional<double> max_error;
+  LengthOptions lengths;
   std::string repaired;
   bool json = false;
 };
@@ -109,7 +109,8 @@ Json json_of(std::span<const LeakPoint> leaks) {
 // --max-error is not among the options to repeat: it comes with --repair only.
 std::vector<NextStep> steps_after_leak(const AuditArguments& arguments, double scale) {
   std::vector<std::string> mend = {"audit", arguments.mesh, arguments.spheres};
-  repeat("--scale", arguments.scale, mend);
+  repeat("--scale", arguments.unit.scale, mend);
+  repeat("--units", arguments.unit.units, mend);
   repeat("--min-external", arguments.min_external, mend);
   repeat("--repair", beside(arguments.spheres, ".mended.json"), mend);
   std::vector<NextStep> steps = {{std::move(mend), "make them cover"}};
@@ -155,16 +156,40 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
             << describe(mended->certificate, name_of(external));
 }
 
+// Reads as the file says, or as the command line does; lengths of the command line become those of
+// the output.
+ModelReadOptions reading_of(const AuditArguments& arguments, const SphereFile& file) {
+  const ModelReadOptions stored = blaming_file(arguments, [&] { return stored_reading(file); });
+  UnitArguments unit = arguments.unit;
+  if (!stored.units.empty() && !unit.units.empty() && stored.units != unit.units) {
+    throw Error("--units", arguments.spheres + " is in " + unit_named(stored.units)->plural +
+                               ", as its options say");
+  }
+  if (unit.units.empty()) unit.units = stored.units;
+  if (!unit.scale && file.options.contains("scale")) unit.scale = stored.scale;
+  const ModelUnit found = [&] {
+    try {
+      return model_unit(arguments.mesh, unit);
+    } catch (const Error& error) {
+      if (error.subject() != "--scale" || arguments.unit.scale) throw;
+      throw Error(arguments.spheres, "was fitted with " + std::string(error.what()));
+    }
+  }();
+  arguments.lengths.convert(length_context(arguments.mesh, found));
+  // Lengths are in output units, so that they suit no other scale.
+  ModelReadOptions reading = arguments.unit.scale ? ModelReadOptions{} : stored;
+  reading.scale = found.scale;
+  reading.units = unit.units;
+  return reading;
+}
+
 int audit(const AuditArguments& arguments) {
   const bool mend = !arguments.repaired.empty();
   check_outputs({arguments.repaired}, {arguments.mesh, arguments.spheres});
   const SphereFile file = load_spheres(arguments.spheres);
   SimplifyOptions options =
       blaming_file(arguments, [&] { return options_from_record(file.options); });
-  // Lengths are in output units, so that they suit no other scale.
-  const ModelReadOptions reading =
-      arguments.scale ? ModelReadOptions{.scale = *arguments.scale}
-                      : blaming_file(arguments, [&] { return stored_reading(file); });
+  const ModelReadOptions reading = reading_of(arguments, file);
   ProgressBar bar;
   bar.announce("reading");
   const ModelFile model = read_model(arguments.mesh, reading);
@@ -175,9 +200,6 @@ int audit(const AuditArguments& arguments) {
   certify_options.padding = options.padding;
   certify_options.progress = options.progress;
   if (arguments.min_external) {
-    if (!(*arguments.min_external > 0.0) || !std::isfinite(*arguments.min_external)) {
-      throw Error("--min-external", "must be positive and finite");
-    }
     options.min_external_diameter = *arguments.min_external;
     if (options.external == ExternalPlacement::kNone) {
       options.external = ExternalPlacement::kReachable;
@@ -222,10 +244,11 @@ void add_audit(CLI::App& app, int& exit_code) {
   command->add_option("spheres", arguments->spheres, "Spheres (JSON), of any origin")
       ->required()
       ->type_name(kFile);
-  command->add_option("--scale", arguments->scale,
-                      "Output units per mesh unit (default: as the spheres were fitted)");
-  command->add_option("--min-external", arguments->min_external,
-                      "D, against which simplified solid (default: as the spheres were fitted)");
+  add_unit_options(*command, arguments->unit,
+                   "Output units per mesh unit (default: as the spheres were fitted)");
+  arguments->lengths.add_positive(
+      *command, "--min-external", arguments->min_external,
+      "D, against which simplified solid (default: as the spheres were fitted)");
   command->add_flag("--json", arguments->json, "Print the certificate as JSON");
   CLI::Option* repair =
       command
@@ -234,12 +257,10 @@ void add_audit(CLI::App& app, int& exit_code) {
                        "cover; exit 0 then says that these do. Without D anywhere it is 4 E, E "
                        "being --max-error or 1 % of the box diagonal")
           ->type_name(kFile);
-  command
-      ->add_option("--max-error", arguments->max_error,
-                   "How far a repaired sphere may protrude (default: as the spheres were fitted, "
-                   "or as far as half of them do)")
-      ->check(CLI::PositiveNumber)
-      ->check(check_length)
+  arguments->lengths
+      .add_positive(*command, "--max-error", arguments->max_error,
+                    "How far a repaired sphere may protrude (default: as the spheres were fitted, "
+                    "or as far as half of them do)")
       ->needs(repair);
   command->footer(to_text(
       {.text = "Any spheres will do: {\"format\": \"spherule-spheres\", \"version\": 1, "
@@ -247,6 +268,7 @@ void add_audit(CLI::App& app, int& exit_code) {
        .exit_codes = "0 proved to cover (with --repair: the repaired ones); 1 leaks, or not proved",
        .examples = {"spherule audit part.stl part.json",
                     "spherule audit part.stl others.json --repair mended.json --max-error 2",
+                    "spherule audit part.stl others.json --units mm --min-external 1cm",
                     "spherule audit part.stl part.json --json"}}));
   command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
 }

@@ -75,15 +75,16 @@ Json to_json(const CoverBreakdown& breakdown) {
 
 }  // namespace
 
-std::string fit_report(const std::string& mesh_file, const ModelFile& model,
+std::string fit_report(const std::string& mesh_file, const ModelFile& model, const ModelUnit& unit,
                        const MeshReport& report, const Simplification& result,
-                       const CoverBreakdown& breakdown, double scale, ReportContent content) {
+                       const CoverBreakdown& breakdown, ReportContent content) {
   Json json;
   json["format"] = "spherule-report";
   json["version"] = 1;
   json["mesh"] = to_json(mesh_file, model.mesh, report);
+  json["unit"] = spherule::to_json(unit);
   if (model.cad) json["cad"] = to_json(*model.cad);
-  json["options"] = spherule::to_json(option_record(result.options, scale));
+  json["options"] = spherule::to_json(option_record(result.options, unit.scale));
   json["seconds"] = {{"external", result.times.external},
                      {"cover", result.times.cover},
                      {"levels", result.times.levels},

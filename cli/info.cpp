@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/model_file.h"
+#include "cli/model_unit.h"
 #include "cli/outline.h"
 #include "cli/recognize.h"
 #include "simplifier/mesh_report.h"
@@ -70,9 +71,13 @@ void print_tree(const SphereTree& tree) {
 int info(const std::string& file) {
   switch (recognize(file)) {
     case FileKind::kMesh: {
+      ModelUnit unit = model_unit(file, {});
       const ModelFile model = read_model(file);
-      if (model.cad) std::cout << describe(*model.cad);
-      std::cout << describe(mesh_report(model.mesh)) << "\n";
+      if (model.cad) {
+        note_cad_unit(model.cad->stated_unit, unit);
+        std::cout << describe(*model.cad);
+      }
+      std::cout << describe(unit) << describe(mesh_report(model.mesh)) << "\n";
       break;
     }
     case FileKind::kSpheres:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/model_file.h"
 
+#include "simplifier/length_unit.h"
 #include "simplifier/mesh_io.h"
 #include "spheretree/error.h"
 
@@ -64,6 +65,7 @@ ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& 
 void store_reading(const ModelReadOptions& options, const ModelFile& model, SphereFile& file) {
   if (model.cad) file.options["chord-error"] = model.cad->asked;
   if (options.weld > 0.0) file.options["weld"] = options.weld;
+  if (!options.units.empty()) file.options["units"] = options.units;
 }
 
 ModelReadOptions stored_reading(const SphereFile& file) {
@@ -71,6 +73,12 @@ ModelReadOptions stored_reading(const SphereFile& file) {
   options.scale = stored_number(file, "scale", options.scale);
   options.chord_error = stored_number(file, "chord-error", options.chord_error);
   options.weld = stored_number(file, "weld", options.weld);
+  if (const auto found = file.options.find("units"); found != file.options.end()) {
+    const auto* text = std::get_if<std::string>(&found->second);
+    if (text == nullptr || unit_named(*text) == nullptr)
+      throw Error("units", "is no unit of length");
+    options.units = *text;
+  }
   if (!(options.scale > 0.0)) throw Error("scale", "must be positive");
   if (options.chord_error < 0.0) throw Error("chord-error", "must not be negative");
   if (options.weld < 0.0) throw Error("weld", "must not be negative");
@@ -98,6 +106,7 @@ Json to_json(const CadPart& part) {
           {"chord_error_asked", part.asked},
           {"chord_error_found", part.reached},
           {"tolerance", part.tolerance},
+          {"stated_unit", part.stated_unit},
           {"proved", part.proved},
           {"unproved_faces", unproved}};
 }

@@ -21,6 +21,7 @@ struct ModelFile {
 
 struct ModelReadOptions {
   double scale = 1.0;
+  std::string units = {};    // symbol of the unit of the output, where the user named it
   double chord_error = 0.0;  // CAD files only; 0: the default
   double weld = 0.0;         // mesh files only: as MeshReadOptions has it
 };
@@ -33,8 +34,8 @@ ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& 
 void store_reading(const ModelReadOptions& options, const ModelFile& model, SphereFile& file);
 
 // How the model of a file of spheres was read, as its options say; as by default where they do not.
-// Throws Error, naming the option, for one that is no number, a scale that is not above zero and a
-// length below zero.
+// Throws Error, naming the option, for one that is no number, a scale that is not above zero, a
+// length below zero and a unit that is not known.
 ModelReadOptions stored_reading(const SphereFile& file);
 
 // What a CAD file came to, in a line for a person.
