@@ -172,7 +172,10 @@ ModelReadOptions reading_of(const AuditArguments& arguments, const SphereFile& f
       return model_unit(arguments.mesh, unit);
     } catch (const Error& error) {
       if (error.subject() != "--scale" || arguments.unit.scale) throw;
-      throw Error(arguments.spheres, "was fitted with " + std::string(error.what()));
+      std::ostringstream text;
+      text << "was fitted with the scale " << stored.scale << ", which does not make "
+           << unit_named(unit.units)->plural << " of " << arguments.mesh;
+      throw Error(arguments.spheres, text.str());
     }
   }();
   arguments.lengths.convert(length_context(arguments.mesh, found));

@@ -34,7 +34,7 @@ double converted(const Length& length, const std::string& option, const LengthCo
   if (length.unit == nullptr) return length.value;
   if (!context.micrometres) {
     throw Error(option, std::string("is in ") + length.unit->plural + ", but " + context.file +
-                            " states no unit: say --units mm, or whatever it is in");
+                            " states no unit: say --units mm, or whatever its numbers are in");
   }
   return in_units_of(*context.micrometres, length);
 }
