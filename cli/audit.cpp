@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cli/audit_bodies.h"
+#include "cli/audit_proof.h"
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
@@ -30,17 +32,6 @@
 
 namespace spherule {
 namespace {
-
-struct AuditArguments {
-  std::string mesh;
-  std::string spheres;
-  UnitArguments unit;
-  std::optional<double> min_external;
-  std::optional<double> max_error;
-  LengthOptions lengths;
-  std::string repaired;
-  bool json = false;
-};
 
 // Runs what depends on the options in the file, and blames the file for what is wrong with them.
 template <typename Use>
@@ -108,7 +99,7 @@ Json json_of(std::span<const LeakPoint> leaks) {
 
 // --max-error is not among the options to repeat: it comes with --repair only.
 std::vector<NextStep> steps_after_leak(const AuditArguments& arguments, double scale) {
-  std::vector<std::string> mend = {"audit", arguments.mesh, arguments.spheres};
+  std::vector<std::string> mend = {"audit", arguments.models.front(), arguments.spheres};
   repeat("--scale", arguments.unit.scale, mend);
   repeat("--units", arguments.unit.units, mend);
   repeat("--min-external", arguments.min_external, mend);
@@ -116,7 +107,7 @@ std::vector<NextStep> steps_after_leak(const AuditArguments& arguments, double s
   std::vector<NextStep> steps = {{std::move(mend), "make them cover"}};
   // `view` has no scale: its page would mix units.
   if (scale == 1.0) {
-    steps.push_back({{"view", arguments.mesh, arguments.spheres, "--leaks", "-o",
+    steps.push_back({{"view", arguments.models.front(), arguments.spheres, "--leaks", "-o",
                       beside(arguments.spheres, ".html")},
                      "see where they leak"});
   }
@@ -161,24 +152,19 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
 ModelReadOptions reading_of(const AuditArguments& arguments, const SphereFile& file) {
   const ModelReadOptions stored = blaming_file(arguments, [&] { return stored_reading(file); });
   UnitArguments unit = arguments.unit;
-  if (!stored.units.empty() && !unit.units.empty() && stored.units != unit.units) {
-    throw Error("--units", arguments.spheres + " is in " + unit_named(stored.units)->plural +
-                               ", as its options say");
-  }
-  if (unit.units.empty()) unit.units = stored.units;
-  if (!unit.scale && file.options.contains("scale")) unit.scale = stored.scale;
+  take_stored_unit(arguments.spheres, file, stored, unit);
   const ModelUnit found = [&] {
     try {
-      return model_unit(arguments.mesh, unit);
+      return model_unit(arguments.models.front(), unit);
     } catch (const Error& error) {
       if (error.subject() != "--scale" || arguments.unit.scale) throw;
       std::ostringstream text;
       text << "was fitted with the scale " << stored.scale << ", which does not make "
-           << unit_named(unit.units)->plural << " of " << arguments.mesh;
+           << unit_named(unit.units)->plural << " of " << arguments.models.front();
       throw Error(arguments.spheres, text.str());
     }
   }();
-  arguments.lengths.convert(length_context(arguments.mesh, found));
+  arguments.lengths.convert(length_context(arguments.models.front(), found));
   // Lengths are in output units, so that they suit no other scale.
   ModelReadOptions reading = arguments.unit.scale ? ModelReadOptions{} : stored;
   reading.scale = found.scale;
@@ -188,45 +174,36 @@ ModelReadOptions reading_of(const AuditArguments& arguments, const SphereFile& f
 
 int audit(const AuditArguments& arguments) {
   const bool mend = !arguments.repaired.empty();
-  check_outputs({arguments.repaired}, {arguments.mesh, arguments.spheres});
+  check_outputs({arguments.repaired}, {arguments.models.front(), arguments.spheres});
   const SphereFile file = load_spheres(arguments.spheres);
+  if (!file.bodies.empty()) return audit_bodies(arguments, file);
+  if (arguments.models.size() > 1) {
+    throw Error(arguments.spheres, "is of one body, but several models are named");
+  }
   SimplifyOptions options =
       blaming_file(arguments, [&] { return options_from_record(file.options); });
   const ModelReadOptions reading = reading_of(arguments, file);
   ProgressBar bar;
   bar.announce("reading");
-  const ModelFile model = read_model(arguments.mesh, reading);
+  const ModelFile model = read_model(arguments.models.front(), reading);
   const TriangleMesh& mesh = model.mesh;
 
   options.progress = bar.callback();
-  CertifyOptions certify_options;
-  certify_options.padding = options.padding;
-  certify_options.progress = options.progress;
-  if (arguments.min_external) {
-    options.min_external_diameter = *arguments.min_external;
-    if (options.external == ExternalPlacement::kNone) {
-      options.external = ExternalPlacement::kReachable;
-    }
-  }
+  const bool has_diameter = take_min_external(arguments.min_external, options);
   if (mend) {
     // What is added or grown needs a solid to keep to.
     if (options.max_error == 0.0) options.max_error = arguments.max_error.value_or(0.0);
     complete_lengths(options, mesh);
   }
-  std::optional<ExternalSpheres> external;
-  if (mend || arguments.min_external || file.options.contains("min-external")) {
-    const auto place = [&] { return place_external_spheres(mesh, external_options(options)); };
-    external = arguments.min_external ? place() : blaming_file(arguments, place);
-    certify_options.external = &*external;
-    // A file that says how it was fitted was proved at this resolution.
-    certify_options.resolution = proof_resolution(tightest_error(options.zones, options.max_error),
-                                                  external->box.diagonal().norm());
-    certify_options.zones = options.zones;
-  }
-  const Certificate certificate = certify(mesh, file.spheres, certify_options);
+  const bool against_solid = mend || has_diameter || file.options.contains("min-external");
+  std::optional<SolidProof> proof;
+  const auto place = [&] { proof.emplace(mesh, options, against_solid); };
+  has_diameter ? place() : blaming_file(arguments, place);
+  const std::optional<ExternalSpheres>& external = proof->external();
+  const Certificate certificate = certify(mesh, file.spheres, proof->options());
   std::optional<Repaired> mended;
   if (mend) {
-    mended = repaired(arguments, model, reading, file, options, certify_options);
+    mended = repaired(arguments, model, reading, file, options, proof->options());
     write_uninterrupted([&] { save_spheres(mended->file, arguments.repaired); });
   }
   bar.clear();
@@ -241,7 +218,10 @@ void add_audit(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("audit", "Prove whether spheres cover a mesh; exit 0 covered, 1 leaks");
   auto arguments = std::make_shared<AuditArguments>();
-  command->add_option("mesh", arguments->mesh, "The mesh, or STEP or IGES")
+  command
+      ->add_option("mesh", arguments->models,
+                   "The mesh, or STEP or IGES; of a file of several bodies all that they were "
+                   "fitted to")
       ->required()
       ->type_name(kFile);
   command->add_option("spheres", arguments->spheres, "Spheres (JSON), of any origin")
@@ -270,8 +250,8 @@ void add_audit(CLI::App& app, int& exit_code) {
                "\"options\": {}, \"spheres\": [{\"center\": [x, y, z], \"radius\": r}]}.",
        .exit_codes = "0 proved to cover (with --repair: the repaired ones); 1 leaks, or not proved",
        .examples = {"spherule audit part.stl part.json",
-                    "spherule audit part.stl others.json --repair mended.json --max-error 2",
-                    "spherule audit part.stl others.json --units mm --min-external 1cm",
+                    "spherule audit part.stl others.json --repair mended.json --units mm "
+                    "--max-error 2mm",
                     "spherule audit part.stl part.json --json"}}));
   command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
 }

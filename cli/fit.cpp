@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
+#include "cli/fit_bodies.h"
 #include "cli/fit_options.h"
 #include "cli/fit_report.h"
 #include "cli/help.h"
@@ -97,6 +98,7 @@ std::string describe_lower_bound(const SphereCover& cover) {
 // Fails (kNo) if a promise about the spheres is not proved; the files are written nevertheless and
 // say so.
 int fit(FitArguments& arguments) {
+  if (arguments.models.size() > 1 || arguments.bodies) return fit_bodies(arguments);
   check_outputs({arguments.spheres, arguments.report, arguments.tree, arguments.view},
                 {arguments.models.front(), arguments.tool, arguments.zones});
   const std::string& file = arguments.models.front();
@@ -146,8 +148,9 @@ int fit(FitArguments& arguments) {
 
   write_uninterrupted([&] {
     if (breakdown) {
-      write_file_atomically(arguments.report, fit_report(file, model, unit, report, result,
-                                                         *breakdown, arguments.report_content));
+      write_file_atomically(arguments.report,
+                            fit_report({file, mesh, model.cad, unit.scale, report}, unit, result,
+                                       *breakdown, arguments.report_content));
     }
     std::optional<SphereTree> tree;
     if (!arguments.tree.empty() || !arguments.view.empty()) tree = sphere_tree(result);

@@ -16,22 +16,25 @@
 namespace spherule {
 namespace {
 
-CadPart read_part(const std::filesystem::path& path, const CadReadOptions& options) {
 #ifdef SPHERULE_HAS_CAD
-  CadPart part = read_cad(path, options);
-  if (!part.proved) {
-    std::cerr << "spherule: warning: " << path.string() << ": the chord error is measured, not "
-              << "proved, on " << part.unproved.size() << " of " << part.faces
-              << " faces: " << part.unproved.front().name << ": " << part.unproved.front().reason
-              << "\n";
-  }
-  return part;
-#else
-  static_cast<void>(options);
+void warn_of_unproved(const std::string& subject, const CadPart& part) {
+  if (part.proved) return;
+  std::cerr << "spherule: warning: " << subject << ": the chord error is measured, not proved, on "
+            << part.unproved.size() << " of " << part.faces
+            << " faces: " << part.unproved.front().name << ": " << part.unproved.front().reason
+            << "\n";
+}
+#endif
+
+[[maybe_unused, noreturn]] void refuse_cad(const std::filesystem::path& path) {
   throw Error(path.string(),
               "is a CAD file, which this build cannot read: install libocct-data-exchange-dev and "
               "build with -DSPHERULE_CAD=ON");
-#endif
+}
+
+CadReadOptions cad_options(const std::filesystem::path& path, const ModelReadOptions& options) {
+  if (options.weld > 0.0) throw Error(path.string(), "is a CAD file; only meshes are welded");
+  return {.scale = options.scale, .chord_error = options.chord_error};
 }
 
 // Whole numbers are numbers, too: a program that writes 1 for 1.0 means the same.
@@ -56,10 +59,29 @@ ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& 
     model.mesh = read_mesh(path, {.scale = options.scale, .weld = options.weld});
     return model;
   }
-  if (options.weld > 0.0) throw Error(path.string(), "is a CAD file; only meshes are welded");
-  model.cad = read_part(path, {.scale = options.scale, .chord_error = options.chord_error});
+  [[maybe_unused]] const CadReadOptions cad = cad_options(path, options);
+#ifdef SPHERULE_HAS_CAD
+  model.cad = read_cad(path, cad);
+  warn_of_unproved(path.string(), *model.cad);
   model.mesh = std::move(model.cad->mesh);
   return model;
+#else
+  refuse_cad(path);
+#endif
+}
+
+std::vector<CadBody> read_model_bodies(const std::filesystem::path& path,
+                                       const ModelReadOptions& options) {
+  [[maybe_unused]] const CadReadOptions cad = cad_options(path, options);
+#ifdef SPHERULE_HAS_CAD
+  std::vector<CadBody> bodies = read_cad_bodies(path, cad);
+  for (const CadBody& body : bodies) {
+    if (!body.copy) warn_of_unproved(path.string() + ": " + body.name, body.part);
+  }
+  return bodies;
+#else
+  refuse_cad(path);
+#endif
 }
 
 void store_reading(const ModelReadOptions& options, const ModelFile& model, SphereFile& file) {

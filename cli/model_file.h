@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace spherule {
 
@@ -29,6 +30,10 @@ struct ModelReadOptions {
 // Reads either kind. Warns on standard error of faces whose deviation is not proved. Throws Error,
 // also for a CAD file in a build that reads none, or one that is to be welded.
 ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& options = {});
+
+// The bodies of a CAD file. As above.
+std::vector<CadBody> read_model_bodies(const std::filesystem::path& path,
+                                       const ModelReadOptions& options);
 
 // Stores in a file of spheres what it takes to read their model in the same way again.
 void store_reading(const ModelReadOptions& options, const ModelFile& model, SphereFile& file);

@@ -181,8 +181,8 @@ CertificateRecord moved_certificate(const CertificateRecord& certificate,
   return moved;
 }
 
-SphereFile sphere_file(std::span<const Body> bodies, std::span<const BodyFit> fits, double scale,
-                       const std::map<std::string, OptionValue>& options) {
+SphereFile sphere_file(std::span<const Body> bodies, std::span<const BodyFit> fits,
+                       std::span<const double> scales) {
   SphereFile file;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const BodyFit& fit = fits[i];
@@ -192,15 +192,10 @@ SphereFile sphere_file(std::span<const Body> bodies, std::span<const BodyFit> fi
                     .certificate = fit.certificate,
                     .options = {},
                     .copy = bodies[i].copy};
-    if (fit.fit) {
-      body.options = option_record(fit.fit->options, scale);
-      body.options.insert(options.begin(), options.end());
-    }
+    if (fit.fit) body.options = option_record(fit.fit->options, scales[i]);
     file.bodies.push_back(std::move(body));
   }
   file.certificate = joined_certificate(file.bodies);
-  file.options = options;
-  file.options["scale"] = scale;
   return file;
 }
 

@@ -8,7 +8,6 @@
 #include "spheretree/triangle_mesh.h"
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -49,9 +48,9 @@ CertificateRecord moved_certificate(const CertificateRecord& certificate,
                                     std::span<const Sphere> spheres, const Pose& pose);
 
 // All bodies in one: their spheres in order, what is proved of all of them together, and a record
-// of each. `options` are stored for every body that is no copy beside those of its fit.
-SphereFile sphere_file(std::span<const Body> bodies, std::span<const BodyFit> fits, double scale,
-                       const std::map<std::string, OptionValue>& options = {});
+// of each. `scales` are those that the bodies were read with.
+SphereFile sphere_file(std::span<const Body> bodies, std::span<const BodyFit> fits,
+                       std::span<const double> scales);
 
 // What all bodies together are proved to do: they cover if each does, and protrude no further than
 // the one that protrudes most.
