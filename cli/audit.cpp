@@ -172,6 +172,13 @@ ModelReadOptions reading_of(const AuditArguments& arguments, const SphereFile& f
   return reading;
 }
 
+// With more than two files the last is the spheres.
+void name_spheres_last(AuditArguments& arguments) {
+  for (const std::string& file : arguments.more) {
+    arguments.models.push_back(std::exchange(arguments.spheres, file));
+  }
+}
+
 int audit(const AuditArguments& arguments) {
   const bool mend = !arguments.repaired.empty();
   check_outputs({arguments.repaired}, {arguments.models.front(), arguments.spheres});
@@ -218,14 +225,15 @@ void add_audit(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("audit", "Prove whether spheres cover a mesh; exit 0 covered, 1 leaks");
   auto arguments = std::make_shared<AuditArguments>();
-  command
-      ->add_option("mesh", arguments->models,
-                   "The mesh, or STEP or IGES; of a file of several bodies all that they were "
-                   "fitted to")
+  command->add_option("mesh", arguments->models.front(), "The mesh, or STEP or IGES")
       ->required()
       ->type_name(kFile);
   command->add_option("spheres", arguments->spheres, "Spheres (JSON), of any origin")
       ->required()
+      ->type_name(kFile);
+  command
+      ->add_option("more", arguments->more,
+                   "Where the spheres are of several meshes: name all of these, then the spheres")
       ->type_name(kFile);
   add_unit_options(*command, arguments->unit,
                    "Output units per mesh unit (default: as the spheres were fitted)");
@@ -253,7 +261,10 @@ void add_audit(CLI::App& app, int& exit_code) {
                     "spherule audit part.stl others.json --repair mended.json --units mm "
                     "--max-error 2mm",
                     "spherule audit part.stl part.json --json"}}));
-  command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
+  command->callback([arguments, &exit_code] {
+    name_spheres_last(*arguments);
+    exit_code = audit(*arguments);
+  });
 }
 
 }  // namespace spherule

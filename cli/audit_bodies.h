@@ -14,8 +14,9 @@ struct SphereFile;
 
 // What the command line of `audit` says.
 struct AuditArguments {
-  std::vector<std::string> models;
+  std::vector<std::string> models = {""};
   std::string spheres;
+  std::vector<std::string> more;  // as written: further models, and then the spheres
   UnitArguments unit;
   std::optional<double> min_external;
   std::optional<double> max_error;

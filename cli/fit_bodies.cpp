@@ -130,7 +130,7 @@ SphereFile stored(const FitArguments& arguments, const ModelBodies& model,
   if (!reading.units.empty()) file.options["units"] = reading.units;
   if (reading.chord_error > 0.0) file.options["chord-error"] = reading.chord_error;
   if (reading.weld > 0.0) file.options["weld"] = reading.weld;
-  file.options["bodies"] = arguments.bodies;
+  if (arguments.bodies) file.options["bodies"] = true;
   return file;
 }
 

@@ -36,6 +36,13 @@ void print_spheres(const SphereFile& file) {
     std::cout << "radius: " << smallest->radius << " to " << largest->radius << "\n";
     print_ball("enclosing sphere", enclosing_sphere(file.spheres));
   }
+  if (!file.bodies.empty()) std::cout << "bodies: " << file.bodies.size() << "\n";
+  for (const BodyRecord& body : file.bodies) {
+    std::cout << "  " << body.name << ": " << body.sphere_count << " spheres, "
+              << (body.certificate && body.certificate->covered ? "covered" : "not covered");
+    if (body.copy) std::cout << ", copy of " << file.bodies[body.copy->of].name;
+    std::cout << "\n";
+  }
   for (const auto& [name, value] : file.options) {
     std::cout << "option " << name << ": ";
     std::visit([](const auto& v) { std::cout << v << "\n"; }, value);

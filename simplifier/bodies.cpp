@@ -124,12 +124,6 @@ void place_copy(const BodyCopy& copy, const BodyFit& original, BodyFit& placed) 
   placed.spheres = moved_spheres(original.spheres, copy.pose);
   placed.certificate = moved_certificate(original.certificate, original.spheres, copy.pose);
   placed.broken = original.broken;
-  const SimplifyOptions& options = original.fit->options;
-  const std::optional<double>& protrusion = placed.certificate.protrusion_over_simplified_max;
-  if (placed.broken.empty() && options.min_radius == 0.0 && protrusion &&
-      *protrusion > options.max_error) {
-    placed.broken = "the moved spheres are not proved to protrude by at most E";
-  }
 }
 
 void mark_unfitted(BodyFit& fit) {

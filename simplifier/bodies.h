@@ -27,12 +27,13 @@ struct BodyFit {
   std::vector<Sphere> spheres;  // in place
   CertificateRecord certificate;
   std::optional<Simplification> fit;  // of a copy, and where it was stopped before: nothing
-  std::string broken;                 // broken_promises()
+  std::string broken;                 // broken_promises(), of a copy those of its original
   double seconds = 0.0;
 };
 
 // simplify() of every body by itself, and of copies once: the spheres of a copy are those of its
-// original, moved, and grown by no more than rounding costs. Bodies are fitted in parallel, which
+// original, moved, and grown by no more than rounding costs (by which they may protrude beyond E;
+// the certificate has it). Bodies are fitted in parallel, which
 // changes no result; each is certified by itself. `options` hold for every body alike; E and D that
 // are 0 are chosen for each. `options.progress` tells of all bodies; of a body that is not begun
 // when a stop is requested there are no spheres, and its certificate says that it is not covered.
