@@ -24,6 +24,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -75,12 +76,13 @@ std::vector<NextStep> next_steps(const FitArguments& arguments, bool is_covered)
   }
   // `view` reads the mesh as it is: the page would hold it in another unit, or other triangles.
   const ModelReadOptions& reading = arguments.reading;
-  const bool is_read_plainly =
-      reading.scale == 1.0 && reading.chord_error == 0.0 && reading.weld == 0.0;
+  const bool is_read_plainly = (reading.scale == 1.0 || !arguments.unit.scale) &&
+                               reading.chord_error == 0.0 && reading.weld == 0.0;
   if (arguments.view.empty() && is_read_plainly) {
-    steps.push_back({{"view", arguments.models.front(), arguments.spheres, "-o",
-                      beside(arguments.spheres, ".html")},
-                     "look at them"});
+    std::vector<std::string> view = {"view", arguments.models.front(), arguments.spheres};
+    if (reading.scale != 1.0) repeat("--units", arguments.unit.units, view);
+    repeat("-o", beside(arguments.spheres, ".html"), view);
+    steps.push_back({std::move(view), "look at them"});
   }
   if (arguments.tree.empty()) {
     steps.push_back({{"tree", arguments.spheres, "-o", beside(arguments.spheres, ".tree")},

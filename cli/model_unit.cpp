@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kMicrometresPerMetre = 1e6;
 
-std::vector<std::string> unit_choices() {
-  return {"mm", "cm", "m", "inch"};
-}
-
 std::string number(double value) {
   std::ostringstream text;
   text << value;
@@ -34,18 +30,18 @@ std::string origin_of(const std::string& own, const std::string& read, const cha
 
 }  // namespace
 
-void add_units_option(CLI::App& command, std::string& units) {
-  command
-      .add_option("--units", units,
-                  "The unit of the output and of lengths without one. A file that states its unit "
-                  "(3MF, glTF, DAE, STEP, IGES) is converted to it; of another it says what its "
-                  "numbers, times --scale, are in")
-      ->check(CLI::IsMember(unit_choices()));
+std::vector<std::string> unit_choices() {
+  return {"mm", "cm", "m", "inch"};
 }
 
 void add_unit_options(CLI::App& command, UnitArguments& arguments, const std::string& scale_help) {
   command.add_option("--scale", arguments.scale, scale_help);
-  add_units_option(command, arguments.units);
+  command
+      .add_option("--units", arguments.units,
+                  "The unit of the output and of lengths without one. A file that states its unit "
+                  "(3MF, glTF, DAE, STEP, IGES) is converted to it; of another it says what its "
+                  "numbers, times --scale, are in")
+      ->check(CLI::IsMember(unit_choices()));
 }
 
 ModelUnit model_unit(const std::string& file, const UnitArguments& arguments) {

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -21,8 +22,9 @@ struct UnitArguments {
 
 // Adds --scale and --units.
 void add_unit_options(CLI::App& command, UnitArguments& arguments, const std::string& scale_help);
-// Adds --units alone.
-void add_units_option(CLI::App& command, std::string& units);
+
+// What --units takes.
+std::vector<std::string> unit_choices();
 
 // From the numbers of a model to those of the output.
 struct ModelUnit {

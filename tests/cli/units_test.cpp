@@ -57,6 +57,10 @@ TEST_F(UnitsTest, AFormatThatStatesItsUnitIsConverted) {
   EXPECT_EQ(options().at("scale"), 1000.0);
   EXPECT_EQ(read_json("report.json").at("unit").at("name"), "millimetre");
   EXPECT_EQ(read_json("report.json").at("unit").at("metres"), 0.001);
+  EXPECT_NE(outcome.out.find("next: spherule view part.glb out.json --units mm -o out.html"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(run({"view", "part.glb", "out.json", "--units", "mm", "-o", "out.html"}).exit_code, 0);
   // The audit reads it alike, and takes lengths with a unit.
   outcome = run({"audit", "part.glb", "out.json", "--min-external", "1.6cm"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -116,9 +120,9 @@ TEST_F(UnitsTest, TheUnitOfAToolIsHeeded) {
 }
 
 TEST_F(UnitsTest, WarningsKnowTheUnit) {
-  const Outcome outcome = fit("part.glb", {"--max-error", "4"});
+  const Outcome outcome = fit("part.glb", {"--max-error", "2"});
   EXPECT_NE(outcome.err.find("both are in metres (stated by the format); if the error was meant in "
-                             "millimetres, ask for --max-error 4mm"),
+                             "millimetres, ask for --max-error 2mm"),
             std::string::npos)
       << outcome.err;
 }
