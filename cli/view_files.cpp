@@ -144,7 +144,7 @@ std::vector<ViewItem> view_items(const std::string& file, const std::string& uni
       return report_items(json, file);
     }
     if (json.is_object() && json.contains("deepest_leak")) return {leak_item(json, file)};
-    const ModelUnit unit = model_unit(file, {.units = units});
+    const ModelUnit unit = model_unit(file, {std::nullopt, units});
     return {{.name = file, .parts = {{read_model(file, {.scale = unit.scale}).mesh}}}};
   });
 }
