@@ -10,6 +10,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <system_error>
 
@@ -71,7 +72,11 @@ std::optional<Length> parse_length(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   Length length;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), length.value);
-  if (fault != std::errc()) return std::nullopt;
+  if (fault == std::errc::result_out_of_range) {
+    length.value = std::numeric_limits<double>::infinity();
+  } else if (fault != std::errc()) {
+    return std::nullopt;
+  }
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   if (text.empty()) return length;
   if (text.starts_with(' ')) text.remove_prefix(1);

@@ -37,7 +37,8 @@ struct Length {
   const LengthUnit* unit = nullptr;  // null: none is named
 };
 
-// Nothing for a text that is no number, alone or with a unit behind.
+// Nothing for a text that is no number, alone or with a unit behind; infinite for one that no double
+// holds.
 std::optional<Length> parse_length(std::string_view text);
 
 // The value of a length with a unit, in units of this size.

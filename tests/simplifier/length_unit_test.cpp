@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 namespace spherule::test {
@@ -30,6 +31,7 @@ TEST(LengthUnits, AreWrittenBehindTheNumber) {
   ASSERT_TRUE(parse_length("2.5"));
   EXPECT_EQ(parse_length("2.5")->value, 2.5);
   EXPECT_EQ(parse_length("2.5")->unit, nullptr);
+  EXPECT_TRUE(std::isinf(parse_length("1e999mm")->value));
   for (const char* wrong : {"", "mm", "1 ", "1km", "1mm ", "1  mm", "1,5mm", "0x10mm", "1mm2"}) {
     EXPECT_FALSE(parse_length(wrong)) << wrong;
   }
