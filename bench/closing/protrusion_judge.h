@@ -18,8 +18,8 @@ struct JudgeOptions {
   std::size_t most_nodes = 20'000'000;
   // Places at which spheres may protrude most, looked at again with steps down to an eighth, and
   // the nodes of each of these grids.
-  int looks = 6;
-  std::size_t most_nodes_of_look = 10'000'000;
+  int looks = 24;
+  std::size_t most_nodes_of_look = 3'000'000;
   // No further look is taken at what is known this closely.
   double tolerance = 0.0;
 };
