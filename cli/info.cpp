@@ -63,6 +63,9 @@ void print_spheres(const SphereFile& file) {
                  certificate.protrusion_over_simplified_max);
   print_optional("protrusion over the mesh, at most", certificate.protrusion_over_mesh_max);
   print_optional("volume ratio", certificate.volume_ratio);
+  print_optional("volume that stage 1 filled, about", certificate.filled_volume);
+  print_optional("ways into the part are filled up to D and this much, at most",
+                 certificate.closing_slack);
 }
 
 void print_tree(const SphereTree& tree) {

@@ -140,6 +140,9 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
       result.protrusion_in_zones.push_back(internal::greatest_in(zone, spheres, each));
     }
   }
+  if (options.external != nullptr && external.closing_slack > 0.0) {
+    result.closing_slack = external.closing_slack;
+  }
   if (options.protrusion_tolerance > 0.0) {
     if (options.progress) options.progress(-1.0, "measuring the protrusion");
     result.protrusion_over_mesh = internal::protrusion_over_mesh(
@@ -148,6 +151,11 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   if (options.volume && !spheres.empty() &&
       mesh_report(mesh, {.self_intersections = false}).closed) {
     result.volume_ratio = internal::estimate_volume_ratio(mesh, spheres);
+    if (options.external != nullptr) {
+      const internal::EstimatedVolume filled = internal::estimate_filled_volume(mesh, external);
+      result.filled_volume = filled.volume;
+      result.filled_volume_error = filled.error;
+    }
   }
   return result;
 }
@@ -164,6 +172,9 @@ CertificateRecord record(const Certificate& certificate) {
   r.protrusion_in_zones = certificate.protrusion_in_zones;
   r.sphere_count = certificate.sphere_count;
   r.volume_ratio = certificate.volume_ratio;
+  r.filled_volume = certificate.filled_volume;
+  r.filled_volume_error = certificate.filled_volume_error;
+  r.closing_slack = certificate.closing_slack;
   return r;
 }
 

@@ -78,6 +78,9 @@ ordered_json written(const CertificateRecord& record, const Refusal& refuse) {
   }
   certificate["sphere_count"] = record.sphere_count;
   put_optional("volume_ratio", record.volume_ratio);
+  put_optional("filled_volume", record.filled_volume);
+  put_optional("filled_volume_error", record.filled_volume_error);
+  put_optional("closing_slack", record.closing_slack);
   return certificate;
 }
 
@@ -185,6 +188,9 @@ CertificateRecord read_certificate(const json& value, std::size_t sphere_count,
   record.protrusion_over_simplified_max = optional("protrusion_over_simplified_max");
   record.protrusion_over_mesh_max = optional("protrusion_over_mesh_max");
   record.volume_ratio = optional("volume_ratio");
+  record.filled_volume = optional("filled_volume");
+  record.filled_volume_error = optional("filled_volume_error");
+  record.closing_slack = optional("closing_slack");
   if (const auto zones = value.find("zones"); zones != value.end()) {
     refuse.unless(zones->is_array(), where + ": \"zones\" is not a list");
     for (const json& zone : *zones) {

@@ -30,6 +30,11 @@ struct CertificateRecord {
   std::size_t sphere_count = 0;  // the number of spheres in the file, checked by both functions
   // Volume of the union of the balls over the volume of the solid mesh, estimated.
   std::optional<double> volume_ratio = std::nullopt;
+  // Volume between the solid and the mesh, and its standard error, estimated.
+  std::optional<double> filled_volume = std::nullopt;
+  std::optional<double> filled_volume_error = std::nullopt;
+  // How much wider than D a way into the solid may be and still have been filled, proved.
+  std::optional<double> closing_slack = std::nullopt;
 };
 
 // What an option in a file may be.

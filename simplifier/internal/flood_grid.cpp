@@ -295,6 +295,7 @@ std::vector<FloodGrid::Cell> FloodGrid::reached_cells_that_count() const {
 
 std::vector<FloodGrid::Frontier> FloodGrid::frontier() const {
   std::vector<Frontier> result;
+  std::vector<std::size_t> cells;  // of these
   std::vector<bool> seen(cells_.size(), false);
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (!cells_[i].finest) continue;
@@ -307,10 +308,29 @@ std::vector<FloodGrid::Frontier> FloodGrid::frontier() const {
       const Entry& reached = cells_[i].reached ? cells_[i] : cells_[other];
       if (seen[open]) return;
       seen[open] = true;
+      cells.push_back(open);
       result.push_back(
           {center(cells_[open]), {center(reached), reached.clearance}, edge(cells_[open].level)});
     };
     for_each_face_neighbour(cells_[i].level, decode(cells_[i].code), visit);
+  }
+  // Those that share no more than an edge or a corner with a reached one: two rings.
+  std::size_t begin = 0;
+  for (int ring = 0; ring < 2; ++ring) {
+    const std::size_t end = cells.size();
+    for (std::size_t k = begin; k < end; ++k) {
+      const Entry& inner = cells_[cells[k]];
+      const Cell from = result[k].neighbour;
+      for_each_face_neighbour(inner.level, decode(inner.code), [&](std::size_t i, const Index&) {
+        if (i >= cells_.size() || seen[i] || !cells_[i].finest || cells_[i].reached) return;
+        const Entry& cell = cells_[i];
+        seen[i] = true;
+        if (cell.clearance + half_diagonal(cell.level) < diameter_.least_radius()) return;
+        cells.push_back(i);
+        result.push_back({center(cell), from, edge(cell.level)});
+      });
+    }
+    begin = end;
   }
   return result;
 }

@@ -31,7 +31,8 @@ class FloodGrid {
     Eigen::Vector3d center;
     double clearance = 0.0;  // lower bound at the centre
   };
-  // A finest cell that was not reached beside one that was.
+  // A finest cell that was not reached near one that was: beside it, or with a ring or two of such
+  // cells between the two that are as near to it.
   struct Frontier {
     Eigen::Vector3d center;
     Cell neighbour;

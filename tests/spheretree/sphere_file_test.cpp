@@ -26,7 +26,10 @@ SphereFile full_file() {
                       .protrusion_over_simplified_max = 0.25,
                       .protrusion_over_mesh_max = kInfinity,
                       .sphere_count = 2,
-                      .volume_ratio = 1.3};
+                      .volume_ratio = 1.3,
+                      .filled_volume = 0.7,
+                      .filled_volume_error = 0.1,
+                      .closing_slack = 0.03};
   file.options = {{"max-error", 3.0},
                   {"seed", std::int64_t{3}},
                   {"negative", std::int64_t{-9}},
@@ -62,6 +65,9 @@ void expect_same(const SphereFile& a, const SphereFile& b) {
   EXPECT_EQ(a.certificate->protrusion_over_mesh_max, b.certificate->protrusion_over_mesh_max);
   EXPECT_EQ(a.certificate->sphere_count, b.certificate->sphere_count);
   EXPECT_EQ(a.certificate->volume_ratio, b.certificate->volume_ratio);
+  EXPECT_EQ(a.certificate->filled_volume, b.certificate->filled_volume);
+  EXPECT_EQ(a.certificate->filled_volume_error, b.certificate->filled_volume_error);
+  EXPECT_EQ(a.certificate->closing_slack, b.certificate->closing_slack);
 }
 
 SphereFile read(const std::string& text) {
