@@ -10,7 +10,6 @@
 #include "simplifier/internal/usable_spheres.h"
 #include "simplifier/internal/volume_ratio.h"
 #include "simplifier/mesh_distance.h"
-#include "simplifier/mesh_report.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -118,7 +117,7 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   if (options.progress) options.progress(-1.0, "proving the surface");
   internal::CoverageProof surface = internal::prove_surface(mesh, balls, finest);
   if (options.progress) options.progress(-1.0, "proving the solid");
-  const internal::ClosedShells shells(mesh);
+  const internal::ClosedShells shells(mesh, distance);
   // Every point of S is a witness against S; against |M| itself only one that is proved to be
   // inside.
   const internal::CoverageProof solid = internal::prove_solid(
@@ -145,8 +144,7 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
     result.protrusion_over_mesh = internal::protrusion_over_mesh(
         distance, shells, clearance, balls, options.protrusion_tolerance * diagonal);
   }
-  if (options.volume && !spheres.empty() &&
-      mesh_report(mesh, {.self_intersections = false}).closed) {
+  if (options.volume && !spheres.empty() && shells.is_mesh_closed()) {
     result.volume_ratio = internal::estimate_volume_ratio(mesh, spheres);
   }
   return result;
