@@ -6,6 +6,7 @@
 #include "simplifier/internal/closed_shells.h"
 #include "simplifier/internal/proof.h"
 #include "simplifier/internal/protrusion.h"
+#include "simplifier/internal/stages.h"
 #include "simplifier/internal/thread_limit.h"
 #include "simplifier/internal/usable_spheres.h"
 #include "simplifier/internal/volume_ratio.h"
@@ -49,13 +50,14 @@ void check_options(std::span<const Sphere> spheres, const CertifyOptions& option
 }
 
 // What certifies |M| itself: everything that a small ball cannot reach from outside.
-ExternalSpheres flood_closely(const TriangleMesh& mesh, double padding, double diagonal) {
+ExternalSpheres flood_closely(const TriangleMesh& mesh, const MeshDistance& distance,
+                              double padding) {
   ExternalOptions options;
-  options.min_external_diameter = kPointFlood * diagonal;
+  options.min_external_diameter = kPointFlood * distance.box().diagonal().norm();
   options.grid_step = options.min_external_diameter / 2.0;
   options.tightness = ExternalOptions::kNoTightness;
   options.padding = padding;
-  return place_external_spheres(mesh, options);
+  return internal::place_external_spheres(mesh, distance, options);
 }
 
 // Whether M grown by the padding is proved to be a subset of S: in the box, and met by no external
@@ -89,22 +91,10 @@ void bound_by_solid(internal::CoverageProof& surface, const internal::CoveragePr
   }
 }
 
-}  // namespace
-
-Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
-                    const CertifyOptions& options) {
-  validate(mesh, "mesh");
-  check_options(spheres, options);
-  const internal::ThreadLimit threads(options.threads);
-  const MeshDistance distance(mesh);
+Certificate proved(const TriangleMesh& mesh, const MeshDistance& distance,
+                   const ExternalSpheres& external, const Clearance& clearance,
+                   std::span<const Sphere> spheres, const CertifyOptions& options) {
   const double diagonal = distance.box().diagonal().norm();
-  const ExternalSpheres own = options.external != nullptr
-                                  ? ExternalSpheres{}
-                                  : flood_closely(mesh, options.padding, diagonal);
-  const ExternalSpheres& external = options.external != nullptr ? *options.external : own;
-  // The fine flood makes too many external balls for finding their contacts to pay.
-  const Clearance clearance =
-      options.external != nullptr ? Clearance(external, distance) : Clearance(external);
   const internal::BallHierarchy hierarchy(spheres);
   const internal::BallsToProve balls{spheres, hierarchy};
   const double largest = std::max(internal::largest_coordinate(distance.box()),
@@ -148,6 +138,31 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
     result.volume_ratio = internal::estimate_volume_ratio(mesh, spheres);
   }
   return result;
+}
+
+}  // namespace
+
+Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
+                    const CertifyOptions& options) {
+  validate(mesh, "mesh");
+  check_options(spheres, options);
+  const internal::ThreadLimit threads(options.threads);
+  const MeshDistance distance(mesh);
+  if (options.external != nullptr) {
+    return internal::certify(mesh, distance, Clearance(*options.external, distance), spheres,
+                             options);
+  }
+  const ExternalSpheres own = flood_closely(mesh, distance, options.padding);
+  // The fine flood makes too many external balls for finding their contacts to pay.
+  return proved(mesh, distance, own, Clearance(own), spheres, options);
+}
+
+Certificate internal::certify(const TriangleMesh& mesh, const MeshDistance& distance,
+                              const Clearance& clearance, std::span<const Sphere> spheres,
+                              const CertifyOptions& options) {
+  check_options(spheres, options);
+  const ThreadLimit threads(options.threads);
+  return proved(mesh, distance, *options.external, clearance, spheres, options);
 }
 
 CertificateRecord record(const Certificate& certificate) {

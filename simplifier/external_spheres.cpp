@@ -6,6 +6,7 @@
 #include "simplifier/internal/flood_grid.h"
 #include "simplifier/internal/local_diameter.h"
 #include "simplifier/internal/random_placement.h"
+#include "simplifier/internal/stages.h"
 #include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/mesh_report.h"
@@ -184,8 +185,14 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
 ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalOptions& options) {
   validate(mesh, "mesh");
   check_options(options);
-  const internal::ThreadLimit threads(options.threads);
-  const MeshDistance distance(mesh);
+  return internal::place_external_spheres(mesh, MeshDistance(mesh), options);
+}
+
+ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
+                                                 const MeshDistance& distance,
+                                                 const ExternalOptions& options) {
+  check_options(options);
+  const ThreadLimit threads(options.threads);
   ExternalSpheres result;
   result.padding = sum_up(options.padding, mesh.vertex_error);
   result.min_external_diameter = options.min_external_diameter;
