@@ -94,7 +94,10 @@ FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double s
   const double magnitude = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() + edge;
   if (shape.levels + halvings > 20 ||
       std::ldexp(step, -halvings) < 1e6 * kUnitRoundoff * magnitude) {
-    throw Error("grid step", "too fine for a model of this size");
+    throw Error("grid step",
+                "too fine for a model of this size, which is " + std::to_string(edge / step) +
+                    " steps wide: choose a larger max error or min external diameter, or fit the "
+                    "model in parts");
   }
   shape.origin = box.center() - Vector3d::Constant(std::ldexp(step, shape.levels) / 2.0);
   return shape;
