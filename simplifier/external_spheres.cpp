@@ -7,6 +7,7 @@
 #include "simplifier/internal/flood_grid.h"
 #include "simplifier/internal/local_diameter.h"
 #include "simplifier/internal/random_placement.h"
+#include "simplifier/internal/stages.h"
 #include "simplifier/internal/thread_limit.h"
 #include "simplifier/mesh_distance.h"
 #include "simplifier/mesh_report.h"
@@ -96,7 +97,10 @@ FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double s
   const double magnitude = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() + edge;
   if (shape.levels + halvings > 20 ||
       std::ldexp(step, -halvings) < 1e6 * kUnitRoundoff * magnitude) {
-    throw Error("grid step", "too fine for a model of this size");
+    throw Error("grid step",
+                "too fine for a model of this size, which is " + std::to_string(edge / step) +
+                    " steps wide: choose a larger max error or min external diameter, or fit the "
+                    "model in parts");
   }
   shape.origin = box.center() - Vector3d::Constant(std::ldexp(step, shape.levels) / 2.0);
   return shape;
@@ -239,8 +243,14 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
 ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalOptions& options) {
   validate(mesh, "mesh");
   check_options(options);
-  const internal::ThreadLimit threads(options.threads);
-  const MeshDistance distance(mesh);
+  return internal::place_external_spheres(mesh, MeshDistance(mesh), options);
+}
+
+ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
+                                                 const MeshDistance& distance,
+                                                 const ExternalOptions& options) {
+  check_options(options);
+  const ThreadLimit threads(options.threads);
   ExternalSpheres result;
   result.padding = sum_up(options.padding, mesh.vertex_error);
   result.min_external_diameter = options.min_external_diameter;

@@ -3,6 +3,7 @@
 
 #include "simplifier/cover.h"
 #include "simplifier/internal/clearance.h"
+#include "simplifier/mesh_distance.h"
 
 namespace spherule {
 
@@ -17,7 +18,7 @@ namespace spherule {
 // since the next round would try the same one again; and where the grown ball slides so far from a
 // sharp tip that the tip stays further than half the limit, the last position on its way that does
 // not is taken.
-SphereCover place_internal_spheres(const TriangleMesh& mesh, const Clearance& clearance,
-                                   const CoverOptions& options);
+SphereCover place_internal_spheres(const TriangleMesh& mesh, const MeshDistance& distance,
+                                   const Clearance& clearance, const CoverOptions& options);
 
 }  // namespace spherule
