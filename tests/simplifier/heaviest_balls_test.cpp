@@ -35,20 +35,20 @@ void check(const TriangleMesh& mesh, double max_error, double diameter) {
   };
   std::vector<Vector3d> points;
   std::vector<double> weights;
-  while (points.size() < 1500) {
+  while (points.size() < 800) {
     // Onto the boundary of S, along which what spheres hold differs most.
     Vector3d p = point_in(0.0);
     const ClearanceAt at = clearance(p);
     if (at.lower < 0.0) continue;
     p -= at.away * at.lower;
     points.push_back(p);
-    weights.push_back(unit(random) < 0.7 ? 0.0 : 0.1 * unit(random));
+    weights.push_back(unit(random) < 0.7 ? 0.0 : 0.2 * unit(random));
   }
   const HeaviestBalls balls(clearance, max_error, points);
   const HeaviestBalls::Found found =
-      balls.find({.weights = weights, .finest = 0.06 * max_error, .news = 1.05});
+      balls.find({.weights = weights, .finest = 0.1 * max_error, .news = 1.05});
   double heaviest = 0.0;
-  for (int i = 0; i < effort(20000, 2000); ++i) {
+  for (int i = 0; i < effort(8000, 500); ++i) {
     Vector3d center = point_in(max_error);
     ClearanceAt at = clearance(center);
     // Away from the contact spheres grow, up to the medial axis.
