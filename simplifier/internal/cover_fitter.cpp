@@ -64,8 +64,8 @@ constexpr std::size_t kHopefulLeaks = 8;
 constexpr std::size_t kOpenRows = 100;  // that candidates are made for in a round
 
 // What a lower bound is made of, for every ball proved and at least.
-constexpr std::size_t kBoundPoints = 40;
-constexpr std::size_t kMinBoundPoints = 2000;
+constexpr std::size_t kBoundPoints = 120;
+constexpr std::size_t kMinBoundPoints = 6000;
 constexpr std::size_t kBoundCenters = 20;
 constexpr std::size_t kMinBoundCenters = 1000;
 
