@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/check_length.h"
+#include "cli/audit_bodies.h"
+#include "cli/audit_proof.h"
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
 #include "cli/json.h"
 #include "cli/model_file.h"
+#include "cli/model_unit.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
@@ -19,7 +21,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -31,16 +32,6 @@
 
 namespace spherule {
 namespace {
-
-struct AuditArguments {
-  std::string mesh;
-  std::string spheres;
-  std::optional<double> scale;
-  std::optional<double> min_external;
-  std::optional<double> max_error;
-  std::string repaired;
-  bool json = false;
-};
 
 // Runs what depends on the options in the file, and blames the file for what is wrong with them.
 template <typename Use>
@@ -108,14 +99,15 @@ Json json_of(std::span<const LeakPoint> leaks) {
 
 // --max-error is not among the options to repeat: it comes with --repair only.
 std::vector<NextStep> steps_after_leak(const AuditArguments& arguments, double scale) {
-  std::vector<std::string> mend = {"audit", arguments.mesh, arguments.spheres};
-  repeat("--scale", arguments.scale, mend);
+  std::vector<std::string> mend = {"audit", arguments.models.front(), arguments.spheres};
+  repeat("--scale", arguments.unit.scale, mend);
+  repeat("--units", arguments.unit.units, mend);
   repeat("--min-external", arguments.min_external, mend);
   repeat("--repair", beside(arguments.spheres, ".mended.json"), mend);
   std::vector<NextStep> steps = {{std::move(mend), "make them cover"}};
   // `view` has no scale: its page would mix units.
   if (scale == 1.0) {
-    steps.push_back({{"view", arguments.mesh, arguments.spheres, "--leaks", "-o",
+    steps.push_back({{"view", arguments.models.front(), arguments.spheres, "--leaks", "-o",
                       beside(arguments.spheres, ".html")},
                      "see where they leak"});
   }
@@ -155,53 +147,70 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
             << describe(mended->certificate, name_of(external));
 }
 
+// Reads as the file says, or as the command line does; lengths of the command line become those of
+// the output.
+ModelReadOptions reading_of(const AuditArguments& arguments, const SphereFile& file) {
+  const ModelReadOptions stored = blaming_file(arguments, [&] { return stored_reading(file); });
+  UnitArguments unit = arguments.unit;
+  take_stored_unit(arguments.spheres, file, stored, unit);
+  const ModelUnit found = [&] {
+    try {
+      return model_unit(arguments.models.front(), unit);
+    } catch (const Error& error) {
+      if (error.subject() != "--scale" || arguments.unit.scale) throw;
+      std::ostringstream text;
+      text << "was fitted with the scale " << stored.scale << ", which does not make "
+           << unit_named(unit.units)->plural << " of " << arguments.models.front();
+      throw Error(arguments.spheres, text.str());
+    }
+  }();
+  arguments.lengths.convert(length_context(arguments.models.front(), found));
+  // Lengths are in output units, so that they suit no other scale.
+  ModelReadOptions reading = arguments.unit.scale ? ModelReadOptions{} : stored;
+  reading.scale = found.scale;
+  reading.units = unit.units;
+  return reading;
+}
+
+// With more than two files the last is the spheres.
+void name_spheres_last(AuditArguments& arguments) {
+  for (const std::string& file : arguments.more) {
+    arguments.models.push_back(std::exchange(arguments.spheres, file));
+  }
+}
+
 int audit(const AuditArguments& arguments) {
   const bool mend = !arguments.repaired.empty();
-  check_outputs({arguments.repaired}, {arguments.mesh, arguments.spheres});
+  check_outputs({arguments.repaired}, {arguments.models.front(), arguments.spheres});
   const SphereFile file = load_spheres(arguments.spheres);
+  if (!file.bodies.empty()) return audit_bodies(arguments, file);
+  if (arguments.models.size() > 1) {
+    throw Error(arguments.spheres, "is of one body, but several models are named");
+  }
   SimplifyOptions options =
       blaming_file(arguments, [&] { return options_from_record(file.options); });
-  // Lengths are in output units, so that they suit no other scale.
-  const ModelReadOptions reading =
-      arguments.scale ? ModelReadOptions{.scale = *arguments.scale}
-                      : blaming_file(arguments, [&] { return stored_reading(file); });
+  const ModelReadOptions reading = reading_of(arguments, file);
   ProgressBar bar;
   bar.announce("reading");
-  const ModelFile model = read_model(arguments.mesh, reading);
+  const ModelFile model = read_model(arguments.models.front(), reading);
   const TriangleMesh& mesh = model.mesh;
 
   options.progress = bar.callback();
-  CertifyOptions certify_options;
-  certify_options.padding = options.padding;
-  certify_options.progress = options.progress;
-  if (arguments.min_external) {
-    if (!(*arguments.min_external > 0.0) || !std::isfinite(*arguments.min_external)) {
-      throw Error("--min-external", "must be positive and finite");
-    }
-    options.min_external_diameter = *arguments.min_external;
-    if (options.external == ExternalPlacement::kNone) {
-      options.external = ExternalPlacement::kReachable;
-    }
-  }
+  const bool has_diameter = take_min_external(arguments.min_external, options);
   if (mend) {
     // What is added or grown needs a solid to keep to.
     if (options.max_error == 0.0) options.max_error = arguments.max_error.value_or(0.0);
     complete_lengths(options, mesh);
   }
-  std::optional<ExternalSpheres> external;
-  if (mend || arguments.min_external || file.options.contains("min-external")) {
-    const auto place = [&] { return place_external_spheres(mesh, external_options(options)); };
-    external = arguments.min_external ? place() : blaming_file(arguments, place);
-    certify_options.external = &*external;
-    // A file that says how it was fitted was proved at this resolution.
-    certify_options.resolution = proof_resolution(tightest_error(options.zones, options.max_error),
-                                                  external->box.diagonal().norm());
-    certify_options.zones = options.zones;
-  }
-  const Certificate certificate = certify(mesh, file.spheres, certify_options);
+  const bool against_solid = mend || has_diameter || file.options.contains("min-external");
+  std::optional<SolidProof> proof;
+  const auto place = [&] { proof.emplace(mesh, options, against_solid); };
+  has_diameter ? place() : blaming_file(arguments, place);
+  const std::optional<ExternalSpheres>& external = proof->external();
+  const Certificate certificate = certify(mesh, file.spheres, proof->options());
   std::optional<Repaired> mended;
   if (mend) {
-    mended = repaired(arguments, model, reading, file, options, certify_options);
+    mended = repaired(arguments, model, reading, file, options, proof->options());
     write_uninterrupted([&] { save_spheres(mended->file, arguments.repaired); });
   }
   bar.clear();
@@ -216,16 +225,21 @@ void add_audit(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("audit", "Prove whether spheres cover a mesh; exit 0 covered, 1 leaks");
   auto arguments = std::make_shared<AuditArguments>();
-  command->add_option("mesh", arguments->mesh, "The mesh, or STEP or IGES")
+  command->add_option("mesh", arguments->models.front(), "The mesh, or STEP or IGES")
       ->required()
       ->type_name(kFile);
   command->add_option("spheres", arguments->spheres, "Spheres (JSON), of any origin")
       ->required()
       ->type_name(kFile);
-  command->add_option("--scale", arguments->scale,
-                      "Output units per mesh unit (default: as the spheres were fitted)");
-  command->add_option("--min-external", arguments->min_external,
-                      "D, against which simplified solid (default: as the spheres were fitted)");
+  command
+      ->add_option("more", arguments->more,
+                   "Where the spheres are of several meshes: name all of these, then the spheres")
+      ->type_name(kFile);
+  add_unit_options(*command, arguments->unit,
+                   "Output units per mesh unit (default: as the spheres were fitted)");
+  arguments->lengths.add_positive(
+      *command, "--min-external", arguments->min_external,
+      "D, against which simplified solid (default: as the spheres were fitted)");
   command->add_flag("--json", arguments->json, "Print the certificate as JSON");
   CLI::Option* repair =
       command
@@ -234,21 +248,23 @@ void add_audit(CLI::App& app, int& exit_code) {
                        "cover; exit 0 then says that these do. Without D anywhere it is 4 E, E "
                        "being --max-error or 1 % of the box diagonal")
           ->type_name(kFile);
-  command
-      ->add_option("--max-error", arguments->max_error,
-                   "How far a repaired sphere may protrude (default: as the spheres were fitted, "
-                   "or as far as half of them do)")
-      ->check(CLI::PositiveNumber)
-      ->check(check_length)
+  arguments->lengths
+      .add_positive(*command, "--max-error", arguments->max_error,
+                    "How far a repaired sphere may protrude (default: as the spheres were fitted, "
+                    "or as far as half of them do)")
       ->needs(repair);
   command->footer(to_text(
       {.text = "Any spheres will do: {\"format\": \"spherule-spheres\", \"version\": 1, "
                "\"options\": {}, \"spheres\": [{\"center\": [x, y, z], \"radius\": r}]}.",
        .exit_codes = "0 proved to cover (with --repair: the repaired ones); 1 leaks, or not proved",
        .examples = {"spherule audit part.stl part.json",
-                    "spherule audit part.stl others.json --repair mended.json --max-error 2",
+                    "spherule audit part.stl others.json --repair mended.json --units mm "
+                    "--max-error 2mm",
                     "spherule audit part.stl part.json --json"}}));
-  command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
+  command->callback([arguments, &exit_code] {
+    name_spheres_last(*arguments);
+    exit_code = audit(*arguments);
+  });
 }
 
 }  // namespace spherule

@@ -2,10 +2,10 @@
 #include "robot/cover/audit_robot.h"
 
 #include "cli/audit_robot_report.h"
-#include "cli/check_length.h"
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
+#include "cli/length_options.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
@@ -45,6 +45,7 @@ struct AuditRobotArguments {
   std::string repaired;
   PairSources pairs;
   std::optional<double> max_error;
+  LengthOptions lengths;
   std::optional<double> min_external;
   bool json = false;
 };
@@ -215,28 +216,28 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
                    "Where the file goes with spheres grown and added so that they cover every "
                    "link; exit 0 then says that these do")
       ->type_name(kFile);
-  command
-      ->add_option("--max-error", arguments->max_error,
-                   "E, metres: for which the spheres were made (default 0.01), and how far a "
-                   "repaired one may protrude (default: as far as half of the link's spheres do, "
-                   "and at least 1 % of its box diagonal)")
-      ->check(CLI::PositiveNumber)
-      ->check(check_length);
-  command
-      ->add_option("--min-external", arguments->min_external,
-                   "D, metres, for which the spheres were made (default: 4 E)")
-      ->check(CLI::PositiveNumber)
-      ->check(check_length);
-  command->footer(
-      to_text({.text = "Lengths are in metres, as in the URDF; the table is in millimetres.",
-               .exit_codes = "0 every link is proved to be covered (with --poses: in these; with "
-                             "--repair: by the repaired spheres); 1 leaks, or not proved",
-               .examples = {"spherule audit-robot robot.urdf robot.curobo.yml",
-                            "spherule audit-robot robot.urdf robot.spheres.urdf --geometry visual "
-                            "--poses path.csv",
-                            "spherule audit-robot robot.urdf robot.curobo.yml --repair "
-                            "mended.yml --json"}}));
-  command->callback([arguments, &exit_code] { exit_code = audit(*arguments); });
+  arguments->lengths.add_positive(
+      *command, "--max-error", arguments->max_error,
+      "E, metres: for which the spheres were made (default 0.01), and how far a repaired one may "
+      "protrude (default: as far as half of the link's spheres do, and at least 1 % of its box "
+      "diagonal)");
+  arguments->lengths.add_positive(*command, "--min-external", arguments->min_external,
+                                  "D, metres, for which the spheres were made (default: 4 E)");
+  command->footer(to_text(
+      {.text =
+           "Lengths are in metres, as in the URDF, or have a unit of their own (5mm); the table is "
+           "in millimetres.",
+       .exit_codes = "0 every link is proved to be covered (with --poses: in these; with "
+                     "--repair: by the repaired spheres); 1 leaks, or not proved",
+       .examples = {"spherule audit-robot robot.urdf robot.curobo.yml",
+                    "spherule audit-robot robot.urdf robot.spheres.urdf --geometry visual "
+                    "--poses path.csv",
+                    "spherule audit-robot robot.urdf robot.curobo.yml --repair "
+                    "mended.yml --json"}}));
+  command->callback([arguments, &exit_code] {
+    arguments->lengths.convert(metres());
+    exit_code = audit(*arguments);
+  });
 }
 
 }  // namespace spherule

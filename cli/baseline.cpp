@@ -19,12 +19,18 @@ CLI::App* add_baseline_method(CLI::App& baseline, const BaselineText& text,
       ->required()
       ->type_name(kFile);
   command->add_option("-o,--output", arguments.output, output_help)->required()->type_name(kFile);
-  command->add_option("--scale", arguments.scale, "Output units per mesh unit (default: 1)");
+  add_unit_options(*command, arguments.unit, "Output units per mesh unit (default: 1)");
   command->add_flag("--json", arguments.json, "Print the figures as JSON");
   HelpFooter end = footer;
   end.examples = {text.example};
   command->footer(to_text(end));
   return command;
+}
+
+ModelUnit converted_unit(const BaselineArguments& arguments) {
+  ModelUnit unit = model_unit(arguments.mesh, arguments.unit);
+  arguments.lengths.convert(length_context(arguments.mesh, unit));
+  return unit;
 }
 
 void print_figures(const Json& figures) {

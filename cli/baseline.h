@@ -3,6 +3,8 @@
 
 #include "cli/help.h"
 #include "cli/json.h"
+#include "cli/length_options.h"
+#include "cli/model_unit.h"
 
 #include <string>
 #include <vector>
@@ -17,7 +19,8 @@ namespace spherule {
 struct BaselineArguments {
   std::string mesh;
   std::string output;
-  double scale = 1.0;
+  UnitArguments unit;
+  LengthOptions lengths;
   bool json = false;
 };
 
@@ -37,6 +40,9 @@ std::vector<std::string> add_sphere_baselines(CLI::App& baseline, int& exit_code
 CLI::App* add_baseline_method(CLI::App& baseline, const BaselineText& text,
                               BaselineArguments& arguments, const char* output_help,
                               const HelpFooter& footer);
+
+// Converts the lengths of the command line to output units, and returns those.
+ModelUnit converted_unit(const BaselineArguments& arguments);
 
 // A line for every figure: its name, and its value as JSON.
 void print_figures(const Json& figures);

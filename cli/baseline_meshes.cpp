@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/baseline.h"
-#include "cli/check_length.h"
 #include "cli/command.h"
 #include "cli/interruption.h"
 #include "cli/mesh_output.h"
@@ -46,9 +45,8 @@ void add_decimation(CLI::App& command, MeshArguments& arguments) {
   auto* triangles = command.add_option("--triangles", options.target_triangles,
                                        "How many triangles are wanted (default: few)");
   triangles->check(CLI::PositiveNumber);
-  auto* error = command.add_option("--max-error", options.max_error,
-                                   "Largest error as the library estimates it: no bound");
-  error->check(check_length);
+  auto* error = arguments.lengths.add(command, "--max-error", options.max_error,
+                                      "Largest error as the library estimates it: no bound");
   // Without either, hardly anything would be left.
   auto* limits = command.add_option_group("limits");
   limits->add_options(triangles, error);
@@ -65,10 +63,8 @@ BaselineMeshes run_decimation(const TriangleMesh& mesh, const MeshArguments& arg
 }
 
 void add_hull(CLI::App& command, MeshArguments& arguments) {
-  command
-      .add_option("--padding", arguments.hull.padding,
-                  "Hold balls of this radius about every vertex")
-      ->check(check_length);
+  arguments.lengths.add(command, "--padding", arguments.hull.padding,
+                        "Hold balls of this radius about every vertex");
 }
 
 BaselineMeshes run_hull(const TriangleMesh& mesh, const MeshArguments& arguments) {
@@ -83,10 +79,8 @@ BaselineMeshes run_hull(const TriangleMesh& mesh, const MeshArguments& arguments
 
 void add_decomposition(CLI::App& command, MeshArguments& arguments) {
   ConvexDecompositionOptions& options = arguments.decomposition;
-  command
-      .add_option("--concavity", options.max_concavity,
-                  "Concavity at which parts stay apart (default: 1 % of the box diagonal)")
-      ->check(check_length);
+  arguments.lengths.add(command, "--concavity", options.max_concavity,
+                        "Concavity at which parts stay apart (default: 1 % of the box diagonal)");
   command.add_option("--parts", options.min_parts, "No fewer parts than this")
       ->check(CLI::PositiveNumber);
 }
@@ -132,7 +126,7 @@ int run_method(const Method& method, const MeshArguments& arguments) {
   check_mesh_output(arguments.output);
   ProgressBar bar;
   bar.announce(method.text.name);
-  const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
+  const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = converted_unit(arguments).scale});
   const BaselineMeshes result = method.run(mesh, arguments);
   bar.clear();
   write_uninterrupted([&] { write_meshes(result.meshes, arguments.output); });

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/baseline_spheres.h"
-#include "cli/check_length.h"
 #include "cli/outline.h"
 #include "spheretree/error.h"
 #include "spheretree/refit.h"
@@ -21,9 +20,6 @@ const std::map<std::string, SphereReduction> kReductions = {{"merge", SphereRedu
                                                             {"best", SphereReduction::kBest}};
 
 // What options of several methods say.
-CLI::Option* add_length(CLI::App& command, const char* name, double& length, const char* help) {
-  return command.add_option(name, length, help)->check(CLI::PositiveNumber)->check(check_length);
-}
 
 // Without the check CLI11 takes -1 for the largest number; files store 63 bits.
 void add_seed(CLI::App& command, SphereArguments& arguments) {
@@ -68,11 +64,13 @@ Filling filling_of(const SphereArguments& arguments) {
 
 void add_voxels(CLI::App& command, SphereArguments& arguments) {
   arguments.ball = "circumscribed";
-  CLI::Option* step = add_length(command, "--step", arguments.voxelisation.step, "Edge of a voxel");
+  CLI::Option* step = arguments.lengths.add_positive(command, "--step", arguments.voxelisation.step,
+                                                     "Edge of a voxel");
   require_one(command, step,
-              add_length(command, "--max-error", arguments.voxelisation.max_error,
-                         "As large as a step may be for balls around voxels to protrude by no "
-                         "more than this"));
+              arguments.lengths.add_positive(
+                  command, "--max-error", arguments.voxelisation.max_error,
+                  "As large as a step may be for balls around voxels to protrude by no "
+                  "more than this"));
   command
       .add_option("--ball", arguments.ball,
                   "What stands for a voxel: circumscribed, the ball around it (default), or "
@@ -102,12 +100,14 @@ MadeSpheres run_voxels(const TriangleMesh& mesh, const SphereArguments& argument
 
 void add_packing(CLI::App& command, SphereArguments& arguments) {
   SpherePackingOptions& options = arguments.packing;
-  add_length(command, "--max-error", options.max_error,
-             "No point of the solid is further than this from the spheres")
+  arguments.lengths
+      .add_positive(command, "--max-error", options.max_error,
+                    "No point of the solid is further than this from the spheres")
       ->required();
-  add_length(command, "--closed-below", options.closed_below,
-             "Ways into the solid that are narrower than this count as closed (default: half of "
-             "--max-error)");
+  arguments.lengths.add_positive(
+      command, "--closed-below", options.closed_below,
+      "Ways into the solid that are narrower than this count as closed (default: half of "
+      "--max-error)");
   command.add_flag("--inflated", arguments.inflated,
                    "Grow every sphere by the proved error of the packing, so that they cover");
   add_seed(command, arguments);
@@ -138,9 +138,11 @@ MadeSpheres run_packing(const TriangleMesh& mesh, const SphereArguments& argumen
 
 void add_filling(CLI::App& command, SphereArguments& arguments) {
   LevelSetPackingOptions& options = arguments.level_set;
-  add_length(command, "--step", options.step, "Edge of a voxel of the level set")->required();
-  add_length(command, "--min-radius", options.min_radius,
-             "No sphere is smaller (default: half of --step)");
+  arguments.lengths
+      .add_positive(command, "--step", options.step, "Edge of a voxel of the level set")
+      ->required();
+  arguments.lengths.add_positive(command, "--min-radius", options.min_radius,
+                                 "No sphere is smaller (default: half of --step)");
   command.add_option("--spheres", options.max_spheres, "At most so many (default: 10000)")
       ->check(CLI::PositiveNumber);
 }
@@ -162,9 +164,9 @@ void add_medial(CLI::App& command, SphereArguments& arguments) {
   CLI::Option* spheres =
       command.add_option("--spheres", arguments.medial.spheres, "At most so many (default: 512)");
   spheres->check(CLI::PositiveNumber);
-  CLI::Option* protrusion =
-      add_length(command, "--max-protrusion", arguments.medial.max_protrusion,
-                 "As few as protrude by no more than this, instead of a number of them");
+  CLI::Option* protrusion = arguments.lengths.add_positive(
+      command, "--max-protrusion", arguments.medial.max_protrusion,
+      "As few as protrude by no more than this, instead of a number of them");
   protrusion->excludes(spheres);
   command
       .add_option("--reduction", arguments.reduction,
@@ -237,8 +239,9 @@ void add_octree(CLI::App& command, SphereArguments& arguments) {
       command.add_option("--depth", arguments.octree.depth, "Halvings of the cube around the mesh");
   depth->check(CLI::PositiveNumber);
   require_one(command, depth,
-              add_length(command, "--max-error", arguments.octree.max_error,
-                         "Halve cubes until their balls protrude by no more than this"));
+              arguments.lengths.add_positive(
+                  command, "--max-error", arguments.octree.max_error,
+                  "Halve cubes until their balls protrude by no more than this"));
   add_surface(command, arguments);
   add_tree_file(command, arguments,
                 "Where the tree of the method goes; if spheres had to grow, the smallest balls "

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/baseline_spheres.h"
 
-#include "cli/check_length.h"
 #include "cli/command.h"
 #include "cli/interruption.h"
 #include "cli/output.h"
@@ -62,7 +61,8 @@ void print(const SphereArguments& arguments, Json figures, const ConservativeSph
 
 int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
   check_outputs({arguments.output, arguments.tree_file}, {arguments.mesh});
-  const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = arguments.scale});
+  const double scale = converted_unit(arguments).scale;
+  const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = scale});
   double making = 0.0;
   double certifying = 0.0;
   MadeSpheres made;
@@ -80,7 +80,8 @@ int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
 
   SphereFile file = {result.spheres, record(result.certificate), std::move(made.options)};
   file.options["baseline"] = std::string(method.text.name);
-  file.options["scale"] = arguments.scale;
+  file.options["scale"] = scale;
+  if (!arguments.unit.units.empty()) file.options["units"] = arguments.unit.units;
   file.options["padding"] = arguments.padding;
   Json figures = {{"method", method.text.name}, {"sphere_count", result.spheres.size()}};
   figures.update(made.figures);
@@ -112,10 +113,8 @@ std::vector<std::string> add_sphere_baselines(CLI::App& baseline, int& exit_code
          .exit_codes = "0 the spheres are proved to cover the mesh and its inside, as `spherule "
                        "audit` proves it; 1 they are not"});
     method.add_options(*command, *arguments);
-    command
-        ->add_option("--padding", arguments->padding,
-                     "The mesh grown by this much is to be covered (default: 0)")
-        ->check(check_length);
+    arguments->lengths.add(*command, "--padding", arguments->padding,
+                           "The mesh grown by this much is to be covered (default: 0)");
     command->add_flag("--conservative", arguments->conservative,
                       "Grow every sphere by the proved uncovered depth, so that they cover");
     command->add_option("--threads", arguments->threads, "Threads, 0: all; the result is the same")

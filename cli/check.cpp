@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/check_length.h"
 #include "cli/check_report.h"
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/length_options.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/progress.h"
@@ -43,6 +43,7 @@ struct CheckArguments {
   std::vector<std::string> packages;
   RobotCoverOptions cover;
   double resolution = EdgeRequest{}.resolution;
+  LengthOptions lengths;
   bool edges = false;
   bool json = false;
 };
@@ -317,8 +318,9 @@ void add_check(CLI::App& app, int& exit_code) {
       ->type_name(kFile);
   command->add_flag("--edges", arguments->edges,
                     "Prove every motion from one configuration to the next");
-  command->add_option("--resolution", arguments->resolution,
-                      "With --edges: how closely motions are looked at, in metres (default 1e-4)");
+  arguments->lengths.add(
+      *command, "--resolution", arguments->resolution,
+      "With --edges: how closely motions are looked at, in metres (default 1e-4)");
   command
       ->add_option("--spheres", arguments->spheres,
                    "Spheres of the robot, in any format that audit-robot reads (default: cover "
@@ -329,11 +331,9 @@ void add_check(CLI::App& app, int& exit_code) {
                    "What is proved of the pairs of the robot's links (NAME.pairs of robot, covered "
                    "without padding): where two are proved free their spheres are not tested")
       ->type_name(kFile);
-  command
-      ->add_option("--max-error", arguments->cover.max_error,
-                   "Without --spheres: how far spheres may protrude, in metres (default 0.01)")
-      ->check(CLI::PositiveNumber)
-      ->check(check_length);
+  arguments->lengths.add_positive(
+      *command, "--max-error", arguments->cover.max_error,
+      "Without --spheres: how far spheres may protrude, in metres (default 0.01)");
   command
       ->add_option("--effort", arguments->cover.effort,
                    "Without --spheres: how long to look for fewer spheres, as fit has it")
@@ -351,7 +351,10 @@ void add_check(CLI::App& app, int& exit_code) {
                .examples = {"spherule check robot.urdf cell.json path.csv",
                             "spherule check robot.urdf cell.json path.csv --edges --spheres "
                             "robot.spheres.json --json"}}));
-  command->callback([arguments, &exit_code] { exit_code = check(*arguments); });
+  command->callback([arguments, &exit_code] {
+    arguments->lengths.convert(metres());
+    exit_code = check(*arguments);
+  });
 }
 
 }  // namespace spherule

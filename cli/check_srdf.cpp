@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/check_length.h"
+#include "cli/check_number.h"
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/outline.h"
@@ -146,7 +146,7 @@ void add_check_srdf(CLI::App& app, int& exit_code) {
       ->add_option("--seconds", arguments->options.seconds,
                    "Prove for so long at most; pairs that are left are unknown (default: no limit)")
       ->check(CLI::PositiveNumber)
-      ->check(check_length);
+      ->check(check_not_negative);
   command
       ->add_option("--threads", arguments->options.threads,
                    "Threads, 0: all; without --seconds the result is the same")

@@ -75,24 +75,30 @@ Json to_json(const CoverBreakdown& breakdown) {
 
 }  // namespace
 
-std::string fit_report(const std::string& mesh_file, const ModelFile& model,
-                       const MeshReport& report, const Simplification& result,
-                       const CoverBreakdown& breakdown, double scale, ReportContent content) {
+Json to_json(const FittedModel& model, const Simplification& result, ReportContent content) {
   Json json;
-  json["format"] = "spherule-report";
-  json["version"] = 1;
-  json["mesh"] = to_json(mesh_file, model.mesh, report);
+  json["mesh"] = to_json(model.name, model.mesh, model.report);
   if (model.cad) json["cad"] = to_json(*model.cad);
-  json["options"] = spherule::to_json(option_record(result.options, scale));
+  json["options"] = to_json(option_record(result.options, model.scale));
   json["seconds"] = {{"external", result.times.external},
                      {"cover", result.times.cover},
                      {"levels", result.times.levels},
                      {"certify", result.times.certify}};
-  json["certificate"] = spherule::to_json(result.certificate);
-  json["simplified_solid"] = spherule::to_json(result.external, content);
+  json["certificate"] = to_json(result.certificate);
+  json["simplified_solid"] = to_json(result.external, content);
   json["cover"] = to_json(result.cover);
-  json["analysis"] = to_json(breakdown);
   json["levels"] = to_json(result.levels);
+  return json;
+}
+
+std::string fit_report(const FittedModel& model, const ModelUnit& unit,
+                       const Simplification& result, const CoverBreakdown& breakdown,
+                       ReportContent content) {
+  Json json = to_json(model, result, content);
+  json["format"] = "spherule-report";
+  json["version"] = 1;
+  json["unit"] = to_json(unit);
+  json["analysis"] = to_json(breakdown);
   // Indented, hundreds of thousands of external spheres would take three times the room.
   return to_text(json, Layout::kCompact);
 }

@@ -2,22 +2,34 @@
 #pragma once
 
 #include "cli/model_file.h"
+#include "cli/model_unit.h"
 #include "cli/report_content.h"
 #include "mesh/mesh_report.h"
 #include "simplifier/cover_breakdown.h"
 #include "simplifier/simplify.h"
 
+#include <optional>
 #include <string>
 
 namespace spherule {
 
-// The text of REPORT.json: everything that is needed to judge a fit without repeating it: mesh,
-// options, times, the simplified solid (box, D, padding, external spheres), history, certificate,
-// and where the spheres stand.
-// `mesh_file` is named in it; `scale` is the one the mesh was read with.
-std::string fit_report(const std::string& mesh_file, const ModelFile& model,
-                       const MeshReport& report, const Simplification& result,
-                       const CoverBreakdown& breakdown, double scale, ReportContent content);
+// What a fit was of: a file, or a body of one.
+struct FittedModel {
+  const std::string& name;
+  const TriangleMesh& mesh;
+  const std::optional<CadPart>& cad;
+  double scale;
+  const MeshReport& report;
+};
+
+// What it takes to judge a fit without repeating it: mesh, options, times, the simplified solid
+// (box, D, padding, external spheres), history and certificate.
+Json to_json(const FittedModel& model, const Simplification& result, ReportContent content);
+
+// The text of REPORT.json: that, the unit, and where the spheres stand.
+std::string fit_report(const FittedModel& model, const ModelUnit& unit,
+                       const Simplification& result, const CoverBreakdown& breakdown,
+                       ReportContent content);
 
 // Where the spheres stand, as a line for a person.
 std::string describe(const CoverBreakdown& breakdown);

@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/model_file.h"
+#include "cli/model_unit.h"
 #include "cli/outline.h"
 #include "cli/recognize.h"
 #include "mesh/mesh_report.h"
@@ -35,6 +36,13 @@ void print_spheres(const SphereFile& file) {
     std::cout << "radius: " << smallest->radius << " to " << largest->radius << "\n";
     print_ball("enclosing sphere", enclosing_sphere(file.spheres));
   }
+  if (!file.bodies.empty()) std::cout << "bodies: " << file.bodies.size() << "\n";
+  for (const BodyRecord& body : file.bodies) {
+    std::cout << "  " << body.name << ": " << body.sphere_count << " spheres, "
+              << (body.certificate && body.certificate->covered ? "covered" : "not covered");
+    if (body.copy) std::cout << ", copy of " << file.bodies[body.copy->of].name;
+    std::cout << "\n";
+  }
   for (const auto& [name, value] : file.options) {
     std::cout << "option " << name << ": ";
     std::visit([](const auto& v) { std::cout << v << "\n"; }, value);
@@ -55,6 +63,9 @@ void print_spheres(const SphereFile& file) {
                  certificate.protrusion_over_simplified_max);
   print_optional("protrusion over the mesh, at most", certificate.protrusion_over_mesh_max);
   print_optional("volume ratio", certificate.volume_ratio);
+  print_optional("volume that stage 1 filled, about", certificate.filled_volume);
+  print_optional("ways into the part are filled up to D and this much, at most",
+                 certificate.closing_slack);
 }
 
 void print_tree(const SphereTree& tree) {
@@ -70,9 +81,13 @@ void print_tree(const SphereTree& tree) {
 int info(const std::string& file) {
   switch (recognize(file)) {
     case FileKind::kMesh: {
+      ModelUnit unit = model_unit(file, {});
       const ModelFile model = read_model(file);
-      if (model.cad) std::cout << describe(*model.cad);
-      std::cout << describe(mesh_report(model.mesh)) << "\n";
+      if (model.cad) {
+        note_cad_unit(model.cad->stated_unit, unit);
+        std::cout << describe(*model.cad);
+      }
+      std::cout << describe(unit) << describe(mesh_report(model.mesh)) << "\n";
       break;
     }
     case FileKind::kSpheres:

@@ -62,6 +62,9 @@ Json to_json(const Certificate& certificate) {
   }
   json["sphere_count"] = certificate.sphere_count;
   json["volume_ratio"] = to_json(certificate.volume_ratio);
+  json["filled_volume"] = to_json(certificate.filled_volume);
+  json["filled_volume_error"] = to_json(certificate.filled_volume_error);
+  json["closing_slack"] = to_json(certificate.closing_slack);
   json["pieces"] = certificate.pieces;
   json["cells"] = certificate.cells;
   return json;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/model_file.h"
 
+#include "mesh/io/length_unit.h"
 #include "mesh/io/mesh_io.h"
 #include "spheretree/error.h"
 
@@ -15,22 +16,25 @@
 namespace spherule {
 namespace {
 
-CadPart read_part(const std::filesystem::path& path, const CadReadOptions& options) {
 #ifdef SPHERULE_HAS_CAD
-  CadPart part = read_cad(path, options);
-  if (!part.proved) {
-    std::cerr << "spherule: warning: " << path.string() << ": the chord error is measured, not "
-              << "proved, on " << part.unproved.size() << " of " << part.faces
-              << " faces: " << part.unproved.front().name << ": " << part.unproved.front().reason
-              << "\n";
-  }
-  return part;
-#else
-  static_cast<void>(options);
+void warn_of_unproved(const std::string& subject, const CadPart& part) {
+  if (part.proved) return;
+  std::cerr << "spherule: warning: " << subject << ": the chord error is measured, not proved, on "
+            << part.unproved.size() << " of " << part.faces
+            << " faces: " << part.unproved.front().name << ": " << part.unproved.front().reason
+            << "\n";
+}
+#endif
+
+[[maybe_unused, noreturn]] void refuse_cad(const std::filesystem::path& path) {
   throw Error(path.string(),
               "is a CAD file, which this build cannot read: install libocct-data-exchange-dev and "
               "build with -DSPHERULE_CAD=ON");
-#endif
+}
+
+CadReadOptions cad_options(const std::filesystem::path& path, const ModelReadOptions& options) {
+  if (options.weld > 0.0) throw Error(path.string(), "is a CAD file; only meshes are welded");
+  return {.scale = options.scale, .chord_error = options.chord_error};
 }
 
 // Whole numbers are numbers, too: a program that writes 1 for 1.0 means the same.
@@ -55,15 +59,35 @@ ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& 
     model.mesh = read_mesh(path, {.scale = options.scale, .weld = options.weld});
     return model;
   }
-  if (options.weld > 0.0) throw Error(path.string(), "is a CAD file; only meshes are welded");
-  model.cad = read_part(path, {.scale = options.scale, .chord_error = options.chord_error});
+  [[maybe_unused]] const CadReadOptions cad = cad_options(path, options);
+#ifdef SPHERULE_HAS_CAD
+  model.cad = read_cad(path, cad);
+  warn_of_unproved(path.string(), *model.cad);
   model.mesh = std::move(model.cad->mesh);
   return model;
+#else
+  refuse_cad(path);
+#endif
+}
+
+std::vector<CadBody> read_model_bodies(const std::filesystem::path& path,
+                                       const ModelReadOptions& options) {
+  [[maybe_unused]] const CadReadOptions cad = cad_options(path, options);
+#ifdef SPHERULE_HAS_CAD
+  std::vector<CadBody> bodies = read_cad_bodies(path, cad);
+  for (const CadBody& body : bodies) {
+    if (!body.copy) warn_of_unproved(path.string() + ": " + body.name, body.part);
+  }
+  return bodies;
+#else
+  refuse_cad(path);
+#endif
 }
 
 void store_reading(const ModelReadOptions& options, const ModelFile& model, SphereFile& file) {
   if (model.cad) file.options["chord-error"] = model.cad->asked;
   if (options.weld > 0.0) file.options["weld"] = options.weld;
+  if (!options.units.empty()) file.options["units"] = options.units;
 }
 
 ModelReadOptions stored_reading(const SphereFile& file) {
@@ -71,6 +95,12 @@ ModelReadOptions stored_reading(const SphereFile& file) {
   options.scale = stored_number(file, "scale", options.scale);
   options.chord_error = stored_number(file, "chord-error", options.chord_error);
   options.weld = stored_number(file, "weld", options.weld);
+  if (const auto found = file.options.find("units"); found != file.options.end()) {
+    const auto* text = std::get_if<std::string>(&found->second);
+    if (text == nullptr || unit_named(*text) == nullptr)
+      throw Error("units", "is no unit of length");
+    options.units = *text;
+  }
   if (!(options.scale > 0.0)) throw Error("scale", "must be positive");
   if (options.chord_error < 0.0) throw Error("chord-error", "must not be negative");
   if (options.weld < 0.0) throw Error("weld", "must not be negative");
@@ -98,6 +128,7 @@ Json to_json(const CadPart& part) {
           {"chord_error_asked", part.asked},
           {"chord_error_found", part.reached},
           {"tolerance", part.tolerance},
+          {"stated_unit", part.stated_unit},
           {"proved", part.proved},
           {"unproved_faces", unproved}};
 }

@@ -17,6 +17,7 @@ inline constexpr const char* kFile = "FILE";
 inline constexpr const char* kFolder = "DIR";
 inline constexpr const char* kNamedFolder = "NAME=DIR";
 inline constexpr const char* kCommand = "COMMAND";
+inline constexpr const char* kLength = "LENGTH";
 
 // An option of a command, or an argument without a name of its own (positional).
 struct OptionOutline {

@@ -42,6 +42,10 @@ std::string describe(const Certificate& certificate, const std::string& solid) {
     out << "  volume of the spheres over that of the mesh: about " << *certificate.volume_ratio
         << "\n";
   }
+  if (certificate.filled_volume) {
+    out << "  filled by stage 1: about " << *certificate.filled_volume << " (standard error "
+        << *certificate.filled_volume_error << ") in volume\n";
+  }
   return out.str();
 }
 

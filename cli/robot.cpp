@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/check_length.h"
+#include "cli/check_number.h"
 #include "cli/command.h"
 #include "cli/false_alarm_report.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
+#include "cli/length_options.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "cli/output.h"
@@ -58,6 +59,7 @@ struct RobotArguments {
   ReportContent report_content = ReportContent::kNoExternalSpheres;
   FalseAlarmArguments false_alarms;
   RobotCoverOptions options;
+  LengthOptions lengths;
 };
 
 RobotFilePlan plan_of(const RobotArguments& arguments) {
@@ -285,7 +287,7 @@ void add_search_options(CLI::App& command, const std::shared_ptr<RobotArguments>
           "Look for fewer spheres for so long, for each link; the result then depends on the "
           "machine")
       ->check(CLI::PositiveNumber)
-      ->check(check_length)
+      ->check(check_not_negative)
       ->excludes(effort);
   command.add_option("--threads", options.threads, "Threads, 0: all; the result is the same")
       ->check(CLI::NonNegativeNumber);
@@ -304,29 +306,22 @@ void add_robot(CLI::App& app, int& exit_code) {
                    "Folder for what is written; it is made if it is not there")
       ->required()
       ->type_name(kFolder);
-  const CLI::Option* const max_error =
-      command
-          ->add_option("--max-error", options.max_error,
-                       "E in metres, how far the spheres may protrude (default: 0.01)")
-          ->check(check_length)
-          ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--min-external", options.min_external_diameter,
-                   "D in metres, diameter of the smallest thing that will meet the robot (default: "
-                   "4 E)")
-      ->check(check_length);
+  const CLI::Option* const max_error = arguments->lengths.add_positive(
+      *command, "--max-error", options.max_error,
+      "E in metres, how far the spheres may protrude (default: 0.01)");
+  arguments->lengths.add(
+      *command, "--min-external", options.min_external_diameter,
+      "D in metres, diameter of the smallest thing that will meet the robot (default: 4 E)");
   command
       ->add_option("--tightness", options.tightness,
                    "How much wider than D a way into a link may be and still be filled, as a share "
                    "of D (default: 0.03)")
       ->check(CLI::Range(0.001, ExternalOptions::kNoTightness));
-  command->add_option("--padding", options.padding, "Grow every link by so many metres")
-      ->check(check_length);
-  command
-      ->add_option("--weld", options.weld,
-                   "Join vertices that are no further apart, in metres, so that cracks which "
-                   "rounding has left do not open meshes; added to the padding")
-      ->check(check_length);
+  arguments->lengths.add(*command, "--padding", options.padding,
+                         "Grow every link by so many metres");
+  arguments->lengths.add(*command, "--weld", options.weld,
+                         "Join vertices that are no further apart, in metres, so that cracks which "
+                         "rounding has left do not open meshes; added to the padding");
   add_geometry_option(*command, "What is covered: collision (default) or visual geometry",
                       arguments->geometry);
   add_package_option(*command, arguments->packages);
@@ -369,20 +364,22 @@ void add_robot(CLI::App& app, int& exit_code) {
   add_external_spheres_flag(*command, arguments->report_content);
   command->add_flag("--json", arguments->json, "Print the summary as JSON, lengths in metres");
   command->footer(to_text(
-      {.text = "Writes NAME.spheres.urdf, NAME.srdf, NAME.curobo.yml, NAME.xrdf, NAME.foam.json, "
+      {.text = "Lengths are in metres, as in the URDF, or have a unit of their own (5mm). Writes "
+               "NAME.spheres.urdf, NAME.srdf, NAME.curobo.yml, NAME.xrdf, NAME.foam.json, "
                "NAME.spheres.json, NAME.LINK.tree, NAME.pairs and NAME.report.json, NAME being the "
                "robot's "
                "name.",
        .exit_codes = "0 proved for every link; 1 not proved for links that are named (the files "
                      "are written and say so), or the share of false alarms is not reached",
        .examples = {"spherule robot robot.urdf -o spheres",
-                    "spherule robot robot.urdf -o spheres --max-error 0.02 --format curobo,tree",
+                    "spherule robot robot.urdf -o spheres --max-error 20mm --format curobo,tree",
                     "spherule robot robot.urdf -o spheres --false-alarms 1%",
                     "spherule robot robot.urdf -o spheres --geometry visual --link "
-                    "hand:max-error=0.005",
+                    "hand:max-error=5mm",
                     "spherule robot robot.urdf -o spheres --package parts=../parts --srdf "
                     "robot.srdf"}}));
   command->callback([arguments, max_error, &exit_code] {
+    arguments->lengths.convert(metres());
     arguments->has_max_error = max_error->count() > 0;
     exit_code = cover_links(*arguments);
   });

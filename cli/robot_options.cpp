@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robot_options.h"
 
+#include "cli/length_options.h"
 #include "cli/next_step.h"
 #include "cli/outline.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 
-#include <charconv>
 #include <optional>
-#include <system_error>
 
 namespace spherule {
 namespace {
-
-std::optional<double> number(const std::string& text) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [stop, fault] = std::from_chars(text.data(), end, value);
-  if (fault != std::errc() || stop != end) return std::nullopt;
-  return value;
-}
 
 // Splits at the first `separator`; nothing where either side is empty.
 std::optional<std::pair<std::string, std::string>> split(const std::string& text, char separator) {
@@ -58,8 +49,7 @@ void set(LinkCoverOptions& options, const std::string& setting, const std::strin
     throw Error(subject, "'" + name + "' is none of max-error, min-external, padding and zones");
   }
   if (length->has_value()) throw Error(subject, name + " is given twice");
-  *length = number(value);
-  if (!length->has_value()) throw Error(subject, "'" + value + "' is not a number");
+  *length = lengths_in(value, subject, metres()).front();
 }
 
 }  // namespace

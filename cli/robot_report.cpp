@@ -94,6 +94,8 @@ void write_row(std::ostream& out, const std::string& name, double max_error, con
       << Cell(sums.over_mesh * kMillimetresPerMetre, 11, 2);
 }
 
+constexpr double kLitresPerCubicMetre = 1e3;
+
 // D of the links, and how much wider a way may be and still be filled.
 std::string describe_filling(const RobotCover& cover) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -157,8 +159,10 @@ std::string robot_table(const RobotCover& cover, double seconds) {
   };
   std::ostringstream out;
   out << padded("link")
-      << "       E  triangles  spheres  uncovered  protrusion  over mesh  volume  seconds\n"
-      << padded("") << "    [mm]                           [mm]        [mm]       [mm]\n";
+      << "       E  triangles  spheres  uncovered  protrusion  over mesh  volume   filled  "
+         "seconds\n"
+      << padded("")
+      << "    [mm]                           [mm]        [mm]       [mm]            [l]\n";
   for (const LinkCover& link : cover.links) {
     if (!link.fit) {
       out << padded(link.link) << "  no " << name_of(cover.options.geometry) << " geometry\n";
@@ -171,10 +175,16 @@ std::string robot_table(const RobotCover& cover, double seconds) {
     } else {  // an open mesh has none
       out << std::setw(8) << "-";
     }
+    const std::optional<double>& filled = link.fit->certificate.filled_volume;
+    if (filled) {
+      out << Cell(*filled * kLitresPerCubicMetre, 9, 3);
+    } else {
+      out << std::setw(9) << "-";
+    }
     out << Cell(link.seconds, 9, 1) << "\n";
   }
   write_row(out, padded("total"), cover.options.max_error, Totals(cover.links));
-  out << std::setw(8) << "" << Cell(seconds, 9, 1) << "\n" << describe_filling(cover);
+  out << std::setw(17) << "" << Cell(seconds, 9, 1) << "\n" << describe_filling(cover);
   return out.str();
 }
 

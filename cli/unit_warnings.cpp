@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/unit_warnings.h"
 
-#include <array>
 #include <optional>
 #include <sstream>
 
@@ -13,20 +12,20 @@ constexpr double kSmallestError = 1e-4;  // that units are guessed for
 constexpr double kLeastDiameter = 0.1;   // of E
 constexpr double kLargestVolume = 5.0;   // of the mesh's
 
-// That lengths may have been given in, and a mesh may be in instead.
+// A unit that lengths may have been meant in, and one that a mesh may be in instead.
 struct UnitPair {
-  const char* given;
-  const char* mesh;
-  double factor;  // of lengths in `given`, in `mesh`
+  const LengthUnit* meant;
+  const LengthUnit* mesh;
+  double factor() const { return meant->micrometres / mesh->micrometres; }
 };
-constexpr std::array kUnitPairs = {UnitPair{"millimetres", "metres", 1e-3},
-                                   UnitPair{"millimetres", "inches", 1.0 / 25.4},
-                                   UnitPair{"millimetres", "centimetres", 0.1}};
 
-// The first with which the error would be one that people ask for, of a part of this extent.
-std::optional<UnitPair> likely_units(double error, double extent) {
-  for (const UnitPair& pair : kUnitPairs) {
-    const double converted = error * pair.factor;
+// The first with which the error would be one that people ask for, of a part of this extent. The
+// unit of the mesh may be known.
+std::optional<UnitPair> likely_units(double error, double extent, const LengthUnit* known) {
+  for (const char* symbol : {"m", "inch", "cm"}) {
+    const UnitPair pair{unit_named("mm"), unit_named(symbol)};
+    if (known != nullptr && known != pair.mesh) continue;
+    const double converted = error * pair.factor();
     if (converted <= kLargestError * extent && converted >= kSmallestError * extent) return pair;
   }
   return std::nullopt;
@@ -34,7 +33,8 @@ std::optional<UnitPair> likely_units(double error, double extent) {
 
 }  // namespace
 
-std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyOptions& options) {
+std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyOptions& options,
+                                         const ModelUnit& unit) {
   std::vector<std::string> warnings;
   const double extent = mesh.box.isEmpty() ? 0.0 : mesh.box.sizes().maxCoeff();
   const double error = options.max_error;
@@ -42,10 +42,17 @@ std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyO
     std::ostringstream text;
     text << "the max error " << error
          << " is more than a tenth of the part, whose largest extent is " << extent;
-    if (const auto units = likely_units(error, extent)) {
-      text << ": if that is in " << units->mesh << " and the error was meant in " << units->given
-           << ", ask for --max-error " << error * units->factor << ", or for --scale "
-           << 1.0 / units->factor;
+    const LengthUnit* const known = unit.micrometres ? unit_of_size(*unit.micrometres) : nullptr;
+    const std::optional<UnitPair> units =
+        unit.micrometres && known == nullptr ? std::nullopt : likely_units(error, extent, known);
+    if (units && known != nullptr) {
+      text << ": both are in " << known->plural << " (" << unit.origin
+           << "); if the error was meant in " << units->meant->plural << ", ask for --max-error "
+           << error << units->meant->symbol;
+    } else if (units) {
+      text << ": if that is in " << units->mesh->plural << " and the error was meant in "
+           << units->meant->plural << ", ask for --max-error " << error * units->factor()
+           << ", or for --scale " << 1.0 / units->factor();
     }
     warnings.push_back(text.str());
   }

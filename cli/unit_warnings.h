@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/model_unit.h"
 #include "mesh/mesh_report.h"
 #include "simplifier/simplify.h"
 
@@ -13,8 +14,9 @@ namespace spherule {
 // with the likely one. None of them stops the work.
 
 // Before it: an E above a tenth of the part's largest extent, a D below a tenth of E. `options` as
-// asked for, 0 where a default is to be taken.
-std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyOptions& options);
+// asked for, 0 where a default is to be taken; `unit` that of the output.
+std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyOptions& options,
+                                         const ModelUnit& unit);
 
 // After it: spheres of more than five times the volume of the mesh.
 std::vector<std::string> volume_warnings(const Simplification& result);

@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
+#include "cli/model_unit.h"
 #include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/robot_options.h"
@@ -9,6 +10,7 @@
 #include "cli/view_page.h"
 #include "cli/view_robot.h"
 #include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 
@@ -26,6 +28,7 @@ struct ViewArguments {
   std::vector<std::string> files;
   std::string page;
   bool leaks = false;
+  std::string units;
 #ifdef SPHERULE_HAS_ROBOT
   RobotViewOptions robot{.packages = {}, .geometry = {geometry_names().front()}};
 #endif
@@ -37,11 +40,14 @@ ViewScene load_scene(const ViewArguments& arguments) {
 #ifdef SPHERULE_HAS_ROBOT
   const auto of_robot = std::stable_partition(
       others.begin(), others.end(), [](const auto& file) { return !is_robot_file(file); });
+  if (of_robot != others.end() && !arguments.units.empty() && arguments.units != "m") {
+    throw Error("--units", *of_robot + " is of a robot, which is in metres");
+  }
   add_robot({of_robot, others.end()}, arguments.robot, scene);
   others.erase(of_robot, others.end());
 #endif
   for (const std::string& file : others) {
-    std::vector<ViewItem> items = view_items(file);
+    std::vector<ViewItem> items = view_items(file, arguments.units);
     std::move(items.begin(), items.end(), std::back_inserter(scene.items));
   }
   if (arguments.leaks) {
@@ -79,6 +85,12 @@ void add_view(CLI::App& app, int& exit_code) {
       ->type_name(kFile);
   command->add_flag("--leaks", arguments->leaks,
                     "Mark where samples of the meshes lie outside of the spheres; `audit` proves");
+  command
+      ->add_option(
+          "--units", arguments->units,
+          "Show in this unit meshes whose files state one, and spheres fitted with --units; "
+          "others are taken to be in it")
+      ->check(CLI::IsMember(unit_choices()));
 #ifdef SPHERULE_HAS_ROBOT
   command
       ->add_option("--geometry", arguments->robot.geometry,

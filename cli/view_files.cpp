@@ -2,6 +2,7 @@
 #include "cli/view_files.h"
 
 #include "cli/model_file.h"
+#include "cli/model_unit.h"
 #include "cli/recognize.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
@@ -55,6 +56,13 @@ std::vector<ViewItem> report_items(const Json& report, const std::string& file) 
     items.push_back(leak_item(report.at("certificate"), file));
   }
   return items;
+}
+
+// Only for showing: the proof is of the spheres in their own unit.
+void show_in(const std::string& units, const std::string& stored, std::vector<Sphere>& spheres) {
+  if (units.empty() || stored.empty() || units == stored) return;
+  const double scale = in_units_of(unit_named(units)->micrometres, {1.0, unit_named(stored)});
+  for (Sphere& sphere : spheres) sphere = {sphere.center * scale, sphere.radius * scale};
 }
 
 std::string facts_of(const SphereFile& file) {
@@ -121,11 +129,12 @@ Json json_in(const std::filesystem::path& file) {
   return json.is_discarded() ? Json(nullptr) : json;
 }
 
-std::vector<ViewItem> view_items(const std::string& file) {
+std::vector<ViewItem> view_items(const std::string& file, const std::string& units) {
   const FileKind kind = recognize(file);
   if (kind == FileKind::kSpheres) {
     SphereFile spheres = load_spheres(file);
     const std::string facts = facts_of(spheres);
+    show_in(units, stored_reading(spheres).units, spheres.spheres);
     return {{.name = file, .parts = {{std::move(spheres.spheres)}}, .facts = facts}};
   }
   if (kind == FileKind::kTree) return {{.name = file, .parts = {{load_tree(file)}}}};
@@ -135,7 +144,8 @@ std::vector<ViewItem> view_items(const std::string& file) {
       return report_items(json, file);
     }
     if (json.is_object() && json.contains("deepest_leak")) return {leak_item(json, file)};
-    return {{.name = file, .parts = {{read_model(file).mesh}}}};
+    const ModelUnit unit = model_unit(file, {std::nullopt, units});
+    return {{.name = file, .parts = {{read_model(file, {.scale = unit.scale}).mesh}}}};
   });
 }
 

@@ -28,8 +28,9 @@ Json json_in(const std::filesystem::path& file);
 
 // What a file holds that is of no robot: a mesh, SPHERES.json, a tree, the report of a fit
 // (external spheres, levels, the leak), or what `audit --json` printed. Throws Error, naming the
-// file.
-std::vector<ViewItem> view_items(const std::string& file);
+// file. With `units`, the symbol of a unit, meshes whose files state theirs and spheres whose
+// options say it are shown in it.
+std::vector<ViewItem> view_items(const std::string& file, const std::string& units = "");
 
 // The leaks of every item of spheres, looked for on the surfaces of the meshes among the items, as
 // items of their own, and hides nothing. Parts are compared with parts of the same link.

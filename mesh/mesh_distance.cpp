@@ -17,9 +17,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::int32_t kLeafSize = 4;
-// The tree is halved at every level, so it is at most 32 deep for 2^31 triangles, and a depth-first
-// search that holds one waiting sibling per level needs no more entries than that.
-constexpr std::size_t kStackSize = 40;
 
 // Square of the distance from a point to a box: each difference and square rounded once, two sums,
 // so a relative error below 6 u.
@@ -109,6 +106,21 @@ SurfaceDistance MeshDistance::operator()(const Vector3d& point, double limit) co
     stack[size++] = near;
   }
   return best;
+}
+
+// Where the ray is between the planes of the box: each quotient errs by 2 u of itself, and so do
+// the least and the greatest of them.
+bool MeshDistance::may_meet(const Node& node, const Vector3d& point, const Vector3d& direction) {
+  double enter = -std::numeric_limits<double>::infinity();
+  double leave = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = (node.low[axis] - point[axis]) / direction[axis];
+    const double high = (node.high[axis] - point[axis]) / direction[axis];
+    enter = std::max(enter, std::min(low, high));
+    leave = std::min(leave, std::max(low, high));
+  }
+  constexpr double kSlack = 8.0 * kUnitRoundoff;
+  return leave >= 0.0 && enter - kSlack * std::abs(enter) <= leave + kSlack * leave;
 }
 
 double MeshDistance::winding_number(const Vector3d& point) const {

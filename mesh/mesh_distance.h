@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -41,6 +43,22 @@ class MeshDistance {
   // Linear in the number of triangles.
   double winding_number(const Eigen::Vector3d& point) const;
 
+  struct Corners {
+    Eigen::Vector3d a, b, c;
+    std::int32_t triangle;
+  };
+
+  // Calls visit(corners) for every triangle that the ray from `point` along `direction` meets, and
+  // for some that it misses, until a call returns false; returns whether none did. No component of
+  // the direction may be 0.
+  template <typename Visit>
+  bool visit_ray(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, Visit visit) const;
+  // Calls visit(corners) for every triangle.
+  template <typename Visit>
+  void visit_all(Visit visit) const {
+    for (const Corners& t : corners_) visit(t);
+  }
+
   // Box of the vertices that triangles use.
   const Eigen::AlignedBox3d& box() const { return box_; }
   std::size_t triangle_count() const { return corners_.size(); }
@@ -55,16 +73,39 @@ class MeshDistance {
     std::int32_t begin = 0;
     std::int32_t end = 0;
   };
-  struct Corners {
-    Eigen::Vector3d a, b, c;
-    std::int32_t triangle;
-  };
+  // The tree is halved at every level, so it is at most 32 deep for 2^31 triangles, and a
+  // depth-first search that holds one waiting sibling per level needs no more entries than that.
+  static constexpr std::size_t kStackSize = 40;
 
+  static bool may_meet(const Node& node, const Eigen::Vector3d& point,
+                       const Eigen::Vector3d& direction);
   void build(std::int32_t begin, std::int32_t end);
 
   std::vector<Node> nodes_;
   std::vector<Corners> corners_;
   Eigen::AlignedBox3d box_;
 };
+
+template <typename Visit>
+bool MeshDistance::visit_ray(const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+                             Visit visit) const {
+  std::array<std::int32_t, kStackSize> stack;
+  std::size_t size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const std::int32_t index = stack[--size];
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (!may_meet(node, point, direction)) continue;
+    if (node.right >= 0) {
+      stack[size++] = node.right;
+      stack[size++] = index + 1;
+      continue;
+    }
+    for (auto i = node.begin; i < node.end; ++i) {
+      if (!visit(corners_[static_cast<std::size_t>(i)])) return false;
+    }
+  }
+  return true;
+}
 
 }  // namespace spherule

@@ -2,8 +2,8 @@
 #include "simplifier/certificate.h"
 
 #include "mesh/mesh_distance.h"
-#include "mesh/mesh_report.h"
 #include "mesh/shells/closed_shells.h"
+#include "simplifier/internal/stages.h"
 #include "simplifier/proof/proof.h"
 #include "simplifier/proof/protrusion.h"
 #include "simplifier/proof/volume_ratio.h"
@@ -50,13 +50,14 @@ void check_options(std::span<const Sphere> spheres, const CertifyOptions& option
 }
 
 // What certifies |M| itself: everything that a small ball cannot reach from outside.
-ExternalSpheres flood_closely(const TriangleMesh& mesh, double padding, double diagonal) {
+ExternalSpheres flood_closely(const TriangleMesh& mesh, const MeshDistance& distance,
+                              double padding) {
   ExternalOptions options;
-  options.min_external_diameter = kPointFlood * diagonal;
+  options.min_external_diameter = kPointFlood * distance.box().diagonal().norm();
   options.grid_step = options.min_external_diameter / 2.0;
   options.tightness = ExternalOptions::kNoTightness;
   options.padding = padding;
-  return place_external_spheres(mesh, options);
+  return internal::place_external_spheres(mesh, distance, options);
 }
 
 // Whether M grown by the padding is proved to be a subset of S: in the box, and met by no external
@@ -90,22 +91,10 @@ void bound_by_solid(internal::CoverageProof& surface, const internal::CoveragePr
   }
 }
 
-}  // namespace
-
-Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
-                    const CertifyOptions& options) {
-  validate(mesh, "mesh");
-  check_options(spheres, options);
-  const internal::ThreadLimit threads(options.threads);
-  const MeshDistance distance(mesh);
+Certificate proved(const TriangleMesh& mesh, const MeshDistance& distance,
+                   const ExternalSpheres& external, const Clearance& clearance,
+                   std::span<const Sphere> spheres, const CertifyOptions& options) {
   const double diagonal = distance.box().diagonal().norm();
-  const ExternalSpheres own = options.external != nullptr
-                                  ? ExternalSpheres{}
-                                  : flood_closely(mesh, options.padding, diagonal);
-  const ExternalSpheres& external = options.external != nullptr ? *options.external : own;
-  // The fine flood makes too many external balls for finding their contacts to pay.
-  const Clearance clearance =
-      options.external != nullptr ? Clearance(external, distance) : Clearance(external);
   const internal::BallHierarchy hierarchy(spheres);
   const internal::BallsToProve balls{spheres, hierarchy};
   const double largest = std::max(internal::largest_coordinate(distance.box()),
@@ -118,7 +107,7 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   if (options.progress) options.progress(-1.0, "proving the surface");
   internal::CoverageProof surface = internal::prove_surface(mesh, balls, finest);
   if (options.progress) options.progress(-1.0, "proving the solid");
-  const internal::ClosedShells shells(mesh);
+  const internal::ClosedShells shells(mesh, distance);
   // Every point of S is a witness against S; against |M| itself only one that is proved to be
   // inside.
   const internal::CoverageProof solid = internal::prove_solid(
@@ -140,16 +129,48 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
       result.protrusion_in_zones.push_back(internal::greatest_in(zone, spheres, each));
     }
   }
+  if (options.external != nullptr && external.closing_slack > 0.0) {
+    result.closing_slack = external.closing_slack;
+  }
   if (options.protrusion_tolerance > 0.0) {
     if (options.progress) options.progress(-1.0, "measuring the protrusion");
     result.protrusion_over_mesh = internal::protrusion_over_mesh(
         distance, shells, clearance, balls, options.protrusion_tolerance * diagonal);
   }
-  if (options.volume && !spheres.empty() &&
-      mesh_report(mesh, {.self_intersections = false}).closed) {
+  if (options.volume && !spheres.empty() && shells.is_mesh_closed()) {
     result.volume_ratio = internal::estimate_volume_ratio(mesh, spheres);
+    if (options.external != nullptr) {
+      const internal::EstimatedVolume filled = internal::estimate_filled_volume(mesh, external);
+      result.filled_volume = filled.volume;
+      result.filled_volume_error = filled.error;
+    }
   }
   return result;
+}
+
+}  // namespace
+
+Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
+                    const CertifyOptions& options) {
+  validate(mesh, "mesh");
+  check_options(spheres, options);
+  const internal::ThreadLimit threads(options.threads);
+  const MeshDistance distance(mesh);
+  if (options.external != nullptr) {
+    return internal::certify(mesh, distance, Clearance(*options.external, distance), spheres,
+                             options);
+  }
+  const ExternalSpheres own = flood_closely(mesh, distance, options.padding);
+  // The fine flood makes too many external balls for finding their contacts to pay.
+  return proved(mesh, distance, own, Clearance(own), spheres, options);
+}
+
+Certificate internal::certify(const TriangleMesh& mesh, const MeshDistance& distance,
+                              const Clearance& clearance, std::span<const Sphere> spheres,
+                              const CertifyOptions& options) {
+  check_options(spheres, options);
+  const ThreadLimit threads(options.threads);
+  return proved(mesh, distance, *options.external, clearance, spheres, options);
 }
 
 CertificateRecord record(const Certificate& certificate) {
@@ -164,6 +185,9 @@ CertificateRecord record(const Certificate& certificate) {
   r.protrusion_in_zones = certificate.protrusion_in_zones;
   r.sphere_count = certificate.sphere_count;
   r.volume_ratio = certificate.volume_ratio;
+  r.filled_volume = certificate.filled_volume;
+  r.filled_volume_error = certificate.filled_volume_error;
+  r.closing_slack = certificate.closing_slack;
   return r;
 }
 

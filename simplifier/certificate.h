@@ -64,6 +64,12 @@ struct Certificate {
   // Proved bounds of the protrusion over |M|; absent if not asked for.
   std::optional<Bounds> protrusion_over_mesh;
   std::optional<double> volume_ratio;  // of the union of the balls to the solid mesh; estimated
+  // With external spheres and a closed mesh: volume of what stage 1 fills, S without |M|;
+  // estimated, and the standard error of that.
+  std::optional<double> filled_volume;
+  std::optional<double> filled_volume_error;
+  // Of the external spheres, where one is proved.
+  std::optional<double> closing_slack;
   std::size_t sphere_count = 0;
   std::size_t pieces = 0;  // surface pieces examined
   std::size_t cells = 0;   // cells of space examined

@@ -3,6 +3,7 @@
 
 #include "mesh/mesh_distance.h"
 #include "mesh/triangle_mesh.h"
+#include "simplifier/internal/stages.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/cover_fitter.h"
@@ -15,15 +16,21 @@ SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                   const CoverOptions& options) {
   validate(mesh, "mesh");
   internal::check_options(options);
-  if (options.method == CoverMethod::kPaper) internal::refuse_error_zones(options, "paper");
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
-  const Clearance clearance(external, distance);
+  return internal::cover(mesh, distance, Clearance(external, distance), options);
+}
+
+SphereCover internal::cover(const TriangleMesh& mesh, const MeshDistance& distance,
+                            const Clearance& clearance, const CoverOptions& options) {
+  check_options(options);
+  const ThreadLimit threads(options.threads);
   if (options.method == CoverMethod::kPaper) {
-    return place_internal_spheres(mesh, clearance, options);
+    refuse_error_zones(options, "paper");
+    return place_internal_spheres(mesh, distance, clearance, options);
   }
   SphereCover result;
-  internal::CoverFitter fitter(clearance, distance, options);
+  CoverFitter fitter(clearance, distance, options);
   result.spheres = fitter.run();
   result.lower_bound = fitter.lower_bound();
   return result;

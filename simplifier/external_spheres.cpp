@@ -4,6 +4,8 @@
 #include "mesh/mesh_distance.h"
 #include "mesh/mesh_report.h"
 #include "simplifier/concave_edges.h"
+#include "simplifier/internal/stages.h"
+#include "simplifier/solid/ball_hierarchy.h"
 #include "simplifier/stage1/ball_way.h"
 #include "simplifier/stage1/flood_grid.h"
 #include "simplifier/stage1/local_diameter.h"
@@ -17,6 +19,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -93,51 +97,105 @@ FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double s
   const double magnitude = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() + edge;
   if (shape.levels + halvings > 20 ||
       std::ldexp(step, -halvings) < 1e6 * kUnitRoundoff * magnitude) {
-    throw Error("grid step", "too fine for a model of this size");
+    throw Error("grid step",
+                "too fine for a model of this size, which is " + std::to_string(edge / step) +
+                    " steps wide: choose a larger max error or min external diameter, or fit the "
+                    "model in parts");
   }
   shape.origin = box.center() - Vector3d::Constant(std::ldexp(step, shape.levels) / 2.0);
   return shape;
 }
 
-// Makes external balls sit close to concave edges and corners, which the grid meets only by chance:
-// the centre of a cell beside a reached node is pushed away from the surface until a ball of radius
-// rho has room, and kept if such a ball provably gets there from the node.
+// Makes external balls sit close to concave edges, corners and ends of ways, which the grid meets
+// only by chance: points of a cell beside a reached node are pushed away from the surface until a
+// ball of radius rho has room, and the ball is kept if it takes something from S there, that is,
+// in the direction from which it was pushed, and provably gets there from the node.
 class SnugBalls {
  public:
-  SnugBalls(const MeshDistance& distance, double padding, const LocalDiameter& diameter)
-      : distance_(distance), padding_(padding), way_(distance, padding), diameter_(diameter) {}
+  SnugBalls(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
+            std::span<const Sphere> reached)
+      : distance_(distance),
+        padding_(padding),
+        way_(distance, padding),
+        diameter_(diameter),
+        reached_(reached) {}
 
-  // A ball of radius 0 where nothing is to be had or flat surface makes it useless.
-  Sphere operator()(const FloodGrid::Frontier& frontier) const {
+  std::vector<Sphere> operator()(const FloodGrid::Frontier& frontier) const {
+    std::vector<Sphere> found;
+    look(frontier, frontier.center, 0.5 * frontier.step, found);
+    return found;
+  }
+
+ private:
+  // What came of a point.
+  struct Pushed {
+    Sphere ball;          // of radius 0 where nothing is to be had
+    bool is_flat = true;  // one surface only was met, if any
+  };
+
+  // From a point, and, unless only a wall is there that the grid does as well for, from eight
+  // around it, and around those that find a ball.
+  void look(const FloodGrid::Frontier& frontier, const Vector3d& start, double apart,
+            std::vector<Sphere>& found) const {
+    const Pushed here = pushed(frontier, start, found);
+    const bool is_found = here.ball.radius > 0.0;
+    if (is_found) found.push_back(here.ball);
+    const bool is_first = apart == 0.5 * frontier.step;
+    if (!(is_found || (is_first && !here.is_flat)) || apart < kFinest * frontier.step) return;
+    for (int k = 0; k < 8; ++k) {
+      const Vector3d aside((k & 1) != 0 ? apart : -apart, (k & 2) != 0 ? apart : -apart,
+                           (k & 4) != 0 ? apart : -apart);
+      look(frontier, start + aside, 0.5 * apart, found);
+    }
+  }
+
+  Pushed pushed(const FloodGrid::Frontier& frontier, const Vector3d& start,
+                std::span<const Sphere> found) const {
     constexpr int kMaxPushes = 6;
     const Vector3d& from = frontier.neighbour.center;
     const double rho = diameter_.on_way(frontier.center, from);
     const double wanted = rho + 0.02 * frontier.step;
-    Vector3d x = frontier.center;
+    Vector3d x = start;
     for (int push = 0; push <= kMaxPushes; ++push) {
       const SurfaceDistance d = distance_(x);
       const double clearance = sub_down(d.lower, padding_);
       if (clearance >= rho) {
-        if (push < 2) return {};  // one surface only: the grid does as well
         const Sphere ball{x, clearance};
-        const bool reached = diameter_.on_way(from, x) <= rho &&
-                             way_.passes({from, frontier.neighbour.clearance}, ball, rho);
-        return reached ? ball : Sphere{};
+        const Sphere node{from, frontier.neighbour.clearance};
+        const bool reached = push > 0 && takes_something(ball, start, frontier.step, node, found) &&
+                             diameter_.on_way(from, x) <= rho && way_.passes(node, ball, rho);
+        return {reached ? ball : Sphere{}, push < 2};
       }
       const Vector3d away = x - d.closest;
       const double norm = away.norm();
-      if (!(norm > 0.0)) return {};
+      if (!(norm > 0.0)) break;
       x += away * ((wanted - clearance) / norm);
-      if ((x - frontier.center).norm() > 2.0 * frontier.step) return {};
+      if ((x - start).norm() > 2.0 * frontier.step) break;
     }
     return {};
   }
 
- private:
+  // Whether the point of the ball towards `start` is this far from all others.
+  bool takes_something(const Sphere& ball, const Vector3d& start, double step, const Sphere& node,
+                       std::span<const Sphere> found) const {
+    const double enough = kGain * step;
+    const Vector3d tip = ball.center + ball.radius * (start - ball.center).normalized();
+    const auto holds = [&](const Sphere& other) {
+      return (tip - other.center).norm() - other.radius < enough;
+    };
+    if (holds(node) || std::ranges::any_of(found, holds)) return false;
+    return !(reached_.nearest(tip, enough, enough).upper < enough);
+  }
+
+  // Of the step.
+  static constexpr double kGain = 0.06;
+  static constexpr double kFinest = 0.2;
+
   const MeshDistance& distance_;
   double padding_;
   internal::BallWay way_;
   const LocalDiameter& diameter_;
+  internal::BallHierarchy reached_;
 };
 
 void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
@@ -170,12 +228,13 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
     result.balls.push_back({cell.center, cell.clearance});
   }
   const std::vector<FloodGrid::Frontier> frontier = grid.frontier();
-  std::vector<Sphere> snug(frontier.size());
-  const SnugBalls place(distance, result.padding, diameter);
+  std::vector<std::vector<Sphere>> snug(frontier.size());
+  const SnugBalls place(distance, result.padding, diameter, result.balls);
   tbb::parallel_for(std::size_t{0}, frontier.size(),
                     [&](std::size_t i) { snug[i] = place(frontier[i]); });
-  std::copy_if(snug.begin(), snug.end(), std::back_inserter(result.balls),
-               [](const Sphere& s) { return s.radius > 0.0; });
+  for (const std::vector<Sphere>& balls : snug) {
+    result.balls.insert(result.balls.end(), balls.begin(), balls.end());
+  }
   if (options.progress) options.progress(1.0, "placing external spheres");
 }
 
@@ -184,8 +243,14 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
 ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalOptions& options) {
   validate(mesh, "mesh");
   check_options(options);
-  const internal::ThreadLimit threads(options.threads);
-  const MeshDistance distance(mesh);
+  return internal::place_external_spheres(mesh, MeshDistance(mesh), options);
+}
+
+ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
+                                                 const MeshDistance& distance,
+                                                 const ExternalOptions& options) {
+  check_options(options);
+  const ThreadLimit threads(options.threads);
   ExternalSpheres result;
   result.padding = sum_up(options.padding, mesh.vertex_error);
   result.min_external_diameter = options.min_external_diameter;

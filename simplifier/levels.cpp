@@ -2,6 +2,7 @@
 #include "simplifier/levels.h"
 
 #include "mesh/mesh_distance.h"
+#include "simplifier/internal/stages.h"
 #include "simplifier/proof/protrusion.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/stage2/level_fitter.h"
@@ -41,14 +42,23 @@ std::vector<CoverLevel> fit_levels(const TriangleMesh& mesh, const ExternalSpher
                                    std::span<const double> max_errors,
                                    const CoverOptions& options) {
   validate(mesh, "mesh");
-  const std::vector<double> errors = check_levels(max_errors);
-  std::vector<CoverLevel> levels;
-  if (errors.empty()) return levels;
+  if (check_levels(max_errors).empty()) return {};
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
-  const Clearance clearance(external, distance);
+  return internal::fit_levels(distance, Clearance(external, distance), spheres, max_errors,
+                              options);
+}
+
+std::vector<CoverLevel> internal::fit_levels(const MeshDistance& distance,
+                                             const Clearance& clearance,
+                                             std::span<const Sphere> spheres,
+                                             std::span<const double> max_errors,
+                                             const CoverOptions& options) {
+  const std::vector<double> errors = check_levels(max_errors);
+  std::vector<CoverLevel> levels;
+  const ThreadLimit threads(options.threads);
   const auto protrusion = [&](std::span<const Sphere> balls) {
-    return internal::greatest(internal::protrusions_over_solid(clearance, distance, balls));
+    return greatest(protrusions_over_solid(clearance, distance, balls));
   };
   const SphereTree clustering = build_tree(spheres);
   levels.reserve(errors.size());
@@ -66,7 +76,7 @@ std::vector<CoverLevel> fit_levels(const TriangleMesh& mesh, const ExternalSpher
     }
     CoverLevel level;
     level.max_error = error;
-    level.balls = internal::LevelFitter(clearance, finer, level_options).run();
+    level.balls = LevelFitter(clearance, finer, level_options).run();
     level.protrusion = protrusion(level.balls.spheres);
     const std::vector<Sphere> clusters = cut(clustering, level.balls.spheres.size());
     level.clustering_count = clusters.size();

@@ -3,6 +3,7 @@
 
 #include "mesh/geometry/mesh_box.h"
 #include "mesh/mesh_report.h"
+#include "simplifier/internal/stages.h"
 #include "simplifier/support/thread_limit.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
@@ -120,11 +121,15 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
                                                         : used.min_external_diameter);
 
   const Stopwatch external_time;
-  result.external = place_external_spheres(mesh, external_options(used));
+  const MeshDistance distance(mesh);
+  result.external = internal::place_external_spheres(mesh, distance, external_options(used));
   result.times.external = external_time.seconds();
 
   const Stopwatch cover_time;
-  result.cover = cover_solid(mesh, result.external, used);
+  const Clearance clearance(result.external, distance);
+  result.cover = used.second_phase
+                     ? cover_solid(mesh, result.external, used)
+                     : internal::cover(mesh, distance, clearance, cover_options(used));
   result.times.cover = cover_time.seconds();
 
   const Stopwatch levels_time;
@@ -132,7 +137,8 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
     const std::span<const double> coarser = std::span(used.levels).first(used.levels.size() - 1);
     CoverOptions level_options = cover_options(used);
     level_options.on_proved = {};
-    result.levels = fit_levels(mesh, result.external, result.cover.spheres, coarser, level_options);
+    result.levels =
+        internal::fit_levels(distance, clearance, result.cover.spheres, coarser, level_options);
   }
   result.times.levels = levels_time.seconds();
 
@@ -144,7 +150,8 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
       proof_resolution(tightest_error(used.zones, used.max_error), box_diagonal(mesh));
   certify_options.threads = used.threads;
   certify_options.progress = used.progress;
-  result.certificate = certify(mesh, result.cover.spheres, certify_options);
+  result.certificate =
+      internal::certify(mesh, distance, clearance, result.cover.spheres, certify_options);
   result.times.certify = certify_time.seconds();
   return result;
 }

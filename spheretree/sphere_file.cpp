@@ -8,8 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string_view>
 
 namespace spherule {
@@ -76,6 +78,9 @@ ordered_json written(const CertificateRecord& record, const Refusal& refuse) {
   }
   certificate["sphere_count"] = record.sphere_count;
   put_optional("volume_ratio", record.volume_ratio);
+  put_optional("filled_volume", record.filled_volume);
+  put_optional("filled_volume_error", record.filled_volume_error);
+  put_optional("closing_slack", record.closing_slack);
   return certificate;
 }
 
@@ -88,6 +93,28 @@ ordered_json written(const std::string& name, const OptionValue& value, const Re
                   "option " + name + ": the text \"" + *text + "\" stands for a number");
   }
   return std::visit([](const auto& plain) { return ordered_json(plain); }, value);
+}
+
+ordered_json written(const std::map<std::string, OptionValue>& options, const Refusal& refuse) {
+  ordered_json object = ordered_json::object();
+  for (const auto& [key, value] : options) object[key] = written(key, value, refuse);
+  return object;
+}
+
+ordered_json written(const BodyRecord& body, const Refusal& refuse) {
+  ordered_json object;
+  object["name"] = body.name;
+  object["sphere_count"] = body.sphere_count;
+  if (body.certificate) object["certificate"] = written(*body.certificate, refuse);
+  if (body.copy) {
+    const Eigen::Vector3d& t = body.copy->pose.translation();
+    const Eigen::Quaterniond q = body.copy->pose.rotation();
+    object["copy_of"] = body.copy->of;
+    object["pose"] = {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+  } else {
+    object["options"] = written(body.options, refuse);
+  }
+  return object;
 }
 
 // --- reading ---
@@ -161,6 +188,9 @@ CertificateRecord read_certificate(const json& value, std::size_t sphere_count,
   record.protrusion_over_simplified_max = optional("protrusion_over_simplified_max");
   record.protrusion_over_mesh_max = optional("protrusion_over_mesh_max");
   record.volume_ratio = optional("volume_ratio");
+  record.filled_volume = optional("filled_volume");
+  record.filled_volume_error = optional("filled_volume_error");
+  record.closing_slack = optional("closing_slack");
   if (const auto zones = value.find("zones"); zones != value.end()) {
     refuse.unless(zones->is_array(), where + ": \"zones\" is not a list");
     for (const json& zone : *zones) {
@@ -193,6 +223,69 @@ OptionValue read_option(const std::string& name, const json& value, const Refusa
   return text;
 }
 
+std::map<std::string, OptionValue> read_options(const json& object, const std::string& where,
+                                                const Refusal& refuse) {
+  std::map<std::string, OptionValue> options;
+  const auto found = object.find("options");
+  if (found == object.end() || found->is_null()) return options;
+  refuse.unless(found->is_object(), where + "\"options\" is not an object");
+  for (const auto& [key, option] : found->items()) options[key] = read_option(key, option, refuse);
+  return options;
+}
+
+Pose read_pose(const json& value, const std::string& where, const Refusal& refuse) {
+  refuse.unless(value.is_array() && value.size() == 7, where + ": \"pose\" is not seven numbers");
+  std::array<double, 7> p{};
+  for (std::size_t i = 0; i < p.size(); ++i) p[i] = read_number(value[i], where + ": pose", refuse);
+  try {
+    return {Eigen::Quaterniond(p[6], p[3], p[4], p[5]), Eigen::Vector3d(p[0], p[1], p[2])};
+  } catch (const Error& error) {
+    refuse(where + ": \"pose\" is not usable: " + error.what());
+  }
+}
+
+BodyRecord read_body(const json& value, std::span<const BodyRecord> before, const Refusal& refuse) {
+  const std::string where = "body " + std::to_string(before.size());
+  refuse.unless(value.is_object(), where + " is not an object");
+  BodyRecord body;
+  const json& name = member(value, "name", where, refuse);
+  refuse.unless(name.is_string() && !name.get_ref<const std::string&>().empty(),
+                where + ": \"name\" is not a text");
+  body.name = name.get<std::string>();
+  const json& count = member(value, "sphere_count", where, refuse);
+  refuse.unless(count.is_number_unsigned(), where + ": \"sphere_count\" is not a number");
+  body.sphere_count = count.get<std::size_t>();
+  const auto certificate = value.find("certificate");
+  if (certificate != value.end() && !certificate->is_null()) {
+    body.certificate = read_certificate(*certificate, body.sphere_count, refuse);
+  }
+  body.options = read_options(value, where + ": ", refuse);
+  if (const auto of = value.find("copy_of"); of != value.end()) {
+    refuse.unless(of->is_number_unsigned() && of->get<std::uint64_t>() < before.size() &&
+                      !before[of->get<std::size_t>()].copy,
+                  where + ": \"copy_of\" is not the number of a body before it that is no copy");
+    body.copy = BodyCopy{of->get<std::size_t>(),
+                         read_pose(member(value, "pose", where, refuse), where, refuse)};
+    refuse.unless(body.sphere_count == before[body.copy->of].sphere_count,
+                  where + ": has another number of spheres than the body that it is a copy of");
+  }
+  return body;
+}
+
+std::vector<BodyRecord> read_bodies(const json& list, std::size_t sphere_count,
+                                    const Refusal& refuse) {
+  refuse.unless(list.is_array(), "\"bodies\" is not a list");
+  std::vector<BodyRecord> bodies;
+  std::size_t left = sphere_count;
+  for (const json& value : list) {
+    bodies.push_back(read_body(value, bodies, refuse));
+    refuse.unless(bodies.back().sphere_count <= left, "its bodies have more spheres than it holds");
+    left -= bodies.back().sphere_count;
+  }
+  refuse.unless(bodies.empty() || left == 0, "it holds spheres of no body");
+  return bodies;
+}
+
 }  // namespace
 
 // JSON with one sphere a line, so that files can be compared line by line.
@@ -213,12 +306,19 @@ std::string internal::encode_spheres(const SphereFile& file, const std::string& 
                   "the certificate is not for this number of spheres");
     text += ",\n\"certificate\":" + written(*file.certificate, refuse).dump();
   }
-  ordered_json options = ordered_json::object();
-  for (const auto& [key, value] : file.options) options[key] = written(key, value, refuse);
+  std::size_t in_bodies = 0;
+  for (const BodyRecord& body : file.bodies) in_bodies += body.sphere_count;
+  refuse.unless(file.bodies.empty() || in_bodies == file.spheres.size(),
+                "the bodies have not as many spheres as the file");
   try {
-    text += ",\n\"options\":" + options.dump();
+    text += ",\n\"options\":" + written(file.options, refuse).dump();
+    if (!file.bodies.empty()) text += ",\n\"bodies\":[";
+    for (std::size_t i = 0; i < file.bodies.size(); ++i) {
+      text += (i == 0 ? "\n" : ",\n") + written(file.bodies[i], refuse).dump();
+    }
+    if (!file.bodies.empty()) text += "\n]";
   } catch (const json::exception&) {
-    refuse("an option is not valid UTF-8");
+    refuse("an option or a name is not valid UTF-8");
   }
   return text + "}\n";
 }
@@ -248,12 +348,9 @@ SphereFile internal::decode_spheres(std::string_view text, const std::string& na
   if (certificate != document.end() && !certificate->is_null()) {
     file.certificate = read_certificate(*certificate, file.spheres.size(), refuse);
   }
-  const auto options = document.find("options");
-  if (options != document.end() && !options->is_null()) {
-    refuse.unless(options->is_object(), "\"options\" is not an object");
-    for (const auto& [key, option] : options->items()) {
-      file.options[key] = read_option(key, option, refuse);
-    }
+  file.options = read_options(document, "", refuse);
+  if (const auto bodies = document.find("bodies"); bodies != document.end()) {
+    file.bodies = read_bodies(*bodies, file.spheres.size(), refuse);
   }
   return file;
 }

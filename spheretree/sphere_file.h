@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "spheretree/pose.h"
 #include "spheretree/sphere.h"
 
 #include <cstddef>
@@ -29,10 +30,30 @@ struct CertificateRecord {
   std::size_t sphere_count = 0;  // the number of spheres in the file, checked by both functions
   // Volume of the union of the balls over the volume of the solid mesh, estimated.
   std::optional<double> volume_ratio = std::nullopt;
+  // Volume between the solid and the mesh, and its standard error, estimated.
+  std::optional<double> filled_volume = std::nullopt;
+  std::optional<double> filled_volume_error = std::nullopt;
+  // How much wider than D a way into the solid may be and still have been filled, proved.
+  std::optional<double> closing_slack = std::nullopt;
 };
 
 // What an option in a file may be.
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
+
+// That a body is another one, moved rigidly.
+struct BodyCopy {
+  std::size_t of = 0;  // index of the other, which comes before it and is no copy itself
+  Pose pose;           // from the other's place to its own
+};
+
+// One of several bodies in a file. Its spheres follow those of the bodies before it.
+struct BodyRecord {
+  std::string name;
+  std::size_t sphere_count = 0;
+  std::optional<CertificateRecord> certificate = std::nullopt;  // of these spheres, about this body
+  std::map<std::string, OptionValue> options = {};              // of its fit; empty for a copy
+  std::optional<BodyCopy> copy = std::nullopt;
+};
 
 // The content of a SPHERES.json file. Infinite values cannot be stored in JSON; they are written as
 // the strings "inf" and "-inf", which therefore cannot be the text of an option.
@@ -41,17 +62,24 @@ struct SphereFile {
   std::optional<CertificateRecord> certificate;
   // The options of the fit under their command-line names without dashes ("max-error").
   std::map<std::string, OptionValue> options;
+  // Where the file is of several bodies: which spheres are whose. All of them together are
+  // `spheres`, in one frame, and `certificate` is about all bodies; `options` are those that all of
+  // them have. Programs that know nothing of bodies may pass over them.
+  std::vector<BodyRecord> bodies = {};
 };
 
-// Writes {"format":"spherule-spheres","version":1,...}; doubles survive the round trip bit for bit.
+// Writes {"format":"spherule-spheres","version":1,...}, and for several bodies "bodies":
+// [{"name","sphere_count","certificate","options","copy_of","pose":[x,y,z,qx,qy,qz,qw]},...], the
+// last two of copies only; doubles survive the round trip bit for bit.
 // The file appears whole or not at all. Equal content gives equal bytes. Throws Error naming the
 // file if it cannot be written or holds something that load_spheres() would refuse.
 void save_spheres(const SphereFile& file, const std::filesystem::path& path);
 
 // Throws Error, naming file and reason, for a file that cannot be read, is not JSON, is not of this
 // format or a newer version of it, holds a number that is not usable (is_usable), a value of a
-// wrong type, a key twice or a certificate for another number of spheres. Keys that are not known
-// are passed over.
+// wrong type, a key twice, a certificate for another number of spheres, or bodies whose numbers of
+// spheres do not add up, without a name or copies of none before them. Keys that are not known are
+// passed over.
 SphereFile load_spheres(const std::filesystem::path& path);
 
 }  // namespace spherule

@@ -23,6 +23,9 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& subject);
 TriangleMesh read_off(std::string_view bytes, const std::string& subject);
 TriangleMesh read_ply(std::string_view bytes, const std::string& subject);
 
+// The size in micrometres of the unit that a 3MF file states. Throws Error.
+double unit_of_3mf(std::string_view bytes, const std::string& subject);
+
 // What stands behind the last dot of the name, in lower case.
 std::string lower_extension(const std::filesystem::path& path);
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/mesh_distance.h"
 #include "mesh/triangle_mesh.h"
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 
-#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace spherule::internal {
@@ -18,10 +22,12 @@ namespace spherule::internal {
 // The winding number of a shell is a whole number that is the same for all points of a component of
 // space without M, and zero for the unbounded one. So a point with another number for any shell is
 // in |M|, whatever other shells count there: also in a sealed hollow, whose inner shell takes away
-// what the outer one gives.
+// what the outer one gives. It is counted along a ray: each triangle crossed from behind adds one,
+// each from the front takes one away.
 class ClosedShells {
  public:
-  explicit ClosedShells(const TriangleMesh& mesh);
+  // `distance`, of the same mesh, has to outlive the shells.
+  ClosedShells(const TriangleMesh& mesh, const MeshDistance& distance);
 
   // Whether the winding number of a shell says that the point, which is not on the surface, is in
   // |M|. Never true of a point outside, but not of all points of |M|: false in hollows that no
@@ -31,12 +37,28 @@ class ClosedShells {
   // that, which knows no orientation.
   bool contain(const Eigen::Vector3d& point) const;
 
+  // The sum of the winding numbers of all shells about a point that is not on the surface: of the
+  // mesh, if that is closed.
+  int winding_number(const Eigen::Vector3d& point) const;
+
+  // Whether no edge of the mesh is used more often in one direction than in the other.
+  bool is_mesh_closed() const { return is_mesh_closed_; }
+
  private:
-  struct Shell {
-    std::vector<std::array<Eigen::Vector3d, 3>> triangles;
-    Eigen::AlignedBox3d box;
-  };
-  std::vector<Shell> shells_;
+  // The winding numbers of shells, sorted; zero for those that are not named.
+  using Windings = std::vector<std::pair<std::int32_t, int>>;
+
+  Windings windings(const Eigen::Vector3d& point) const;
+  // Nothing if rounding leaves open whether a ray in this direction crosses some triangle.
+  std::optional<Windings> count_along(const Eigen::Vector3d& point,
+                                      const Eigen::Vector3d& direction) const;
+  // Of all triangles, by their solid angles: linear in their number.
+  Windings sum_of_angles(const Eigen::Vector3d& point) const;
+
+  const MeshDistance& distance_;
+  std::vector<std::int32_t> shell_of_;  // of each triangle; kOpen without one
+  std::size_t shell_count_ = 0;
+  bool is_mesh_closed_ = false;
 };
 
 }  // namespace spherule::internal

@@ -3,8 +3,8 @@
 
 #include "mesh/geometry/mesh_box.h"
 #include "mesh/mesh_distance.h"
-#include "mesh/mesh_report.h"
 #include "mesh/point_triangle.h"
+#include "mesh/shells/closed_shells.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -32,14 +32,11 @@ Corners corners_of(const TriangleMesh& mesh, const Eigen::Vector3i& triangle) {
 class SolidDistance {
  public:
   explicit SolidDistance(const TriangleMesh& mesh)
-      : mesh_(mesh),
-        surface_(mesh),
-        closed_(mesh_report(mesh, {.self_intersections = false}).closed) {}
+      : mesh_(mesh), surface_(mesh), shells_(mesh, surface_) {}
 
   SurfaceDistance to_surface(const Eigen::Vector3d& point) const { return surface_(point); }
   bool is_inside(const Eigen::Vector3d& point) const {
-    return closed_ && surface_.box().contains(point) &&
-           std::abs(surface_.winding_number(point)) > 0.5;
+    return shells_.is_mesh_closed() && shells_.winding_number(point) != 0;
   }
   // No point of the piece is farther from that triangle: distance to a convex set is convex, so its
   // maximum stands at a corner.
@@ -55,7 +52,7 @@ class SolidDistance {
  private:
   const TriangleMesh& mesh_;
   MeshDistance surface_;
-  bool closed_;
+  internal::ClosedShells shells_;
 };
 
 // A piece of surface, and what no point of it is farther away than.

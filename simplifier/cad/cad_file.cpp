@@ -24,6 +24,8 @@ constexpr int kTessellations = 4;
 constexpr double kSampleMargin = 2.0;
 // What evaluating a surface in doubles may cost, relative to the largest number that goes into it.
 constexpr double kEvaluation = 0x1p-40;
+// Of the coordinates: a motion that is further from a rigid one than this is none.
+constexpr double kRigid = 1e-9;
 // Deviations below this share of the aim are not told apart: a finer proof would cost more than the
 // padding that it saves.
 constexpr double kFloor = 0.5;
@@ -80,11 +82,7 @@ Tessellation tessellate(CadShape& shape, double deflection, double angle, double
   return result;
 }
 
-}  // namespace
-
-CadPart read_cad(const std::filesystem::path& path, const CadReadOptions& options) {
-  check(options);
-  CadShape shape(path, internal::read_regular_file(path));
+CadPart part_of(CadShape& shape, const CadReadOptions& options, const std::string& subject) {
   double aim = options.chord_error / options.scale;
   if (aim == 0.0) aim = kDefaultChordError * shape.diagonal();
 
@@ -110,12 +108,78 @@ CadPart read_cad(const std::filesystem::path& path, const CadReadOptions& option
   part.unproved = std::move(best.unproved);
   part.faces = shape.face_count();
   part.free_edges = shape.free_edge_count();
+  part.stated_unit = shape.stated_unit();
   part.mesh = std::move(best.mesh);
   internal::apply_scale(part.mesh, options.scale);
   part.mesh.vertex_error = add_up(part.mesh.vertex_error, part.chord_error);
   part.mesh = internal::weld(part.mesh);
-  validate(part.mesh, path.string());
+  validate(part.mesh, subject);
   return part;
+}
+
+// How far `motion`, in millimetres, is from the rigid motion `pose`, in units of the model, for the
+// points of the mesh.
+double motion_error(const Eigen::Matrix<double, 3, 4>& motion, const Pose& pose, double scale,
+                    const TriangleMesh& mesh) {
+  double largest = 0.0;
+  for (const Eigen::Vector3d& v : mesh.vertices) {
+    const Eigen::Vector3d moved = motion.leftCols<3>() * v + motion.col(3) * scale;
+    largest = std::max(largest, distance_upper(moved, pose * v));
+  }
+  // Rounding of both, and of the place that OpenCASCADE composes from those of the assemblies
+  // around it: as what evaluating a surface may cost.
+  const double size =
+      internal::largest_coordinate(mesh) + motion.col(3).cwiseAbs().maxCoeff() * scale;
+  return add_up(largest, mul_up(size, kEvaluation));
+}
+
+// The copy, and how far it is from its original moved rigidly.
+std::pair<BodyCopy, double> copy_of(const CadShape::Placed& placed, double scale,
+                                    const CadPart& original, const std::string& subject) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = placed.from_original.leftCols<3>();
+  motion.translation() = placed.from_original.col(3) * scale;
+  BodyCopy copy{.of = placed.copy_of, .pose = Pose::from_isometry(motion)};
+  const double error = motion_error(placed.from_original, copy.pose, scale, original.mesh);
+  // Far more than rounding is no rigid motion.
+  if (!(error <= kRigid * internal::largest_coordinate(original.mesh) +
+                     kRigid * motion.translation().norm())) {
+    throw Error(subject, placed.name + " is no rigid copy of another body, which is not read");
+  }
+  return {copy, error};
+}
+
+}  // namespace
+
+CadPart read_cad(const std::filesystem::path& path, const CadReadOptions& options) {
+  check(options);
+  CadShape shape(path, internal::read_regular_file(path));
+  return part_of(shape, options, path.string());
+}
+
+std::vector<CadBody> read_cad_bodies(const std::filesystem::path& path,
+                                     const CadReadOptions& options) {
+  check(options);
+  const std::string subject = path.string();
+  std::vector<CadShape::Placed> placed = CadShape::bodies(path, internal::read_regular_file(path));
+  std::vector<CadBody> bodies;
+  std::vector<double> copy_errors(placed.size(), 0.0);
+  for (CadShape::Placed& one : placed) {
+    CadBody body{.name = one.name, .part = {}};
+    if (one.shape) {
+      body.part = part_of(*one.shape, options, subject + ": " + one.name);
+    } else {
+      const auto [copy, error] = copy_of(one, options.scale, bodies[one.copy_of].part, subject);
+      body.copy = copy;
+      copy_errors[one.copy_of] = std::max(copy_errors[one.copy_of], error);
+    }
+    bodies.push_back(std::move(body));
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    double& own = bodies[i].part.mesh.vertex_error;
+    if (copy_errors[i] > 0.0) own = add_up(own, copy_errors[i]);
+  }
+  return bodies;
 }
 
 }  // namespace spherule

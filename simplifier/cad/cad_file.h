@@ -2,9 +2,11 @@
 #pragma once
 
 #include "mesh/triangle_mesh.h"
+#include "spheretree/sphere_file.h"
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,7 @@ struct CadPart {
   std::vector<UnprovedFace> unproved;
   std::size_t faces = 0;
   std::size_t free_edges = 0;  // of no face: left out, as lines are in mesh files
+  std::string stated_unit;     // of the numbers in the file, as the file names it: "inch"
 };
 
 // Reads STEP (AP203, AP214, AP242) and IGES, told apart by the extension (step, stp, iges, igs).
@@ -63,5 +66,20 @@ struct CadPart {
 // type or not read (named: solids other than breps, tessellations, documents, scaled copies and all
 // that docs/cad.md lists), coordinates beyond kMaxCoordinate, a bad option.
 CadPart read_cad(const std::filesystem::path& path, const CadReadOptions& options = {});
+
+// A body of a CAD file: a part as above, or a copy of one.
+struct CadBody {
+  std::string name;  // by its places in the assembly: "GEARBOX/BOLT:2"; no two are the same
+  CadPart part;      // in place; of a copy empty
+  // A copy: which body it is a copy of, and the motion from there to its own place. What that
+  // motion misses by is in the vertex_error of the other.
+  std::optional<BodyCopy> copy = std::nullopt;
+};
+
+// The bodies of the file: the parts of a STEP assembly in their places, and of a part of several
+// solids each of these. All of them together are what read_cad() reads; but each is tessellated by
+// itself, a default chord error being one of its own box. Throws Error as read_cad() does.
+std::vector<CadBody> read_cad_bodies(const std::filesystem::path& path,
+                                     const CadReadOptions& options = {});
 
 }  // namespace spherule

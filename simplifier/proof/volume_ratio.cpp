@@ -79,52 +79,138 @@ void cross_ball(const Sphere& ball, const Axes& axes, const Vector2d& line,
   crossings.emplace_back(ball.center[axes.along] + half, -1);
 }
 
-// Volume of what lies in the box and has this many things to cross, by lines along its shortest
-// side, so that none of them misses a thin plate.
-template <typename Cross>
-double volume_in(const Eigen::AlignedBox3d& box, std::size_t things, Cross add_crossings) {
-  int shortest = 0;
-  box.sizes().minCoeff(&shortest);
-  const Axes axes(shortest);
-  const double lines = std::clamp(kMaxTests / static_cast<double>(things), kMinLines, kMaxLines);
-  const auto count = static_cast<std::size_t>(std::sqrt(lines));
-  const Vector2d low = axes.across(box.min());
-  const Vector2d cell = axes.across(box.sizes()) / static_cast<double>(count);
-  std::vector<Vector2d> places;
-  Random random(1);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < count; ++j) {
-      const double x = static_cast<double>(i) + random.unit();
-      const double y = static_cast<double>(j) + random.unit();
-      places.push_back(low + cell.cwiseProduct(Vector2d(x, y)));
+// One line through each cell of a grid across the shortest side of a box, so that none of them
+// misses a thin plate. The cells go pairwise, along the first axis across.
+struct Lines {
+  Lines(const Eigen::AlignedBox3d& box, double wanted)
+      : axes(shortest_of(box)),
+        count(static_cast<std::size_t>(std::sqrt(wanted))),
+        low(axes.across(box.min())),
+        cell(axes.across(box.sizes()) / static_cast<double>(count)),
+        area(cell.prod()) {
+    Random random(1);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = 0; j < count; ++j) {
+        const double x = static_cast<double>(i) + random.unit();
+        const double y = static_cast<double>(j) + random.unit();
+        places.push_back(low + cell.cwiseProduct(Vector2d(x, y)));
+      }
     }
   }
-  std::vector<double> lengths(places.size());
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-    std::vector<Crossing> crossings;
-    add_crossings(axes, places[i], crossings);
-    lengths[i] = length_inside(crossings);
-  });
-  return std::accumulate(lengths.begin(), lengths.end(), 0.0) * cell.prod();
+
+  static int shortest_of(const Eigen::AlignedBox3d& box) {
+    int shortest = 0;
+    box.sizes().minCoeff(&shortest);
+    return shortest;
+  }
+
+  // Of each line, what lies in it; add_crossings(axes, line, crossings) notes where it is crossed.
+  template <typename Cross>
+  std::vector<double> lengths_inside(Cross add_crossings) const {
+    std::vector<double> lengths(places.size());
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+      std::vector<Crossing> crossings;
+      add_crossings(axes, places[i], crossings);
+      lengths[i] = length_inside(crossings);
+    });
+    return lengths;
+  }
+
+  // Calls cross(place) for the places of a row that lie in a box across.
+  template <typename Cross>
+  void for_each_in(std::size_t row, const Vector2d& least, const Vector2d& greatest,
+                   Cross cross) const {
+    const Vector2d from = (least - low).cwiseQuotient(cell);
+    const Vector2d to = (greatest - low).cwiseQuotient(cell);
+    const auto at = static_cast<double>(row);
+    const auto last = static_cast<double>(count) - 1.0;
+    if (to.x() < at || from.x() > at + 1.0 || to.y() < 0.0 || from.y() > last + 1.0) return;
+    const auto begin = static_cast<std::size_t>(std::max(0.0, std::floor(from.y())));
+    const auto end = static_cast<std::size_t>(std::min(last, std::floor(to.y()))) + 1;
+    for (std::size_t j = begin; j < end; ++j) cross(row * count + j);
+  }
+
+  Axes axes;
+  std::size_t count;  // rows, and lines in each
+  Vector2d low;
+  Vector2d cell;
+  double area;  // of a cell
+  std::vector<Vector2d> places;
+};
+
+double number_of_lines(std::size_t things) {
+  return std::clamp(kMaxTests / static_cast<double>(things), kMinLines, kMaxLines);
+}
+
+std::array<Vector3d, 3> corners_of(const TriangleMesh& mesh, const Eigen::Vector3i& t) {
+  const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+  return {corner(0), corner(1), corner(2)};
+}
+
+double sum_of(const std::vector<double>& lengths) {
+  return std::accumulate(lengths.begin(), lengths.end(), 0.0);
 }
 
 }  // namespace
 
 double estimate_volume_ratio(const TriangleMesh& mesh, std::span<const Sphere> balls) {
-  const double solid = volume_in(
-      box_of(mesh), mesh.triangles.size(),
+  const Lines through_mesh(box_of(mesh), number_of_lines(mesh.triangles.size()));
+  const std::vector<double> solid = through_mesh.lengths_inside(
       [&](const Axes& axes, const Vector2d& line, std::vector<Crossing>& crossings) {
         for (const Eigen::Vector3i& t : mesh.triangles) {
-          const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
-          cross_triangle({corner(0), corner(1), corner(2)}, axes, line, crossings);
+          cross_triangle(corners_of(mesh, t), axes, line, crossings);
         }
       });
-  const double covered =
-      volume_in(box_of(balls), balls.size(),
-                [&](const Axes& axes, const Vector2d& line, std::vector<Crossing>& crossings) {
-                  for (const Sphere& ball : balls) cross_ball(ball, axes, line, crossings);
-                });
-  return covered / solid;
+  const Lines through_balls(box_of(balls), number_of_lines(balls.size()));
+  const std::vector<double> covered = through_balls.lengths_inside(
+      [&](const Axes& axes, const Vector2d& line, std::vector<Crossing>& crossings) {
+        for (const Sphere& ball : balls) cross_ball(ball, axes, line, crossings);
+      });
+  return sum_of(covered) * through_balls.area / (sum_of(solid) * through_mesh.area);
+}
+
+EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh, const ExternalSpheres& external) {
+  const Eigen::AlignedBox3d& box = external.box;
+  const Lines lines(box, kMaxLines);
+  const Axes& axes = lines.axes;
+  const double low = box.min()[axes.along];
+  const double high = box.max()[axes.along];
+  std::vector<double> filled(lines.places.size());
+  tbb::parallel_for(std::size_t{0}, lines.count, [&](std::size_t row) {
+    // External balls and |M| are disjoint: one or the other changes the winding number.
+    std::vector<std::vector<Crossing>> crossings(lines.count);
+    const auto of = [&](std::size_t place) -> std::vector<Crossing>& {
+      return crossings[place - row * lines.count];
+    };
+    for (const Eigen::Vector3i& t : mesh.triangles) {
+      const std::array<Vector3d, 3> corners = corners_of(mesh, t);
+      const Vector3d least = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
+      const Vector3d greatest = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
+      lines.for_each_in(row, axes.across(least), axes.across(greatest), [&](std::size_t place) {
+        cross_triangle(corners, axes, lines.places[place], of(place));
+      });
+    }
+    for (const Sphere& ball : external.balls) {
+      const Vector3d reach = Vector3d::Constant(ball.radius);
+      lines.for_each_in(
+          row, axes.across(ball.center - reach), axes.across(ball.center + reach),
+          [&](std::size_t place) { cross_ball(ball, axes, lines.places[place], of(place)); });
+    }
+    for (std::size_t j = 0; j < lines.count; ++j) {
+      for (Crossing& crossing : crossings[j]) {
+        crossing.first = std::clamp(crossing.first, low, high);
+      }
+      filled[row * lines.count + j] = std::max(0.0, high - low - length_inside(crossings[j]));
+    }
+  });
+  // Two cells side by side: the square of their difference is, on average, at least the variance of
+  // their sum.
+  double variance = 0.0;
+  for (std::size_t i = 0; i + 1 < filled.size(); i += 2) {
+    const double difference = filled[i] - filled[i + 1];
+    variance += difference * difference;
+  }
+  return {lines.area * sum_of(filled), lines.area * std::sqrt(variance)};
 }
 
 }  // namespace spherule::internal

@@ -29,10 +29,18 @@ double least_radius(std::span<const Sphere> balls) {
   return least;
 }
 
-std::vector<Vector3d> contacts_of(std::span<const Sphere> balls, const MeshDistance& distance) {
-  std::vector<Vector3d> contacts(balls.size());
-  tbb::parallel_for(std::size_t{0}, balls.size(),
-                    [&](std::size_t i) { contacts[i] = distance(balls[i].center).closest; });
+// A ball touches the mesh grown by the padding, or nearly: what is further need not be looked at.
+Vector3d contact_of(const Sphere& ball, double padding, const MeshDistance& distance) {
+  constexpr double kNearly = 1.001;
+  const SurfaceDistance near = distance(ball.center, kNearly * (ball.radius + padding));
+  return near.triangle < 0 ? distance(ball.center).closest : near.closest;
+}
+
+std::vector<Vector3d> contacts_of(const ExternalSpheres& external, const MeshDistance& distance) {
+  std::vector<Vector3d> contacts(external.balls.size());
+  tbb::parallel_for(std::size_t{0}, contacts.size(), [&](std::size_t i) {
+    contacts[i] = contact_of(external.balls[i], external.padding, distance);
+  });
   return contacts;
 }
 
@@ -43,7 +51,7 @@ Clearance::Clearance(const ExternalSpheres& external)
 
 Clearance::Clearance(const ExternalSpheres& external, const MeshDistance& distance)
     : Clearance(external,
-                internal::BallHierarchy(external.balls, contacts_of(external.balls, distance))) {}
+                internal::BallHierarchy(external.balls, contacts_of(external, distance))) {}
 
 Clearance::Clearance(const ExternalSpheres& external, internal::BallHierarchy balls)
     : centers_(centers_of(external.balls)),

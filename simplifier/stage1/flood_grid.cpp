@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 
 namespace spherule::internal {
 namespace {
@@ -18,6 +21,13 @@ namespace {
 constexpr double kLayer = 1.2;
 // Of the step: rounding that a ball may stick out of another by and still be taken for a part.
 constexpr double kContained = 1e-9;
+// Cells that are examined between two reports of progress: siblings stay together.
+constexpr std::size_t kPart = std::size_t{1} << 20;
+// How many levels ahead the number of cells is foreseen, and by how much that may be wrong; what is
+// advised has some room.
+constexpr int kForeseen = 3;
+constexpr double kClearlyMore = 1.5;
+constexpr double kMargin = 1.2;
 
 std::uint32_t gather(std::uint64_t x) {
   x &= 0x1249249249249249;
@@ -46,18 +56,54 @@ FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDi
   cells_.push_back({});
   level_begin_ = {0};
   for (int level = 0; level <= levels_; ++level) {
-    examine(level_begin_[static_cast<std::size_t>(level)]);
+    examine_level(level, progress);
     level_begin_.push_back(cells_.size());
-    if (progress) progress(0.9 * std::ldexp(1.0, 2 * (level - levels_)), "flooding");
+    check_memory(level);
     for (std::size_t i = level_begin_[static_cast<std::size_t>(level)];
          i < level_begin_[static_cast<std::size_t>(level) + 1]; ++i) {
-      if (cells_[i].state != State::kRefined) continue;
-      if (cells_.size() + 8 > kMaxCells) {
-        throw Error("grid step", "too fine for a model of this size (more than 2^27 cells)");
-      }
-      halve(i);
+      if (cells_[i].state == State::kRefined) halve(i);
     }
   }
+}
+
+void FloodGrid::examine_level(int level, const Progress& progress) {
+  const std::size_t first = level_begin_[static_cast<std::size_t>(level)];
+  const std::size_t count = cells_.size() - first;
+  const double before = level == 0 ? 0.0 : std::ldexp(1.0, 2 * (level - 1 - levels_));
+  const double after = std::ldexp(1.0, 2 * (level - levels_));
+  for (std::size_t done = 0; done < count; done += std::min(kPart, count - done)) {
+    const std::size_t begin = first + done;
+    examine(begin, begin + std::min(kPart, count - done));
+    const double part =
+        static_cast<double>(std::min(done + kPart, count)) / static_cast<double>(count);
+    if (progress) progress(0.9 * (before + part * (after - before)), "flooding");
+  }
+}
+
+// Cells around a surface become four times as many with every level once they are smaller than the
+// clearance that is asked for; those of zones do not.
+void FloodGrid::check_memory(int level) const {
+  const auto begin = cells_.begin() + static_cast<std::ptrdiff_t>(level_begin_.end()[-2]);
+  const auto refined = static_cast<double>(std::count_if(
+      begin, cells_.end(), [](const Entry& e) { return e.state == State::kRefined; }));
+  double next = 8.0 * refined;
+  double total = static_cast<double>(cells_.size()) + next;
+  const auto most = static_cast<double>(kMaxCells);
+  const bool is_foreseeable = diameter_.most_halvings() == 0 && levels_ - level <= kForeseen;
+  for (int finer = level + 1; finer < levels_ && is_foreseeable; ++finer) {
+    next *= 4.0;
+    total += next;
+  }
+  if (total <= (is_foreseeable && level + 1 < levels_ ? kClearlyMore : 1.0) * most) return;
+  const double factor = kMargin * total / most;
+  std::ostringstream reason;
+  reason << std::setprecision(3) << "too fine for a model of this size: about " << total
+         << " cells with an edge of " << edge(levels_) << " would be needed, and " << most
+         << " is the most; with a min external diameter " << std::ceil(10.0 * factor) / 10.0
+         << " times as large, or both it and the max error "
+         << std::ceil(10.0 * std::sqrt(factor)) / 10.0
+         << " times, or with the model in parts, memory suffices";
+  throw Error("grid step", reason.str());
 }
 
 void FloodGrid::halve(std::size_t cell) {
@@ -125,12 +171,12 @@ void FloodGrid::classify(Entry& cell, const Eigen::Vector3d& middle,
   }
 }
 
-void FloodGrid::examine(std::size_t begin) {
+void FloodGrid::examine(std::size_t begin, std::size_t end) {
   // Children of one cell: what is near to one is not much further from the others.
-  tbb::parallel_for(begin, cells_.size(), std::size_t{8}, [&](std::size_t first) {
+  tbb::parallel_for(begin, end, std::size_t{8}, [&](std::size_t first) {
     double limit = std::numeric_limits<double>::infinity();
     double gap = 0.0;
-    for (std::size_t i = first; i < std::min(first + 8, cells_.size()); ++i) {
+    for (std::size_t i = first; i < std::min(first + 8, end); ++i) {
       const Eigen::Vector3d middle = center(cells_[i]);
       const SurfaceDistance d = distance_(middle, limit);
       limit = d.upper + 4.0 * half_diagonal(cells_[i].level);
@@ -296,6 +342,7 @@ std::vector<FloodGrid::Cell> FloodGrid::reached_cells_that_count() const {
 
 std::vector<FloodGrid::Frontier> FloodGrid::frontier() const {
   std::vector<Frontier> result;
+  std::vector<std::size_t> cells;  // of these
   std::vector<bool> seen(cells_.size(), false);
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (!cells_[i].finest) continue;
@@ -308,10 +355,29 @@ std::vector<FloodGrid::Frontier> FloodGrid::frontier() const {
       const Entry& reached = cells_[i].reached ? cells_[i] : cells_[other];
       if (seen[open]) return;
       seen[open] = true;
+      cells.push_back(open);
       result.push_back(
           {center(cells_[open]), {center(reached), reached.clearance}, edge(cells_[open].level)});
     };
     for_each_face_neighbour(cells_[i].level, decode(cells_[i].code), visit);
+  }
+  // Those that share no more than an edge or a corner with a reached one: two rings.
+  std::size_t begin = 0;
+  for (int ring = 0; ring < 2; ++ring) {
+    const std::size_t end = cells.size();
+    for (std::size_t k = begin; k < end; ++k) {
+      const Entry& inner = cells_[cells[k]];
+      const Cell from = result[k].neighbour;
+      for_each_face_neighbour(inner.level, decode(inner.code), [&](std::size_t i, const Index&) {
+        if (i >= cells_.size() || seen[i] || !cells_[i].finest || cells_[i].reached) return;
+        const Entry& cell = cells_[i];
+        seen[i] = true;
+        if (cell.clearance + half_diagonal(cell.level) < diameter_.least_radius()) return;
+        cells.push_back(i);
+        result.push_back({center(cell), from, edge(cell.level)});
+      });
+    }
+    begin = end;
   }
   return result;
 }

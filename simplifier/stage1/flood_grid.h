@@ -31,7 +31,8 @@ class FloodGrid {
     Eigen::Vector3d center;
     double clearance = 0.0;  // lower bound at the centre
   };
-  // A finest cell that was not reached beside one that was.
+  // A finest cell that was not reached near one that was: beside it, or with a ring or two of such
+  // cells between the two that are as near to it.
   struct Frontier {
     Eigen::Vector3d center;
     Cell neighbour;
@@ -43,8 +44,10 @@ class FloodGrid {
     int levels = 0;          // the cube has the edge h * 2^levels; with the halvings at most 20
   };
 
-  // `progress` is called after every level. The share takes the finest level for nine tenths of the
-  // work and each coarser one for a quarter of the next: cells near the surface grow that fast.
+  // `progress` is called after every level and between parts of it. The share takes the finest
+  // level for nine tenths of the work and each coarser one for a quarter of the next: cells near
+  // the surface grow that fast. Throws Error if there are more cells than memory is allowed for, as
+  // soon as that is foreseen.
   FloodGrid(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
             const Shape& shape, const Progress& progress);
 
@@ -100,8 +103,13 @@ class FloodGrid {
   Eigen::Vector3d center(const Entry& cell) const;
   // Appends the eight children of a cell, which are to be examined.
   void halve(std::size_t cell);
-  // Measures and classifies the cells from one on.
-  void examine(std::size_t begin);
+  // Measures and classifies the cells of a level, which are the last.
+  void examine_level(int level, const Progress& progress);
+  // The same for cells from one on, up to another.
+  void examine(std::size_t begin, std::size_t end);
+  // Throws Error if the cells that the last level is halved into are too many, or those of the
+  // finest will be.
+  void check_memory(int level) const;
   void classify(Entry& cell, const Eigen::Vector3d& middle, const SurfaceDistance& d) const;
   // From the centre to a corner, and all that rounding adds.
   double half_diagonal(int level) const;

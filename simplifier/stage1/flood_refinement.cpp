@@ -114,7 +114,7 @@ class FloodGrid::Refinement {
     std::sort(chosen.begin(), chosen.end());
     const std::size_t begin = cells().size();
     for (const std::size_t i : chosen) grid_.halve(i);
-    grid_.examine(begin);
+    grid_.examine(begin, cells().size());
     grid_.sets_.grow(cells().size() + 1);
     std::erase_if(grid_.doubtful_, [&](const Pair& pair) {
       return cells()[pair.first].state == State::kRefined ||

@@ -64,8 +64,8 @@ constexpr std::size_t kHopefulLeaks = 8;
 constexpr std::size_t kOpenRows = 100;  // that candidates are made for in a round
 
 // What a lower bound is made of, for every ball proved and at least.
-constexpr std::size_t kBoundPoints = 40;
-constexpr std::size_t kMinBoundPoints = 2000;
+constexpr std::size_t kBoundPoints = 120;
+constexpr std::size_t kMinBoundPoints = 6000;
 constexpr std::size_t kBoundCenters = 20;
 constexpr std::size_t kMinBoundCenters = 1000;
 
@@ -130,13 +130,19 @@ std::vector<Sphere> CoverFitter::run() {
 }
 
 void CoverFitter::begin() {
+  const auto announce = [&](const char* what) {
+    if (options_.progress) options_.progress(0.0, what);
+  };
+  announce("covering: dividing the solid");
   for (;; ++spacing_) {
     cells_.emplace(clearance_, distance_, local_, error_, kSpacings[spacing_]);
     if (cells_->size() >= kFewCells || spacing_ + 1 == kSpacings.size()) break;
   }
+  announce("covering: looking for places of spheres");
   pose({});
   first_entries_ = problem_.entries();
   solution_ = greedy_set_cover(problem_.instance());
+  announce("covering: proving the first answer");
   prove_or_learn();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/cover_history.h"
 
+#include "mesh/shells/closed_shells.h"
 #include "simplifier/support/random.h"
 
 #include <tbb/parallel_for.h>
@@ -47,18 +48,21 @@ double share(std::size_t part, std::size_t whole) {
 
 }  // namespace
 
-CoverHistory::CoverHistory(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box, double margin,
-                           std::uint64_t seed) {
+CoverHistory::CoverHistory(const TriangleMesh& mesh, const MeshDistance& distance,
+                           const Eigen::AlignedBox3d& box, double margin, std::uint64_t seed) {
   Random random(seed);
   for (const Vector3d& p : points_on(mesh, kSurfaceSamples, random)) surface_.push_back({p, kFar});
   const Vector3d grow = Vector3d::Constant(margin);
   const Eigen::AlignedBox3d field(box.min() - grow, box.max() + grow);
   std::vector<Vector3d> points(kVolumeSamples);
   for (Vector3d& p : points) p = random.in(field);
-  const MeshDistance distance(mesh);
+  const ClosedShells shells(mesh, distance);
   std::vector<char> inside(points.size());
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-    inside[i] = std::abs(distance.winding_number(points[i])) > 0.5 ? 1 : 0;
+    const bool is_inside = shells.is_mesh_closed()
+                               ? shells.winding_number(points[i]) != 0
+                               : std::abs(distance.winding_number(points[i])) > 0.5;
+    inside[i] = is_inside ? 1 : 0;
   });
   for (std::size_t i = 0; i < points.size(); ++i) {
     (inside[i] != 0 ? solid_ : outside_).push_back({points[i], kFar});

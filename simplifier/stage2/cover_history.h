@@ -14,8 +14,8 @@ namespace spherule::internal {
 class CoverHistory {
  public:
   // `box` holds the solid; balls may protrude from it by `margin`.
-  CoverHistory(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box, double margin,
-               std::uint64_t seed);
+  CoverHistory(const TriangleMesh& mesh, const MeshDistance& distance,
+               const Eigen::AlignedBox3d& box, double margin, std::uint64_t seed);
 
   void add(const Sphere& ball);
 

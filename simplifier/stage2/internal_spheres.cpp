@@ -10,13 +10,12 @@
 
 namespace spherule {
 
-SphereCover place_internal_spheres(const TriangleMesh& mesh, const Clearance& clearance,
-                                   const CoverOptions& options) {
+SphereCover place_internal_spheres(const TriangleMesh& mesh, const MeshDistance& distance,
+                                   const Clearance& clearance, const CoverOptions& options) {
   internal::check_resolved(clearance, options.max_error, internal::kErrorTolerance);
-  const MeshDistance distance(mesh);
   std::optional<internal::CoverHistory> history;
   if (options.history) {
-    history.emplace(mesh, clearance.box(), options.max_error, options.seed);
+    history.emplace(mesh, distance, clearance.box(), options.max_error, options.seed);
   }
   internal::BallSet balls;
   SphereCover result;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/mesh_distance.h"
 #include "simplifier/cover.h"
 #include "simplifier/solid/clearance.h"
 
@@ -17,7 +18,7 @@ namespace spherule {
 // since the next round would try the same one again; and where the grown ball slides so far from a
 // sharp tip that the tip stays further than half the limit, the last position on its way that does
 // not is taken.
-SphereCover place_internal_spheres(const TriangleMesh& mesh, const Clearance& clearance,
-                                   const CoverOptions& options);
+SphereCover place_internal_spheres(const TriangleMesh& mesh, const MeshDistance& distance,
+                                   const Clearance& clearance, const CoverOptions& options);
 
 }  // namespace spherule

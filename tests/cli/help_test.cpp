@@ -47,6 +47,7 @@ class HelpTest : public CommandTest {
   void write_files() {
     // Without external spheres what is inside is found by a flood: quick in a bar.
     write_box("part.stl", {2, 0.1, 0.1});
+    write_box("tool.stl", {0.1, 0.1, 3});
     write_spheres("tool.json", {{0, 0, 0, 2}});
     write_spheres("others.json", {{1, 0.05, 0.05, 0.9}});
     write("robot.urdf", kRobot);

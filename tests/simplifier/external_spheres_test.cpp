@@ -204,6 +204,25 @@ TEST(ExternalSpheres, TellOfTheirProgressAndKeepToTheThreadsTheyAreGiven) {
   }
 }
 
+// Before the two finest levels are looked at, of which each has about four times the cells of the
+// one before.
+TEST(ExternalSpheres, TooManyCellsAreForeseenAndTheReasonSaysWhatToChoose) {
+  if (kSanitized) GTEST_SKIP() << "some million distances";
+  ExternalOptions options = options_for(ExternalPlacement::kReachable, 0.005);
+  double last = 0.0;
+  options.progress = [&](double share, const char*) { last = share; };
+  try {
+    place_external_spheres(cube_mesh(), options);
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.subject(), "grid step");
+    EXPECT_NE(std::string(error.what()).find("with a min external diameter "), std::string::npos)
+        << error.what();
+  }
+  EXPECT_GT(last, 0.0);
+  EXPECT_LT(last, 0.9 / 16.0 + 1e-9);
+}
+
 TEST(ExternalSpheres, ThePaddingIsTheSumOfTheTwoGivenWhereThereAreTwo) {
   ExternalOptions options = options_for(ExternalPlacement::kNone, 0.0);
   TriangleMesh mesh = cube_mesh();

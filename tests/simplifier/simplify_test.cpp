@@ -80,6 +80,7 @@ TEST(Simplify, KeepsToTheThreadsItIsGiven) {
   };
   simplify(cube_mesh(), options);
   EXPECT_TRUE(stages.contains("flooding"));
+  EXPECT_TRUE(stages.contains("covering: proving the first answer"));
   EXPECT_TRUE(stages.contains("proving the solid"));
 }
 

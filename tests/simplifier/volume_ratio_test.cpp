@@ -54,5 +54,24 @@ TEST(VolumeRatio, ThinPlatesAndPipesInAnyDirection) {
   EXPECT_NEAR(kBall / ratio(pipe(1.0, 0.9, 10.0, 60), ball), 10.0 * ring, 0.02 * 10.0 * ring);
 }
 
+// Without external balls S is the box.
+TEST(FilledVolume, IsWhatTheSolidHasMoreThanTheMesh) {
+  const TriangleMesh cube = cube_mesh();
+  ExternalSpheres external;
+  external.box = {Vector3d::Constant(-1.0), Vector3d::Constant(2.0)};
+  const auto filled = [&](const TriangleMesh& mesh) {
+    return internal::estimate_filled_volume(mesh, external);
+  };
+  EXPECT_NEAR(filled(cube).volume, 26.0, 0.1);
+  EXPECT_LT(std::abs(filled(cube).volume - 26.0), 4.0 * filled(cube).error + 1e-9);
+  EXPECT_NEAR(filled(inverted(cube)).volume, 26.0, 0.1);
+  // A ball that touches the cube, cut by the box on one side, and twice the same.
+  external.balls = {{Vector3d(1.75, 0.5, 0.5), 0.75}, {Vector3d(1.75, 0.5, 0.5), 0.75}};
+  const double height = 0.5;  // of the cap that is cut off
+  const double cut = std::numbers::pi * height * height * (3.0 * 0.75 - height) / 3.0;
+  const double ball = kBall * 0.75 * 0.75 * 0.75 - cut;
+  EXPECT_NEAR(filled(cube).volume, 26.0 - ball, 0.1);
+}
+
 }  // namespace
 }  // namespace spherule::test

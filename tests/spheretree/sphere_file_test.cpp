@@ -26,7 +26,10 @@ SphereFile full_file() {
                       .protrusion_over_simplified_max = 0.25,
                       .protrusion_over_mesh_max = kInfinity,
                       .sphere_count = 2,
-                      .volume_ratio = 1.3};
+                      .volume_ratio = 1.3,
+                      .filled_volume = 0.7,
+                      .filled_volume_error = 0.1,
+                      .closing_slack = 0.03};
   file.options = {{"max-error", 3.0},
                   {"seed", std::int64_t{3}},
                   {"negative", std::int64_t{-9}},
@@ -62,6 +65,9 @@ void expect_same(const SphereFile& a, const SphereFile& b) {
   EXPECT_EQ(a.certificate->protrusion_over_mesh_max, b.certificate->protrusion_over_mesh_max);
   EXPECT_EQ(a.certificate->sphere_count, b.certificate->sphere_count);
   EXPECT_EQ(a.certificate->volume_ratio, b.certificate->volume_ratio);
+  EXPECT_EQ(a.certificate->filled_volume, b.certificate->filled_volume);
+  EXPECT_EQ(a.certificate->filled_volume_error, b.certificate->filled_volume_error);
+  EXPECT_EQ(a.certificate->closing_slack, b.certificate->closing_slack);
 }
 
 SphereFile read(const std::string& text) {
@@ -265,6 +271,52 @@ TEST_F(SphereFiles, SavesAndLoads) {
   bad.spheres[0].radius = -1.0;
   EXPECT_NE(error_of([&] { save_spheres(bad, path("a.json")); }), "");
   expect_same(load_spheres(path("a.json")), full_file());
+}
+
+SphereFile two_bodies() {
+  SphereFile file;
+  file.spheres = {{{0, 0, 0}, 1}, {{5, 0, 0}, 1}};
+  CertificateRecord one{.covered = true, .protrusion_over_simplified_max = 0.5, .sphere_count = 1};
+  file.bodies = {
+      {.name = "bolt", .sphere_count = 1, .certificate = one, .options = {{"seed", 1.0}}},
+      {.name = "bolt:2",
+       .sphere_count = 1,
+       .certificate = one,
+       .copy = BodyCopy{0, Pose({0.6, 0, 0, 0.8}, {5, 0.1, -1.0 / 3.0})}}};
+  return file;
+}
+
+TEST_F(SphereFiles, BodiesSurviveTheRoundTrip) {
+  const SphereFile file = two_bodies();
+  const SphereFile read = internal::decode_spheres(internal::encode_spheres(file, "file"), "file");
+  expect_same(file, read);
+  ASSERT_EQ(read.bodies.size(), 2u);
+  EXPECT_EQ(read.bodies[0].name, "bolt");
+  EXPECT_EQ(read.bodies[0].options, file.bodies[0].options);
+  EXPECT_FALSE(read.bodies[0].copy);
+  EXPECT_EQ(read.bodies[1].certificate->protrusion_over_simplified_max, 0.5);
+  ASSERT_TRUE(read.bodies[1].copy);
+  EXPECT_EQ(read.bodies[1].copy->of, 0u);
+  EXPECT_EQ(read.bodies[1].copy->pose.matrix(), file.bodies[1].copy->pose.matrix());
+  EXPECT_EQ(read.bodies[1].copy->pose.translation(), file.bodies[1].copy->pose.translation());
+}
+
+TEST_F(SphereFiles, BodiesThatDoNotFitTheSpheresAreRefused) {
+  const std::string good = internal::encode_spheres(two_bodies(), "file");
+  const auto refused = [&](const std::string& from, const std::string& to,
+                           const std::string& reason) {
+    const std::size_t at = good.rfind(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    std::string text = good;
+    expect_refused(text.replace(at, from.size(), to), reason);
+  };
+  refused(R"("copy_of":0)", R"("copy_of":1)", "\"copy_of\" is not the number of a body before");
+  refused(R"("name":"bolt:2")", R"("name":"")", "body 1: \"name\" is not a text");
+  refused(R"("pose":[5.0,)", R"("pose":[)", "\"pose\" is not seven numbers");
+  refused(R"("bodies":[)", R"("bodies":{},"more":[)", "\"bodies\" is not a list");
+  SphereFile file = two_bodies();
+  file.bodies.pop_back();
+  EXPECT_THROW(internal::encode_spheres(file, "file"), Error);
 }
 
 }  // namespace

@@ -86,9 +86,12 @@ const std::vector<Room>& rooms() {
       {"simplifier/cad",
        kSimplifier,
        {"Eigen"},
-       {{"opencascade", "simplifier/cad/internal/cad_entities.cpp"},
+       {{"opencascade", "simplifier/cad/internal/cad_assembly.cpp"},
+        {"opencascade", "simplifier/cad/internal/cad_entities.cpp"},
         {"opencascade", "simplifier/cad/internal/cad_entities.h"},
         {"opencascade", "simplifier/cad/internal/cad_shape.cpp"},
+        {"opencascade", "simplifier/cad/internal/cad_translation.cpp"},
+        {"opencascade", "simplifier/cad/internal/cad_translation.h"},
         {"opencascade", "simplifier/cad/internal/occt_geometry.cpp"}}},
 
       {"collide", kCollide, {"Eigen"}},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/io/internal/scene_file.h"
+#include "mesh/io/internal/xml_events.h"
 #include "spheretree/error.h"
 
 #include <assimp/fast_atof.h>
@@ -68,7 +69,38 @@ void check_indices(std::string_view text, std::string_view element, const std::s
   }
 }
 
+// Reads <unit meter="...">, which stands before the libraries.
+class UnitFinder : public XmlHandler {
+ public:
+  struct Done {};
+
+  void open(std::string_view name, const XmlAttributes& attributes, std::size_t) override {
+    name.remove_prefix(name.rfind('|') + 1);
+    if (name.starts_with("library_")) throw Done();
+    if (name != "unit") return;
+    const std::string_view text = attributes.find("meter").value_or("1");
+    double size = 0.0;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), size);
+    if (fault == std::errc() && end == text.data() + text.size() && size > 0.0) metres = size;
+    throw Done();
+  }
+  void close() override {}
+
+  double metres = 1.0;
+};
+
 }  // namespace
+
+double collada_unit(std::string_view text, const std::string& subject) {
+  UnitFinder finder;
+  try {
+    parse_xml(text, subject, finder);
+  } catch (const UnitFinder::Done&) {
+  } catch (const Error&) {
+    // What is wrong with the text, the reader of the mesh says, which is less strict.
+  }
+  return finder.metres;
+}
 
 void check_collada(std::string_view text, const std::string& subject) {
   check_decimals(text, subject);

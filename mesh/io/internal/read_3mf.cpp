@@ -4,6 +4,7 @@
 #include "mesh/io/internal/text_scanner.h"
 #include "mesh/io/internal/xml_events.h"
 #include "mesh/io/internal/zip_member.h"
+#include "mesh/io/length_unit.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -64,6 +65,29 @@ class RootFinder : public XmlHandler {
 
   std::string target;
 };
+
+// Reads the unit at the root of a model, and no further.
+class UnitFinder : public XmlHandler {
+ public:
+  struct Done {};
+
+  void open(std::string_view, const XmlAttributes& attributes, std::size_t) override {
+    unit = attributes.find("unit").value_or("millimeter");
+    throw Done();
+  }
+  void close() override {}
+
+  std::string unit;
+};
+
+std::string model_text(std::string_view bytes, const std::string& subject) {
+  RootFinder root;
+  parse_xml(read_zip_member(bytes, "_rels/.rels", subject), subject, root);
+  // Absolute or relative to the root of the package, which is the same here.
+  if (root.target.starts_with('/')) root.target.erase(0, 1);
+  if (root.target.empty()) throw Error(subject, "the package names no 3MF model");
+  return read_zip_member(bytes, root.target, subject);
+}
 
 class ModelReader : public XmlHandler {
  public:
@@ -219,15 +243,21 @@ class ModelReader : public XmlHandler {
 }  // namespace
 
 TriangleMesh read_3mf(std::string_view bytes, const std::string& subject) {
-  RootFinder root;
-  parse_xml(read_zip_member(bytes, "_rels/.rels", subject), subject, root);
-  // Absolute or relative to the root of the package, which is the same here.
-  if (root.target.starts_with('/')) root.target.erase(0, 1);
-  if (root.target.empty()) throw Error(subject, "the package names no 3MF model");
-  const std::string text = read_zip_member(bytes, root.target, subject);
+  const std::string text = model_text(bytes, subject);
   ModelReader model(text, subject);
   parse_xml(text, subject, model);
   return model.shown();
+}
+
+double unit_of_3mf(std::string_view bytes, const std::string& subject) {
+  UnitFinder finder;
+  try {
+    parse_xml(model_text(bytes, subject), subject, finder);
+  } catch (const UnitFinder::Done&) {
+  }
+  const LengthUnit* const unit = unit_named(finder.unit);
+  if (unit == nullptr) throw Error(subject, "states a unit that is not known: " + finder.unit);
+  return unit->micrometres;
 }
 
 }  // namespace spherule::internal

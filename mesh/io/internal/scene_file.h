@@ -35,6 +35,9 @@ inline constexpr double kDecimalError = 8.0 * 0x1p-24;
 // and whole parts of 20 digits wrap around or become zero), or an index that is not a whole number.
 void check_collada(std::string_view text, const std::string& subject);
 
+// The size in metres that a COLLADA text states of its unit; 1 where it states none.
+double collada_unit(std::string_view text, const std::string& subject);
+
 // Throws Error if the glTF or GLB file holds something that assimp reads wrongly without a word or
 // falls over: positions that are not 32-bit floats (it copies their bytes), compressed meshes,
 // sparse accessors, nodes in a loop. Returns the number of triangles of the meshes shown, each

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cad/internal/cad_shape.h"
 
-#include "mesh/geometry/raw_mesh.h"
-#include "simplifier/cad/internal/cad_entities.h"
+#include "simplifier/cad/internal/cad_translation.h"
 #include "simplifier/cad/internal/occt_geometry.h"
 #include "spheretree/error.h"
 
@@ -13,31 +12,21 @@
 #include <Bnd_Box.hxx>
 #include <Geom2d_Curve.hxx>
 #include <Geom_Surface.hxx>
-#include <IGESControl_Reader.hxx>
-#include <Interface_InterfaceModel.hxx>
-#include <Interface_Static.hxx>
-#include <Message.hxx>
-#include <Message_Messenger.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
-#include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
 #include <TopoDS_TShape.hxx>
-#include <TransferBRep.hxx>
-#include <Transfer_TransientProcess.hxx>
-#include <XSControl_TransferReader.hxx>
-#include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cmath>
 #include <gp_Trsf.hxx>
 #include <limits>
-#include <mutex>
-#include <set>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -139,66 +128,6 @@ CadFace face_of(const TopoDS_Face& oriented, std::string name, const std::string
   return result;
 }
 
-// Keeps OpenCASCADE from printing.
-class Silence {
- public:
-  Silence() : printers_(Message::DefaultMessenger()->Printers()) {
-    Message::DefaultMessenger()->ChangePrinters().Clear();
-  }
-  ~Silence() { Message::DefaultMessenger()->ChangePrinters() = printers_; }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-
- private:
-  Message_SequenceOfPrinters printers_;
-};
-
-// Its readers share settings and messages, and are used one at a time.
-std::mutex& readers() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-// Refuses a shape that lacks a face of something that is needed, or holds a scaled part.
-void check_shape(const TopoDS_Shape& shape, XSControl_Reader& reader, const std::string& subject) {
-  std::set<const TopoDS_TShape*> faces;
-  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
-    faces.insert(face.Current().TShape().get());
-    constexpr double kRounding = 1e-12;
-    const gp_Trsf placed = face.Current().Location().Transformation();
-    if (!(std::abs(placed.ScaleFactor() - 1.0) <= kRounding)) {
-      throw Error(subject, "holds a part that is scaled or mirrored in place, which is not read");
-    }
-  }
-  const Handle(Interface_InterfaceModel) model = reader.Model();
-  const Handle(Transfer_TransientProcess) process =
-      reader.WS()->TransferReader()->TransientProcess();
-  for (const Handle(Standard_Transient) & entity : needed_entities(model)) {
-    const TopoDS_Shape result = TransferBRep::ShapeResult(process, entity);
-    bool is_there = !result.IsNull();
-    for (TopExp_Explorer face(result, TopAbs_FACE); face.More(); face.Next()) {
-      is_there = is_there && faces.contains(face.Current().TShape().get());
-    }
-    if (!is_there) {
-      throw Error(subject, "entity " + entity_name(model, entity) + " could not be translated");
-    }
-  }
-}
-
-TopoDS_Shape translated(XSControl_Reader& reader, const std::filesystem::path& path,
-                        const std::string& kind) {
-  const std::string subject = path.string();
-  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) {
-    throw Error(subject, "is not a " + kind + " file that can be read");
-  }
-  check_entities(reader.Model(), subject);
-  reader.TransferRoots();
-  const TopoDS_Shape shape = reader.OneShape();
-  check_shape(shape, reader, subject);
-  return shape;
-}
-
 std::size_t count(TopExp_Explorer found) {
   std::size_t number = 0;
   for (; found.More(); found.Next()) ++number;
@@ -213,25 +142,50 @@ struct CadShape::Shape {
 
 CadShape::CadShape(const std::filesystem::path& path, std::string_view bytes)
     : shape_(std::make_unique<Shape>()), subject_(path.string()) {
-  const std::lock_guard lock(readers());
-  const Silence silence;
-  try {
-    const std::string extension = lower_extension(path);
-    if (extension == "step" || extension == "stp") {
-      check_step_text(bytes, subject_);
-      STEPControl_Reader reader;
-      shape_->shape = translated(reader, path, "STEP");
-    } else {
-      IGESControl_Reader reader;
-      shape_->shape = translated(reader, path, "IGES");
-    }
-  } catch (const Standard_Failure& failure) {
-    throw Error(subject_, std::string("could not be read: ") + failure.GetMessageString());
-  }
-  if (shape_->shape.IsNull() || face_count() == 0) throw Error(subject_, "the file holds no faces");
+  Translation translation = translate(path, bytes, Parts::kTogether);
+  shape_->shape = translation.shape;
+  stated_unit_ = std::move(translation.unit);
 }
 
+CadShape::CadShape(std::unique_ptr<Shape> shape, std::string subject, std::string stated_unit)
+    : shape_(std::move(shape)),
+      subject_(std::move(subject)),
+      stated_unit_(std::move(stated_unit)) {}
+
+CadShape::CadShape(CadShape&&) noexcept = default;
+CadShape& CadShape::operator=(CadShape&&) noexcept = default;
 CadShape::~CadShape() = default;
+
+std::vector<CadShape::Placed> CadShape::bodies(const std::filesystem::path& path,
+                                               std::string_view bytes) {
+  const Translation translation = translate(path, bytes, Parts::kApart);
+  std::vector<Placed> bodies;
+  // The first body of each shape, by what its places share and which way it is turned.
+  std::map<std::pair<const TopoDS_TShape*, TopAbs_Orientation>, std::size_t> first;
+  std::vector<TopLoc_Location> locations;
+  for (const CadLeaf& leaf : translation.leaves) {
+    const auto [known, is_new] = first.try_emplace(
+        std::pair(leaf.shape.TShape().get(), leaf.shape.Orientation()), bodies.size());
+    locations.push_back(leaf.shape.Location());
+    Placed placed{.name = leaf.name};
+    if (is_new) {
+      auto shape = std::make_unique<Shape>();
+      shape->shape = leaf.shape;
+      placed.shape = CadShape(std::move(shape), path.string() + ": " + leaf.name, translation.unit);
+    } else {
+      const gp_Trsf motion =
+          (leaf.shape.Location() * locations[known->second].Inverted()).Transformation();
+      placed.copy_of = known->second;
+      for (int row = 1; row <= 3; ++row) {
+        for (int column = 1; column <= 4; ++column) {
+          placed.from_original(row - 1, column - 1) = motion.Value(row, column);
+        }
+      }
+    }
+    bodies.push_back(std::move(placed));
+  }
+  return bodies;
+}
 
 double CadShape::diagonal() const {
   Bnd_Box box;

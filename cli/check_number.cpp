@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/check_length.h"
+#include "cli/check_number.h"
 
 #include <cmath>
 #include <cstdlib>
 
 namespace spherule {
 
-std::string check_length(const std::string& text) {
+std::string check_not_negative(const std::string& text) {
   char* stop = nullptr;
   const double value = std::strtod(text.c_str(), &stop);
   if (stop == text.c_str() || *stop != '\0') return {};

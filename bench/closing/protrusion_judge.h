@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mesh/triangle_mesh.h"
+#include "spheretree/sphere.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <span>
+
+namespace spherule::closing {
+
+// How closely the judge looks.
+struct JudgeOptions {
+  double step = 0.0;  // of the grid; 0: a 32nd of the diameter
+  // The step becomes larger, so that the grid has no more nodes.
+  std::size_t most_nodes = 20'000'000;
+  // Places at which spheres may protrude most, looked at again with steps down to an eighth, and
+  // the nodes of each of these grids.
+  int looks = 24;
+  std::size_t most_nodes_of_look = 3'000'000;
+  // No further look is taken at what is known this closely.
+  double tolerance = 0.0;
+};
+
+// The greatest distance of a point of the spheres from the solid closed at the diameter is between
+// the two.
+struct JudgedProtrusion {
+  double lower = 0.0;
+  double upper = 0.0;
+  Eigen::Vector3d lower_at = Eigen::Vector3d::Zero();  // a point that is so far from it
+  Eigen::Vector3d upper_at = Eigen::Vector3d::Zero();  // the middle of the cube that may be
+  double step = 0.0;                                   // of the grid, as it was
+};
+
+// Judges spheres by the mesh and the diameter alone, and shares no code with stage 1 or what is
+// proved of spheres: its own distances of the mesh, its own flood on a regular grid, and distance
+// transforms in the place of trees of spheres (closed_solid.h). The steps of the grid are its only
+// error, and counted outwards. There must be triangles and spheres.
+JudgedProtrusion judge_protrusion_from_closing(const TriangleMesh& mesh,
+                                               std::span<const Sphere> spheres, double diameter,
+                                               const JudgeOptions& options = {});
+
+}  // namespace spherule::closing

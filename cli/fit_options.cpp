@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/fit_options.h"
+
+#include "cli/check_number.h"
+#include "cli/outline.h"
+#include "simplifier/zones.h"
+#include "spheretree/sphere_file.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <limits>
+
+namespace spherule {
+
+void add_fit_options(CLI::App& command, FitArguments& arguments) {
+  SimplifyOptions& options = arguments.options;
+  LengthOptions& lengths = arguments.lengths;
+  command
+      .add_option("mesh", arguments.models,
+                  "STL, OBJ, PLY, OFF, DAE, 3MF, glTF, GLB; STEP or IGES. Several become bodies of "
+                  "one file, each covered and proved by itself")
+      ->required()
+      ->type_name(kFile);
+  command.add_flag("--bodies", arguments.bodies,
+                   "STEP and IGES: every body of an assembly by itself, copies of a part once, in "
+                   "one file");
+  command.add_option("-o,--output", arguments.spheres, "Where the spheres go (JSON)")
+      ->required()
+      ->type_name(kFile);
+  add_unit_options(command, arguments.unit,
+                   "Output units per mesh unit (of STEP and IGES: per millimetre)");
+  lengths.add(command, "--weld", arguments.reading.weld,
+              "Join vertices that are no further apart, so that cracks which rounding has left "
+              "do not open the mesh; added to the padding");
+  lengths.add(command, "--chord-error", arguments.reading.chord_error,
+              "STEP and IGES: how far the part may be from its triangles; what is proved of it "
+              "is added to the padding (default: a two-thousandth of the box diagonal)");
+  auto* diameter = lengths.add(
+      command, "--min-external", options.min_external_diameter,
+      "D, diameter of the smallest thing that will meet the model (default: 4 E). With E / 2 "
+      "or less only gaps narrower than that are filled: the method without stage 1");
+  command
+      .add_option("--tool", arguments.tool,
+                  "D from the tool that will meet the model: the smallest of these spheres (JSON)")
+      ->type_name(kFile)
+      ->excludes(diameter);
+  command
+      .add_option("--tightness", options.tightness,
+                  "How much wider than D a way in may be and still be filled, as a share of D "
+                  "(default: 0.03); less takes longer")
+      ->check(CLI::Range(0.001, ExternalOptions::kNoTightness));
+  command
+      .add_option("--zones", arguments.zones,
+                  "Where E and D are smaller: balls, boxes and capsules (JSON)")
+      ->type_name(kFile);
+  command.add_flag("--keep-concave-edges", options.keep_concave_edges,
+                   "A smaller D along sharp concave edges, so that they are not filled");
+  lengths.add(command, "--max-error", options.max_error,
+              "E, how far the spheres may protrude (default: 1 % of the box diagonal)");
+  lengths.add(command, "--padding", options.padding, "Grow the mesh by this much");
+  lengths.add(command, "--min-radius", options.min_radius, "No sphere is smaller than this");
+  command
+      .add_option("--method", arguments.method,
+                  "How the inside is covered: cover (fewest spheres), paper (the paper's loop), "
+                  "medial (AMAA) or packing (largest first)")
+      ->check(CLI::IsMember(fit_method_names()));
+  command
+      .add_option("--external", arguments.external,
+                  "How external spheres are placed: reachable, random, none")
+      ->check(CLI::IsMember(placement_names()));
+  command
+      .add_option("--external-limit", options.external_limit, "Attempts of the random placement")
+      ->check(CLI::NonNegativeNumber);
+  lengths.add(command, "--min-internal", options.min_internal_diameter,
+              "Diameter at which paper and packing seed a sphere (default: E / 2)");
+  command
+      .add_option("--levels", arguments.levels,
+                  "Fit coarser levels of detail too and join all in one tree; the "
+                  "finest is E")
+      ->type_name("E1,E2,...");
+  // Without the check CLI11 takes -1 for the largest number; files store 63 bits.
+  command.add_option("--seed", options.seed, "Seed of everything random")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+  auto* effort =
+      command.add_option("--effort", options.effort,
+                         "Rounds of looking for fewer spheres than at first, with cover; 0: none");
+  effort->check(CLI::NonNegativeNumber);
+  command
+      .add_option_function<double>(
+          "--seconds",
+          [&options](double seconds) {
+            options.seconds = seconds;
+            options.effort = std::numeric_limits<int>::max();
+          },
+          "With cover: look for fewer spheres for so long, less where it no longer finds any; the "
+          "result then depends on the machine")
+      ->check(CLI::PositiveNumber)
+      ->check(check_not_negative)
+      ->excludes(effort);
+  command.add_option("--threads", options.threads, "Threads, 0: all; the result is the same")
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--report", arguments.report,
+                  "Where the report goes (JSON): the mesh, where the spheres go, history, times")
+      ->type_name(kFile);
+  add_external_spheres_flag(command, arguments.report_content);
+  command.add_flag("--lower-bound", options.lower_bound,
+                   "Prove, too, how few spheres any cover must have (with cover); takes several "
+                   "times as long as the first answer");
+  command.add_option("--tree", arguments.tree, "Where the sphere tree goes")->type_name(kFile);
+  command.add_option("--view", arguments.view, "Where a page to look at goes (HTML)")
+      ->type_name(kFile);
+}
+
+SimplifyOptions fit_options(FitArguments& arguments, const LengthContext& context) {
+  arguments.lengths.convert(context);
+  SimplifyOptions options = arguments.options;
+  choose_method(arguments.method, options);
+  options.external = placement_named(arguments.external);
+  if (!arguments.levels.empty()) {
+    options.levels = lengths_in(arguments.levels, "--levels", context);
+  }
+  options.history = !arguments.report.empty();
+  if (!arguments.zones.empty()) options.zones = read_zones(arguments.zones);
+  if (!arguments.tool.empty()) {
+    const SphereFile tool = load_spheres(arguments.tool);
+    const double diameter =
+        blaming_named_file(arguments.tool, "tool", [&] { return tool_diameter(tool.spheres); });
+    const std::string units =
+        blaming_named_file(arguments.tool, "units", [&] { return stored_reading(tool).units; });
+    options.min_external_diameter =
+        converted({diameter, unit_named(units)}, "--tool " + arguments.tool, context);
+  }
+  return options;
+}
+
+}  // namespace spherule

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mesh/mesh_distance.h"
+#include "simplifier/certificate.h"
+#include "simplifier/cover.h"
+#include "simplifier/external_spheres.h"
+#include "simplifier/levels.h"
+#include "simplifier/solid/clearance.h"
+
+#include <span>
+#include <vector>
+
+// The stages of simplify() over structures that they share: the public functions of the same names
+// check the mesh and build them. `distance` is that of the mesh, which has passed validate(), and
+// `clearance` that of its external spheres.
+
+namespace spherule::internal {
+
+ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const MeshDistance& distance,
+                                       const ExternalOptions& options);
+
+SphereCover cover(const TriangleMesh& mesh, const MeshDistance& distance,
+                  const Clearance& clearance, const CoverOptions& options);
+
+std::vector<CoverLevel> fit_levels(const MeshDistance& distance, const Clearance& clearance,
+                                   std::span<const Sphere> spheres,
+                                   std::span<const double> max_errors, const CoverOptions& options);
+
+// With external spheres given in the options.
+Certificate certify(const TriangleMesh& mesh, const MeshDistance& distance,
+                    const Clearance& clearance, std::span<const Sphere> spheres,
+                    const CertifyOptions& options);
+
+}  // namespace spherule::internal
