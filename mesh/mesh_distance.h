@@ -43,9 +43,10 @@ class MeshDistance {
   // Linear in the number of triangles.
   double winding_number(const Eigen::Vector3d& point) const;
 
+  // A triangle as it is stored.
   struct Corners {
     Eigen::Vector3d a, b, c;
-    std::int32_t triangle;
+    std::int32_t triangle;  // its index in the mesh
   };
 
   // Calls visit(corners) for every triangle that the ray from `point` along `direction` meets, and

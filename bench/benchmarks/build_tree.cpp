@@ -67,14 +67,14 @@ double overlap(const SphereTree& tree) {
   double holding = 0.0;
   double needed = 0.0;
   std::vector<std::pair<std::size_t, int>> open;  // node, its distance from the root
-  for (std::size_t sphere = 0; sphere < tree.spheres().size(); sphere += stride) {
-    const Vector3d center = tree.spheres()[sphere].center;
+  for (std::size_t index = 0; index < tree.spheres().size(); index += stride) {
+    const Vector3d center = tree.spheres()[index].center;
     open.emplace_back(0, 0);
     while (!open.empty()) {
       const auto [node, depth] = open.back();
       open.pop_back();
       if (tree.is_leaf(node)) {
-        if (static_cast<std::size_t>(tree.sphere_index(node)) == sphere) needed += depth;
+        if (static_cast<std::size_t>(tree.sphere_index(node)) == index) needed += depth;
         continue;
       }
       const Sphere ball = tree.ball(node);

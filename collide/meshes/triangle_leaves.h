@@ -62,8 +62,8 @@ class TriangleLeaves {
   }
   // So deep is the triangle in the ball at least, if that is above zero: its image errs by less
   // than the pad.
-  double depth(std::int32_t sphere, std::int32_t triangle) const {
-    const Sphere& ball = a_.spheres()[static_cast<std::size_t>(sphere)];
+  double depth(std::int32_t index, std::int32_t triangle) const {
+    const Sphere& ball = a_.spheres()[static_cast<std::size_t>(index)];
     return (ball.radius - pad_) - distance(ball, triangle).upper;
   }
   GapInterval interval(NodePair pair) const {

@@ -61,9 +61,8 @@ XMLElement& new_collision(XMLDocument& document, const Sphere& ball) {
   XMLElement* origin = collision->InsertNewChildElement("origin");
   origin->SetAttribute("xyz", decimals(ball.center, " ").c_str());
   origin->SetAttribute("rpy", "0 0 0");
-  XMLElement* sphere =
-      collision->InsertNewChildElement("geometry")->InsertNewChildElement("sphere");
-  sphere->SetAttribute("radius", decimal(ball.radius).c_str());
+  XMLElement* shape = collision->InsertNewChildElement("geometry")->InsertNewChildElement("sphere");
+  shape->SetAttribute("radius", decimal(ball.radius).c_str());
   return *collision;
 }
 

@@ -55,20 +55,20 @@ std::vector<Sphere> level_set_packing(const TriangleMesh& mesh,
   }
   const auto least = static_cast<float>(options.min_radius > 0.0 ? options.min_radius / options.step
                                                                  : kLeastRadius);
-  std::vector<openvdb::Vec4s> balls;
+  std::vector<openvdb::Vec4s> packed;
   try {
     openvdb::initialize();
     const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
     const auto grid =
         openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*unit, points, triangles, kHalfWidth);
     openvdb::tools::fillWithSpheres(
-        *grid, balls, openvdb::Vec2i(1, static_cast<int>(options.max_spheres)), true, least,
+        *grid, packed, openvdb::Vec2i(1, static_cast<int>(options.max_spheres)), true, least,
         std::numeric_limits<float>::max(), 0.0F, static_cast<int>(options.candidates));
   } catch (const openvdb::Exception& error) {
     throw Error("level set", error.what());
   }
   std::vector<Sphere> spheres;
-  for (const openvdb::Vec4s& ball : balls) {
+  for (const openvdb::Vec4s& ball : packed) {
     // One ball at least the library makes, however small.
     if (!(ball[3] >= least)) continue;
     spheres.push_back({box.min() + options.step * Eigen::Vector3d(ball[0], ball[1], ball[2]),

@@ -59,10 +59,10 @@ class Inspection {
 
   void expect_room(const Sphere& ball, const std::vector<std::int32_t>& below) const {
     for (const std::int32_t i : below) {
-      const Sphere& sphere = spheres_[static_cast<std::size_t>(i)];
+      const Sphere& inner = spheres_[static_cast<std::size_t>(i)];
       const Real distance =
-          sqrt(squared_distance(exact<Real>(ball.center), exact<Real>(sphere.center)));
-      EXPECT_LE((distance + sphere.radius + inflation_) * (1 + Real(0x1p-21)), Real(ball.radius));
+          sqrt(squared_distance(exact<Real>(ball.center), exact<Real>(inner.center)));
+      EXPECT_LE((distance + inner.radius + inflation_) * (1 + Real(0x1p-21)), Real(ball.radius));
     }
   }
 

@@ -59,7 +59,9 @@ TEST(PrimitiveTruth, AgreesWithFcl) {
     int counts[2] = {};
     int doubtful = 0;
     for (int i = 0; i < effort(3000, 300); ++i) {
-      const auto [solid, geometry] = random_solid(random, kind);
+      const auto drawn = random_solid(random, kind);
+      const auto& solid = drawn.first;
+      const auto& geometry = drawn.second;
       const Pose world_from_solid(random.rotation(), 0.4 * random.direction());
       const Pose world_from_tree(random.rotation(), 0.4 * random.direction());
       const double radius = random.between(0.01, 0.5);
