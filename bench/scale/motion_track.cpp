@@ -54,17 +54,17 @@ void MotionTrack<Number>::add_balls(std::span<const Sphere> spheres, const Pose&
     const Point p = point<Number>(sphere.center);
     const Point from = turned(start.rotation(), Point{p[0] - c[0], p[1] - c[1], p[2] - c[2]});
     const Number along = dot(axis, from);
-    Ball ball{};
+    Ball tracked{};
     for (std::size_t k = 0; k < 3; ++k) {
-      ball.base[k] = anchor[k] + along * axis[k];
-      ball.arm[k] = from[k] - along * axis[k];
+      tracked.base[k] = anchor[k] + along * axis[k];
+      tracked.arm[k] = from[k] - along * axis[k];
     }
-    ball.side = cross(axis, from);
-    ball.radius = sphere.radius;
-    ball.extent = (extent + sphere.center.template lpNorm<1>() +
+    tracked.side = cross(axis, from);
+    tracked.radius = sphere.radius;
+    tracked.extent = (extent + sphere.center.template lpNorm<1>() +
                    2.0 * reference.template lpNorm<1>() + sphere.radius) *
                   (1 + 1e-9);
-    balls_.push_back(ball);
+    balls_.push_back(tracked);
   }
   set_errors();
 }
