@@ -24,10 +24,9 @@ need_adapters() {
     libboost-system-dev)
 }
 
-# Bullet is a peer of the benchmarks; its verdicts are tested.
+# Bullet is a peer of the benchmarks; its verdicts are tested. KDL and urdfdom are oracles.
 need_tests() {
-  packages+=(libgtest-dev libgmp-dev libmpfr-dev liborocos-kdl-dev liburdfdom-dev
-    libbullet-dev)
+  packages+=(libgtest-dev libgmp-dev libmpfr-dev liborocos-kdl-dev liburdfdom-dev libbullet-dev)
 }
 
 need_benchmarks() {

@@ -348,7 +348,7 @@ TEST(ReadUrdf, TakesALongChain) {
   EXPECT_EQ(robot.model.joints()[299].multiplier, -1.0);
 }
 
-// In time that grows as the file does, or nearly so: with the square it would take minutes.
+// In time that grows nearly as the file does.
 TEST(ReadUrdf, TakesADeepChainOfFixedJoints) {
   const int joints = effort(100000, 10000);
   std::string text = "<link name='l0'/>";
