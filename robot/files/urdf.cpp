@@ -2,233 +2,184 @@
 #include "robot/files/urdf.h"
 
 #include "robot/files/internal/mesh_path.h"
-#include "robot/files/internal/urdf_text.h"
+#include "robot/files/internal/urdf_tree.h"
 #include "robot/files/internal/xml_file.h"
 #include "spheretree/error.h"
 
-#include <algorithm>
 #include <cmath>
-#include <console_bridge/console.h>
-#include <map>
-#include <mutex>
 #include <string>
-#include <thread>
-#include <urdf_model/model.h>
-#include <urdf_parser/urdf_parser.h>
-#include <utility>
+#include <vector>
 
 namespace spherule {
 namespace {
 
-// Gathers the errors of urdfdom, which would go to the console of the program; other threads'
-// messages pass. There is one for all threads.
-class Messages : public console_bridge::OutputHandler {
+using internal::link_at;
+using internal::XmlElement;
+
+// What `make` returns; its errors get the place of the element.
+template <class Make>
+auto at(const XmlElement& element, Make make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    element.refuse(error.what());
+  }
+}
+
+// What is in such an element is unknown.
+void refuse_xacro(const XmlElement& element) {
+  if (element.tag().starts_with("xacro:")) {
+    element.refuse("this is a file for xacro, which makes a URDF of it");
+  }
+  for (const XmlElement& child : element.children()) refuse_xacro(child);
+}
+
+// Roll, pitch and yaw turn about the fixed axes x, y and z in this order. The products and the norm
+// are summed in the order of urdfdom, so that the pose is the same to the last bit.
+Pose pose_of(const XmlElement& around) {
+  const auto origin = around.child("origin");
+  if (!origin) return {};
+  origin->require_attributes({"xyz", "rpy"});
+  const Eigen::Vector3d half = 0.5 * origin->vector("rpy", Eigen::Vector3d::Zero());
+  const auto turn = [](double half_angle, const Eigen::Vector3d& axis) {
+    const Eigen::Vector3d v = std::sin(half_angle) * axis;
+    return Eigen::Quaterniond(std::cos(half_angle), v.x(), v.y(), v.z());
+  };
+  const Eigen::Quaterniond q =
+      turn(half.z(), Eigen::Vector3d::UnitZ()) *
+      (turn(half.y(), Eigen::Vector3d::UnitY()) * turn(half.x(), Eigen::Vector3d::UnitX()));
+  const double norm = std::sqrt(q.x() * q.x() + q.y() * q.y() + q.z() * q.z() + q.w() * q.w());
+  const Eigen::Vector3d xyz = origin->vector("xyz", Eigen::Vector3d::Zero());
+  return at(*origin, [&] { return Pose(Eigen::Quaterniond(q.coeffs() / norm), xyz); });
+}
+
+JointType type_of(const XmlElement& joint) {
+  const std::string type = joint.needed("type");
+  if (type == "fixed") return JointType::kFixed;
+  if (type == "revolute") return JointType::kRevolute;
+  if (type == "prismatic") return JointType::kPrismatic;
+  if (type == "continuous") return JointType::kContinuous;
+  if (type == "planar" || type == "floating") {
+    joint.refuse("planar and floating joints cannot be modelled");
+  }
+  joint.refuse("it has no known type but " + internal::name_in_quotes(type));
+}
+
+Joint joint_of(const XmlElement& element) {
+  Joint joint{.name = element.needed("name"),
+              .type = type_of(element),
+              .parent_from_joint = pose_of(element),
+              .axis = Eigen::Vector3d::UnitX()};
+  if (const auto axis = element.child("axis")) {
+    axis->require_attributes({"xyz"});
+    joint.axis = axis->needed_vector("xyz");
+  }
+  const auto limit = element.child("limit");
+  if (joint.type == JointType::kRevolute || joint.type == JointType::kPrismatic) {
+    if (!limit) element.refuse("it has no <limit>");
+    joint.lower = limit->number("lower", 0.0);
+    joint.upper = limit->number("upper", 0.0);
+  }
+  return joint;
+}
+
+class ShapeReader {
  public:
-  Messages() : before_(console_bridge::getOutputHandler()), level_(console_bridge::getLogLevel()) {
-    console_bridge::setLogLevel(std::min(level_, console_bridge::CONSOLE_BRIDGE_LOG_ERROR));
-    console_bridge::useOutputHandler(this);
-  }
-  ~Messages() override {
-    console_bridge::useOutputHandler(before_);
-    console_bridge::setLogLevel(level_);
-  }
-  Messages(const Messages&) = delete;
-  Messages& operator=(const Messages&) = delete;
+  ShapeReader(const std::filesystem::path& path, const UrdfOptions& options)
+      : paths_(path, options), require_visual_meshes_(options.require_visual_meshes) {}
 
-  void log(const std::string& text, console_bridge::LogLevel level, const char* file,
-           int line) override {
-    if (std::this_thread::get_id() != thread_) {
-      if (before_ != nullptr && level >= level_) before_->log(text, level, file, line);
-    } else if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) {
-      if (!errors_.empty()) errors_ += "; ";
-      errors_ += text;
+  LinkDescription link_of(const XmlElement& link) {
+    LinkDescription result{.name = link.needed("name")};
+    for (const XmlElement& visual : link.children("visual")) {
+      result.visual.push_back(shape_of(visual, require_visual_meshes_));
     }
-  }
-
-  const std::string& errors() const { return errors_; }
-
- private:
-  std::thread::id thread_ = std::this_thread::get_id();
-  console_bridge::OutputHandler* before_;
-  console_bridge::LogLevel level_;
-  std::string errors_;
-};
-
-urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& file) {
-  static std::mutex one_at_a_time;
-  const std::scoped_lock lock(one_at_a_time);
-  const Messages messages;
-  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
-  if (!messages.errors().empty()) throw Error(file, messages.errors());
-  if (!model) throw Error(file, "urdfdom cannot read it and does not say why");
-  return model;
-}
-
-Pose pose_of(const urdf::Pose& pose) {
-  const auto& [x, y, z, w] = pose.rotation;
-  return Pose(Eigen::Quaterniond(w, x, y, z), {pose.position.x, pose.position.y, pose.position.z});
-}
-
-Joint joint_of(const urdf::Joint& joint) {
-  Joint result{.name = joint.name,
-               .parent_from_joint = pose_of(joint.parent_to_joint_origin_transform),
-               .axis = {joint.axis.x, joint.axis.y, joint.axis.z}};
-  switch (joint.type) {
-    case urdf::Joint::FIXED:
-      break;
-    case urdf::Joint::REVOLUTE:
-      result.type = JointType::kRevolute;
-      break;
-    case urdf::Joint::PRISMATIC:
-      result.type = JointType::kPrismatic;
-      break;
-    case urdf::Joint::CONTINUOUS:
-      result.type = JointType::kContinuous;
-      break;
-    default:
-      throw Error("type", "planar and floating joints cannot be modelled");
-  }
-  if (result.type == JointType::kRevolute || result.type == JointType::kPrismatic) {
-    result.lower = joint.limits->lower;
-    result.upper = joint.limits->upper;
-  }
-  return result;
-}
-
-class Reader {
- public:
-  Reader(const urdf::ModelInterface& model, const std::vector<std::string>& joints,
-         const std::filesystem::path& path, const UrdfOptions& options)
-      : model_(model),
-        paths_(path, options),
-        require_visual_meshes_(options.require_visual_meshes) {
-    for (std::size_t i = 0; i < joints.size(); ++i) order_[joints[i]] = i;
-  }
-
-  RobotDescription read(std::size_t& shapes) {
-    RobotDescription robot{.name = model_.getName(), .model = RobotModel(root().name)};
-    add_links(robot.model);
-    for (const auto& [joint, mimic] : mimics_) {
-      robot.model.mimic(joint, mimic->joint_name, mimic->multiplier, mimic->offset);
-    }
-    for (const Link& link : robot.model.links()) {
-      robot.links.push_back(link_of(*model_.links_.at(link.name)));
-      shapes += robot.links.back().visual.size() + robot.links.back().collision.size();
-    }
-    return robot;
-  }
-
- private:
-  const urdf::Link& root() const { return *model_.getRoot(); }
-
-  // Depth first; urdfdom has the joints below a link in the order of their names.
-  void add_links(RobotModel& robot) {
-    std::vector<urdf::JointSharedPtr> waiting;
-    const auto wait = [&](const urdf::Link& link) {
-      const auto first = static_cast<std::ptrdiff_t>(waiting.size());
-      waiting.insert(waiting.end(), link.child_joints.begin(), link.child_joints.end());
-      std::sort(waiting.begin() + first, waiting.end(), [&](const auto& a, const auto& b) {
-        return order_.at(a->name) > order_.at(b->name);
-      });
-    };
-    wait(root());
-    while (!waiting.empty()) {
-      const urdf::JointSharedPtr joint = std::move(waiting.back());
-      waiting.pop_back();
-      add_link(robot, *joint);
-      if (joint->mimic && joint->type != urdf::Joint::FIXED) {
-        mimics_.emplace_back(joint->name, joint->mimic);
-      }
-      wait(*model_.links_.at(joint->child_link_name));
-    }
-  }
-
-  static void add_link(RobotModel& robot, const urdf::Joint& joint) {
-    try {
-      robot.add_link(joint.child_link_name, joint.parent_link_name, joint_of(joint));
-    } catch (const Error& error) {
-      throw Error("joint " + internal::name_in_quotes(joint.name), error.what());
-    }
-  }
-
-  LinkDescription link_of(const urdf::Link& link) {
-    LinkDescription result{.name = link.name};
-    try {
-      for (const auto& visual : link.visual_array) {
-        result.visual.push_back(shape_of(*visual, require_visual_meshes_));
-      }
-      for (const auto& collision : link.collision_array) {
-        result.collision.push_back(shape_of(*collision, true));
-      }
-    } catch (const Error& error) {
-      throw Error("link " + internal::name_in_quotes(link.name), error.what());
+    for (const XmlElement& collision : link.children("collision")) {
+      result.collision.push_back(shape_of(collision, true));
     }
     return result;
   }
 
-  template <class Shape>
-  LinkShape shape_of(const Shape& shape, bool require_mesh) {
-    return {shape.name, pose_of(shape.origin), geometry_of(*shape.geometry, require_mesh)};
+ private:
+  LinkShape shape_of(const XmlElement& element, bool require_mesh) {
+    const XmlElement geometry = element.needed_child("geometry");
+    const std::vector<XmlElement> solids = geometry.children();
+    if (solids.size() != 1) geometry.refuse("it has not one shape");
+    LinkShape shape{element.attribute("name").value_or(""), pose_of(element), {}};
+    if (solids.front().tag() == "mesh") {
+      shape.geometry = mesh_of(solids.front(), require_mesh);
+    } else {
+      shape.geometry = primitive_of(solids.front());
+    }
+    return shape;
   }
 
-  std::variant<MeshFile, Primitive> geometry_of(const urdf::Geometry& geometry, bool require_mesh) {
+  static Primitive primitive_of(const XmlElement& solid) {
     Primitive primitive;
-    switch (geometry.type) {
-      case urdf::Geometry::MESH:
-        return mesh_of(static_cast<const urdf::Mesh&>(geometry), require_mesh);
-      case urdf::Geometry::BOX: {
-        const urdf::Vector3& size = static_cast<const urdf::Box&>(geometry).dim;
-        primitive = Box{{size.x, size.y, size.z}};
-        break;
-      }
-      case urdf::Geometry::SPHERE:
-        primitive = Ball{static_cast<const urdf::Sphere&>(geometry).radius};
-        break;
-      case urdf::Geometry::CYLINDER: {
-        const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
-        primitive = Cylinder{cylinder.radius, cylinder.length};
-        break;
-      }
-      default:
-        throw Error("shape", "its type is not known");
+    if (solid.tag() == "box") {
+      solid.require_attributes({"size"});
+      primitive = Box{solid.needed_vector("size")};
+    } else if (solid.tag() == "sphere") {
+      solid.require_attributes({"radius"});
+      primitive = Ball{solid.needed_number("radius")};
+    } else if (solid.tag() == "cylinder") {
+      solid.require_attributes({"radius", "length"});
+      primitive = Cylinder{solid.needed_number("radius"), solid.needed_number("length")};
+    } else {
+      solid.refuse("it is none of the shapes that can be read: box, cylinder, mesh, sphere");
     }
-    require_primitive(primitive, "shape");
+    at(solid, [&] { require_primitive(primitive, "shape"); });
     return primitive;
   }
 
-  MeshFile mesh_of(const urdf::Mesh& mesh, bool required) {
-    const Eigen::Vector3d scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
-    if ((scale.array() == 0.0).any()) throw Error(mesh.filename, "its scale is zero");
+  MeshFile mesh_of(const XmlElement& mesh, bool required) {
+    const std::string name = mesh.needed("filename");
+    const Eigen::Vector3d scale = mesh.vector("scale", Eigen::Vector3d::Ones());
+    if ((scale.array() == 0.0).any()) mesh.refuse(name + ": its scale is zero");
     try {
-      return {paths_.find(mesh.filename), scale};
-    } catch (const Error&) {
-      if (required) throw;
-      return {mesh.filename, scale};
+      return {paths_.find(name), scale};
+    } catch (const Error& error) {
+      if (required) mesh.refuse(error.what());
+      return {name, scale};
     }
   }
 
-  const urdf::ModelInterface& model_;
   internal::MeshPaths paths_;
   bool require_visual_meshes_;
-  std::map<std::string, std::size_t> order_{};
-  std::vector<std::pair<std::string, urdf::JointMimicSharedPtr>> mimics_{};
 };
+
+// A fixed joint mimics nothing, whatever the element says.
+void add_mimic(RobotModel& robot, const XmlElement& joint) {
+  const auto mimic = joint.child("mimic");
+  if (!mimic) return;
+  mimic->require_attributes({"joint", "multiplier", "offset"});
+  const std::string other = mimic->needed("joint");
+  const double multiplier = mimic->number("multiplier", 1.0);
+  const double offset = mimic->number("offset", 0.0);
+  if (type_of(joint) == JointType::kFixed) return;
+  at(*mimic, [&] { robot.mimic(joint.needed("name"), other, multiplier, offset); });
+}
 
 }  // namespace
 
 RobotDescription read_urdf(const std::filesystem::path& path, const UrdfOptions& options) {
-  const std::string name = path.string();
   const internal::XmlFile file(path, "robot");
-  const internal::UrdfText plain = internal::plain_urdf(file.root());
-  const urdf::ModelInterfaceSharedPtr model = parse(plain.text, name);
-  std::size_t shapes = 0;
-  try {
-    RobotDescription robot = Reader(*model, plain.joints, path, options).read(shapes);
-    if (shapes != plain.shapes) throw Error("urdfdom", "it has lost shapes");
-    return robot;
-  } catch (const Error& error) {
-    throw Error(name, error.what());
+  const XmlElement robot = file.root();
+  const auto version = robot.attribute("version");
+  if (version && *version != "1.0") robot.refuse("only version 1.0 of URDF can be read");
+  refuse_xacro(robot);
+  const internal::UrdfTree tree = internal::urdf_tree(robot);
+  RobotDescription result{.name = robot.needed("name"),
+                          .model = RobotModel(tree.links.front().needed("name"))};
+  for (const XmlElement& element : tree.joints) {
+    const Joint joint = joint_of(element);
+    at(element, [&] {
+      result.model.add_link(link_at(element, "child"), link_at(element, "parent"), joint);
+    });
   }
+  for (const XmlElement& joint : tree.joints) add_mimic(result.model, joint);
+  ShapeReader shapes(path, options);
+  for (const XmlElement& link : tree.links) result.links.push_back(shapes.link_of(link));
+  return result;
 }
 
 }  // namespace spherule

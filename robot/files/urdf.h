@@ -19,22 +19,23 @@ struct UrdfOptions {
   bool require_visual_meshes = true;
 };
 
-// Reads a robot from a URDF file (version 1.0), by urdfdom but more strictly: joints of the types
-// fixed, revolute, continuous and prismatic, mimics, and the visual and collision shapes of every
-// link: meshes, boxes, cylinders and spheres. Lengths in metres, angles in radians. Links and
-// joints come depth first: a link, then for each joint below it, in the order of the file, what
-// hangs on it. Inertias, materials and whatever else the file holds are not looked at.
+// Reads a robot from a URDF file (version 1.0): joints of the types fixed, revolute, continuous and
+// prismatic, mimics, and the visual and collision shapes of every link: meshes, boxes, cylinders
+// and spheres. Lengths in metres, angles in radians. Links and joints come depth first: a link,
+// then for each joint below it, in the order of the file, what hangs on it. Inertias, materials and
+// whatever else the file holds are not looked at.
 //
 // Mesh files are named package://PACKAGE/..., file://..., or by a path from the URDF file's folder;
-// they must exist, and are not read. An axis that is not given is (1, 0, 0). Of a fixed joint,
-// axis, limits and mimic mean nothing.
+// they must exist, and are not read. An axis that is not given is (1, 0, 0), and a limit 0. Of a
+// fixed joint, axis, limits and mimic mean nothing.
 //
-// Throws Error, whose subject is the file and whose reason names the line or the link or joint: for
-// a file that cannot be read, is no URDF or needs xacro first; a number that is malformed or not
+// Throws Error, whose subject is the file and whose reason names the line where there is one: for a
+// file that cannot be read, is no URDF or needs xacro first; a number that is malformed or not
 // finite, and attributes beside those that give a pose, an axis, a mimic or a shape; two origins or
 // shapes where one belongs, other shapes, and shapes without extent; planar and floating joints, a
 // moving joint whose axis is zero or whose limits are missing or reversed, mimics of what does not
-// move or of themselves; a link below two joints, several roots; and missing meshes and packages.
+// move or of themselves; names that are not unique, a link below two joints or above itself, none
+// or several roots; and missing meshes and packages.
 RobotDescription read_urdf(const std::filesystem::path& path, const UrdfOptions& options = {});
 
 }  // namespace spherule

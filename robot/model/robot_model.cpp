@@ -4,7 +4,6 @@
 #include "collide/kernels/check_cache.h"
 #include "spheretree/error.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -24,16 +23,13 @@ Eigen::Vector3d unit_axis(const Eigen::Vector3d& axis, const std::string& name) 
 
 RobotModel::RobotModel(std::string root_link)
     : check_cache_(std::make_shared<internal::CheckCache>()) {
+  link_index_[root_link] = 0;
   links_.push_back({std::move(root_link), -1, {}});
 }
 
 int RobotModel::add_link(std::string name, std::string_view parent_link, Joint joint) {
   if (find_link(name) >= 0) throw Error("link " + name, "the name is taken");
-  if (!joint.name.empty() && std::any_of(joints_.begin(), joints_.end(), [&](const Joint& other) {
-        return other.name == joint.name;
-      })) {
-    throw Error("joint " + joint.name, "the name is taken");
-  }
+  if (find_joint(joint.name) >= 0) throw Error("joint " + joint.name, "the name is taken");
   const int parent = find_link(parent_link);
   if (parent < 0) {
     throw Error("link " + name, "there is no parent link " + std::string(parent_link));
@@ -52,10 +48,16 @@ int RobotModel::add_link(std::string name, std::string_view parent_link, Joint j
   joint.parent_link = parent;
   joint.child_link = static_cast<int>(links_.size());
   joint.mimics = -1;
-  links_.push_back({std::move(name), static_cast<int>(joints_.size()), {}});
+  joint.multiplier = 1.0;
+  joint.offset = 0.0;
+  const int index = static_cast<int>(joints_.size());
+  joint.variable = joint.type == JointType::kFixed ? -1 : variable_count();
+  if (joint.moves()) variable_joints_.push_back(index);
+  if (!joint.name.empty()) joint_index_[joint.name] = index;
+  link_index_[name] = joint.child_link;
+  links_.push_back({std::move(name), index, {}});
   joints_.push_back(std::move(joint));
   follow_.emplace_back();
-  number_variables();
   return static_cast<int>(links_.size()) - 1;
 }
 
@@ -87,11 +89,15 @@ void RobotModel::mimic(std::string_view joint, std::string_view other, double mu
   if (!std::isfinite(multiplier) || !std::isfinite(offset)) {
     throw Error(subject, "the multiplier or offset of its mimic is not finite");
   }
-  RobotModel changed = *this;
-  changed.joints_[follower].mimics = static_cast<int>(leader);
-  changed.follow_[follower] = {multiplier, offset};
-  changed.number_variables();
-  *this = std::move(changed);
+  joints_[follower].mimics = static_cast<int>(leader);
+  follow_[follower] = {multiplier, offset};
+  try {
+    number_variables();
+  } catch (const Error&) {
+    joints_[follower].mimics = -1;
+    number_variables();
+    throw;
+  }
 }
 
 void RobotModel::number_variables() {
@@ -131,18 +137,13 @@ void RobotModel::attach(std::string_view link, std::shared_ptr<const SphereTree>
 }
 
 int RobotModel::find_link(std::string_view name) const {
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (links_[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
+  const auto found = link_index_.find(name);
+  return found == link_index_.end() ? -1 : found->second;
 }
 
 int RobotModel::find_joint(std::string_view name) const {
-  if (name.empty()) return -1;
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    if (joints_[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
+  const auto found = joint_index_.find(name);
+  return found == joint_index_.end() ? -1 : found->second;
 }
 
 }  // namespace spherule

@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -113,6 +115,8 @@ class RobotModel {
   std::vector<Link> links_;
   std::vector<Joint> joints_;
   std::vector<Follow> follow_;  // for each joint
+  std::map<std::string, int, std::less<>> link_index_;
+  std::map<std::string, int, std::less<>> joint_index_;  // of those with a name
   std::vector<int> variable_joints_;
   bool has_mimics_ = false;
   std::shared_ptr<internal::CheckCache> check_cache_;

@@ -115,7 +115,6 @@ const std::vector<Room>& rooms() {
        {"spheretree", "collide", "robot/model"},
        {"Eigen"},
        {{"nlohmann", "robot/files/scene_file.cpp"},
-        {"urdfdom", "robot/files/urdf.cpp"},
         {"tinyxml2", "robot/files/internal/xml_file.cpp"}}},
       {"robot/formats",
        {"spheretree", "robot/model", "robot/files"},

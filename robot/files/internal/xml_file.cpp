@@ -129,6 +129,16 @@ std::optional<std::vector<double>> XmlElement::numbers(std::string_view name,
   return result;
 }
 
+double XmlElement::number(std::string_view name, double otherwise) const {
+  const auto result = numbers(name, 1);
+  return result ? result->front() : otherwise;
+}
+
+Eigen::Vector3d XmlElement::vector(std::string_view name, const Eigen::Vector3d& otherwise) const {
+  const auto result = numbers(name, 3);
+  return result ? Eigen::Vector3d(result->data()) : otherwise;
+}
+
 std::vector<double> XmlElement::needed_numbers(std::string_view name) const {
   auto result = numbers(name);
   if (!result || result->empty()) refuse("it has no " + std::string(name));

@@ -43,6 +43,9 @@ class XmlElement {
   // the attribute is missing, unless it is needed.
   std::optional<std::vector<double>> numbers(std::string_view name) const;
   std::optional<std::vector<double>> numbers(std::string_view name, std::size_t count) const;
+  // One or three finite numbers; `otherwise` where the attribute is missing.
+  double number(std::string_view name, double otherwise) const;
+  Eigen::Vector3d vector(std::string_view name, const Eigen::Vector3d& otherwise) const;
   std::vector<double> needed_numbers(std::string_view name) const;
   double needed_number(std::string_view name) const;
   Eigen::Vector3d needed_vector(std::string_view name) const;

@@ -15,8 +15,7 @@ using Eigen::Vector3d;
 
 // Of an element that may be missing, as zeros.
 Vector3d vector(const std::optional<XmlElement>& element, const char* name) {
-  const auto numbers = element ? element->numbers(name, 3) : std::nullopt;
-  return numbers ? Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]) : Vector3d::Zero();
+  return element ? element->vector(name, Vector3d::Zero()) : Vector3d::Zero();
 }
 
 // The <sphere> of a <collision>, or nothing if that is of another shape.
