@@ -27,8 +27,9 @@ constexpr double kSampleTolerance = 0.01;
 constexpr double kShrinking = 1.42;
 
 // Cells are only ever halved, along the seams of every set of balls that was examined. From so many
-// times the first number on it is cheaper to begin again.
+// times the first number on, and so many in all, it is cheaper to begin again.
 constexpr std::size_t kForgetting = 8;
+constexpr std::size_t kLeastForgotten = 600000;
 
 }  // namespace
 
@@ -197,7 +198,7 @@ SolidCells::Leaks SolidCells::find_leaks(const BallsToProve& balls, double fines
       (leak.in_solid ? thinned.in_solid : thinned.pinched).push_back(leak.point);
     }
   }
-  if (cells_.size() > kForgetting * first_.size()) cells_ = first_;
+  if (cells_.size() > std::max(kLeastForgotten, kForgetting * first_.size())) cells_ = first_;
   return thinned;
 }
 
