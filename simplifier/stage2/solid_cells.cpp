@@ -27,8 +27,9 @@ constexpr double kSampleTolerance = 0.01;
 constexpr double kShrinking = 1.42;
 
 // Cells are only ever halved, along the seams of every set of balls that was examined. From so many
-// times the first number on it is cheaper to begin again.
+// times the first number on, and so many in all, it is cheaper to begin again.
 constexpr std::size_t kForgetting = 8;
+constexpr std::size_t kLeastForgotten = 600000;
 
 }  // namespace
 
@@ -46,7 +47,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
     return touched_by(clearance, cell.center, at, inside, local_error);
   };
   enum class Step : char { kDrop, kKeep, kHalve };
-  std::vector<Cell> level{{BoxCell::around(clearance.box()), false, false}};
+  std::vector<Cell> level{{.box = BoxCell::around(clearance.box())}};
   std::vector<Step> steps;
   while (!level.empty()) {
     steps.assign(level.size(), Step::kDrop);
@@ -58,6 +59,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
       if (state.outside) return;
       cell.inside = state.inside;
       cell.center_inside = state.center_inside;
+      cell.classified = true;
       const double local_error = max_error * error_.scale(cell.box.center, reach);
       const double deep = kGrading * std::max(0.0, at.lower);
       const bool fine = reach <= share * local_error + deep || is_flat(cell.box, at, local_error);
@@ -67,7 +69,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
     for (std::size_t i = 0; i < level.size(); ++i) {
       if (steps[i] == Step::kKeep) cells_.push_back(level[i]);
       if (steps[i] != Step::kHalve) continue;
-      for (const BoxCell& half : level[i].box.halves()) next.push_back({half, false, false});
+      for (const BoxCell& half : level[i].box.halves()) next.push_back({.box = half});
     }
     level = std::move(next);
   }
@@ -109,8 +111,8 @@ std::vector<Vector3d> SolidCells::sample() const {
 }
 
 bool SolidCells::meets_solid(Cell& cell) const {
-  const CellState state =
-      cell.inside ? CellState{false, true, true} : classify(clearance_, cell.box);
+  const CellState state = classify(clearance_, cell.box);
+  cell.classified = true;
   cell.inside = state.inside;
   cell.center_inside = state.center_inside;
   return !state.outside;
@@ -136,34 +138,52 @@ SolidCells::Refined SolidCells::refine(const Cell& start, const BallsToProve& ba
                                        double finest) const {
   Refined result;
   std::vector<Cell> waiting{start};
+  const auto in_its_ball = [&](const Cell& cell) {
+    return cell.ball >= 0 && certainly_contains(balls.balls[static_cast<std::size_t>(cell.ball)],
+                                                cell.box.center, cell.box.reach());
+  };
   while (!waiting.empty()) {
-    const Cell cell = waiting.back();
+    Cell cell = waiting.back();
     waiting.pop_back();
-    if (result.leaks.size() >= kEnoughLeaks) {
+    if (result.leaks.size() >= kEnoughLeaks || in_its_ball(cell)) {
       result.cells.push_back(cell);
       continue;
     }
-    const double reach = cell.box.reach();
     const NearestBall gap = balls.hierarchy.nearest(cell.box.center);
-    if (gap.index >= 0 && certainly_contains(balls.balls[static_cast<std::size_t>(gap.index)],
-                                             cell.box.center, reach)) {
+    cell.ball = gap.index;
+    if (in_its_ball(cell)) {
       result.cells.push_back(cell);
       continue;
     }
+    if (!cell.classified && !meets_solid(cell)) continue;
     if (const auto leak = leak_in(cell, gap, finest)) {
       result.cells.push_back(cell);
       result.leaks.push_back(*leak);
       continue;
     }
     for (const BoxCell& half : cell.box.halves()) {
-      Cell part{half, cell.inside, false};
-      if (meets_solid(part)) waiting.push_back(part);
+      waiting.push_back({half, cell.inside, cell.inside, cell.inside, cell.ball});
     }
   }
   return result;
 }
 
+void SolidCells::follow(std::span<const Sphere> balls) {
+  std::vector<Sphere> centers(balls.begin(), balls.end());
+  for (Sphere& center : centers) center.radius = 0.0;
+  const BallHierarchy hierarchy(centers);
+  std::vector<std::int32_t> number(balls_before_.size());
+  tbb::parallel_for(std::size_t{0}, number.size(), [&](std::size_t i) {
+    number[i] = hierarchy.nearest(balls_before_[i].center).index;
+  });
+  for (Cell& cell : cells_) {
+    if (cell.ball >= 0) cell.ball = number[static_cast<std::size_t>(cell.ball)];
+  }
+  balls_before_.assign(balls.begin(), balls.end());
+}
+
 SolidCells::Leaks SolidCells::find_leaks(const BallsToProve& balls, double finest, double spacing) {
+  follow(balls.balls);
   std::vector<Refined> refined(cells_.size());
   tbb::parallel_for(std::size_t{0}, cells_.size(),
                     [&](std::size_t i) { refined[i] = refine(cells_[i], balls, finest); });
@@ -178,7 +198,7 @@ SolidCells::Leaks SolidCells::find_leaks(const BallsToProve& balls, double fines
       (leak.in_solid ? thinned.in_solid : thinned.pinched).push_back(leak.point);
     }
   }
-  if (cells_.size() > kForgetting * first_.size()) cells_ = first_;
+  if (cells_.size() > std::max(kLeastForgotten, kForgetting * first_.size())) cells_ = first_;
   return thinned;
 }
 

@@ -7,10 +7,13 @@
 #include "simplifier/solid/clearance.h"
 #include "simplifier/stage2/local_error.h"
 #include "simplifier/stage2/surface_extent.h"
+#include "spheretree/sphere.h"
 
 #include <Eigen/Core>
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace spherule::internal {
@@ -51,8 +54,10 @@ class SolidCells {
  private:
   struct Cell {
     BoxCell box;
-    bool inside;         // wholly in S
-    bool center_inside;  // the centre is in S
+    bool inside = false;         // wholly in S
+    bool center_inside = false;  // the centre is in S
+    bool classified = false;     // whether it meets S at all is looked up where no ball contains it
+    std::int32_t ball = -1;      // the nearest when it was last looked for
   };
   struct Leak {
     Eigen::Vector3d point;
@@ -64,6 +69,9 @@ class SolidCells {
   };
 
   bool meets_solid(Cell& cell) const;
+  // Has the cells' balls name those of another set, by the nearest centre: most cells lie in the
+  // ball that contained them the last time, or in what has become of it.
+  void follow(std::span<const Sphere> balls);
   // The cell as a leak, if it is one or too small to tell; `gap` is its centre's to the balls.
   std::optional<Leak> leak_in(const Cell& cell, const NearestBall& gap, double finest) const;
   Refined refine(const Cell& cell, const BallsToProve& balls, double finest) const;
@@ -74,6 +82,7 @@ class SolidCells {
   double spacing_;           // the share of E
   std::vector<Cell> first_;  // as made
   std::vector<Cell> cells_;
+  std::vector<Sphere> balls_before_;  // to which the cells' numbers refer
 };
 
 }  // namespace spherule::internal
