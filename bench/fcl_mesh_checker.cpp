@@ -45,7 +45,7 @@ class BoxesThenMeshes : public SingleChecker {
       const auto pose = fcl_pose<S>(world_from_link[body.link]);
       const auto box = body.model.world_box(pose);
       for (const std::size_t i : body.against) {
-        const Standing& obstacle = obstacles_[i];
+        const Static& obstacle = obstacles_[i];
         if (box.intersects(obstacle.box) &&
             meshes_touch<Volume>(*body.model.geometry, pose, *obstacle.model.geometry,
                                  obstacle.pose)) {
@@ -58,7 +58,7 @@ class BoxesThenMeshes : public SingleChecker {
 
  private:
   using S = typename Volume::S;
-  struct Standing {
+  struct Static {
     FclModel<Volume> model;
     fcl::Transform3<S> pose;
     Eigen::AlignedBox<S, 3> box;
@@ -68,7 +68,7 @@ class BoxesThenMeshes : public SingleChecker {
     std::size_t link;
     std::vector<std::size_t> against;
   };
-  std::vector<Standing> obstacles_;
+  std::vector<Static> obstacles_;
   std::vector<Moving> bodies_;
 };
 

@@ -2,13 +2,13 @@
 #include "cli/audit_bodies.h"
 #include "cli/audit_proof.h"
 #include "cli/command.h"
+#include "cli/command_specification.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
 #include "cli/json.h"
 #include "cli/model_file.h"
 #include "cli/model_unit.h"
 #include "cli/next_step.h"
-#include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"
@@ -125,9 +125,9 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
                         {"max_error", to_json(mended->repair.max_error)},
                         {"protrusion_before", to_json(mended->repair.protrusion_before)},
                         {"protrusion_after", to_json(mended->repair.protrusion_after)},
-                        {"grown", mended->repair.grown},
-                        {"largest_growth", to_json(mended->repair.largest_growth)},
-                        {"total_growth", to_json(mended->repair.total_growth)},
+                        {"grown", mended->repair.inflated},
+                        {"largest_inflation", to_json(mended->repair.largest_inflation)},
+                        {"total_inflation", to_json(mended->repair.total_inflation)},
                         {"added", mended->repair.added},
                         {"certificate", json_of(mended->certificate, external)}};
     }
@@ -139,8 +139,8 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
     if (!certificate.covered) std::cout << describe(steps_after_leak(arguments, scale));
     return;
   }
-  std::cout << "repair: " << mended->repair.grown << " spheres grown, by at most "
-            << mended->repair.largest_growth << ", and " << mended->repair.added
+  std::cout << "repair: " << mended->repair.inflated << " spheres grown, by at most "
+            << mended->repair.largest_inflation << ", and " << mended->repair.added
             << " added; these protrude by at most " << mended->repair.max_error << ", all by "
             << mended->repair.protrusion_after << " (before: " << mended->repair.protrusion_before
             << ")\n"

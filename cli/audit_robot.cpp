@@ -3,11 +3,11 @@
 
 #include "cli/audit_robot_report.h"
 #include "cli/command.h"
+#include "cli/command_specification.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
 #include "cli/length_options.h"
 #include "cli/next_step.h"
-#include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/pair_kinds.h"
 #include "cli/pair_report.h"

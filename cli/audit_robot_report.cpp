@@ -86,8 +86,8 @@ void put_repair(std::ostream& out, const RobotAuditReport& report) {
   if (!report.repair) return;
   out << "repaired into " << report.repaired_file << "\n";
   for (const LinkRepair& link : report.repair->links) {
-    out << "  " << link.link << ": " << link.repair.grown << " spheres grown, by at most "
-        << in_mm(link.repair.largest_growth) << ", and " << link.repair.added
+    out << "  " << link.link << ": " << link.repair.inflated << " spheres grown, by at most "
+        << in_mm(link.repair.largest_inflation) << ", and " << link.repair.added
         << " added; these protrude by at most " << in_mm(link.repair.max_error) << ", all by "
         << in_mm(link.repair.protrusion_after)
         << " (before: " << in_mm(link.repair.protrusion_before) << "); "
@@ -151,8 +151,8 @@ Json audit_json(const RobotAuditReport& report) {
          {"max_error", to_json(link.repair.max_error)},
          {"protrusion_before", to_json(link.repair.protrusion_before)},
          {"protrusion_after", to_json(link.repair.protrusion_after)},
-         {"grown", link.repair.grown},
-         {"largest_growth", to_json(link.repair.largest_growth)},
+         {"grown", link.repair.inflated},
+         {"largest_inflation", to_json(link.repair.largest_inflation)},
          {"added", link.repair.added},
          {"certificate", to_json(link.certificate)}});
   }

@@ -2,8 +2,8 @@
 #include "cli/baseline.h"
 
 #include "cli/command.h"
+#include "cli/command_specification.h"
 #include "cli/help.h"
-#include "cli/outline.h"
 
 #include <CLI/CLI.hpp>
 

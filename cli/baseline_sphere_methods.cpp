@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/baseline_spheres.h"
-#include "cli/outline.h"
+#include "cli/command_specification.h"
 #include "spheretree/error.h"
 #include "spheretree/refit.h"
 

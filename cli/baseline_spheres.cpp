@@ -87,8 +87,8 @@ int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
   figures.update(made.figures);
   if (arguments.conservative) {
     file.options["conservative"] = true;
-    file.options["growth"] = result.growth;
-    figures["growth"] = to_json(result.growth);
+    file.options["growth"] = result.inflation;
+    figures["growth"] = to_json(result.inflation);
   }
   write_uninterrupted([&] {
     save_spheres(file, arguments.output);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_report.h"
 #include "cli/command.h"
+#include "cli/command_specification.h"
 #include "cli/help.h"
 #include "cli/length_options.h"
 #include "cli/next_step.h"
-#include "cli/outline.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_number.h"
 #include "cli/command.h"
+#include "cli/command_specification.h"
 #include "cli/help.h"
-#include "cli/outline.h"
 #include "cli/pair_report.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"

@@ -2,9 +2,9 @@
 #include "collide/collide.h"
 
 #include "cli/command.h"
+#include "cli/command_specification.h"
 #include "cli/help.h"
 #include "cli/json.h"
-#include "cli/outline.h"
 #include "collide/distance.h"
 #include "spheretree/error.h"
 #include "spheretree/tree_file.h"

@@ -15,8 +15,8 @@
 namespace spherule {
 namespace {
 
-const std::map<std::string, std::string (*)(const CommandOutline&)>& shells() {
-  static const std::map<std::string, std::string (*)(const CommandOutline&)> kShells = {
+const std::map<std::string, std::string (*)(const CommandSpecification&)>& shells() {
+  static const std::map<std::string, std::string (*)(const CommandSpecification&)> kShells = {
       {"bash", bash_completion}, {"fish", fish_completion}, {"zsh", zsh_completion}};
   return kShells;
 }
@@ -41,7 +41,7 @@ void add_completion(CLI::App& app, int& exit_code) {
            "spherule completion fish > ~/.config/fish/completions/spherule.fish",
            "spherule completion zsh > ~/.zfunc/_spherule    # a folder of $fpath"}}));
   command->callback([&app, shell, file, &exit_code] {
-    const std::string script = shells().at(*shell)(outline(app));
+    const std::string script = shells().at(*shell)(specification(app));
     if (file->empty()) {
       std::cout << script;
     } else {

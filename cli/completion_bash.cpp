@@ -44,9 +44,9 @@ complete -F _spherule spherule
 
 class BashWriter {
  public:
-  void add(const CommandOutline& command, const std::string& path) {
+  void add(const CommandSpecification& command, const std::string& path) {
     std::vector<std::string> inner;
-    for (const CommandOutline& one : command.commands) inner.push_back(one.name);
+    for (const CommandSpecification& one : command.commands) inner.push_back(one.name);
     if (!inner.empty()) {
       std::vector<std::string> patterns;
       for (const std::string& name : inner) patterns.push_back("'" + path + " " + name + "'");
@@ -57,8 +57,8 @@ class BashWriter {
     if (!inner.empty()) words_ += "      commands='" + CLI::detail::join(inner, " ") + "'\n";
     if (!command.arguments.empty()) words_ += "      " + reply(command.arguments.front()) + "\n";
     words_ += "      ;;\n";
-    for (const OptionOutline& option : command.options) add_values(option, path);
-    for (const CommandOutline& one : command.commands) {
+    for (const OptionSpecification& option : command.options) add_values(option, path);
+    for (const CommandSpecification& one : command.commands) {
       add(one, path.empty() ? one.name : path + " " + one.name);
     }
   }
@@ -73,7 +73,7 @@ class BashWriter {
 
  private:
   // What is offered for a value.
-  static std::string reply(const OptionOutline& option) {
+  static std::string reply(const OptionSpecification& option) {
     const std::string choices = "'" + CLI::detail::join(option.choices, " ") + "'";
     if (!option.choices.empty()) return (option.is_list ? "list=" : "choices=") + choices;
     if (option.value == kFile) return "files=yes";
@@ -81,7 +81,7 @@ class BashWriter {
     return ":";  // nothing is known of it
   }
 
-  void add_values(const OptionOutline& option, const std::string& path) {
+  void add_values(const OptionSpecification& option, const std::string& path) {
     if (option.value.empty()) return;  // a flag: what follows is the next word
     std::vector<std::string> patterns;
     for (const std::string& name : option.names) patterns.push_back("'" + path + ":" + name + "'");
@@ -99,7 +99,7 @@ class BashWriter {
 
 }  // namespace
 
-std::string bash_completion(const CommandOutline& command) {
+std::string bash_completion(const CommandSpecification& command) {
   BashWriter writer;
   writer.add(command, "");
   return writer.text();

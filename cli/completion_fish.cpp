@@ -16,7 +16,7 @@ std::string fish_quoted(const std::string& text) {
 }
 
 // What fish is told of a value: whether files are offered, and which words.
-std::string fish_value(const OptionOutline& option) {
+std::string fish_value(const OptionSpecification& option) {
   if (option.value == kFile) return " -F";
   if (option.value == kFolder) return " -f -a '(__fish_complete_directories)'";
   if (option.choices.empty()) return " -f";
@@ -25,9 +25,9 @@ std::string fish_value(const OptionOutline& option) {
 }
 
 // The paths of all commands below one: 'baseline', 'baseline hull'.
-std::string fish_paths(const CommandOutline& command, const std::string& path) {
+std::string fish_paths(const CommandSpecification& command, const std::string& path) {
   std::string text;
-  for (const CommandOutline& one : command.commands) {
+  for (const CommandSpecification& one : command.commands) {
     const std::string inner = path.empty() ? one.name : path + " " + one.name;
     text += " " + fish_quoted(inner) + fish_paths(one, inner);
   }
@@ -36,7 +36,7 @@ std::string fish_paths(const CommandOutline& command, const std::string& path) {
 
 // Which command a line has got to, by the words that name one where they stand: in `manual fit`,
 // `fit` is an argument.
-std::string fish_function(const CommandOutline& command) {
+std::string fish_function(const CommandSpecification& command) {
   return R"(function __spherule_at
     set -l command
     set -l words (commandline -opc)
@@ -52,15 +52,15 @@ end
 )";
 }
 
-std::string fish_lines(const CommandOutline& command, const std::string& path) {
+std::string fish_lines(const CommandSpecification& command, const std::string& path) {
   const std::string when =
       "complete -c spherule -n '__spherule_at" + (path.empty() ? "" : " " + path) + "'";
   std::string text;
-  for (const CommandOutline& one : command.commands) {
+  for (const CommandSpecification& one : command.commands) {
     text += when + " -f -a " + one.name + " -d " + fish_quoted(one.summary) + "\n";
   }
   if (!command.arguments.empty()) text += when + fish_value(command.arguments.front()) + "\n";
-  for (const OptionOutline& option : command.options) {
+  for (const OptionSpecification& option : command.options) {
     text += when;
     for (const std::string& name : option.names) {
       const bool is_long = name.starts_with("--");
@@ -69,7 +69,7 @@ std::string fish_lines(const CommandOutline& command, const std::string& path) {
     if (!option.value.empty()) text += " -r" + fish_value(option);
     text += " -d " + fish_quoted(option.description) + "\n";
   }
-  for (const CommandOutline& one : command.commands) {
+  for (const CommandSpecification& one : command.commands) {
     text += fish_lines(one, path.empty() ? one.name : path + " " + one.name);
   }
   return text;
@@ -77,7 +77,7 @@ std::string fish_lines(const CommandOutline& command, const std::string& path) {
 
 }  // namespace
 
-std::string fish_completion(const CommandOutline& command) {
+std::string fish_completion(const CommandSpecification& command) {
   return "# Completion of spherule for fish, made by `spherule completion fish`.\n" +
          fish_function(command) + fish_lines(command, "");
 }

@@ -2,7 +2,7 @@
 #include "cli/fit_options.h"
 
 #include "cli/check_number.h"
-#include "cli/outline.h"
+#include "cli/command_specification.h"
 #include "simplifier/zones.h"
 #include "spheretree/sphere_file.h"
 

@@ -5,7 +5,7 @@
 #include "cli/model_file.h"
 #include "cli/model_unit.h"
 #include "cli/report_content.h"
-#include "cli/second_phase.h"
+#include "cli/stage2_method.h"
 #include "simplifier/simplify.h"
 #include "spheretree/error.h"
 

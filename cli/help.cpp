@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/help.h"
 
-#include "cli/outline.h"
+#include "cli/command_specification.h"
 
 #include <CLI/CLI.hpp>
 
@@ -22,12 +22,12 @@ class HelpFormatter : public CLI::Formatter {
   }
 
   std::string make_option_opts(const CLI::Option* option) const override {
-    const OptionOutline shown = outline(*option);
+    const OptionSpecification shown = specification(*option);
     return (shown.value.empty() ? "" : " " + shown.value) + (shown.is_repeatable ? " ..." : "");
   }
 
   std::string make_option_desc(const CLI::Option* option) const override {
-    return wrapped(full_description(outline(*option)), kTextColumns);
+    return wrapped(full_description(specification(*option)), kTextColumns);
   }
 
   std::string make_subcommand(const CLI::App* command) const override {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
+#include "cli/command_specification.h"
 #include "cli/help.h"
 #include "cli/model_file.h"
 #include "cli/model_unit.h"
-#include "cli/outline.h"
 #include "cli/recognize.h"
 #include "mesh/mesh_report.h"
 #include "spheretree/check.h"
@@ -74,7 +74,7 @@ void print_tree(const SphereTree& tree) {
             << report.leaf_count << " leaves, depth " << report.depth << ", branching "
             << report.branching << "\n"
             << "invariants: " << (report.valid ? "all hold" : "broken") << "\n"
-            << "mean growth of a level: " << report.mean_growth << "\n";
+            << "mean growth of a level: " << report.mean_inflation << "\n";
   print_ball("root", tree.ball(0));
 }
 

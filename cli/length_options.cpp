@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/length_options.h"
 
-#include "cli/outline.h"
+#include "cli/command_specification.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
+#include "cli/command_specification.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
-#include "cli/outline.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 
@@ -97,10 +97,10 @@ std::string today() {
   return text.data();
 }
 
-std::string synopsis(const CommandOutline& command, const std::vector<std::string>& path) {
+std::string synopsis(const CommandSpecification& command, const std::vector<std::string>& path) {
   std::string text = bold(with_blanks(path, ' '));
   if (!command.options.empty()) text += " [" + italic("options") + "]";
-  for (const OptionOutline& argument : command.arguments) {
+  for (const OptionSpecification& argument : command.arguments) {
     const std::string name = italic(argument.names.front()) + (argument.is_repeatable ? "..." : "");
     text += argument.is_required ? " " + name : " [" + name + "]";
   }
@@ -108,7 +108,7 @@ std::string synopsis(const CommandOutline& command, const std::vector<std::strin
   return text + "\n";
 }
 
-std::string item(const OptionOutline& option, bool is_argument) {
+std::string item(const OptionSpecification& option, bool is_argument) {
   std::string text = ".TP\n";
   for (std::size_t i = 0; i < option.names.size(); ++i) {
     text += (i > 0 ? ", " : "") + (is_argument ? italic : bold)(option.names[i]);
@@ -118,11 +118,11 @@ std::string item(const OptionOutline& option, bool is_argument) {
   return text + "\n" + paragraph(full_description(option));
 }
 
-std::string items(const char* section, const std::vector<OptionOutline>& options,
+std::string items(const char* section, const std::vector<OptionSpecification>& options,
                   bool are_arguments) {
   if (options.empty()) return {};
   std::string text = std::string(".SH ") + section + "\n";
-  for (const OptionOutline& option : options) text += item(option, are_arguments);
+  for (const OptionSpecification& option : options) text += item(option, are_arguments);
   return text;
 }
 
@@ -151,7 +151,7 @@ FooterParts parts_of(const std::string& footer) {
   return parts;
 }
 
-std::string page(const CommandOutline& command, const std::vector<std::string>& path) {
+std::string page(const CommandSpecification& command, const std::vector<std::string>& path) {
   const std::string name = with_blanks(path, '-');
   std::string title = name;
   std::transform(title.begin(), title.end(), title.begin(),
@@ -166,7 +166,7 @@ std::string page(const CommandOutline& command, const std::vector<std::string>& 
   text += items("ARGUMENTS", command.arguments, true) + items("OPTIONS", command.options, false);
   if (!command.commands.empty()) {
     text += ".SH COMMANDS\n";
-    for (const CommandOutline& inner : command.commands) {
+    for (const CommandSpecification& inner : command.commands) {
       text += ".TP\n" + bold(name + "-" + inner.name) + "(1)\n" + paragraph(inner.summary);
     }
   }
@@ -181,18 +181,18 @@ std::string page(const CommandOutline& command, const std::vector<std::string>& 
   return text;
 }
 
-void write_pages(const CommandOutline& command, std::vector<std::string> path,
+void write_pages(const CommandSpecification& command, std::vector<std::string> path,
                  const std::filesystem::path& folder) {
   write_file_atomically(folder / (with_blanks(path, '-') + ".1"), page(command, path));
   path.emplace_back();
-  for (const CommandOutline& inner : command.commands) {
+  for (const CommandSpecification& inner : command.commands) {
     path.back() = inner.name;
     write_pages(inner, path, folder);
   }
 }
 
-void print_page(const CommandOutline& all, const std::vector<std::string>& names) {
-  const CommandOutline* command = &all;
+void print_page(const CommandSpecification& all, const std::vector<std::string>& names) {
+  const CommandSpecification* command = &all;
   std::vector<std::string> path = {all.name};
   for (const std::string& name : names) {
     command = find_command(*command, name);
@@ -216,7 +216,7 @@ void add_manual(CLI::App& app, int& exit_code) {
                            .exit_codes = "0 done",
                            .examples = {"spherule manual fit > fit.1", "spherule manual -o ."}}));
   command->callback([&app, names, folder, &exit_code] {
-    const CommandOutline all = outline(app);
+    const CommandSpecification all = specification(app);
     if (folder->empty()) {
       print_page(all, *names);
     } else {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_number.h"
 #include "cli/command.h"
+#include "cli/command_specification.h"
 #include "cli/false_alarm_report.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
 #include "cli/length_options.h"
 #include "cli/next_step.h"
-#include "cli/outline.h"
 #include "cli/output.h"
 #include "cli/pair_report.h"
 #include "cli/progress.h"

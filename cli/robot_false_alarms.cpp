@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robot_false_alarms.h"
 
-#include "cli/outline.h"
+#include "cli/command_specification.h"
 #include "robot/model/link_spheres.h"
 #include "spheretree/error.h"
 

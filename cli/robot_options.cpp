@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robot_options.h"
 
+#include "cli/command_specification.h"
 #include "cli/length_options.h"
 #include "cli/next_step.h"
-#include "cli/outline.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>

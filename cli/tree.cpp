@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
+#include "cli/command_specification.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
 #include "cli/next_step.h"
-#include "cli/outline.h"
 #include "cli/output.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"

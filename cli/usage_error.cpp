@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/usage_error.h"
 
-#include "cli/outline.h"
+#include "cli/command_specification.h"
 
 #include <CLI/CLI.hpp>
 
@@ -56,7 +56,7 @@ std::string meant(const std::string& name) {
 }
 
 // CLI11 lists what is left over in an order of its own; the first option among it is named.
-std::string describe_extras(const CLI::App& app, const CommandOutline& command) {
+std::string describe_extras(const CLI::App& app, const CommandSpecification& command) {
   const std::vector<std::string> extras = app.remaining(true);
   const auto option = std::find_if(extras.begin(), extras.end(),
                                    [](const std::string& extra) { return extra.starts_with('-'); });
@@ -67,7 +67,7 @@ std::string describe_extras(const CLI::App& app, const CommandOutline& command) 
   if (extras.empty()) return {};
   if (command.commands.empty()) return "unexpected argument: " + extras.front();
   std::vector<std::string> names;
-  for (const CommandOutline& inner : command.commands) names.push_back(inner.name);
+  for (const CommandSpecification& inner : command.commands) names.push_back(inner.name);
   return "unknown command: " + extras.front() + meant(nearest_name(extras.front(), names));
 }
 
@@ -79,7 +79,7 @@ bool names_option(const std::string& text) {
 
 std::string describe_usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& reached = command_reached(app);
-  const CommandOutline command = outline(reached);
+  const CommandSpecification command = specification(reached);
   std::string text;
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     text = describe_extras(app, command);

@@ -53,22 +53,22 @@ struct MechanismContact {
 // test before an exact one. For each configuration it finds either that no two spheres of a pair
 // touch, or that some do, for sure; where rounding leaves a doubt it asks.
 //
-// Proof in mechanism/mechanism_parts.cpp. Exactness is meant with respect to any poses of the bodies
-// that are within `pose_error` of those of the exact mechanism: the largest distance of a point of
-// the body, in the unit of the trees. Bodies on one frame, and obstacles, that are tested against
-// the same are searched as one tree. Immutable; threads may share it, each with a scratch of its
-// own.
+// Proof in mechanism/mechanism_parts.cpp. Exactness is meant with respect to any poses of the
+// bodies that are within `pose_error` of those of the exact mechanism: the largest distance of a
+// point of the body, in the unit of the trees. Bodies on one frame, and obstacles, that are tested
+// against the same are searched as one tree. Immutable; threads may share it, each with a scratch
+// of its own.
 class MechanismCheck {
  public:
   // Pairs are tested in their order, as far as bodies are not searched together. Throws Error for
   // indices out of range, a missing tree, a mechanism or obstacle that reaches beyond
   // kMaxCoordinate (joined with those that it is searched with, too), a pose_error that is no
-  // length, or instructions that this machine has not got. With `asks_always` no contact counts as
+  // length, or instructions that this machine has not got. With `always_exact` no contact counts as
   // sure.
   MechanismCheck(std::span<const MechanismFrame> frames, std::span<const MechanismBody> bodies,
                  std::span<const MechanismObstacle> obstacles, std::span<const MechanismPair> pairs,
                  double pose_error, InstructionSet instructions = best_instruction_set(),
-                 bool asks_always = false);
+                 bool always_exact = false);
   ~MechanismCheck();
   MechanismCheck(MechanismCheck&&) noexcept;
   MechanismCheck& operator=(MechanismCheck&&) noexcept;

@@ -24,7 +24,7 @@ std::shared_ptr<const SphereTree> not_null(std::shared_ptr<const SphereTree> cov
 // Policy of the traversal: ends at the first two spheres whose triangles touch.
 class FindTriangles {
  public:
-  static constexpr bool kWantsGaps = false;
+  static constexpr bool kNeedsGaps = false;
 
   FindTriangles(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
                 const Pose& world_from_b, const internal::RelativePose& pose)

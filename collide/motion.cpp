@@ -137,7 +137,7 @@ Motion Motion::turning(const Pose& start, const Vector3d& axis, double angle,
 Pose Motion::pose_at(double t) const {
   if (!(t >= 0.0 && t <= 1.0)) throw Error("motion", "the time is not in [0, 1]");
   if (t == 1.0 && ends_at_end_) return end_;
-  if (t == 0.0 || stands_still()) return start_;
+  if (t == 0.0 || is_static()) return start_;
   if (angle_ == 0.0) return Pose(start_.rotation(), start_.translation() + t * displacement_);
 
   const double half = 0.5 * (t * angle_);
@@ -151,7 +151,7 @@ Pose Motion::pose_at(double t) const {
 }
 
 double Motion::pose_error(double reach) const {
-  if (stands_still() && drift_angle_ == 0.0) return drift_offset_;
+  if (is_static() && drift_angle_ == 0.0) return drift_offset_;
   const double arm = norm_upper(reference_);
   const double of_pose = angle_ == 0.0 ? 0.0 : kTurnError + 2.0 * kUnitRoundoff * std::abs(angle_);
   const double turned = (of_pose + drift_angle_) * (reach + arm);

@@ -56,7 +56,7 @@ class Motion {
 
  private:
   Motion(const Pose& start, const Pose& end, const Eigen::Vector3d& reference);
-  bool stands_still() const { return angle_ == 0.0 && displacement_.isZero(0.0); }
+  bool is_static() const { return angle_ == 0.0 && displacement_.isZero(0.0); }
 
   Pose start_;
   Pose end_;

@@ -22,7 +22,7 @@ using internal::GapInterval;
 // each is on one side of the surface.
 bool comes_within(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
                   const Pose& world_from_solid, double clearance) noexcept {
-  const double reach = clearance > 0.0 ? add_up(clearance, solid.growth()) : solid.growth();
+  const double reach = clearance > 0.0 ? add_up(clearance, solid.inflation()) : solid.inflation();
   if (internal::collides_by(internal::best_mesh_kernel(), tree, world_from_tree, solid.mesh(),
                             world_from_solid, reach)) {
     return true;
@@ -69,7 +69,7 @@ class FindDeepest {
   bool enters(std::int32_t node) const {
     const Sphere ball = tree_.ball(static_cast<std::size_t>(node));
     const Vector3d center = balls_.in_mesh(ball.center);
-    const double reach = add_up(ball.radius, solid_.growth());
+    const double reach = add_up(ball.radius, solid_.inflation());
     return !balls_.is_clear(center, reach) || balls_.contains(center);
   }
   bool leaf(std::int32_t node) {
@@ -81,7 +81,7 @@ class FindDeepest {
     const DistanceResult to_surface =
         internal::NearestFirst(space, balls_.error(), DistanceRequest{}).run(0, space.gap(0));
     const bool inside = balls_.certainly_contains(center);
-    const double reach = sub_down(add_down(ball.radius, solid_.growth()), balls_.error());
+    const double reach = sub_down(add_down(ball.radius, solid_.inflation()), balls_.error());
     const double depth =
         inside ? add_down(reach, to_surface.lower) : sub_down(reach, to_surface.upper);
     const std::int32_t leaf = tree_.sphere_index(index);
@@ -108,8 +108,10 @@ class FindDeepest {
 
 SolidMesh::SolidMesh(const TriangleMesh& mesh) : SolidMesh(mesh, mesh.vertex_error) {}
 
-SolidMesh::SolidMesh(const TriangleMesh& mesh, double growth)
-    : mesh_(mesh), growth_(growth), inside_(std::make_shared<const internal::MeshInside>(mesh)) {}
+SolidMesh::SolidMesh(const TriangleMesh& mesh, double inflation)
+    : mesh_(mesh),
+      inflation_(inflation),
+      inside_(std::make_shared<const internal::MeshInside>(mesh)) {}
 
 bool SolidMesh::is_closed() const {
   return inside_->is_closed();
@@ -133,10 +135,10 @@ bool within(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh
 DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
                         const Pose& world_from_solid, const DistanceRequest& request) {
   DistanceRequest to_surface = request;
-  to_surface.enough = add_up(request.enough, solid.growth());
+  to_surface.enough = add_up(request.enough, solid.inflation());
   DistanceResult result =
       distance(tree, world_from_tree, solid.mesh(), world_from_solid, to_surface);
-  result.upper = result.upper > solid.growth() ? sub_up(result.upper, solid.growth()) : 0.0;
+  result.upper = result.upper > solid.inflation() ? sub_up(result.upper, solid.inflation()) : 0.0;
   // Where a ball may meet a triangle, the lower bound is 0 and the upper one as good as it gets.
   if (!(result.lower > 0.0)) return result;
   const internal::RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
@@ -145,7 +147,7 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
     result.lower = result.upper = 0.0;
     result.nearest = {inside, -1};
   } else {
-    result.lower = std::max(0.0, sub_down(result.lower, solid.growth()));
+    result.lower = std::max(0.0, sub_down(result.lower, solid.inflation()));
   }
   return result;
 }

@@ -33,7 +33,7 @@ class SolidMesh {
 
   // The triangles, and by how much they are grown.
   const MeshTree& mesh() const { return mesh_; }
-  double growth() const { return growth_; }
+  double inflation() const { return inflation_; }
   // Whether every triangle is of a closed surface, and whether any is.
   bool is_closed() const;
   bool has_inside() const;
@@ -43,10 +43,10 @@ class SolidMesh {
 
  private:
   friend class CoveredMesh;
-  SolidMesh(const TriangleMesh& mesh, double growth);
+  SolidMesh(const TriangleMesh& mesh, double inflation);
 
   MeshTree mesh_;
-  double growth_;
+  double inflation_;
   std::shared_ptr<const internal::MeshInside> inside_;
 };
 

@@ -236,7 +236,7 @@ bool comes_within(const SolidMesh& mesh, const Pose& world_from_mesh, const Fiel
 bool within(const SolidMesh& a, const Pose& world_from_a, const SolidMesh& b,
             const Pose& world_from_b, double clearance) {
   require_clearance(clearance);
-  const double reach = sum_up(clearance, sum_up(a.growth(), b.growth()));
+  const double reach = sum_up(clearance, sum_up(a.inflation(), b.inflation()));
   const SphereTree& tree_a = a.mesh().tree();
   const SphereTree& tree_b = b.mesh().tree();
   if (internal::far_apart(tree_a, world_from_a, tree_b, world_from_b, reach)) return false;
@@ -259,7 +259,7 @@ bool within(const SolidMesh& a, const Pose& world_from_a, const Primitive& b,
   return std::visit(
       [&](const auto& shape) {
         return comes_within(a, world_from_a, internal::field_of(shape), world_from_b,
-                            sum_up(clearance, a.growth()));
+                            sum_up(clearance, a.inflation()));
       },
       b);
 }

@@ -164,13 +164,14 @@ CertificateRecord moved_certificate(const CertificateRecord& certificate,
   // grew: the error again, and the rounding of the sum.
   double largest = 0.0;
   for (const Sphere& sphere : spheres) largest = std::max(largest, sphere.radius);
-  const double growth = add_up(mul_up(2.0, error), mul_up(largest, 8.0 * kUnitRoundoff));
+  const double inflation = add_up(mul_up(2.0, error), mul_up(largest, 8.0 * kUnitRoundoff));
   CertificateRecord moved = certificate;
   // The moved balls hold the exactly moved ones, so that no depth is larger.
-  moved.uncovered_depth_lower = std::max(0.0, sub_down(certificate.uncovered_depth_lower, growth));
+  moved.uncovered_depth_lower =
+      std::max(0.0, sub_down(certificate.uncovered_depth_lower, inflation));
   for (std::optional<double>* protrusion :
        {&moved.protrusion_over_simplified_max, &moved.protrusion_over_mesh_max}) {
-    if (*protrusion) **protrusion = add_up(**protrusion, growth);
+    if (*protrusion) **protrusion = add_up(**protrusion, inflation);
   }
   return moved;
 }

@@ -31,7 +31,7 @@ struct CoverOptions {
   // No ball of the result is smaller than this radius (a tool made of such balls passes stage 1 of
   // what it meets unchanged). Protrusion may exceed E where it forces a larger ball.
   double min_radius = 0.0;
-  // kPaper, and a SecondPhase that packs: diameter at which a ball is seeded (the paper's
+  // kPaper, and a Stage2Method that packs: diameter at which a ball is seeded (the paper's
   // min_internal_size); 0 chooses E / 2.
   double min_internal_diameter = 0.0;
   std::uint64_t seed = 1;
@@ -81,11 +81,11 @@ struct SphereCover {
   std::vector<Sphere> spheres;
   // No cover of S that protrudes by at most E has fewer balls, as proved; 0: not known.
   std::size_t lower_bound = 0;
-  // kPaper, and a SecondPhase that inflates: the balls before that, and the certified error.
+  // kPaper, and a Stage2Method that inflates: the balls before that, and the certified error.
   std::vector<Sphere> spheres_before_inflation;
   double inflation = 0.0;
   std::vector<CoverHistoryEntry> history;
-  // kPaper, and a SecondPhase that packs: seeds that had to be moved before a ball fitted.
+  // kPaper, and a Stage2Method that packs: seeds that had to be moved before a ball fitted.
   std::size_t seeds_rejected = 0;
 };
 

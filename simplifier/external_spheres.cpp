@@ -64,13 +64,13 @@ double sum_up(double a, double b) {
   return a == 0.0 || b == 0.0 ? a + b : add_up(a, b);
 }
 
-Eigen::AlignedBox3d grown_outwards(const Eigen::AlignedBox3d& box, double by) {
-  Eigen::AlignedBox3d grown;
+Eigen::AlignedBox3d inflated_outwards(const Eigen::AlignedBox3d& box, double by) {
+  Eigen::AlignedBox3d inflated;
   for (int axis = 0; axis < 3; ++axis) {
-    grown.min()[axis] = sub_down(box.min()[axis], by);
-    grown.max()[axis] = add_up(box.max()[axis], by);
+    inflated.min()[axis] = sub_down(box.min()[axis], by);
+    inflated.max()[axis] = add_up(box.max()[axis], by);
   }
-  return grown;
+  return inflated;
 }
 
 // For balls of this diameter that meet S with this error.
@@ -254,7 +254,7 @@ ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
   ExternalSpheres result;
   result.padding = sum_up(options.padding, mesh.vertex_error);
   result.min_external_diameter = options.min_external_diameter;
-  result.box = grown_outwards(distance.box(), result.padding);
+  result.box = inflated_outwards(distance.box(), result.padding);
   switch (options.placement) {
     case ExternalPlacement::kReachable:
       place_reachable(mesh, distance, options, result);

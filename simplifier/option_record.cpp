@@ -95,7 +95,7 @@ class Reader {
     if (std::any_of(kMethods.begin(), kMethods.end(), is_named)) {
       options.method = method_named(*text);
     } else {
-      options.second_phase = SecondPhase{.name = *text};
+      options.stage2_method = Stage2Method{.name = *text};
     }
   }
 
@@ -188,7 +188,7 @@ std::map<std::string, OptionValue> option_record(const SimplifyOptions& options,
       {"padding", options.padding},
       {"min-radius", options.min_radius},
       {"method",
-       options.second_phase ? options.second_phase->name : name_of(kMethods, options.method)},
+       options.stage2_method ? options.stage2_method->name : name_of(kMethods, options.method)},
       {"external", name_of(kPlacements, options.external)},
       {"external-limit", static_cast<std::int64_t>(options.external_limit)},
       {"min-internal", options.min_internal_diameter},

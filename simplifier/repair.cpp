@@ -5,11 +5,11 @@
 #include "mesh/mesh_distance.h"
 #include "simplifier/proof/protrusion.h"
 #include "simplifier/solid/clearance.h"
-#include "simplifier/stage2/ball_growth.h"
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/cover_fitter.h"
 #include "simplifier/stage2/local_error.h"
 #include "simplifier/stage2/solid_cells.h"
+#include "simplifier/stage2/sphere_inflation.h"
 #include "simplifier/support/thread_limit.h"
 #include "simplifier/support/usable_spheres.h"
 #include "spheretree/error.h"
@@ -72,32 +72,33 @@ std::vector<Sphere> joined(std::vector<Sphere> balls, const std::vector<Sphere>&
 }
 
 // Radii with which the balls cover S together with those `added`, which they do at their limits.
-std::vector<Sphere> grown_balls(const Clearance& clearance, const MeshDistance& distance,
-                                std::span<const Sphere> balls, const std::vector<Sphere>& limit,
-                                const std::vector<Sphere>& added, double max_error,
-                                const internal::LocalError& error) {
+std::vector<Sphere> inflated_spheres(const Clearance& clearance, const MeshDistance& distance,
+                                     std::span<const Sphere> balls,
+                                     const std::vector<Sphere>& limit,
+                                     const std::vector<Sphere>& added, double max_error,
+                                     const internal::LocalError& error) {
   std::vector<double> limits;
   for (const Sphere& ball : limit) limits.push_back(ball.radius);
-  internal::BallGrowth growth(balls, limits);
+  internal::SphereInflation inflation(balls, limits);
   const double spacing = internal::CoverFitter::leak_spacing(max_error);
   SolidCells cells(clearance, distance, error, max_error, kCells);
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<Sphere> grown = growth.balls();
-    const std::vector<Sphere> all = joined(grown, added);
+    std::vector<Sphere> inflated = inflation.balls();
+    const std::vector<Sphere> all = joined(inflated, added);
     const internal::BallHierarchy hierarchy(all);
     const SolidCells::Leaks leaks =
         cells.find_leaks({all, hierarchy}, internal::CoverFitter::finest(max_error), spacing);
-    if (leaks.empty()) return grown;
+    if (leaks.empty()) return inflated;
     bool more = false;
     for (const auto* points : {&leaks.in_solid, &leaks.pinched}) {
       for (const Vector3d& p : *points) {
         // What was asked for is not enough here: several balls meet at the point.
-        more = growth.require(p, kLeakReserve * max_error) || growth.grow_fully_about(p, spacing) ||
-               more;
+        more = inflation.require(p, kLeakReserve * max_error) ||
+               inflation.grow_fully_about(p, spacing) || more;
       }
     }
     if (!more) break;
-    growth.solve();
+    inflation.solve();
   }
   return limit;
 }
@@ -131,12 +132,13 @@ Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
   const std::vector<Sphere> added =
       internal::CoverFitter(clearance, distance, cover_options, limit).run();
   if (options.progress) options.progress(-1.0, "growing");
-  result.spheres = grown_balls(clearance, distance, spheres, limit, added, result.max_error, error);
+  result.spheres =
+      inflated_spheres(clearance, distance, spheres, limit, added, result.max_error, error);
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const double by = result.spheres[i].radius - spheres[i].radius;
-    if (by > 0.0) ++result.grown;
-    result.largest_growth = std::max(result.largest_growth, by);
-    result.total_growth += by;
+    if (by > 0.0) ++result.inflated;
+    result.largest_inflation = std::max(result.largest_inflation, by);
+    result.total_inflation += by;
   }
   result.added = added.size();
   result.spheres = joined(std::move(result.spheres), added);

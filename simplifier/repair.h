@@ -34,15 +34,15 @@ struct Repair {
   // The balls of the input in their order, none moved and none smaller than it was; then those
   // added.
   std::vector<Sphere> spheres;
-  std::size_t grown = 0;
+  std::size_t inflated = 0;
   std::size_t added = 0;
   double max_error = 0.0;  // E, as used
   // How far the balls protrude from S at most, before and after; what is more than E after is so of
   // balls that did not grow.
   double protrusion_before = 0.0;
   double protrusion_after = 0.0;
-  double largest_growth = 0.0;  // of a radius
-  double total_growth = 0.0;    // of all radii
+  double largest_inflation = 0.0;  // of a radius
+  double total_inflation = 0.0;    // of all radii
 };
 
 // Turns any balls into ones that cover S. A ball (c, r) may grow as long as it protrudes from S by

@@ -28,14 +28,14 @@ double box_diagonal(const TriangleMesh& mesh) {
 }
 
 void check_phase(const SimplifyOptions& options) {
-  if (!options.second_phase) return;
-  const std::string& name = options.second_phase->name;
+  if (!options.stage2_method) return;
+  const std::string& name = options.stage2_method->name;
   const std::vector<std::string> taken = method_names();
   if (name.empty() || std::find(taken.begin(), taken.end(), name) != taken.end()) {
-    throw Error("method", "a second phase from outside needs a name of its own");
+    throw Error("method", "a stage 2 method from outside needs a name of its own");
   }
-  if (!options.second_phase->run) {
-    throw Error("method", "there is no second phase '" + name + "' here");
+  if (!options.stage2_method->run) {
+    throw Error("method", "there is no stage 2 method '" + name + "' here");
   }
 }
 
@@ -127,7 +127,7 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
 
   const Stopwatch cover_time;
   const Clearance clearance(result.external, distance);
-  result.cover = used.second_phase
+  result.cover = used.stage2_method
                      ? cover_solid(mesh, result.external, used)
                      : internal::cover(mesh, distance, clearance, cover_options(used));
   result.times.cover = cover_time.seconds();
@@ -160,8 +160,8 @@ SphereCover cover_solid(const TriangleMesh& mesh, const ExternalSpheres& externa
                         const SimplifyOptions& options) {
   check_phase(options);
   const CoverOptions passed = cover_options(options);
-  return options.second_phase ? options.second_phase->run(mesh, external, passed)
-                              : cover(mesh, external, passed);
+  return options.stage2_method ? options.stage2_method->run(mesh, external, passed)
+                               : cover(mesh, external, passed);
 }
 
 double tool_diameter(std::span<const Sphere> tool) {

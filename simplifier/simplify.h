@@ -21,9 +21,9 @@
 
 namespace spherule {
 
-// A second phase from outside of this library, in the place of cover(). It covers S as well as it
+// A stage 2 method from outside of this library, in the place of cover(). It covers S as well as it
 // can; what it achieved, the certificate says.
-struct SecondPhase {
+struct Stage2Method {
   // Stands in option_record() as the method: not empty, and none of method_names().
   std::string name;
   std::function<SphereCover(const TriangleMesh&, const ExternalSpheres&, const CoverOptions&)> run =
@@ -53,7 +53,7 @@ struct SimplifyOptions {
   bool keep_concave_edges = false;
   CoverMethod method = CoverMethod::kCover;
   // Where it is set, it is run instead of `method`, with the CoverOptions that cover() would get.
-  std::optional<SecondPhase> second_phase = {};
+  std::optional<Stage2Method> stage2_method = {};
   ExternalPlacement external = ExternalPlacement::kReachable;
   std::size_t external_limit = 100000;  // attempts of the random placement
   double min_internal_diameter = 0.0;   // of the paper's loop; 0 chooses E / 2
@@ -94,9 +94,9 @@ void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh);
 // Throws Error for a mesh that validate() refuses and for options out of range.
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
 
-// Stage 2 as simplify() runs it: by the second phase, where there is one, else by `method`. E must
-// be filled in. Errors as of cover() or the phase; with the subject "method" for a phase without a
-// name of its own or that cannot be run.
+// Stage 2 as simplify() runs it: by the stage 2 method, where there is one, else by `method`. E
+// must be filled in. Errors as of cover() or the phase; with the subject "method" for a phase
+// without a name of its own or that cannot be run.
 SphereCover cover_solid(const TriangleMesh& mesh, const ExternalSpheres& external,
                         const SimplifyOptions& options);
 
@@ -134,7 +134,7 @@ std::string name_of_levels(std::span<const double> levels);
 
 // The options under their command-line names, for SphereFile::options; `scale` is the one the mesh
 // was read with. And back, for an audit: what is absent keeps its default, Error names a bad value.
-// A method that is none of method_names() comes back as the name of a second phase that cannot be
+// A method that is none of method_names() comes back as the name of a stage 2 method that cannot be
 // run: an audit judges spheres of any origin.
 std::map<std::string, OptionValue> option_record(const SimplifyOptions& options, double scale);
 SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& record);

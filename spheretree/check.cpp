@@ -130,7 +130,7 @@ class Checker {
 
   // Invariant 4.
   void check_enclosure() {
-    double growth = 0.0;
+    double inflation = 0.0;
     std::size_t inner_count = 0;
     for (std::size_t node = 0; node < node_count(); ++node) {
       const auto first = static_cast<std::size_t>(data_.first_child[node]);
@@ -148,11 +148,11 @@ class Checker {
       }
       // Points (radius 0) have no growth to speak of.
       if (largest > 0.0) {
-        growth += parent.radius / largest;
+        inflation += parent.radius / largest;
         ++inner_count;
       }
     }
-    if (inner_count > 0) report_.mean_growth = growth / static_cast<double>(inner_count);
+    if (inner_count > 0) report_.mean_inflation = inflation / static_cast<double>(inner_count);
   }
 
   void measure_depth() {

@@ -21,7 +21,7 @@ struct TreeReport {
   int branching = 0;  // largest number of children
   double root_radius = 0.0;
   // Mean over inner nodes of radius / largest child radius: how much a level loses.
-  double mean_growth = 0.0;
+  double mean_inflation = 0.0;
 };
 
 // Checks all five invariants of SphereTree with outward rounding: `valid` is true only if they hold

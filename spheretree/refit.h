@@ -19,9 +19,9 @@ namespace spherule {
 // Every query is as right as on a new tree (G3), but may be slower, because spheres under one node
 // are supposed to be neighbours. Build anew when they no longer are: when spheres have moved
 // against their neighbours by more than about their distance, or the set has been stretched or
-// twisted a good deal. The mean_growth that check() reports then exceeds that of the tree as built;
-// by a fifth, queries visit up to twice the nodes of a new tree, at double, five times as many. To
-// move all spheres as one, move the tree's Pose instead.
+// twisted a good deal. The mean_inflation that check() reports then exceeds that of the tree as
+// built; by a fifth, queries visit up to twice the nodes of a new tree, at double, five times as
+// many. To move all spheres as one, move the tree's Pose instead.
 //
 // Throws Error if the numbers of spheres differ, a number in `moved` is not usable, or the ball
 // around all of them would not be.

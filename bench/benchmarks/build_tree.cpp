@@ -93,7 +93,7 @@ void count(benchmark::State& state, const SphereTree& tree) {
   state.counters["nodes"] = static_cast<double>(report.node_count);
   state.counters["depth"] = report.depth;
   state.counters["root_radius"] = report.root_radius;
-  state.counters["growth"] = report.mean_growth;
+  state.counters["growth"] = report.mean_inflation;
   state.counters["overlap"] = overlap(tree);
   state.counters["spheres/s"] = benchmark::Counter(static_cast<double>(report.sphere_count),
                                                    benchmark::Counter::kIsIterationInvariantRate);

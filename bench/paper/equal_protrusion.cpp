@@ -103,7 +103,7 @@ CountEntry fewest_spheres(const TriangleMesh& mesh, const SphereMethod& method,
       break;
     }
     entry.protrusion = proved.certificate.protrusion_over_mesh->upper;
-    entry.growth = proved.growth;
+    entry.inflation = proved.inflation;
     const bool holds = proved.certificate.covered && entry.protrusion <= max_protrusion;
     if (holds) entry.spheres = proved.spheres.size();
     if (holds ? best.spheres == 0 || entry.spheres < best.spheres : best.spheres == 0) best = entry;

@@ -25,7 +25,7 @@ struct CountEntry {
   // Of those balls, or, if there are none, of the last that were made: the certified upper bound
   // of their protrusion over |M|, and what they had to grow by to cover it.
   double protrusion = 0.0;
-  double growth = 0.0;
+  double inflation = 0.0;
   double setting = 0.0;  // the error that the method was asked for
   double seconds = 0.0;  // of making them, without the proof
 };

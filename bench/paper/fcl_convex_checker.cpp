@@ -38,18 +38,18 @@ class MeshesAndConvexParts : public SingleChecker {
       const auto pose = fcl_pose<double>(standing.world_from_part);
       if (i != obstacle) {
         const Model model(standing.part.mesh);
-        standing_.push_back({model.geometry, pose, model.world_box(pose), i});
+        static_.push_back({model.geometry, pose, model.world_box(pose), i});
         continue;
       }
       for (const TriangleMesh& part : parts) {
         const Box box = bounding_box(placed(part, pose.linear(), pose.translation()));
-        standing_.push_back({convex(part), pose, box, i});
+        static_.push_back({convex(part), pose, box, i});
       }
     }
     for (const Body& body : workload.bodies) {
       bodies_.push_back({Model(body.part.mesh), static_cast<std::size_t>(body.link), {}});
-      for (std::size_t i = 0; i < standing_.size(); ++i) {
-        if (is_tested(body, workload.obstacles[standing_[i].obstacle])) {
+      for (std::size_t i = 0; i < static_.size(); ++i) {
+        if (is_tested(body, workload.obstacles[static_[i].obstacle])) {
           bodies_.back().against.push_back(i);
         }
       }
@@ -62,7 +62,7 @@ class MeshesAndConvexParts : public SingleChecker {
       const auto pose = fcl_pose<double>(world_from_link[body.link]);
       const Box box = body.model.world_box(pose);
       return std::any_of(body.against.begin(), body.against.end(), [&](std::size_t i) {
-        const Standing& other = standing_[i];
+        const Static& other = static_[i];
         if (!box.intersects(other.box)) return false;
         const fcl::CollisionRequest<double> request;  // one contact, not kept
         fcl::CollisionResult<double> result;
@@ -73,7 +73,7 @@ class MeshesAndConvexParts : public SingleChecker {
   }
 
  private:
-  struct Standing {
+  struct Static {
     std::shared_ptr<const fcl::CollisionGeometry<double>> geometry;
     fcl::Transform3<double> pose;
     Box box;
@@ -84,7 +84,7 @@ class MeshesAndConvexParts : public SingleChecker {
     std::size_t link;
     std::vector<std::size_t> against;
   };
-  std::vector<Standing> standing_;
+  std::vector<Static> static_;
   std::vector<Moving> bodies_;
 };
 

@@ -87,7 +87,7 @@ Json to_json(const CountRow& row) {
     json["methods"].push_back({{"method", entry.method},
                                {"spheres", entry.spheres > 0 ? Json(entry.spheres) : Json(nullptr)},
                                {"protrusion", entry.protrusion},
-                               {"growth", entry.growth},
+                               {"growth", entry.inflation},
                                {"setting", entry.setting},
                                {"seconds", entry.seconds}});
   }
@@ -122,8 +122,8 @@ std::string counts_csv(const std::vector<CountRow>& rows) {
   for (const CountRow& row : rows) {
     for (const CountEntry& entry : row.entries) {
       text << '"' << row.part << "\"," << row.triangles << ',' << row.max_protrusion << ','
-           << entry.method << ',' << entry.spheres << ',' << entry.protrusion << ',' << entry.growth
-           << ',' << entry.setting << ',' << entry.seconds << '\n';
+           << entry.method << ',' << entry.spheres << ',' << entry.protrusion << ','
+           << entry.inflation << ',' << entry.setting << ',' << entry.seconds << '\n';
     }
   }
   return text.str();

@@ -188,7 +188,7 @@ void check_checker_edges(std::uint64_t edges, std::uint64_t seed, ScaleReport& r
       if (random.chance(0.1)) {
         request.max_configurations = static_cast<std::uint64_t>(random.whole(0, 60));
       }
-      if (!scene.is_usual(edge.from) || !scene.is_usual(edge.to)) continue;
+      if (!scene.in_filter_range(edge.from) || !scene.in_filter_range(edge.to)) continue;
       const EdgeResult result = checker.check_edge(edge.from, edge.to, scratch, request);
       const std::string place = "scene " + std::to_string(number) + ", edge " + std::to_string(i);
       EdgeJudge(report, request.first ? first : any, scene, edge, result, place).run();

@@ -206,8 +206,9 @@ bool CheckerScene::is_moved(int first, int second) const {
 }
 
 // The trees that a snapshot makes: within rounding of contact the answer depends on the tree.
-std::vector<std::shared_ptr<const SphereTree>> CheckerScene::grown(const Body& body, double padding,
-                                                                   bool without_region) const {
+std::vector<std::shared_ptr<const SphereTree>> CheckerScene::inflated(const Body& body,
+                                                                      double padding,
+                                                                      bool without_region) const {
   std::vector<Tree> result;
   for (std::size_t t = 0; t < body.trees.size(); ++t) {
     const Tree& tree = body.trees[t];
@@ -254,7 +255,7 @@ void CheckerScene::make_pairs(SceneRandom& random) {
       double between = 0.0;
       bool region = false;
       if (!settle(obstacles_[i].name, between, region)) continue;
-      for (const Tree& tree : grown(body, padding_sum(body.padding, between), region)) {
+      for (const Tree& tree : inflated(body, padding_sum(body.padding, between), region)) {
         pairs_.push_back({tree, body.link, nullptr, 0, i});
       }
     }
@@ -267,8 +268,8 @@ void CheckerScene::make_pairs(SceneRandom& random) {
                                  ? !scene_.allowed_collisions().allows(body.link, other.link)
                                  : is_moved(body.link, other.link);
       if (!is_tested) continue;
-      const std::vector<Tree> others = grown(other, other.padding, false);
-      for (const Tree& tree : grown(body, padding_sum(body.padding, between), region)) {
+      const std::vector<Tree> others = inflated(other, other.padding, false);
+      for (const Tree& tree : inflated(body, padding_sum(body.padding, between), region)) {
         for (const Tree& second : others) {
           pairs_.push_back({tree, body.link, second, other.link, none});
         }
@@ -285,13 +286,13 @@ std::vector<double> CheckerScene::anywhere(SceneRandom& random) const {
     const double reach = turns ? far : std::min(kLargestPosition, random.between(0.2, 2.0) * size_);
     configuration.push_back(random.between(-reach, reach));
   }
-  for (int i = 0; i < 60 && !is_usual(configuration); ++i) {
+  for (int i = 0; i < 60 && !in_filter_range(configuration); ++i) {
     for (double& variable : configuration) variable *= 0.5;
   }
   return configuration;
 }
 
-bool CheckerScene::is_usual(std::span<const double> configuration) const {
+bool CheckerScene::in_filter_range(std::span<const double> configuration) const {
   return std::all_of(robot().joints().begin(), robot().joints().end(), [&](const Joint& joint) {
     return std::abs(joint.position(configuration)) <= kLargestPosition;
   });

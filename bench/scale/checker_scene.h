@@ -26,7 +26,7 @@ class CheckerScene {
 
   // Positions that keep every joint, those that mimic others, too, within 100.
   std::vector<double> anywhere(SceneRandom& random) const;
-  bool is_usual(std::span<const double> configuration) const;
+  bool in_filter_range(std::span<const double> configuration) const;
 
   // Whether a pair touches, by the canonical tests under the poses of forward_kinematics().
   bool touches(std::span<const double> configuration);
@@ -70,7 +70,7 @@ class CheckerScene {
   void make_obstacles(SceneRandom& random);
   void make_pairs(SceneRandom& random);
   ObstacleShape make_shape(SceneRandom& random) const;
-  std::vector<Tree> grown(const Body& body, double padding, bool without_region) const;
+  std::vector<Tree> inflated(const Body& body, double padding, bool without_region) const;
   bool is_moved(int first, int second) const;
 
   double size_;

@@ -22,7 +22,7 @@ struct Edge {
 };
 
 // Whether a motion may start or end there.
-bool is_usual(const std::vector<double>& configuration) {
+bool in_filter_range(const std::vector<double>& configuration) {
   return std::all_of(configuration.begin(), configuration.end(), [](double position) {
     return std::abs(position) <= RobotChecker::kLargestPosition;
   });
@@ -56,7 +56,7 @@ class EdgeCheck {
     RobotChecker::Scratch scratch(checker);
     for (int i = 0; i < kEdgesOfAScene; ++i) {
       const Edge edge = make_edge(scene, random);
-      if (!is_usual(edge.from) || !is_usual(edge.to)) {
+      if (!in_filter_range(edge.from) || !in_filter_range(edge.to)) {
         continue;
       }
       EdgeRequest request{.first = random.chance(0.5)};

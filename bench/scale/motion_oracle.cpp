@@ -42,7 +42,7 @@ MotionOracle::Contact MotionOracle::at(double t, double clearance) {
       const long double error = exact_a_.error(i) + exact_b_.error(j) +
                                 clear * 16 * std::numeric_limits<long double>::epsilon();
       if (gap <= clear - error) return Contact::kYes;
-      if (gap <= clear + error) contact = Contact::kInDoubt;
+      if (gap <= clear + error) contact = Contact::kUncertain;
     }
   }
   return contact;

@@ -16,7 +16,7 @@ class MotionOracle {
   MotionOracle(const MotionTrack<long double>& a, const MotionTrack<long double>& b)
       : exact_a_(a), exact_b_(b), a_(a), b_(b) {}
 
-  enum class Contact { kNo, kYes, kInDoubt };
+  enum class Contact { kNo, kYes, kUncertain };
 
   // Whether the exact gap at t is at most the clearance.
   Contact at(double t, double clearance);

@@ -63,7 +63,7 @@ ScaleRobot::ScaleRobot(SceneRandom& random)
                         obstacles_[0].world_from_tree * obstacles_[0].tree->spheres()[0].center,
                         direction_)) {
   for (const ScaleObstacle& obstacle : obstacles_) {
-    add_placed(obstacle.tree->spheres(), obstacle.world_from_tree, standing_);
+    add_placed(obstacle.tree->spheres(), obstacle.world_from_tree, static_);
   }
 }
 
@@ -108,7 +108,7 @@ bool ScaleRobot::bring_to_gap(std::vector<double>& configuration, double gap) {
       add_placed(tree->spheres(), world_from_link_[link], movers_);
     }
   }
-  const auto way = way_to_gap(standing_, movers_, direction_, gap);
+  const auto way = way_to_gap(static_, movers_, direction_, gap);
   if (!way || std::abs(*way) > RobotChecker::kLargestPosition) return false;
   configuration[0] = *way;
   return true;

@@ -47,7 +47,7 @@ class ScaleRobot {
   std::vector<ScaleObstacle> obstacles_;
   Eigen::Vector3d direction_;  // of the first joint
   RobotModel robot_;
-  std::vector<Sphere> standing_, movers_;
+  std::vector<Sphere> static_, movers_;
   std::vector<Pose> world_from_link_;
   ExactOracle oracle_;
 };

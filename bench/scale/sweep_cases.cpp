@@ -189,7 +189,7 @@ class SweepCheck {
     bool touches = false, missed = false;
     const auto look = [&](double t) {
       const auto contact = oracle.at(t, request.clearance);
-      tally.in_doubt += contact == MotionOracle::Contact::kInDoubt && is_called_free(t) ? 1 : 0;
+      tally.uncertain += contact == MotionOracle::Contact::kUncertain && is_called_free(t) ? 1 : 0;
       if (contact != MotionOracle::Contact::kYes) return;
       touches = true;
       if (is_called_free(t) && !missed) {

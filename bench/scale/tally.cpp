@@ -60,7 +60,7 @@ void ScaleReport::print(std::FILE* file) const {
     std::fprintf(file, "%-26s %10llu %10llu %10llu %10llu %9llu %7llu %8llu %11.3f %7llu %8llu\n",
                  t.question.c_str(), number(t.cases), number(t.near), number(t.hits),
                  number(t.free), number(t.unknown), number(t.missed), number(t.extra),
-                 t.worst_slack, number(t.beyond), number(t.in_doubt));
+                 t.worst_slack, number(t.beyond), number(t.uncertain));
   }
 }
 

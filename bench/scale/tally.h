@@ -20,11 +20,11 @@ struct Tally {
   std::uint64_t hits = 0;  // answers: collision, free, unknown
   std::uint64_t free = 0;
   std::uint64_t unknown = 0;
-  std::uint64_t missed = 0;    // called free (or bounded) against the truth
-  std::uint64_t extra = 0;     // called a collision where none was found
-  double worst_slack = 0.0;    // largest gap of those, as a share of what is promised
-  std::uint64_t beyond = 0;    // gap larger than promised, or another answer than it must be
-  std::uint64_t in_doubt = 0;  // left open by the oracle itself
+  std::uint64_t missed = 0;     // called free (or bounded) against the truth
+  std::uint64_t extra = 0;      // called a collision where none was found
+  double worst_slack = 0.0;     // largest gap of those, as a share of what is promised
+  std::uint64_t beyond = 0;     // gap larger than promised, or another answer than it must be
+  std::uint64_t uncertain = 0;  // left open by the oracle itself
 
   void count(Verdict verdict, bool is_near);
   // A collision was reported where the exact gap is `gap`, with `slack` promised.

@@ -117,7 +117,7 @@ void CompiledWidePlan::add_body(const SearchTrees& trees, const Pose& pose, doub
   for (int k = 0; k < 3; ++k) body.center[k] = static_cast<float>(tree.root().center[k]);
   body.radius = static_cast<float>(tree.root().radius);
   body.margin = is_confirmed ? std::numeric_limits<float>::infinity()
-                             : rounded_up_to_single(3.0 * tree.largest_growth());
+                             : rounded_up_to_single(3.0 * tree.largest_inflation());
   body.frame = frame;
   body.first_node = static_cast<std::int32_t>(placed_count_);
   if (frame != 0) placed_count_ += static_cast<std::size_t>(tree.node_count());

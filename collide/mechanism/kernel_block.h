@@ -24,7 +24,7 @@ namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 
 // Up to this part of its radius a body may be grown for a search of several configurations.
-constexpr float kLargestGrowth = 0.25F;
+constexpr float kLargestInflation = 0.25F;
 constexpr float kLooser = 1.0F + 0x1p-18F;
 // A body is grown by this many times what is needed, twice as many after each search that found
 // nothing; that is tried from kProbeFrom on, so not at once where something is near.
@@ -73,7 +73,7 @@ class BlockPair {
     const int middle = __builtin_ctz(upper);
     const KernelReference at = reference(middle);
     const float needed = displacement(at, live);
-    if (needed > kLargestGrowth * body_.radius) {
+    if (needed > kLargestInflation * body_.radius) {
       for (; live != 0; live &= live - 1) settle_alone(__builtin_ctz(live));
       return;
     }
@@ -84,24 +84,24 @@ class BlockPair {
   }
 
   // Whether the body is apart when grown by more than needed; then the next blocks need no search.
-  bool is_apart(const KernelReference& at, float growth) {
+  bool is_apart(const KernelReference& at, float inflation) {
     AnyLeaves any;
-    if (search(at, growth, any)) {
+    if (search(at, inflation, any)) {
       memory_.ambition = kModest;
       return false;
     }
-    remember(at, growth);
+    remember(at, inflation);
     return true;
   }
 
   // Settles the lanes from one search; false if there is not room enough for it.
-  bool search_all(const KernelReference& from, float growth, unsigned live) {
-    const Placement at = placement(from, growth);
+  bool search_all(const KernelReference& from, float inflation, unsigned live) {
+    const Placement at = placement(from, inflation);
     LeafSearch search(body_, obstacle_, at, scratch_.queues);
     if (!search.run()) return false;
     const std::int32_t found = search.found().count();
     if (found == 0) {
-      remember(from, growth);
+      remember(from, inflation);
       return true;
     }
     memory_.ambition = kModest;
@@ -118,7 +118,7 @@ class BlockPair {
   // Lanes in which no point of the body has moved by more than what it was grown by where it was
   // apart: (a + b)^2 <= 2 (a^2 + b^2) spares the roots.
   SPHERULE_INLINE unsigned remembered_free() const {
-    const float allowed = memory_.growth - 6.0F * body_.lane_error;
+    const float allowed = memory_.inflation - 6.0F * body_.lane_error;
     if (allowed <= 0.0F) return 0;
     const Floats moved = squared_distance(roots_, memory_.pose.center);
     const Floats turned = squared_turn(memory_.pose);
@@ -126,16 +126,16 @@ class BlockPair {
     return at_most(moved + half * turned, 0.5F * allowed * allowed * (2.0F - kLooser));
   }
 
-  void remember(const KernelReference& pose, float growth) {
+  void remember(const KernelReference& pose, float inflation) {
     memory_.pose = pose;
-    memory_.growth = growth;
+    memory_.inflation = inflation;
     if (memory_.ambition < kMostAmbition) memory_.ambition *= 2.0F;
   }
 
-  SPHERULE_INLINE static Placement placement(const KernelReference& from, float growth) {
+  SPHERULE_INLINE static Placement placement(const KernelReference& from, float inflation) {
     Placement at;
     __builtin_memcpy(at.columns, from.columns, sizeof at.columns);
-    at.growth = growth;
+    at.inflation = inflation;
     return at;
   }
 
@@ -175,10 +175,11 @@ class BlockPair {
   }
 
   template <class Leaves>
-  bool search(const KernelReference& from, float growth, Leaves& leaves) const {
-    const Placement at = placement(from, growth);
+  bool search(const KernelReference& from, float inflation, Leaves& leaves) const {
+    const Placement at = placement(from, inflation);
     PairSearch<Leaves> pair(body_, obstacle_, at, scratch_.tasks, leaves);
-    return pair.run({from.center[0], from.center[1], from.center[2], body_.radius + growth, 0, 0});
+    return pair.run(
+        {from.center[0], from.center[1], from.center[2], body_.radius + inflation, 0, 0});
   }
 
   void settle_alone(int lane) {

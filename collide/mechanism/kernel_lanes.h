@@ -151,8 +151,8 @@ SPHERULE_INLINE unsigned in_range(const double* exact, float* rounded) {
 #else
   unsigned usual = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
-    const bool is_usual = __builtin_fabs(exact[lane]) <= kLargestKernelVariable;
-    usual |= (is_usual ? 1U : 0U) << lane;
+    const bool in_filter_range = __builtin_fabs(exact[lane]) <= kLargestKernelVariable;
+    usual |= (in_filter_range ? 1U : 0U) << lane;
   }
   return usual;
 #endif

@@ -43,7 +43,7 @@ SPHERULE_INLINE unsigned overlaps(const Balls& balls, float x, float y, float z,
 // are grown there.
 struct alignas(16) Placement {
   float columns[4][4];
-  float growth = 0.0F;
+  float inflation = 0.0F;
 };
 
 SPHERULE_INLINE Balls placed(const PackedNode& node, const Placement& at) {
@@ -51,7 +51,7 @@ SPHERULE_INLINE Balls placed(const PackedNode& node, const Placement& at) {
   const Balls in = balls_of(node);
   return {x[0] * in.x + y[0] * in.y + z[0] * in.z + t[0],
           x[1] * in.x + y[1] * in.y + z[1] * in.z + t[1],
-          x[2] * in.x + y[2] * in.y + z[2] * in.z + t[2], in.radius + at.growth};
+          x[2] * in.x + y[2] * in.y + z[2] * in.z + t[2], in.radius + at.inflation};
 }
 
 // The search from two balls around all that overlap. `Leaves` is told of pairs of leaves that are

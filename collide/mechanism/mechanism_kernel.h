@@ -79,7 +79,7 @@ struct alignas(16) KernelReference {
 struct KernelMemory {
   KernelLeaves contact{};  // the last leaves that touched
   KernelReference pose{};  // there the body, grown by so much, is apart from the obstacle
-  float growth = 0.0F;
+  float inflation = 0.0F;
   float ambition = 0.5F;  // by how many times as much as needed to grow the body
 };
 
@@ -179,7 +179,7 @@ struct Kernels {
   // What there is between the pair's sides with the body grown, as placed: nothing; two leaves
   // that touch as they are, ungrown, for sure or confirmed; or neither. Ends at the first two
   // leaves that are not apart.
-  KernelFinding (*look)(const KernelProblem& problem, KernelPair pair, float growth,
+  KernelFinding (*look)(const KernelProblem& problem, KernelPair pair, float inflation,
                         const KernelScratch& scratch, ConfirmContact confirm, void* context);
 };
 

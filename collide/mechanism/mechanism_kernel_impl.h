@@ -76,13 +76,14 @@ KernelBlockAnswer check_block(const KernelProblem& problem, const double* const*
 }
 
 // Ends a search for a grown body at the first leaves.
-class GrownContact {
+class InflatedContact {
  public:
-  GrownContact(const Contact& contact, float growth) : contact_(contact), growth_(growth) {}
+  InflatedContact(const Contact& contact, float inflation)
+      : contact_(contact), inflation_(inflation) {}
 
   SPHERULE_INLINE bool operator()(std::int32_t body_sphere, std::int32_t obstacle_sphere,
                                   float squared_distance, float limit) {
-    const float as_they_are = (limit - growth_) - limit * kRounding;
+    const float as_they_are = (limit - inflation_) - limit * kRounding;
     touch_ = as_they_are > 0.0F && squared_distance <= as_they_are * as_they_are &&
              contact_(body_sphere, obstacle_sphere, squared_distance, as_they_are);
     return true;
@@ -95,21 +96,22 @@ class GrownContact {
   static constexpr float kRounding = 0x1p-20F;
 
   Contact contact_;
-  float growth_;
+  float inflation_;
   bool touch_ = false;
 };
 
-KernelFinding look(const KernelProblem& problem, KernelPair pair, float growth,
+KernelFinding look(const KernelProblem& problem, KernelPair pair, float inflation,
                    const KernelScratch& scratch, ConfirmContact confirm, void* context) {
   const KernelBody& body = problem.bodies[pair.body];
   const KernelObstacle& obstacle = problem.obstacles[pair.obstacle];
   KernelTask root = scratch.roots[pair.body];
-  root.radius += growth;
+  root.radius += inflation;
   if (are_apart(root, obstacle)) return KernelFinding::kApart;
   Placement at = in_single_precision(scratch.poses[body.frame]);
-  at.growth = growth;
-  GrownContact leaves(Contact(pair, 0, body.margin + obstacle.margin, confirm, context), growth);
-  if (!PairSearch<GrownContact>(body, obstacle, at, scratch.tasks, leaves).run(root)) {
+  at.inflation = inflation;
+  InflatedContact leaves(Contact(pair, 0, body.margin + obstacle.margin, confirm, context),
+                         inflation);
+  if (!PairSearch<InflatedContact>(body, obstacle, at, scratch.tasks, leaves).run(root)) {
     return KernelFinding::kApart;
   }
   return leaves.touch() ? KernelFinding::kTouch : KernelFinding::kNear;

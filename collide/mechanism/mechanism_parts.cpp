@@ -85,7 +85,7 @@ internal::KernelBody kernel_body(const PackedTree& tree, int frame, double reach
            static_cast<float>(center.z())},
           static_cast<float>(radius),
           frame,
-          internal::rounded_up_to_single(3.0 * tree.largest_growth()),
+          internal::rounded_up_to_single(3.0 * tree.largest_inflation()),
           internal::rounded_up_to_single(internal::kLaneErrorPerFrame * links * reach)};
 }
 
@@ -96,7 +96,7 @@ internal::KernelObstacle kernel_obstacle(const PackedTree& tree) {
           {static_cast<float>(center.x()), static_cast<float>(center.y()),
            static_cast<float>(center.z())},
           static_cast<float>(radius),
-          internal::rounded_up_to_single(3.0 * tree.largest_growth())};
+          internal::rounded_up_to_single(3.0 * tree.largest_inflation())};
 }
 
 // Tasks that wait at most: every step takes one and leaves at most 64, a node of which lies a level
@@ -111,7 +111,7 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
                                std::span<const MechanismBody> bodies,
                                std::span<const MechanismObstacle> obstacles,
                                std::span<const MechanismPair> pairs, double pose_error,
-                               InstructionSet instructions, bool asks_always) {
+                               InstructionSet instructions, bool always_exact) {
   check_input(frames, bodies, obstacles, pairs, pose_error);
   const internal::Kernels& kernels = internal::kernels_for(instructions);
   auto parts = std::make_unique<Parts>(internal::JoinedScene(bodies, obstacles, pairs));
@@ -153,7 +153,7 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
         body_trees[i], (kPerLength + parts->tilt[i]) * reach[i] + kPerScene * bound + pose_error);
     body_depth = std::max(body_depth, tree.depth());
     parts->bodies.push_back(kernel_body(tree, frame, reach[i], links));
-    if (asks_always) parts->bodies.back().margin = std::numeric_limits<float>::infinity();
+    if (always_exact) parts->bodies.back().margin = std::numeric_limits<float>::infinity();
   }
   for (const SphereTree& obstacle : obstacle_trees) {
     const PackedTree& tree = parts->trees.emplace_back(obstacle, kPerScene * bound);

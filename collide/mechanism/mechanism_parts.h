@@ -3,9 +3,9 @@
 
 // What a MechanismCheck and its scratch consist of.
 
+#include "collide/mechanism/coherence_cache.h"
 #include "collide/mechanism/joined_scene.h"
 #include "collide/mechanism/mechanism_kernel.h"
-#include "collide/mechanism/motion_memory.h"
 #include "collide/mechanism_check.h"
 #include "collide/search/packed_tree.h"
 
@@ -52,7 +52,7 @@ struct MechanismCheck::Scratch::Memory {
   std::uint64_t generation = 0;
   std::vector<internal::KernelMemory> memories;
   internal::KernelScratch view = {};
-  std::optional<internal::MotionMemory> motion;
+  std::optional<internal::CoherenceCache> motion;
 };
 
 // Asks for the spheres of joined sets as the caller knows them.

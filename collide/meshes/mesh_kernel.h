@@ -74,7 +74,7 @@ struct MeshBalls {
   std::int32_t node_count;
   double rotation[9];  // by rows
   double translation[3];
-  float growth;
+  float inflation;
   MeshTask root;  // the ball around all, there and grown
 };
 

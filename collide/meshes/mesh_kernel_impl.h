@@ -114,7 +114,7 @@ class TreeSide {
         __builtin_convertvector((r[0] * x + r[1] * y) + (r[2] * z + t[0]), Float8),
         __builtin_convertvector((r[3] * x + r[4] * y) + (r[5] * z + t[1]), Float8),
         __builtin_convertvector((r[6] * x + r[7] * y) + (r[8] * z + t[2]), Float8),
-        __builtin_convertvector(radius, Float8) + balls_.growth};
+        __builtin_convertvector(radius, Float8) + balls_.inflation};
     hold(placed, to.balls);
     for (std::int32_t i = 0; i < count; ++i) {
       const std::int32_t child = first + i;

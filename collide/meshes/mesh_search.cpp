@@ -20,7 +20,7 @@ namespace {
 // covers it, and the absolute term what underflows (packed_tree.h).
 // A clearance is part of every radius and of T, rounded up once; the margin is that of the growth
 // without it.
-constexpr double kGrowth = 48.0 * kFloatRoundoff;
+constexpr double kInflation = 48.0 * kFloatRoundoff;
 constexpr double kAbsolute = 0x1p-60;
 static_assert(MeshNode::kWidth == 8);
 
@@ -62,8 +62,8 @@ bool collides_by(MeshKernel kernel, const SphereTree& a, const Pose& world_from_
   }
   const SphereTreeData& data = a.data();
   const FrameChange to_mesh = pose.b_from_a();
-  const double rounding = kGrowth * (pose.node_size() + clearance) + kAbsolute;
-  const float growth = rounded_up_to_single(rounding + clearance);
+  const double rounding = kInflation * (pose.node_size() + clearance) + kAbsolute;
+  const float inflation = rounded_up_to_single(rounding + clearance);
   MeshBalls balls = {.x = data.x.data(),
                      .y = data.y.data(),
                      .z = data.z.data(),
@@ -73,14 +73,14 @@ bool collides_by(MeshKernel kernel, const SphereTree& a, const Pose& world_from_
                      .node_count = static_cast<std::int32_t>(a.node_count()),
                      .rotation = {},
                      .translation = {},
-                     .growth = growth,
+                     .inflation = inflation,
                      .root = {}};
   std::copy_n(to_mesh.r, 9, balls.rotation);
   std::copy_n(to_mesh.t, 3, balls.translation);
   const Eigen::Vector3d center = to_mesh(a.ball(0).center);
   balls.root = {
       static_cast<float>(center.x()),        static_cast<float>(center.y()),
-      static_cast<float>(center.z()),        static_cast<float>(a.ball(0).radius) + growth,
+      static_cast<float>(center.z()),        static_cast<float>(a.ball(0).radius) + inflation,
       a.is_leaf(0) ? ~a.sphere_index(0) : 0, 0};
   MeshTasks tasks;  // 24 KiB that are not touched before they are needed
   Question question{a, b, pose, clearance};

@@ -50,7 +50,7 @@ struct Look {
 template <class Rate>
 class FreeTime {
  public:
-  static constexpr bool kWantsGaps = false;
+  static constexpr bool kNeedsGaps = false;
 
   // A gap counts only for what it exceeds clearance + `reserve` by. As soon as the time falls below
   // `useful` it is given up, and the traversal goes on only to find a contact.

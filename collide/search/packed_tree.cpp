@@ -60,7 +60,7 @@ PackedTree::PackedTree(const SphereTree& tree, const CullingSpheres& culling, co
   depth_ = std::max(1, tree.depth());
   for (const Sphere& sphere : tree.spheres()) {
     const Sphere leaf = packed(placed(sphere), inflation);
-    largest_growth_ = std::max(largest_growth_, sub_up(leaf.radius, sphere.radius));
+    largest_inflation_ = std::max(largest_inflation_, sub_up(leaf.radius, sphere.radius));
     leaves_.push_back({{static_cast<float>(leaf.center.x()), static_cast<float>(leaf.center.y()),
                         static_cast<float>(leaf.center.z())},
                        static_cast<float>(leaf.radius)});

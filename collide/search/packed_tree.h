@@ -52,14 +52,14 @@ class PackedTree {
   // Nodes on the longest way from the root to a leaf, at least one.
   int depth() const { return depth_; }
   // No more than this has been added to the radius of any leaf.
-  double largest_growth() const { return largest_growth_; }
+  double largest_inflation() const { return largest_inflation_; }
 
  private:
   std::vector<PackedNode> nodes_;
   std::vector<PackedBall> leaves_;
   Sphere root_;
   int depth_ = 0;
-  double largest_growth_ = 0.0;
+  double largest_inflation_ = 0.0;
 };
 
 }  // namespace spherule::internal

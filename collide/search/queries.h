@@ -20,7 +20,7 @@ namespace spherule::internal {
 template <class LeafTest>
 class FindAny {
  public:
-  static constexpr bool kWantsGaps = false;
+  static constexpr bool kNeedsGaps = false;
 
   explicit FindAny(const LeafTest& test) : test_(test) {}
 
@@ -40,7 +40,7 @@ class FindAny {
 template <class LeafTest>
 class CollectPairs {
  public:
-  static constexpr bool kWantsGaps = true;
+  static constexpr bool kNeedsGaps = true;
 
   CollectPairs(const LeafTest& test, const SphereTree& a, const SphereTree& b,
                const CollisionRequest& request, CollisionResult& result)

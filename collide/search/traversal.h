@@ -29,7 +29,7 @@ inline std::size_t traversal_stack_bound(const SphereTree& a, const SphereTree& 
 inline constexpr std::size_t kInlineStack = 2304;
 
 // A policy says what to do with what the traversal finds:
-//   static constexpr bool kWantsGaps   whether pruned(gap) is called for every pruned pair, gap
+//   static constexpr bool kNeedsGaps   whether pruned(gap) is called for every pruned pair, gap
 //                                      being the distance of the two balls, within gap_error();
 //   bool afford(opened, leaf_pairs)    before the children are tested: false ends the traversal;
 //                                      leaf_pairs() counts the pairs of leaves among them;
@@ -91,7 +91,7 @@ bool traverse_with(NodePair* stack, [[maybe_unused]] std::size_t capacity, const
     }
     const BallArrays& children = trees.balls(opened.side);
     std::uint32_t mask = overlap_mask(children, opened.first, opened.count, padded);
-    if constexpr (Policy::kWantsGaps) {
+    if constexpr (Policy::kNeedsGaps) {
       double gaps[SphereTree::kMaxBranching];
       ball_gaps(children, opened.first, opened.count, opened.ball, gaps);
       for (std::int32_t i = 0; i < opened.count; ++i) {

@@ -2,7 +2,7 @@
 #include "collide/solids/mesh_inside.h"
 
 #include "mesh/geometry/ray.h"
-#include "mesh/shells/turned_sets.h"
+#include "mesh/shells/oriented_disjoint_sets.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -135,7 +135,7 @@ std::optional<bool> winds(const MeshTree& mesh, const std::vector<TriangleRole>&
 
 MeshInside::MeshInside(const TriangleMesh& mesh) {
   const std::vector<std::array<int, 3>> triangles = corners_by_position(mesh);
-  TurnedSets components(mesh.vertices.size());
+  OrientedDisjointSets components(mesh.vertices.size());
   for (const std::array<int, 3>& t : triangles) {
     components.join(t[0], t[1]);
     components.join(t[1], t[2]);

@@ -68,8 +68,8 @@ std::vector<Sphere> spheres_around(const SolidMesh& solid) {
   double sum = 0.0;
   for (const Sphere& ball : solid.mesh().tree().spheres()) {
     sum += ball.radius;
-    spheres.push_back(
-        {ball.center, solid.growth() > 0.0 ? add_up(ball.radius, solid.growth()) : ball.radius});
+    spheres.push_back({ball.center, solid.inflation() > 0.0 ? add_up(ball.radius, solid.inflation())
+                                                            : ball.radius});
   }
   if (!solid.has_inside()) return spheres;
   const Eigen::AlignedBox3d& box = solid.inside().box();

@@ -78,7 +78,7 @@ TriangleContact triangle_contact(const Triangle& a, const Triangle& b, double pa
   if (any_axis(edges_a, edges_b, apart_along)) return TriangleContact::kApart;
   const double length = std::max(longest(edges_a), longest(edges_b));
   if (widest < -least_overlap(length, scene_size)) return TriangleContact::kTouch;
-  return specially_apart(a, b, pad) ? TriangleContact::kApart : TriangleContact::kDoubt;
+  return specially_apart(a, b, pad) ? TriangleContact::kApart : TriangleContact::kUncertain;
 }
 
 double triangle_depth(const Triangle& a, const Triangle& b, double scene_size) {

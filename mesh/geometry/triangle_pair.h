@@ -24,9 +24,9 @@ inline double gap_along(const Eigen::Vector3d& axis, const Triangle& a, const Tr
 }
 
 enum class TriangleContact {
-  kApart,  // proved: no point in common
-  kTouch,  // proved: a point in common
-  kDoubt,  // neither
+  kApart,      // proved: no point in common
+  kTouch,      // proved: a point in common
+  kUncertain,  // neither
 };
 
 // Contact of two placed triangles, which may be degenerate (needles, segments, points), both in one

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/shells/mesh_shells.h"
 
-#include "mesh/shells/turned_sets.h"
+#include "mesh/shells/oriented_disjoint_sets.h"
 
 #include <Eigen/Geometry>
 
@@ -87,7 +87,7 @@ class ShellFinder {
       TriangleRole& role = result.roles[i];
       if (!is_open_shell_[shell] && remains_[shell]) role.shell = number(of_shell[shell]);
       if (is_plain(shell) || !is_first_[i]) continue;
-      const TurnedSets::Place place = patches_.find(triangle);
+      const OrientedDisjointSets::Place place = patches_.find(triangle);
       const auto patch = static_cast<std::size_t>(place.root);
       role.turn = place.turn;
       if (!is_open_patch_[patch]) role.patch = number(of_patch[patch]);
@@ -188,7 +188,7 @@ class ShellFinder {
   void weigh_patches(std::vector<int>& balance) {
     const auto for_each_patch = [&](const auto& function) {
       for (const EdgeUse& use : firsts_) {
-        const TurnedSets::Place place = patches_.find(use.triangle);
+        const OrientedDisjointSets::Place place = patches_.find(use.triangle);
         function(static_cast<std::size_t>(place.root), use.turn * place.turn);
       }
     };
@@ -238,8 +238,8 @@ class ShellFinder {
   std::vector<EdgeUse> edges_;
   std::vector<EdgeUse> firsts_;                     // of one edge
   std::vector<std::pair<double, EdgeUse>> angles_;  // of these
-  TurnedSets shells_, patches_;                     // of triangles
-  TurnedSets sides_;                                // of them
+  OrientedDisjointSets shells_, patches_;           // of triangles
+  OrientedDisjointSets sides_;                      // of them
   std::vector<char> is_first_;  // of a triangle: among those with the same corners
   // Of a shell, by the triangle that stands for it: whether triangles are turned both ways, and
   // whether some are left if those are taken away in pairs; whether more than two meet at an edge.

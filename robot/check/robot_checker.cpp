@@ -98,8 +98,8 @@ void RobotChecker::require_own(const Scratch& scratch) const {
   }
 }
 
-// Numbers that are not finite are refused where that costs nothing: by StandingTrees, and where
-// BodyPairs::is_usual() has been asked.
+// Numbers that are not finite are refused where that costs nothing: by StaticTrees, and where
+// BodyPairs::in_filter_range() has been asked.
 bool RobotChecker::check_config(std::span<const double> configuration, Scratch& scratch) const {
   require_own(scratch);
   require_size(parts_->robot, configuration);
@@ -115,7 +115,7 @@ bool RobotChecker::is_free_of_itself(std::span<const double> configuration,
                                      Scratch& scratch) const {
   if (parts_->pairs.tested() == 0) return true;
   Scratch::Memory& memory = *scratch.memory_;
-  if (parts_->pairs.is_usual(configuration)) {
+  if (parts_->pairs.in_filter_range(configuration)) {
     return !parts_->lanes.touches(configuration, memory.lanes, memory.pairs);
   }
   require_finite(configuration);
@@ -160,7 +160,7 @@ void RobotChecker::check_configs(std::span<const double> configurations, Scratch
     free[i] = 0;
     if (collides) continue;
     if (parts_->enforces_limits && !is_within_limits(parts_->robot, configuration(i))) continue;
-    if (!parts_->pairs.is_usual(configuration(i))) {
+    if (!parts_->pairs.in_filter_range(configuration(i))) {
       free[i] = is_free_of_itself(configuration(i), scratch) ? 1 : 0;
       continue;
     }
@@ -189,7 +189,7 @@ EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<cons
   require_own(scratch);
   for (const std::span<const double> end : {from, to}) {
     require_size(parts_->robot, end);
-    if (!parts_->pairs.is_usual(end)) {
+    if (!parts_->pairs.in_filter_range(end)) {
       require_finite(end);
       throw Error("edge", "a joint's position is beyond " + std::to_string(kLargestPosition) +
                               " in magnitude");
@@ -217,7 +217,7 @@ EdgeResult RobotChecker::check_within_limits(std::span<const double> from,
   // Against standing trees alone, what the last motions have shown often decides the next one.
   if (end == 1.0 && request.max_configurations > 0 && parts_->standing &&
       parts_->pairs.tested() == 0) {
-    using Finding = internal::StandingTrees::AlongFinding;
+    using Finding = internal::StaticTrees::AlongFinding;
     switch (parts_->standing->look_along(from, to, !request.first, *memory.standing)) {
       case Finding::kFree:
         return {.verdict = Verdict::kFree, .free_until = 1.0, .configurations = 1};

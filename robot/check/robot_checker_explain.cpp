@@ -112,7 +112,7 @@ RobotClearance RobotChecker::clearance(std::span<const double> configuration,
     result.second = other_of(i, is_tree ? found.nearest.b : -1);
   }
   if (std::isfinite(result.lower)) {
-    result.lower = pairs.is_usual(configuration)
+    result.lower = pairs.in_filter_range(configuration)
                        ? std::max(0.0, sub_down(result.lower, 2.0 * pairs.pose_error()))
                        : 0.0;
   }

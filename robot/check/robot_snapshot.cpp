@@ -18,7 +18,7 @@ namespace {
 
 using Tree = std::shared_ptr<const SphereTree>;
 
-std::vector<Sphere> grown(std::span<const Sphere> spheres, double padding) {
+std::vector<Sphere> inflated(std::span<const Sphere> spheres, double padding) {
   std::vector<Sphere> result(spheres.begin(), spheres.end());
   if (padding == 0.0) return result;
   for (Sphere& sphere : result) sphere.radius = add_up(sphere.radius, padding);
@@ -74,7 +74,7 @@ class RobotScene::Snapshot {
     std::vector<RobotChecker::Parts::Named> names;
     for (const Body& body : bodies_) names.push_back({body.kind, body.name});
     const std::size_t tested = pairs_.size();
-    pairs_.insert(pairs_.end(), standing_pairs_.begin(), standing_pairs_.end());
+    pairs_.insert(pairs_.end(), static_pairs_.begin(), static_pairs_.end());
     return std::make_shared<const RobotChecker::Parts>(
         scene_.robot_, options_,
         internal::BodyPairs(carrier_, scene_.world_from_root_, std::move(pieces_),
@@ -141,12 +141,12 @@ class RobotScene::Snapshot {
         piece.spheres.push_back(static_cast<std::int32_t>(i));
       }
       if (spheres.empty()) return -1;
-      piece.tree = std::make_shared<const SphereTree>(build_tree(grown(spheres, padding)));
+      piece.tree = std::make_shared<const SphereTree>(build_tree(inflated(spheres, padding)));
     } else {
       piece.mesh = mesh_of(*tree);
       if (padding > 0.0) {
         piece.tree =
-            std::make_shared<const SphereTree>(refit(*tree, grown(tree->spheres(), padding)));
+            std::make_shared<const SphereTree>(refit(*tree, inflated(tree->spheres(), padding)));
       }
     }
     pieces_.push_back(std::move(piece));
@@ -161,8 +161,8 @@ class RobotScene::Snapshot {
     for (const int piece : pieces_of(
              body, *left_out,
              internal::padding_sum(scene_.padding_of(name), scene_.padding_between(name, other)))) {
-      const bool is_standing = std::holds_alternative<Tree>(shapes_[obstacle].shape);
-      (is_standing ? standing_pairs_ : pairs_).push_back({piece, static_cast<int>(obstacle), true});
+      const bool is_static = std::holds_alternative<Tree>(shapes_[obstacle].shape);
+      (is_static ? static_pairs_ : pairs_).push_back({piece, static_cast<int>(obstacle), true});
     }
   }
 
@@ -219,7 +219,7 @@ class RobotScene::Snapshot {
   std::map<std::tuple<std::size_t, std::size_t, Regions, double>, int> known_;
   std::vector<internal::CheckedPiece> pieces_;
   std::vector<internal::CheckedPair> pairs_;
-  std::vector<internal::CheckedPair> standing_pairs_;
+  std::vector<internal::CheckedPair> static_pairs_;
 };
 
 RobotChecker RobotScene::snapshot(const RobotCheckerOptions& options) const {

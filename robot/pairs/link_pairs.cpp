@@ -237,7 +237,7 @@ std::uint64_t bodies_fingerprint(std::span<const LinkBody> bodies) {
   for (const LinkBody& body : bodies) {
     bytes.add(body.link);
     if (body.mesh != nullptr) {
-      bytes.add(body.mesh->growth());
+      bytes.add(body.mesh->inflation());
       const MeshTree& mesh = body.mesh->mesh();
       const auto count = static_cast<std::int32_t>(mesh.tree().spheres().size());
       bytes.add(static_cast<int>(count));

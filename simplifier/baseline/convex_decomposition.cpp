@@ -112,14 +112,14 @@ void adopt(const TriangleMesh& mesh, std::vector<std::size_t>& part) {
 
 // Points flat as they are, with a small octahedron about each.
 std::vector<Vector3d> plate(const std::vector<Vector3d>& points, double half_thickness) {
-  std::vector<Vector3d> grown;
+  std::vector<Vector3d> inflated;
   for (const Vector3d& p : points) {
     for (int axis = 0; axis < 3; ++axis) {
-      grown.push_back(p + half_thickness * Vector3d::Unit(axis));
-      grown.push_back(p - half_thickness * Vector3d::Unit(axis));
+      inflated.push_back(p + half_thickness * Vector3d::Unit(axis));
+      inflated.push_back(p - half_thickness * Vector3d::Unit(axis));
     }
   }
-  return grown;
+  return inflated;
 }
 
 }  // namespace

@@ -44,11 +44,11 @@ SphereLevels hubbard_spheres(const TriangleMesh& mesh, const HubbardOptions& opt
   std::iota(points.begin(), points.end(), 0U);
 
   // No medial sphere grows by more than the radius that its share of the surface has.
-  const double max_growth = std::sqrt(
+  const double max_inflation = std::sqrt(
       internal::total_area(mesh) / (std::numbers::pi * static_cast<double>(options.counts.back())));
   const std::vector<std::size_t> descending(options.counts.rbegin(), options.counts.rend());
   auto merged =
-      internal::merge_levels({probe, samples, points, axis.spheres(), max_growth}, descending);
+      internal::merge_levels({probe, samples, points, axis.spheres(), max_inflation}, descending);
   std::reverse(merged.begin(), merged.end());
   SphereLevels result;
   for (const std::vector<internal::FittedSphere>& level : merged) {

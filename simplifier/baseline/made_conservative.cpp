@@ -17,9 +17,9 @@ ConservativeSpheres made_conservative(const TriangleMesh& mesh, std::span<const 
   if (result.certificate.covered) return result;
   // A piece of the proof's finest size lies in one ball only if it has room to spare there.
   const double piece = options.resolution * internal::box_of(mesh).diagonal().norm();
-  result.growth = add_up(result.certificate.uncovered_depth.upper, piece);
+  result.inflation = add_up(result.certificate.uncovered_depth.upper, piece);
   for (Sphere& sphere : result.spheres) {
-    sphere.radius = add_up(sphere.radius, result.growth);
+    sphere.radius = add_up(sphere.radius, result.inflation);
     if (!is_usable(sphere)) throw Error("spheres", "too far from the mesh to be grown over it");
   }
   result.certificate = certify(mesh, result.spheres, options);

@@ -13,7 +13,7 @@ namespace spherule {
 // A set of balls grown until it covers, and what is proved about it.
 struct ConservativeSpheres {
   std::vector<Sphere> spheres;  // the same centres in the same order
-  double growth = 0.0;          // of every radius; 0 if the balls cover as they are
+  double inflation = 0.0;       // of every radius; 0 if the balls cover as they are
   Certificate certificate;      // of the grown balls, against |M|
 };
 

@@ -66,8 +66,8 @@ struct Sampled {
     std::iota(all_points.begin(), all_points.end(), 0U);
   }
 
-  ReductionTask whole(double max_growth) const {
-    return {probe, samples, all_points, axis.spheres(), max_growth};
+  ReductionTask whole(double max_inflation) const {
+    return {probe, samples, all_points, axis.spheres(), max_inflation};
   }
   // About how far `count` balls protrude: no more than the radius of their shares of the surface.
   double share_radius(std::size_t count) const {

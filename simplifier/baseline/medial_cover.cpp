@@ -49,8 +49,8 @@ std::vector<Sphere> balls_of(const std::vector<FittedSphere>& fitted) {
   return balls;
 }
 
-std::vector<Sphere> grown(std::vector<Sphere> balls, double growth) {
-  for (Sphere& ball : balls) ball.radius = add_up(ball.radius, growth);
+std::vector<Sphere> inflated(std::vector<Sphere> balls, double inflation) {
+  for (Sphere& ball : balls) ball.radius = add_up(ball.radius, inflation);
   return balls;
 }
 
@@ -112,7 +112,7 @@ class MedialCover {
       anew = samples_.size();
       const double room =
           (1.0 - kReserve) * options_.max_error - internal::largest_protrusion(fitted);
-      if (room < 0.0 || !learn_leaks(grown(balls_of(fitted), room))) break;
+      if (room < 0.0 || !learn_leaks(inflated(balls_of(fitted), room))) break;
     }
     return finished(balls_of(fitted));
   }
@@ -148,7 +148,7 @@ class MedialCover {
     Trial trial;
     internal::inflate(trial.cover, balls, remaining.upper, options_);
     trial.protrusion = internal::greatest(internal::protrusions_over_solid(
-        solid_.clearance, solid_.distance, grown(balls, trial.cover.inflation)));
+        solid_.clearance, solid_.distance, inflated(balls, trial.cover.inflation)));
     return trial;
   }
 

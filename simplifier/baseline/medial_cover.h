@@ -7,9 +7,9 @@
 
 namespace spherule {
 
-// Conservative: on return the union of the balls contains S. A second phase for simplify()
-// (SecondPhase) in the place of cover(): the adaptive medial-axis approximation (AMAA, Bradshaw and
-// O'Sullivan 2004; see medial_axis.h) of the simplified solid S, whose clearances are exact,
+// Conservative: on return the union of the balls contains S. A stage 2 method for simplify()
+// (Stage2Method) in the place of cover(): the adaptive medial-axis approximation (AMAA, Bradshaw
+// and O'Sullivan 2004; see medial_axis.h) of the simplified solid S, whose clearances are exact,
 // instead of the mesh. Medial spheres of points on the boundary of S are merged, burst or expanded
 // to few that hold samples of S; what these leave open in between, a proof over cells of S finds,
 // and it becomes samples, too. Then every radius grows by the certified depth that is still

@@ -26,7 +26,7 @@ struct Candidate {
 
 // The largest ball first, ties in the order of the points.
 std::vector<Candidate> candidates_of(const std::vector<Vector3d>& points,
-                                     const internal::BallGrower& grow,
+                                     const internal::SphereInflater& grow,
                                      std::size_t& seeds_rejected) {
   std::vector<Candidate> candidates(points.size());
   std::atomic<std::size_t> rejected = 0;
@@ -61,8 +61,9 @@ SphereCover packing_cover(const TriangleMesh& mesh, const ExternalSpheres& exter
   if (options.progress) options.progress(-1.0, "growing balls");
   const internal::SimplifiedSolid solid(mesh, external, options, "packing");
   SphereCover result;
-  const std::vector<Candidate> candidates = candidates_of(
-      solid.samples(mesh), internal::BallGrower(solid.clearance, options), result.seeds_rejected);
+  const std::vector<Candidate> candidates =
+      candidates_of(solid.samples(mesh), internal::SphereInflater(solid.clearance, options),
+                    result.seeds_rejected);
   const double limit = internal::kLoopLimit * options.max_error;
   internal::BallSet balls;
   place(candidates, limit, false, balls);

@@ -9,7 +9,7 @@ namespace spherule {
 
 // Conservative: on return the union of the balls contains S and protrudes from it by at most E,
 // unless min_radius forces more, or external balls close S by a hair and no point of S is found
-// there (certify() says how far). A second phase for simplify() (SecondPhase) in the place of
+// there (certify() says how far). A stage 2 method for simplify() (Stage2Method) in the place of
 // cover(): sphere packing with the largest ball first, overlapping allowed. Candidates are the
 // balls inscribed in S that grow from points spread over it and its boundary. The next ball is the
 // largest whose point is still further than 0.97 E from the balls and whose centre none of them

@@ -273,7 +273,8 @@ void FloodGrid::connect(std::size_t cell) {
       if (passes(self, cells_[other], face)) {
         sets_.unite(element(cell), element(other));
       } else {
-        doubtful_.emplace_back(static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(other));
+        uncertain_.emplace_back(static_cast<std::uint32_t>(cell),
+                                static_cast<std::uint32_t>(other));
       }
     }
   });
@@ -284,7 +285,7 @@ void FloodGrid::reach_on() {
   std::vector<char> passes;
   do {
     tried.clear();
-    std::erase_if(doubtful_, [&](const Pair& pair) {
+    std::erase_if(uncertain_, [&](const Pair& pair) {
       const bool first = is_reached(pair.first);
       const bool second = is_reached(pair.second);
       if (first != second) tried.push_back(pair);

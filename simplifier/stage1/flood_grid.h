@@ -155,7 +155,7 @@ class FloodGrid {
   std::atomic<double> widest_bounds_ = 0.0;  // of distances: upper less lower
   // Of the outside, 0, and each cell, one further: between which the ball passes.
   DisjointSets sets_{1};
-  std::vector<Pair> doubtful_;
+  std::vector<Pair> uncertain_;
 };
 
 }  // namespace spherule::internal

@@ -54,44 +54,44 @@ class FloodGrid::Refinement {
   void begin(double share) {
     share_ = share;
     is_possible_.clear();
-    doubted_.clear();
-    doubt_from(0);
+    uncertain_.clear();
+    uncertain_from(0);
   }
 
   // The open leaves that are not held, in order. The leaves that are held count as outside: more
   // may be named so, never fewer. What is not open never will be, and is not possible from now on.
   const std::vector<std::size_t>& lost() {
-    std::vector<char> is_first(doubted_.size());
-    tbb::parallel_for(std::size_t{0}, doubted_.size(),
-                      [&](std::size_t k) { is_first[k] = meets_outside(doubted_[k]) ? 1 : 0; });
+    std::vector<char> is_first(uncertain_.size());
+    tbb::parallel_for(std::size_t{0}, uncertain_.size(),
+                      [&](std::size_t k) { is_first[k] = meets_outside(uncertain_[k]) ? 1 : 0; });
     std::vector<char> is_open = is_first;
     front_.clear();
     std::vector<std::size_t> waiting;
-    for (std::size_t k = 0; k < doubted_.size(); ++k) {
+    for (std::size_t k = 0; k < uncertain_.size(); ++k) {
       if (is_first[k] == 0) continue;
       waiting.push_back(k);
-      front_.push_back(doubted_[k]);
+      front_.push_back(uncertain_[k]);
     }
     while (!waiting.empty()) {
       const std::size_t k = waiting.back();
       waiting.pop_back();
-      for_each_touching(doubted_[k], true, [&](std::size_t other) {
-        const auto found = std::lower_bound(doubted_.begin(), doubted_.end(), other);
-        if (found == doubted_.end() || *found != other) return;
-        const auto at = static_cast<std::size_t>(found - doubted_.begin());
+      for_each_touching(uncertain_[k], true, [&](std::size_t other) {
+        const auto found = std::lower_bound(uncertain_.begin(), uncertain_.end(), other);
+        if (found == uncertain_.end() || *found != other) return;
+        const auto at = static_cast<std::size_t>(found - uncertain_.begin());
         if (std::exchange(is_open[at], 1) == 0) waiting.push_back(at);
       });
     }
     std::vector<std::size_t> open;
-    for (std::size_t k = 0; k < doubted_.size(); ++k) {
+    for (std::size_t k = 0; k < uncertain_.size(); ++k) {
       if (is_open[k] != 0) {
-        open.push_back(doubted_[k]);
+        open.push_back(uncertain_[k]);
       } else {
-        is_possible_[doubted_[k]] = 0;
+        is_possible_[uncertain_[k]] = 0;
       }
     }
-    doubted_ = std::move(open);
-    return doubted_;
+    uncertain_ = std::move(open);
+    return uncertain_;
   }
 
   // Halves those of the leaves that are lost that lie at the front of what is reached, and the
@@ -116,7 +116,7 @@ class FloodGrid::Refinement {
     for (const std::size_t i : chosen) grid_.halve(i);
     grid_.examine(begin, cells().size());
     grid_.sets_.grow(cells().size() + 1);
-    std::erase_if(grid_.doubtful_, [&](const Pair& pair) {
+    std::erase_if(grid_.uncertain_, [&](const Pair& pair) {
       return cells()[pair.first].state == State::kRefined ||
              cells()[pair.second].state == State::kRefined;
     });
@@ -124,7 +124,7 @@ class FloodGrid::Refinement {
     connect_finer(begin);
     grid_.reach_on();
     for (const std::size_t i : chosen) is_possible_[i] = 0;
-    doubt_from(begin);
+    uncertain_from(begin);
     return true;
   }
 
@@ -150,29 +150,30 @@ class FloodGrid::Refinement {
     for_each_touching(cell, true, [&](std::size_t other) {
       found = found || cells()[other].reached ||
               (is_possible_[other] != 0 &&
-               !std::binary_search(doubted_.begin(), doubted_.end(), other));
+               !std::binary_search(uncertain_.begin(), uncertain_.end(), other));
     });
     return found;
   }
 
   // Drops the doubted leaves that are none any more, and adds those from a cell on that are
   // possible and not held.
-  void doubt_from(std::size_t begin) {
+  void uncertain_from(std::size_t begin) {
     is_possible_.resize(cells().size());
     tbb::parallel_for(begin, cells().size(),
                       [&](std::size_t i) { is_possible_[i] = is_possible(cells()[i]) ? 1 : 0; });
-    std::vector<std::size_t> asked = std::move(doubted_);
+    std::vector<std::size_t> asked = std::move(uncertain_);
     for (std::size_t i = begin; i < cells().size(); ++i) {
       if (is_possible_[i] != 0) asked.push_back(i);
     }
-    std::vector<char> is_doubted(asked.size());
+    std::vector<char> is_uncertain(asked.size());
     tbb::parallel_for(std::size_t{0}, asked.size(), [&](std::size_t k) {
       const Entry& cell = cells()[asked[k]];
-      is_doubted[k] = cell.state != State::kRefined && !cell.reached && !is_held(asked[k]) ? 1 : 0;
+      is_uncertain[k] =
+          cell.state != State::kRefined && !cell.reached && !is_held(asked[k]) ? 1 : 0;
     });
-    doubted_.clear();
+    uncertain_.clear();
     for (std::size_t k = 0; k < asked.size(); ++k) {
-      if (is_doubted[k] != 0) doubted_.push_back(asked[k]);
+      if (is_uncertain[k] != 0) uncertain_.push_back(asked[k]);
     }
   }
 
@@ -209,7 +210,7 @@ class FloodGrid::Refinement {
   template <typename Visit>
   void for_each_at_the_front(Visit visit) const {
     const auto is_lost = [&](std::size_t i) {
-      return std::binary_search(doubted_.begin(), doubted_.end(), i);
+      return std::binary_search(uncertain_.begin(), uncertain_.end(), i);
     };
     const auto has_room = [](const Entry& other) { return other.state == State::kFree; };
     std::vector<char> seen(cells().size());
@@ -237,8 +238,8 @@ class FloodGrid::Refinement {
             cells()[other].level <= cells()[i].level) {
           return;
         }
-        grid_.doubtful_.emplace_back(static_cast<std::uint32_t>(i),
-                                     static_cast<std::uint32_t>(other));
+        grid_.uncertain_.emplace_back(static_cast<std::uint32_t>(i),
+                                      static_cast<std::uint32_t>(other));
       });
     }
   }
@@ -279,9 +280,9 @@ class FloodGrid::Refinement {
 
   FloodGrid& grid_;
   double share_ = 0.0;
-  std::vector<char> is_possible_;     // of each cell
-  std::vector<std::size_t> doubted_;  // possible and not held, in order
-  std::vector<std::size_t> front_;    // those of them that meet the outside
+  std::vector<char> is_possible_;       // of each cell
+  std::vector<std::size_t> uncertain_;  // possible and not held, in order
+  std::vector<std::size_t> front_;      // those of them that meet the outside
 };
 
 double FloodGrid::tighten(double share, const Progress& progress) {

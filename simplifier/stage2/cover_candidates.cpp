@@ -92,8 +92,8 @@ std::vector<Candidate> candidates_from(const Clearance& clearance,
       const AscentStep& next = path[k + 1];
       const double allowed = local.allowance(path[k].point, path[k].clearance);
       const double allowed_next = local.allowance(next.point, std::max(0.0, next.clearance));
-      const double growth = (next.clearance - path[k].clearance) + (allowed_next - allowed);
-      if (growth < kContained * (next.point - path[k].point).norm()) {
+      const double inflation = (next.clearance - path[k].clearance) + (allowed_next - allowed);
+      if (inflation < kContained * (next.point - path[k].point).norm()) {
         each[i].push_back({path[k].point, path[k].clearance});
       }
       if (allowed_next != allowed) {

@@ -307,11 +307,11 @@ void CoverFitter::add_rows(CoverProblem& problem, const Points& points,
     rows[i] = {p, surroundings.radius * error, disc, at.away};
   });
   problem.add_rows(rows);
-  Points grown_from = starts;
-  for (int pass = 0; pass < kPasses && !grown_from.empty(); ++pass) {
+  Points inflated_from = starts;
+  for (int pass = 0; pass < kPasses && !inflated_from.empty(); ++pass) {
     problem.add_candidates(
-        candidates_from(clearance_, grown_from, error_, options_.seed + seeds_used_++, local_));
-    grown_from = some_of(uncoverable(problem, first), kMaxStarts);
+        candidates_from(clearance_, inflated_from, error_, options_.seed + seeds_used_++, local_));
+    inflated_from = some_of(uncoverable(problem, first), kMaxStarts);
   }
   add_own(problem, first);
 }

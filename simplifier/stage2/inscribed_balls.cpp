@@ -19,22 +19,22 @@ constexpr double kNearOnTheWay = 0.5;
 
 }  // namespace
 
-BallGrower::BallGrower(const Clearance& clearance, const CoverOptions& options)
+SphereInflater::SphereInflater(const Clearance& clearance, const CoverOptions& options)
     : clearance_(clearance),
       max_error_(options.max_error),
       seed_radius_((options.min_internal_diameter > 0.0 ? options.min_internal_diameter
                                                         : options.max_error / 2.0) /
                    2.0) {}
 
-Sphere BallGrower::operator()(const Vector3d& seed, std::size_t& rejected) const {
+Sphere SphereInflater::operator()(const Vector3d& seed, std::size_t& rejected) const {
   if (clearance_(seed).lower < seed_radius_) ++rejected;
   const std::vector<AscentStep> path =
       ascend(clearance_, seed,
              {.first_step = std::max(seed_radius_, kLeastStep * max_error_),
               .least_step = std::min(seed_radius_, kLeastStep * max_error_),
               .tolerance = kErrorTolerance * max_error_});
-  const Sphere grown = ball_at(path.back().point);
-  if (is_near(grown, seed, kNearAtEnd)) return grown;
+  const Sphere inflated = ball_at(path.back().point);
+  if (is_near(inflated, seed, kNearAtEnd)) return inflated;
   // The gap grows along the way, from at most zero; take the last position that keeps it small.
   for (auto it = path.rbegin() + 1; it != path.rend(); ++it) {
     const Sphere ball = ball_at(it->point);
@@ -45,11 +45,11 @@ Sphere BallGrower::operator()(const Vector3d& seed, std::size_t& rejected) const
 
 // Of negative radius where the centre is outside of S. Inflated, such a ball would protrude by the
 // way to S on top.
-Sphere BallGrower::ball_at(const Vector3d& center) const {
+Sphere SphereInflater::ball_at(const Vector3d& center) const {
   return {center, clearance_(center).lower};
 }
 
-bool BallGrower::is_near(const Sphere& ball, const Vector3d& point, double share) const {
+bool SphereInflater::is_near(const Sphere& ball, const Vector3d& point, double share) const {
   return ball.radius >= 0.0 && (point - ball.center).norm() - ball.radius <= share * max_error_;
 }
 
@@ -58,7 +58,7 @@ void fill_gaps(const Clearance& clearance, const MeshDistance& distance,
                const BallNote& note) {
   const double limit = kLoopLimit * options.max_error;
   UncoveredSearch search(clearance, distance, limit, kErrorTolerance * options.max_error);
-  const BallGrower grow(clearance, options);
+  const SphereInflater grow(clearance, options);
   while (true) {
     const UncoveredSearch::Peak peak = search.next(balls);
     if (peak.upper <= limit) return;

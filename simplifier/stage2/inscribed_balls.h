@@ -30,10 +30,10 @@ inline constexpr double kErrorTolerance = 0.01;
 // The ball of S that grows from a seed and moves away from what it touches until it touches in two
 // or more places that stop it (medial_ascent.h); where it slides so far from a sharp tip that the
 // seed stays further than 0.9 E from it, the last position on its way that comes within 0.5 E.
-class BallGrower {
+class SphereInflater {
  public:
   // Options: E, and the diameter of the seeds.
-  BallGrower(const Clearance& clearance, const CoverOptions& options);
+  SphereInflater(const Clearance& clearance, const CoverOptions& options);
 
   // `rejected` counts seeds that collide; they are moved.
   Sphere operator()(const Eigen::Vector3d& seed, std::size_t& rejected) const;

@@ -37,7 +37,7 @@ TEST(FewestSpheres, AreThoseOfAnErrorThatNearlyReachesTheLimit) {
   const double limit = kThroughCorners + 0.15;
   const CountEntry found = fewest_spheres(make_cube(1.0), concentric(0.0), limit);
   EXPECT_EQ(found.method, "concentric");
-  EXPECT_EQ(found.growth, 0.0);
+  EXPECT_EQ(found.inflation, 0.0);
   EXPECT_LE(found.protrusion, limit);
   EXPECT_LE(found.setting, 0.15);
   EXPECT_GE(found.setting, 0.1);
@@ -50,7 +50,7 @@ TEST(FewestSpheres, GrowUntilTheyCover) {
   const CountEntry found = fewest_spheres(make_cube(1.0), concentric(-0.5), limit);
   EXPECT_GT(found.spheres, 0U);
   EXPECT_LE(found.protrusion, limit);
-  EXPECT_GE(found.growth, 0.5 - found.setting);
+  EXPECT_GE(found.inflation, 0.5 - found.setting);
 }
 
 TEST(FewestSpheres, AreNoneWhereNoSettingKeepsToTheLimit) {

@@ -20,7 +20,7 @@ void expect_clean(const ScaleReport& report) {
     EXPECT_LE(tally.worst_slack, 1.0) << tally.question;
     EXPECT_GT(tally.hits, 0u) << tally.question;
     EXPECT_GT(tally.near, tally.cases / 5) << tally.question;
-    EXPECT_LE(tally.in_doubt, tally.cases / 100) << tally.question;
+    EXPECT_LE(tally.uncertain, tally.cases / 100) << tally.question;
     if (tally.question != "sweep, thin walls") {
       EXPECT_GT(tally.free, tally.cases / 20) << tally.question;
     }

@@ -85,19 +85,19 @@ TEST_P(EachBaseline, ExitCodeFileAndAuditSayTheSame) {
   EXPECT_EQ(file.certificate->covered, raw.exit_code == 0);
   EXPECT_EQ(run({"audit", "bar.stl", "out.json"}).exit_code, raw.exit_code);
 
-  const Outcome grown = make(method, {"--conservative", "--json"});
-  EXPECT_EQ(grown.exit_code, 0) << grown.err;
+  const Outcome inflated = make(method, {"--conservative", "--json"});
+  EXPECT_EQ(inflated.exit_code, 0) << inflated.err;
   EXPECT_EQ(run({"audit", "bar.stl", "out.json"}).exit_code, 0);
-  const double growth = json::parse(grown.out).at("growth");
-  EXPECT_EQ(growth == 0.0, raw.exit_code == 0);
+  const double inflation = json::parse(inflated.out).at("growth");
+  EXPECT_EQ(inflation == 0.0, raw.exit_code == 0);
   // By no more than the proved depth and the proof's smallest piece.
   const double depth = figures.at("certificate").at("uncovered_depth").at(1);
-  EXPECT_LE(growth, depth + 0.001);
+  EXPECT_LE(inflation, depth + 0.001);
   const SphereFile large = spheres();
   ASSERT_EQ(large.spheres.size(), file.spheres.size());
   for (std::size_t i = 0; i < large.spheres.size(); ++i) {
     EXPECT_EQ(large.spheres[i].center, file.spheres[i].center);
-    EXPECT_NEAR(large.spheres[i].radius, file.spheres[i].radius + growth, 1e-12);
+    EXPECT_NEAR(large.spheres[i].radius, file.spheres[i].radius + inflation, 1e-12);
   }
 }
 
@@ -154,11 +154,11 @@ TEST_F(BaselineSpheresTest, TreesStandOverTheSpheresOfTheFile) {
       {"octree", "--depth", "3"},
       {"medial", "--tree", "--branching", "3", "--depth", "2", "--reduction", "merge"}};
   for (const Words& method : test::effort(methods, 1)) {
-    for (const Words& grown : std::vector<Words>{{}, {"--conservative"}}) {
+    for (const Words& inflated : std::vector<Words>{{}, {"--conservative"}}) {
       Words more = {"--tree-file", "out.tree"};
-      more.insert(more.end(), grown.begin(), grown.end());
+      more.insert(more.end(), inflated.begin(), inflated.end());
       const Outcome outcome = make(method, more);
-      EXPECT_LE(outcome.exit_code, grown.empty() ? 1 : 0) << outcome.err;
+      EXPECT_LE(outcome.exit_code, inflated.empty() ? 1 : 0) << outcome.err;
       const SphereTree tree = load_tree(folder_ / "out.tree");
       EXPECT_TRUE(std::ranges::equal(tree.spheres(), spheres().spheres));
       EXPECT_GT(tree.depth(), 1);

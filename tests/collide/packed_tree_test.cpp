@@ -48,8 +48,8 @@ class Inspection {
         here = visit(child, depth + 1);
       } else {
         ++seen_[static_cast<std::size_t>(~child)];
-        const double grown = ball.radius - spheres_[static_cast<std::size_t>(~child)].radius;
-        EXPECT_LE(grown, packed_.largest_growth());
+        const double inflated = ball.radius - spheres_[static_cast<std::size_t>(~child)].radius;
+        EXPECT_LE(inflated, packed_.largest_inflation());
       }
       expect_room(ball, here);
       below.insert(below.end(), here.begin(), here.end());

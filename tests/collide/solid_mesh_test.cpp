@@ -373,7 +373,7 @@ TEST(SolidMeshTest, GrowsByTheVertexError) {
   TriangleMesh mesh = cube_mesh();
   mesh.vertex_error = 0.1;
   const SolidMesh solid(mesh);
-  EXPECT_EQ(solid.growth(), 0.1);
+  EXPECT_EQ(solid.inflation(), 0.1);
   const SphereTree ball = tree_of({{1.5, 0.5, 0.5}, 0.25});
   const auto at = [](double x) { return Pose::from_translation({x, 0.0, 0.0}); };
   EXPECT_TRUE(collides(ball, at(-0.16), solid, Pose()));

@@ -25,7 +25,7 @@ Body body_between(const std::vector<Sphere>& spheres, const Pose& start, const P
                   const Eigen::Vector3d& reference = Eigen::Vector3d::Zero());
 Body still_body(const std::vector<Sphere>& spheres, const Pose& pose = {});
 
-// Standing, from pose to pose, or turning (three times as often as each), within some `size`.
+// Static, from pose to pose, or turning (three times as often as each), within some `size`.
 Body random_body(SceneRandom& random, double size);
 
 // The gap of the two sets at t under the exact motions, negative where they overlap.

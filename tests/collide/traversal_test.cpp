@@ -16,7 +16,7 @@ namespace {
 
 // Visits every pair of leaves that is not pruned.
 struct CountLeaves {
-  static constexpr bool kWantsGaps = false;
+  static constexpr bool kNeedsGaps = false;
   std::size_t count = 0;
 
   bool afford(const internal::OpenedPair&, const auto&) { return true; }

@@ -178,8 +178,8 @@ TEST(TruthTest, ShrunkBallsAreCaught) {
 
 // And so is one whose balls are a fifth too large.
 TEST(TruthTest, GrownBallsAreCaught) {
-  const FittedModel grown = test::fit_model("grown", test::shape_mesh("cube"), 0.05, 1.2);
-  const Tally tally = compare(grown, test::shape_model("probe"), 2000, 5);
+  const FittedModel inflated = test::fit_model("grown", test::shape_mesh("cube"), 0.05, 1.2);
+  const Tally tally = compare(inflated, test::shape_model("probe"), 2000, 5);
   EXPECT_GT(tally.worst_excess, 0.0);
   EXPECT_GT(tally.worst_share_of_errors, 1.0 + kScallops);
 }

@@ -34,7 +34,7 @@ double reach(const Triangle& t) {
 
 struct Tally {
   int apart = 0, touching = 0, doubtful = 0;
-  double widest_doubt = 0.0;  // distance in doubt, as a share of the scene
+  double widest_uncertainty = 0.0;  // distance in doubt, as a share of the scene
 };
 
 // Judges every scene in both orders.
@@ -57,9 +57,9 @@ Tally judge(int count, std::uint64_t seed, const std::function<Scene(SceneRandom
         EXPECT_EQ(gap, 0.0) << "invented in case " << i;
         ++tally.touching;
         break;
-      case TriangleContact::kDoubt:
+      case TriangleContact::kUncertain:
         ++tally.doubtful;
-        tally.widest_doubt = std::max(tally.widest_doubt, gap / size);
+        tally.widest_uncertainty = std::max(tally.widest_uncertainty, gap / size);
     }
   }
   return tally;
@@ -111,7 +111,7 @@ TEST(TrianglePair, CornerAgainstFace) {
   EXPECT_GT(tally.apart, effort(100, 20));
   EXPECT_GT(tally.touching, effort(300, 60));
   EXPECT_GT(tally.doubtful, effort(100, 20));
-  EXPECT_LT(tally.widest_doubt, internal::kSlack);
+  EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
 TEST(TrianglePair, EdgeAgainstEdge) {
@@ -122,7 +122,7 @@ TEST(TrianglePair, EdgeAgainstEdge) {
   EXPECT_GT(tally.apart, effort(100, 20));
   EXPECT_GT(tally.touching, effort(300, 60));
   EXPECT_GT(tally.doubtful, effort(100, 20));
-  EXPECT_LT(tally.widest_doubt, internal::kSlack);
+  EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
 TEST(TrianglePair, CornerAgainstCornerOrEdge) {
@@ -133,7 +133,7 @@ TEST(TrianglePair, CornerAgainstCornerOrEdge) {
   });
   EXPECT_GT(tally.apart, effort(500, 100));
   EXPECT_GT(tally.doubtful, effort(100, 20));
-  EXPECT_LT(tally.widest_doubt, internal::kSlack);
+  EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
 TEST(TrianglePair, InOnePlane) {
@@ -154,7 +154,7 @@ TEST(TrianglePair, InOnePlane) {
   });
   EXPECT_GT(tally.apart, effort(500, 100));
   EXPECT_GT(tally.doubtful, effort(500, 100));
-  EXPECT_LT(tally.widest_doubt, internal::kSlack);
+  EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
 TEST(TrianglePair, NeedlesSegmentsAndPoints) {
@@ -169,7 +169,7 @@ TEST(TrianglePair, NeedlesSegmentsAndPoints) {
     });
     EXPECT_GT(tally.apart, effort(200, 40)) << width;
     EXPECT_GT(tally.doubtful, effort(50, 10)) << width;
-    EXPECT_LT(tally.widest_doubt, 1e-9) << width;
+    EXPECT_LT(tally.widest_uncertainty, 1e-9) << width;
   }
 }
 
@@ -181,7 +181,7 @@ TEST(TrianglePair, SmallFarFromTheOrigin) {
   });
   EXPECT_GT(tally.apart, effort(50, 10));
   EXPECT_GT(tally.doubtful, effort(500, 100));
-  EXPECT_LT(tally.widest_doubt, internal::kSlack);
+  EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
 // Far smaller than the scene, and so small that squares of areas underflow.

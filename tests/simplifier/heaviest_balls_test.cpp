@@ -27,8 +27,8 @@ void check(const TriangleMesh& mesh, double max_error, double diameter) {
       place_external_spheres(mesh, {.min_external_diameter = diameter, .max_error = max_error}));
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
-  const auto point_in = [&](double grown) -> Vector3d {
-    const Vector3d by = Vector3d::Constant(grown);
+  const auto point_in = [&](double inflated) -> Vector3d {
+    const Vector3d by = Vector3d::Constant(inflated);
     const Vector3d share(unit(random), unit(random), unit(random));
     return clearance.box().min() - by +
            share.cwiseProduct(Vector3d(clearance.box().sizes() + 2.0 * by));

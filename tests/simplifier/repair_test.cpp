@@ -27,20 +27,20 @@ Repair expect_repaired(const TriangleMesh& mesh, const Fit& fitted, std::vector<
   EXPECT_EQ(balls.size(), leaking.size() + result.added);
   double largest = 0.0;
   double total = 0.0;
-  std::size_t grown = 0;
+  std::size_t inflated = 0;
   for (std::size_t i = 0; i < leaking.size(); ++i) {
     EXPECT_EQ(balls[i].center, leaking[i].center);
     EXPECT_GE(balls[i].radius, leaking[i].radius);
     const double by = balls[i].radius - leaking[i].radius;
     largest = std::max(largest, by);
     total += by;
-    grown += by > 0.0 ? 1U : 0U;
+    inflated += by > 0.0 ? 1U : 0U;
     // Protrudes no further than it did or than it may.
     if (by == 0.0) leaking[i].radius = 0.0;
   }
-  EXPECT_EQ(result.grown, grown);
-  EXPECT_EQ(result.largest_growth, largest);
-  EXPECT_NEAR(result.total_growth, total, 1e-9 * total);
+  EXPECT_EQ(result.inflated, inflated);
+  EXPECT_EQ(result.largest_inflation, largest);
+  EXPECT_NEAR(result.total_inflation, total, 1e-9 * total);
   EXPECT_EQ(result.max_error, max_error);
   EXPECT_LE(result.protrusion_after, std::max(max_error, result.protrusion_before));
   EXPECT_TRUE(certificate_of(mesh, fitted, balls).covered);
@@ -79,7 +79,7 @@ TEST(RepairOf, NoBallsIsACover) {
   const TriangleMesh mesh = cube_mesh();
   const Fit fitted = fit_of(mesh);
   const Repair result = expect_repaired(mesh, fitted, {}, fitted.max_error);
-  EXPECT_EQ(result.grown, 0U);
+  EXPECT_EQ(result.inflated, 0U);
   EXPECT_LE(result.added, fitted.cover.spheres.size() + 3);
 }
 
@@ -118,9 +118,9 @@ TEST(RepairOf, CoversWithShrunkBallsGrowsThemAgain) {
     }
     const Repair result = expect_repaired(mesh, fitted, leaking, fitted.max_error);
     EXPECT_EQ(result.added, 0U);
-    EXPECT_EQ(result.grown > 0, !certificate_of(mesh, fitted, leaking).covered);
-    EXPECT_LT(result.total_growth, taken);
-    leaked += result.grown > 0 ? 1 : 0;
+    EXPECT_EQ(result.inflated > 0, !certificate_of(mesh, fitted, leaking).covered);
+    EXPECT_LT(result.total_inflation, taken);
+    leaked += result.inflated > 0 ? 1 : 0;
   }
   EXPECT_GE(leaked, effort(3, 1));
 }
@@ -131,7 +131,7 @@ TEST(RepairOf, ThePapersBallsBeforeInflation) {
   const Repair result =
       expect_repaired(mesh, fitted, fitted.cover.spheres_before_inflation, fitted.max_error);
   EXPECT_EQ(result.added, 0U);
-  EXPECT_LE(result.largest_growth, fitted.max_error);
+  EXPECT_LE(result.largest_inflation, fitted.max_error);
 }
 
 TEST(RepairOf, BallsAnywhere) {
@@ -158,7 +158,7 @@ TEST(RepairOf, BallsBesideTheSolid) {
     leaking.push_back({at + 0.08 * (at - Vector3d::Constant(0.5)), 0.04});
   }
   const Repair result = expect_repaired(mesh, fitted, leaking, fitted.max_error);
-  EXPECT_EQ(result.grown, 0U);
+  EXPECT_EQ(result.inflated, 0U);
 }
 
 // Two prongs that spheres stand on, one of them far out; what leaks between them is mended by

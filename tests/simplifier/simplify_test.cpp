@@ -155,12 +155,12 @@ TEST(Simplify, BadRecordsAreRefusedByName) {
   EXPECT_EQ(refused("external", std::string("other")), "external");
 }
 
-// --- a second phase from outside ---
+// --- a stage 2 method from outside ---
 
-TEST(SecondPhase, ItsSpheresAreCertifiedWhateverItMade) {
+TEST(Stage2Method, ItsSpheresAreCertifiedWhateverItMade) {
   const auto made_of = [](std::vector<Sphere> spheres) {
     SimplifyOptions options = coarse(0.3);
-    options.second_phase = SecondPhase{
+    options.stage2_method = Stage2Method{
         "given", [=](const TriangleMesh&, const ExternalSpheres&, const CoverOptions& passed) {
           EXPECT_EQ(passed.max_error, 0.3);
           EXPECT_EQ(passed.threads, 1);
@@ -183,16 +183,16 @@ TEST(SecondPhase, ItsSpheresAreCertifiedWhateverItMade) {
   EXPECT_FALSE(made_of({}).certificate.covered);
 }
 
-TEST(SecondPhase, ItsNameSurvivesTheRecordButCannotBeRunFromThere) {
+TEST(Stage2Method, ItsNameSurvivesTheRecordButCannotBeRunFromThere) {
   SimplifyOptions options = coarse(0.3);
-  options.second_phase = SecondPhase{"other", cover};
+  options.stage2_method = Stage2Method{"other", cover};
   const Record record = option_record(options, 1.0);
   EXPECT_EQ(std::get<std::string>(record.at("method")), "other");
   const SimplifyOptions back = options_from_record(record);
-  ASSERT_TRUE(back.second_phase.has_value());
-  EXPECT_EQ(back.second_phase->name, "other");
+  ASSERT_TRUE(back.stage2_method.has_value());
+  EXPECT_EQ(back.stage2_method->name, "other");
   EXPECT_EQ(option_record(back, 1.0), record);
-  EXPECT_FALSE(options_from_record(option_record({}, 1.0)).second_phase.has_value());
+  EXPECT_FALSE(options_from_record(option_record({}, 1.0)).stage2_method.has_value());
   const auto refused = [](const SimplifyOptions& tried) -> std::string {
     try {
       simplify(cube_mesh(), tried);
@@ -204,7 +204,7 @@ TEST(SecondPhase, ItsNameSurvivesTheRecordButCannotBeRunFromThere) {
   EXPECT_EQ(refused(back), "method");
   EXPECT_EQ(refused(options), "accepted");
   for (const char* name : {"", "cover", "paper"}) {
-    options.second_phase->name = name;
+    options.stage2_method->name = name;
     EXPECT_EQ(refused(options), "method");
   }
 }

@@ -46,7 +46,7 @@ TEST(Check, ReportsAValidTree) {
   EXPECT_EQ(report.depth, depth_of(tree.data()));
   EXPECT_EQ(report.branching, 4);
   EXPECT_EQ(report.root_radius, tree.ball(0).radius);
-  EXPECT_GT(report.mean_growth, 1.0);
+  EXPECT_GT(report.mean_inflation, 1.0);
 }
 
 TEST(Check, RefusesArraysOfDifferentLength) {

@@ -222,9 +222,9 @@ TEST(Refit, IsAsTightAsANewTreeWhileNeighboursStayTogether) {
   const SphereTree refitted = refit(tree, bent);
   const SphereTree built = build_tree(bent);
   EXPECT_LE(refitted.ball(0).radius, 1.05 * built.ball(0).radius);
-  EXPECT_LE(check(refitted).mean_growth, 1.1 * check(built).mean_growth);
+  EXPECT_LE(check(refitted).mean_inflation, 1.1 * check(built).mean_inflation);
   const SphereTree scattered = refit(tree, stirred(bent, random, 0.5, 1));
-  EXPECT_GE(check(scattered).mean_growth, 1.5 * check(tree).mean_growth);
+  EXPECT_GE(check(scattered).mean_inflation, 1.5 * check(tree).mean_inflation);
 }
 
 TEST(Refit, RefusesBadInput) {

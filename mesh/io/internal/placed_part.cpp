@@ -22,9 +22,9 @@ void place(TriangleMesh& part, std::span<const Affine> chain, double coordinate_
   for (std::size_t i = chain.size(); i-- > 0;) {
     const Affine& affine = chain[i];
     const double gain = affine.linear.operatorNorm() * (1.0 + 0x1p-40);
-    const double grown = gain * (size + error) + affine.offset.norm();
-    error = gain * error + (entry_error + 0x1p-50) * grown;
-    size = grown;
+    const double inflated = gain * (size + error) + affine.offset.norm();
+    error = gain * error + (entry_error + 0x1p-50) * inflated;
+    size = inflated;
     for (Eigen::Vector3d& v : part.vertices) v = affine.linear * v + affine.offset;
   }
   part.vertex_error = error * (1.0 + 0x1p-40);

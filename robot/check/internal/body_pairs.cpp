@@ -41,7 +41,7 @@ double reach_of(const SphereTree& tree) {
 struct SizeOf {
   double operator()(const std::shared_ptr<const SphereTree>& tree) const { return reach_of(*tree); }
   double operator()(const std::shared_ptr<const SolidMesh>& mesh) const {
-    return reach_of(mesh->mesh().tree()) + mesh->growth();
+    return reach_of(mesh->mesh().tree()) + mesh->inflation();
   }
   double operator()(const Primitive& primitive) const { return std::visit(*this, primitive); }
   double operator()(const Box& box) const { return box.size.norm(); }
@@ -159,13 +159,13 @@ void BodyPairs::make_paths() {
   }
 }
 
-bool BodyPairs::is_usual(std::span<const double> configuration) const {
+bool BodyPairs::in_filter_range(std::span<const double> configuration) const {
   if (!robot_.has_mimics()) {
-    bool is_usual = true;
+    bool in_filter_range = true;
     for (const double position : configuration) {
-      is_usual &= std::abs(position) <= MechanismCheck::kLargestVariable;
+      in_filter_range &= std::abs(position) <= MechanismCheck::kLargestVariable;
     }
-    return is_usual;
+    return in_filter_range;
   }
   return std::all_of(robot_.joints().begin(), robot_.joints().end(), [&](const Joint& joint) {
     if (!joint.moves()) return true;
@@ -182,7 +182,8 @@ void BodyPairs::place(std::span<const double> configuration, Memory& memory) con
     const Sphere ball = pieces_[i].tree->ball(0);
     memory.placed[i] = {pose_of(pieces_[i], memory) * ball.center, ball.radius};
   }
-  memory.pad = is_usual(configuration) ? kBallPad * size_ : std::numeric_limits<double>::infinity();
+  memory.pad =
+      in_filter_range(configuration) ? kBallPad * size_ : std::numeric_limits<double>::infinity();
 }
 
 // From the centre of a piece's root ball to a primitive; -infinity for other obstacles.

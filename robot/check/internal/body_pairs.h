@@ -98,7 +98,7 @@ class BodyPairs {
 
   // Whether the bounds of errors hold: every number is finite, and no joint's position is beyond
   // MechanismCheck::kLargestVariable. For a configuration of the right size.
-  bool is_usual(std::span<const double> configuration) const;
+  bool in_filter_range(std::span<const double> configuration) const;
 
   // Takes a configuration; the functions below answer for it. Throws Error as forward_kinematics().
   void place(std::span<const double> configuration, Memory& memory) const;

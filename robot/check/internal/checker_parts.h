@@ -5,7 +5,7 @@
 
 #include "robot/check/internal/body_pairs.h"
 #include "robot/check/internal/lane_check.h"
-#include "robot/check/internal/standing_trees.h"
+#include "robot/check/internal/static_trees.h"
 #include "robot/check/robot_checker.h"
 
 #include <memory>
@@ -37,7 +37,8 @@ struct RobotChecker::Parts {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
-  // Whether neither `standing` nor BodyPairs::is_usual() refuses numbers that are not finite.
+  // Whether neither `standing` nor BodyPairs::in_filter_range() refuses numbers that are not
+  // finite.
   bool requires_finite() const { return enforces_limits || (!standing && pairs.tested() == 0); }
 
   RobotModel robot;
@@ -46,7 +47,7 @@ struct RobotChecker::Parts {
   // configurations.
   internal::BodyPairs pairs;
   internal::LaneCheck lanes;  // of these
-  std::optional<internal::StandingTrees> standing;
+  std::optional<internal::StaticTrees> standing;
   std::vector<Named> bodies;     // of CheckedPiece::body
   std::vector<Named> obstacles;  // of pairs.obstacles()
 };
@@ -58,7 +59,7 @@ struct RobotChecker::Scratch::Memory {
   std::shared_ptr<const Parts> owner;
   internal::LaneCheck::Memory lanes;
   internal::BodyPairs::Memory pairs{};
-  std::optional<internal::StandingTrees::Memory> standing{};
+  std::optional<internal::StaticTrees::Memory> standing{};
 };
 
 }  // namespace spherule

@@ -59,7 +59,7 @@ class LaneCheck {
   static constexpr std::size_t kLanes = kPlanLanes;
 
   // A bit for each of up to kLanes configurations in which any of the first `tested()` pairs of
-  // BodyPairs touches, by the canonical tests. Each must be is_usual().
+  // BodyPairs touches, by the canonical tests. Each must be in_filter_range().
   unsigned contacts(std::span<const std::span<const double>> configurations, Memory& memory,
                     BodyPairs::Memory& exact) const;
 
@@ -68,7 +68,7 @@ class LaneCheck {
                BodyPairs::Memory& exact) const;
 
   // The straight motion up to the fraction `end`, all pairs of BodyPairs, as RobotChecker says of
-  // check_edge(). Both ends must be is_usual(), the resolution above zero.
+  // check_edge(). Both ends must be in_filter_range(), the resolution above zero.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, double end,
                         const EdgeRequest& request, Memory& memory, BodyPairs::Memory& exact) const;
 

@@ -51,14 +51,15 @@ int more_sides(int sides) {
   return sides % 3 == 0 ? sides / 3 * 4 : sides / 2 * 3;
 }
 
-enum class OutlineKind { kStraight, kRounded };
+enum class SpecificationKind { kStraight, kRounded };
 
 // The fewest sides with which no corner stands out of the primitive by more than `chord_error`.
 // Those of a rounded outline, a polygon itself, stand out twice.
-int sides_for(double radius, OutlineKind kind, double chord_error, const std::string& subject) {
+int sides_for(double radius, SpecificationKind kind, double chord_error,
+              const std::string& subject) {
   for (int sides = kLeastSides; sides <= kMostSides; sides = more_sides(sides)) {
     const double factor = corner_factor(sides);
-    const double farthest = kind == OutlineKind::kRounded ? factor * factor : factor;
+    const double farthest = kind == SpecificationKind::kRounded ? factor * factor : factor;
     if (radius * (farthest - 1.0) <= chord_error) return sides;
   }
   std::ostringstream reason;
@@ -68,28 +69,28 @@ int sides_for(double radius, OutlineKind kind, double chord_error, const std::st
 }
 
 // The outline from the top down to the bottom, x the radius of the circle at height y.
-using Outline = std::vector<Vector2d>;
+using Specification = std::vector<Vector2d>;
 
 // Tangents of a half circle, at equal angles, the first and last level; the halves are `length`
 // apart. There are as many tangents to the half circle as sides to half a ring.
-Outline rounded_outline(double radius, double length, int sides) {
+Specification rounded_outline(double radius, double length, int sides) {
   const std::vector<Vector2d> circle = directions(2 * sides);
   const double corner = radius * corner_factor(sides);
-  Outline outline;
+  Specification specification;
   for (int k = 1; k < sides; k += 2) {
     const Vector2d& direction = circle[static_cast<std::size_t>(k)];  // x up, y to the side
     const double shift = k < sides / 2 ? length / 2 : -length / 2;
-    outline.push_back({corner * direction.y(), corner * direction.x() + shift});
+    specification.push_back({corner * direction.y(), corner * direction.x() + shift});
   }
-  return outline;
+  return specification;
 }
 
-TriangleMesh turn(const Outline& outline, int sides) {
+TriangleMesh turn(const Specification& specification, int sides) {
   const std::vector<Vector2d> circle = directions(sides);
   const double factor = corner_factor(sides);
-  const int rings = static_cast<int>(outline.size());
+  const int rings = static_cast<int>(specification.size());
   TriangleMesh mesh;
-  for (const Vector2d& point : outline) {
+  for (const Vector2d& point : specification) {
     for (const Vector2d& direction : circle) {
       const Vector2d corner = point.x() * factor * direction;
       mesh.vertices.push_back({corner.x(), corner.y(), point.y()});
@@ -97,8 +98,8 @@ TriangleMesh turn(const Outline& outline, int sides) {
   }
   const int top = rings * sides;
   const int bottom = top + 1;
-  mesh.vertices.push_back({0, 0, outline.front().y()});
-  mesh.vertices.push_back({0, 0, outline.back().y()});
+  mesh.vertices.push_back({0, 0, specification.front().y()});
+  mesh.vertices.push_back({0, 0, specification.back().y()});
   for (int i = 0; i < sides; ++i) {
     const int next = (i + 1) % sides;
     mesh.triangles.push_back({top, i, next});
@@ -137,7 +138,8 @@ struct MeshAround {
     return rounded(capsule.radius, capsule.length);
   }
   TriangleMesh operator()(const Cylinder& cylinder) const {
-    const int sides = sides_for(cylinder.radius, OutlineKind::kStraight, chord_error, subject);
+    const int sides =
+        sides_for(cylinder.radius, SpecificationKind::kStraight, chord_error, subject);
     return turn({{cylinder.radius, cylinder.length / 2}, {cylinder.radius, -cylinder.length / 2}},
                 sides);
   }
@@ -146,7 +148,7 @@ struct MeshAround {
   }
 
   TriangleMesh rounded(double radius, double length) const {
-    const int sides = sides_for(radius, OutlineKind::kRounded, chord_error, subject);
+    const int sides = sides_for(radius, SpecificationKind::kRounded, chord_error, subject);
     return turn(rounded_outline(radius, length, sides), sides);
   }
 };

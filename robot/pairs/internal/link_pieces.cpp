@@ -47,7 +47,7 @@ std::vector<Element> elements_of(std::span<const LinkBody> bodies) {
       for (std::int32_t i = 0; i < count; ++i) {
         const auto& corners = mesh.triangle(i);
         result.push_back(
-            {corners, 3, body.mesh->growth(), (corners[0] + corners[1] + corners[2]) / 3.0});
+            {corners, 3, body.mesh->inflation(), (corners[0] + corners[1] + corners[2]) / 3.0});
       }
     } else {
       for (const Sphere& sphere : body.spheres->spheres()) {

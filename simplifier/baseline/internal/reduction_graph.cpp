@@ -64,7 +64,7 @@ std::vector<FittedSphere> assign_points(const ReductionTask& task) {
     const std::uint32_t point = task.points[k];
     const Vector3d& p = task.samples[point];
     const Near& near = nearest[k][0];
-    if (near.ball >= 0 && near.gap <= task.max_growth) {
+    if (near.ball >= 0 && near.gap <= task.max_inflation) {
       FittedSphere& owner = all[static_cast<std::size_t>(near.ball)];
       owner.points.push_back(point);
       owner.ball.radius = std::max(owner.ball.radius, distance_upper(p, owner.ball.center));

@@ -16,7 +16,7 @@
 
 namespace spherule::internal {
 
-// The simplified solid S as second phases from this library see it.
+// The simplified solid S as stage 2 methods from this library see it.
 struct SimplifiedSolid {
   // Throws Error for a mesh, options and an E that cover() would refuse, and for zones of an E of
   // their own in the name of the method.

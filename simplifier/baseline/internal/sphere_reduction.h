@@ -27,7 +27,7 @@ struct ReductionTask {
   std::span<const MedialSphere> spheres;
   // A point for which every medial sphere would have to grow by more becomes a ball of radius 0 of
   // its own. (Expand grows them in its own way.)
-  double max_growth = std::numeric_limits<double>::infinity();
+  double max_inflation = std::numeric_limits<double>::infinity();
 };
 
 // Where a reduction stops. With a count it goes on until there are no more balls than that; without
@@ -51,8 +51,8 @@ struct FittedSphere {
 double largest_protrusion(std::span<const FittedSphere> spheres);
 
 // What the reductions start from: each point goes to the medial sphere that holds it deepest, or
-// that has to grow least for it, if that is no more than max_growth. Balls without points are left
-// out.
+// that has to grow least for it, if that is no more than max_inflation. Balls without points are
+// left out.
 std::vector<FittedSphere> assign_points(const ReductionTask& task);
 
 // Merge: two neighbouring balls become the smallest ball that encloses their points, the pair first

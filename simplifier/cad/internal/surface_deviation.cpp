@@ -131,12 +131,12 @@ Polyline divide(const ParametricSurface& surface, const ParameterCurve& curve,
       off += c.first * step;
     }
     if (off == 0.0) continue;
-    const auto grown = [&](int axis) {
+    const auto inflated = [&](int axis) {
       const auto [a, b] = std::minmax({result.points[i][axis], result.points[i + 1][axis]});
       const Interval& all = axis == 0 ? surface.u : surface.v;
       return Interval{std::max(a - off, all.low), std::min(b + off, all.high)};
     };
-    const SurfaceBounds s = surface.bound(grown(0), grown(1));
+    const SurfaceBounds s = surface.bound(inflated(0), inflated(1));
     result.extra = std::max(result.extra, kRelative * off * std::hypot(s.u, s.v));
   }
   return result;

@@ -108,7 +108,7 @@ class ConfirmedScene {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const Projection body = bodies_[i].at(poses[i]);
       for (const Other& other : others_) {
-        take(body, other.onto, poses[i].translation(), bodies_[i].padding + other.growth);
+        take(body, other.onto, poses[i].translation(), bodies_[i].padding + other.inflation);
       }
       for (std::size_t k = i + 1; k < bodies_.size(); ++k) {
         if (allowed_.allows(static_cast<int>(i), static_cast<int>(k))) continue;
@@ -122,7 +122,7 @@ class ConfirmedScene {
  private:
   struct Other {
     Projection onto;
-    double growth;
+    double inflation;
   };
 
   static Thing random_thing(SceneRandom& random, double size) {
@@ -142,10 +142,10 @@ class ConfirmedScene {
     return robot;
   }
 
-  void add(const std::string& name, const ObstacleShape& shape, const Pose& pose, double growth,
+  void add(const std::string& name, const ObstacleShape& shape, const Pose& pose, double inflation,
            Projection onto) {
     scene_.add(name, shape, pose);
-    others_.push_back({std::move(onto), growth});
+    others_.push_back({std::move(onto), inflation});
   }
 
   std::vector<std::shared_ptr<const CoveredMesh>> meshes_;

@@ -42,7 +42,7 @@ struct DistanceTo {
   double operator()(const HalfSpace&) const { return p.z(); }
 };
 
-struct Standing {
+struct Static {
   Primitive solid;
   Pose world_from_solid;
 };
@@ -89,7 +89,7 @@ Move random_move(SceneRandom& random, const RobotModel& robot) {
 }
 
 // Of the ball that is told it is `gap` away there.
-Standing solid_beside(SceneRandom& random, const Vector3d& center, double radius, double gap) {
+Static solid_beside(SceneRandom& random, const Vector3d& center, double radius, double gap) {
   const double thin = std::pow(10.0, random.uniform(-5.0, -1.0));
   const double large = random.uniform(0.05, 0.5);
   const Primitive solids[] = {Box{{large, large, thin}}, Ball{thin}, Cylinder{large, thin},
@@ -105,7 +105,7 @@ Standing solid_beside(SceneRandom& random, const Vector3d& center, double radius
   return {solid, Pose(turn, center - (surface + radius + gap) * normal)};
 }
 
-RobotChecker checker_of(const BallRobot& robot, const std::vector<Standing>& solids) {
+RobotChecker checker_of(const BallRobot& robot, const std::vector<Static>& solids) {
   RobotScene scene(robot.model);
   AllowedCollisions allowed(robot.model);
   for (std::size_t i = 0; i < robot.balls.size(); ++i) {
@@ -120,8 +120,7 @@ RobotChecker checker_of(const BallRobot& robot, const std::vector<Standing>& sol
   return scene.snapshot();
 }
 
-double gap_to(const BallRobot& robot, const std::vector<Standing>& solids,
-              const Configuration& at) {
+double gap_to(const BallRobot& robot, const std::vector<Static>& solids, const Configuration& at) {
   const std::vector<Vector3d> centers = placed(robot, at);
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [solid, pose] : solids) {
@@ -144,7 +143,7 @@ TEST(RobotEdgePasses, NoSolidIsPassedThrough) {
     const std::size_t last = robot.balls.size() - 1;
     const Vector3d center = placed(robot, on_the_way(move.from, move.to, move.between))[last];
     const double radius = robot.balls[last].radius;
-    const std::vector<Standing> solids = {
+    const std::vector<Static> solids = {
         solid_beside(random, center, radius, -radius * random.uniform(1e-6, 1.0))};
     const RobotChecker checker = checker_of(robot, solids);
     RobotChecker::Scratch scratch(checker);
@@ -197,7 +196,7 @@ TEST(RobotEdgePasses, WhatIsProvedAmongSolidsIsFree) {
   for (int n = 0; n < cases; ++n) {
     const BallRobot robot = random_ball_robot(random, false);
     const Move move = random_move(random, robot.model);
-    std::vector<Standing> solids;
+    std::vector<Static> solids;
     for (int i = 0; i < 3; ++i) {
       const double t = random.uniform(0.0, 1.0);
       const std::size_t link =

@@ -38,8 +38,8 @@ TEST(CoveredBodies, AreGrownByTheirOwnPadding) {
   ASSERT_EQ(bodies.size(), 2U);
   EXPECT_EQ(bodies[0].link, 0);
   EXPECT_EQ(bodies[1].link, 2);
-  EXPECT_NEAR(bodies[0].mesh->growth(), 0.01, 1e-9);
-  EXPECT_NEAR(bodies[1].mesh->growth(), 0.02, 1e-9);
+  EXPECT_NEAR(bodies[0].mesh->inflation(), 0.01, 1e-9);
+  EXPECT_NEAR(bodies[1].mesh->inflation(), 0.02, 1e-9);
   options.geometry = LinkGeometry::kVisual;
   EXPECT_TRUE(covered_bodies(two_blocks(), options).empty());
 }

@@ -51,7 +51,7 @@ TEST(PathReach, BoundsHowDistancesChange) {
     if (n % 3 == 0) add_random_mimics(random, robot, 1.0);
     const Body a = random_body(random, robot);
     const Body b = random_body(random, robot);
-    const bool b_stands = b.link == 0 && n % 4 < 2;
+    const bool b_is_static = b.link == 0 && n % 4 < 2;
     const Configuration from = random_configuration(random, robot, 2.0);
     Configuration to = random_configuration(random, robot, 2.0);
     for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
@@ -68,8 +68,9 @@ TEST(PathReach, BoundsHowDistancesChange) {
     }
     const std::vector<Pose> poses = poses_at_zero(robot);
     const internal::PathReach reach =
-        b_stands ? internal::PathReach(robot, poses, 1e-13, joints, a.link, a.ball)
-                 : internal::PathReach(robot, poses, 1e-13, joints, a.link, a.ball, b.link, b.ball);
+        b_is_static
+            ? internal::PathReach(robot, poses, 1e-13, joints, a.link, a.ball)
+            : internal::PathReach(robot, poses, 1e-13, joints, a.link, a.ball, b.link, b.ball);
     std::vector<internal::PathBounds> work;
     const internal::PathBounds bounds = reach.bounds(rates, shifts, work);
     std::vector<Pose> placed;

@@ -46,12 +46,12 @@ inline void expect_samples_covered(const TriangleMesh& mesh, std::span<const Sph
 }
 
 // Points as far from the surface as it was grown by, all but, are in the balls.
-inline void expect_grown_covered(const TriangleMesh& mesh, double growth, std::size_t count,
-                                 std::span<const Sphere> balls, std::uint64_t seed) {
+inline void expect_inflated_covered(const TriangleMesh& mesh, double inflation, std::size_t count,
+                                    std::span<const Sphere> balls, std::uint64_t seed) {
   Random random(seed);
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector3d& p : points_on_surface(mesh, count, random)) {
-    points.push_back(p + growth * random.direction());
+    points.push_back(p + inflation * random.direction());
   }
   EXPECT_EQ(judge_cover(points, balls).uncovered, 0U);
 }

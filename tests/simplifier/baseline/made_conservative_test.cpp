@@ -30,13 +30,13 @@ TEST(MadeConservative, GrowsByTheUncoveredDepth) {
   EXPECT_EQ(result.spheres[0].center, balls[0].center);
   EXPECT_TRUE(result.certificate.covered);
   EXPECT_GE(result.spheres[0].radius, kToCorner);
-  EXPECT_LE(result.growth, 2.05);
+  EXPECT_LE(result.inflation, 2.05);
 }
 
 TEST(MadeConservative, LeavesWhatCovers) {
   const std::vector<Sphere> balls = {{kMiddle, kToCorner + 0.05}, {Vector3d::Zero(), 0.0}};
   const ConservativeSpheres result = made_conservative(kBar, balls);
-  EXPECT_EQ(result.growth, 0.0);
+  EXPECT_EQ(result.inflation, 0.0);
   EXPECT_EQ(result.spheres, balls);
   EXPECT_TRUE(result.certificate.covered);
 }

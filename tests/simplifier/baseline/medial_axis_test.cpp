@@ -94,11 +94,11 @@ TEST(MedialAxis, CoversTheSamples) {
 TEST(MedialAxis, CanBeMadeConservative) {
   const TriangleMesh mesh = slender(cube_mesh());
   const MedialAxisSpheres result = medial_axis(mesh, {.spheres = 24, .sampling = kCoarse});
-  const ConservativeSpheres grown = made_conservative(mesh, result.spheres);
-  EXPECT_TRUE(grown.certificate.covered);
+  const ConservativeSpheres inflated = made_conservative(mesh, result.spheres);
+  EXPECT_TRUE(inflated.certificate.covered);
   Random random(6);
   const auto dense = points_on_surface(mesh, 3000, random);
-  EXPECT_EQ(judge_cover(dense, grown.spheres).uncovered, 0U);
+  EXPECT_EQ(judge_cover(dense, inflated.spheres).uncovered, 0U);
 }
 
 TEST(MedialAxis, BearsTinyFeaturesDistantPartsAndPlates) {

@@ -51,7 +51,7 @@ TEST(PackSpheres, HoldsPaddingAndVertexErrorWhenInflated) {
   TriangleMesh mesh = cube_mesh();
   mesh.vertex_error = 0.05;
   const SpherePacking packing = pack_spheres(mesh, {.max_error = 0.2, .padding = 0.1});
-  expect_grown_covered(mesh, 0.1499, 1000, packing.inflated, 22);
+  expect_inflated_covered(mesh, 0.1499, 1000, packing.inflated, 22);
 }
 
 TEST(PackSpheres, PacksTheWallOfAPipeAndNotItsBore) {

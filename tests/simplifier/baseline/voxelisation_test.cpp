@@ -168,7 +168,7 @@ TEST(Voxelise, GrowsByPaddingAndVertexError) {
   TriangleMesh mesh = cube_mesh();
   mesh.vertex_error = 0.1;
   const Voxelisation voxels = voxelise(mesh, {.step = 0.11, .padding = 0.2});
-  expect_grown_covered(mesh, 0.2999, 3000, voxels.spheres, 6);
+  expect_inflated_covered(mesh, 0.2999, 3000, voxels.spheres, 6);
 }
 
 TEST(Voxelise, ThePapersBallsLeaveCorners) {

@@ -2,7 +2,7 @@
 // What a check of a mechanism remembers from one configuration to the next: it saves questions and
 // searches, and changes no answer.
 
-#include "collide/mechanism/motion_memory.h"
+#include "collide/mechanism/coherence_cache.h"
 
 #include "collide/mechanism_check.h"
 #include "tests/collide/scene_random.h"
@@ -21,6 +21,7 @@ namespace spherule::test {
 namespace {
 
 using Eigen::Vector3d;
+using internal::CoherenceCache;
 using internal::KernelFinding;
 using internal::KernelFrame;
 using internal::KernelPair;
@@ -28,7 +29,6 @@ using internal::KernelPose;
 using internal::KernelProblem;
 using internal::Kernels;
 using internal::KernelScratch;
-using internal::MotionMemory;
 
 const std::vector<MechanismPair> kOnePair(1);
 constexpr double kNothing = -1.0;  // for a depth: nothing is to be remembered
@@ -69,7 +69,7 @@ class DeepContact {
   MechanismCheck::Scratch scratch_{check_};
 };
 
-TEST(MotionMemory, AContactHoldsAsFarAsItsDepth) {
+TEST(CoherenceCache, AContactHoldsAsFarAsItsDepth) {
   constexpr double kDepth = 1e-3;
   constexpr double kAngle = kDepth / DeepContact::kWayPerAngle;
   for (const double beyond : {1.01, -1.01}) {
@@ -82,7 +82,7 @@ TEST(MotionMemory, AContactHoldsAsFarAsItsDepth) {
   }
 }
 
-TEST(MotionMemory, NothingIsKnownAfterAJump) {
+TEST(CoherenceCache, NothingIsKnownAfterAJump) {
   constexpr double kDepth = 1.0;
   DeepContact contact;
   // The first follows none, the second one that did not follow.
@@ -181,7 +181,7 @@ Arm random_arm(SceneRandom& random, const Way& way, int steps) {
   return arm;
 }
 
-TEST(MotionMemory, SavesQuestionsAndChangesNoAnswer) {
+TEST(CoherenceCache, SavesQuestionsAndChangesNoAnswer) {
   constexpr int kSteps = 1500;
   SceneRandom random(91);
   int touching = 0, refused = 0, unasked = 0, asked_anew = 0, asked = 0;
@@ -252,11 +252,11 @@ struct PlainKernels {
     return between.norm() - static_cast<double>(body.radius) - static_cast<double>(obstacle.radius);
   }
 
-  static KernelFinding look(const KernelProblem& problem, KernelPair pair, float growth,
+  static KernelFinding look(const KernelProblem& problem, KernelPair pair, float inflation,
                             const KernelScratch& scratch, internal::ConfirmContact, void*) {
     ++*scratch.queues.generation;
-    return gap(problem, pair, scratch) > static_cast<double>(growth) ? KernelFinding::kApart
-                                                                     : KernelFinding::kNear;
+    return gap(problem, pair, scratch) > static_cast<double>(inflation) ? KernelFinding::kApart
+                                                                        : KernelFinding::kNear;
   }
 
   static bool check(const KernelProblem& problem, const double* configuration,
@@ -314,7 +314,7 @@ struct Turntables {
   std::array<double, kBodies> reach{};  // of points from the root
 };
 
-TEST(MotionMemory, SavesSearchesAndOverlooksNoTouch) {
+TEST(CoherenceCache, SavesSearchesAndOverlooksNoTouch) {
   constexpr int kSteps = 20000;
   const Kernels kernels = {&PlainKernels::check, nullptr, &PlainKernels::place,
                            &PlainKernels::look};
@@ -328,7 +328,7 @@ TEST(MotionMemory, SavesSearchesAndOverlooksNoTouch) {
     std::array<KernelPose, Turntables::kBodies> poses = {};
     KernelScratch scratch = {};
     scratch.poses = poses.data();
-    MotionMemory memory(problem, tables.reach, std::array<double, Turntables::kBodies>{});
+    CoherenceCache memory(problem, tables.reach, std::array<double, Turntables::kBodies>{});
     for (int step = 0; step < kSteps; ++step) {
       const std::vector<double> at = way.at(step);
       scratch.queues.generation = &all_searches;

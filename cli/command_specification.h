@@ -20,7 +20,7 @@ inline constexpr const char* kCommand = "COMMAND";
 inline constexpr const char* kLength = "LENGTH";
 
 // An option of a command, or an argument without a name of its own (positional).
-struct OptionOutline {
+struct OptionSpecification {
   std::vector<std::string> names;    // "-o", "--output"; of an argument its one name: "mesh"
   std::string value;                 // "FILE", "NUMBER", "cover|paper"; empty for a flag
   std::vector<std::string> choices;  // the words that it takes, where these are few
@@ -33,25 +33,26 @@ struct OptionOutline {
 };
 
 // A command as its help describes it: the one source of completion and manual pages.
-struct CommandOutline {
+struct CommandSpecification {
   std::string name;  // without those of the commands around it
   std::string summary;
   std::string footer;
-  std::vector<OptionOutline> arguments;
-  std::vector<OptionOutline> options;
-  std::vector<CommandOutline> commands;
+  std::vector<OptionSpecification> arguments;
+  std::vector<OptionSpecification> options;
+  std::vector<CommandSpecification> commands;
 };
 
-OptionOutline outline(const CLI::Option& option);
-CommandOutline outline(const CLI::App& app);
+OptionSpecification specification(const CLI::Option& option);
+CommandSpecification specification(const CLI::App& app);
 
 // The description, and whether the option is required, what it needs and what it excludes.
-std::string full_description(const OptionOutline& option);
+std::string full_description(const OptionSpecification& option);
 
 // The names of all options of a command.
-std::vector<std::string> option_names(const CommandOutline& command);
+std::vector<std::string> option_names(const CommandSpecification& command);
 
 // The command with this name among those of `around`, or null.
-const CommandOutline* find_command(const CommandOutline& around, const std::string& name);
+const CommandSpecification* find_command(const CommandSpecification& around,
+                                         const std::string& name);
 
 }  // namespace spherule

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The second phases that baselines offer: medial_cover() and packing_cover().
+// The stage 2 methods that baselines offer: medial_cover() and packing_cover().
 #include "simplifier/baseline/internal/simplified_probe.h"
 #include "simplifier/baseline/medial_cover.h"
 #include "simplifier/baseline/packing_cover.h"
@@ -22,7 +22,7 @@
 
 namespace spherule {
 
-void PrintTo(const SecondPhase& phase, std::ostream* out) {
+void PrintTo(const Stage2Method& phase, std::ostream* out) {
   *out << phase.name;
 }
 
@@ -33,7 +33,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-class SecondPhaseOfBaselines : public testing::TestWithParam<SecondPhase> {
+class Stage2OfBaselines : public testing::TestWithParam<Stage2Method> {
  protected:
   Fit fit_of(const TriangleMesh& mesh, const FitShares& shares = {},
              CoverOptions options = {}) const {
@@ -72,7 +72,7 @@ void expect_tight(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t see
   EXPECT_LE(*certificate.protrusion_over_simplified_max, fitted.max_error);
 }
 
-TEST_P(SecondPhaseOfBaselines, CoversSevenShapesWithinTheError) {
+TEST_P(Stage2OfBaselines, CoversSevenShapesWithinTheError) {
   std::vector<NamedMesh> shapes = effort(zoo_to_fit(), 3);
   shapes.resize(std::min<std::size_t>(shapes.size(), 7));  // the others take long
   for (const NamedMesh& named : shapes) {
@@ -85,7 +85,7 @@ TEST_P(SecondPhaseOfBaselines, CoversSevenShapesWithinTheError) {
   }
 }
 
-TEST_P(SecondPhaseOfBaselines, EveryWayToPlaceExternalSpheresGivesACoveredSolid) {
+TEST_P(Stage2OfBaselines, EveryWayToPlaceExternalSpheresGivesACoveredSolid) {
   for (const ExternalPlacement placement : {ExternalPlacement::kRandom, ExternalPlacement::kNone}) {
     const TriangleMesh mesh = l_bracket();
     FitShares shares;
@@ -97,7 +97,7 @@ TEST_P(SecondPhaseOfBaselines, EveryWayToPlaceExternalSpheresGivesACoveredSolid)
 }
 
 // Without a simplification to speak of: D = E / 2.
-TEST_P(SecondPhaseOfBaselines, CoversTheSolidAsItIs) {
+TEST_P(Stage2OfBaselines, CoversTheSolidAsItIs) {
   const TriangleMesh mesh = open_box();
   const Fit fitted = fit_of(mesh, {.max_error = 0.12, .diameter = 0.5});
   // Of more than a hundred thousand external balls, all of which are tried.
@@ -105,7 +105,7 @@ TEST_P(SecondPhaseOfBaselines, CoversTheSolidAsItIs) {
   expect_tight(mesh, fitted, 176, 1);
 }
 
-TEST_P(SecondPhaseOfBaselines, WithPaddingTheGrownMeshIsCovered) {
+TEST_P(Stage2OfBaselines, WithPaddingTheGrownMeshIsCovered) {
   TriangleMesh mesh = mesh_named("three-fins");
   mesh.vertex_error = 1e-3;
   FitShares shares;
@@ -114,7 +114,7 @@ TEST_P(SecondPhaseOfBaselines, WithPaddingTheGrownMeshIsCovered) {
 }
 
 // Sizes and places far from one.
-TEST_P(SecondPhaseOfBaselines, ScaleAndPlaceDoNotMatter) {
+TEST_P(Stage2OfBaselines, ScaleAndPlaceDoNotMatter) {
   for (const double scale : {1e-6, 1e6}) {
     TriangleMesh mesh = l_bracket();
     for (Vector3d& v : mesh.vertices) v = scale * (v + Vector3d(1e4, -1e4, 1e4));
@@ -124,7 +124,7 @@ TEST_P(SecondPhaseOfBaselines, ScaleAndPlaceDoNotMatter) {
   }
 }
 
-TEST_P(SecondPhaseOfBaselines, IsEqualInEveryRunOnAnyNumberOfThreads) {
+TEST_P(Stage2OfBaselines, IsEqualInEveryRunOnAnyNumberOfThreads) {
   for (const char* name : effort(std::vector{"l-bracket", "cube"}, 1)) {
     const TriangleMesh mesh = mesh_named(name);
     const std::vector<Sphere> first = fit_of(mesh).cover.spheres;
@@ -136,7 +136,7 @@ TEST_P(SecondPhaseOfBaselines, IsEqualInEveryRunOnAnyNumberOfThreads) {
   }
 }
 
-TEST_P(SecondPhaseOfBaselines, ALargerErrorNeedsFewerBalls) {
+TEST_P(Stage2OfBaselines, ALargerErrorNeedsFewerBalls) {
   std::size_t before = 100000;
   for (const double share : {0.05, 0.1, 0.2}) {
     const std::size_t count = fit_of(cube_mesh(), {.max_error = share}).cover.spheres.size();
@@ -145,7 +145,7 @@ TEST_P(SecondPhaseOfBaselines, ALargerErrorNeedsFewerBalls) {
   }
 }
 
-TEST_P(SecondPhaseOfBaselines, EveryBallIsInflatedByTheSame) {
+TEST_P(Stage2OfBaselines, EveryBallIsInflatedByTheSame) {
   const Fit fitted = fit_of(l_bracket());
   const SphereCover& cover = fitted.cover;
   EXPECT_GT(cover.inflation, 0.0);
@@ -157,7 +157,7 @@ TEST_P(SecondPhaseOfBaselines, EveryBallIsInflatedByTheSame) {
   }
 }
 
-TEST_P(SecondPhaseOfBaselines, NoBallIsSmallerThanTheLeastRadius) {
+TEST_P(Stage2OfBaselines, NoBallIsSmallerThanTheLeastRadius) {
   const TriangleMesh mesh = l_bracket();
   CoverOptions options;
   options.min_radius = 2.5 * FitShares{}.max_error * diagonal_of(mesh);
@@ -166,7 +166,7 @@ TEST_P(SecondPhaseOfBaselines, NoBallIsSmallerThanTheLeastRadius) {
   expect_covered(mesh, fitted, 180);
 }
 
-TEST_P(SecondPhaseOfBaselines, BadInputIsRefusedByName) {
+TEST_P(Stage2OfBaselines, BadInputIsRefusedByName) {
   const ExternalSpheres external = externals_of(cube_mesh(), {});
   const auto refused = [&](const CoverOptions& options,
                            const TriangleMesh& mesh = cube_mesh()) -> std::string {
@@ -192,12 +192,12 @@ TEST_P(SecondPhaseOfBaselines, BadInputIsRefusedByName) {
   EXPECT_EQ(refused({.max_error = 0.3, .zones = {of_diameter}}), "accepted");
 }
 
-// What simplify() promises of its own second phases: the certificate, the record, levels.
-TEST_P(SecondPhaseOfBaselines, StandsInSimplify) {
+// What simplify() promises of its own stage 2 methods: the certificate, the record, levels.
+TEST_P(Stage2OfBaselines, StandsInSimplify) {
   const TriangleMesh mesh = l_bracket();
   const double max_error = 0.07 * diagonal_of(mesh);
   SimplifyOptions options{.max_error = max_error, .levels = {max_error, 3.0 * max_error}};
-  options.second_phase = GetParam();
+  options.stage2_method = GetParam();
   const Simplification result = simplify(mesh, options);
   EXPECT_EQ(broken_promises(result), "");
   EXPECT_EQ(std::get<std::string>(option_record(result.options, 1.0).at("method")),
@@ -207,9 +207,9 @@ TEST_P(SecondPhaseOfBaselines, StandsInSimplify) {
   EXPECT_LT(result.levels[0].balls.spheres.size(), result.cover.spheres.size());
 }
 
-INSTANTIATE_TEST_SUITE_P(Phases, SecondPhaseOfBaselines,
-                         testing::Values(SecondPhase{"medial", medial_cover},
-                                         SecondPhase{"packing", packing_cover}),
+INSTANTIATE_TEST_SUITE_P(Phases, Stage2OfBaselines,
+                         testing::Values(Stage2Method{"medial", medial_cover},
+                                         Stage2Method{"packing", packing_cover}),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST(PackingCover, TheLargestInscribedBallComesFirst) {

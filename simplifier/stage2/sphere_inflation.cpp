@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/stage2/ball_growth.h"
+#include "simplifier/stage2/sphere_inflation.h"
 
 #include <algorithm>
 #include <limits>
@@ -10,13 +10,13 @@ namespace spherule::internal {
 
 using Eigen::Vector3d;
 
-BallGrowth::BallGrowth(std::span<const Sphere> balls, std::vector<double> limits)
+SphereInflation::SphereInflation(std::span<const Sphere> balls, std::vector<double> limits)
     : balls_(balls.begin(), balls.end()), limits_(std::move(limits)) {
   for (const Sphere& ball : balls_) least_.push_back(ball.radius);
   radii_ = least_;
 }
 
-bool BallGrowth::require(const Vector3d& point, double reserve) {
+bool SphereInflation::require(const Vector3d& point, double reserve) {
   std::vector<double> distance(balls_.size());
   double most = -std::numeric_limits<double>::infinity();  // of the point's depth
   for (std::size_t i = 0; i < balls_.size(); ++i) {
@@ -34,13 +34,13 @@ bool BallGrowth::require(const Vector3d& point, double reserve) {
   }
   if (demand.empty() || is_met(demand)) return false;
   std::sort(demand.begin(), demand.end(), [&](const Offer& a, const Offer& b) {
-    return std::pair(growth(a), a.ball) < std::pair(growth(b), b.ball);
+    return std::pair(inflation(a), a.ball) < std::pair(inflation(b), b.ball);
   });
   demands_.push_back(std::move(demand));
   return true;
 }
 
-bool BallGrowth::grow_fully_about(const Vector3d& point, double reach) {
+bool SphereInflation::grow_fully_about(const Vector3d& point, double reach) {
   bool any = false;
   for (std::size_t i = 0; i < balls_.size(); ++i) {
     if ((balls_[i].center - point).norm() > limits_[i] + reach) continue;
@@ -50,16 +50,16 @@ bool BallGrowth::grow_fully_about(const Vector3d& point, double reach) {
   return any;
 }
 
-bool BallGrowth::is_met(const Demand& demand) const {
+bool SphereInflation::is_met(const Demand& demand) const {
   return std::ranges::any_of(demand, [&](const Offer& o) { return radii_[o.ball] >= o.radius; });
 }
 
-void BallGrowth::solve() {
+void SphereInflation::solve() {
   radii_ = least_;
   std::vector<std::size_t> order(demands_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return growth(demands_[a].front()) > growth(demands_[b].front());
+    return inflation(demands_[a].front()) > inflation(demands_[b].front());
   });
   for (const std::size_t d : order) {
     if (is_met(demands_[d])) continue;
@@ -70,7 +70,7 @@ void BallGrowth::solve() {
   shrink();
 }
 
-void BallGrowth::shrink() {
+void SphereInflation::shrink() {
   std::vector<std::vector<std::pair<std::uint32_t, double>>> offers_of(balls_.size());
   std::vector<std::uint32_t> times(demands_.size(), 0);
   for (std::size_t d = 0; d < demands_.size(); ++d) {
@@ -96,10 +96,10 @@ void BallGrowth::shrink() {
   }
 }
 
-std::vector<Sphere> BallGrowth::balls() const {
-  std::vector<Sphere> grown(balls_);
-  for (std::size_t i = 0; i < grown.size(); ++i) grown[i].radius = radii_[i];
-  return grown;
+std::vector<Sphere> SphereInflation::balls() const {
+  std::vector<Sphere> inflated(balls_);
+  for (std::size_t i = 0; i < inflated.size(); ++i) inflated[i].radius = radii_[i];
+  return inflated;
 }
 
 }  // namespace spherule::internal

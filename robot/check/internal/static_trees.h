@@ -22,7 +22,7 @@ namespace spherule::internal {
 
 // Of the pairs of BodyPairs from tested() on, does any touch? Exactly BodyPairs::touches(): no
 // instruction set changes an answer. The pairs are of pieces and sphere trees.
-class StandingTrees {
+class StaticTrees {
  private:
   // A contact that was confirmed: by a triangle of the piece's mesh and one of the obstacle's, or
   // where that has no mesh, the obstacle's sphere.
@@ -33,17 +33,17 @@ class StandingTrees {
 
  public:
   // `pairs` must outlive it. Throws Error as MechanismCheck does.
-  StandingTrees(const BodyPairs& pairs, InstructionSet instructions);
+  StaticTrees(const BodyPairs& pairs, InstructionSet instructions);
 
   // What a query writes to. Those of several threads share no cache line.
   class alignas(64) Memory {
    public:
     // For these.
-    explicit Memory(const StandingTrees& trees)
+    explicit Memory(const StaticTrees& trees)
         : check_(*trees.check_), room_(trees.positions_.room_for(MechanismCheck::kBlock)) {}
 
    private:
-    friend class StandingTrees;
+    friend class StaticTrees;
     MechanismCheck::Scratch check_;
     BodyPairs::Memory placed_{};
     std::vector<double> middle_{};
@@ -65,7 +65,7 @@ class StandingTrees {
   // Of a straight motion from one configuration to another: whether it is free, as RobotChecker
   // says of check_edge(), or (if that is asked for) touches in its middle. Fast for the motions of
   // a path, one after the other; undecided where that is not known soon. Both ends must be
-  // BodyPairs::is_usual().
+  // BodyPairs::in_filter_range().
   enum class AlongFinding { kFree, kTouchesInTheMiddle, kUndecided };
   AlongFinding look_along(std::span<const double> from, std::span<const double> to,
                           bool asks_for_contact, Memory& memory) const;

@@ -9,14 +9,14 @@ namespace spherule::internal {
 
 // Disjoint sets of which every element is turned like the one that stands for its set (+1) or the
 // other way round (-1).
-class TurnedSets {
+class OrientedDisjointSets {
  public:
   struct Place {
     int root;
     int turn;  // against that of the root
   };
 
-  explicit TurnedSets(std::size_t count) : up_(count), turn_(count, 1) {
+  explicit OrientedDisjointSets(std::size_t count) : up_(count), turn_(count, 1) {
     std::iota(up_.begin(), up_.end(), 0);
   }
 

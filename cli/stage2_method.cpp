@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/second_phase.h"
+#include "cli/stage2_method.h"
 
 #ifdef SPHERULE_HAS_BASELINES
 #include "simplifier/baseline/medial_cover.h"
@@ -12,12 +12,12 @@
 namespace spherule {
 namespace {
 
-const std::vector<SecondPhase>& phases_from_baselines() {
+const std::vector<Stage2Method>& phases_from_baselines() {
 #ifdef SPHERULE_HAS_BASELINES
-  static const std::vector<SecondPhase> kPhases = {{"medial", medial_cover},
-                                                   {"packing", packing_cover}};
+  static const std::vector<Stage2Method> kPhases = {{"medial", medial_cover},
+                                                    {"packing", packing_cover}};
 #else
-  static const std::vector<SecondPhase> kPhases = {{"medial", {}}, {"packing", {}}};
+  static const std::vector<Stage2Method> kPhases = {{"medial", {}}, {"packing", {}}};
 #endif
   return kPhases;
 }
@@ -26,14 +26,14 @@ const std::vector<SecondPhase>& phases_from_baselines() {
 
 std::vector<std::string> fit_method_names() {
   std::vector<std::string> names = method_names();
-  for (const SecondPhase& phase : phases_from_baselines()) names.push_back(phase.name);
+  for (const Stage2Method& phase : phases_from_baselines()) names.push_back(phase.name);
   return names;
 }
 
 void choose_method(const std::string& name, SimplifyOptions& options) {
-  const std::vector<SecondPhase>& phases = phases_from_baselines();
+  const std::vector<Stage2Method>& phases = phases_from_baselines();
   const auto chosen = std::find_if(phases.begin(), phases.end(),
-                                   [&](const SecondPhase& phase) { return phase.name == name; });
+                                   [&](const Stage2Method& phase) { return phase.name == name; });
   if (chosen == phases.end()) {
     options.method = method_named(name);
     return;
@@ -41,7 +41,7 @@ void choose_method(const std::string& name, SimplifyOptions& options) {
   if (!chosen->run) {
     throw Error("--method", "'" + name + "' needs a build with the option SPHERULE_BASELINES");
   }
-  options.second_phase = *chosen;
+  options.stage2_method = *chosen;
 }
 
 }  // namespace spherule

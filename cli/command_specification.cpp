@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/outline.h"
+#include "cli/command_specification.h"
 
 #include <CLI/CLI.hpp>
 
@@ -43,11 +43,11 @@ std::vector<std::string> all_commands(const CLI::App& app) {
   return names;
 }
 
-void collect_options(const CLI::App& app, CommandOutline& command) {
+void collect_options(const CLI::App& app, CommandSpecification& command) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_group().empty()) continue;
     auto& list = option->get_positional() ? command.arguments : command.options;
-    list.push_back(outline(*option));
+    list.push_back(specification(*option));
     if (list.back().value == kCommand) list.back().choices = all_commands(app);
   }
   // Groups of options are commands without a name.
@@ -57,10 +57,10 @@ void collect_options(const CLI::App& app, CommandOutline& command) {
 }
 
 // Options that stand in a group stand in the command around it as well.
-void drop_repeated(std::vector<OptionOutline>& options) {
-  std::vector<OptionOutline> kept;
-  for (OptionOutline& option : options) {
-    const bool there = std::any_of(kept.begin(), kept.end(), [&](const OptionOutline& other) {
+void drop_repeated(std::vector<OptionSpecification>& options) {
+  std::vector<OptionSpecification> kept;
+  for (OptionSpecification& option : options) {
+    const bool there = std::any_of(kept.begin(), kept.end(), [&](const OptionSpecification& other) {
       return other.names == option.names;
     });
     if (!there) kept.push_back(std::move(option));
@@ -70,8 +70,8 @@ void drop_repeated(std::vector<OptionOutline>& options) {
 
 }  // namespace
 
-OptionOutline outline(const CLI::Option& option) {
-  OptionOutline result;
+OptionSpecification specification(const CLI::Option& option) {
+  OptionSpecification result;
   if (option.get_positional()) {
     result.names = {option.get_name(true, false)};
   } else {
@@ -93,22 +93,22 @@ OptionOutline outline(const CLI::Option& option) {
   return result;
 }
 
-CommandOutline outline(const CLI::App& app) {
-  CommandOutline result{.name = app.get_name(),
-                        .summary = app.get_description(),
-                        .footer = app.get_footer(),
-                        .arguments = {},
-                        .options = {},
-                        .commands = {}};
+CommandSpecification specification(const CLI::App& app) {
+  CommandSpecification result{.name = app.get_name(),
+                              .summary = app.get_description(),
+                              .footer = app.get_footer(),
+                              .arguments = {},
+                              .options = {},
+                              .commands = {}};
   collect_options(app, result);
   drop_repeated(result.options);
   for (const CLI::App* inner : app.get_subcommands({})) {
-    if (!inner->get_name().empty()) result.commands.push_back(outline(*inner));
+    if (!inner->get_name().empty()) result.commands.push_back(specification(*inner));
   }
   return result;
 }
 
-std::string full_description(const OptionOutline& option) {
+std::string full_description(const OptionSpecification& option) {
   const auto note = [](const char* word, const std::vector<std::string>& names) {
     return names.empty() ? "" : std::string(" (") + word + CLI::detail::join(names, ", ") + ")";
   };
@@ -116,17 +116,19 @@ std::string full_description(const OptionOutline& option) {
          note("needs ", option.needs) + note("not with ", option.excludes);
 }
 
-std::vector<std::string> option_names(const CommandOutline& command) {
+std::vector<std::string> option_names(const CommandSpecification& command) {
   std::vector<std::string> names;
-  for (const OptionOutline& option : command.options) {
+  for (const OptionSpecification& option : command.options) {
     names.insert(names.end(), option.names.begin(), option.names.end());
   }
   return names;
 }
 
-const CommandOutline* find_command(const CommandOutline& around, const std::string& name) {
-  const auto found = std::find_if(around.commands.begin(), around.commands.end(),
-                                  [&](const CommandOutline& one) { return one.name == name; });
+const CommandSpecification* find_command(const CommandSpecification& around,
+                                         const std::string& name) {
+  const auto found =
+      std::find_if(around.commands.begin(), around.commands.end(),
+                   [&](const CommandSpecification& one) { return one.name == name; });
   return found == around.commands.end() ? nullptr : &*found;
 }
 

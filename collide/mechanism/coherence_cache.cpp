@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/mechanism/motion_memory.h"
+#include "collide/mechanism/coherence_cache.h"
 
 #include "collide/search/packed_tree.h"
 
@@ -29,7 +29,7 @@ constexpr double kStepRest = 0x1p-38;
 constexpr double kLongestWay = 1024.0;
 
 // As a body that is grown by g' is apart: MechanismCheck::within() says why.
-constexpr double kGrowthDown = 1.0 - 0x1p-18;
+constexpr double kInflationDown = 1.0 - 0x1p-18;
 
 double length(const double* v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -66,8 +66,8 @@ bool never(void*, std::int32_t, KernelPair, std::int32_t, std::int32_t) {
 
 }  // namespace
 
-MotionMemory::MotionMemory(const KernelProblem& problem, std::span<const double> reach,
-                           std::span<const double> tilt)
+CoherenceCache::CoherenceCache(const KernelProblem& problem, std::span<const double> reach,
+                               std::span<const double> tilt)
     : reach_(reaches(problem)),
       near_step_(kNearStep * largest(reach)),
       last_(reach_.size(), 1e300),
@@ -79,9 +79,9 @@ MotionMemory::MotionMemory(const KernelProblem& problem, std::span<const double>
   pairs_.reserve(static_cast<std::size_t>(problem.pair_count));
 }
 
-bool MotionMemory::check(const Kernels& kernels, const KernelProblem& problem,
-                         const double* configuration, const KernelScratch& scratch,
-                         ConfirmContact confirm, void* context) {
+bool CoherenceCache::check(const Kernels& kernels, const KernelProblem& problem,
+                           const double* configuration, const KernelScratch& scratch,
+                           ConfirmContact confirm, void* context) {
   struct Asking {
     explicit Asking(bool& flag) : is_asking(flag) { is_asking = true; }
     ~Asking() { is_asking = false; }
@@ -92,7 +92,7 @@ bool MotionMemory::check(const Kernels& kernels, const KernelProblem& problem,
 }
 
 // Whether the configuration is near the one before, as that was near its own.
-bool MotionMemory::follow(const double* configuration) {
+bool CoherenceCache::follow(const double* configuration) {
   double step = kStepRest * near_step_;
   for (std::size_t i = 0; i < last_.size(); ++i) {
     step += std::abs(configuration[i] - last_[i]) * reach_[i];
@@ -107,7 +107,7 @@ bool MotionMemory::follow(const double* configuration) {
   return is_following_;
 }
 
-void MotionMemory::forget() {
+void CoherenceCache::forget() {
   for (Body& body : bodies_) body.forget();
   depth_ = -1.0;
   way_ = 0.0;
@@ -116,7 +116,7 @@ void MotionMemory::forget() {
 }
 
 // Lists the bodies that may have moved by more than their clearance; false if there are none.
-bool MotionMemory::find_due(const double* configuration) {
+bool CoherenceCache::find_due(const double* configuration) {
   due_.clear();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Body& body = bodies_[i];
@@ -140,8 +140,8 @@ bool MotionMemory::find_due(const double* configuration) {
 
 // Puts the mechanism in its place and looks which bodies that are due are apart when grown; those
 // are due no more. True if one touches for sure.
-bool MotionMemory::grow_due(const Kernels& kernels, const KernelProblem& problem,
-                            const double* configuration, const KernelScratch& scratch) {
+bool CoherenceCache::grow_due(const Kernels& kernels, const KernelProblem& problem,
+                              const double* configuration, const KernelScratch& scratch) {
   if (std::none_of(due_.begin(), due_.end(), [&](std::int32_t i) {
         return bodies_[static_cast<std::size_t>(i)].wanted > 0.0F;
       })) {
@@ -154,15 +154,16 @@ bool MotionMemory::grow_due(const Kernels& kernels, const KernelProblem& problem
     KernelFinding finding = KernelFinding::kNear;
     const float few = static_cast<float>(kFewestSteps * body.step);
     int looks = 0;
-    for (float growth = body.wanted; growth > 0.0F; growth *= kLess) {
-      if (growth < few || looks == kLooks) break;
-      finding = look(kernels, problem, index, growth, scratch);
+    for (float inflation = body.wanted; inflation > 0.0F; inflation *= kLess) {
+      if (inflation < few || looks == kLooks) break;
+      finding = look(kernels, problem, index, inflation, scratch);
       ++looks;
       if (finding == KernelFinding::kTouch) return true;
       if (finding == KernelFinding::kNear) continue;
-      place(problem, index, configuration, scratch, static_cast<double>(growth) * kGrowthDown);
+      place(problem, index, configuration, scratch,
+            static_cast<double>(inflation) * kInflationDown);
       body.ambition =
-          looks == 1 ? static_cast<double>(growth) * kMore : static_cast<double>(growth);
+          looks == 1 ? static_cast<double>(inflation) * kMore : static_cast<double>(inflation);
       break;
     }
     if (finding == KernelFinding::kApart) continue;
@@ -174,10 +175,10 @@ bool MotionMemory::grow_due(const Kernels& kernels, const KernelProblem& problem
   return false;
 }
 
-std::optional<bool> MotionMemory::is_free_along(const Kernels& kernels,
-                                                const KernelProblem& problem, const double* from,
-                                                const double* to, const double* middle,
-                                                const KernelScratch& scratch) {
+std::optional<bool> CoherenceCache::is_free_along(const Kernels& kernels,
+                                                  const KernelProblem& problem, const double* from,
+                                                  const double* to, const double* middle,
+                                                  const KernelScratch& scratch) {
   if (!follow(middle)) return std::nullopt;
   // From the middle to either end.
   double half = kStepRest * near_step_;
@@ -200,43 +201,44 @@ std::optional<bool> MotionMemory::is_free_along(const Kernels& kernels,
 
 // Whether the body is apart, grown by what it moves from the middle or, to know more for the next
 // motions, by more.
-bool MotionMemory::grow_along(const Kernels& kernels, const KernelProblem& problem,
-                              std::int32_t index, const double* from, const double* to,
-                              const double* middle, const KernelScratch& scratch) {
+bool CoherenceCache::grow_along(const Kernels& kernels, const KernelProblem& problem,
+                                std::int32_t index, const double* from, const double* to,
+                                const double* middle, const KernelScratch& scratch) {
   Body& body = bodies_[static_cast<std::size_t>(index)];
   place(problem, index, middle, scratch, 0.0);
   const double moved = body.ball.way_along(from, to) + kStepRest * near_step_;
   if (!(moved <= near_step_)) return false;
-  const double needed = moved * (1.0 + 1e-5);  // above what kGrowthDown takes
+  const double needed = moved * (1.0 + 1e-5);  // above what kInflationDown takes
   const double wanted = std::clamp(body.ambition, needed, std::max(needed, near_step_));
-  for (const double growth : {wanted, needed}) {
-    if (look(kernels, problem, index, static_cast<float>(growth), scratch) ==
+  for (const double inflation : {wanted, needed}) {
+    if (look(kernels, problem, index, static_cast<float>(inflation), scratch) ==
         KernelFinding::kApart) {
-      place(problem, index, middle, scratch, growth * kGrowthDown);
-      const bool is_more = growth > needed;
-      body.ambition = is_more ? kMore * growth : wanted > needed ? needed : kFirstSteps * needed;
+      place(problem, index, middle, scratch, inflation * kInflationDown);
+      const bool is_more = inflation > needed;
+      body.ambition = is_more ? kMore * inflation : wanted > needed ? needed : kFirstSteps * needed;
       return true;
     }
-    if (growth <= needed) break;
+    if (inflation <= needed) break;
   }
   body.forget();
   return false;
 }
 
-KernelFinding MotionMemory::look(const Kernels& kernels, const KernelProblem& problem,
-                                 std::int32_t body, float growth, const KernelScratch& scratch) {
+KernelFinding CoherenceCache::look(const Kernels& kernels, const KernelProblem& problem,
+                                   std::int32_t body, float inflation,
+                                   const KernelScratch& scratch) {
   for (std::int32_t i = 0; i < problem.pair_count; ++i) {
     if (problem.pairs[i].body != body) continue;
     const KernelFinding finding =
-        kernels.look(problem, problem.pairs[i], growth, scratch, &never, nullptr);
+        kernels.look(problem, problem.pairs[i], inflation, scratch, &never, nullptr);
     if (finding != KernelFinding::kApart) return finding;
   }
   return KernelFinding::kApart;
 }
 
-void MotionMemory::place(const KernelProblem& problem, std::int32_t index,
-                         const double* configuration, const KernelScratch& scratch,
-                         double clearance) {
+void CoherenceCache::place(const KernelProblem& problem, std::int32_t index,
+                           const double* configuration, const KernelScratch& scratch,
+                           double clearance) {
   const KernelBody& of = problem.bodies[index];
   Body& body = bodies_[static_cast<std::size_t>(index)];
   body.ball.place(of.frame, of.center, static_cast<double>(of.radius), scratch.poses,
@@ -247,9 +249,9 @@ void MotionMemory::place(const KernelProblem& problem, std::int32_t index,
   knows_ = true;
 }
 
-bool MotionMemory::collides(const Kernels& kernels, const KernelProblem& problem,
-                            const double* configuration, const KernelScratch& scratch,
-                            ConfirmContact confirm, void* context) {
+bool CoherenceCache::collides(const Kernels& kernels, const KernelProblem& problem,
+                              const double* configuration, const KernelScratch& scratch,
+                              ConfirmContact confirm, void* context) {
   if (!follow(configuration)) {
     return check(kernels, problem, configuration, scratch, confirm, context);
   }
@@ -280,8 +282,8 @@ bool MotionMemory::collides(const Kernels& kernels, const KernelProblem& problem
   return touches;
 }
 
-void MotionMemory::remember_contact(std::int32_t frame, const Sphere& ball, double depth,
-                                    const KernelScratch& scratch) {
+void CoherenceCache::remember_contact(std::int32_t frame, const Sphere& ball, double depth,
+                                      const KernelScratch& scratch) {
   if (!is_following()) return;
   contact_.place(frame, ball.center.data(), ball.radius, scratch.poses, last_.data());
   depth_ = depth;

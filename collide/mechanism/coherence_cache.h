@@ -28,11 +28,11 @@ namespace spherule::internal {
 // them that moves has moved by less, they touch.
 //
 // Configurations that are far from the one before are searched as if there were no memory.
-class MotionMemory {
+class CoherenceCache {
  public:
   // `reach` and `tilt` of the bodies as in mechanism_parts.h.
-  MotionMemory(const KernelProblem& problem, std::span<const double> reach,
-               std::span<const double> tilt);
+  CoherenceCache(const KernelProblem& problem, std::span<const double> reach,
+                 std::span<const double> tilt);
 
   // The answer of kernels.check().
   bool collides(const Kernels& kernels, const KernelProblem& problem, const double* configuration,
@@ -79,7 +79,7 @@ class MotionMemory {
                   const double* from, const double* to, const double* middle,
                   const KernelScratch& scratch);
   static KernelFinding look(const Kernels& kernels, const KernelProblem& problem, std::int32_t body,
-                            float growth, const KernelScratch& scratch);
+                            float inflation, const KernelScratch& scratch);
   void place(const KernelProblem& problem, std::int32_t index, const double* configuration,
              const KernelScratch& scratch, double clearance);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/check/internal/standing_trees.h"
+#include "robot/check/internal/static_trees.h"
 
 #include "collide/collide.h"
 #include "robot/model/internal/moving_frames.h"
@@ -11,7 +11,7 @@
 
 namespace spherule::internal {
 
-StandingTrees::StandingTrees(const BodyPairs& pairs, InstructionSet instructions)
+StaticTrees::StaticTrees(const BodyPairs& pairs, InstructionSet instructions)
     : pairs_(pairs), positions_(pairs.robot()) {
   const RobotModel& robot = pairs.robot();
   const MovingFrames frames(robot);
@@ -58,7 +58,7 @@ StandingTrees::StandingTrees(const BodyPairs& pairs, InstructionSet instructions
                                                   pairs.pose_error(), instructions, has_meshes);
 }
 
-bool StandingTrees::touch(std::span<const double> configuration, Memory& memory) const {
+bool StaticTrees::touch(std::span<const double> configuration, Memory& memory) const {
   const std::span<const double> positions = positions_.of(configuration, memory.room_);
   if (!MechanismCheck::is_in_range(positions)) return touch_exactly(configuration, memory);
   if (always_) return true;
@@ -70,8 +70,8 @@ bool StandingTrees::touch(std::span<const double> configuration, Memory& memory)
   return check_->collides(positions, memory.check_, confirm) || contains_component(memory);
 }
 
-void StandingTrees::touch(std::span<const double> configurations, Memory& memory,
-                          std::span<std::uint8_t> verdicts) const {
+void StaticTrees::touch(std::span<const double> configurations, Memory& memory,
+                        std::span<std::uint8_t> verdicts) const {
   constexpr std::size_t kBlock = MechanismCheck::kBlock;
   const auto variables = static_cast<std::size_t>(pairs_.robot().variable_count());
   const auto configuration = [&](std::size_t i) {
@@ -108,9 +108,9 @@ void StandingTrees::touch(std::span<const double> configurations, Memory& memory
   }
 }
 
-StandingTrees::AlongFinding StandingTrees::look_along(std::span<const double> from,
-                                                      std::span<const double> to,
-                                                      bool asks_for_contact, Memory& memory) const {
+StaticTrees::AlongFinding StaticTrees::look_along(std::span<const double> from,
+                                                  std::span<const double> to, bool asks_for_contact,
+                                                  Memory& memory) const {
   if (always_) return AlongFinding::kUndecided;
   const std::optional<bool> is_free = check_->is_free_along(
       positions_.of(from, memory.room_, 0), positions_.of(to, memory.room_, 1), memory.check_);
@@ -124,8 +124,8 @@ StandingTrees::AlongFinding StandingTrees::look_along(std::span<const double> fr
 
 // Whether the robot touches an obstacle at the contact, or where it last did. `is_placed` says
 // whether the memory holds the configuration's poses.
-bool StandingTrees::touches(std::span<const double> configuration, const MechanismContact& contact,
-                            bool& is_placed, Memory& memory) const {
+bool StaticTrees::touches(std::span<const double> configuration, const MechanismContact& contact,
+                          bool& is_placed, Memory& memory) const {
   if (!std::exchange(is_placed, true)) {
     pairs_.place(configuration, memory.placed_);
     if (memory.last_ && still_touches(*memory.last_, memory)) return true;
@@ -142,7 +142,7 @@ bool StandingTrees::touches(std::span<const double> configuration, const Mechani
 
 // The canonical test of the spheres, and that of the meshes; the latter is for a body and an
 // obstacle as a whole unless both are meshes.
-StandingTrees::Finding StandingTrees::find(const MechanismContact& contact, Memory& memory) const {
+StaticTrees::Finding StaticTrees::find(const MechanismContact& contact, Memory& memory) const {
   const Body& body = body_of(contact.pair);
   const Obstacle& obstacle = obstacle_of(contact.pair);
   const Pose& world_from_body = pose_of(body, memory);
@@ -181,7 +181,7 @@ StandingTrees::Finding StandingTrees::find(const MechanismContact& contact, Memo
 // A robot that touches often did so a moment ago, by the same triangles or by others near to them.
 // What is not proved by the former alone is left to the test of the spheres, or to the contact that
 // is asked about.
-bool StandingTrees::still_touches(const Touch& touch, Memory& memory) const {
+bool StaticTrees::still_touches(const Touch& touch, Memory& memory) const {
   if (check_->is_following(memory.check_)) {
     const double depth = depth_of(touch, memory);
     if (depth > 0.0) {
@@ -192,7 +192,7 @@ bool StandingTrees::still_touches(const Touch& touch, Memory& memory) const {
   return are_meshes(touch.contact.pair) && find(touch.contact, memory) == Finding::kTouch;
 }
 
-double StandingTrees::depth_of(const Touch& touch, const Memory& memory) const {
+double StaticTrees::depth_of(const Touch& touch, const Memory& memory) const {
   const Body& body = body_of(touch.contact.pair);
   const Obstacle& obstacle = obstacle_of(touch.contact.pair);
   return obstacle.mesh != nullptr
@@ -204,7 +204,7 @@ double StandingTrees::depth_of(const Touch& touch, const Memory& memory) const {
 
 // The poses of forward_kinematics() are within pose_error() of those of the exact mechanism, now
 // and wherever the memory is asked for; as much again covers the ball's.
-void StandingTrees::remember(const Touch& touch, double depth, Memory& memory) const {
+void StaticTrees::remember(const Touch& touch, double depth, Memory& memory) const {
   if (depth <= 3.0 * pairs_.pose_error()) return;
   const Body& body = body_of(touch.contact.pair);
   const auto& [p, q, r] = body.piece->mesh->mesh().triangle(touch.triangles.a);
@@ -216,7 +216,7 @@ void StandingTrees::remember(const Touch& touch, double depth, Memory& memory) c
 }
 
 // Where no triangles touch but spheres do, under the poses that the memory holds.
-bool StandingTrees::contains_component(const Memory& memory) const {
+bool StaticTrees::contains_component(const Memory& memory) const {
   return std::any_of(
       memory.unconfirmed_.begin(), memory.unconfirmed_.end(), [&](const MechanismPair& pair) {
         if (!are_meshes(pair)) return false;
@@ -227,7 +227,7 @@ bool StandingTrees::contains_component(const Memory& memory) const {
       });
 }
 
-bool StandingTrees::touch_exactly(std::span<const double> configuration, Memory& memory) const {
+bool StaticTrees::touch_exactly(std::span<const double> configuration, Memory& memory) const {
   pairs_.place(configuration, memory.placed_);
   for (std::size_t i = pairs_.tested(); i < pairs_.pairs().size(); ++i) {
     if (pairs_.touches(i, memory.placed_)) return true;

@@ -14,10 +14,10 @@ namespace spherule::internal {
 
 // How far some balls have to grow, each up to a limit of its own, so that given points are covered,
 // with a small sum of growths. Plain double: it serves a search, never a proof.
-class BallGrowth {
+class SphereInflation {
  public:
   // `limits`: the largest radius of every ball, not below its own.
-  BallGrowth(std::span<const Sphere> balls, std::vector<double> limits);
+  SphereInflation(std::span<const Sphere> balls, std::vector<double> limits);
 
   // Asks for a point to be covered with the ball of radius `reserve` about it, or as much of that
   // as the balls allow. False if the radii as they are do so already.
@@ -42,7 +42,7 @@ class BallGrowth {
   using Demand = std::vector<Offer>;  // one of these has to be met
 
   bool is_met(const Demand& demand) const;
-  double growth(const Offer& offer) const { return offer.radius - least_[offer.ball]; }
+  double inflation(const Offer& offer) const { return offer.radius - least_[offer.ball]; }
   void shrink();
 
   std::vector<Sphere> balls_;

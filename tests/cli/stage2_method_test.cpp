@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `fit --method` with the second phases of the library of baselines.
+// `fit --method` with the stage 2 methods of the library of baselines.
 #include "tests/cli/command_test_support.h"
 #include "tests/support/effort.h"
 
 namespace spherule {
 namespace {
 
-using SecondPhaseTest = CommandTest;
+using Stage2MethodTest = CommandTest;
 
-TEST_F(SecondPhaseTest, FitsAndAnAuditProvesTheFile) {
+TEST_F(Stage2MethodTest, FitsAndAnAuditProvesTheFile) {
   write_box("box.stl", {1, 2, 3});
   const double error = test::kSanitized ? 0.5 : 0.3;
   for (const char* method : {"medial", "packing"}) {
@@ -29,7 +29,7 @@ TEST_F(SecondPhaseTest, FitsAndAnAuditProvesTheFile) {
   }
 }
 
-TEST_F(SecondPhaseTest, ZonesOfAnErrorOfTheirOwnAreRefused) {
+TEST_F(Stage2MethodTest, ZonesOfAnErrorOfTheirOwnAreRefused) {
   write_box("box.stl", {1, 1, 1});
   write(
       "zones.json",
