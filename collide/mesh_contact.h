@@ -85,10 +85,10 @@ struct TrianglePair {
 // wholly inside the other mesh or wholly outside; one point tells which, and if it is inside, it is
 // in spheres of both, so that two of them touch.
 // If it is true, the exact gap is some units in the last place of the scene: in our tests at most
-// collision_slack() of the covers, and 1e-9 of the scene between needles; mesh/geometry/triangle_pair.h
-// says why. Equal for every tree over the same spheres, and for swapped arguments but where the gap
-// is below that.
-// Neither throws nor allocates, with the exception that collides() of sphere trees has.
+// collision_slack() of the covers, and 1e-9 of the scene between needles;
+// mesh/geometry/triangle_pair.h says why. Equal for every tree over the same spheres, and for
+// swapped arguments but where the gap is below that. Neither throws nor allocates, with the
+// exception that collides() of sphere trees has.
 bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
               const Pose& world_from_b) noexcept;
 

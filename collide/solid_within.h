@@ -13,8 +13,8 @@ namespace spherule {
 // Never false if the exact distance under exactly the given poses is at most the clearance. If it
 // is true, the exact one is larger by rounding only: some units in the last place of the scene, and
 // up to about 1e-8 of the longest edge where corners of needles are nearest to each other
-// (mesh/geometry/triangle_pair.h). Inside is what SolidMesh says. Allocates as collides() of two trees
-// does. Throws Error as require_clearance() does.
+// (mesh/geometry/triangle_pair.h). Inside is what SolidMesh says. Allocates as collides() of two
+// trees does. Throws Error as require_clearance() does.
 bool within(const SolidMesh& a, const Pose& world_from_a, const SolidMesh& b,
             const Pose& world_from_b, double clearance);
 

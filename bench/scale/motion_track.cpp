@@ -62,8 +62,8 @@ void MotionTrack<Number>::add_balls(std::span<const Sphere> spheres, const Pose&
     tracked.side = cross(axis, from);
     tracked.radius = sphere.radius;
     tracked.extent = (extent + sphere.center.template lpNorm<1>() +
-                   2.0 * reference.template lpNorm<1>() + sphere.radius) *
-                  (1 + 1e-9);
+                      2.0 * reference.template lpNorm<1>() + sphere.radius) *
+                     (1 + 1e-9);
     balls_.push_back(tracked);
   }
   set_errors();
