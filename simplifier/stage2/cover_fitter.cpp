@@ -32,8 +32,7 @@ using Eigen::Vector3d;
 constexpr std::array kSpacings{0.7, 0.5, 0.3, 0.2, 0.14};
 constexpr std::size_t kFewCells = 10000;
 constexpr std::size_t kManyCells = 30000;
-// Rounds without a better answer, after which cells become finer, or which end the search. A round
-// over finer cells costs about as much and gains more.
+// Rounds without a better answer, after which cells become finer, or which end the search.
 constexpr int kPatience = 1;
 constexpr int kConverged = 40;
 
