@@ -30,30 +30,30 @@ class Floats {
   std::vector<Line> lines_;
 };
 
-// Above the double; the promise is that no ball shrinks.
+// Above the double; the promise is that no sphere shrinks.
 float rounded_up(double x) {
   const auto rounded = static_cast<float>(x);
   return static_cast<double>(rounded) < x ? std::nextafter(rounded, 2.0F * rounded) : rounded;
 }
 
-class BallArrays {
+class SphereArrays {
  public:
-  BallArrays(std::span<const Sphere> balls, const Pose& pose, double pad)
-      : count_((balls.size() + flat_scan::kPadding - 1) / flat_scan::kPadding *
+  SphereArrays(std::span<const Sphere> spheres, const Pose& pose, double pad)
+      : count_((spheres.size() + flat_scan::kPadding - 1) / flat_scan::kPadding *
                flat_scan::kPadding),
-        unique_(balls.size()),
+        unique_(spheres.size()),
         numbers_(4 * count_) {
     for (std::size_t i = 0; i < count_; ++i) {
-      const Sphere& ball = balls[std::min(i, balls.size() - 1)];
-      const Eigen::Vector3d center = pose * ball.center;
+      const Sphere& sphere = spheres[std::min(i, spheres.size() - 1)];
+      const Eigen::Vector3d center = pose * sphere.center;
       for (std::size_t k = 0; k < 3; ++k) {
         numbers_.data()[k * count_ + i] = static_cast<float>(center[static_cast<int>(k)]);
       }
-      numbers_.data()[3 * count_ + i] = rounded_up(ball.radius + pad);
+      numbers_.data()[3 * count_ + i] = rounded_up(sphere.radius + pad);
     }
   }
 
-  flat_scan::Balls balls() const {
+  flat_scan::Spheres spheres() const {
     const float* const x = numbers_.data();
     return {x,
             x + count_,
@@ -132,7 +132,7 @@ class FlatScanChecker : public Checker {
       for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
         if (is_tested(body, workload.obstacles[i])) moving.against |= 1U << i;
       }
-      largest = std::max(largest, moving.group.balls.count);
+      largest = std::max(largest, moving.group.spheres.count);
       bodies_.push_back(moving);
     }
     const auto room = static_cast<std::size_t>(largest);
@@ -146,7 +146,7 @@ class FlatScanChecker : public Checker {
                 static_cast<std::int32_t>(bodies_.size()),
                 obstacles_.data(),
                 static_cast<std::int32_t>(obstacles_.size()),
-                scan == FlatScan::kBallsInFront};
+                scan == FlatScan::kSpheresInFront};
   }
 
   void check(std::span<const ArmPositions> configurations,
@@ -158,17 +158,17 @@ class FlatScanChecker : public Checker {
 
  private:
   flat_scan::Group add(const SphereTree& tree, const Pose& pose) {
-    arrays_.push_back(std::make_unique<BallArrays>(tree.spheres(), pose, pad_));
-    const Eigen::Vector3d center = pose * tree.ball(0).center;
-    return {arrays_.back()->balls(),
+    arrays_.push_back(std::make_unique<SphereArrays>(tree.spheres(), pose, pad_));
+    const Eigen::Vector3d center = pose * tree.sphere(0).center;
+    return {arrays_.back()->spheres(),
             {center.x(), center.y(), center.z()},
-            rounded_up(tree.ball(0).radius + pad_)};
+            rounded_up(tree.sphere(0).radius + pad_)};
   }
 
   flat_scan::Check check_;
   double pad_;
   std::vector<flat_scan::Frame> frames_;
-  std::vector<std::unique_ptr<BallArrays>> arrays_;
+  std::vector<std::unique_ptr<SphereArrays>> arrays_;
   std::vector<flat_scan::Group> obstacles_;
   std::vector<flat_scan::Body> bodies_;
   std::unique_ptr<Floats> placed_;

@@ -15,9 +15,10 @@ namespace spherule {
 enum class FlatScan {
   // All pairs of each body's and each obstacle's spheres, to the first contact.
   kAllPairs,
-  // The ball around each body goes first, against the ball around the obstacle and against each of
+  // The sphere around each body goes first, against the sphere around the obstacle and against each
+  // of
   // its spheres; what is left is compared with all spheres of the body.
-  kBallsInFront,
+  kSpheresInFront,
 };
 
 // Throws Error for a robot with more than 8 variables or a joint that shifts, for more than 32

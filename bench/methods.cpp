@@ -42,8 +42,8 @@ std::vector<Method> make_methods(const Workload& workload) {
 #endif
   methods.push_back({"brute-force-spheres", "all pairs, single precision, widest vectors",
                      make_flat_scan_checker(workload, FlatScan::kAllPairs), spheres, true});
-  methods.push_back({"flat-scan-spheres", "the same behind a ball around each body",
-                     make_flat_scan_checker(workload, FlatScan::kBallsInFront), spheres, false});
+  methods.push_back({"flat-scan-spheres", "the same behind a sphere around each body",
+                     make_flat_scan_checker(workload, FlatScan::kSpheresInFront), spheres, false});
   methods.push_back({"spherule-single", "sphere trees, one configuration a call",
                      make_tree_checker(workload, TreeMode::kSingle), spheres, false});
   methods.push_back({"spherule-batch", "sphere trees, many configurations a call",

@@ -14,7 +14,7 @@ double scene_reach(const Workload& workload);
 // and 12 v S (in each coordinate 1 v S for each of: centre, matrix, shift, three products and sums;
 // times the root of three); a rotation that is the product of two rounded ones by 6 v S more.
 // Squares, sums and differences change where a pair counts as touching by less than 6 v S. Twice
-// the sum: what the root ball that a body is tested with in front loses is no more than that.
+// the sum: what the root sphere that a body is tested with in front loses is no more than that.
 double single_precision_pad(double reach);
 
 }  // namespace spherule

@@ -56,7 +56,7 @@ Json json_of(const Certificate& certificate, const std::optional<ExternalSpheres
   if (external) {
     json["min_external_diameter"] = to_json(external->min_external_diameter);
     json["padding"] = to_json(external->padding);
-    json["external_sphere_count"] = external->balls.size();
+    json["external_sphere_count"] = external->spheres.size();
   }
   return json;
 }

@@ -64,7 +64,7 @@ BaselineMeshes run_decimation(const TriangleMesh& mesh, const MeshArguments& arg
 
 void add_hull(CLI::App& command, MeshArguments& arguments) {
   arguments.lengths.add(command, "--padding", arguments.hull.padding,
-                        "Hold balls of this radius about every vertex");
+                        "Hold spheres of this radius about every vertex");
 }
 
 BaselineMeshes run_hull(const TriangleMesh& mesh, const MeshArguments& arguments) {

@@ -12,8 +12,8 @@
 namespace spherule {
 namespace {
 
-const std::map<std::string, VoxelBall> kBalls = {{"circumscribed", VoxelBall::kCircumscribed},
-                                                 {"inscribed", VoxelBall::kInscribed}};
+const std::map<std::string, VoxelSphere> kSpheres = {{"circumscribed", VoxelSphere::kCircumscribed},
+                                                     {"inscribed", VoxelSphere::kInscribed}};
 const std::map<std::string, SphereReduction> kReductions = {{"merge", SphereReduction::kMerge},
                                                             {"burst", SphereReduction::kBurst},
                                                             {"expand", SphereReduction::kExpand},
@@ -52,8 +52,8 @@ void store(MadeSpheres& made, const char* name, Number value, Number unasked) {
   if (value != unasked) made.options[name] = value;
 }
 
-// What the balls around cells cover whatever a certificate can prove: at the corners of cells they
-// touch without room to spare.
+// What the spheres around cells cover whatever a certificate can prove: at the corners of cells
+// they touch without room to spare.
 const char* covered_by_construction(Filling filling) {
   return filling == Filling::kSolid ? "solid" : "surface";
 }
@@ -63,36 +63,36 @@ Filling filling_of(const SphereArguments& arguments) {
 }
 
 void add_voxels(CLI::App& command, SphereArguments& arguments) {
-  arguments.ball = "circumscribed";
+  arguments.sphere = "circumscribed";
   CLI::Option* step = arguments.lengths.add_positive(command, "--step", arguments.voxelisation.step,
                                                      "Edge of a voxel");
   require_one(command, step,
               arguments.lengths.add_positive(
                   command, "--max-error", arguments.voxelisation.max_error,
-                  "As large as a step may be for balls around voxels to protrude by no "
+                  "As large as a step may be for spheres around voxels to protrude by no "
                   "more than this"));
   command
-      .add_option("--ball", arguments.ball,
-                  "What stands for a voxel: circumscribed, the ball around it (default), or "
+      .add_option("--ball", arguments.sphere,
+                  "What stands for a voxel: circumscribed, the sphere around it (default), or "
                   "inscribed, the paper's of its width")
-      ->check(CLI::IsMember(kBalls));
+      ->check(CLI::IsMember(kSpheres));
   add_surface(command, arguments);
 }
 
 MadeSpheres run_voxels(const TriangleMesh& mesh, const SphereArguments& arguments,
                        const Progress&) {
   VoxelisationOptions options = arguments.voxelisation;
-  options.ball = kBalls.at(arguments.ball);
+  options.sphere = kSpheres.at(arguments.sphere);
   options.filling = filling_of(arguments);
   options.padding = arguments.padding;
   Voxelisation voxels = voxelise(mesh, options);
   MadeSpheres made;
   made.spheres = std::move(voxels.spheres);
   made.figures = {{"step", voxels.step}, {"surface", voxels.surface}, {"inside", voxels.inside}};
-  made.figures["covers_by_construction"] = options.ball == VoxelBall::kCircumscribed
+  made.figures["covers_by_construction"] = options.sphere == VoxelSphere::kCircumscribed
                                                ? Json(covered_by_construction(options.filling))
                                                : Json(nullptr);
-  made.options = {{"ball", arguments.ball}, {"surface", arguments.surface}};
+  made.options = {{"ball", arguments.sphere}, {"surface", arguments.surface}};
   store(made, "step", options.step, 0.0);
   store(made, "max-error", options.max_error, 0.0);
   return made;
@@ -125,7 +125,7 @@ MadeSpheres run_packing(const TriangleMesh& mesh, const SphereArguments& argumen
   made.spheres = std::move(arguments.inflated ? packing.inflated : packing.spheres);
   made.figures = {{"error", packing.error},
                   {"closed_below", packing.solid.min_external_diameter},
-                  {"external_sphere_count", packing.solid.balls.size()},
+                  {"external_sphere_count", packing.solid.spheres.size()},
                   {"seeds_rejected", packing.seeds_rejected}};
   made.figures["covers_by_construction"] =
       arguments.inflated ? Json(covered_by_construction(Filling::kSolid)) : Json(nullptr);
@@ -191,7 +191,7 @@ void add_medial(CLI::App& command, SphereArguments& arguments) {
   add_seed(command, arguments);
 }
 
-// The numbers of balls of each level, and the tree over the finest.
+// The numbers of spheres of each level, and the tree over the finest.
 void keep_levels(SphereLevels levels, MadeSpheres& made) {
   made.spheres = levels.levels.back();
   made.figures["level_counts"] = Json::array();
@@ -241,10 +241,10 @@ void add_octree(CLI::App& command, SphereArguments& arguments) {
   require_one(command, depth,
               arguments.lengths.add_positive(
                   command, "--max-error", arguments.octree.max_error,
-                  "Halve cubes until their balls protrude by no more than this"));
+                  "Halve cubes until their spheres protrude by no more than this"));
   add_surface(command, arguments);
   add_tree_file(command, arguments,
-                "Where the tree of the method goes; if spheres had to grow, the smallest balls "
+                "Where the tree of the method goes; if spheres had to grow, the smallest spheres "
                 "around them take the place of those around cubes");
 }
 
@@ -304,7 +304,7 @@ MadeSpheres run_hubbard(const TriangleMesh& mesh, const SphereArguments& argumen
 
 const std::vector<SphereBaseline>& sphere_baselines() {
   static const std::vector<SphereBaseline> kMethods = {
-      {{"voxelise", "A ball for every voxel; around it they cover, of its width they do not",
+      {{"voxelise", "A sphere for every voxel; around it they cover, of its width they do not",
         "spherule baseline voxelise part.stl -o voxels.json --step 5 --conservative"},
        add_voxels,
        run_voxels},
@@ -312,7 +312,7 @@ const std::vector<SphereBaseline>& sphere_baselines() {
         "spherule baseline pack part.stl -o packed.json --max-error 5 --inflated"},
        add_packing,
        run_packing},
-      {{"fill", "The largest balls inside of a level set (OpenVDB); not conservative",
+      {{"fill", "The largest spheres inside of a level set (OpenVDB); not conservative",
         "spherule baseline fill part.stl -o filled.json --step 1 --conservative"},
        add_filling,
        run_filling},
@@ -320,7 +320,7 @@ const std::vector<SphereBaseline>& sphere_baselines() {
         "spherule baseline medial part.stl -o medial.json --spheres 200 --conservative"},
        add_medial,
        run_medial},
-      {{"octree", "The octree of Liu, Palmer and Grimsdale; the balls around cubes cover",
+      {{"octree", "The octree of Liu, Palmer and Grimsdale; the spheres around cubes cover",
         "spherule baseline octree part.stl -o octree.json --depth 5 --conservative"},
        add_octree,
        run_octree},

@@ -30,7 +30,7 @@ struct SphereArguments : BaselineArguments {
   bool surface = false;
   bool inflated = false;
   bool levels = false;  // the medial axis as a tree
-  std::string ball;
+  std::string sphere;
   std::string reduction;
   VoxelisationOptions voxelisation;
   SpherePackingOptions packing;

@@ -38,7 +38,7 @@ void write_view(const FitArguments& arguments, const TriangleMesh& mesh,
   ViewScene scene{.title = arguments.models.front(), .items = {}};
   scene.items.push_back({.name = arguments.models.front(), .parts = {{mesh}}});
   scene.items.push_back({.name = "external spheres",
-                         .parts = {{result.external.balls}},
+                         .parts = {{result.external.spheres}},
                          .external = true,
                          .shown = false});
   const ViewContent spheres = tree ? ViewContent(*tree) : ViewContent(result.cover.spheres);
@@ -164,7 +164,7 @@ int fit(FitArguments& arguments) {
             << result.options.min_external_diameter << ", padding " << result.external.padding
             << (model.cad ? " (chord error and rounding" : " (rounding")
             << " of the file included)\n"
-            << "external spheres: " << result.external.balls.size();
+            << "external spheres: " << result.external.spheres.size();
   if (result.options.external == ExternalPlacement::kReachable) {
     std::cout << ", ways into the part that are wider than " << result.options.min_external_diameter
               << " by " << result.external.closing_slack << " stay open (proved)";

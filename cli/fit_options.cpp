@@ -52,7 +52,7 @@ void add_fit_options(CLI::App& command, FitArguments& arguments) {
       ->check(CLI::Range(0.001, ExternalOptions::kNoTightness));
   command
       .add_option("--zones", arguments.zones,
-                  "Where E and D are smaller: balls, boxes and capsules (JSON)")
+                  "Where E and D are smaller: spheres, boxes and capsules (JSON)")
       ->type_name(kFile);
   command.add_flag("--keep-concave-edges", options.keep_concave_edges,
                    "A smaller D along sharp concave edges, so that they are not filled");

@@ -54,13 +54,13 @@ Json to_json(std::span<const CoverLevel> levels) {
   Json list = Json::array();
   for (const CoverLevel& level : levels) {
     list.push_back({{"max_error", level.max_error},
-                    {"sphere_count", level.balls.spheres.size()},
+                    {"sphere_count", level.spheres.spheres.size()},
                     {"protrusion_over_simplified_max", level.protrusion},
                     {"clustering",
                      {{"sphere_count", level.clustering_count},
                       {"protrusion_over_simplified_max", level.clustering_protrusion}}},
-                    {"parent_of_finer", level.balls.parent_of},
-                    {"spheres", spherule::to_json(level.balls.spheres)}});
+                    {"parent_of_finer", level.spheres.parent_of},
+                    {"spheres", spherule::to_json(level.spheres.spheres)}});
   }
   return list;
 }

@@ -22,9 +22,9 @@
 namespace spherule {
 namespace {
 
-void print_ball(const char* what, const Sphere& ball) {
-  std::cout << what << ": center (" << ball.center.x() << ", " << ball.center.y() << ", "
-            << ball.center.z() << "), radius " << ball.radius << "\n";
+void print_sphere(const char* what, const Sphere& sphere) {
+  std::cout << what << ": center (" << sphere.center.x() << ", " << sphere.center.y() << ", "
+            << sphere.center.z() << "), radius " << sphere.radius << "\n";
 }
 
 void print_spheres(const SphereFile& file) {
@@ -34,7 +34,7 @@ void print_spheres(const SphereFile& file) {
         std::minmax_element(file.spheres.begin(), file.spheres.end(),
                             [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
     std::cout << "radius: " << smallest->radius << " to " << largest->radius << "\n";
-    print_ball("enclosing sphere", enclosing_sphere(file.spheres));
+    print_sphere("enclosing sphere", enclosing_sphere(file.spheres));
   }
   if (!file.bodies.empty()) std::cout << "bodies: " << file.bodies.size() << "\n";
   for (const BodyRecord& body : file.bodies) {
@@ -75,7 +75,7 @@ void print_tree(const SphereTree& tree) {
             << report.branching << "\n"
             << "invariants: " << (report.valid ? "all hold" : "broken") << "\n"
             << "mean growth of a level: " << report.mean_inflation << "\n";
-  print_ball("root", tree.ball(0));
+  print_sphere("root", tree.sphere(0));
 }
 
 int info(const std::string& file) {

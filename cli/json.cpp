@@ -77,8 +77,8 @@ Json to_json(const ExternalSpheres& external, ReportContent content) {
                {"grid_step", external.grid_step},
                {"closing_slack", to_json(external.closing_slack)},
                {"nodes_examined", external.nodes_examined},
-               {"external_sphere_count", external.balls.size()}};
-  if (content == ReportContent::kAll) json["external_spheres"] = to_json(external.balls);
+               {"external_sphere_count", external.spheres.size()}};
+  if (content == ReportContent::kAll) json["external_spheres"] = to_json(external.spheres);
   return json;
 }
 

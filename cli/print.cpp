@@ -52,7 +52,7 @@ std::string describe(const Certificate& certificate, const std::string& solid) {
 std::string describe(std::span<const CoverLevel> levels) {
   std::ostringstream out;
   for (const CoverLevel& level : levels) {
-    out << "level " << level.max_error << ": " << level.balls.spheres.size()
+    out << "level " << level.max_error << ": " << level.spheres.spheres.size()
         << " spheres, protrusion over the simplified solid at most " << level.protrusion
         << " (plain clustering: " << level.clustering_count << " spheres, "
         << level.clustering_protrusion << ")\n";

@@ -47,9 +47,9 @@ void ProgressBar::log(double share, const char* what) {
   if (now - last_time_ < kLogInterval) return;
   last_time_ = now;
   if (share < 0.0) {
-    std::fprintf(stderr, "spherule: %s\n", what);
+    std::fprintf(stderr, "spherule: progress: %s\n", what);
   } else {
-    std::fprintf(stderr, "spherule: %s (%d %%)\n", what,
+    std::fprintf(stderr, "spherule: progress: %s (%d %%)\n", what,
                  static_cast<int>(std::min(share, 1.0) * 100.0));
   }
 }

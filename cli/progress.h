@@ -10,7 +10,8 @@
 namespace spherule {
 
 // Tells on standard error how far long work is: by a bar, if that is a terminal; elsewhere by a
-// line every ten seconds, so that logs of long work are not silent, and short work prints nothing.
+// line "spherule: progress: ..." every ten seconds, so that logs of long work are not silent, and
+// short work prints nothing.
 class ProgressBar {
  public:
   ProgressBar();

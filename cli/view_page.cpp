@@ -119,9 +119,9 @@ struct ContentEncoder {
     return {{"levels", std::move(levels)}};
   }
   Json operator()(const std::vector<LeakPoint>& leaks) const {
-    std::vector<Sphere> balls;
-    for (const LeakPoint& leak : leaks) balls.push_back({leak.point, leak.depth});
-    return (*this)(balls);
+    std::vector<Sphere> spheres;
+    for (const LeakPoint& leak : leaks) spheres.push_back({leak.point, leak.depth});
+    return (*this)(spheres);
   }
 };
 

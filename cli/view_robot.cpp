@@ -84,14 +84,14 @@ Json json_of(const RobotDescription& robot) {
   return json;
 }
 
-// Without balls, which are those of a spherized URDF and shown as spheres.
+// Without spheres, which are those of a spherized URDF and shown as spheres.
 ViewItem mesh_item(const RobotDescription& robot, LinkGeometry geometry, const std::string& name) {
   ViewItem item{.name = name + " geometry", .parts = {}};
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     LinkDescription link = robot.links[i];
     std::erase_if(link.collision, [](const LinkShape& shape) {
       const auto* primitive = std::get_if<Primitive>(&shape.geometry);
-      return primitive != nullptr && std::holds_alternative<Ball>(*primitive);
+      return primitive != nullptr && std::holds_alternative<SolidSphere>(*primitive);
     });
     auto mesh = link_mesh(link, {.geometry = geometry});
     if (mesh) item.parts.push_back({std::move(*mesh), static_cast<int>(i)});
@@ -156,11 +156,11 @@ std::vector<ViewItem> report_items(const RobotDescription& robot, const Json& js
   return {std::move(external), std::move(leaks)};
 }
 
-bool has_balls(const RobotDescription& robot) {
+bool has_spheres(const RobotDescription& robot) {
   return std::any_of(robot.links.begin(), robot.links.end(), [](const LinkDescription& link) {
     return std::any_of(link.collision.begin(), link.collision.end(), [](const LinkShape& shape) {
       const auto* primitive = std::get_if<Primitive>(&shape.geometry);
-      return primitive != nullptr && std::holds_alternative<Ball>(*primitive);
+      return primitive != nullptr && std::holds_alternative<SolidSphere>(*primitive);
     });
   });
 }
@@ -203,7 +203,7 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
   PairSources pairs;
   std::optional<RobotSpheres> first_spheres;  // to which the pairs belong
   for (const std::string& file : files) {
-    if (file == *urdf && !has_balls(robot)) continue;
+    if (file == *urdf && !has_spheres(robot)) continue;
     if (file != *urdf && is_of_pairs_alone(file)) {
       std::string& source = fs::path(file).extension() == ".pairs" ? pairs.pairs : pairs.srdf;
       if (!source.empty()) throw Error(file, "is the second file of pairs of links; one is shown");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/collide.h"
 
-#include "collide/search/ball_leaves.h"
 #include "collide/search/box_gap.h"
 #include "collide/search/queries.h"
+#include "collide/search/sphere_leaves.h"
 
 namespace spherule {
 
@@ -12,13 +12,13 @@ bool collides(const SphereTree& a, const Pose& world_from_a, const SphereTree& b
   if (internal::far_apart(a, world_from_a, b, world_from_b)) return false;
   const internal::RelativePose pose(a, world_from_a, b, world_from_b);
   if (internal::boxes_apart(a, b, pose)) return false;
-  return internal::any_pair(a, b, pose, internal::BallLeaves(a, b, pose));
+  return internal::any_pair(a, b, pose, internal::SphereLeaves(a, b, pose));
 }
 
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                         const Pose& world_from_b, const CollisionRequest& request) {
   const internal::RelativePose pose(a, world_from_a, b, world_from_b);
-  return internal::all_pairs(a, b, pose, internal::BallLeaves(a, b, pose), request);
+  return internal::all_pairs(a, b, pose, internal::SphereLeaves(a, b, pose), request);
 }
 
 bool spheres_touch(const SphereTree& a, std::int32_t sphere_a, const Pose& world_from_a,

@@ -17,7 +17,7 @@ enum class Verdict { kFree, kCollision, kUnknown };
 
 // What a query cost.
 struct QueryCost {
-  std::uint64_t node_tests = 0;  // pairs of balls tested, leaves included
+  std::uint64_t node_tests = 0;  // pairs of spheres tested, leaves included
   std::uint64_t leaf_tests = 0;  // pairs of leaves among them
 };
 
@@ -50,9 +50,9 @@ struct CollisionResult {
   QueryCost cost;
 };
 
-// Whether two sets of balls, rigidly placed, overlap.
+// Whether two sets of spheres, rigidly placed, overlap.
 //
-// G4: if two balls overlap (touching included) in exact arithmetic under exactly the given poses,
+// G4: if two spheres overlap (touching included) in exact arithmetic under exactly the given poses,
 // the answer is true. G5: if it is true, the exact gap of the two sets is at most
 // collision_slack(): the price of rounding, about 2e-14 of the size of the scene. Does not throw,
 // and does not allocate on trees that build_tree() makes of up to a million spheres; for deeper

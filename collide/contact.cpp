@@ -2,7 +2,7 @@
 #include "collide/contact.h"
 
 #include "collide/meshes/listed_triangles.h"
-#include "collide/search/ball_leaves.h"
+#include "collide/search/sphere_leaves.h"
 #include "collide/search/tree_pair.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ class DeepestFirst {
  public:
   DeepestFirst(const SphereTree& a, const SphereTree& b, const internal::RelativePose& pose)
       : a_(a), b_(b), pose_(pose), trees_(a, b, pose), leaves_(a, b, pose) {
-    wait(internal::NodePair(0, 0), pose.gap(a.ball(0), b.ball(0)));
+    wait(internal::NodePair(0, 0), pose.gap(a.sphere(0), b.sphere(0)));
   }
 
   std::optional<Touching> next() {
@@ -54,7 +54,8 @@ class DeepestFirst {
   void open(internal::NodePair pair) {
     const internal::OpenedPair opened = trees_.open(pair);
     double gaps[SphereTree::kMaxBranching];
-    internal::ball_gaps(trees_.balls(opened.side), opened.first, opened.count, opened.ball, gaps);
+    internal::sphere_gaps(trees_.spheres(opened.side), opened.first, opened.count, opened.sphere,
+                          gaps);
     for (std::int32_t i = 0; i < opened.count; ++i) {
       wait(pair.with(opened.side, opened.first + i), gaps[i]);
     }
@@ -75,7 +76,7 @@ class DeepestFirst {
   const SphereTree& b_;
   const internal::RelativePose& pose_;
   const internal::TreePair trees_;
-  const internal::BallLeaves leaves_;
+  const internal::SphereLeaves leaves_;
   std::priority_queue<Waiting> queue_;
 };
 

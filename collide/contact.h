@@ -37,7 +37,7 @@ struct Contact {
   std::optional<TrianglePair> triangles;
 };
 
-// The contact of two sets of balls: of all pairs of spheres that touch, the one that overlaps
+// The contact of two sets of spheres: of all pairs of spheres that touch, the one that overlaps
 // deepest up to rounding; none exactly if collides() is false. Equal for every tree over the same
 // spheres. Allocates. Where bodies overlap it has to look at most of the pairs that collide() would
 // list and takes about as long as that, tens to hundreds of times as long as collides().

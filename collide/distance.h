@@ -27,7 +27,7 @@ struct DistanceResult {
   QueryCost cost;
 };
 
-// Separation distance of two sets of balls, rigidly placed, between certified bounds.
+// Separation distance of two sets of spheres, rigidly placed, between certified bounds.
 DistanceResult distance(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                         const Pose& world_from_b, const DistanceRequest& request = {});
 

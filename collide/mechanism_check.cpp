@@ -100,10 +100,10 @@ bool MechanismCheck::is_following(const Scratch& scratch) const {
   return scratch.memory_->motion->is_following();
 }
 
-void MechanismCheck::remember_contact(int frame, const Sphere& ball, double depth,
+void MechanismCheck::remember_contact(int frame, const Sphere& sphere, double depth,
                                       Scratch& scratch) const {
   require_own(scratch);
-  scratch.memory_->motion->remember_contact(frame, ball, depth, scratch.memory_->view);
+  scratch.memory_->motion->remember_contact(frame, sphere, depth, scratch.memory_->view);
 }
 
 MechanismCheck::BlockAnswer MechanismCheck::collides(

@@ -113,11 +113,11 @@ class MechanismCheck {
   std::optional<bool> is_free_along(std::span<const double> from, std::span<const double> to,
                                     Scratch& scratch) const;
 
-  // For `confirm` of collides() to say that a ball (in the coordinates of a frame) touches an
+  // For `confirm` of collides() to say that a sphere (in the coordinates of a frame) touches an
   // obstacle, and would wherever none of its points has moved by more than `depth` from where the
   // exact mechanism has it. That is remembered, where it is worth while, for configurations near
   // this one; it changes no answer.
-  void remember_contact(int frame, const Sphere& ball, double depth, Scratch& scratch) const;
+  void remember_contact(int frame, const Sphere& sphere, double depth, Scratch& scratch) const;
   // Whether it is worth while: the last configurations were near each other.
   bool is_following(const Scratch& scratch) const;
 

@@ -5,8 +5,8 @@
 #include "collide/meshes/listed_triangles.h"
 #include "collide/meshes/patch_trees.h"
 #include "collide/meshes/triangle_leaves.h"
-#include "collide/search/ball_leaves.h"
 #include "collide/search/box_gap.h"
+#include "collide/search/sphere_leaves.h"
 #include "collide/search/traversal.h"
 #include "spheretree/error.h"
 
@@ -33,11 +33,11 @@ class FindTriangles {
         world_from_a_(world_from_a),
         world_from_b_(world_from_b),
         pose_(pose),
-        balls_(a.cover(), b.cover(), pose) {}
+        spheres_(a.cover(), b.cover(), pose) {}
 
   bool afford(const internal::OpenedPair&, const auto&) const noexcept { return true; }
   bool leaves(internal::NodePair pair) noexcept {
-    if (!balls_.touches(pair)) return true;
+    if (!spheres_.touches(pair)) return true;
     if (!triangles_) triangles_.emplace(a_, world_from_a_, b_, world_from_b_, pose_);
     found_ = triangles_
                  ->touching(a_.cover().sphere_index(pair.index(0)),
@@ -54,7 +54,7 @@ class FindTriangles {
   const Pose& world_from_a_;
   const Pose& world_from_b_;
   const internal::RelativePose& pose_;
-  internal::BallLeaves balls_;
+  internal::SphereLeaves spheres_;
   std::optional<internal::ListedTriangles> triangles_;  // once two spheres touch
   bool found_ = false;
 };
@@ -69,7 +69,7 @@ CoveredMesh::CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereT
   patches_ = std::make_shared<const internal::PatchTrees>(patches, cover_->spheres());
   first_.assign(spheres + 1, 0);
   for (const internal::Patch& patch : patches) {
-    ++first_[static_cast<std::size_t>(patch.ball) + 1];
+    ++first_[static_cast<std::size_t>(patch.sphere) + 1];
     triangles_.push_back(patch.triangle);
   }
   for (std::size_t i = 0; i < spheres; ++i) first_[i + 1] += first_[i];
@@ -110,14 +110,15 @@ double contact_depth(const CoveredMesh& a, std::int32_t triangle_a, const Pose& 
 TriangleDepth nearest_triangle(const CoveredMesh& a, std::int32_t sphere_a,
                                const Pose& world_from_a, const SphereTree& b, std::int32_t sphere_b,
                                const Pose& world_from_b) noexcept {
-  const std::span<const Sphere> balls = a.mesh().tree().spheres();
+  const std::span<const Sphere> spheres = a.mesh().tree().spheres();
   const internal::RelativePose pose(b, world_from_b, a.mesh().tree(), world_from_a);
   const Eigen::Vector3d center =
       pose.b_from_a()(b.spheres()[static_cast<std::size_t>(sphere_b)].center);
   TriangleDepth result;
   double least = std::numeric_limits<double>::infinity();
   for (const std::int32_t triangle : a.triangles_under(sphere_a)) {
-    const double square = (balls[static_cast<std::size_t>(triangle)].center - center).squaredNorm();
+    const double square =
+        (spheres[static_cast<std::size_t>(triangle)].center - center).squaredNorm();
     if (square >= least) continue;
     least = square;
     result.triangle = triangle;

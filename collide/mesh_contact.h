@@ -118,7 +118,7 @@ struct TriangleDepth {
   std::int32_t triangle = -1;
   double depth = -std::numeric_limits<double>::infinity();
 };
-// The one whose enclosing ball is centred nearest to a sphere of a set; -1 if there is none.
+// The one whose enclosing sphere is centred nearest to a sphere of a set; -1 if there is none.
 TriangleDepth nearest_triangle(const CoveredMesh& a, std::int32_t sphere_a,
                                const Pose& world_from_a, const SphereTree& b, std::int32_t sphere_b,
                                const Pose& world_from_b) noexcept;

@@ -27,10 +27,10 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
 }
 
 SphereTree tree_of(const std::vector<Triangle>& triangles) {
-  std::vector<Sphere> balls;
-  balls.reserve(triangles.size());
-  for (const Triangle& triangle : triangles) balls.push_back(enclosing_sphere(triangle));
-  return build_tree(balls);
+  std::vector<Sphere> spheres;
+  spheres.reserve(triangles.size());
+  for (const Triangle& triangle : triangles) spheres.push_back(enclosing_sphere(triangle));
+  return build_tree(spheres);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ DistanceResult distance(const SphereTree& a, const Pose& world_from_a, const Mes
   const internal::TriangleLeaves leaves(a, b, pose);
   const internal::PairSpace space(a, b.tree(), pose, leaves);
   return internal::NearestFirst(space, pose.gap_error(), request)
-      .run(internal::NodePair(0, 0), pose.gap(a.ball(0), b.tree().ball(0)));
+      .run(internal::NodePair(0, 0), pose.gap(a.sphere(0), b.tree().sphere(0)));
 }
 
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,

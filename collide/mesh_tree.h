@@ -16,14 +16,14 @@ namespace internal {
 class PackedMesh;
 }  // namespace internal
 
-// A sphere tree whose leaves are triangles: every leaf ball encloses one triangle. Immutable. The
+// A sphere tree whose leaves are triangles: every leaf sphere encloses one triangle. Immutable. The
 // mesh is judged as stored: its vertex_error, the distance to the file's mesh, is not added to it.
 class MeshTree {
  public:
   // Throws Error for a mesh that validate() refuses.
   explicit MeshTree(const TriangleMesh& mesh);
 
-  // Sphere `index` of tree() is the ball of triangle(index).
+  // Sphere `index` of tree() is the sphere of triangle(index).
   const SphereTree& tree() const { return tree_; }
   const std::array<Eigen::Vector3d, 3>& triangle(std::int32_t index) const {
     return triangles_[static_cast<std::size_t>(index)];
@@ -34,17 +34,17 @@ class MeshTree {
 
  private:
   std::vector<std::array<Eigen::Vector3d, 3>> triangles_;
-  SphereTree tree_;  // sphere i is the ball of triangle i
+  SphereTree tree_;  // sphere i is the sphere of triangle i
   std::shared_ptr<const internal::PackedMesh> packed_;
 };
 
-// Whether a set of balls and the surface of a mesh meet, triangles in the place of the second set's
-// balls: what meets_triangle() says of all pairs. G4 as for collides(). G5 up
-// to the width of the interval in which point_triangle_distance() leaves the distance: with R the
-// distance from the ball's centre to the triangle's farthest corner, some 64 u R where the centre
-// is not near the triangle; nearer it is wider, in our tests at most 1e-6 R, for needles 1e-4 R.
-// Allocates as collides() does. A ball wholly inside a closed mesh does not meet its surface. In a
-// pair, `b` is the triangle.
+// Whether a set of spheres and the surface of a mesh meet, triangles in the place of the second
+// set's spheres: what meets_triangle() says of all pairs. G4 as for collides(). G5 up to the width
+// of the interval in which point_triangle_distance() leaves the distance: with R the distance from
+// the sphere's centre to the triangle's farthest corner, some 64 u R where the centre is not near
+// the triangle; nearer it is wider, in our tests at most 1e-6 R, for needles 1e-4 R. Allocates as
+// collides() does. A sphere wholly inside a closed mesh does not meet its surface. In a pair, `b`
+// is the triangle.
 bool collides(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
               const Pose& world_from_b) noexcept;
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,

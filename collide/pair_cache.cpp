@@ -13,8 +13,8 @@
 // The difference of two rotations has the singular values s, s, 0, so its norm is its Frobenius
 // norm over sqrt(2). The computed frames err by 129 u in that norm and by 71 u |d| in t
 // (relative_pose.h), d the offset of the frames, which is below the scene size S. The gap of two
-// balls shrinks by no more than the way. If it was at least the clearance then, and clearance - way
-// exceeds the slack of the canonical test now, no pair is accepted: collides() answers false.
+// spheres shrinks by no more than the way. If it was at least the clearance then, and clearance -
+// way exceeds the slack of the canonical test now, no pair is accepted: collides() answers false.
 
 namespace spherule {
 namespace {

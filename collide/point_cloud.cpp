@@ -43,17 +43,17 @@ Vector3d cell_of(const Vector3d& point, double voxel) {
   return (point / voxel).array().floor();
 }
 
-// A ball that contains those of radius `radius` about all the points.
-Sphere ball_of_cell(std::span<const Vector3d> points, double radius) {
+// A sphere that contains those of radius `radius` about all the points.
+Sphere sphere_of_cell(std::span<const Vector3d> points, double radius) {
   if (points.size() == 1) return {points.front(), radius};
   Eigen::AlignedBox3d box;
   for (const Vector3d& point : points) box.extend(point);
-  Sphere ball{box.center(), 0.0};
+  Sphere sphere{box.center(), 0.0};
   for (const Vector3d& point : points) {
-    ball.radius = std::max(ball.radius, distance_upper(ball.center, point));
+    sphere.radius = std::max(sphere.radius, distance_upper(sphere.center, point));
   }
-  ball.radius = add_up(ball.radius, radius);
-  return ball;
+  sphere.radius = add_up(sphere.radius, radius);
+  return sphere;
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ std::vector<Sphere> point_cloud_spheres(std::span<const Vector3d> points, double
   for (auto first = sorted.begin(); first != sorted.end();) {
     auto last = first + 1;
     while (has_cells && last != sorted.end() && !by_cell(*first, *last)) ++last;
-    spheres.push_back(ball_of_cell(std::span(first, last), radius));
+    spheres.push_back(sphere_of_cell(std::span(first, last), radius));
     first = last;
   }
   return spheres;

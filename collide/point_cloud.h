@@ -20,11 +20,11 @@ struct PointCloudOptions {
   BuildOptions build = {};
 };
 
-// Spheres that stand for points measured on surfaces: a ball of `radius` about every point, points
-// that are equal being merged. Surfaces are without gaps only if the radius is large enough for how
-// far apart the points lie, which is the caller's to know.
+// Spheres that stand for points measured on surfaces: a sphere of `radius` about every point,
+// points that are equal being merged. Surfaces are without gaps only if the radius is large enough
+// for how far apart the points lie, which is the caller's to know.
 //
-// With cells, one ball for those of a cell: it contains the balls of all its points in exact
+// With cells, one sphere for those of a cell: it contains the spheres of all its points in exact
 // arithmetic, and protrudes from their union by at most sqrt(3) times the cell's side, up to
 // rounding. Sorted by cell and point, so that the order of the points does not matter.
 //

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/primitive.h"
 
-#include "collide/search/ball_space.h"
 #include "collide/search/deadline.h"
 #include "collide/search/one_tree.h"
+#include "collide/search/sphere_space.h"
 #include "collide/solids/solid_pose.h"
 #include "collide/within.h"
 #include "spheretree/error.h"
@@ -21,18 +21,18 @@ auto with_field(const Primitive& solid, const What& what) {
   return std::visit([&](const auto& shape) { return what(internal::field_of(shape)); }, solid);
 }
 
-// Ends at the first ball that touches.
+// Ends at the first sphere that touches.
 template <class Field>
-class FindBall {
+class FindSphere {
  public:
-  FindBall(const SphereTree& tree, const SolidPose<Field>& pose) : tree_(tree), pose_(pose) {}
+  FindSphere(const SphereTree& tree, const SolidPose<Field>& pose) : tree_(tree), pose_(pose) {}
 
   bool afford(std::int32_t, std::int32_t) const { return true; }
   bool enters(std::int32_t node) const {
-    return pose_.may_touch(tree_.ball(static_cast<std::size_t>(node)));
+    return pose_.may_touch(tree_.sphere(static_cast<std::size_t>(node)));
   }
   bool leaf(std::int32_t node) {
-    found_ = pose_.touches(tree_.ball(static_cast<std::size_t>(node)));
+    found_ = pose_.touches(tree_.sphere(static_cast<std::size_t>(node)));
     return !found_;
   }
   bool found() const { return found_; }
@@ -43,7 +43,7 @@ class FindBall {
   bool found_ = false;
 };
 
-// The ball that is deepest among those that touch; of equally deep ones the first by index.
+// The sphere that is deepest among those that touch; of equally deep ones the first by index.
 template <class Field>
 class FindDeepest {
  public:
@@ -51,14 +51,14 @@ class FindDeepest {
 
   bool afford(std::int32_t, std::int32_t) const { return true; }
   bool enters(std::int32_t node) const {
-    const Sphere ball = tree_.ball(static_cast<std::size_t>(node));
-    return pose_.may_touch(ball) && pose_.gap(ball) <= gap_ + 2.0 * pose_.gap_error();
+    const Sphere sphere = tree_.sphere(static_cast<std::size_t>(node));
+    return pose_.may_touch(sphere) && pose_.gap(sphere) <= gap_ + 2.0 * pose_.gap_error();
   }
   bool leaf(std::int32_t node) {
     const auto index = static_cast<std::size_t>(node);
-    const Sphere ball = tree_.ball(index);
-    if (!pose_.touches(ball)) return true;
-    const double gap = pose_.gap(ball);
+    const Sphere sphere = tree_.sphere(index);
+    if (!pose_.touches(sphere)) return true;
+    const double gap = pose_.gap(sphere);
     const std::int32_t leaf = tree_.sphere_index(index);
     if (gap < gap_ || (gap == gap_ && leaf < sphere_)) {
       gap_ = gap;
@@ -76,12 +76,12 @@ class FindDeepest {
   std::int32_t sphere_ = -1;
 };
 
-// Collects the balls that touch, up to the limits of a request, and the smallest gap seen.
+// Collects the spheres that touch, up to the limits of a request, and the smallest gap seen.
 template <class Field>
-class CollectBalls {
+class CollectSpheres {
  public:
-  CollectBalls(const SphereTree& tree, const SolidPose<Field>& pose,
-               const CollisionRequest& request, CollisionResult& result)
+  CollectSpheres(const SphereTree& tree, const SolidPose<Field>& pose,
+                 const CollisionRequest& request, CollisionResult& result)
       : tree_(tree), pose_(pose), request_(request), deadline_(request.max_time), result_(result) {}
 
   bool afford(std::int32_t first, std::int32_t count) {
@@ -95,15 +95,15 @@ class CollectBalls {
     return true;
   }
   bool enters(std::int32_t node) {
-    const Sphere ball = tree_.ball(static_cast<std::size_t>(node));
-    if (pose_.may_touch(ball)) return true;
-    smallest_gap_ = std::min(smallest_gap_, pose_.gap(ball));
+    const Sphere sphere = tree_.sphere(static_cast<std::size_t>(node));
+    if (pose_.may_touch(sphere)) return true;
+    smallest_gap_ = std::min(smallest_gap_, pose_.gap(sphere));
     return false;
   }
   bool leaf(std::int32_t node) {
-    const Sphere ball = tree_.ball(static_cast<std::size_t>(node));
-    if (!pose_.touches(ball)) {
-      smallest_gap_ = std::min(smallest_gap_, pose_.gap(ball));
+    const Sphere sphere = tree_.sphere(static_cast<std::size_t>(node));
+    if (!pose_.touches(sphere)) {
+      smallest_gap_ = std::min(smallest_gap_, pose_.gap(sphere));
       return true;
     }
     found_ = true;
@@ -125,13 +125,13 @@ class CollectBalls {
   double smallest_gap_ = std::numeric_limits<double>::infinity();
 };
 
-// What BallSpace asks for.
+// What SphereSpace asks for.
 template <class Field>
-class BallGaps {
+class SphereGaps {
  public:
-  BallGaps(const SphereTree& tree, const SolidPose<Field>& pose) : tree_(tree), pose_(pose) {}
+  SphereGaps(const SphereTree& tree, const SolidPose<Field>& pose) : tree_(tree), pose_(pose) {}
 
-  double gap(const Sphere& ball) const { return pose_.gap(ball); }
+  double gap(const Sphere& sphere) const { return pose_.gap(sphere); }
   internal::GapInterval leaf_gap(std::int32_t sphere) const {
     const double gap = pose_.gap(tree_.spheres()[static_cast<std::size_t>(sphere)]);
     return {gap, gap};
@@ -146,7 +146,7 @@ bool comes_within(const SphereTree& tree, const Pose& world_from_tree, const Pri
                   const Pose& world_from_solid, double clearance) noexcept {
   return with_field(solid, [&](const auto& field) {
     const SolidPose pose(tree, world_from_tree, field, world_from_solid, clearance);
-    FindBall query(tree, pose);
+    FindSphere query(tree, pose);
     internal::search_tree(tree, query);
     return query.found();
   });
@@ -159,7 +159,9 @@ class RequireSizes {
   void operator()(const Box& box) const {
     for (int i = 0; i < 3; ++i) require(box.size[i], "a size of the box");
   }
-  void operator()(const Ball& ball) const { require(ball.radius, "the radius of the ball"); }
+  void operator()(const SolidSphere& sphere) const {
+    require(sphere.radius, "the radius of the sphere");
+  }
   void operator()(const Cylinder& cylinder) const {
     require(cylinder.radius, "the radius of the cylinder");
     require(cylinder.length, "the length of the cylinder");
@@ -202,7 +204,7 @@ CollisionResult collide(const SphereTree& tree, const Pose& world_from_tree, con
   return with_field(solid, [&](const auto& field) {
     const SolidPose pose(tree, world_from_tree, field, world_from_solid);
     CollisionResult result;
-    CollectBalls query(tree, pose, request, result);
+    CollectSpheres query(tree, pose, request, result);
     result.complete = internal::search_tree(tree, query);
     std::sort(result.pairs.begin(), result.pairs.end());
     if (query.found()) {
@@ -220,8 +222,8 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
                         const Pose& world_from_solid, const DistanceRequest& request) {
   return with_field(solid, [&](const auto& field) {
     const SolidPose pose(tree, world_from_tree, field, world_from_solid);
-    const BallGaps gaps(tree, pose);
-    const internal::BallSpace space(tree, gaps);
+    const SphereGaps gaps(tree, pose);
+    const internal::SphereSpace space(tree, gaps);
     return internal::NearestFirst(space, pose.gap_error(), request).run(0, space.gap(0));
   });
 }
@@ -233,9 +235,9 @@ std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& 
     FindDeepest query(tree, pose);
     internal::search_tree(tree, query);
     if (query.sphere() < 0) return std::nullopt;
-    const Sphere& ball = tree.spheres()[static_cast<std::size_t>(query.sphere())];
+    const Sphere& sphere = tree.spheres()[static_cast<std::size_t>(query.sphere())];
     return SolidContact{query.sphere(), -query.gap() - pose.gap_error(),
-                        world_from_solid * field.nearest(pose.in_solid(ball.center))};
+                        world_from_solid * field.nearest(pose.in_solid(sphere.center))};
   });
 }
 

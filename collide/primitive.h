@@ -24,7 +24,7 @@ struct Box {
 };
 
 // |x| <= radius.
-struct Ball {
+struct SolidSphere {
   double radius = 1.0;
 };
 
@@ -44,7 +44,7 @@ struct Capsule {
 struct HalfSpace {};
 
 // A solid of simple shape.
-using Primitive = std::variant<Box, Ball, Cylinder, Capsule, HalfSpace>;
+using Primitive = std::variant<Box, SolidSphere, Cylinder, Capsule, HalfSpace>;
 
 // Throws Error(subject, ...) unless every size is finite, above 0 and at most kMaxCoordinate; the
 // straight part of a capsule may be 0.
@@ -52,12 +52,12 @@ void require_primitive(const Primitive& primitive, const std::string& subject);
 
 // In all that follows the solid must be one that require_primitive() accepts.
 //
-// Whether a set of balls and a solid, rigidly placed, overlap.
+// Whether a set of spheres and a solid, rigidly placed, overlap.
 //
-// G4: if a ball and the solid have a point in common in exact arithmetic under exactly the given
+// G4: if a sphere and the solid have a point in common in exact arithmetic under exactly the given
 // poses, the answer is true. G5: if it is true, the exact distance of the two is at most
-// primitive_slack(). One canonical test of a ball and the solid decides, so the answer does not
-// depend on the tree over the balls. Does not throw, and allocates no more than collides() of two
+// primitive_slack(). One canonical test of a sphere and the solid decides, so the answer does not
+// depend on the tree over the spheres. Does not throw, and allocates no more than collides() of two
 // trees does.
 bool collides(const SphereTree& tree, const Pose& world_from_tree, const Primitive& solid,
               const Pose& world_from_solid) noexcept;

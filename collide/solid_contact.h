@@ -7,7 +7,7 @@
 
 namespace spherule {
 
-// Where a set of balls touches a solid, and how deep.
+// Where a set of spheres touches a solid, and how deep.
 struct SolidContact {
   std::int32_t sphere = -1;  // index into SphereTree::spheres()
   // At least this far the sphere has to be moved for the two to part, in exact arithmetic under

@@ -2,7 +2,7 @@
 #pragma once
 
 // Signed distances to the solids of collide/primitive.h, in their own frames: to the surface,
-// negative inside. All are convex, so that a ball (p, r) is at least signed_distance(p) - r away,
+// negative inside. All are convex, so that a sphere (p, r) is at least signed_distance(p) - r away,
 // and where that is negative must be moved by as much to part from the solid.
 //
 // Each errs by less than 8 u (|p| + reach), with the reach as given (u = 2^-53), and what
@@ -10,7 +10,7 @@
 //   box: differences u |q|, the norm of three 2.5 u, where q is at most |p| + reach; the two terms
 //   of
 //     the sum are never both other than zero: 3.5 u;
-//   ball: norm 2.5 u |p|, difference 1 u (|p| + R);
+//   sphere: norm 2.5 u |p|, difference 1 u (|p| + R);
 //   cylinder: the norm of two, 2 u |p|; the two differences 1 u; their norm 2 u: 5 u in all;
 //   capsule: z less its clamped value 1 u |p|; norm 2.5 u, difference 1 u: 4.5 u;
 //   half-space: nothing.
@@ -55,9 +55,9 @@ class BoxField {
   Eigen::Vector3d half_;
 };
 
-class BallField {
+class SphereField {
  public:
-  explicit BallField(const Ball& ball) : radius_(ball.radius) {}
+  explicit SphereField(const SolidSphere& sphere) : radius_(sphere.radius) {}
 
   double reach() const { return radius_; }
   double signed_distance(const Eigen::Vector3d& p) const { return p.norm() - radius_; }
@@ -103,18 +103,18 @@ class CylinderField {
 class CapsuleField {
  public:
   explicit CapsuleField(const Capsule& capsule)
-      : ball_(Ball{capsule.radius}), half_(0.5 * capsule.length) {}
+      : sphere_(SolidSphere{capsule.radius}), half_(0.5 * capsule.length) {}
 
-  double reach() const { return ball_.reach() + half_; }
+  double reach() const { return sphere_.reach() + half_; }
   double signed_distance(const Eigen::Vector3d& p) const {
-    return ball_.signed_distance(p - on_axis(p));
+    return sphere_.signed_distance(p - on_axis(p));
   }
   Eigen::Vector3d nearest(const Eigen::Vector3d& p) const {
-    return on_axis(p) + ball_.nearest(p - on_axis(p));
+    return on_axis(p) + sphere_.nearest(p - on_axis(p));
   }
   Eigen::Vector3d outward(const Eigen::Vector3d& p) const { return p - on_axis(p); }
   double support(const Eigen::Vector3d& q) const {
-    return ball_.support(q) + half_ * std::abs(q.z());
+    return sphere_.support(q) + half_ * std::abs(q.z());
   }
 
  private:
@@ -122,7 +122,7 @@ class CapsuleField {
     return {0.0, 0.0, std::clamp(p.z(), -half_, half_)};
   }
 
-  BallField ball_;
+  SphereField sphere_;
   double half_;
 };
 
@@ -142,8 +142,8 @@ class HalfSpaceField {
 inline BoxField field_of(const Box& box) {
   return BoxField(box);
 }
-inline BallField field_of(const Ball& ball) {
-  return BallField(ball);
+inline SphereField field_of(const SolidSphere& sphere) {
+  return SphereField(sphere);
 }
 inline CylinderField field_of(const Cylinder& cylinder) {
   return CylinderField(cylinder);

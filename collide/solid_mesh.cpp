@@ -2,10 +2,10 @@
 #include "collide/solid_mesh.h"
 
 #include "collide/meshes/mesh_search.h"
-#include "collide/search/ball_space.h"
 #include "collide/search/one_tree.h"
-#include "collide/solids/balls_inside.h"
+#include "collide/search/sphere_space.h"
 #include "collide/solids/mesh_inside.h"
+#include "collide/solids/spheres_inside.h"
 #include "collide/within.h"
 #include "mesh/point_triangle.h"
 
@@ -15,11 +15,11 @@ namespace spherule {
 namespace {
 
 using Eigen::Vector3d;
-using internal::BallsInside;
 using internal::GapInterval;
+using internal::SpheresInside;
 
-// With a clearance, growth included. Where no ball comes so near to a triangle, none meets one, and
-// each is on one side of the surface.
+// With a clearance, growth included. Where no sphere comes so near to a triangle, none meets one,
+// and each is on one side of the surface.
 bool comes_within(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
                   const Pose& world_from_solid, double clearance) noexcept {
   const double reach = clearance > 0.0 ? add_up(clearance, solid.inflation()) : solid.inflation();
@@ -29,16 +29,16 @@ bool comes_within(const SphereTree& tree, const Pose& world_from_tree, const Sol
   }
   if (!solid.has_inside()) return false;
   const internal::RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
-  return BallsInside(tree, solid, pose).find() >= 0;
+  return SpheresInside(tree, solid, pose).find() >= 0;
 }
 
-// Of a point, given in the mesh's frame, to the balls of its tree and to its triangles: what
-// BallSpace asks for.
+// Of a point, given in the mesh's frame, to the spheres of its tree and to its triangles: what
+// SphereSpace asks for.
 class PointGaps {
  public:
   PointGaps(const MeshTree& mesh, const Vector3d& point) : mesh_(mesh), point_(point) {}
 
-  double gap(const Sphere& ball) const { return (ball.center - point_).norm() - ball.radius; }
+  double gap(const Sphere& sphere) const { return (sphere.center - point_).norm() - sphere.radius; }
   TriangleDistance to_triangle(std::int32_t triangle) const {
     const auto& [a, b, c] = mesh_.triangle(triangle);
     return point_triangle_distance(point_, a, b, c);
@@ -62,26 +62,26 @@ class PointGaps {
 // in.
 class FindDeepest {
  public:
-  FindDeepest(const SphereTree& tree, const SolidMesh& solid, const BallsInside& balls)
-      : tree_(tree), solid_(solid), balls_(balls) {}
+  FindDeepest(const SphereTree& tree, const SolidMesh& solid, const SpheresInside& spheres)
+      : tree_(tree), solid_(solid), spheres_(spheres) {}
 
   bool afford(std::int32_t, std::int32_t) const { return true; }
   bool enters(std::int32_t node) const {
-    const Sphere ball = tree_.ball(static_cast<std::size_t>(node));
-    const Vector3d center = balls_.in_mesh(ball.center);
-    const double reach = add_up(ball.radius, solid_.inflation());
-    return !balls_.is_clear(center, reach) || balls_.contains(center);
+    const Sphere sphere = tree_.sphere(static_cast<std::size_t>(node));
+    const Vector3d center = spheres_.in_mesh(sphere.center);
+    const double reach = add_up(sphere.radius, solid_.inflation());
+    return !spheres_.is_clear(center, reach) || spheres_.contains(center);
   }
   bool leaf(std::int32_t node) {
     const auto index = static_cast<std::size_t>(node);
-    const Sphere ball = tree_.ball(index);
-    const Vector3d center = balls_.in_mesh(ball.center);
+    const Sphere sphere = tree_.sphere(index);
+    const Vector3d center = spheres_.in_mesh(sphere.center);
     const PointGaps gaps(solid_.mesh(), center);
-    const internal::BallSpace space(solid_.mesh().tree(), gaps);
+    const internal::SphereSpace space(solid_.mesh().tree(), gaps);
     const DistanceResult to_surface =
-        internal::NearestFirst(space, balls_.error(), DistanceRequest{}).run(0, space.gap(0));
-    const bool inside = balls_.certainly_contains(center);
-    const double reach = sub_down(add_down(ball.radius, solid_.inflation()), balls_.error());
+        internal::NearestFirst(space, spheres_.error(), DistanceRequest{}).run(0, space.gap(0));
+    const bool inside = spheres_.certainly_contains(center);
+    const double reach = sub_down(add_down(sphere.radius, solid_.inflation()), spheres_.error());
     const double depth =
         inside ? add_down(reach, to_surface.lower) : sub_down(reach, to_surface.upper);
     const std::int32_t leaf = tree_.sphere_index(index);
@@ -98,7 +98,7 @@ class FindDeepest {
  private:
   const SphereTree& tree_;
   const SolidMesh& solid_;
-  const BallsInside& balls_;
+  const SpheresInside& spheres_;
   std::int32_t sphere_ = -1;
   double depth_ = 0.0;
   Vector3d in_mesh_ = Vector3d::Zero();
@@ -139,10 +139,10 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
   DistanceResult result =
       distance(tree, world_from_tree, solid.mesh(), world_from_solid, to_surface);
   result.upper = result.upper > solid.inflation() ? sub_up(result.upper, solid.inflation()) : 0.0;
-  // Where a ball may meet a triangle, the lower bound is 0 and the upper one as good as it gets.
+  // Where a sphere may meet a triangle, the lower bound is 0 and the upper one as good as it gets.
   if (!(result.lower > 0.0)) return result;
   const internal::RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
-  const std::int32_t inside = BallsInside(tree, solid, pose).find();
+  const std::int32_t inside = SpheresInside(tree, solid, pose).find();
   if (inside >= 0) {
     result.lower = result.upper = 0.0;
     result.nearest = {inside, -1};
@@ -156,8 +156,8 @@ std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& 
                                             const SolidMesh& solid, const Pose& world_from_solid) {
   if (!collides(tree, world_from_tree, solid, world_from_solid)) return std::nullopt;
   const internal::RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
-  const BallsInside balls(tree, solid, pose);
-  FindDeepest query(tree, solid, balls);
+  const SpheresInside spheres(tree, solid, pose);
+  FindDeepest query(tree, solid, spheres);
   internal::search_tree(tree, query);
   return SolidContact{query.sphere(), query.depth(), world_from_solid * query.in_mesh()};
 }

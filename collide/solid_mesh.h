@@ -50,10 +50,10 @@ class SolidMesh {
   std::shared_ptr<const internal::MeshInside> inside_;
 };
 
-// Whether a set of balls and a solid, rigidly placed, overlap.
+// Whether a set of spheres and a solid, rigidly placed, overlap.
 //
-// G4: if a ball and the solid have a point in common in exact arithmetic under exactly the given
-// poses, the answer is true; so a ball wholly inside collides, whatever shell it is in. G5: as
+// G4: if a sphere and the solid have a point in common in exact arithmetic under exactly the given
+// poses, the answer is true; so a sphere wholly inside collides, whatever shell it is in. G5: as
 // for collides() of a MeshTree (mesh_tree.h), with growth() beside the radius; a point that is
 // nearer to the surface than rounding tells counts as inside. Allocates as collides() of two trees
 // does.
@@ -65,9 +65,9 @@ bool collides(const SphereTree& tree, const Pose& world_from_tree, const SolidMe
 bool within(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
             const Pose& world_from_solid, double clearance);
 
-// Their separation distance between certified bounds, both 0 where a ball is inside. In `nearest`,
-// `b` is the triangle, or -1 where sphere `a` is inside. The limits of the request are those of the
-// search for the nearest triangle; whether a ball is inside is asked after it.
+// Their separation distance between certified bounds, both 0 where a sphere is inside. In
+// `nearest`, `b` is the triangle, or -1 where sphere `a` is inside. The limits of the request are
+// those of the search for the nearest triangle; whether a sphere is inside is asked after it.
 DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
                         const Pose& world_from_solid, const DistanceRequest& request = {});
 

@@ -34,8 +34,8 @@ double sum_up(double a, double b) {
 // Leaf test of two triangles: not proved to be farther apart than the clearance. An axis that
 // triangle_contact() finds to separate them by more than its pad separates the exact triangles by
 // what the pad has above the 76 u S that it is asked for: the clearance, and 32 u of it, of which
-// the comparison takes 4 u. No two triangles come nearer than the balls around them, so those must
-// touch canonically as well.
+// the comparison takes 4 u. No two triangles come nearer than the spheres around them, so those
+// must touch canonically as well.
 class TrianglePairLeaves {
  public:
   TrianglePairLeaves(const MeshTree& a, const Pose& world_from_a, const MeshTree& b,
@@ -133,8 +133,8 @@ class HullSearch {
   }
 
   bool finds_a_plane() const {
-    Vector3d nearest =
-        rotation_a_ * a_.tree().ball(0).center + shift_ - rotation_b_ * b_.tree().ball(0).center;
+    Vector3d nearest = rotation_a_ * a_.tree().sphere(0).center + shift_ -
+                       rotation_b_ * b_.tree().sphere(0).center;
     for (int step = 0; step < kSteps; ++step) {
       // The corner of the difference that is farthest against the axis.
       const Vector3d corner = rotation_a_ * least_along(a_, rotation_a_.transpose() * nearest) +
@@ -197,7 +197,7 @@ class FindTriangle {
 
   bool afford(std::int32_t, std::int32_t) const { return true; }
   bool enters(std::int32_t node) const {
-    return pose_.may_touch(mesh_.tree().ball(static_cast<std::size_t>(node)));
+    return pose_.may_touch(mesh_.tree().sphere(static_cast<std::size_t>(node)));
   }
   bool leaf(std::int32_t node) {
     const auto& [p, q, r] =

@@ -13,7 +13,7 @@
 #include <optional>
 
 // Proof of G6. At a look, t = m, the traversal finds a lower bound g of the gap of every pair of
-// balls under exactly the poses pose_at(m), and from
+// spheres under exactly the poses pose_at(m), and from
 //     g - clearance - 2 E - (largest slack of the canonical test at any t)
 // the time in which the pair cannot use that up. Here E = pose_error(a) + pose_error(b), and each
 // of these bounds the distance of a pose from the motion that is stored plus the distance of that

@@ -40,7 +40,7 @@ struct SweepResult {
   QueryCost cost;
 };
 
-// Whether two sets of balls stay apart while they move (G6).
+// Whether two sets of spheres stay apart while they move (G6).
 //
 // A gap of at most the clearance in exact arithmetic, touching included, at any t in [0, 1], under
 // exactly the motions (see Motion), is never called free. Nor is a motion for which collides(), or

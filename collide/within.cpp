@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/within.h"
 
-#include "collide/search/ball_leaves.h"
 #include "collide/search/queries.h"
+#include "collide/search/sphere_leaves.h"
 #include "spheretree/error.h"
 
 namespace spherule {
@@ -19,7 +19,7 @@ bool within(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
   if (internal::far_apart(a, world_from_a, b, world_from_b, clearance)) return false;
   const internal::RelativePose pose(a, world_from_a, b, world_from_b);
   if (internal::boxes_apart(a, b, pose, clearance)) return false;
-  return internal::any_pair_within(a, b, pose, internal::BallLeaves(a, b, pose, clearance),
+  return internal::any_pair_within(a, b, pose, internal::SphereLeaves(a, b, pose, clearance),
                                    clearance);
 }
 

@@ -8,7 +8,7 @@ namespace spherule {
 // Throws Error for a number that is no clearance: negative, not a number, or beyond 1e15.
 void require_clearance(double clearance);
 
-// Whether two sets of balls, rigidly placed, come within a clearance (at least 0) of each other:
+// Whether two sets of spheres, rigidly placed, come within a clearance (at least 0) of each other:
 // collides() for sets that keep a margin, and the same for a clearance of 0.
 //
 // Never false if the exact gap is at most the clearance, under exactly the given poses; never true

@@ -21,7 +21,7 @@
 namespace spherule {
 namespace {
 
-// By how far moving the centre of a ball may miss: Pose::operator* proves 40 u (|c| + |t|).
+// By how far moving the centre of a sphere may miss: Pose::operator* proves 40 u (|c| + |t|).
 double moving_error(const Sphere& sphere, const Pose& pose) {
   const double size = add_up(norm_upper(sphere.center), norm_upper(pose.translation()));
   return mul_up(size, 40.0 * kUnitRoundoff);
@@ -160,13 +160,13 @@ CertificateRecord moved_certificate(const CertificateRecord& certificate,
                                     std::span<const Sphere> spheres, const Pose& pose) {
   double error = 0.0;
   for (const Sphere& sphere : spheres) error = std::max(error, moving_error(sphere, pose));
-  // A ball reaches beyond the exactly moved one by the error of its centre and by what its radius
+  // A sphere reaches beyond the exactly moved one by the error of its centre and by what its radius
   // grew: the error again, and the rounding of the sum.
   double largest = 0.0;
   for (const Sphere& sphere : spheres) largest = std::max(largest, sphere.radius);
   const double inflation = add_up(mul_up(2.0, error), mul_up(largest, 8.0 * kUnitRoundoff));
   CertificateRecord moved = certificate;
-  // The moved balls hold the exactly moved ones, so that no depth is larger.
+  // The moved spheres hold the exactly moved ones, so that no depth is larger.
   moved.uncovered_depth_lower =
       std::max(0.0, sub_down(certificate.uncovered_depth_lower, inflation));
   for (std::optional<double>* protrusion :

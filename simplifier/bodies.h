@@ -41,7 +41,7 @@ struct BodyFit {
 // these are asked for, which are of one body.
 std::vector<BodyFit> fit_bodies(std::span<const Body> bodies, const SimplifyOptions& options = {});
 
-// Balls that hold the given ones after the motion.
+// Spheres that hold the given ones after the motion.
 std::vector<Sphere> moved_spheres(std::span<const Sphere> spheres, const Pose& pose);
 
 // What a certificate of spheres says of those of moved_spheres(), about the moved solid.

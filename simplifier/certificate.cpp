@@ -31,7 +31,7 @@ using Eigen::Vector3d;
 
 // Of the largest coordinate.
 constexpr double kLeastResolution = 0x1p-40;
-// Without external spheres, |M| is what a ball of this share of the box diagonal cannot reach.
+// Without external spheres, |M| is what a sphere of this share of the box diagonal cannot reach.
 constexpr double kPointFlood = 1.0 / 128.0;
 
 void check_options(std::span<const Sphere> spheres, const CertifyOptions& options) {
@@ -49,7 +49,7 @@ void check_options(std::span<const Sphere> spheres, const CertifyOptions& option
   }
 }
 
-// What certifies |M| itself: everything that a small ball cannot reach from outside.
+// What certifies |M| itself: everything that a small sphere cannot reach from outside.
 ExternalSpheres flood_closely(const TriangleMesh& mesh, const MeshDistance& distance,
                               double padding) {
   ExternalOptions options;
@@ -61,7 +61,7 @@ ExternalSpheres flood_closely(const TriangleMesh& mesh, const MeshDistance& dist
 }
 
 // Whether M grown by the padding is proved to be a subset of S: in the box, and met by no external
-// ball.
+// sphere.
 bool solid_holds_mesh(const MeshDistance& distance, const ExternalSpheres& external) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!(sub_down(distance.box().min()[axis], external.padding) >= external.box.min()[axis] &&
@@ -70,20 +70,20 @@ bool solid_holds_mesh(const MeshDistance& distance, const ExternalSpheres& exter
     }
   }
   return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, external.balls.size()), true,
+      tbb::blocked_range<std::size_t>(0, external.spheres.size()), true,
       [&](const tbb::blocked_range<std::size_t>& range, bool free) {
         for (std::size_t i = range.begin(); i < range.end() && free; ++i) {
-          const Sphere& ball = external.balls[i];
-          free = sub_down(distance(ball.center).lower, external.padding) >= ball.radius;
+          const Sphere& sphere = external.spheres[i];
+          free = sub_down(distance(sphere.center).lower, external.padding) >= sphere.radius;
         }
         return free;
       },
       std::logical_and<>());
 }
 
-// A piece of surface may cross from ball to ball where these have next to nothing in common, and
-// then lies in no single one however small it is, while the cells of the solid end where the balls
-// do. What is proved of S holds for M if S holds M.
+// A piece of surface may cross from sphere to sphere where these have next to nothing in common,
+// and then lies in no single one however small it is, while the cells of the solid end where the
+// spheres do. What is proved of S holds for M if S holds M.
 void bound_by_solid(internal::CoverageProof& surface, const internal::CoverageProof& solid,
                     const MeshDistance& distance, const ExternalSpheres& external) {
   if (surface.upper > solid.upper && solid_holds_mesh(distance, external)) {
@@ -95,8 +95,8 @@ Certificate proved(const TriangleMesh& mesh, const MeshDistance& distance,
                    const ExternalSpheres& external, const Clearance& clearance,
                    std::span<const Sphere> spheres, const CertifyOptions& options) {
   const double diagonal = distance.box().diagonal().norm();
-  const internal::BallHierarchy hierarchy(spheres);
-  const internal::BallsToProve balls{spheres, hierarchy};
+  const internal::SphereHierarchy hierarchy(spheres);
+  const internal::SpheresToProve to_prove{spheres, hierarchy};
   const double largest = std::max(internal::largest_coordinate(distance.box()),
                                   internal::largest_coordinate(external.box));
   const double finest =
@@ -105,13 +105,13 @@ Certificate proved(const TriangleMesh& mesh, const MeshDistance& distance,
   Certificate result;
   result.sphere_count = spheres.size();
   if (options.progress) options.progress(-1.0, "proving the surface");
-  internal::CoverageProof surface = internal::prove_surface(mesh, balls, finest);
+  internal::CoverageProof surface = internal::prove_surface(mesh, to_prove, finest);
   if (options.progress) options.progress(-1.0, "proving the solid");
   const internal::ClosedShells shells(mesh, distance);
   // Every point of S is a witness against S; against |M| itself only one that is proved to be
   // inside.
   const internal::CoverageProof solid = internal::prove_solid(
-      clearance, distance, balls, finest,
+      clearance, distance, to_prove, finest,
       [&](const Vector3d& p) { return options.external != nullptr || shells.contain(p); });
   bound_by_solid(surface, solid, distance, external);
   result.surface_depth = {surface.lower, surface.upper};
@@ -135,7 +135,7 @@ Certificate proved(const TriangleMesh& mesh, const MeshDistance& distance,
   if (options.protrusion_tolerance > 0.0) {
     if (options.progress) options.progress(-1.0, "measuring the protrusion");
     result.protrusion_over_mesh = internal::protrusion_over_mesh(
-        distance, shells, clearance, balls, options.protrusion_tolerance * diagonal);
+        distance, shells, clearance, to_prove, options.protrusion_tolerance * diagonal);
   }
   if (options.volume && !spheres.empty() && shells.is_mesh_closed()) {
     result.volume_ratio = internal::estimate_volume_ratio(mesh, spheres);
@@ -161,7 +161,7 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                              options);
   }
   const ExternalSpheres own = flood_closely(mesh, distance, options.padding);
-  // The fine flood makes too many external balls for finding their contacts to pay.
+  // The fine flood makes too many external spheres for finding their contacts to pay.
   return proved(mesh, distance, own, Clearance(own), spheres, options);
 }
 

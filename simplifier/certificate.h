@@ -25,7 +25,7 @@ struct CertifyOptions {
   // is the one of stage 1.
   double padding = 0.0;
   // Smallest piece of surface and cell of space that is examined, as a share of the box diagonal. A
-  // piece of this size that no single ball contains is reported as a leak with its depth. Never
+  // piece of this size that no single sphere contains is reported as a leak with its depth. Never
   // below 2^-40 of the largest coordinate, where halves of a piece are mostly rounding.
   double resolution = 1.0 / 4096.0;
   // Protrusion over |M| is searched to within this share of the box diagonal; 0 leaves it out.
@@ -41,29 +41,30 @@ struct Bounds {
   double upper = 0.0;
 };
 
-// What is proved about a set of balls, with outward rounding, on the numbers as given.
+// What is proved about a set of spheres, with outward rounding, on the numbers as given.
 struct Certificate {
   // G1: M grown by the padding and S (without external spheres: |M|) are subsets of the union of
-  // the balls. True only if proved; false may also mean that the proof did not reach the bottom,
+  // the spheres. True only if proved; false may also mean that the proof did not reach the bottom,
   // then the depth bounds tell how much remains.
   bool covered = false;
-  // Uncovered depth, the largest distance from a point of the set to the union of the balls; lower
-  // is witnessed by a point, upper proved. Of the surface M as stored, and of the solid, which
-  // holds M grown by the padding.
+  // Uncovered depth, the largest distance from a point of the set to the union of the spheres;
+  // lower is witnessed by a point, upper proved. Of the surface M as stored, and of the solid,
+  // which holds M grown by the padding.
   Bounds surface_depth;
   Bounds solid_depth;
   // The larger of the two.
   Bounds uncovered_depth;
   // The point that witnesses uncovered_depth.lower, if that is positive.
   Eigen::Vector3d deepest_leak = Eigen::Vector3d::Zero();
-  // G2: proved upper bound of the protrusion of the balls over S; absent without external spheres.
+  // G2: proved upper bound of the protrusion of the spheres over S; absent without external
+  // spheres.
   std::optional<double> protrusion_over_simplified_max;
-  // The same for the points of the balls that lie in a zone, for every zone asked for: the greatest
-  // bound of a ball that may reach into it, 0 if none does.
+  // The same for the points of the spheres that lie in a zone, for every zone asked for: the
+  // greatest bound of a sphere that may reach into it, 0 if none does.
   std::vector<double> protrusion_in_zones;
   // Proved bounds of the protrusion over |M|; absent if not asked for.
   std::optional<Bounds> protrusion_over_mesh;
-  std::optional<double> volume_ratio;  // of the union of the balls to the solid mesh; estimated
+  std::optional<double> volume_ratio;  // of the union of the spheres to the solid mesh; estimated
   // With external spheres and a closed mesh: volume of what stage 1 fills, S without |M|;
   // estimated, and the standard error of that.
   std::optional<double> filled_volume;
@@ -75,10 +76,10 @@ struct Certificate {
   std::size_t cells = 0;   // cells of space examined
 };
 
-// Certifies any set of balls against a mesh, ours or not (docs/guarantee.md, G1 and G2).
-// Independent of how the balls were found. Throws Error for a mesh that validate() refuses, for
-// balls that are not usable and for options out of range; an empty set of balls is certified (as
-// covering nothing).
+// Certifies any set of spheres against a mesh, ours or not (docs/guarantee.md, G1 and G2).
+// Independent of how the spheres were found. Throws Error for a mesh that validate() refuses, for
+// spheres that are not usable and for options out of range; an empty set of spheres is certified
+// (as covering nothing).
 Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                     const CertifyOptions& options = {});
 

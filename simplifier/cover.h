@@ -23,52 +23,52 @@ enum class CoverMethod {
 // How the second stage covers, and how long it may look.
 struct CoverOptions {
   CoverMethod method = CoverMethod::kCover;
-  // E: how far the balls may protrude from S. Positive.
+  // E: how far the spheres may protrude from S. Positive.
   double max_error = 0.0;
-  // kCover only: zones of an E of their own. Every point of the union of the balls that lies in
+  // kCover only: zones of an E of their own. Every point of the union of the spheres that lies in
   // such a zone is at most its `max_error` from S.
   std::vector<Zone> zones = {};
-  // No ball of the result is smaller than this radius (a tool made of such balls passes stage 1 of
-  // what it meets unchanged). Protrusion may exceed E where it forces a larger ball.
+  // No sphere of the result is smaller than this radius (a tool made of such spheres passes stage 1
+  // of what it meets unchanged). Protrusion may exceed E where it forces a larger sphere.
   double min_radius = 0.0;
-  // kPaper, and a Stage2Method that packs: diameter at which a ball is seeded (the paper's
+  // kPaper, and a Stage2Method that packs: diameter at which a sphere is seeded (the paper's
   // min_internal_size); 0 chooses E / 2.
   double min_internal_diameter = 0.0;
   std::uint64_t seed = 1;
-  // kCover: rounds of looking for fewer balls than the first proved answer; 0: none. The search
+  // kCover: rounds of looking for fewer spheres than the first proved answer; 0: none. The search
   // ends sooner where 40 rounds on end have gained nothing.
   int effort = 60;
   // kCover: no new round begins after so many seconds, either; 0 sets no limit. The result then
   // depends on the machine.
   double seconds = 0.0;
   // kCover: prove a lower bound of the count, too (SphereCover::lower_bound), after the search:
-  // that takes several times as long as the first answer. Not with a min_radius, which lets balls
+  // that takes several times as long as the first answer. Not with a min_radius, which lets spheres
   // protrude.
   bool lower_bound = false;
   // kPaper: record the history (costs some time).
   bool history = false;
   int threads = 0;  // 0: all
   Progress progress = {};
-  // kCover: called with the count whenever fewer balls are proved to cover S, the first answer
+  // kCover: called with the count whenever fewer spheres are proved to cover S, the first answer
   // included, from one thread at a time.
   std::function<void(std::size_t)> on_proved = {};
-  // kCover: once a stop is requested, the search ends with the fewest balls proved so far, after
+  // kCover: once a stop is requested, the search ends with the fewest spheres proved so far, after
   // the first answer at the earliest. The result then depends on when that was.
   std::stop_token stop = {};
 };
 
 // One step of the paper's loop, for its figures 6 to 8. "Before" and "after" refer to inflating
-// every ball by the error that remains at that step.
+// every sphere by the error that remains at that step.
 struct CoverHistoryEntry {
   std::size_t sphere_count = 0;
-  // Greatest distance from a point of S to the balls (section II.B): proved bounds, before
+  // Greatest distance from a point of S to the spheres (section II.B): proved bounds, before
   // inflation.
   double max_error_lower = 0.0;
   double max_error_upper = 0.0;
-  // Greatest distance from a point of the mesh surface to the balls (figure 6), over samples.
+  // Greatest distance from a point of the mesh surface to the spheres (figure 6), over samples.
   double surface_error_before = 0.0;
   double surface_error_after = 0.0;
-  // Share of the solid mesh that is covered (figure 7), and volume of the balls outside of the
+  // Share of the solid mesh that is covered (figure 7), and volume of the spheres outside of the
   // solid mesh over the volume of the solid mesh (figure 8), over samples.
   double coverage_before = 0.0;
   double coverage_after = 0.0;
@@ -79,26 +79,26 @@ struct CoverHistoryEntry {
 // Stage 2's result.
 struct SphereCover {
   std::vector<Sphere> spheres;
-  // No cover of S that protrudes by at most E has fewer balls, as proved; 0: not known.
+  // No cover of S that protrudes by at most E has fewer spheres, as proved; 0: not known.
   std::size_t lower_bound = 0;
-  // kPaper, and a Stage2Method that inflates: the balls before that, and the certified error.
+  // kPaper, and a Stage2Method that inflates: the spheres before that, and the certified error.
   std::vector<Sphere> spheres_before_inflation;
   double inflation = 0.0;
   std::vector<CoverHistoryEntry> history;
-  // kPaper, and a Stage2Method that packs: seeds that had to be moved before a ball fitted.
+  // kPaper, and a Stage2Method that packs: seeds that had to be moved before a sphere fitted.
   std::size_t seeds_rejected = 0;
 };
 
-// Stage 2: covers S with balls that protrude from it by at most E (the paper,
-// Algorithm 1; docs/covering.md). On return the union of the balls contains S: the search ends only
-// with what an octree over S has proved; certify() proves it again, by a search of its own. Every
-// ball's radius is at most E plus the distance of its centre, a point of S (up to rounding, for
-// which a reserve is kept), to the outside of S, and at most a zone's error plus that distance
-// where the ball reaches into that zone, unless min_radius is larger; where external balls close S
-// by a hair and no point of S is found, a ball of 0.02 E may stand, and certify() says how far it
-// protrudes. Deterministic for equal input and options on any number of threads, unless `seconds`
-// is set or a stop is requested. Throws Error for a mesh that validate() refuses, for options out
-// of range, and for an E too small for the rounding of the coordinates.
+// Stage 2: covers S with spheres that protrude from it by at most E (the paper,
+// Algorithm 1; docs/covering.md). On return the union of the spheres contains S: the search ends
+// only with what an octree over S has proved; certify() proves it again, by a search of its own.
+// Every sphere's radius is at most E plus the distance of its centre, a point of S (up to rounding,
+// for which a reserve is kept), to the outside of S, and at most a zone's error plus that distance
+// where the sphere reaches into that zone, unless min_radius is larger; where external spheres
+// close S by a hair and no point of S is found, a sphere of 0.02 E may stand, and certify() says
+// how far it protrudes. Deterministic for equal input and options on any number of threads, unless
+// `seconds` is set or a stop is requested. Throws Error for a mesh that validate() refuses, for
+// options out of range, and for an E too small for the rounding of the coordinates.
 SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                   const CoverOptions& options);
 

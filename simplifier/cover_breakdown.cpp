@@ -114,18 +114,20 @@ Points boundary_points(const internal::SolidCells& cells, const Clearance& clear
   return points;
 }
 
-// For each ball whether it is the only one that covers some of the points.
-std::vector<char> alone_at(const Points& points, std::span<const Sphere> balls, double max_error) {
+// For each sphere whether it is the only one that covers some of the points.
+std::vector<char> alone_at(const Points& points, std::span<const Sphere> spheres,
+                           double max_error) {
   const internal::PointGrid grid(points, kCube * max_error);
-  std::vector<std::vector<std::uint32_t>> held(balls.size());
-  tbb::parallel_for(std::size_t{0}, balls.size(),
-                    [&](std::size_t i) { grid.find(balls[i].center, balls[i].radius, held[i]); });
+  std::vector<std::vector<std::uint32_t>> held(spheres.size());
+  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+    grid.find(spheres[i].center, spheres[i].radius, held[i]);
+  });
   std::vector<std::uint32_t> times(points.size(), 0);
   for (const auto& some : held) {
     for (const std::uint32_t p : some) ++times[p];
   }
-  std::vector<char> alone(balls.size(), 0);
-  for (std::size_t i = 0; i < balls.size(); ++i) {
+  std::vector<char> alone(spheres.size(), 0);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
     alone[i] = std::ranges::any_of(held[i], [&](std::uint32_t p) { return times[p] == 1; }) ? 1 : 0;
   }
   return alone;
@@ -161,23 +163,23 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
   CoverBreakdown result;
   result.roles.resize(spheres.size());
   tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
-    BallRole& role = result.roles[i];
+    SphereRole& role = result.roles[i];
     if (at_edge[i] != 0) {
-      role = BallRole::kEdge;
+      role = SphereRole::kEdge;
     } else if (at_boundary[i] == 0) {
-      role = BallRole::kInside;
+      role = SphereRole::kInside;
     } else {
-      role =
-          is_thin_at(clearance, spheres[i].center, max_error) ? BallRole::kThin : BallRole::kFace;
+      role = is_thin_at(clearance, spheres[i].center, max_error) ? SphereRole::kThin
+                                                                 : SphereRole::kFace;
     }
   });
-  const auto count = [&](BallRole role) {
+  const auto count = [&](SphereRole role) {
     return static_cast<std::size_t>(std::ranges::count(result.roles, role));
   };
-  result.edges = count(BallRole::kEdge);
-  result.thin = count(BallRole::kThin);
-  result.faces = count(BallRole::kFace);
-  result.inside = count(BallRole::kInside);
+  result.edges = count(SphereRole::kEdge);
+  result.thin = count(SphereRole::kThin);
+  result.faces = count(SphereRole::kFace);
+  result.inside = count(SphereRole::kInside);
   return result;
 }
 
@@ -186,7 +188,7 @@ std::size_t spheres_in_thin_parts(const ExternalSpheres& external, std::span<con
   internal::check_max_error(max_error);
   const Clearance clearance(external);
   return static_cast<std::size_t>(std::ranges::count_if(
-      spheres, [&](const Sphere& ball) { return clearance(ball.center).upper < max_error; }));
+      spheres, [&](const Sphere& sphere) { return clearance(sphere.center).upper < max_error; }));
 }
 
 }  // namespace spherule

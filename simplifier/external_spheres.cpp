@@ -5,11 +5,11 @@
 #include "mesh/mesh_report.h"
 #include "simplifier/concave_edges.h"
 #include "simplifier/internal/stages.h"
-#include "simplifier/solid/ball_hierarchy.h"
-#include "simplifier/stage1/ball_way.h"
+#include "simplifier/solid/sphere_hierarchy.h"
 #include "simplifier/stage1/flood_grid.h"
 #include "simplifier/stage1/local_diameter.h"
 #include "simplifier/stage1/random_placement.h"
+#include "simplifier/stage1/sphere_way.h"
 #include "simplifier/support/thread_limit.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -73,7 +73,7 @@ Eigen::AlignedBox3d inflated_outwards(const Eigen::AlignedBox3d& box, double by)
   return inflated;
 }
 
-// For balls of this diameter that meet S with this error.
+// For spheres of this diameter that meet S with this error.
 double chosen_step(const ExternalOptions& options, double diameter, double max_error) {
   if (options.grid_step > 0.0) {
     return options.grid_step * (diameter / options.min_external_diameter);
@@ -88,7 +88,7 @@ double chosen_step(const ExternalOptions& options, const Zone& zone) {
                      zone.max_error.value_or(options.max_error));
 }
 
-// A cube around the box that leaves a ball of radius rho and three steps of room on every side.
+// A cube around the box that leaves a sphere of radius rho and three steps of room on every side.
 // Zones halve the step up to `halvings` times.
 FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double step, int halvings) {
   const double edge = box.sizes().maxCoeff() + 2.0 * (rho + 3.0 * step);
@@ -106,14 +106,14 @@ FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double s
   return shape;
 }
 
-// Makes external balls sit close to concave edges, corners and ends of ways, which the grid meets
+// Makes external spheres sit close to concave edges, corners and ends of ways, which the grid meets
 // only by chance: points of a cell beside a reached node are pushed away from the surface until a
-// ball of radius rho has room, and the ball is kept if it takes something from S there, that is,
-// in the direction from which it was pushed, and provably gets there from the node.
-class SnugBalls {
+// sphere of radius rho has room, and the sphere is kept if it takes something from S there, that
+// is, in the direction from which it was pushed, and provably gets there from the node.
+class SnugSpheres {
  public:
-  SnugBalls(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
-            std::span<const Sphere> reached)
+  SnugSpheres(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
+              std::span<const Sphere> reached)
       : distance_(distance),
         padding_(padding),
         way_(distance, padding),
@@ -129,17 +129,17 @@ class SnugBalls {
  private:
   // What came of a point.
   struct Pushed {
-    Sphere ball;          // of radius 0 where nothing is to be had
+    Sphere sphere;        // of radius 0 where nothing is to be had
     bool is_flat = true;  // one surface only was met, if any
   };
 
   // From a point, and, unless only a wall is there that the grid does as well for, from eight
-  // around it, and around those that find a ball.
+  // around it, and around those that find a sphere.
   void look(const FloodGrid::Frontier& frontier, const Vector3d& start, double apart,
             std::vector<Sphere>& found) const {
     const Pushed here = pushed(frontier, start, found);
-    const bool is_found = here.ball.radius > 0.0;
-    if (is_found) found.push_back(here.ball);
+    const bool is_found = here.sphere.radius > 0.0;
+    if (is_found) found.push_back(here.sphere);
     const bool is_first = apart == 0.5 * frontier.step;
     if (!(is_found || (is_first && !here.is_flat)) || apart < kFinest * frontier.step) return;
     for (int k = 0; k < 8; ++k) {
@@ -160,11 +160,12 @@ class SnugBalls {
       const SurfaceDistance d = distance_(x);
       const double clearance = sub_down(d.lower, padding_);
       if (clearance >= rho) {
-        const Sphere ball{x, clearance};
+        const Sphere sphere{x, clearance};
         const Sphere node{from, frontier.neighbour.clearance};
-        const bool reached = push > 0 && takes_something(ball, start, frontier.step, node, found) &&
-                             diameter_.on_way(from, x) <= rho && way_.passes(node, ball, rho);
-        return {reached ? ball : Sphere{}, push < 2};
+        const bool reached = push > 0 &&
+                             takes_something(sphere, start, frontier.step, node, found) &&
+                             diameter_.on_way(from, x) <= rho && way_.passes(node, sphere, rho);
+        return {reached ? sphere : Sphere{}, push < 2};
       }
       const Vector3d away = x - d.closest;
       const double norm = away.norm();
@@ -175,11 +176,11 @@ class SnugBalls {
     return {};
   }
 
-  // Whether the point of the ball towards `start` is this far from all others.
-  bool takes_something(const Sphere& ball, const Vector3d& start, double step, const Sphere& node,
+  // Whether the point of the sphere towards `start` is this far from all others.
+  bool takes_something(const Sphere& sphere, const Vector3d& start, double step, const Sphere& node,
                        std::span<const Sphere> found) const {
     const double enough = kGain * step;
-    const Vector3d tip = ball.center + ball.radius * (start - ball.center).normalized();
+    const Vector3d tip = sphere.center + sphere.radius * (start - sphere.center).normalized();
     const auto holds = [&](const Sphere& other) {
       return (tip - other.center).norm() - other.radius < enough;
     };
@@ -193,9 +194,9 @@ class SnugBalls {
 
   const MeshDistance& distance_;
   double padding_;
-  internal::BallWay way_;
+  internal::SphereWay way_;
   const LocalDiameter& diameter_;
-  internal::BallHierarchy reached_;
+  internal::SphereHierarchy reached_;
 };
 
 void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
@@ -222,18 +223,18 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
       2.0 * diameter.radius() * grid.tighten(options.tightness, options.progress);
   result.grid_step = step;
   result.nodes_examined = grid.evaluations();
-  // Zones make the grid so fine that it pays to leave out what lies in a larger ball.
+  // Zones make the grid so fine that it pays to leave out what lies in a larger sphere.
   for (const FloodGrid::Cell& cell :
        zones.empty() ? grid.reached_cells() : grid.reached_cells_that_count()) {
-    result.balls.push_back({cell.center, cell.clearance});
+    result.spheres.push_back({cell.center, cell.clearance});
   }
   const std::vector<FloodGrid::Frontier> frontier = grid.frontier();
   std::vector<std::vector<Sphere>> snug(frontier.size());
-  const SnugBalls place(distance, result.padding, diameter, result.balls);
+  const SnugSpheres place(distance, result.padding, diameter, result.spheres);
   tbb::parallel_for(std::size_t{0}, frontier.size(),
                     [&](std::size_t i) { snug[i] = place(frontier[i]); });
-  for (const std::vector<Sphere>& balls : snug) {
-    result.balls.insert(result.balls.end(), balls.begin(), balls.end());
+  for (const std::vector<Sphere>& spheres : snug) {
+    result.spheres.insert(result.spheres.end(), spheres.begin(), spheres.end());
   }
   if (options.progress) options.progress(1.0, "placing external spheres");
 }
@@ -262,7 +263,7 @@ ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
     case ExternalPlacement::kRandom: {
       internal::RandomPlacement placement = internal::place_random(
           distance, result.padding, options.min_external_diameter / 2.0, result.box, options);
-      result.balls = std::move(placement.balls);
+      result.spheres = std::move(placement.spheres);
       result.nodes_examined = placement.attempts;
       break;
     }
@@ -270,7 +271,7 @@ ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
       break;
   }
   // What does not meet the box takes nothing from S.
-  std::erase_if(result.balls, [&](const Sphere& s) {
+  std::erase_if(result.spheres, [&](const Sphere& s) {
     return result.box.exteriorDistance(s.center) * (1.0 - 1e-12) >= s.radius;
   });
   return result;

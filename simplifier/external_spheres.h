@@ -14,7 +14,7 @@
 
 namespace spherule {
 
-// How external balls are placed.
+// How external spheres are placed.
 enum class ExternalPlacement {
   kReachable,  // deterministic flood from outside (default)
   kRandom,     // the paper's Algorithm 1
@@ -33,7 +33,7 @@ struct ExternalOptions {
   // t: everything holds for M grown by this much.
   double padding = 0.0;
   // Grid step of the flood; 0 chooses sqrt(0.08 * max_error * D / 2), at most D / 8, which leaves
-  // spikes of about 0.02 E between the balls along a flat wall. Without `max_error` it is D / 16.
+  // spikes of about 0.02 E between the spheres along a flat wall. Without `max_error` it is D / 16.
   double grid_step = 0.0;
   // E, used for the choice of the grid step only.
   double max_error = 0.0;
@@ -43,10 +43,10 @@ struct ExternalOptions {
   double tightness = 0.03;
   static constexpr double kNoTightness = 10.0;
   // Reachable placement only: zones of a D of their own. What is reachable then: a place to which a
-  // ball can be moved from outside that may change its size on the way, and at every point x of the
-  // way of its centre has a radius of rho(x) at least: d / 2 where x lies in a zone of its own d
-  // (the least of them), D / 2 elsewhere. Zones also make the grid finer, by halvings of its step,
-  // as their d and max error ask for.
+  // sphere can be moved from outside that may change its size on the way, and at every point x of
+  // the way of its centre has a radius of rho(x) at least: d / 2 where x lies in a zone of its own
+  // d (the least of them), D / 2 elsewhere. Zones also make the grid finer, by halvings of its
+  // step, as their d and max error ask for.
   std::vector<Zone> zones = {};
   // Adds such zones along sharp concave edges of the mesh (concave_edges.h).
   bool keep_concave_edges = false;
@@ -58,26 +58,26 @@ struct ExternalOptions {
 };
 
 // Stage 1's result. It defines the simplified solid S exactly: the closed box minus the union of
-// the open balls. Every ball is disjoint from M grown by `padding`, of diameter at least D, and was
-// reached from outside the box by a ball of diameter D without touching M (in zones: of the
+// the open spheres. Every sphere is disjoint from M grown by `padding`, of diameter at least D, and
+// was reached from outside the box by a sphere of diameter D without touching M (in zones: of the
 // diameter that suffices there, see ExternalOptions::zones); hence M and |M| are subsets of S,
-// whatever balls were kept.
+// whatever spheres were kept.
 struct ExternalSpheres {
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   Eigen::AlignedBox3d box;             // of M grown by the padding, rounded outwards
   double min_external_diameter = 0.0;  // D
   double padding = 0.0;                // t, the mesh's vertex_error included
   double grid_step = 0.0;              // of the flood; 0 for the other placements
   std::size_t nodes_examined = 0;      // distance evaluations
-  // Proved: every place to which a ball of diameter D + closing_slack can be moved from outside
-  // lies, as its centre, in a ball of `balls` that was reached, at most 2.6 grid steps from that
-  // one's centre. So a gap may be wider than D by no more than that and have been closed. It is the
-  // centre that is proved to be out of S, not all of the ball of diameter D + closing_slack about
-  // it: S may reach into its rim. External balls are added where it does, close to concave edges,
-  // corners and ends of ways, so that in samples on three models S reaches into it by a third of a
-  // grid step at most (bench/README.md); that is no proof. For the d of a zone the same share of d
-  // holds. At most `tightness` of D, unless memory ends first. 0 for the other placements, of which
-  // nothing is proved.
+  // Proved: every place to which a sphere of diameter D + closing_slack can be moved from outside
+  // lies, as its centre, in a sphere of `spheres` that was reached, at most 2.6 grid steps from
+  // that one's centre. So a gap may be wider than D by no more than that and have been closed. It
+  // is the centre that is proved to be out of S, not all of the sphere of diameter D +
+  // closing_slack about it: S may reach into its rim. External spheres are added where it does,
+  // close to concave edges, corners and ends of ways, so that in samples on three models S reaches
+  // into it by a third of a grid step at most (bench/README.md); that is no proof. For the d of a
+  // zone the same share of d holds. At most `tightness` of D, unless memory ends first. 0 for the
+  // other placements, of which nothing is proved.
   double closing_slack = 0.0;
   // What keep_concave_edges added.
   std::vector<Zone> concave_edges;

@@ -4,7 +4,7 @@
 #include "mesh/geometry/mesh_box.h"
 #include "mesh/geometry/point_grid.h"
 #include "simplifier/proof/surface_piece.h"
-#include "simplifier/solid/ball_hierarchy.h"
+#include "simplifier/solid/sphere_hierarchy.h"
 #include "simplifier/support/usable_spheres.h"
 #include "spheretree/error.h"
 
@@ -17,7 +17,7 @@ namespace spherule {
 namespace {
 
 using Eigen::Vector3d;
-using internal::BallHierarchy;
+using internal::SphereHierarchy;
 using internal::SurfacePiece;
 
 void check_share(double share, const std::string& name) {
@@ -26,15 +26,15 @@ void check_share(double share, const std::string& name) {
 
 class Sampler {
  public:
-  Sampler(const BallHierarchy& balls, double spacing) : balls_(balls), spacing_(spacing) {}
+  Sampler(const SphereHierarchy& spheres, double spacing) : spheres_(spheres), spacing_(spacing) {}
 
   void add_point(const Vector3d& point) {
-    const double depth = balls_.nearest(point).lower;
+    const double depth = spheres_.nearest(point).lower;
     if (depth > 0.0) found_.push_back({point, depth});
   }
 
   // Looks at the middle of every piece with edges up to the spacing, but for those so deep in a
-  // ball that all of the piece is in it.
+  // sphere that all of the piece is in it.
   void add_triangle(const SurfacePiece& triangle) {
     pieces_.assign(1, triangle);
     while (!pieces_.empty()) {
@@ -44,7 +44,7 @@ class Sampler {
       const Vector3d middle = (a + b + c) / 3.0;
       const std::size_t edge = internal::longest_edge(piece);
       const double size = (piece.corner[(edge + 1) % 3] - piece.corner[edge]).norm();
-      const double depth = balls_.nearest(middle).lower;
+      const double depth = spheres_.nearest(middle).lower;
       if (depth < -size) continue;
       if (size > spacing_) {
         internal::halve(piece, pieces_);
@@ -57,7 +57,7 @@ class Sampler {
   std::vector<LeakPoint> take() { return std::move(found_); }
 
  private:
-  const BallHierarchy& balls_;
+  const SphereHierarchy& spheres_;
   double spacing_;
   std::vector<SurfacePiece> pieces_;
   std::vector<LeakPoint> found_;
@@ -94,8 +94,8 @@ std::vector<LeakPoint> leak_points(const TriangleMesh& mesh, std::span<const Sph
   check_share(options.separation, "separation");
   if (spheres.empty()) return {};
   const double size = internal::box_of(mesh).diagonal().norm();
-  const BallHierarchy balls(spheres);
-  Sampler sampler(balls, options.spacing * size);
+  const SphereHierarchy hierarchy(spheres);
+  Sampler sampler(hierarchy, options.spacing * size);
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
     SurfacePiece piece;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -12,10 +12,10 @@
 
 namespace spherule {
 
-// A point of a surface that no ball contains.
+// A point of a surface that no sphere contains.
 struct LeakPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  // on the surface, up to its rounding
-  double depth = 0.0;                               // positive: no ball is nearer to `point`
+  double depth = 0.0;                               // positive: no sphere is nearer to `point`
 };
 
 // How closely leaks are looked for.
@@ -27,11 +27,11 @@ struct LeakPointOptions {
   std::size_t max_count = 500;  // the deepest are returned
 };
 
-// Where the surface of a mesh is outside of all balls, the deepest point first: for showing where
+// Where the surface of a mesh is outside of all spheres, the deepest point first: for showing where
 // to look. Every point returned is a leak. That none is returned proves nothing, since only samples
-// are looked at: certify() proves. Without any ball there is no depth to tell, and nothing is
-// returned. Equal input gives equal output. Throws Error for a mesh that validate() refuses, balls
-// that are not usable, and options out of range.
+// are looked at: certify() proves. Without any sphere there is no depth to tell, and nothing is
+// returned. Equal input gives equal output. Throws Error for a mesh that validate() refuses,
+// spheres that are not usable, and options out of range.
 std::vector<LeakPoint> leak_points(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                                    const LeakPointOptions& options = {});
 

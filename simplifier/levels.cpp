@@ -57,8 +57,8 @@ std::vector<CoverLevel> internal::fit_levels(const MeshDistance& distance,
   const std::vector<double> errors = check_levels(max_errors);
   std::vector<CoverLevel> levels;
   const ThreadLimit threads(options.threads);
-  const auto protrusion = [&](std::span<const Sphere> balls) {
-    return greatest(protrusions_over_solid(clearance, distance, balls));
+  const auto protrusion = [&](std::span<const Sphere> of_level) {
+    return greatest(protrusions_over_solid(clearance, distance, of_level));
   };
   const SphereTree clustering = build_tree(spheres);
   levels.reserve(errors.size());
@@ -76,21 +76,21 @@ std::vector<CoverLevel> internal::fit_levels(const MeshDistance& distance,
     }
     CoverLevel level;
     level.max_error = error;
-    level.balls = LevelFitter(clearance, finer, level_options).run();
-    level.protrusion = protrusion(level.balls.spheres);
-    const std::vector<Sphere> clusters = cut(clustering, level.balls.spheres.size());
+    level.spheres = LevelFitter(clearance, finer, level_options).run();
+    level.protrusion = protrusion(level.spheres.spheres);
+    const std::vector<Sphere> clusters = cut(clustering, level.spheres.spheres.size());
     level.clustering_count = clusters.size();
     level.clustering_protrusion = protrusion(clusters);
     levels.push_back(std::move(level));
-    finer = levels.back().balls.spheres;
+    finer = levels.back().spheres.spheres;
   }
   return levels;
 }
 
 LevelTree level_tree(std::span<const Sphere> spheres, std::span<const CoverLevel> levels) {
-  std::vector<SphereLevel> balls;
-  for (const CoverLevel& level : levels) balls.push_back(level.balls);
-  return build_tree_from_levels(spheres, balls);
+  std::vector<SphereLevel> coarser;
+  for (const CoverLevel& level : levels) coarser.push_back(level.spheres);
+  return build_tree_from_levels(spheres, coarser);
 }
 
 }  // namespace spherule

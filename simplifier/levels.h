@@ -16,28 +16,28 @@ namespace spherule {
 // A coarser cover that was fitted to the solid and encloses a finer one.
 struct CoverLevel {
   double max_error = 0.0;  // E of this level
-  // Its balls, and for every ball of the next finer level (of the cover itself below the first
-  // level) the ball that encloses it.
-  SphereLevel balls;
+  // Its spheres, and for every sphere of the next finer level (of the cover itself below the first
+  // level) the sphere that encloses it.
+  SphereLevel spheres;
   // Proved upper bound of the protrusion over S.
   double protrusion = 0.0;
-  // The same of plain clustering: of as many balls, or as few fewer as it has, of build_tree() over
-  // the cover.
+  // The same of plain clustering: of as many spheres, or as few fewer as it has, of build_tree()
+  // over the cover.
   double clustering_protrusion = 0.0;
   std::size_t clustering_count = 0;
 };
 
 // Levels of detail above the cover `spheres`, for the errors given, all larger than that of the
 // cover: the finest first, each made for the one before it. A level is a set cover whose rows are
-// the finer balls: a ball about c of radius at most E + the clearance of c must hold each finer
-// ball that is its child whole. That has a solution, since a finer ball is such a ball itself. So
-// every level covers what the cover covers, protrudes from S by at most its E (unless min_radius
-// forces more, or the cover itself protrudes by more), and each of its balls encloses its children
-// in exact arithmetic, with the reserve of SphereLevel. Balls are shrunk to what their children
-// need. Uses seed, effort (at most the default where `seconds` is set), min_radius, threads and
-// progress of the options. Deterministic. Throws Error for a mesh that validate() refuses, balls
-// that are not usable and errors that check_levels() refuses. Zones do not bind levels above the
-// cover.
+// the finer spheres: a sphere about c of radius at most E + the clearance of c must hold each finer
+// sphere that is its child whole. That has a solution, since a finer sphere is such a sphere
+// itself. So every level covers what the cover covers, protrudes from S by at most its E (unless
+// min_radius forces more, or the cover itself protrudes by more), and each of its spheres encloses
+// its children in exact arithmetic, with the reserve of SphereLevel. Spheres are shrunk to what
+// their children need. Uses seed, effort (at most the default where `seconds` is set), min_radius,
+// threads and progress of the options. Deterministic. Throws Error for a mesh that validate()
+// refuses, spheres that are not usable and errors that check_levels() refuses. Zones do not bind
+// levels above the cover.
 std::vector<CoverLevel> fit_levels(const TriangleMesh& mesh, const ExternalSpheres& external,
                                    std::span<const Sphere> spheres,
                                    std::span<const double> max_errors, const CoverOptions& options);
@@ -46,7 +46,7 @@ std::vector<CoverLevel> fit_levels(const TriangleMesh& mesh, const ExternalSpher
 // at least 1 % larger than the next finer one: below that rounding could decide.
 std::vector<double> check_levels(std::span<const double> max_errors);
 
-// The tree over the cover in which the balls of the levels stand.
+// The tree over the cover in which the spheres of the levels stand.
 LevelTree level_tree(std::span<const Sphere> spheres, std::span<const CoverLevel> levels);
 
 }  // namespace spherule

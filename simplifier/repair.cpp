@@ -32,7 +32,7 @@ using internal::SolidCells;
 constexpr double kCells = 0.7;         // half diagonal of the cells looked at first
 constexpr double kLeakReserve = 0.02;  // about a point that is found open
 
-// Of points found open, after which all balls that could matter about them grow fully.
+// Of points found open, after which all spheres that could matter about them grow fully.
 constexpr int kRounds = 40;
 
 constexpr double kLeastError = 0.01;  // chosen, of the box diagonal
@@ -50,49 +50,49 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// The largest radius of each ball with which it protrudes by at most `max_error`, as certified
+// The largest radius of each sphere with which it protrudes by at most `max_error`, as certified
 // (protrusion.h); its own if that is larger.
 std::vector<double> limits_of(const Clearance& clearance, const MeshDistance& distance,
-                              std::span<const Sphere> balls, const internal::LocalError& error) {
-  std::vector<double> limits(balls.size());
-  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
-    const Vector3d& c = balls[i].center;
+                              std::span<const Sphere> spheres, const internal::LocalError& error) {
+  std::vector<double> limits(spheres.size());
+  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+    const Vector3d& c = spheres[i].center;
     const double depth = clearance(c).lower;
     const double allowed = error.allowance(c, std::max(0.0, depth));
     const double limit =
         depth >= 0.0 ? add_down(allowed, depth) : sub_down(allowed, distance(c).upper);
-    limits[i] = std::max(balls[i].radius, next_down(limit));
+    limits[i] = std::max(spheres[i].radius, next_down(limit));
   });
   return limits;
 }
 
-std::vector<Sphere> joined(std::vector<Sphere> balls, const std::vector<Sphere>& more) {
-  balls.insert(balls.end(), more.begin(), more.end());
-  return balls;
+std::vector<Sphere> joined(std::vector<Sphere> spheres, const std::vector<Sphere>& more) {
+  spheres.insert(spheres.end(), more.begin(), more.end());
+  return spheres;
 }
 
-// Radii with which the balls cover S together with those `added`, which they do at their limits.
+// Radii with which the spheres cover S together with those `added`, which they do at their limits.
 std::vector<Sphere> inflated_spheres(const Clearance& clearance, const MeshDistance& distance,
-                                     std::span<const Sphere> balls,
+                                     std::span<const Sphere> spheres,
                                      const std::vector<Sphere>& limit,
                                      const std::vector<Sphere>& added, double max_error,
                                      const internal::LocalError& error) {
   std::vector<double> limits;
-  for (const Sphere& ball : limit) limits.push_back(ball.radius);
-  internal::SphereInflation inflation(balls, limits);
+  for (const Sphere& sphere : limit) limits.push_back(sphere.radius);
+  internal::SphereInflation inflation(spheres, limits);
   const double spacing = internal::CoverFitter::leak_spacing(max_error);
   SolidCells cells(clearance, distance, error, max_error, kCells);
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<Sphere> inflated = inflation.balls();
+    std::vector<Sphere> inflated = inflation.spheres();
     const std::vector<Sphere> all = joined(inflated, added);
-    const internal::BallHierarchy hierarchy(all);
+    const internal::SphereHierarchy hierarchy(all);
     const SolidCells::Leaks leaks =
         cells.find_leaks({all, hierarchy}, internal::CoverFitter::finest(max_error), spacing);
     if (leaks.empty()) return inflated;
     bool more = false;
     for (const auto* points : {&leaks.in_solid, &leaks.pinched}) {
       for (const Vector3d& p : *points) {
-        // What was asked for is not enough here: several balls meet at the point.
+        // What was asked for is not enough here: several spheres meet at the point.
         more = inflation.require(p, kLeakReserve * max_error) ||
                inflation.grow_fully_about(p, spacing) || more;
       }

@@ -20,7 +20,7 @@ namespace spherule {
 namespace {
 
 constexpr double kDefaultError = 0.01;    // of the box diagonal
-constexpr double kDefaultDiameter = 4.0;  // of E: 90-degree edges ask for balls of radius 2 E
+constexpr double kDefaultDiameter = 4.0;  // of E: 90-degree edges ask for spheres of radius 2 E
 constexpr double kResolutionOfError = 0.005;
 
 double box_diagonal(const TriangleMesh& mesh) {
@@ -166,9 +166,9 @@ SphereCover cover_solid(const TriangleMesh& mesh, const ExternalSpheres& externa
 
 double tool_diameter(std::span<const Sphere> tool) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Sphere& ball : tool) {
-    if (!is_usable(ball)) throw Error("tool", "a sphere is not usable");
-    least = std::min(least, ball.radius);
+  for (const Sphere& sphere : tool) {
+    if (!is_usable(sphere)) throw Error("tool", "a sphere is not usable");
+    least = std::min(least, sphere.radius);
   }
   if (tool.empty()) throw Error("tool", "holds no sphere");
   if (least == 0.0) throw Error("tool", "has a sphere of radius 0: nothing is small enough for it");

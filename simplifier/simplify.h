@@ -45,7 +45,7 @@ struct SimplifyOptions {
   double tightness = ExternalOptions{}.tightness;
   // t: grow M by this much (chord error of the tessellation, calibration).
   double padding = 0.0;
-  // No ball of the result is smaller than this radius.
+  // No sphere of the result is smaller than this radius.
   double min_radius = 0.0;
   // Where E and D are smaller.
   std::vector<Zone> zones = {};
@@ -102,14 +102,14 @@ SphereCover cover_solid(const TriangleMesh& mesh, const ExternalSpheres& externa
 
 // What was promised and is not proved, as a sentence: that the spheres cover, and, where no least
 // radius was asked for, that they protrude from the simplified solid by at most E, in a zone by at
-// most its own, and the balls of a level by at most that of the level. Empty where all is proved.
+// most its own, and the spheres of a level by at most that of the level. Empty where all is proved.
 std::string broken_promises(const Simplification& simplification);
 
-// D for a tool that is a union of balls: the diameter of the smallest. If all of them are free of M
-// at a place to which the tool gets from outside, they are external balls themselves, so that it
-// does not meet S either (docs/guarantee.md, up to the grid's tightness: it has to get there with
-// room to spare all around, 1.74 of ExternalSpheres::grid_step). Throws Error with the subject
-// "tool" if there is no ball, one is not usable, or has the radius 0.
+// D for a tool that is a union of spheres: the diameter of the smallest. If all of them are free of
+// M at a place to which the tool gets from outside, they are external spheres themselves, so that
+// it does not meet S either (docs/guarantee.md, up to the grid's tightness: it has to get there
+// with room to spare all around, 1.74 of ExternalSpheres::grid_step). Throws Error with the subject
+// "tool" if there is no sphere, one is not usable, or has the radius 0.
 double tool_diameter(std::span<const Sphere> tool);
 
 // The options with which simplify() runs stage 1, for an audit that runs it again. Where E is not

@@ -74,7 +74,7 @@ class Reader {
   std::string where_;
 };
 
-ZoneShape read_ball(const Json& entry, const std::string& subject, const std::string& where) {
+ZoneShape read_sphere(const Json& entry, const std::string& subject, const std::string& where) {
   const Reader read(entry, subject, where,
                     {"shape", "center", "radius", "max_error", "min_external"});
   return Sphere{read.point("center"), read.number("radius")};
@@ -98,13 +98,13 @@ Zone read_zone(const Json& entry, const std::string& subject, const std::string&
   Zone zone;
   const std::string shape = read.text("shape");
   if (shape == "ball") {
-    zone.shape = read_ball(entry, subject, where);
+    zone.shape = read_sphere(entry, subject, where);
   } else if (shape == "box") {
     zone.shape = read_box(entry, subject, where);
   } else if (shape == "capsule") {
     zone.shape = read_capsule(entry, subject, where);
   } else {
-    read.fail("unknown shape \"" + shape + "\": ball, box or capsule");
+    read.fail("unknown shape \"" + shape + "\": sphere, box or capsule");
   }
   zone.max_error = read.number_if_there("max_error");
   zone.min_external_diameter = read.number_if_there("min_external");
@@ -116,8 +116,8 @@ Json list(const Vector3d& point) {
 }
 
 struct WriteShape {
-  Json operator()(const Sphere& ball) const {
-    return {{"shape", "ball"}, {"center", list(ball.center)}, {"radius", ball.radius}};
+  Json operator()(const Sphere& sphere) const {
+    return {{"shape", "ball"}, {"center", list(sphere.center)}, {"radius", sphere.radius}};
   }
   Json operator()(const Eigen::AlignedBox3d& box) const {
     return {{"shape", "box"}, {"min", list(box.min())}, {"max", list(box.max())}};

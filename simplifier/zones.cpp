@@ -22,8 +22,8 @@ TriangleDistance to_axis(const ZoneCapsule& capsule, const Vector3d& point) {
 struct DistanceLower {
   const Vector3d& point;
 
-  double operator()(const Sphere& ball) const {
-    return std::max(0.0, sub_down(distance_lower(point, ball.center), ball.radius));
+  double operator()(const Sphere& sphere) const {
+    return std::max(0.0, sub_down(distance_lower(point, sphere.center), sphere.radius));
   }
   double operator()(const AlignedBox3d& box) const {
     Vector3d gap;
@@ -42,7 +42,7 @@ struct Contains {
   const Vector3d& point;
   double reach;
 
-  bool operator()(const Sphere& ball) const { return certainly_contains(ball, point, reach); }
+  bool operator()(const Sphere& sphere) const { return certainly_contains(sphere, point, reach); }
   bool operator()(const AlignedBox3d& box) const {
     for (int axis = 0; axis < 3; ++axis) {
       const double low = reach == 0.0 ? point[axis] : sub_down(point[axis], reach);
@@ -57,7 +57,9 @@ struct Contains {
 };
 
 struct Bounding {
-  AlignedBox3d operator()(const Sphere& ball) const { return about(ball.center, ball.radius); }
+  AlignedBox3d operator()(const Sphere& sphere) const {
+    return about(sphere.center, sphere.radius);
+  }
   AlignedBox3d operator()(const AlignedBox3d& box) const { return box; }
   AlignedBox3d operator()(const ZoneCapsule& capsule) const {
     return about(capsule.from, capsule.radius).merged(about(capsule.to, capsule.radius));
@@ -74,7 +76,7 @@ struct Bounding {
 };
 
 struct IsUsable {
-  bool operator()(const Sphere& ball) const { return is_usable(ball); }
+  bool operator()(const Sphere& sphere) const { return is_usable(sphere); }
   bool operator()(const AlignedBox3d& box) const {
     return is_usable_point(box.min()) && is_usable_point(box.max()) &&
            (box.min().array() <= box.max().array()).all();
@@ -90,7 +92,7 @@ bool equal_shapes(const ZoneShape& a, const ZoneShape& b) {
     const auto& other = std::get<AlignedBox3d>(b);
     return box->min() == other.min() && box->max() == other.max();
   }
-  if (const auto* ball = std::get_if<Sphere>(&a)) return *ball == std::get<Sphere>(b);
+  if (const auto* sphere = std::get_if<Sphere>(&a)) return *sphere == std::get<Sphere>(b);
   return std::get<ZoneCapsule>(a) == std::get<ZoneCapsule>(b);
 }
 

@@ -34,13 +34,13 @@ using ZoneShape = std::variant<Sphere, Eigen::AlignedBox3d, ZoneCapsule>;
 // value counts.
 struct Zone {
   ZoneShape shape;
-  // e: every point of the union of the balls that lies in the zone is at most this far from S. At
+  // e: every point of the union of the spheres that lies in the zone is at most this far from S. At
   // most E.
   std::optional<double> max_error = std::nullopt;
-  // d: a ball of diameter d, instead of D, is small enough to be an external ball where its centre
-  // lies in the zone. At most D. So that something gets in, the zone has to hold the centres of
-  // balls of diameter D beside it, not only the detail that is to be kept: let it reach D / 2 out
-  // of the surface, and a few grid steps more.
+  // d: a sphere of diameter d, instead of D, is small enough to be an external sphere where its
+  // centre lies in the zone. At most D. So that something gets in, the zone has to hold the centres
+  // of spheres of diameter D beside it, not only the detail that is to be kept: let it reach D / 2
+  // out of the surface, and a few grid steps more.
   std::optional<double> min_external_diameter = std::nullopt;
 };
 
@@ -49,7 +49,7 @@ bool operator==(const Zone& a, const Zone& b);
 
 // Never more than the distance of `point` to the shape, and 0 in it.
 double distance_lower(const ZoneShape& shape, const Eigen::Vector3d& point);
-// True only if the ball of radius `reach` about `point` is a subset of the shape; false within
+// True only if the sphere of radius `reach` about `point` is a subset of the shape; false within
 // rounding of the limit.
 bool certainly_contains(const ZoneShape& shape, const Eigen::Vector3d& point, double reach = 0.0);
 // A box that contains the shape.

@@ -3,7 +3,7 @@
 
 #include "spheretree/error.h"
 #include "spheretree/internal/binary_tree.h"
-#include "spheretree/internal/node_balls.h"
+#include "spheretree/internal/node_spheres.h"
 #include "spheretree/internal/wide_nodes.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 // A tree over n spheres has at most 2 n - 1 nodes, which 32-bit indices must name.
 constexpr std::size_t kMaxSpheres = std::size_t{1} << 30U;
 
-// Lays out the wide nodes breadth-first. Balls of inner nodes are left to fit_balls().
+// Lays out the wide nodes breadth-first. Spheres of inner nodes are left to fit_spheres().
 SphereTreeData lay_out(std::span<const internal::BinaryNode> nodes, std::span<const Sphere> spheres,
                        int branching) {
   SphereTreeData data;
@@ -27,7 +27,7 @@ SphereTreeData lay_out(std::span<const internal::BinaryNode> nodes, std::span<co
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const internal::BinaryNode& node = nodes[static_cast<std::size_t>(sources[i])];
     if (node.is_leaf()) {
-      data.first_child.push_back(node.sphere);
+      data.first_child.push_back(node.leaf_sphere);
       data.child_count.push_back(0);
       continue;
     }
@@ -39,15 +39,15 @@ SphereTreeData lay_out(std::span<const internal::BinaryNode> nodes, std::span<co
   return data;
 }
 
-// From the last node to the first, so that the children's balls are there before the parent's.
-void fit_balls(SphereTreeData& data) {
+// From the last node to the first, so that the children's spheres are there before the parent's.
+void fit_spheres(SphereTreeData& data) {
   const std::size_t count = data.child_count.size();
   for (auto* array : {&data.x, &data.y, &data.z, &data.radius}) array->resize(count);
   for (std::size_t node = count; node-- > 0;) {
-    internal::set_ball(data, node,
-                       data.child_count[node] == 0
-                           ? data.spheres[static_cast<std::size_t>(data.first_child[node])]
-                           : internal::ball_around_children(data, node));
+    internal::set_sphere(data, node,
+                         data.child_count[node] == 0
+                             ? data.spheres[static_cast<std::size_t>(data.first_child[node])]
+                             : internal::sphere_around_children(data, node));
   }
 }
 
@@ -68,7 +68,7 @@ void check_input(std::span<const Sphere> spheres, const BuildOptions& options) {
 SphereTree build_tree(std::span<const Sphere> spheres, const BuildOptions& options) {
   check_input(spheres, options);
   SphereTreeData data = lay_out(internal::binary_tree(spheres), spheres, options.branching);
-  fit_balls(data);
+  fit_spheres(data);
   internal::check_root(data);
   return SphereTree(std::move(data));
 }

@@ -17,12 +17,12 @@ struct BuildOptions {
 // boxes' diagonals times their numbers of spheres sum up to the least (by bins for more than 256;
 // at the median where all centres coincide or the depth grows past 2 log2 n + 8, so that no input
 // gives a depth of more than 3 log2 n + 9 edges, log2 rounded up), of which those inner nodes are
-// kept for wide ones whose squared radii sum up to the least; the ball of each inner node is the
-// smallest enclosing ball of its children's balls, rounded up so that it encloses them in exact
+// kept for wide ones whose squared radii sum up to the least; the sphere of each inner node is the
+// smallest enclosing ball of its children's spheres, rounded up so that it encloses them in exact
 // arithmetic (G3). Deterministic (G7): no threads, no random numbers, only + - * / sqrt. O(n log n)
 // time; O(n) memory, some 220 bytes a sphere. Where the same spheres only move, refit() is faster.
 // Throws Error if `spheres` is empty or has more than 2^30 elements, a number in it is not usable,
-// the ball around all of them would not be usable, or an option is out of range.
+// the sphere around all of them would not be usable, or an option is out of range.
 SphereTree build_tree(std::span<const Sphere> spheres, const BuildOptions& options = {});
 
 }  // namespace spherule

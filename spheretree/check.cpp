@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/check.h"
 
-#include "spheretree/internal/node_balls.h"
+#include "spheretree/internal/node_spheres.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -46,7 +46,7 @@ class Checker {
 
   std::size_t node_count() const { return report_.node_count; }
 
-  Sphere ball(std::size_t node) const { return internal::ball_of(data_, node); }
+  Sphere sphere(std::size_t node) const { return internal::sphere_of(data_, node); }
 
   bool check_sizes() {
     const std::size_t n = node_count();
@@ -65,7 +65,7 @@ class Checker {
   // Invariant 1.
   void check_numbers() {
     for (std::size_t node = 0; node < node_count(); ++node) {
-      if (!is_usable(ball(node))) problem("node ", node, ": a number is not usable");
+      if (!is_usable(sphere(node))) problem("node ", node, ": a number is not usable");
     }
     for (std::size_t i = 0; i < data_.spheres.size(); ++i) {
       if (!is_usable(data_.spheres[i])) problem("sphere ", i, ": a number is not usable");
@@ -116,11 +116,11 @@ class Checker {
         problem("leaf ", node, ": sphere ", index, " does not exist");
         continue;
       }
-      const auto sphere = static_cast<std::size_t>(index);
-      if (seen[sphere]) problem("leaf ", node, ": sphere ", sphere, " has another leaf already");
-      seen[sphere] = true;
-      if (!internal::same_bits(ball(node), data_.spheres[sphere])) {
-        problem("leaf ", node, ": its ball is not that of sphere ", sphere);
+      const auto i = static_cast<std::size_t>(index);
+      if (seen[i]) problem("leaf ", node, ": sphere ", i, " has another leaf already");
+      seen[i] = true;
+      if (!internal::same_bits(sphere(node), data_.spheres[i])) {
+        problem("leaf ", node, ": its sphere is not that of sphere ", i);
       }
     }
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -136,13 +136,13 @@ class Checker {
       const auto first = static_cast<std::size_t>(data_.first_child[node]);
       const auto count = static_cast<std::size_t>(data_.child_count[node]);
       if (count == 0) continue;
-      const Sphere parent = ball(node);
+      const Sphere parent = sphere(node);
       double largest = 0.0;
       for (std::size_t child = first; child < first + count; ++child) {
-        if (!certainly_encloses(parent, ball(child))) {
+        if (!certainly_encloses(parent, sphere(child))) {
           problem("node ", node, " of radius ", parent.radius, " does not enclose its child ",
                   child, ", which reaches ",
-                  (parent.center - ball(child).center).norm() + data_.radius[child]);
+                  (parent.center - sphere(child).center).norm() + data_.radius[child]);
         }
         largest = std::max(largest, data_.radius[child]);
       }

@@ -25,8 +25,8 @@ struct TreeReport {
 };
 
 // Checks all five invariants of SphereTree with outward rounding: `valid` is true only if they hold
-// in exact arithmetic. A ball that encloses another by less than a few units in the last place may
-// be refused; build_tree never makes one.
+// in exact arithmetic. A sphere that encloses another by less than a few units in the last place
+// may be refused; build_tree never makes one.
 TreeReport check(const SphereTreeData& data);
 TreeReport check(const SphereTree& tree);
 

@@ -8,14 +8,14 @@
 #include <cmath>
 #include <vector>
 
-// The smallest enclosing ball of balls is an LP-type problem (Fischer and Gaertner, "The smallest
-// enclosing ball of balls", 2003): it is determined by a basis of at most four balls whose centres
-// are affinely independent, and it touches each of them from inside. We keep such a basis and
-// exchange it for one of a larger ball while some ball sticks out, taking the farthest each time.
-// Departure from the paper: which of the at most 15 subsets is the new basis is not decided by
-// signs of coordinates, which rounding can turn over, but by the value that we want to minimise,
-// max |c - c_i| + r_i over the at most five balls at hand. A degenerate subset (nested, coincident,
-// collinear, coplanar balls) yields no centre or a poor one and simply loses.
+// The smallest enclosing ball of spheres is an LP-type problem (Fischer and Gaertner, "The smallest
+// enclosing ball of balls", 2003): it is determined by a basis of at most four spheres whose
+// centres are affinely independent, and it touches each of them from inside. We keep such a basis
+// and exchange it for one of a larger sphere while some sphere sticks out, taking the farthest each
+// time. Departure from the paper: which of the at most 15 subsets is the new basis is not decided
+// by signs of coordinates, which rounding can turn over, but by the value that we want to minimise,
+// max |c - c_i| + r_i over the at most five spheres at hand. A degenerate subset (nested,
+// coincident, collinear, coplanar spheres) yields no centre or a poor one and simply loses.
 namespace spherule {
 namespace {
 
@@ -23,12 +23,12 @@ using Eigen::Vector3d;
 
 constexpr int kMaxBasis = 4;
 
-// Each exchange makes the ball of the basis strictly larger, so the loop ends by itself; a dozen
+// Each exchange makes the sphere of the basis strictly larger, so the loop ends by itself; a dozen
 // exchanges are usual. The cap only bounds the time if rounding made it creep; the result encloses
-// all balls in any case.
+// all spheres in any case.
 constexpr int kMaxExchanges = 1000;
 
-// The basis has settled when no ball sticks out by more than this factor: rounding of `reach`.
+// The basis has settled when no sphere sticks out by more than this factor: rounding of `reach`.
 constexpr double kSettled = 1.0 + 8.0 * kUnitRoundoff;
 
 // Lengths below two to the power of this are as good as none beside kUnderflow. The powers of two
@@ -36,7 +36,7 @@ constexpr double kSettled = 1.0 + 8.0 * kUnitRoundoff;
 constexpr int kMinExponent = -1000;
 
 struct Basis {
-  std::array<Sphere, kMaxBasis> balls;
+  std::array<Sphere, kMaxBasis> spheres;
   std::size_t size = 0;
 };
 
@@ -46,21 +46,22 @@ struct Solution {
   double radius = 0.0;
 };
 
-auto largest_ball(auto& balls) {
-  return std::max_element(balls.begin(), balls.end(),
+auto largest_sphere(auto& spheres) {
+  return std::max_element(spheres.begin(), spheres.end(),
                           [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
 }
 
-// Radius of the smallest ball about `center` that encloses all `balls`, and the ball that sets it.
+// Radius of the smallest sphere about `center` that encloses all `spheres`, and the sphere that
+// sets it.
 struct Reach {
   double radius = -1.0;
   std::size_t farthest = 0;
 };
 
-Reach reach(const Vector3d& center, std::span<const Sphere> balls) {
+Reach reach(const Vector3d& center, std::span<const Sphere> spheres) {
   Reach result;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    const double radius = (balls[i].center - center).norm() + balls[i].radius;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const double radius = (spheres[i].center - center).norm() + spheres[i].radius;
     if (radius > result.radius) result = {radius, i};
   }
   return result;
@@ -114,18 +115,18 @@ class MinimumNormSolver {
   std::array<std::array<double, kRows>, kRows> lower_{};
 };
 
-// One Newton step for |center - c_i| + r_i = R over all balls, within the affine hull of their
-// centres. It restores digits that the squared equations lose for nearly nested balls.
+// One Newton step for |center - c_i| + r_i = R over all spheres, within the affine hull of their
+// centres. It restores digits that the squared equations lose for nearly nested spheres.
 template <std::size_t kSize>
-Vector3d refined(const Vector3d& center, const std::array<Sphere, kSize>& balls) {
+Vector3d refined(const Vector3d& center, const std::array<Sphere, kSize>& spheres) {
   std::array<Vector3d, kSize> directions;
   std::array<double, kSize> reaches;
   for (std::size_t i = 0; i < kSize; ++i) {
-    const Vector3d offset = center - balls[i].center;
+    const Vector3d offset = center - spheres[i].center;
     const double length = offset.norm();
     if (!(length > 0.0)) return center;
     directions[i] = offset / length;
-    reaches[i] = length + balls[i].radius;
+    reaches[i] = length + spheres[i].radius;
   }
   std::array<Vector3d, kSize - 1> rows;
   std::array<double, kSize - 1> right;
@@ -137,25 +138,25 @@ Vector3d refined(const Vector3d& center, const std::array<Sphere, kSize>& balls)
   return solver.regular() ? Vector3d(center + solver.solve(right)) : center;
 }
 
-// Calls `visit(center)` for each ball whose centre lies in the affine hull of the centres of
-// `balls` and that is touched by all of them from inside (at most two; none if degenerate), and for
-// its refinement.
+// Calls `visit(center)` for each sphere whose centre lies in the affine hull of the centres of
+// `spheres` and that is touched by all of them from inside (at most two; none if degenerate), and
+// for its refinement.
 //
 // With x = c - c_0, q_i = c_i - c_0, s_i = r_0 - r_i and rho = R - r_0 the conditions are
 // |x| = rho and q_i . x = (|q_i|^2 - s_i^2) / 2 - rho s_i; so x = a + rho b, and rho is a root of
 // (|b|^2 - 1) rho^2 + 2 a.b rho + |a|^2. All lengths are first scaled by a power of two.
 template <std::size_t kSize, typename Visit>
-void tangent_centers(std::array<Sphere, kSize> balls, const Visit& visit) {
-  // Measured from the largest ball: rho is least there, so that it keeps its digits when the other
-  // balls stick out of this one by a hair only.
-  std::iter_swap(balls.begin(), largest_ball(balls));
-  const Sphere& origin = balls[0];
+void tangent_centers(std::array<Sphere, kSize> spheres, const Visit& visit) {
+  // Measured from the largest sphere: rho is least there, so that it keeps its digits when the
+  // other spheres stick out of this one by a hair only.
+  std::iter_swap(spheres.begin(), largest_sphere(spheres));
+  const Sphere& origin = spheres[0];
   std::array<Vector3d, kSize - 1> q;
   std::array<double, kSize - 1> s;
   double largest = 0.0;
   for (std::size_t i = 0; i + 1 < kSize; ++i) {
-    q[i] = balls[i + 1].center - origin.center;
-    s[i] = origin.radius - balls[i + 1].radius;
+    q[i] = spheres[i + 1].center - origin.center;
+    s[i] = origin.radius - spheres[i + 1].radius;
     largest = std::max({largest, q[i].cwiseAbs().maxCoeff(), std::abs(s[i])});
   }
   if (!(largest > 0.0)) return;
@@ -186,12 +187,12 @@ void tangent_centers(std::array<Sphere, kSize> balls, const Visit& visit) {
     if (!(rho >= 0.0) || !(rho <= kMaxCoordinate)) continue;
     const Vector3d center = origin.center + (a + rho * b) * unit;
     visit(center);
-    visit(refined(center, balls));
+    visit(refined(center, spheres));
   }
 }
 
-// The search for the smallest enclosing ball of the balls of `basis` and of `added`, which sticks
-// out of the ball of `basis` and is therefore part of every new basis.
+// The search for the smallest enclosing ball of the spheres of `basis` and of `added`, which sticks
+// out of the sphere of `basis` and is therefore part of every new basis.
 class Exchange {
  public:
   Exchange(const Basis& basis, const Sphere& added) : basis_(basis), added_(added) {
@@ -208,7 +209,7 @@ class Exchange {
           consider_subset<4>();
           break;
         default:
-          break;  // five balls are no basis
+          break;  // five spheres are no basis
       }
     }
   }
@@ -217,10 +218,10 @@ class Exchange {
     Solution solution;
     solution.center = best_center_;
     solution.radius = best_radius_;
-    solution.basis.balls[solution.basis.size++] = added_;
+    solution.basis.spheres[solution.basis.size++] = added_;
     for (std::size_t i = 0; i < basis_.size; ++i) {
       if ((best_subset_ >> i & 1U) != 0U) {
-        solution.basis.balls[solution.basis.size++] = basis_.balls[i];
+        solution.basis.spheres[solution.basis.size++] = basis_.spheres[i];
       }
     }
     return solution;
@@ -229,21 +230,21 @@ class Exchange {
  private:
   template <std::size_t kSize>
   void consider_subset() {
-    std::array<Sphere, kSize> balls;
-    balls[0] = added_;
+    std::array<Sphere, kSize> spheres;
+    spheres[0] = added_;
     std::size_t size = 1;
     for (std::size_t i = 0; i < basis_.size; ++i) {
-      if ((subset_ >> i & 1U) != 0U) balls[size++] = basis_.balls[i];
+      if ((subset_ >> i & 1U) != 0U) spheres[size++] = basis_.spheres[i];
     }
-    tangent_centers(balls, [this](const Vector3d& center) { consider(center); });
+    tangent_centers(spheres, [this](const Vector3d& center) { consider(center); });
   }
 
-  // Most centres lose to the best so far before all balls have been looked at.
+  // Most centres lose to the best so far before all spheres have been looked at.
   void consider(const Vector3d& center) {
     double radius = (added_.center - center).norm() + added_.radius;
     for (std::size_t i = 0; i < basis_.size && radius < best_radius_; ++i) {
-      const Sphere& ball = basis_.balls[i];
-      radius = std::max(radius, (ball.center - center).norm() + ball.radius);
+      const Sphere& sphere = basis_.spheres[i];
+      radius = std::max(radius, (sphere.center - center).norm() + sphere.radius);
     }
     if (radius < best_radius_) {
       best_subset_ = subset_;
@@ -260,51 +261,51 @@ class Exchange {
   double best_radius_ = std::numeric_limits<double>::infinity();
 };
 
-Vector3d smallest_center(std::span<const Sphere> balls) {
-  const auto largest = largest_ball(balls);
+Vector3d smallest_center(std::span<const Sphere> spheres) {
+  const auto largest = largest_sphere(spheres);
   Solution current;
-  current.basis.balls[0] = *largest;
+  current.basis.spheres[0] = *largest;
   current.basis.size = 1;
   current.center = largest->center;
   current.radius = largest->radius;
   Vector3d best = current.center;
   double best_radius = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kMaxExchanges; ++i) {
-    const Reach out = reach(current.center, balls);
+    const Reach out = reach(current.center, spheres);
     if (out.radius < best_radius) {
       best = current.center;
       best_radius = out.radius;
     }
     if (out.radius <= current.radius * kSettled) break;
-    const Solution next = Exchange(current.basis, balls[out.farthest]).result();
+    const Solution next = Exchange(current.basis, spheres[out.farthest]).result();
     if (!(next.radius > current.radius)) break;
     current = next;
   }
   return best;
 }
 
-// The smallest radius for which certainly_encloses() holds for all balls: the same expression.
-double enclosing_radius(const Vector3d& center, std::span<const Sphere> balls) {
+// The smallest radius for which certainly_encloses() holds for all spheres: the same expression.
+double enclosing_radius(const Vector3d& center, std::span<const Sphere> spheres) {
   double radius = 0.0;
-  for (const Sphere& ball : balls) {
-    radius = std::max(radius, add_up(distance_upper(center, ball.center), ball.radius));
+  for (const Sphere& sphere : spheres) {
+    radius = std::max(radius, add_up(distance_upper(center, sphere.center), sphere.radius));
   }
   return radius;
 }
 
 }  // namespace
 
-Sphere enclosing_sphere(std::span<const Sphere> balls) {
-  assert(!balls.empty());
-  const Vector3d center = smallest_center(balls);
-  return {center, enclosing_radius(center, balls)};
+Sphere enclosing_sphere(std::span<const Sphere> spheres) {
+  assert(!spheres.empty());
+  const Vector3d center = smallest_center(spheres);
+  return {center, enclosing_radius(center, spheres)};
 }
 
 Sphere enclosing_sphere(std::span<const Vector3d> points) {
-  std::vector<Sphere> balls;
-  balls.reserve(points.size());
-  for (const Vector3d& point : points) balls.push_back({point, 0.0});
-  return enclosing_sphere(balls);
+  std::vector<Sphere> spheres;
+  spheres.reserve(points.size());
+  for (const Vector3d& point : points) spheres.push_back({point, 0.0});
+  return enclosing_sphere(spheres);
 }
 
 }  // namespace spherule

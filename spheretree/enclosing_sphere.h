@@ -7,10 +7,10 @@
 
 namespace spherule {
 
-// The smallest ball that encloses all points, or all balls, its radius rounded up so that it
+// The smallest sphere that encloses all points, or all spheres, its radius rounded up so that it
 // encloses them in exact arithmetic (certainly_encloses holds for each). The input must not be
 // empty.
 Sphere enclosing_sphere(std::span<const Eigen::Vector3d> points);
-Sphere enclosing_sphere(std::span<const Sphere> balls);
+Sphere enclosing_sphere(std::span<const Sphere> spheres);
 
 }  // namespace spherule

@@ -11,30 +11,30 @@
 namespace spherule {
 namespace {
 
-std::string name_of(std::size_t level, std::size_t ball) {
-  return "level " + std::to_string(level) + ", ball " + std::to_string(ball);
+std::string name_of(std::size_t level, std::size_t sphere) {
+  return "level " + std::to_string(level) + ", sphere " + std::to_string(sphere);
 }
 
-// For every ball of the level its children, in their order.
+// For every sphere of the level its children, in their order.
 std::vector<std::vector<std::int32_t>> children_of(std::size_t number, const SphereLevel& level,
                                                    std::span<const Sphere> finer) {
   if (level.parent_of.size() != finer.size()) {
     throw Error("level " + std::to_string(number), std::to_string(level.parent_of.size()) +
                                                        " parents for " +
-                                                       std::to_string(finer.size()) + " balls");
+                                                       std::to_string(finer.size()) + " spheres");
   }
   std::vector<std::vector<std::int32_t>> children(level.spheres.size());
   for (std::size_t i = 0; i < finer.size(); ++i) {
     const std::int32_t parent = level.parent_of[i];
     if (parent < 0 || static_cast<std::size_t>(parent) >= children.size()) {
-      throw Error(
-          "level " + std::to_string(number),
-          "parent " + std::to_string(parent) + " of ball " + std::to_string(i) + " does not exist");
+      throw Error("level " + std::to_string(number), "parent " + std::to_string(parent) +
+                                                         " of sphere " + std::to_string(i) +
+                                                         " does not exist");
     }
     children[static_cast<std::size_t>(parent)].push_back(static_cast<std::int32_t>(i));
   }
-  for (std::size_t ball = 0; ball < children.size(); ++ball) {
-    if (children[ball].empty()) throw Error(name_of(number, ball), "has no children");
+  for (std::size_t sphere = 0; sphere < children.size(); ++sphere) {
+    if (children[sphere].empty()) throw Error(name_of(number, sphere), "has no children");
   }
   return children;
 }
@@ -57,43 +57,43 @@ class Builder {
     const SphereTree above = build_tree(top, options_);
     std::vector<std::int32_t> all(top.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::int32_t>(i);
-    nodes_[0].ball = above.ball(0);
+    nodes_[0].sphere = above.sphere(0);
     graft(above, 0, 0, all, levels_.size());
     return lay_out();
   }
 
  private:
   struct Node {
-    Sphere ball;
+    Sphere sphere;
     std::vector<std::size_t> children;
-    std::int32_t sphere = -1;  // of a leaf
+    std::int32_t leaf_sphere = -1;  // its index, of a leaf
   };
 
-  // The balls that are the children of level k.
+  // The spheres that are the children of level k.
   std::span<const Sphere> finer_than(std::size_t k) const {
     return k == 0 ? spheres_ : std::span<const Sphere>(levels_[k - 1].spheres);
   }
 
-  // Makes `node` ball `i` of those that are the children of level k, with all that is below it.
+  // Makes `node` sphere `i` of those that are the children of level k, with all that is below it.
   void place(std::size_t node, std::size_t i, std::size_t k) {
-    nodes_[node].ball = finer_than(k)[i];
+    nodes_[node].sphere = finer_than(k)[i];
     if (k == 0) {
-      nodes_[node].sphere = static_cast<std::int32_t>(i);
+      nodes_[node].leaf_sphere = static_cast<std::int32_t>(i);
       return;
     }
     nodes_of_[k - 1][i] = static_cast<std::int32_t>(node);
     const std::vector<std::int32_t>& children = children_[k - 1][i];
     const std::span<const Sphere> finer = finer_than(k - 1);
     const auto only = static_cast<std::size_t>(children.front());
-    if (children.size() == 1 && finer[only] == nodes_[node].ball) {
+    if (children.size() == 1 && finer[only] == nodes_[node].sphere) {
       place(node, only, k - 1);
       return;
     }
-    std::vector<Sphere> balls;
+    std::vector<Sphere> spheres;
     for (const std::int32_t child : children) {
-      balls.push_back(finer[static_cast<std::size_t>(child)]);
-      if (!has_reserve(nodes_[node].ball, balls.back())) {
-        throw Error(name_of(k - 1, i), "does not enclose ball " + std::to_string(child) +
+      spheres.push_back(finer[static_cast<std::size_t>(child)]);
+      if (!has_reserve(nodes_[node].sphere, spheres.back())) {
+        throw Error(name_of(k - 1, i), "does not enclose sphere " + std::to_string(child) +
                                            " of the next finer level with the reserve");
       }
     }
@@ -102,7 +102,7 @@ class Builder {
       place(child, only, k - 1);
       return;
     }
-    graft(build_tree(balls, options_), 0, node, children, k - 1);
+    graft(build_tree(spheres, options_), 0, node, children, k - 1);
   }
 
   static bool has_reserve(const Sphere& parent, const Sphere& child) {
@@ -110,7 +110,7 @@ class Builder {
     return reach <= parent.radius - SphereLevel::kReserve / 2.0 * parent.radius;
   }
 
-  // Hangs what is below node `from` of `tree` under `node`; the leaves of the tree are the balls
+  // Hangs what is below node `from` of `tree` under `node`; the leaves of the tree are the spheres
   // `which` of those that are the children of level k.
   void graft(const SphereTree& tree, std::size_t from, std::size_t node,
              const std::vector<std::int32_t>& which, std::size_t k) {
@@ -123,10 +123,10 @@ class Builder {
     const auto count = static_cast<std::size_t>(tree.child_count(from));
     for (std::size_t child = first; child < first + count; ++child) {
       const std::size_t made = append(node);
-      const Sphere parent = nodes_[node].ball;
-      nodes_[made].ball = tree.ball(child);
-      if (!tree.is_leaf(child) && !certainly_encloses(parent, nodes_[made].ball)) {
-        nodes_[made].ball = {parent.center, next_down(parent.radius)};
+      const Sphere parent = nodes_[node].sphere;
+      nodes_[made].sphere = tree.sphere(child);
+      if (!tree.is_leaf(child) && !certainly_encloses(parent, nodes_[made].sphere)) {
+        nodes_[made].sphere = {parent.center, next_down(parent.radius)};
       }
       graft(tree, child, made, which, k);
     }
@@ -146,11 +146,11 @@ class Builder {
     for (std::size_t i = 0; i < order.size(); ++i) {
       const Node& node = nodes_[order[i]];
       number[order[i]] = static_cast<std::int32_t>(i);
-      data.x.push_back(node.ball.center.x());
-      data.y.push_back(node.ball.center.y());
-      data.z.push_back(node.ball.center.z());
-      data.radius.push_back(node.ball.radius);
-      data.first_child.push_back(node.children.empty() ? node.sphere
+      data.x.push_back(node.sphere.center.x());
+      data.y.push_back(node.sphere.center.y());
+      data.z.push_back(node.sphere.center.z());
+      data.radius.push_back(node.sphere.radius);
+      data.first_child.push_back(node.children.empty() ? node.leaf_sphere
                                                        : static_cast<std::int32_t>(order.size()));
       data.child_count.push_back(static_cast<std::int32_t>(node.children.size()));
       order.insert(order.end(), node.children.begin(), node.children.end());
@@ -164,7 +164,7 @@ class Builder {
   std::span<const Sphere> spheres_;
   std::span<const SphereLevel> levels_;
   const BuildOptions& options_;
-  std::vector<std::vector<std::vector<std::int32_t>>> children_;  // of every ball of every level
+  std::vector<std::vector<std::vector<std::int32_t>>> children_;  // of every sphere of every level
   std::vector<Node> nodes_;
   std::vector<std::vector<std::int32_t>> nodes_of_;
 };
@@ -177,15 +177,15 @@ LevelTree build_tree_from_levels(std::span<const Sphere> spheres,
 }
 
 std::vector<Sphere> cut(const SphereTree& tree, std::size_t count) {
-  // The largest ball first, of equals the first node.
+  // The largest sphere first, of equals the first node.
   using Entry = std::pair<double, std::int64_t>;
   std::priority_queue<Entry> open;
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   const auto enter = [&](std::size_t node) {
     if (tree.is_leaf(node)) {
-      balls.push_back(tree.ball(node));
+      spheres.push_back(tree.sphere(node));
     } else {
-      open.emplace(tree.ball(node).radius, -static_cast<std::int64_t>(node));
+      open.emplace(tree.sphere(node).radius, -static_cast<std::int64_t>(node));
     }
   };
   enter(0);
@@ -193,15 +193,15 @@ std::vector<Sphere> cut(const SphereTree& tree, std::size_t count) {
     const auto node = static_cast<std::size_t>(-open.top().second);
     open.pop();
     const auto children = static_cast<std::size_t>(tree.child_count(node));
-    if (balls.size() + open.size() + children > count) {
-      balls.push_back(tree.ball(node));
+    if (spheres.size() + open.size() + children > count) {
+      spheres.push_back(tree.sphere(node));
       continue;
     }
     for (std::size_t i = 0; i < children; ++i) {
       enter(static_cast<std::size_t>(tree.first_child(node)) + i);
     }
   }
-  return balls;
+  return spheres;
 }
 
 }  // namespace spherule

@@ -11,40 +11,40 @@
 
 namespace spherule {
 
-// A set of balls, each of which encloses some of the next finer set.
+// A set of spheres, each of which encloses some of the next finer set.
 struct SphereLevel {
-  // Of the radius: by so much more than to enclose them a ball of several finer ones has to be
+  // Of the radius: by so much more than to enclose them a sphere of several finer ones has to be
   // larger. Room for the copies of it that build_tree_from_levels() makes.
   static constexpr double kReserve = 0x1p-42;
 
   std::vector<Sphere> spheres;
-  // For every ball of the next finer set: which of `spheres` encloses it.
+  // For every sphere of the next finer set: which of `spheres` encloses it.
   std::vector<std::int32_t> parent_of;
 };
 
 // A sphere tree, and where in it the levels stand that it was made from: nodes[k][i] is the node
-// whose ball is sphere i of level k, bit for bit. A ball with the same ball as its only child
+// whose sphere is sphere i of level k, bit for bit. A sphere with the same sphere as its only child
 // shares its child's node.
 struct LevelTree {
   SphereTree tree;
   std::vector<std::vector<std::int32_t>> nodes;
 };
 
-// Builds the layered hierarchy over `spheres` whose inner nodes are the balls of `levels`, the
+// Builds the layered hierarchy over `spheres` whose inner nodes are the spheres of `levels`, the
 // finest first: the parents of the spheres are those of levels[0], theirs those of levels[1], and
-// so on; above the last level it is the tree of build_tree(). Where a ball has more children than
+// so on; above the last level it is the tree of build_tree(). Where a sphere has more children than
 // `branching`, nodes come between that group them as build_tree() would; such a node whose smallest
-// ball is not enclosed by the parent's takes the parent's ball instead, a unit in the last place
-// smaller. Deterministic. Throws Error for what build_tree() refuses, for a parent that does not
-// exist, for a ball without children, and for one that does not enclose its children with the
+// sphere is not enclosed by the parent's takes the parent's sphere instead, a unit in the last
+// place smaller. Deterministic. Throws Error for what build_tree() refuses, for a parent that does
+// not exist, for a sphere without children, and for one that does not enclose its children with the
 // reserve.
 LevelTree build_tree_from_levels(std::span<const Sphere> spheres,
                                  std::span<const SphereLevel> levels,
                                  const BuildOptions& options = {});
 
-// At most `count` balls (at least 1) whose union contains all spheres of the tree, as coarse as the
-// tree has them: from the root on, the node with the largest ball is replaced by its children as
-// long as that does not make too many.
+// At most `count` spheres (at least 1) whose union contains all spheres of the tree, as coarse as
+// the tree has them: from the root on, the node with the largest sphere is replaced by its children
+// as long as that does not make too many.
 std::vector<Sphere> cut(const SphereTree& tree, std::size_t count);
 
 }  // namespace spherule

@@ -3,7 +3,7 @@
 
 #include "spheretree/check.h"
 #include "spheretree/error.h"
-#include "spheretree/internal/node_balls.h"
+#include "spheretree/internal/node_spheres.h"
 
 #include <algorithm>
 #include <cassert>
@@ -23,19 +23,19 @@ SphereTree refit(SphereTree tree, std::span<const Sphere> moved) {
   internal::require_usable(moved);
   data.spheres.assign(moved.begin(), moved.end());
   std::vector<bool> changed(tree.node_count());
-  const auto set_ball = [&](std::size_t node, const Sphere& ball) {
-    changed[node] = !internal::same_bits(ball, tree.ball(node));
-    if (changed[node]) internal::set_ball(data, node, ball);
+  const auto set_sphere = [&](std::size_t node, const Sphere& sphere) {
+    changed[node] = !internal::same_bits(sphere, tree.sphere(node));
+    if (changed[node]) internal::set_sphere(data, node, sphere);
   };
   // From the last node to the first, so that the children come before the parent.
   for (std::size_t node = tree.node_count(); node-- > 0;) {
     if (tree.is_leaf(node)) {
-      set_ball(node, moved[static_cast<std::size_t>(tree.sphere_index(node))]);
+      set_sphere(node, moved[static_cast<std::size_t>(tree.sphere_index(node))]);
       continue;
     }
     const auto first = changed.begin() + tree.first_child(node);
     if (std::any_of(first, first + tree.child_count(node), std::identity())) {
-      set_ball(node, internal::ball_around_children(data, node));
+      set_sphere(node, internal::sphere_around_children(data, node));
     }
   }
   internal::check_root(data);

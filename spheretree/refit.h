@@ -8,13 +8,13 @@
 namespace spherule {
 
 // The tree over `moved`, the spheres of `tree` after they have moved, grown or shrunk: as many, in
-// the same order. The nodes and their children stay; the ball of an inner node becomes the smallest
-// around the balls of its children, as build_tree() makes it, unless none of these has changed:
-// then it stays. So spheres that have not moved give the same bytes, and a tree of build_tree()
-// gives balls that depend on its nodes and on `moved` alone, whatever refits lie between.
-// Deterministic (G7). O(n) with a small constant, plus a smallest ball for each inner node above
-// something that has moved. A tree that is moved in (std::move) is not copied; it is lost if
-// refit() throws.
+// the same order. The nodes and their children stay; the sphere of an inner node becomes the
+// smallest around the spheres of its children, as build_tree() makes it, unless none of these has
+// changed: then it stays. So spheres that have not moved give the same bytes, and a tree of
+// build_tree() gives spheres that depend on its nodes and on `moved` alone, whatever refits lie
+// between. Deterministic (G7). O(n) with a small constant, plus a smallest sphere for each inner
+// node above something that has moved. A tree that is moved in (std::move) is not copied; it is
+// lost if refit() throws.
 //
 // Every query is as right as on a new tree (G3), but may be slower, because spheres under one node
 // are supposed to be neighbours. Build anew when they no longer are: when spheres have moved
@@ -23,7 +23,7 @@ namespace spherule {
 // built; by a fifth, queries visit up to twice the nodes of a new tree, at double, five times as
 // many. To move all spheres as one, move the tree's Pose instead.
 //
-// Throws Error if the numbers of spheres differ, a number in `moved` is not usable, or the ball
+// Throws Error if the numbers of spheres differ, a number in `moved` is not usable, or the sphere
 // around all of them would not be.
 SphereTree refit(SphereTree tree, std::span<const Sphere> moved);
 

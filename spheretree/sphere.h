@@ -7,8 +7,8 @@
 
 namespace spherule {
 
-// A closed ball, in the unit of the model. The numbers are exact: every promise of the library is
-// about the ball with exactly these doubles.
+// A closed sphere, in the unit of the model. The numbers are exact: every promise of the library is
+// about the sphere with exactly these doubles.
 struct Sphere {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0.0;
@@ -27,18 +27,19 @@ inline bool is_usable(const Sphere& s) {
 // The predicates are padded (spheretree/rounding.h): "certainly" is never wrong and may say no
 // within a few units in the last place of the limit; "possibly" is the reverse.
 
-// True only if the ball `inner` is a subset of the ball `outer` in exact arithmetic.
+// True only if the sphere `inner` is a subset of the sphere `outer` in exact arithmetic.
 inline bool certainly_encloses(const Sphere& outer, const Sphere& inner) {
   return add_up(distance_upper(outer.center, inner.center), inner.radius) <= outer.radius;
 }
 
-// True only if the ball of radius `reach` about `point` is a subset of `ball` in exact arithmetic.
-inline bool certainly_contains(const Sphere& ball, const Eigen::Vector3d& point,
+// True only if the sphere of radius `reach` about `point` is a subset of `sphere` in exact
+// arithmetic.
+inline bool certainly_contains(const Sphere& sphere, const Eigen::Vector3d& point,
                                double reach = 0.0) {
-  return add_up(distance_upper(ball.center, point), reach) <= ball.radius;
+  return add_up(distance_upper(sphere.center, point), reach) <= sphere.radius;
 }
 
-// False only if the two closed balls are disjoint in exact arithmetic.
+// False only if the two closed spheres are disjoint in exact arithmetic.
 inline bool possibly_overlap(const Sphere& a, const Sphere& b) {
   return distance_lower(a.center, b.center) <= add_up(a.radius, b.radius);
 }

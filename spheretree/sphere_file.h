@@ -19,16 +19,16 @@ namespace spherule {
 // simplifier/certificate.h). Lengths in the unit of the spheres.
 struct CertificateRecord {
   bool covered = false;
-  // Proved bounds on the largest distance from a point of the solid to the union of the balls.
+  // Proved bounds on the largest distance from a point of the solid to the union of the spheres.
   double uncovered_depth_lower = 0.0;
   double uncovered_depth_upper = 0.0;
   // Proved upper bounds on the protrusion; absent where it was not asked for.
   std::optional<double> protrusion_over_simplified_max = std::nullopt;
   std::optional<double> protrusion_over_mesh_max = std::nullopt;
-  // The first of these for the points of the balls in each zone of the options; empty without.
+  // The first of these for the points of the spheres in each zone of the options; empty without.
   std::vector<double> protrusion_in_zones = {};
   std::size_t sphere_count = 0;  // the number of spheres in the file, checked by both functions
-  // Volume of the union of the balls over the volume of the solid mesh, estimated.
+  // Volume of the union of the spheres over the volume of the solid mesh, estimated.
   std::optional<double> volume_ratio = std::nullopt;
   // Volume between the solid and the mesh, and its standard error, estimated.
   std::optional<double> filled_volume = std::nullopt;

@@ -41,21 +41,21 @@ void SphereTree::measure() {
 
 std::vector<Sphere> SphereTree::level(int level) const {
   assert(level >= 0);
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   // Breadth-first order: the nodes at one distance from the root are consecutive.
   std::size_t begin = 0;
   std::size_t end = 1;
   for (int distance = 0; begin < end; ++distance) {
     std::size_t next_end = end;
     for (std::size_t node = begin; node < end; ++node) {
-      if (distance == level || is_leaf(node)) balls.push_back(ball(node));
+      if (distance == level || is_leaf(node)) spheres.push_back(sphere(node));
       next_end += static_cast<std::size_t>(child_count(node));
     }
     if (distance == level) break;
     begin = end;
     end = next_end;
   }
-  return balls;
+  return spheres;
 }
 
 }  // namespace spherule

@@ -13,7 +13,7 @@ namespace spherule {
 // The plain content of a sphere tree: nodes in breadth-first order, as a structure of arrays. The
 // children of a node are consecutive, so that one wide load per array brings all of them.
 struct SphereTreeData {
-  std::vector<double> x, y, z, radius;    // ball of every node
+  std::vector<double> x, y, z, radius;    // sphere of every node
   std::vector<std::int32_t> first_child;  // inner node: its first child; leaf: index of its sphere
   std::vector<std::int32_t> child_count;  // 0 marks a leaf
   std::vector<Sphere> spheres;            // the spheres the tree stands for, in the caller's order
@@ -33,9 +33,10 @@ struct AxisAlignedBox {
 //  2. every node but the root (node 0) is the child of exactly one node, and the arrays are in
 //     breadth-first order: the children of the inner nodes, in the order of their parents, number
 //     the nodes from 1 on without gap, so there are no cycles;
-//  3. every sphere is the ball of exactly one leaf, bit for bit;
-//  4. layered: the ball of every inner node encloses the balls of its children in exact arithmetic
-//     (hence, by induction, every ball below it);
+//  3. every sphere is the sphere of exactly one leaf, bit for bit;
+//  4. layered: the sphere of every inner node encloses the spheres of its children in exact
+//  arithmetic
+//     (hence, by induction, every sphere below it);
 //  5. no inner node has more than kMaxBranching children.
 class SphereTree {
  public:
@@ -44,12 +45,12 @@ class SphereTree {
   // Makes the tree that `data` describes. Throws Error, naming the node, if an invariant fails.
   explicit SphereTree(SphereTreeData data);
 
-  // The balls of the leaves as they were given, and the number of all nodes.
+  // The spheres of the leaves as they were given, and the number of all nodes.
   std::span<const Sphere> spheres() const { return data_.spheres; }
   std::size_t node_count() const { return data_.radius.size(); }
 
-  // Of one node: its ball, and its children, which stand side by side from the first on.
-  Sphere ball(std::size_t node) const {
+  // Of one node: its sphere, and its children, which stand side by side from the first on.
+  Sphere sphere(std::size_t node) const {
     return {{data_.x[node], data_.y[node], data_.z[node]}, data_.radius[node]};
   }
   bool is_leaf(std::size_t node) const { return data_.child_count[node] == 0; }
@@ -69,8 +70,8 @@ class SphereTree {
   // to rounding. Of the spheres alone, as reach() is.
   const AxisAlignedBox& box() const { return box_; }
 
-  // The balls that stand at distance `level` from the root, and the leaves above them: a set of
-  // balls whose union contains all spheres. level 0 is the root, level depth() the spheres
+  // The spheres that stand at distance `level` from the root, and the leaves above them: a set of
+  // spheres whose union contains all spheres. level 0 is the root, level depth() the spheres
   // themselves.
   std::vector<Sphere> level(int level) const;
 

@@ -63,7 +63,7 @@ void take(std::string_view& bytes, std::size_t count, std::vector<std::int32_t>&
   }
 }
 
-// Puts the ball of every leaf at the index it names. A sphere that no leaf names, or two leaves
+// Puts the sphere of every leaf at the index it names. A sphere that no leaf names, or two leaves
 // name, is left to check().
 void restore_spheres(SphereTreeData& data, std::size_t sphere_count) {
   data.spheres.resize(sphere_count);

@@ -3,7 +3,7 @@
 // How long do build_tree and refit take, and how good is the tree? Spheres scattered through a cube
 // (solid) or over a sphere (shell), as a cover of a solid part and of a thin wall would have them.
 // Counters: nodes, depth, radius of the root, growth (radius over that of the largest child, mean)
-// and overlap (balls that hold the centre of a sphere, to those that must, above its leaf).
+// and overlap (spheres that hold the centre of a sphere, to those that must, above its leaf).
 
 #include "spheretree/build.h"
 #include "spheretree/check.h"
@@ -77,8 +77,8 @@ double overlap(const SphereTree& tree) {
         if (static_cast<std::size_t>(tree.sphere_index(node)) == index) needed += depth;
         continue;
       }
-      const Sphere ball = tree.ball(node);
-      if ((ball.center - center).norm() > ball.radius) continue;
+      const Sphere sphere = tree.sphere(node);
+      if ((sphere.center - center).norm() > sphere.radius) continue;
       holding += 1.0;
       for (std::int32_t i = 0; i < tree.child_count(node); ++i) {
         open.emplace_back(static_cast<std::size_t>(tree.first_child(node) + i), depth + 1);

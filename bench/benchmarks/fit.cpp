@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How long does the fit take, and how many spheres does it need? By shape and method; counters:
-// triangles, external balls, spheres, seconds of both stages and of the certificate, and whether
+// triangles, external spheres, spheres, seconds of both stages and of the certificate, and whether
 // the certificate holds.
 
 #include "bench/scenes/robot.h"
@@ -28,7 +28,7 @@ void fit(benchmark::State& state, const TriangleMesh& mesh, double max_error,
     benchmark::DoNotOptimize(result.cover.spheres.data());
   }
   state.counters["triangles"] = static_cast<double>(mesh.triangles.size());
-  state.counters["external"] = static_cast<double>(result.external.balls.size());
+  state.counters["external"] = static_cast<double>(result.external.spheres.size());
   state.counters["spheres"] = static_cast<double>(result.cover.spheres.size());
   state.counters["stage1_s"] = result.times.external;
   state.counters["stage2_s"] = result.times.cover;

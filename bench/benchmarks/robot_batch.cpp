@@ -23,21 +23,22 @@
 namespace spherule {
 namespace {
 
-// Around the triangles, halved across their longest edge until no ball is larger than `radius`.
-std::shared_ptr<const SphereTree> balls_around(const TriangleMesh& mesh, double radius) {
+// Around the triangles, halved across their longest edge until no sphere is larger than `radius`.
+std::shared_ptr<const SphereTree> spheres_around(const TriangleMesh& mesh, double radius) {
   using Corners = std::array<Eigen::Vector3d, 3>;
   std::vector<Corners> open;
   for (const Eigen::Vector3i& t : mesh.triangles) {
     const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
     open.push_back({corner(0), corner(1), corner(2)});
   }
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   while (!open.empty()) {
     Corners corners = open.back();
     open.pop_back();
-    const Sphere ball = enclosing_sphere(corners);
-    if (ball.radius <= radius) {
-      balls.push_back({ball.center, ball.radius * (1.0 + 1e-9)});  // for the rounding of the cuts
+    const Sphere sphere = enclosing_sphere(corners);
+    if (sphere.radius <= radius) {
+      spheres.push_back(
+          {sphere.center, sphere.radius * (1.0 + 1e-9)});  // for the rounding of the cuts
       continue;
     }
     const auto length = [&](std::size_t k) { return (corners[(k + 1) % 3] - corners[k]).norm(); };
@@ -49,7 +50,7 @@ std::shared_ptr<const SphereTree> balls_around(const TriangleMesh& mesh, double 
     open.push_back({corners[0], middle, corners[2]});
     open.push_back({middle, corners[1], corners[2]});
   }
-  return std::make_shared<const SphereTree>(build_tree(balls));
+  return std::make_shared<const SphereTree>(build_tree(spheres));
 }
 
 constexpr double kLeastRadius = 5e-3;
@@ -57,7 +58,7 @@ constexpr double kLeastRadius = 5e-3;
 struct Cell {
   Cell() : workload(make_paper_cell()), jumps(shuffled(workload.program, 1)) {
     const auto cover = [&](Part& part) {
-      part.tree = balls_around(part.mesh, std::max(part.max_error, kLeastRadius));
+      part.tree = spheres_around(part.mesh, std::max(part.max_error, kLeastRadius));
       spheres += part.tree->spheres().size();
     };
     for (Body& body : workload.bodies) cover(body.part);

@@ -8,12 +8,12 @@
 
 namespace spherule::flat_scan {
 
-// Arrays of balls are filled up with copies of the last ball to a multiple of this.
+// Arrays of spheres are filled up with copies of the last sphere to a multiple of this.
 inline constexpr std::int32_t kPadding = 16;
 inline constexpr std::int32_t kMaxVariables = 8;
 inline constexpr std::uint32_t kMaxObstacles = 32;
 
-struct Balls {
+struct Spheres {
   const float* x;
   const float* y;
   const float* z;
@@ -31,8 +31,8 @@ struct alignas(32) Frame {
 };
 
 struct Group {
-  Balls balls;
-  double center[3];  // of the ball around all
+  Spheres spheres;
+  double center[3];  // of the sphere around all
   float radius;
 };
 
@@ -50,7 +50,7 @@ struct Problem {
   std::int32_t body_count;
   const Group* obstacles;
   std::int32_t obstacle_count;
-  bool balls_in_front;
+  bool spheres_in_front;
 };
 
 struct alignas(32) LinkPose {
@@ -65,7 +65,7 @@ struct Scratch {
   float* z;
 };
 
-// Whether two balls touch. Radii have to be padded by what single precision costs.
+// Whether two spheres touch. Radii have to be padded by what single precision costs.
 using Check = bool (*)(const Problem& problem, const double* configuration, const Scratch& scratch);
 
 bool check_portable(const Problem& problem, const double* configuration, const Scratch& scratch);

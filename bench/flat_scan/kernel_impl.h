@@ -52,23 +52,23 @@ class Lanes {
 
 typedef double Double4 __attribute__((vector_size(32), may_alias));
 
-struct Ball {
+struct Sphere {
   float x, y, z, radius;
 };
 
 // Squared distance of the centres less the square of the sum of the radii: not positive where the
-// balls touch.
+// spheres touch.
 inline __attribute__((always_inline)) Floats excess(const Floats& x, const Floats& y,
                                                     const Floats& z, const Floats& radius,
-                                                    const Ball& ball) {
-  const Floats dx = x - ball.x;
-  const Floats dy = y - ball.y;
-  const Floats dz = z - ball.z;
-  const Floats reach = radius + ball.radius;
+                                                    const Sphere& sphere) {
+  const Floats dx = x - sphere.x;
+  const Floats dy = y - sphere.y;
+  const Floats dz = z - sphere.z;
+  const Floats reach = radius + sphere.radius;
   return dx * dx + dy * dy + dz * dz - reach * reach;
 }
 
-inline bool are_apart(const Ball& a, const Ball& b) {
+inline bool are_apart(const Sphere& a, const Sphere& b) {
   const float dx = a.x - b.x;
   const float dy = a.y - b.y;
   const float dz = a.z - b.z;
@@ -140,8 +140,8 @@ inline __attribute__((always_inline)) void place_links(const Problem& problem,
   }
 }
 
-// The ball around the group, which is drawn in the link's frame.
-inline __attribute__((always_inline)) Ball placed_root(const LinkPose& pose, const Group& group) {
+// The sphere around the group, which is drawn in the link's frame.
+inline __attribute__((always_inline)) Sphere placed_root(const LinkPose& pose, const Group& group) {
   const auto* const at = reinterpret_cast<const Double4*>(pose.columns);
   const Double4 center =
       at[0] * group.center[0] + at[1] * group.center[1] + at[2] * group.center[2] + at[3];
@@ -166,36 +166,36 @@ inline __attribute__((always_inline)) T image(const Placement& at, int k, const 
   return at.columns[0][k] * x + at.columns[1][k] * y + at.columns[2][k] * z + at.columns[3][k];
 }
 
-inline void place_balls(const Balls& balls, const Placement& at, const Scratch& scratch) {
-  for (std::int32_t i = 0; i < balls.count; i += kWidth) {
-    const Floats x = load(balls.x + i);
-    const Floats y = load(balls.y + i);
-    const Floats z = load(balls.z + i);
+inline void place_spheres(const Spheres& spheres, const Placement& at, const Scratch& scratch) {
+  for (std::int32_t i = 0; i < spheres.count; i += kWidth) {
+    const Floats x = load(spheres.x + i);
+    const Floats y = load(spheres.y + i);
+    const Floats z = load(spheres.z + i);
     *reinterpret_cast<Floats*>(scratch.x + i) = image(at, 0, x, y, z);
     *reinterpret_cast<Floats*>(scratch.y + i) = image(at, 1, x, y, z);
     *reinterpret_cast<Floats*>(scratch.z + i) = image(at, 2, x, y, z);
   }
 }
 
-// Balls against all placed balls of a body: some at a time, since finding out whether any lane
+// Spheres against all placed spheres of a body: some at a time, since finding out whether any lane
 // touches takes longer than a vector of tests.
 class Waiting {
  public:
-  Waiting(const Balls& balls, const Scratch& scratch) : balls_(balls), scratch_(scratch) {}
+  Waiting(const Spheres& spheres, const Scratch& scratch) : spheres_(spheres), scratch_(scratch) {}
 
   // True if one that waited touches.
-  inline __attribute__((always_inline)) bool add(const Ball& ball) {
-    waiting_[count_++] = ball;
+  inline __attribute__((always_inline)) bool add(const Sphere& sphere) {
+    waiting_[count_++] = sphere;
     return count_ == kMost && flush();
   }
 
   inline __attribute__((always_inline)) bool flush() {
     Floats least = 1.0F - Floats{};
-    for (std::int32_t first = 0; first < balls_.count; first += kWidth) {
+    for (std::int32_t first = 0; first < spheres_.count; first += kWidth) {
       const Floats x = load(scratch_.x + first);
       const Floats y = load(scratch_.y + first);
       const Floats z = load(scratch_.z + first);
-      const Floats radius = load(balls_.radius + first);
+      const Floats radius = load(spheres_.radius + first);
       for (int i = 0; i < count_; ++i) {
         const Floats here = excess(x, y, z, radius, waiting_[i]);
         least = here < least ? here : least;
@@ -208,50 +208,50 @@ class Waiting {
  private:
   static constexpr int kMost = 8;
 
-  const Balls& balls_;
+  const Spheres& spheres_;
   const Scratch& scratch_;
-  Ball waiting_[kMost];
+  Sphere waiting_[kMost];
   int count_ = 0;
 };
 
-inline Ball ball_at(const Balls& balls, std::int32_t i) {
-  return {balls.x[i], balls.y[i], balls.z[i], balls.radius[i]};
+inline Sphere sphere_at(const Spheres& spheres, std::int32_t i) {
+  return {spheres.x[i], spheres.y[i], spheres.z[i], spheres.radius[i]};
 }
 
-bool touches_all_pairs(const Balls& body, const Balls& obstacle, const Scratch& scratch) {
+bool touches_all_pairs(const Spheres& body, const Spheres& obstacle, const Scratch& scratch) {
   Waiting waiting(body, scratch);
   for (std::int32_t i = 0; i < obstacle.unique; ++i) {
-    if (waiting.add(ball_at(obstacle, i))) return true;
+    if (waiting.add(sphere_at(obstacle, i))) return true;
   }
   return waiting.flush();
 }
 
-// Places the body's balls when the first ball of the obstacle touches `root`.
-bool touches_behind_root(const Balls& body, const Placement& at, const Ball& root,
-                         const Balls& obstacle, bool& is_placed, const Scratch& scratch) {
+// Places the body's spheres when the first sphere of the obstacle touches `root`.
+bool touches_behind_root(const Spheres& body, const Placement& at, const Sphere& root,
+                         const Spheres& obstacle, bool& is_placed, const Scratch& scratch) {
   Waiting waiting(body, scratch);
   bool any = false;
   for (std::int32_t first = 0; first < obstacle.count; first += kWidth) {
     Lanes near(excess(load(obstacle.x + first), load(obstacle.y + first), load(obstacle.z + first),
                       load(obstacle.radius + first), root));
     while (near.any()) {
-      if (!is_placed) place_balls(body, at, scratch);
+      if (!is_placed) place_spheres(body, at, scratch);
       is_placed = any = true;
-      if (waiting.add(ball_at(obstacle, first + near.next()))) return true;
+      if (waiting.add(sphere_at(obstacle, first + near.next()))) return true;
     }
   }
   return any && waiting.flush();
 }
 
 // A bit for every obstacle that the body has to be looked at against.
-inline std::uint32_t near_obstacles(const Problem& problem, const Body& body, const Ball& root) {
-  if (!problem.balls_in_front) return body.against;
+inline std::uint32_t near_obstacles(const Problem& problem, const Body& body, const Sphere& root) {
+  if (!problem.spheres_in_front) return body.against;
   std::uint32_t near = 0;
   for (std::int32_t i = 0; i < problem.obstacle_count; ++i) {
     const Group& obstacle = problem.obstacles[i];
-    const Ball around{static_cast<float>(obstacle.center[0]),
-                      static_cast<float>(obstacle.center[1]),
-                      static_cast<float>(obstacle.center[2]), obstacle.radius};
+    const Sphere around{static_cast<float>(obstacle.center[0]),
+                        static_cast<float>(obstacle.center[1]),
+                        static_cast<float>(obstacle.center[2]), obstacle.radius};
     if (!are_apart(root, around)) near |= 1U << i;
   }
   return near & body.against;
@@ -262,18 +262,18 @@ bool check(const Problem& problem, const double* configuration, const Scratch& s
   for (std::int32_t b = 0; b < problem.body_count; ++b) {
     const Body& body = problem.bodies[b];
     const LinkPose& pose = scratch.poses[body.link];
-    const Ball root = placed_root(pose, body.group);
+    const Sphere root = placed_root(pose, body.group);
     std::uint32_t near = near_obstacles(problem, body, root);
     if (near == 0) continue;
     const Placement at(pose);
-    bool is_placed = !problem.balls_in_front;
-    if (is_placed) place_balls(body.group.balls, at, scratch);
+    bool is_placed = !problem.spheres_in_front;
+    if (is_placed) place_spheres(body.group.spheres, at, scratch);
     for (; near != 0; near &= near - 1) {
-      const Balls& obstacle = problem.obstacles[__builtin_ctz(near)].balls;
+      const Spheres& obstacle = problem.obstacles[__builtin_ctz(near)].spheres;
       const bool touches =
-          problem.balls_in_front
-              ? touches_behind_root(body.group.balls, at, root, obstacle, is_placed, scratch)
-              : touches_all_pairs(body.group.balls, obstacle, scratch);
+          problem.spheres_in_front
+              ? touches_behind_root(body.group.spheres, at, root, obstacle, is_placed, scratch)
+              : touches_all_pairs(body.group.spheres, obstacle, scratch);
       if (touches) return true;
     }
   }

@@ -7,7 +7,7 @@
 
 namespace spherule {
 
-// What the paper says without a figure: a shape in balls at equal E, with stage 1 and with a D so
+// What the paper says without a figure: a shape in spheres at equal E, with stage 1 and with a D so
 // small that nothing of the shape vanishes. Lengths in metres.
 struct ClaimRow {
   std::string shape;
@@ -15,7 +15,7 @@ struct ClaimRow {
   std::size_t triangles = 0;
   double max_error = 0.0;
   double min_external_diameter = 0.0;  // with stage 1
-  std::size_t with_stage1 = 0;         // balls
+  std::size_t with_stage1 = 0;         // spheres
   std::size_t without_stage1 = 0;
   // A rod 20 mm across at a hundredth of the size from it: time of the fastest FCL setting on the
   // meshes over ours on the spheres with stage 1.

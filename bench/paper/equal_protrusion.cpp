@@ -43,7 +43,7 @@ class SettingSearch {
     }
     if (holds && protrusion >= kNear * limit_) return false;
     const bool is_bracketed = held_ > 0.0 && broke_ > held_;
-    // More balls may have grown less, so that a finer setting broke before a coarser one held.
+    // More spheres may have grown less, so that a finer setting broke before a coarser one held.
     if (held_ > 0.0 && broke_ > 0.0 && kNear * broke_ < held_) return false;
     setting_ = at.setting * std::clamp(aim_from(at) / at.setting, 0.25, 1.6);
     if (is_bracketed && !(setting_ > held_ && setting_ < broke_)) {

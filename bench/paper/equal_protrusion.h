@@ -17,12 +17,12 @@ struct NamedMesh {
   TriangleMesh mesh;
 };
 
-// How many balls a method needs for a part, if they have to hold it and stick out of it no further
-// than all others may.
+// How many spheres a method needs for a part, if they have to hold it and stick out of it no
+// further than all others may.
 struct CountEntry {
   std::string method;
   std::size_t spheres = 0;  // 0: none of the settings that were tried does it
-  // Of those balls, or, if there are none, of the last that were made: the certified upper bound
+  // Of those spheres, or, if there are none, of the last that were made: the certified upper bound
   // of their protrusion over |M|, and what they had to grow by to cover it.
   double protrusion = 0.0;
   double inflation = 0.0;
@@ -41,9 +41,9 @@ struct CountRow {
 // Of every allowed protrusion to the box diagonal.
 inline constexpr double kEqualProtrusion = 0.02;
 
-// The fewest balls of `method` found with five settings that one judge proves to hold |M| and to
+// The fewest spheres of `method` found with five settings that one judge proves to hold |M| and to
 // protrude from it by at most `max_protrusion`: made_conservative(), which grows what does not
-// cover by itself. A setting that the method or the judge refuses ends the search. (Balls around
+// cover by itself. A setting that the method or the judge refuses ends the search. (Spheres around
 // voxels touch at corners, so they grow too, by 1/4096 of the diagonal.)
 CountEntry fewest_spheres(const TriangleMesh& mesh, const SphereMethod& method,
                           double max_protrusion);

@@ -24,7 +24,7 @@ struct Figure3Row {
 // The pipe's box as D grows from a third to more than the bore.
 std::vector<Figure3Row> figure_3();
 
-// Figures 6 to 8: the pipe as balls are added, for one method.
+// Figures 6 to 8: the pipe as spheres are added, for one method.
 struct FitCourse {
   std::string method;
   std::vector<CoverHistoryEntry> history;

@@ -11,7 +11,7 @@
 
 namespace spherule {
 
-// A mesh or balls in one colour (red, green, blue from 0 to 1).
+// A mesh or spheres in one colour (red, green, blue from 0 to 1).
 struct PictureItem {
   Eigen::Vector3d color;
   TriangleMesh mesh{};

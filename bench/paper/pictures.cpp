@@ -54,7 +54,8 @@ void write_figure_4(const std::vector<FitCourse>& courses, const std::filesystem
   write("hull", {.color = kSteel, .mesh = convex_hull(pipe).mesh});
   write("voxels",
         {.color = kBlue,
-         .spheres = voxelise(pipe, {.step = kPaperVoxel, .ball = VoxelBall::kInscribed}).spheres});
+         .spheres =
+             voxelise(pipe, {.step = kPaperVoxel, .sphere = VoxelSphere::kInscribed}).spheres});
   for (const FitCourse& course : courses) {
     PictureItem item{.color = kBlue};
     for (const Sphere& sphere : course.spheres) {

@@ -112,7 +112,7 @@ std::vector<Representation> make_representations(const Workload& workload) {
   rows.add_spheres("packing", packing.spheres, false, PaperRow{"4752 spheres", 2134, 258.0});
   rows.add_spheres("packing-inflated", packing.inflated, true);
   rows.add_spheres("voxels",
-                   voxelise(mesh, {.step = kPaperVoxel, .ball = VoxelBall::kInscribed}).spheres,
+                   voxelise(mesh, {.step = kPaperVoxel, .sphere = VoxelSphere::kInscribed}).spheres,
                    false, PaperRow{"2675 spheres", 2865, 170.0});
   rows.add_spheres("voxels-covering", voxelise(mesh, {.step = kPaperVoxel}).spheres, true);
   rows.add_spheres("bounding-paper", by_papers_loop(part), true,

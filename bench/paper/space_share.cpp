@@ -31,14 +31,14 @@ double uncovered_share(const ExternalSpheres& external, int along) {
   const auto [nx, ny, nz] = count;
   const Eigen::Vector3d scale(nx / size.x(), ny / size.y(), nz / size.z());
   const auto width = static_cast<std::size_t>(nx) + 1;
-  // Of each row of cells: how many more balls cover a cell than the one before it.
+  // Of each row of cells: how many more spheres cover a cell than the one before it.
   std::vector<int> change(width * static_cast<std::size_t>(ny) * static_cast<std::size_t>(nz));
-  for (const Sphere& ball : external.balls) {
-    const Eigen::Vector3d center = (ball.center - external.box.min()).cwiseProduct(scale);
-    const Cells z(center.z(), ball.radius * scale.z(), nz);
+  for (const Sphere& sphere : external.spheres) {
+    const Eigen::Vector3d center = (sphere.center - external.box.min()).cwiseProduct(scale);
+    const Cells z(center.z(), sphere.radius * scale.z(), nz);
     for (int k = z.begin; k < z.end; ++k) {
       const double dz = (k + 0.5 - center.z()) / scale.z();
-      const double in_layer = std::sqrt(std::max(0.0, ball.radius * ball.radius - dz * dz));
+      const double in_layer = std::sqrt(std::max(0.0, sphere.radius * sphere.radius - dz * dz));
       const Cells y(center.y(), in_layer * scale.y(), ny);
       for (int j = y.begin; j < y.end; ++j) {
         const double dy = (j + 0.5 - center.y()) / scale.y();

@@ -5,9 +5,9 @@
 
 namespace spherule {
 
-// The share of the box that no external ball covers (the paper's figure 3), by the centres of cells
-// of which `along` lie along the box's longest edge. Errs by the cells that a ball's surface
-// passes.
+// The share of the box that no external sphere covers (the paper's figure 3), by the centres of
+// cells of which `along` lie along the box's longest edge. Errs by the cells that a sphere's
+// surface passes.
 double uncovered_share(const ExternalSpheres& external, int along);
 
 }  // namespace spherule

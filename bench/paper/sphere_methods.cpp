@@ -19,8 +19,9 @@ namespace {
 constexpr double kAfterStage1 = 4.0;  // D over E
 constexpr double kAsIs = 1.0;
 constexpr int kEffort = 6;
-// Hubbard's method is told a count: that of balls of radius E side by side on the surface, at most.
-constexpr double kMostBalls = 5000.0;
+// Hubbard's method is told a count: that of spheres of radius E side by side on the surface, at
+// most.
+constexpr double kMostSpheres = 5000.0;
 constexpr double kLevelSetStep = 0.25;     // of E
 constexpr double kCoverPointsApart = 0.2;  // of E
 constexpr double kFewestCoverPoints = 10000.0;
@@ -55,9 +56,9 @@ std::vector<Sphere> medial(const TriangleMesh& mesh, double error) {
 }
 
 std::vector<Sphere> hubbard(const TriangleMesh& mesh, double error) {
-  const double balls = std::clamp(area_of(mesh) / (error * error), 2.0, kMostBalls);
+  const double spheres = std::clamp(area_of(mesh) / (error * error), 2.0, kMostSpheres);
   HubbardOptions options;
-  options.counts = {static_cast<std::size_t>(balls)};
+  options.counts = {static_cast<std::size_t>(spheres)};
   options.sites = std::max(options.sites, 2 * options.counts.front());
   return hubbard_spheres(mesh, options).levels.back();
 }

@@ -10,18 +10,18 @@
 
 namespace spherule {
 
-// A way to make balls of a mesh that is told how fine they are to be.
+// A way to make spheres of a mesh that is told how fine they are to be.
 struct SphereMethod {
   std::string name;
   // `error` is what the method is asked to err by at most, in the unit of the mesh: the smaller,
-  // the more balls. What the method makes of it is its own business.
+  // the more spheres. What the method makes of it is its own business.
   std::function<std::vector<Sphere>(const TriangleMesh& mesh, double error)> make;
 };
 
-// Those that are compared: packing, OpenVDB's own, voxels, octree, Hubbard's and medial-axis balls
-// as the literature makes them; the bounding sphere simplification by the paper's loop and by ours
-// after stage 1 with D = 4 E; and ours with D = E, at which hardly any part changes ("cover-as-is";
-// the paper's loop without stage 1 is the packing).
+// Those that are compared: packing, OpenVDB's own, voxels, octree, Hubbard's and medial-axis
+// spheres as the literature makes them; the bounding sphere simplification by the paper's loop and
+// by ours after stage 1 with D = 4 E; and ours with D = E, at which hardly any part changes
+// ("cover-as-is"; the paper's loop without stage 1 is the packing).
 std::vector<SphereMethod> sphere_methods();
 
 }  // namespace spherule

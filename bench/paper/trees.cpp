@@ -60,7 +60,8 @@ void measure(const SphereTree& rod, const std::vector<Pose>& poses, const Sphere
     cost->depth = tree->depth();
     cost->node_tests = static_cast<double>(tests) / static_cast<double>(poses.size());
   }
-  if (hits[0] != hits[1]) throw Error(row.method, "two trees over the same balls answer otherwise");
+  if (hits[0] != hits[1])
+    throw Error(row.method, "two trees over the same spheres answer otherwise");
   row.collision_percent = 100.0 *
                           static_cast<double>(std::count(hits[0].begin(), hits[0].end(), true)) /
                           static_cast<double>(poses.size());

@@ -7,8 +7,8 @@
 
 namespace spherule {
 
-// What a query costs in one tree over a set of balls: collide() up to the first contact, means over
-// random poses of a rod near the pipe.
+// What a query costs in one tree over a set of spheres: collide() up to the first contact, means
+// over random poses of a rod near the pipe.
 struct TreeCost {
   std::size_t nodes = 0;  // inner ones too
   int depth = 0;

@@ -40,11 +40,11 @@ TriangleMesh mesh_of(const LinkDescription& link) {
 // The middles of edges are rounded: pieces need not quite make up the triangle.
 constexpr double kRounding = 1e-9;  // metres
 
-// A piece whose ball is too large is halved, at the middle of its longest edge.
-void add_balls(const Triangle& triangle, double radius, std::vector<Sphere>& spheres) {
-  const Sphere ball = enclosing_sphere(triangle);
-  if (ball.radius + kRounding <= radius) {
-    spheres.push_back({ball.center, ball.radius + kRounding});
+// A piece whose sphere is too large is halved, at the middle of its longest edge.
+void add_spheres(const Triangle& triangle, double radius, std::vector<Sphere>& spheres) {
+  const Sphere sphere = enclosing_sphere(triangle);
+  if (sphere.radius + kRounding <= radius) {
+    spheres.push_back({sphere.center, sphere.radius + kRounding});
     return;
   }
   int longest = 0;
@@ -57,15 +57,15 @@ void add_balls(const Triangle& triangle, double radius, std::vector<Sphere>& sph
   }
   const auto k = static_cast<std::size_t>(longest);
   const Eigen::Vector3d middle = 0.5 * (triangle[k] + triangle[(k + 1) % 3]);
-  add_balls({triangle[k], middle, triangle[(k + 2) % 3]}, radius, spheres);
-  add_balls({middle, triangle[(k + 1) % 3], triangle[(k + 2) % 3]}, radius, spheres);
+  add_spheres({triangle[k], middle, triangle[(k + 2) % 3]}, radius, spheres);
+  add_spheres({middle, triangle[(k + 1) % 3], triangle[(k + 2) % 3]}, radius, spheres);
 }
 
-std::vector<Sphere> balls_of(const LinkDescription& link) {
+std::vector<Sphere> spheres_of(const LinkDescription& link) {
   std::vector<Sphere> spheres;
   for (const LinkShape& shape : link.collision) {
-    const Ball& ball = std::get<Ball>(std::get<Primitive>(shape.geometry));
-    spheres.push_back({shape.link_from_shape.translation(), ball.radius});
+    const SolidSphere& sphere = std::get<SolidSphere>(std::get<Primitive>(shape.geometry));
+    spheres.push_back({shape.link_from_shape.translation(), sphere.radius});
   }
   return spheres;
 }
@@ -92,11 +92,11 @@ Arm make_arm(const std::filesystem::path& models, SpheresOf spheres_of) {
 
 }  // namespace
 
-std::vector<Sphere> balls_around(const TriangleMesh& mesh, double radius) {
+std::vector<Sphere> spheres_around(const TriangleMesh& mesh, double radius) {
   std::vector<Sphere> spheres;
   for (const Eigen::Vector3i& t : mesh.triangles) {
     const auto corner = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
-    add_balls({corner(0), corner(1), corner(2)}, radius, spheres);
+    add_spheres({corner(0), corner(1), corner(2)}, radius, spheres);
   }
   return spheres;
 }
@@ -106,11 +106,11 @@ Arm make_panda(const std::filesystem::path& models, const std::string& cover) {
   if (!(radius > 0.0)) {
     const RobotDescription spheres = read_urdf(cover);
     return make_arm(models, [&](std::size_t link, const TriangleMesh&) {
-      return balls_of(spheres.links.at(link));
+      return spheres_of(spheres.links.at(link));
     });
   }
   return make_arm(
-      models, [&](std::size_t, const TriangleMesh& mesh) { return balls_around(mesh, radius); });
+      models, [&](std::size_t, const TriangleMesh& mesh) { return spheres_around(mesh, radius); });
 }
 
 AllowedCollisions joined_contacts(const Arm& arm) {

@@ -26,14 +26,14 @@ struct Arm {
   std::size_t spheres = 0;
 };
 
-// Every triangle is split at its longest edge until a ball of `radius` (metres) holds the piece,
-// and gets the balls of its pieces: they contain the surface (it is the surfaces that FCL tests),
+// Every triangle is split at its longest edge until a sphere of `radius` (metres) holds the piece,
+// and gets the spheres of its pieces: they contain the surface (it is the surfaces that FCL tests),
 // protrude by no more than the radius, and are several times as many as a cover of the solid needs.
-std::vector<Sphere> balls_around(const TriangleMesh& mesh, double radius);
+std::vector<Sphere> spheres_around(const TriangleMesh& mesh, double radius);
 
 // Franka's Panda from a folder that holds robots/franka_panda. `cover` is either a spherized URDF,
-// as `spherule robot` writes it, whose balls its links carry; or the radius of balls_around() its
-// meshes. Throws Error if files are missing.
+// as `spherule robot` writes it, whose spheres its links carry; or the radius of spheres_around()
+// its meshes. Throws Error if files are missing.
 Arm make_panda(const std::filesystem::path& models, const std::string& cover);
 
 // Which links of a Panda are not tested against each other: what is joined, and the two fingers;

@@ -30,7 +30,7 @@ struct ArmScene {
 // planners are compared in. The same each time.
 std::vector<ArmScene> primitive_scenes();
 
-// So many boxes, cylinders and balls about the arm.
+// So many boxes, cylinders and spheres about the arm.
 ArmScene scene_of_primitives(std::size_t count);
 
 // The surfaces of a few bodies about the arm, as about so many points, and as a solid mesh of about

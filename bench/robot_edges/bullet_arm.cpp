@@ -37,8 +37,8 @@ struct MakePrimitive {
   Shape operator()(const Box& box) const {
     return make_shape<btBoxShape>(bullet_vector(0.5 * box.size));
   }
-  Shape operator()(const Ball& ball) const {
-    return make_shape<btSphereShape>(scalar(ball.radius));
+  Shape operator()(const SolidSphere& sphere) const {
+    return make_shape<btSphereShape>(scalar(sphere.radius));
   }
   Shape operator()(const Cylinder& solid) const {
     return make_shape<btCylinderShapeZ>(

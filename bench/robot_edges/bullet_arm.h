@@ -17,7 +17,7 @@ enum class BulletLinks {
 
 // The arm in a scene, and against itself where this is not allowed, by Bullet (single precision, as
 // Debian packages it): margins zero, the obstacles in a dynamic AABB tree of Bullet, what it leaves
-// by contactPairTest, until a pair touches. Primitives are solid, and so are the balls about the
+// by contactPairTest, until a pair touches. Primitives are solid, and so are the spheres about the
 // points of a cloud; the scene's mesh is its triangles, a btBvhTriangleMeshShape to hulls.
 class BulletArm : public ArmChecker {
  public:

@@ -28,8 +28,8 @@ using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
 
 struct MakeGeometry {
   Geometry operator()(const Box& box) const { return std::make_shared<fcl::Boxd>(box.size); }
-  Geometry operator()(const Ball& ball) const {
-    return std::make_shared<fcl::Sphered>(ball.radius);
+  Geometry operator()(const SolidSphere& sphere) const {
+    return std::make_shared<fcl::Sphered>(sphere.radius);
   }
   Geometry operator()(const Cylinder& solid) const {
     return std::make_shared<fcl::Cylinderd>(solid.radius, solid.length);
@@ -84,7 +84,7 @@ struct FclArm::Parts {
       return std::any_of(obstacles.begin(), obstacles.end(),
                          [&](const FclObstacle& obstacle) { return touches(link, obstacle); });
     }
-    // The boxes that FCL gives a turned object are those of its ball.
+    // The boxes that FCL gives a turned object are those of its sphere.
     moved[link]->setTransform(poses[link]);
     moved[link]->computeAABB();
     TreeQuery query{this, link, false};

@@ -8,7 +8,7 @@
 
 namespace spherule {
 
-void FlatArm::Balls::add(const Sphere& sphere) {
+void FlatArm::Spheres::add(const Sphere& sphere) {
   x.push_back(sphere.center.x());
   y.push_back(sphere.center.y());
   z.push_back(sphere.center.z());
@@ -21,8 +21,8 @@ FlatArm::FlatArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScen
     for (const auto& tree : robot_.links()[link].trees) {
       const bool moves =
           link != 0 && allowed.reason(0, static_cast<int>(link)) != AllowedReason::kRigid;
-      LinkBalls& balls = links_.emplace_back(LinkBalls{link, moves, {}, tree->ball(0)});
-      for (const Sphere& sphere : tree->spheres()) balls.balls.add(sphere);
+      LinkSpheres& spheres = links_.emplace_back(LinkSpheres{link, moves, {}, tree->sphere(0)});
+      for (const Sphere& sphere : tree->spheres()) spheres.spheres.add(sphere);
     }
   }
   for (std::size_t i = 0; i < links_.size(); ++i) {
@@ -33,21 +33,21 @@ FlatArm::FlatArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScen
     }
   }
   for (const Eigen::Vector3d& point : scene.cloud) cloud_.add({point, scene.cloud_radius});
-  for (const LinkBalls& link : links_) placed_.push_back(link.balls);
+  for (const LinkSpheres& link : links_) placed_.push_back(link.spheres);
   around_.resize(links_.size());
 }
 
-bool FlatArm::any_within(const Balls& balls, const Eigen::Vector3d& center, double radius) {
+bool FlatArm::any_within(const Spheres& spheres, const Eigen::Vector3d& center, double radius) {
   int found = 0;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    const double x = balls.x[i] - center.x(), y = balls.y[i] - center.y(),
-                 z = balls.z[i] - center.z(), reach = balls.radius[i] + radius;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const double x = spheres.x[i] - center.x(), y = spheres.y[i] - center.y(),
+                 z = spheres.z[i] - center.z(), reach = spheres.radius[i] + radius;
     found |= x * x + y * y + z * z <= reach * reach ? 1 : 0;
   }
   return found != 0;
 }
 
-bool FlatArm::meets_obstacles(const Balls& placed, const Sphere& around) const {
+bool FlatArm::meets_obstacles(const Spheres& placed, const Sphere& around) const {
   for (const PlacedPrimitive& obstacle : scene_.obstacles) {
     const bool meets = std::visit(
         [&](const auto& shape) {
@@ -82,8 +82,8 @@ bool FlatArm::collides(std::span<const double> configuration) {
     const Pose& pose = poses_[links_[k].link];
     const Eigen::Matrix3d& r = pose.matrix();
     const Eigen::Vector3d& t = pose.translation();
-    const Balls& from = links_[k].balls;
-    Balls& to = placed_[k];
+    const Spheres& from = links_[k].spheres;
+    Spheres& to = placed_[k];
     for (std::size_t i = 0; i < from.size(); ++i) {
       to.x[i] = r(0, 0) * from.x[i] + r(0, 1) * from.y[i] + r(0, 2) * from.z[i] + t.x();
       to.y[i] = r(1, 0) * from.x[i] + r(1, 1) * from.y[i] + r(1, 2) * from.z[i] + t.y();
@@ -97,7 +97,7 @@ bool FlatArm::collides(std::span<const double> configuration) {
   for (const auto& [a, b] : pairs_) {
     const double reach = around_[a].radius + around_[b].radius;
     if ((around_[a].center - around_[b].center).squaredNorm() > reach * reach) continue;
-    const Balls& of_a = placed_[a];
+    const Spheres& of_a = placed_[a];
     for (std::size_t i = 0; i < of_a.size(); ++i) {
       if (any_within(placed_[b], {of_a.x[i], of_a.y[i], of_a.z[i]}, of_a.radius[i])) return true;
     }

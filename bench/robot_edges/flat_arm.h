@@ -13,7 +13,7 @@
 namespace spherule {
 
 // The arm's spheres without a hierarchy: all of each link against all obstacles, and all pairs of
-// two links', behind a test of the balls around links (and, for the points of a cloud, of each
+// two links', behind a test of the spheres around links (and, for the points of a cloud, of each
 // point). Double precision, in loops that compilers vectorise. Solid meshes are not asked.
 class FlatArm {
  public:
@@ -23,29 +23,29 @@ class FlatArm {
 
  private:
   // Coordinates and radii, in the link's frame or the world.
-  struct Balls {
+  struct Spheres {
     std::vector<double> x, y, z, radius;
 
     void add(const Sphere& sphere);
     std::size_t size() const { return x.size(); }
   };
-  struct LinkBalls {
+  struct LinkSpheres {
     std::size_t link;
     bool moves;
-    Balls balls;
+    Spheres spheres;
     Sphere around;
   };
 
-  static bool any_within(const Balls& balls, const Eigen::Vector3d& center, double radius);
-  bool meets_obstacles(const Balls& placed, const Sphere& around) const;
+  static bool any_within(const Spheres& spheres, const Eigen::Vector3d& center, double radius);
+  bool meets_obstacles(const Spheres& placed, const Sphere& around) const;
 
   const RobotModel& robot_;
   const ArmScene& scene_;
-  std::vector<LinkBalls> links_;
+  std::vector<LinkSpheres> links_;
   std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of links_
-  Balls cloud_;
+  Spheres cloud_;
   std::vector<Pose> poses_;
-  std::vector<Balls> placed_;
+  std::vector<Spheres> placed_;
   std::vector<Sphere> around_;
 };
 

@@ -70,13 +70,13 @@ ArmScene pillars() {
   return scene.done();
 }
 
-ArmScene balls() {
-  SceneMaker scene("balls");
+ArmScene spheres() {
+  SceneMaker scene("spheres");
   RandomNumbers random(1);
   for (int i = 0; i < 20; ++i) {
     const Eigen::Vector3d at =
         Eigen::Vector3d(0, 0, 0.5) + random.between(0.4, 0.9) * random.direction();
-    scene.add(Ball{random.between(0.03, 0.12)}, at);
+    scene.add(SolidSphere{random.between(0.03, 0.12)}, at);
   }
   return scene.done();
 }
@@ -98,7 +98,7 @@ ArmScene clutter() {
 }  // namespace
 
 std::vector<ArmScene> primitive_scenes() {
-  return {shelf(), table(), cage(), passage(), pillars(), balls(), clutter()};
+  return {shelf(), table(), cage(), passage(), pillars(), spheres(), clutter()};
 }
 
 }  // namespace spherule

@@ -8,7 +8,7 @@
 namespace spherule {
 namespace {
 
-// Bumpy balls: closed, of many triangles of all sizes, with hollows that an arm reaches into.
+// Bumpy spheres: closed, of many triangles of all sizes, with hollows that an arm reaches into.
 constexpr int kBodies = 6;
 
 Eigen::Vector3d center_of(int body) {
@@ -80,7 +80,7 @@ ArmScene scene_of_primitives(std::size_t count) {
         Eigen::Vector3d(0, 0, 0.5) + random.between(0.55, 1.0) * random.direction();
     const double size = random.between(0.03, 0.12);
     const Primitive kinds[] = {Box{{size, 1.5 * size, 0.7 * size}}, Cylinder{0.4 * size, size},
-                               Ball{0.5 * size}};
+                               SolidSphere{0.5 * size}};
     scene.obstacles.push_back(
         {"obstacle " + std::to_string(i), kinds[i % 3], Pose(random.rotation(), at)});
   }

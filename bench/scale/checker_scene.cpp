@@ -32,15 +32,15 @@ Pose random_root(SceneRandom& random, double size) {
 std::shared_ptr<const SphereTree> body_tree(SceneRandom& random, double size) {
   const double kind = random.unit();
   const int count = kind < 0.3 ? 1 : kind < 0.95 ? random.whole(2, 12) : random.whole(20, 120);
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   const Eigen::Vector3d along = 0.5 * size * random.direction();
   for (int i = 0; i < count; ++i) {
     const double radius = random.chance(0.1) ? 0.0 : size * random.between(0.01, 0.1);
-    balls.push_back({along * random.unit() + random.in_cube(0.1 * size), radius});
+    spheres.push_back({along * random.unit() + random.in_cube(0.1 * size), radius});
   }
-  if (random.chance(0.1)) balls[0].center.setZero();
+  if (random.chance(0.1)) spheres[0].center.setZero();
   return std::make_shared<const SphereTree>(
-      build_tree(balls, {.branching = random.whole(2, SphereTree::kMaxBranching)}));
+      build_tree(spheres, {.branching = random.whole(2, SphereTree::kMaxBranching)}));
 }
 
 TriangleMesh tetrahedron(SceneRandom& random, double size) {
@@ -156,7 +156,7 @@ ObstacleShape CheckerScene::make_shape(SceneRandom& random) const {
     case 1:
       return Primitive(Box{{length(), length(), length()}});
     case 2:
-      return Primitive(Ball{length()});
+      return Primitive(SolidSphere{length()});
     case 3:
       return Primitive(Cylinder{length(), length()});
     case 4:
@@ -180,7 +180,7 @@ void CheckerScene::make_obstacles(SceneRandom& random) {
     double radius = 0.0;
     if (const auto* const primitive = std::get_if<Primitive>(&shape)) {
       if (const auto* const box = std::get_if<Box>(primitive)) radius = 0.5 * box->size.minCoeff();
-      if (const auto* const ball = std::get_if<Ball>(primitive)) radius = ball->radius;
+      if (const auto* const sphere = std::get_if<SolidSphere>(primitive)) radius = sphere->radius;
       if (const auto* const solid = std::get_if<Capsule>(primitive)) radius = solid->radius;
     }
     const Eigen::Vector3d at = (radius + size_ * random.between(0.3, 2.0)) * random.direction();

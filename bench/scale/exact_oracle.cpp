@@ -15,7 +15,7 @@
 // a component of the image of p errs by less than (7 + 3 + 4 + 1) u |p|, and by u (|p| + |t|) more
 // for the sum: less than 28 u |p| + 2 u |t| as a vector. The difference of two images, its length
 // and the subtraction of the radii add less than 8 u times what they are made from, which is at
-// most the sum of all |p|, |t| and radii. So 64 u (|p| + |t| + r), summed over both balls, bounds
+// most the sum of all |p|, |t| and radii. So 64 u (|p| + |t| + r), summed over both spheres, bounds
 // the error of a gap, and of the limit that a distance is held against; a clearance adds 16 u of
 // it. (Powers of two scale the quaternions without error; their squares do not underflow.)
 
@@ -97,7 +97,7 @@ bool pair_within(const Sphere& p, const Pose& world_from_a, const Sphere& q,
 
 }  // namespace
 
-void ExactOracle::Balls::place(const PlacedSet& set) {
+void ExactOracle::Spheres::place(const PlacedSet& set) {
   const std::size_t count = set.spheres.size();
   for (auto* numbers : {&x, &y, &z, &radius, &error}) numbers->resize(count);
   const Placement<double> placement(set.world_from_set);

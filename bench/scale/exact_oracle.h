@@ -10,34 +10,34 @@
 
 namespace spherule {
 
-// Balls under exactly the motion p -> R(q / |q|) p + t of a pose.
+// Spheres under exactly the motion p -> R(q / |q|) p + t of a pose.
 struct PlacedSet {
   std::span<const Sphere> spheres;
   Pose world_from_set;
 };
 
-// Bounds of a gap; negative where balls overlap.
+// Bounds of a gap; negative where spheres overlap.
 struct GapBounds {
   long double lower;
   long double upper;
 };
 
-// What is true of two placed sets of balls, found from all pairs. Shares no code with collide/:
+// What is true of two placed sets of spheres, found from all pairs. Shares no code with collide/:
 // double with a bound of its error decides most pairs, long double most of the others, and rational
 // numbers, in which the rotation of q / |q| is exact, the rest.
 class ExactOracle {
  public:
-  // Whether two balls, one of each set, are at most `clearance` apart, in exact arithmetic.
+  // Whether two spheres, one of each set, are at most `clearance` apart, in exact arithmetic.
   bool within(const PlacedSet& a, const PlacedSet& b, double clearance);
 
-  // The least gap of two balls, one of each set.
+  // The least gap of two spheres, one of each set.
   GapBounds gap(const PlacedSet& a, const PlacedSet& b);
 
-  // Pairs of balls that had to be decided in rational numbers.
+  // Pairs of spheres that had to be decided in rational numbers.
   std::uint64_t rational_pairs() const { return rational_pairs_; }
 
  private:
-  struct Balls {
+  struct Spheres {
     void place(const PlacedSet& set);
 
     std::vector<double> x, y, z;
@@ -45,7 +45,7 @@ class ExactOracle {
     std::vector<double> error;  // of the place, and of what is computed with it
   };
 
-  Balls a_, b_;
+  Spheres a_, b_;
   std::uint64_t rational_pairs_ = 0;
 };
 

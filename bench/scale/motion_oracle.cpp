@@ -7,10 +7,10 @@
 namespace spherule {
 namespace {
 
-void add_balls(const std::vector<std::array<double, 3>>& centers, const MotionTrack<double>& track,
-               std::vector<Sphere>& balls) {
+void add_spheres(const std::vector<std::array<double, 3>>& centers,
+                 const MotionTrack<double>& track, std::vector<Sphere>& spheres) {
   for (std::size_t i = 0; i < centers.size(); ++i) {
-    balls.push_back({{centers[i][0], centers[i][1], centers[i][2]}, track.radius(i)});
+    spheres.push_back({{centers[i][0], centers[i][1], centers[i][2]}, track.radius(i)});
   }
 }
 
@@ -50,8 +50,8 @@ MotionOracle::Contact MotionOracle::at(double t, double clearance) {
 
 void MotionOracle::place(double t, std::vector<Sphere>& placed_a, std::vector<Sphere>& placed_b) {
   near_.place(a_, b_, t);
-  add_balls(near_.a, a_, placed_a);
-  add_balls(near_.b, b_, placed_b);
+  add_spheres(near_.a, a_, placed_a);
+  add_spheres(near_.b, b_, placed_b);
 }
 
 }  // namespace spherule

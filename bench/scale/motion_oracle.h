@@ -9,8 +9,8 @@
 
 namespace spherule {
 
-// Whether two moving bodies are in contact at an instant, from all pairs of balls: by double where
-// that is certain, else by long double. Both tracks must outlive it.
+// Whether two moving bodies are in contact at an instant, from all pairs of spheres: by double
+// where that is certain, else by long double. Both tracks must outlive it.
 class MotionOracle {
  public:
   MotionOracle(const MotionTrack<long double>& a, const MotionTrack<long double>& b)
@@ -21,7 +21,7 @@ class MotionOracle {
   // Whether the exact gap at t is at most the clearance.
   Contact at(double t, double clearance);
 
-  // Appends the balls where they are at t, rounded.
+  // Appends the spheres where they are at t, rounded.
   void place(double t, std::vector<Sphere>& placed_a, std::vector<Sphere>& placed_b);
 
  private:

@@ -45,16 +45,16 @@ Point<Number> image(const Pose& pose, const Eigen::Vector3d& p) {
 }  // namespace
 
 template <class Number>
-void MotionTrack<Number>::add_balls(std::span<const Sphere> spheres, const Pose& start,
-                                    const Point& axis, const Eigen::Vector3d& reference,
-                                    double extent) {
+void MotionTrack<Number>::add_spheres(std::span<const Sphere> spheres, const Pose& start,
+                                      const Point& axis, const Eigen::Vector3d& reference,
+                                      double extent) {
   const Point anchor = image<Number>(start, reference);
   const Point c = point<Number>(reference);
   for (const Sphere& sphere : spheres) {
     const Point p = point<Number>(sphere.center);
     const Point from = turned(start.rotation(), Point{p[0] - c[0], p[1] - c[1], p[2] - c[2]});
     const Number along = dot(axis, from);
-    Ball tracked{};
+    Sphere tracked{};
     for (std::size_t k = 0; k < 3; ++k) {
       tracked.base[k] = anchor[k] + along * axis[k];
       tracked.arm[k] = from[k] - along * axis[k];
@@ -64,7 +64,7 @@ void MotionTrack<Number>::add_balls(std::span<const Sphere> spheres, const Pose&
     tracked.extent = (extent + sphere.center.template lpNorm<1>() +
                       2.0 * reference.template lpNorm<1>() + sphere.radius) *
                      (1 + 1e-9);
-    balls_.push_back(tracked);
+    spheres_.push_back(tracked);
   }
   set_errors();
 }
@@ -80,8 +80,8 @@ MotionTrack<Number> MotionTrack<Number>::turning(std::span<const Sphere> spheres
   Point unit = point<Number>(axis);
   const Number length = std::sqrt(dot(unit, unit));
   for (Number& x : unit) x /= length;
-  track.add_balls(spheres, start, unit, reference,
-                  start.translation().lpNorm<1>() + displacement.lpNorm<1>());
+  track.add_spheres(spheres, start, unit, reference,
+                    start.translation().lpNorm<1>() + displacement.lpNorm<1>());
   return track;
 }
 
@@ -108,8 +108,8 @@ MotionTrack<Number> MotionTrack<Number>::between(std::span<const Sphere> spheres
   track.angle_ = 2 * std::atan2(sine, w);
   Point axis{0, 0, 1};
   if (sine > 0) axis = {v[0] / sine, v[1] / sine, v[2] / sine};
-  track.add_balls(spheres, start, axis, reference,
-                  2.0 * (start.translation().lpNorm<1>() + end.translation().lpNorm<1>()));
+  track.add_spheres(spheres, start, axis, reference,
+                    2.0 * (start.translation().lpNorm<1>() + end.translation().lpNorm<1>()));
   return track;
 }
 

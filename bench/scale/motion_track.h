@@ -12,7 +12,7 @@
 
 namespace spherule {
 
-// Where the centres of a body's balls are while it moves as collide/motion.h defines it, with a
+// Where the centres of a body's spheres are while it moves as collide/motion.h defines it, with a
 // bound of the error:
 //     x(t) = base + t way + cos(t angle) arm + sin(t angle) side,
 // where `arm` is the part of R0 (p - c) across the axis n and side = n x arm. Shares no code with
@@ -34,10 +34,10 @@ class MotionTrack {
   template <class Other>
   explicit MotionTrack(const MotionTrack<Other>& other);
 
-  std::size_t size() const { return balls_.size(); }
-  double radius(std::size_t i) const { return balls_[i].radius; }
+  std::size_t size() const { return spheres_.size(); }
+  double radius(std::size_t i) const { return spheres_[i].radius; }
   // Bound of the error of a place and of the gap computed from it.
-  Number error(std::size_t i) const { return balls_[i].error; }
+  Number error(std::size_t i) const { return spheres_[i].error; }
 
   void place(double t, std::vector<Point>& centers) const;
 
@@ -45,7 +45,7 @@ class MotionTrack {
   template <class Other>
   friend class MotionTrack;
 
-  struct Ball {
+  struct Sphere {
     Point base, arm, side;
     double radius;
     double extent;
@@ -53,11 +53,11 @@ class MotionTrack {
   };
 
   MotionTrack() = default;
-  void add_balls(std::span<const Sphere> spheres, const Pose& start, const Point& axis,
-                 const Eigen::Vector3d& reference, double extent);
+  void add_spheres(std::span<const Sphere> spheres, const Pose& start, const Point& axis,
+                   const Eigen::Vector3d& reference, double extent);
   void set_errors();
 
-  std::vector<Ball> balls_;
+  std::vector<Sphere> spheres_;
   Point way_{};
   Number angle_ = 0;
 };
@@ -72,9 +72,9 @@ MotionTrack<Number>::MotionTrack(const MotionTrack<Other>& other)
     return Point{static_cast<Number>(p[0]), static_cast<Number>(p[1]), static_cast<Number>(p[2])};
   };
   way_ = shorter(other.way_);
-  for (const auto& ball : other.balls_) {
-    balls_.push_back(
-        {shorter(ball.base), shorter(ball.arm), shorter(ball.side), ball.radius, ball.extent, 0});
+  for (const auto& sphere : other.spheres_) {
+    spheres_.push_back({shorter(sphere.base), shorter(sphere.arm), shorter(sphere.side),
+                        sphere.radius, sphere.extent, 0});
   }
   set_errors();
 }
@@ -88,17 +88,17 @@ template <class Number>
 void MotionTrack<Number>::set_errors() {
   using std::abs;
   const Number share = 128 * std::numeric_limits<Number>::epsilon() * (1 + abs(angle_));
-  for (Ball& ball : balls_) ball.error = share * static_cast<Number>(ball.extent);
+  for (Sphere& sphere : spheres_) sphere.error = share * static_cast<Number>(sphere.extent);
 }
 
 template <class Number>
 void MotionTrack<Number>::place(double t, std::vector<Point>& centers) const {
   const Number at = t, c = std::cos(at * angle_), s = std::sin(at * angle_);
-  centers.resize(balls_.size());
-  for (std::size_t i = 0; i < balls_.size(); ++i) {
-    const Ball& ball = balls_[i];
+  centers.resize(spheres_.size());
+  for (std::size_t i = 0; i < spheres_.size(); ++i) {
+    const Sphere& sphere = spheres_[i];
     for (std::size_t k = 0; k < 3; ++k) {
-      centers[i][k] = ball.base[k] + at * way_[k] + (c * ball.arm[k] + s * ball.side[k]);
+      centers[i][k] = sphere.base[k] + at * way_[k] + (c * sphere.arm[k] + s * sphere.side[k]);
     }
   }
 }

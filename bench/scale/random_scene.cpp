@@ -87,49 +87,50 @@ double SceneRandom::small_gap() {
   return chance(0.5) ? -gap : gap;
 }
 
-std::vector<Sphere> random_balls(SceneRandom& random, int count, double size) {
+std::vector<Sphere> random_spheres(SceneRandom& random, int count, double size) {
   enum Family { kScattered, kEqual, kNested, kTouching, kRepeated, kMixed };
   const auto family = static_cast<Family>(random.whole(kScattered, kMixed));
   // Of the frame's origin; now and then the spheres are far from it.
   const Vector3d place =
       random.chance(0.1) ? random.in_cube(random.magnitude(1.0, 1e4) * size) : Vector3d::Zero();
   const double radius = random.between(0.01, 0.3) * size;
-  std::vector<Sphere> balls{{place + random.in_cube(size), radius}};
-  while (balls.size() < static_cast<std::size_t>(count)) {
-    const Sphere last = balls.back();
+  std::vector<Sphere> spheres{{place + random.in_cube(size), radius}};
+  while (spheres.size() < static_cast<std::size_t>(count)) {
+    const Sphere last = spheres.back();
     switch (family) {
       case kScattered:
-        balls.push_back({place + random.in_cube(size), random.between(0.0, 0.3) * size});
+        spheres.push_back({place + random.in_cube(size), random.between(0.0, 0.3) * size});
         break;
       case kEqual:
-        balls.push_back({place + random.in_cube(size), radius});
+        spheres.push_back({place + random.in_cube(size), radius});
         break;
       case kNested:
-        balls.push_back({random.chance(0.5) ? last.center
-                                            : Vector3d(last.center + random.in_cube(0.1 * radius)),
-                         last.radius * random.between(0.8, 1.1)});
+        spheres.push_back({random.chance(0.5)
+                               ? last.center
+                               : Vector3d(last.center + random.in_cube(0.1 * radius)),
+                           last.radius * random.between(0.8, 1.1)});
         break;
       case kTouching: {
         const double next = radius * random.between(0.5, 1.5);
-        balls.push_back({last.center + (last.radius + next) * random.direction(), next});
+        spheres.push_back({last.center + (last.radius + next) * random.direction(), next});
         break;
       }
       case kRepeated:
-        balls.push_back(random.chance(0.5)
-                            ? last
-                            : Sphere{place + random.in_cube(size), random_radius(random, size)});
+        spheres.push_back(random.chance(0.5)
+                              ? last
+                              : Sphere{place + random.in_cube(size), random_radius(random, size)});
         break;
       case kMixed:
-        balls.push_back({place + random.in_cube(size), random_radius(random, size)});
+        spheres.push_back({place + random.in_cube(size), random_radius(random, size)});
         break;
     }
   }
-  return balls;
+  return spheres;
 }
 
 SphereTree random_tree(SceneRandom& random, int count, double size) {
   const int branching = random.chance(0.5) ? 8 : random.whole(2, SphereTree::kMaxBranching);
-  return build_tree(random_balls(random, count, size), {.branching = branching});
+  return build_tree(random_spheres(random, count, size), {.branching = branching});
 }
 
 int random_count(SceneRandom& random) {
@@ -178,9 +179,9 @@ PosePair ScenePair::anywhere(SceneRandom& random) const {
   const Pose world_from_a(random.rotation(), place_ + random.in_cube(size_));
   const Eigen::Quaterniond turn = random.rotation();
   // The middles of the two sets, of which frames may be far away, come close to each other.
-  const Vector3d middle_a = world_from_a * a_.ball(0).center;
-  const Vector3d middle_b = Pose(turn, Vector3d::Zero()) * b_.ball(0).center;
-  const double reach = a_.ball(0).radius + b_.ball(0).radius;
+  const Vector3d middle_a = world_from_a * a_.sphere(0).center;
+  const Vector3d middle_b = Pose(turn, Vector3d::Zero()) * b_.sphere(0).center;
+  const double reach = a_.sphere(0).radius + b_.sphere(0).radius;
   const double way = reach * random.between(0.0, 1.3);
   return {world_from_a, Pose(turn, middle_a - middle_b + way * random.direction())};
 }

@@ -43,7 +43,7 @@ class SceneRandom {
 
 // Spheres within about `size` of the origin: scattered, equal, nested, touching, repeated, with
 // radii from 0 up to a hundred times the size.
-std::vector<Sphere> random_balls(SceneRandom& random, int count, double size);
+std::vector<Sphere> random_spheres(SceneRandom& random, int count, double size);
 
 // A tree of any branching over them.
 SphereTree random_tree(SceneRandom& random, int count, double size);

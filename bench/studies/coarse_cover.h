@@ -8,9 +8,9 @@
 
 namespace spherule {
 
-// Not more than `count` balls (one at least) that cover all that the spheres of the tree cover: a
-// cut through the tree, where the largest ball was opened again and again. Every ball of a layered
-// tree holds all below it.
+// Not more than `count` spheres (one at least) that cover all that the spheres of the tree cover: a
+// cut through the tree, where the largest sphere was opened again and again. Every sphere of a
+// layered tree holds all below it.
 std::vector<Sphere> coarse_cover(const SphereTree& tree, std::size_t count);
 
 }  // namespace spherule

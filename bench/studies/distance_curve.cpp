@@ -110,8 +110,8 @@ Places random_places(const Part& a, const Part& b, double size) {
   RandomNumbers random(kSeed);
   Places result;
   while (result.by_mesh[0].size() < kPoses) {
-    const Approach approach{random.rotation(), random.direction(), a.tree->ball(0),
-                            b.tree->ball(0)};
+    const Approach approach{random.rotation(), random.direction(), a.tree->sphere(0),
+                            b.tree->sphere(0)};
     const auto by_mesh = places(approach, size, [&](const Pose& pose) {
       return surface_distance(solid_a, pose, solid_b, Pose());
     });
@@ -252,7 +252,7 @@ class Curve {
 
 std::vector<DistanceRow> study_distances(const Part& moving, const Part& standing,
                                          const StudyOptions& options) {
-  const double size = moving.tree->ball(0).radius + standing.tree->ball(0).radius;
+  const double size = moving.tree->sphere(0).radius + standing.tree->sphere(0).radius;
   const Places poses = random_places(moving, standing, size);
   Curve curve(moving, standing);
   std::vector<DistanceRow> rows;

@@ -18,14 +18,14 @@ class RandomNumbers {
   }
 
   // Uniform in directions and rotations, by rejection from the cube.
-  Eigen::Vector3d direction() { return in_ball<Eigen::Vector3d>().normalized(); }
+  Eigen::Vector3d direction() { return in_sphere<Eigen::Vector3d>().normalized(); }
   Eigen::Quaterniond rotation() {
-    return Eigen::Quaterniond(in_ball<Eigen::Vector4d>().normalized().eval());
+    return Eigen::Quaterniond(in_sphere<Eigen::Vector4d>().normalized().eval());
   }
 
  private:
   template <class Vector>
-  Vector in_ball() {
+  Vector in_sphere() {
     for (;;) {
       Vector v;
       for (double& x : v) x = between(-1.0, 1.0);

@@ -22,8 +22,8 @@ using Eigen::Vector3d;
 // Far above what the corners of halved triangles and the radii lose to rounding.
 constexpr double kUp = 1.0 + 1e-9;
 constexpr int kMostHalvings = 40;
-// Pieces for each new ball: enough for groups that are well shaped.
-constexpr double kPiecesPerBall = 3.0;
+// Pieces for each new sphere: enough for groups that are well shaped.
+constexpr double kPiecesPerSphere = 3.0;
 
 struct Piece {
   std::array<Vector3d, 3> corners;
@@ -33,15 +33,15 @@ struct Piece {
     return std::max({(corners[0] - corners[1]).norm(), (corners[1] - corners[2]).norm(),
                      (corners[2] - corners[0]).norm()});
   }
-  // A ball is convex: it holds the piece if it holds its corners.
+  // A sphere is convex: it holds the piece if it holds its corners.
   double reach_from(const Vector3d& point) const {
     return std::max(
         {(corners[0] - point).norm(), (corners[1] - point).norm(), (corners[2] - point).norm()});
   }
 };
 
-// Cuts the triangles at the middle of their longest edges into pieces that a ball holds and whose
-// edges are not longer than `longest`, and gives each to the ball in which it lies deepest.
+// Cuts the triangles at the middle of their longest edges into pieces that a sphere holds and whose
+// edges are not longer than `longest`, and gives each to the sphere in which it lies deepest.
 class Cutter {
  public:
   Cutter(std::span<const Sphere> cover, double longest)
@@ -64,10 +64,10 @@ class Cutter {
     std::size_t deepest = cover_.size();
     double depth = 0.0;
     for (const std::size_t i : among) {
-      const Sphere& ball = cover_[i];
-      if ((ball.center - center).norm() > ball.radius + around) continue;
+      const Sphere& sphere = cover_[i];
+      if ((sphere.center - center).norm() > sphere.radius + around) continue;
       near.push_back(i);
-      const double here = ball.radius - piece.reach_from(ball.center) * kUp;
+      const double here = sphere.radius - piece.reach_from(sphere.center) * kUp;
       if (here < 0.0 || (deepest < cover_.size() && here <= depth)) continue;
       deepest = i;
       depth = here;
@@ -95,7 +95,7 @@ class Cutter {
 
   std::span<const Sphere> cover_;
   double longest_;
-  std::vector<std::vector<Piece>> pieces_;  // of each ball
+  std::vector<std::vector<Piece>> pieces_;  // of each sphere
 };
 
 double reach_from(std::span<const Piece> pieces, const Vector3d& point) {
@@ -104,20 +104,21 @@ double reach_from(std::span<const Piece> pieces, const Vector3d& point) {
   return reach * kUp;
 }
 
-// A ball around the pieces within `outer`: its centre is moved from the middle of their box towards
-// the centre of `outer`, as little as that takes. Distance and radius are convex along that way,
-// and at its end, where the ball is concentric, it is inside, so that halving finds the least.
-Sphere ball_around(std::span<const Piece> pieces, const Sphere& outer) {
+// A sphere around the pieces within `outer`: its centre is moved from the middle of their box
+// towards the centre of `outer`, as little as that takes. Distance and radius are convex along that
+// way, and at its end, where the sphere is concentric, it is inside, so that halving finds the
+// least.
+Sphere sphere_around(std::span<const Piece> pieces, const Sphere& outer) {
   Eigen::AlignedBox3d box;
   for (const Piece& piece : pieces) {
     for (const Vector3d& corner : piece.corners) box.extend(corner);
   }
   const Vector3d middle = box.center();
   const auto at = [&](double t) {
-    Sphere ball;
-    ball.center = middle + t * (outer.center - middle);
-    ball.radius = reach_from(pieces, ball.center);
-    return ball;
+    Sphere sphere;
+    sphere.center = middle + t * (outer.center - middle);
+    sphere.radius = reach_from(pieces, sphere.center);
+    return sphere;
   };
   Sphere best = at(0.0);
   if (certainly_encloses(outer, best)) return best;
@@ -126,24 +127,24 @@ Sphere ball_around(std::span<const Piece> pieces, const Sphere& outer) {
   double inside = 1.0;
   for (int i = 0; i < 12; ++i) {
     const double t = 0.5 * (outside + inside);
-    const Sphere ball = at(t);
-    const bool is_inside = certainly_encloses(outer, ball);
+    const Sphere sphere = at(t);
+    const bool is_inside = certainly_encloses(outer, sphere);
     (is_inside ? inside : outside) = t;
-    if (is_inside) best = ball;
+    if (is_inside) best = sphere;
   }
   return best;
 }
 
 struct Group {
-  Sphere ball;
+  Sphere sphere;
   Sphere outer;
   std::span<Piece> pieces;
 
   // The largest first; equal ones by where they are, so that the order is the same everywhere.
   bool operator<(const Group& other) const {
-    if (ball.radius != other.ball.radius) return ball.radius < other.ball.radius;
-    return std::lexicographical_compare(ball.center.begin(), ball.center.end(),
-                                        other.ball.center.begin(), other.ball.center.end());
+    if (sphere.radius != other.sphere.radius) return sphere.radius < other.sphere.radius;
+    return std::lexicographical_compare(sphere.center.begin(), sphere.center.end(),
+                                        other.sphere.center.begin(), other.sphere.center.end());
   }
 };
 
@@ -159,8 +160,8 @@ std::array<Group, 2> split(const Group& group) {
       [axis](const Piece& a, const Piece& b) { return a.center()[axis] < b.center()[axis]; });
   const auto first = group.pieces.first(static_cast<std::size_t>(half));
   const auto rest = group.pieces.subspan(static_cast<std::size_t>(half));
-  return {Group{ball_around(first, group.outer), group.outer, first},
-          Group{ball_around(rest, group.outer), group.outer, rest}};
+  return {Group{sphere_around(first, group.outer), group.outer, first},
+          Group{sphere_around(rest, group.outer), group.outer, rest}};
 }
 
 double area(const TriangleMesh& mesh) {
@@ -179,7 +180,7 @@ double area(const TriangleMesh& mesh) {
 std::vector<Sphere> refine_cover(const TriangleMesh& mesh, std::span<const Sphere> cover,
                                  std::size_t count, double slack) {
   // Of right-angled pieces with two edges of length e, 2 / e^2 fill a unit of area.
-  const double pieces = kPiecesPerBall * static_cast<double>(count);
+  const double pieces = kPiecesPerSphere * static_cast<double>(count);
   Cutter cutter(cover, std::sqrt(2.0) * std::sqrt(2.0 * area(mesh) / pieces));
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Eigen::Vector3i& t = mesh.triangles[i];
@@ -194,19 +195,19 @@ std::vector<Sphere> refine_cover(const TriangleMesh& mesh, std::span<const Spher
   for (std::size_t i = 0; i < cover.size(); ++i) {
     if (held[i].empty()) continue;
     const Sphere outer{cover[i].center, cover[i].radius + slack};
-    groups.push({ball_around(held[i], outer), outer, held[i]});
+    groups.push({sphere_around(held[i], outer), outer, held[i]});
   }
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   while (!groups.empty()) {
     const Group largest = groups.top();
     groups.pop();
-    if (largest.pieces.size() < 2 || balls.size() + groups.size() + 1 >= count) {
-      balls.push_back(largest.ball);
+    if (largest.pieces.size() < 2 || spheres.size() + groups.size() + 1 >= count) {
+      spheres.push_back(largest.sphere);
       continue;
     }
     for (const Group& half : split(largest)) groups.push(half);
   }
-  return balls;
+  return spheres;
 }
 
 }  // namespace spherule

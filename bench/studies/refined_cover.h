@@ -10,12 +10,12 @@
 
 namespace spherule {
 
-// More and smaller balls over the same mesh: `count` of them (fewer if the mesh runs out of pieces,
-// never less than the balls of the cover that have a piece to hold). Every triangle of the mesh is
-// cut into pieces, each inside a ball of the cover; every new ball encloses some of the pieces of
-// one old ball, and lies within this ball grown by `slack`. So the new set covers the triangles,
-// as the old one does, and is nowhere larger by more than `slack`: the same body with the same
-// clearance. The inside of the body, where the old balls fill it, is not covered.
+// More and smaller spheres over the same mesh: `count` of them (fewer if the mesh runs out of
+// pieces, never less than the spheres of the cover that have a piece to hold). Every triangle of
+// the mesh is cut into pieces, each inside a sphere of the cover; every new sphere encloses some of
+// the pieces of one old sphere, and lies within this sphere grown by `slack`. So the new set covers
+// the triangles, as the old one does, and is nowhere larger by more than `slack`: the same body
+// with the same clearance. The inside of the body, where the old spheres fill it, is not covered.
 //
 // Both in exact arithmetic for the numbers as stored, but for the corners of the pieces, which are
 // rounded, and for which radii are 1e-9 of themselves larger than they need be. Deterministic.

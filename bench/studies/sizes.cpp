@@ -15,8 +15,8 @@ namespace spherule {
 namespace {
 
 constexpr std::size_t kFactors[] = {1, 4, 16, 100};
-// How far a new ball may stand out of the old one, as a part of E: without it, balls at the rim of
-// an old one would have to be as large as that.
+// How far a new sphere may stand out of the old one, as a part of E: without it, spheres at the rim
+// of an old one would have to be as large as that.
 constexpr double kSlack = 0.05;
 constexpr std::size_t kCountedStride = 16;
 constexpr std::uint64_t kShuffleSeed = 1;

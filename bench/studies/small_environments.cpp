@@ -17,30 +17,30 @@ namespace {
 constexpr std::size_t kObstacles[] = {14, 30, 60, 100};
 constexpr std::uint64_t kSeed = 4;
 constexpr std::size_t kRandomConfigurations = 4000;
-// Balls of a body in the coarse robot: with eight bodies about as many as robots have in cuRobo's
+// Spheres of a body in the coarse robot: with eight bodies about as many as robots have in cuRobo's
 // and VAMP's descriptions.
 constexpr std::size_t kCoarseBody = 10;
 
 // About the robot, as far out as it reaches, clear of it at the first configuration.
 std::shared_ptr<const SphereTree> scattered(const Workload& workload, std::size_t count,
                                             RandomNumbers& random) {
-  std::vector<Sphere> balls;
-  while (balls.size() < count) {
+  std::vector<Sphere> spheres;
+  while (spheres.size() < count) {
     const double angle = random.between(-3.2, 3.2);
     const double distance = random.between(0.7, 2.5);
-    const Sphere ball{
+    const Sphere sphere{
         {distance * std::cos(angle), distance * std::sin(angle), random.between(0.0, 2.2)},
         random.between(0.05, 0.2)};
     Workload alone = workload;
     alone.obstacles = {{{.name = "ball",
                          .mesh = {},
-                         .tree = std::make_shared<const SphereTree>(build_tree({&ball, 1}))},
+                         .tree = std::make_shared<const SphereTree>(build_tree({&sphere, 1}))},
                         Pose()}};
     std::uint8_t hit = 0;
     make_tree_checker(alone, TreeMode::kSingle)->check({workload.program.data(), 1}, {&hit, 1});
-    if (hit == 0) balls.push_back(ball);
+    if (hit == 0) spheres.push_back(sphere);
   }
-  return std::make_shared<const SphereTree>(build_tree(balls));
+  return std::make_shared<const SphereTree>(build_tree(spheres));
 }
 
 std::vector<ArmPositions> random_configurations(const RobotModel& robot) {
@@ -72,7 +72,7 @@ SmallRow measure_row(const Workload& cell, const std::vector<ArmPositions>& conf
   for (const TreeMode mode : {TreeMode::kSingle, TreeMode::kBatch, TreeMode::kPairs}) {
     checkers.push_back(make_tree_checker(cell, mode));
   }
-  checkers.push_back(make_flat_scan_checker(cell, FlatScan::kBallsInFront));
+  checkers.push_back(make_flat_scan_checker(cell, FlatScan::kSpheresInFront));
   checkers.push_back(std::make_unique<Kinematics>(cell.robot));
   const auto exact = verdicts_of(*checkers[2], configurations);
   const auto flat = verdicts_of(*checkers[3], configurations);
@@ -114,10 +114,10 @@ std::vector<SmallRow> study_small_environments(const Workload& workload,
   RandomNumbers places(kSeed);
   std::vector<SmallRow> rows;
   for (const std::size_t count : kObstacles) {
-    const auto balls = scattered(coarse, count, places);
+    const auto spheres = scattered(coarse, count, places);
     for (const bool is_coarse : {true, false}) {
       Workload cell = is_coarse ? coarse : workload;
-      cell.obstacles = {{{.name = "balls", .mesh = {}, .tree = balls}, Pose()}};
+      cell.obstacles = {{{.name = "spheres", .mesh = {}, .tree = spheres}, Pose()}};
       rows.push_back(measure_row(cell, path, "path", options.rounds));
       rows.push_back(measure_row(cell, random, "random", options.rounds));
     }

@@ -56,7 +56,7 @@ std::vector<SmallRow> study_small_environments(const Workload& workload,
 // Two bodies at a distance, for instance torch and workpiece. Medians over random poses.
 struct DistanceRow {
   double relative =
-      0.0;  // distance / size; size: the mean of the diameters of the balls around them
+      0.0;  // distance / size; size: the mean of the diameters of the spheres around them
   double distance = 0.0;  // metres
   // Booleans. FCL at a distance of the meshes, the fastest of its settings, alone and behind our
   // test of exact boxes; ours at that distance of the sphere sets, then in FCL's poses, where the

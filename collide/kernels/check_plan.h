@@ -75,7 +75,7 @@ struct PlanObstacle {
   Real center[3];
   Real half[3];  // of a box; {radius, -, half length} of a cylinder; {-, -, half length} of a
                  // segment
-  Real radius;   // of a ball or capsule, about its segment; with the inflation
+  Real radius;   // of a sphere or capsule, about its segment; with the inflation
   Real error;    // of the offset of a point from the solid
   Real margin;
   bool is_confirmed;            // as that of a body

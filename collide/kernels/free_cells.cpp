@@ -64,8 +64,8 @@ class Search {
   explicit Search(const FreeCellsSource& source) : source_(source) {
     double reach = 0.0;
     for (const FreeCellsSource::Side* side : {&source.first, &source.second}) {
-      reach += (side->frame_from_trees * side->trees->narrow.ball(0).center).norm() +
-               2.0 * side->trees->narrow.ball(0).radius;
+      reach += (side->frame_from_trees * side->trees->narrow.sphere(0).center).norm() +
+               2.0 * side->trees->narrow.sphere(0).radius;
       for (const FreeCellsSource::Joint& joint : side->chain) {
         reach += joint.parent_from_frame.translation().norm() +
                  std::max(std::abs(joint.lower), std::abs(joint.upper));

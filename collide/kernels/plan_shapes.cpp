@@ -27,8 +27,8 @@ constexpr double kEverywhere = 1e30;
 
 struct Half {
   Eigen::Vector3d operator()(const Box& box) const { return 0.5 * box.size; }
-  Eigen::Vector3d operator()(const Ball& ball) const {
-    return Eigen::Vector3d::Constant(ball.radius);
+  Eigen::Vector3d operator()(const SolidSphere& sphere) const {
+    return Eigen::Vector3d::Constant(sphere.radius);
   }
   Eigen::Vector3d operator()(const Cylinder& solid) const {
     return {solid.radius, solid.radius, 0.5 * solid.length};
@@ -48,8 +48,8 @@ struct Kind {
 
 struct KindOf {
   Kind operator()(const Box& box) const { return {PlanShape::kBox, 0.5 * box.size, 0.0}; }
-  Kind operator()(const Ball& ball) const {
-    return {PlanShape::kSegment, Eigen::Vector3d::Zero(), ball.radius};
+  Kind operator()(const SolidSphere& sphere) const {
+    return {PlanShape::kSegment, Eigen::Vector3d::Zero(), sphere.radius};
   }
   Kind operator()(const Cylinder& solid) const {
     return {PlanShape::kCylinder, {solid.radius, 0.0, 0.5 * solid.length}, 0.0};

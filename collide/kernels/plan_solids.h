@@ -36,7 +36,7 @@ struct BoxShape {
   }
 };
 
-// A ball, a capsule: their radius is added elsewhere.
+// A sphere, a capsule: their radius is added elsewhere.
 struct SegmentShape {
   template <class Real>
   SPHERULE_INLINE static Point<Real> offset(const PlanObstacle<Real>& solid, const Point<Real>& p) {

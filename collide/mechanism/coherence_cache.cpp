@@ -74,7 +74,7 @@ CoherenceCache::CoherenceCache(const KernelProblem& problem, std::span<const dou
       contact_(problem.frames, static_cast<std::size_t>(problem.frame_count),
                4.0 * largest(tilt) * std::max(1.0, largest(reach))),
       is_due_(static_cast<std::size_t>(problem.body_count), 0) {
-  bodies_.assign(static_cast<std::size_t>(problem.body_count), Body{.ball = contact_});
+  bodies_.assign(static_cast<std::size_t>(problem.body_count), Body{.sphere = contact_});
   due_.reserve(bodies_.size());
   pairs_.reserve(static_cast<std::size_t>(problem.pair_count));
 }
@@ -123,7 +123,7 @@ bool CoherenceCache::find_due(const double* configuration) {
     if (way_ <= body.free_until) continue;
     body.wanted = 0.0F;
     if (body.placed_at >= 0.0) {
-      const double moved = body.ball.way_to(configuration);
+      const double moved = body.sphere.way_to(configuration);
       if (moved <= body.clearance) {
         body.free_until = way_ + (body.clearance - moved);
         continue;
@@ -190,7 +190,7 @@ std::optional<bool> CoherenceCache::is_free_along(const Kernels& kernels,
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const Body& body = bodies_[i];
     if (way_ + half <= body.free_until) continue;
-    if (body.placed_at >= 0.0 && body.ball.way_along(from, to) <= body.clearance) continue;
+    if (body.placed_at >= 0.0 && body.sphere.way_along(from, to) <= body.clearance) continue;
     if (!std::exchange(is_placed, true)) kernels.place(problem, middle, scratch);
     if (!grow_along(kernels, problem, static_cast<std::int32_t>(i), from, to, middle, scratch)) {
       return false;
@@ -206,7 +206,7 @@ bool CoherenceCache::grow_along(const Kernels& kernels, const KernelProblem& pro
                                 const double* middle, const KernelScratch& scratch) {
   Body& body = bodies_[static_cast<std::size_t>(index)];
   place(problem, index, middle, scratch, 0.0);
-  const double moved = body.ball.way_along(from, to) + kStepRest * near_step_;
+  const double moved = body.sphere.way_along(from, to) + kStepRest * near_step_;
   if (!(moved <= near_step_)) return false;
   const double needed = moved * (1.0 + 1e-5);  // above what kInflationDown takes
   const double wanted = std::clamp(body.ambition, needed, std::max(needed, near_step_));
@@ -241,8 +241,8 @@ void CoherenceCache::place(const KernelProblem& problem, std::int32_t index,
                            double clearance) {
   const KernelBody& of = problem.bodies[index];
   Body& body = bodies_[static_cast<std::size_t>(index)];
-  body.ball.place(of.frame, of.center, static_cast<double>(of.radius), scratch.poses,
-                  configuration);
+  body.sphere.place(of.frame, of.center, static_cast<double>(of.radius), scratch.poses,
+                    configuration);
   body.clearance = clearance - kStepRest * near_step_;
   body.free_until = way_ + body.clearance;
   body.placed_at = queries_;
@@ -282,10 +282,10 @@ bool CoherenceCache::collides(const Kernels& kernels, const KernelProblem& probl
   return touches;
 }
 
-void CoherenceCache::remember_contact(std::int32_t frame, const Sphere& ball, double depth,
+void CoherenceCache::remember_contact(std::int32_t frame, const Sphere& sphere, double depth,
                                       const KernelScratch& scratch) {
   if (!is_following()) return;
-  contact_.place(frame, ball.center.data(), ball.radius, scratch.poses, last_.data());
+  contact_.place(frame, sphere.center.data(), sphere.radius, scratch.poses, last_.data());
   depth_ = depth;
   knows_ = true;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collide/mechanism/mechanism_kernel.h"
-#include "collide/mechanism/moved_ball.h"
+#include "collide/mechanism/moved_sphere.h"
 #include "spheretree/sphere.h"
 
 #include <cstddef>
@@ -17,12 +17,12 @@ namespace spherule::internal {
 //
 // Free. A body, grown by g, was apart from all that it is tested against. Wherever no point of it
 // can have moved by more than g, it is apart ungrown, whatever the poses within the error that the
-// balls allow for. Bodies that are near to nothing need not even be asked how far they have moved:
-// the way of all their points since is at most the sum of |change| times the farthest that any
-// point can be from the joint.
+// spheres allow for. Bodies that are near to nothing need not even be asked how far they have
+// moved: the way of all their points since is at most the sum of |change| times the farthest that
+// any point can be from the joint.
 //
-// So it is for all configurations between two: the sums and the ways of MovedBall are bounded there
-// by those of the ends.
+// So it is for all configurations between two: the sums and the ways of MovedSphere are bounded
+// there by those of the ends.
 //
 // Touching. Two things were found to go into each other by more than a depth; wherever the one of
 // them that moves has moved by less, they touch.
@@ -46,10 +46,10 @@ class CoherenceCache {
                                     const double* from, const double* to, const double* middle,
                                     const KernelScratch& scratch);
 
-  // A ball on a frame, in its coordinates, that touches for the configuration that was asked last,
-  // and wherever none of its points has moved by more than `depth` from there. Ignored unless
+  // A sphere on a frame, in its coordinates, that touches for the configuration that was asked
+  // last, and wherever none of its points has moved by more than `depth` from there. Ignored unless
   // is_following().
-  void remember_contact(std::int32_t frame, const Sphere& ball, double depth,
+  void remember_contact(std::int32_t frame, const Sphere& sphere, double depth,
                         const KernelScratch& scratch);
   // Whether that is heard: while collides() confirms, if the last configurations were near each
   // other.
@@ -59,8 +59,8 @@ class CoherenceCache {
   struct Body {
     void forget() { clearance = free_until = placed_at = -1.0; }
 
-    MovedBall ball;
-    double clearance = -1.0;   // of the body where the ball was placed; negative: none is known
+    MovedSphere sphere;
+    double clearance = -1.0;   // of the body where the sphere was placed; negative: none is known
     double free_until = -1.0;  // the length of the way up to which it is free without a look
     double placed_at = -1.0;   // the query for which it was placed; negative: it was not
     double step = 0.0;         // how far it moves from one query to the next
@@ -93,7 +93,7 @@ class CoherenceCache {
   bool is_following_ = false;
   bool is_asking_ = false;
   bool knows_ = false;
-  MovedBall contact_;
+  MovedSphere contact_;
   double depth_ = -1.0;
   std::vector<std::int32_t> due_;  // bodies
   std::vector<KernelPair> pairs_;  // of those

@@ -10,9 +10,9 @@
 // are halved, until one is left and searched alone.
 //
 // By how much the body is grown. Let e be the error of the lanes' poses (`lane_error` of the body,
-// kernel_lanes.h, which is above 14 v W), T the exact poses, c and rho the body's ball around all.
-// A point p of it is in lane i at most |T_i c - T_m c| + |R_i - R_m|_2 rho from where it is in lane
-// m. The first is at most the computed distance of the centres + 3 e. The difference of two
+// kernel_lanes.h, which is above 14 v W), T the exact poses, c and rho the body's sphere around
+// all. A point p of it is in lane i at most |T_i c - T_m c| + |R_i - R_m|_2 rho from where it is in
+// lane m. The first is at most the computed distance of the centres + 3 e. The difference of two
 // rotations has two equal singular values and a zero, so its norm is 1 / sqrt(2) of the one over
 // its entries, which is computed with 2 e / W at most: 2 e / sqrt(2) more. One more e for the pose
 // of lane m. Together: computed + 6 e; sums of squares, roots and products err by less than 2^-18.
@@ -188,8 +188,8 @@ class BlockPair {
   }
 
   SPHERULE_INLINE unsigned touching(KernelLeaves leaves, unsigned live) const {
-    const PackedBall& body = body_.leaves[leaves.body];
-    const PackedBall& obstacle = obstacle_.leaves[leaves.obstacle];
+    const PackedSphere& body = body_.leaves[leaves.body];
+    const PackedSphere& obstacle = obstacle_.leaves[leaves.obstacle];
     const Vectors center = image(pose_, body.center);
     const Floats dx = center.x - obstacle.center[0];
     const Floats dy = center.y - obstacle.center[1];

@@ -134,18 +134,18 @@ SPHERULE_INLINE Placement in_single_precision(const KernelPose& pose) {
   return at;
 }
 
-// The ball around all of every body.
+// The sphere around all of every body.
 SPHERULE_INLINE void place_roots(const KernelProblem& problem, const KernelScratch& scratch) {
   for (std::int32_t i = 0; i < problem.body_count; ++i) {
     const KernelBody& body = problem.bodies[i];
     const auto* const at = reinterpret_cast<const Double4*>(scratch.poses[body.frame].columns);
     const Double4 center =
         at[0] * body.center[0] + at[1] * body.center[1] + at[2] * body.center[2] + at[3];
-    Float4 ball = __builtin_convertvector(center, Float4);
-    ball[3] = body.radius;
+    Float4 sphere = __builtin_convertvector(center, Float4);
+    sphere[3] = body.radius;
     KernelTask& root = scratch.roots[i];
     static_assert(__builtin_offsetof(KernelTask, radius) == 12);
-    __builtin_memcpy(&root, &ball, sizeof ball);
+    __builtin_memcpy(&root, &sphere, sizeof sphere);
     root.body = 0;
     root.obstacle = 0;
   }

@@ -5,8 +5,8 @@
 // whose only branches are the ends of its queues, since what overlaps is a coin toss that a
 // processor cannot predict. Part of the kernels, see mechanism_kernel_impl.h.
 //
-// A slot names a ball: 8 times the node that holds it and its lane. Of a body, the node behind the
-// last holds the ball around all.
+// A slot names a sphere: 8 times the node that holds it and its lane. Of a body, the node behind
+// the last holds the sphere around all.
 
 #include "collide/mechanism/kernel_search.h"
 
@@ -24,7 +24,7 @@ SPHERULE_INLINE void put_chosen(std::int32_t* to, Int8 lanes, unsigned chosen) {
 #endif
 }
 
-// What waits to be opened: a ball of one side, by its slot, and a node of the other.
+// What waits to be opened: a sphere of one side, by its slot, and a node of the other.
 class Queue {
  public:
   explicit Queue(KernelQueue& memory) : slots_(memory.slots), nodes_(memory.nodes) {}
@@ -65,9 +65,9 @@ class LeafSearch {
         obstacle_(obstacle),
         at_(at),
         memory_(memory),
-        body_balls_(memory.waiting[0]),
+        body_spheres_(memory.waiting[0]),
         body_leaves_(memory.waiting[1]),
-        obstacle_balls_(memory.waiting[2]),
+        obstacle_spheres_(memory.waiting[2]),
         obstacle_leaves_(memory.waiting[3]),
         found_(memory.waiting[4]) {}
 
@@ -75,18 +75,18 @@ class LeafSearch {
   bool run() {
     ++*memory_.generation;
     place(body_.node_count);
-    body_balls_.add_nodes(body_.node_count * PackedNode::kWidth, Int8{}, 1);
+    body_spheres_.add_nodes(body_.node_count * PackedNode::kWidth, Int8{}, 1);
     do {
-      while (body_balls_.waits() && !is_full()) open_for_body_ball();
-      body_balls_.start_over();
-      while (obstacle_balls_.waits() && !is_full()) open_for_obstacle_ball();
-      obstacle_balls_.start_over();
+      while (body_spheres_.waits() && !is_full()) open_for_body_sphere();
+      body_spheres_.start_over();
+      while (obstacle_spheres_.waits() && !is_full()) open_for_obstacle_sphere();
+      obstacle_spheres_.start_over();
       while (body_leaves_.waits() && !is_full()) open_for_body_leaf();
       body_leaves_.start_over();
       while (obstacle_leaves_.waits() && !is_full()) open_for_obstacle_leaf();
       obstacle_leaves_.start_over();
       if (is_full()) return false;
-    } while (body_balls_.waits() || obstacle_balls_.waits() || body_leaves_.waits());
+    } while (body_spheres_.waits() || obstacle_spheres_.waits() || body_leaves_.waits());
     return true;
   }
 
@@ -95,12 +95,12 @@ class LeafSearch {
  private:
   static constexpr Int8 kIota = {0, 1, 2, 3, 4, 5, 6, 7};
 
-  // An inner ball of the body and a node of the obstacle.
-  SPHERULE_INLINE void open_for_body_ball() {
-    const std::int32_t slot = body_balls_.slot();
-    const std::int32_t node = body_balls_.take();
+  // An inner sphere of the body and a node of the obstacle.
+  SPHERULE_INLINE void open_for_body_sphere() {
+    const std::int32_t slot = body_spheres_.slot();
+    const std::int32_t node = body_spheres_.take();
     const PackedNode& children = obstacle_.nodes[node];
-    const KernelBalls& from = memory_.placed[slot >> 3];
+    const KernelSpheres& from = memory_.placed[slot >> 3];
     const int lane = slot & 7;
     const float radius = from.radius[lane];
     const unsigned hits = overlapping(children, from, lane);
@@ -108,8 +108,8 @@ class LeafSearch {
     const unsigned big = mask_of(load(children.radius) >= kOpenBody * radius);
     const std::int32_t body_node = body_.nodes[slot >> 3].child[lane];
     const Int8 slots = node * PackedNode::kWidth + kIota;
-    body_balls_.add_nodes(slot, children_of(children), hits & ~leaves & big);
-    obstacle_balls_.add_slots(slots, body_node, hits & ~leaves & ~big);
+    body_spheres_.add_nodes(slot, children_of(children), hits & ~leaves & big);
+    obstacle_spheres_.add_slots(slots, body_node, hits & ~leaves & ~big);
     obstacle_leaves_.add_slots(slots, body_node, hits & leaves);
   }
 
@@ -117,7 +117,7 @@ class LeafSearch {
   SPHERULE_INLINE void open_for_body_leaf() {
     const std::int32_t slot = body_leaves_.slot();
     const PackedNode& children = obstacle_.nodes[body_leaves_.take()];
-    const KernelBalls& from = memory_.placed[slot >> 3];
+    const KernelSpheres& from = memory_.placed[slot >> 3];
     const int lane = slot & 7;
     const unsigned hits = overlapping(children, from, lane);
     const unsigned leaves = leaves_of(children);
@@ -126,16 +126,16 @@ class LeafSearch {
     found_.add_nodes(sphere, ~children_of(children), hits & leaves);
   }
 
-  // An inner ball of the obstacle and a node of the body.
-  SPHERULE_INLINE void open_for_obstacle_ball() {
-    const std::int32_t slot = obstacle_balls_.slot();
-    const std::int32_t node = obstacle_balls_.take();
+  // An inner sphere of the obstacle and a node of the body.
+  SPHERULE_INLINE void open_for_obstacle_sphere() {
+    const std::int32_t slot = obstacle_spheres_.slot();
+    const std::int32_t node = obstacle_spheres_.take();
     const PackedNode& from = obstacle_.nodes[slot >> 3];
     const int lane = slot & 7;
     const unsigned hits = overlapping(place(node), from, lane);
     const unsigned leaves = leaves_of(body_.nodes[node]);
     const Int8 slots = node * PackedNode::kWidth + kIota;
-    body_balls_.add_slots(slots, from.child[lane], hits & ~leaves);
+    body_spheres_.add_slots(slots, from.child[lane], hits & ~leaves);
     body_leaves_.add_slots(slots, from.child[lane], hits & leaves);
   }
 
@@ -152,11 +152,11 @@ class LeafSearch {
     found_.add_slots(~children_of(children), ~from.child[lane], hits & leaves);
   }
 
-  // The children that overlap the ball in a lane of `from`.
+  // The children that overlap the sphere in a lane of `from`.
   template <class Children, class Lanes>
   SPHERULE_INLINE static unsigned overlapping(const Children& children, const Lanes& from,
                                               int lane) {
-    return overlaps(balls_of(children), from.x[lane], from.y[lane], from.z[lane],
+    return overlaps(spheres_of(children), from.x[lane], from.y[lane], from.z[lane],
                     from.radius[lane]);
   }
 
@@ -168,8 +168,8 @@ class LeafSearch {
   }
 
   // The children of a node of the body where it is; computed once.
-  SPHERULE_INLINE const KernelBalls& place(std::int32_t node) {
-    KernelBalls& there = memory_.placed[node];
+  SPHERULE_INLINE const KernelSpheres& place(std::int32_t node) {
+    KernelSpheres& there = memory_.placed[node];
     if (memory_.generations[node] != *memory_.generation) {
       memory_.generations[node] = *memory_.generation;
       hold(placed(body_.nodes[node], at_), there);
@@ -179,7 +179,7 @@ class LeafSearch {
 
   // For good: what waited in a queue that is full is lost when it starts over.
   bool is_full() {
-    is_overfull_ = is_overfull_ || body_balls_.is_full() || obstacle_balls_.is_full() ||
+    is_overfull_ = is_overfull_ || body_spheres_.is_full() || obstacle_spheres_.is_full() ||
                    body_leaves_.is_full() || obstacle_leaves_.is_full() || found_.is_full();
     return is_overfull_;
   }
@@ -188,10 +188,10 @@ class LeafSearch {
   const KernelObstacle& obstacle_;
   const Placement& at_;
   const KernelQueues& memory_;
-  // What waits, by the ball; it waits for a node of the other side.
-  Queue body_balls_;  // inner ones
+  // What waits, by the sphere; it waits for a node of the other side.
+  Queue body_spheres_;  // inner ones
   Queue body_leaves_;
-  Queue obstacle_balls_;  // inner ones
+  Queue obstacle_spheres_;  // inner ones
   Queue obstacle_leaves_;
   Queue found_;  // leaves of both, by their spheres
   bool is_overfull_ = false;

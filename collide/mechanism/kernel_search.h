@@ -10,51 +10,51 @@
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 
-// The obstacle is opened until its ball is smaller than this part of the body's: opening the body
+// The obstacle is opened until its sphere is smaller than this part of the body's: opening the body
 // costs a change of frame. Measured on the workload of bench/, from 0.35 to 1.
 constexpr float kOpenBody = 0.7F;
 
-struct Balls {
+struct Spheres {
   Float8 x, y, z, radius;
 };
 
 // To memory, where single lanes are read.
-SPHERULE_INLINE void hold(const Balls& balls, KernelBalls& lanes) {
-  __builtin_memcpy(lanes.x, &balls.x, sizeof lanes.x);
-  __builtin_memcpy(lanes.y, &balls.y, sizeof lanes.y);
-  __builtin_memcpy(lanes.z, &balls.z, sizeof lanes.z);
-  __builtin_memcpy(lanes.radius, &balls.radius, sizeof lanes.radius);
+SPHERULE_INLINE void hold(const Spheres& spheres, KernelSpheres& lanes) {
+  __builtin_memcpy(lanes.x, &spheres.x, sizeof lanes.x);
+  __builtin_memcpy(lanes.y, &spheres.y, sizeof lanes.y);
+  __builtin_memcpy(lanes.z, &spheres.z, sizeof lanes.z);
+  __builtin_memcpy(lanes.radius, &spheres.radius, sizeof lanes.radius);
 }
 
 template <class Lanes>
-SPHERULE_INLINE Balls balls_of(const Lanes& node) {
+SPHERULE_INLINE Spheres spheres_of(const Lanes& node) {
   return {load(node.x), load(node.y), load(node.z), load(node.radius)};
 }
 
-SPHERULE_INLINE unsigned overlaps(const Balls& balls, float x, float y, float z, float radius) {
-  const Float8 dx = balls.x - x;
-  const Float8 dy = balls.y - y;
-  const Float8 dz = balls.z - z;
-  const Float8 limit = balls.radius + radius;
+SPHERULE_INLINE unsigned overlaps(const Spheres& spheres, float x, float y, float z, float radius) {
+  const Float8 dx = spheres.x - x;
+  const Float8 dy = spheres.y - y;
+  const Float8 dz = spheres.z - z;
+  const Float8 limit = spheres.radius + radius;
   return mask_of(dx * dx + dy * dy + dz * dz <= limit * limit);
 }
 
-// A body's place: columns and origin of its frame in single precision, and by how much its balls
+// A body's place: columns and origin of its frame in single precision, and by how much its spheres
 // are grown there.
 struct alignas(16) Placement {
   float columns[4][4];
   float inflation = 0.0F;
 };
 
-SPHERULE_INLINE Balls placed(const PackedNode& node, const Placement& at) {
+SPHERULE_INLINE Spheres placed(const PackedNode& node, const Placement& at) {
   const auto& [x, y, z, t] = at.columns;
-  const Balls in = balls_of(node);
+  const Spheres in = spheres_of(node);
   return {x[0] * in.x + y[0] * in.y + z[0] * in.z + t[0],
           x[1] * in.x + y[1] * in.y + z[1] * in.z + t[1],
           x[2] * in.x + y[2] * in.y + z[2] * in.z + t[2], in.radius + at.inflation};
 }
 
-// The search from two balls around all that overlap. `Leaves` is told of pairs of leaves that are
+// The search from two spheres around all that overlap. `Leaves` is told of pairs of leaves that are
 // not apart, and ends the search by answering true:
 //   bool operator()(std::int32_t body_sphere, std::int32_t obstacle_sphere,
 //                   float squared_distance, float limit)
@@ -65,7 +65,7 @@ class PairSearch {
              KernelTask* tasks, Leaves& leaves)
       : body_(body), obstacle_(obstacle), at_(at), tasks_(tasks), leaves_(leaves) {}
 
-  // `root` is the body's ball around all, grown. True if a pair of leaves ended the search.
+  // `root` is the body's sphere around all, grown. True if a pair of leaves ended the search.
   // Inlined: what is known of the leaf test and the placement then makes a check a quarter faster.
   SPHERULE_INLINE bool run(const KernelTask& root) {
     tasks_[0] = root;
@@ -82,7 +82,7 @@ class PairSearch {
  private:
   SPHERULE_INLINE bool open_obstacle(const KernelTask& task) {
     const PackedNode& node = obstacle_.nodes[task.obstacle];
-    unsigned mask = overlaps(balls_of(node), task.x, task.y, task.z, task.radius);
+    unsigned mask = overlaps(spheres_of(node), task.x, task.y, task.z, task.radius);
     if (mask == 0) return false;
     if (task.body < 0) {
       for (; mask != 0; mask &= mask - 1) {
@@ -97,7 +97,7 @@ class PairSearch {
     }
     const PackedNode& body = body_.nodes[task.body];
     bool is_placed = false;
-    KernelBalls children;
+    KernelSpheres children;
     for (; mask != 0; mask &= mask - 1) {
       const int lane = __builtin_ctz(mask);
       const std::int32_t child = node.child[lane];
@@ -113,7 +113,7 @@ class PairSearch {
       const float y = node.y[lane];
       const float z = node.z[lane];
       const float radius = node.radius[lane];
-      for (unsigned hits = overlaps(balls_of(children), x, y, z, radius); hits != 0;
+      for (unsigned hits = overlaps(spheres_of(children), x, y, z, radius); hits != 0;
            hits &= hits - 1) {
         const int hit = __builtin_ctz(hits);
         const std::int32_t body_child = body.child[hit];
@@ -131,11 +131,11 @@ class PairSearch {
     return false;
   }
 
-  // The ball of the task is a leaf of the obstacle.
+  // The sphere of the task is a leaf of the obstacle.
   SPHERULE_INLINE bool open_body(const KernelTask& task) {
     const PackedNode& body = body_.nodes[task.body];
-    const Balls placed_children = placed(body, at_);
-    KernelBalls children;
+    const Spheres placed_children = placed(body, at_);
+    KernelSpheres children;
     hold(placed_children, children);
     for (unsigned hits = overlaps(placed_children, task.x, task.y, task.z, task.radius); hits != 0;
          hits &= hits - 1) {
@@ -151,13 +151,13 @@ class PairSearch {
   }
 
   template <class Lanes>
-  SPHERULE_INLINE bool touch(const KernelTask& ball, const Lanes& others, int lane,
+  SPHERULE_INLINE bool touch(const KernelTask& sphere, const Lanes& others, int lane,
                              std::int32_t body_sphere, std::int32_t obstacle_sphere) {
-    const float dx = others.x[lane] - ball.x;
-    const float dy = others.y[lane] - ball.y;
-    const float dz = others.z[lane] - ball.z;
+    const float dx = others.x[lane] - sphere.x;
+    const float dy = others.y[lane] - sphere.y;
+    const float dz = others.z[lane] - sphere.z;
     return leaves_(body_sphere, obstacle_sphere, dx * dx + dy * dy + dz * dz,
-                   others.radius[lane] + ball.radius);
+                   others.radius[lane] + sphere.radius);
   }
 
   const KernelBody& body_;

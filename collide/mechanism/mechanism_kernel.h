@@ -31,9 +31,9 @@ struct KernelLaneFrame {
 
 struct KernelBody {
   const PackedNode* nodes;
-  const PackedBall* leaves;
+  const PackedSphere* leaves;
   std::int32_t node_count;
-  double center[3];  // of the ball around all, in the frame
+  double center[3];  // of the sphere around all, in the frame
   float lane_center[3];
   float radius;
   std::int32_t frame;
@@ -43,7 +43,7 @@ struct KernelBody {
 
 struct KernelObstacle {
   const PackedNode* nodes;
-  const PackedBall* leaves;
+  const PackedSphere* leaves;
   float center[3];
   float radius;
   float margin;
@@ -54,9 +54,9 @@ struct KernelPair {
   std::int32_t obstacle;
 };
 
-// A ball of one side, in the root's frame, and where the search goes on: a node of the other side
-// is opened, or, where that side has come to a leaf (negative, ~sphere), the ball is the leaf's and
-// this side's node is opened.
+// A sphere of one side, in the root's frame, and where the search goes on: a node of the other side
+// is opened, or, where that side has come to a leaf (negative, ~sphere), the sphere is the leaf's
+// and this side's node is opened.
 struct KernelTask {
   float x, y, z, radius;
   std::int32_t body;
@@ -69,7 +69,7 @@ struct KernelLeaves {
   std::int32_t obstacle = -1;
 };
 
-// A body's place: columns and origin of its frame, and the centre of its ball around all.
+// A body's place: columns and origin of its frame, and the centre of its sphere around all.
 struct alignas(16) KernelReference {
   float columns[4][4];
   float center[3];
@@ -88,7 +88,7 @@ struct alignas(32) KernelPose {
   double columns[4][4];
 };
 
-// Pairs of a ball and a node that wait in a breadth-first search; there is room for eight more.
+// Pairs of a sphere and a node that wait in a breadth-first search; there is room for eight more.
 struct alignas(64) KernelQueue {
   static constexpr std::int32_t kRoom = 248;
   std::int32_t slots[kRoom + 8];
@@ -96,7 +96,7 @@ struct alignas(64) KernelQueue {
 };
 
 // The eight children of a node, moved.
-struct alignas(32) KernelBalls {
+struct alignas(32) KernelSpheres {
   float x[8], y[8], z[8], radius[8];
 };
 
@@ -104,7 +104,7 @@ struct alignas(32) KernelBalls {
 // where they are, and the search for which that was computed.
 struct KernelQueues {
   KernelQueue* waiting;  // five
-  KernelBalls* placed;
+  KernelSpheres* placed;
   std::uint64_t* generations;
   std::uint64_t* generation;
 };
@@ -136,8 +136,8 @@ struct KernelProblem {
 };
 
 // Memory of the caller, enough of it: sines and cosines for the variables, filled up to a multiple
-// of four, a pose for every frame, a ball for every body, and as many tasks as can wait. For lanes:
-// their variables and poses, queues, and what is remembered of every pair.
+// of four, a pose for every frame, a sphere for every body, and as many tasks as can wait. For
+// lanes: their variables and poses, queues, and what is remembered of every pair.
 struct KernelScratch {
   double* sines;
   double* cosines;
@@ -173,7 +173,7 @@ struct Kernels {
                                    const double* const* configurations,
                                    const KernelScratch& scratch, ConfirmContact confirm,
                                    void* context);
-  // Puts the frames and the balls around the bodies where a configuration has them.
+  // Puts the frames and the spheres around the bodies where a configuration has them.
   void (*place)(const KernelProblem& problem, const double* configuration,
                 const KernelScratch& scratch);
   // What there is between the pair's sides with the body grown, as placed: nothing; two leaves

@@ -29,16 +29,16 @@ using internal::PackedTree;
 //     rotations included: 2.3e-14 n W.
 //   to single precision, for a centre c in the frame and R c + t: R and t rounded, sqrt(3) v |c| +
 //     v |t|; c rounded, v |c|; three products and three sums a row, 4 v (|c| + |t|) a row at most,
-//     over three rows 7 v (|c| + |t|). Together less than 10 v W. The ball around all is placed in
-//     double and then rounded: less.
+//     over three rows 7 v (|c| + |t|). Together less than 10 v W. The sphere around all is placed
+//     in double and then rounded: less.
 //   centres are moved to their frame in double: 40 u (|p| + |t|) for a point p of a tree and its
 //     pose's translation t. Let X bound that sum for all trees, and W for all bodies.
 //   the slack of the canonical test, 152 u of the scene, which is less than 4 X, and of the scene
 //     as the caller's poses have it, which is in pose_error.
-// So the balls of a body must be inflated by
+// So the spheres of a body must be inflated by
 //     12 v W + 1e-10 (n + 1) W + 1e-12 X + pose_error,
-// and those of an obstacle by 1e-12 X. Where poses are computed in lanes, balls of bodies are grown
-// by KernelBody::lane_error beside it, see kernel_lanes.h.
+// and those of an obstacle by 1e-12 X. Where poses are computed in lanes, spheres of bodies are
+// grown by KernelBody::lane_error beside it, see kernel_lanes.h.
 constexpr double kPerLength = 12.0 * kFloatRoundoff;
 constexpr double kPerFrame = 5.0 * internal::kSineError;
 constexpr double kPerScene = 1e-12;

@@ -47,7 +47,7 @@ struct MechanismCheck::Scratch::Memory {
   std::vector<internal::KernelLaneVariable> lane_variables;
   std::vector<internal::KernelLanePose> lane_poses;
   std::vector<internal::KernelQueue> queues;
-  std::vector<internal::KernelBalls> placed;
+  std::vector<internal::KernelSpheres> placed;
   std::vector<std::uint64_t> generations;
   std::uint64_t generation = 0;
   std::vector<internal::KernelMemory> memories;

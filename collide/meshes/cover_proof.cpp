@@ -17,32 +17,32 @@ namespace {
 
 using Eigen::Vector3d;
 
-bool possibly_meet(const Sphere& ball, const Triangle& t) {
-  return point_triangle_distance(ball.center, t[0], t[1], t[2]).lower <= ball.radius;
+bool possibly_meet(const Sphere& sphere, const Triangle& t) {
+  return point_triangle_distance(sphere.center, t[0], t[1], t[2]).lower <= sphere.radius;
 }
 
-void collect_triangles(const MeshTree& mesh, const Sphere& ball, std::size_t node,
+void collect_triangles(const MeshTree& mesh, const Sphere& sphere, std::size_t node,
                        std::vector<std::int32_t>& found) {
   const SphereTree& tree = mesh.tree();
-  if (!possibly_overlap(tree.ball(node), ball)) return;
+  if (!possibly_overlap(tree.sphere(node), sphere)) return;
   if (tree.is_leaf(node)) {
     const std::int32_t index = tree.sphere_index(node);
-    if (possibly_meet(ball, mesh.triangle(index))) found.push_back(index);
+    if (possibly_meet(sphere, mesh.triangle(index))) found.push_back(index);
     return;
   }
   for (std::int32_t i = 0; i < tree.child_count(node); ++i) {
-    collect_triangles(mesh, ball, static_cast<std::size_t>(tree.first_child(node) + i), found);
+    collect_triangles(mesh, sphere, static_cast<std::size_t>(tree.first_child(node) + i), found);
   }
 }
 
-// Of every triangle: the balls that meet it, and perhaps some that miss it by rounding.
-std::vector<std::vector<std::int32_t>> balls_meeting(const MeshTree& mesh,
-                                                     std::span<const Sphere> balls) {
+// Of every triangle: the spheres that meet it, and perhaps some that miss it by rounding.
+std::vector<std::vector<std::int32_t>> spheres_meeting(const MeshTree& mesh,
+                                                       std::span<const Sphere> spheres) {
   std::vector<std::vector<std::int32_t>> result(mesh.tree().spheres().size());
   std::vector<std::int32_t> found;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
     found.clear();
-    collect_triangles(mesh, balls[i], 0, found);
+    collect_triangles(mesh, spheres[i], 0, found);
     for (const std::int32_t triangle : found) {
       result[static_cast<std::size_t>(triangle)].push_back(static_cast<std::int32_t>(i));
     }
@@ -53,7 +53,7 @@ std::vector<std::vector<std::int32_t>> balls_meeting(const MeshTree& mesh,
 // Shares out one triangle at a time.
 class Sharing {
  public:
-  Sharing(std::span<const Sphere> balls, double error) : balls_(balls), error_(error) {}
+  Sharing(std::span<const Sphere> spheres, double error) : spheres_(spheres), error_(error) {}
 
   // False if no proof was found. Appends to `patches`.
   bool share(const Triangle& triangle, std::int32_t index, std::span<const std::int32_t> candidates,
@@ -62,10 +62,10 @@ class Sharing {
     pieces_left_ = kPieces * (candidates.size() + 1);
     boxes_.clear();
     if (!share(triangle, 0, 0, 0.0)) return false;
-    for (auto& [ball, box] : boxes_) {
+    for (auto& [sphere, box] : boxes_) {
       box.min().array() -= 2.0 * error_;
       box.max().array() += 2.0 * error_;
-      patches.push_back({ball, index, box});
+      patches.push_back({sphere, index, box});
     }
     return true;
   }
@@ -74,15 +74,15 @@ class Sharing {
   const Vector3d& open_point() const { return open_point_; }
 
  private:
-  // Pieces for each ball that meets the triangle, and halvings of one piece: see share_out().
+  // Pieces for each sphere that meets the triangle, and halvings of one piece: see share_out().
   static constexpr std::size_t kPieces = 4096;
   static constexpr int kDepth = 80;
 
-  // Whether the balls cover the piece, whose corners may be off by `error`; those that may meet it
-  // are candidates_ from `first` on.
+  // Whether the spheres cover the piece, whose corners may be off by `error`; those that may meet
+  // it are candidates_ from `first` on.
   bool share(const Triangle& piece, std::size_t first, int depth, double error) {
     const std::size_t end = candidates_.size();
-    const std::int32_t owner = smallest_ball_around(piece, first, error);
+    const std::int32_t owner = smallest_sphere_around(piece, first, error);
     if (owner >= 0) {
       auto& box = boxes_[owner];
       for (const Vector3d& corner : piece) box.extend(corner);
@@ -98,9 +98,9 @@ class Sharing {
     const Vector3d middle = (from + to) / 2.0;
     for (const Triangle& half : {Triangle{from, middle, apex}, Triangle{middle, to, apex}}) {
       for (std::size_t i = first; i < end; ++i) {
-        Sphere ball = balls_[static_cast<std::size_t>(candidates_[i])];
-        ball.radius = add_up(ball.radius, error_);
-        if (possibly_meet(ball, half)) candidates_.push_back(candidates_[i]);
+        Sphere sphere = spheres_[static_cast<std::size_t>(candidates_[i])];
+        sphere.radius = add_up(sphere.radius, error_);
+        if (possibly_meet(sphere, half)) candidates_.push_back(candidates_[i]);
       }
       const bool covered = share(half, end, depth + 1, error_);
       candidates_.resize(end);
@@ -110,15 +110,17 @@ class Sharing {
   }
 
   // -1 if there is none.
-  std::int32_t smallest_ball_around(const Triangle& piece, std::size_t first, double error) const {
+  std::int32_t smallest_sphere_around(const Triangle& piece, std::size_t first,
+                                      double error) const {
     std::int32_t smallest = -1;
     double radius = std::numeric_limits<double>::infinity();
     for (std::size_t i = first; i < candidates_.size(); ++i) {
-      const Sphere& ball = balls_[static_cast<std::size_t>(candidates_[i])];
-      const auto contains = [&](const Vector3d& p) { return certainly_contains(ball, p, error); };
-      if (ball.radius < radius && contains(piece[0]) && contains(piece[1]) && contains(piece[2])) {
+      const Sphere& sphere = spheres_[static_cast<std::size_t>(candidates_[i])];
+      const auto contains = [&](const Vector3d& p) { return certainly_contains(sphere, p, error); };
+      if (sphere.radius < radius && contains(piece[0]) && contains(piece[1]) &&
+          contains(piece[2])) {
         smallest = candidates_[i];
-        radius = ball.radius;
+        radius = sphere.radius;
       }
     }
     return smallest;
@@ -135,24 +137,24 @@ class Sharing {
     return longest;
   }
 
-  std::span<const Sphere> balls_;
+  std::span<const Sphere> spheres_;
   double error_;
   std::vector<std::int32_t> candidates_;
-  std::map<std::int32_t, Eigen::AlignedBox3d> boxes_;  // of the pieces that each ball got
+  std::map<std::int32_t, Eigen::AlignedBox3d> boxes_;  // of the pieces that each sphere got
   std::size_t pieces_left_ = 0;
   Vector3d open_point_ = Vector3d::Zero();
 };
 
 }  // namespace
 
-std::vector<Patch> share_out(const MeshTree& mesh, std::span<const Sphere> balls) {
+std::vector<Patch> share_out(const MeshTree& mesh, std::span<const Sphere> spheres) {
   constexpr std::size_t kMost = std::size_t{1} << 30;
   // A midpoint is off by at most 2 u times the largest coordinate, and the midpoint of points that
   // are off by some amount by no more than that and one rounding: less than 2 * 80 u.
   const double error = 256.0 * kUnitRoundoff * mesh.tree().reach();
-  const std::vector<std::vector<std::int32_t>> candidates = balls_meeting(mesh, balls);
+  const std::vector<std::vector<std::int32_t>> candidates = spheres_meeting(mesh, spheres);
   std::vector<Patch> patches;
-  Sharing sharing(balls, error);
+  Sharing sharing(spheres, error);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const auto index = static_cast<std::int32_t>(i);
     if (!sharing.share(mesh.triangle(index), index, candidates[i], patches)) {
@@ -164,7 +166,7 @@ std::vector<Patch> share_out(const MeshTree& mesh, std::span<const Sphere> balls
     if (patches.size() > kMost) throw Error("cover", "it cuts the mesh into more than 2^30 parts");
   }
   std::stable_sort(patches.begin(), patches.end(),
-                   [](const Patch& a, const Patch& b) { return a.ball < b.ball; });
+                   [](const Patch& a, const Patch& b) { return a.sphere < b.sphere; });
   return patches;
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Boxes of one ball, seen from the other.
+// Boxes of one sphere, seen from the other.
 struct BoxChange {
   float rotation[3][3];
   float size[3][3];  // of its entries
@@ -82,17 +82,17 @@ float size_of(const PatchBox& box) {
 
 }  // namespace
 
-// The dual-tree search from the boxes around all patches of two balls.
+// The dual-tree search from the boxes around all patches of two spheres.
 class ListedTriangles::BoxSearch {
  public:
   BoxSearch(const ListedTriangles& of, std::int32_t sphere_a, std::int32_t sphere_b) : of_(of) {
-    const Sphere balls[2] = {of.sides_[0].ball(sphere_a), of.sides_[1].ball(sphere_b)};
-    const double radii = balls[0].radius + balls[1].radius;
+    const Sphere spheres[2] = {of.sides_[0].sphere(sphere_a), of.sides_[1].sphere(sphere_b)};
+    const double radii = spheres[0].radius + spheres[1].radius;
     for (std::size_t i = 0; i < 2; ++i) {
       const Side& side = of.sides_[i];
       roots_[i] = &side.patches.root(i == 0 ? sphere_a : sphere_b);
       from_other_[i] =
-          box_change(side.from_other, side.from_other(balls[1 - i].center) - balls[i].center,
+          box_change(side.from_other, side.from_other(spheres[1 - i].center) - spheres[i].center,
                      of.image_pad_, radii, kBoxPad);
     }
   }

@@ -18,26 +18,26 @@ namespace spherule::internal {
 // the two frames: x = Ra x' + d / 2 and y = Rb y' - d / 2, so that X - Y is the offset of
 // relative_pose.h. The products err by 65.2 u |x'| and 65.2 u |y'|, the rounding of d by u |d|, the
 // two sums by u (|x'| + |y'| + |d|): 66.2 u (|x'| + |y'|) + 2 u |d| < 68 u S. Every corner lies in
-// a ball of its cover, so that |x'| + |y'| + |d| <= S. That is what triangle_contact() asks for,
+// a sphere of its cover, so that |x'| + |y'| + |d| <= S. That is what triangle_contact() asks for,
 // with pad = leaf_pad().
 //
 // Images of points in the other mesh's frame err by less than 136 u S, and differences from the
-// centre of a ball there by 2 u S more; projections on an axis by 3 u S for the product and u S for
-// their difference, in units of its length: kImagePad = 160 u S covers all.
+// centre of a sphere there by 2 u S more; projections on an axis by 3 u S for the product and u S
+// for their difference, in units of its length: kImagePad = 160 u S covers all.
 //
 // Boxes. They are compared in single precision, v = 2^-24, as seen from the centres of the two
-// balls, of radii r and r': a box's image has the centre R c + t, t being the difference of the two
-// balls' centres, and the half widths |R| h. Boxes enclose parts of balls, so |c| and h are at most
-// a little more than the radius. Let Z = r + r' + |t|_1. R and t rounded, three products and sums,
-// the difference of the centres and the sum of the half widths err by less than 16 v Z a row.
-// kBoxPad = 64 v Z; the absolute term covers underflow.
+// spheres, of radii r and r': a box's image has the centre R c + t, t being the difference of the
+// two spheres' centres, and the half widths |R| h. Boxes enclose parts of spheres, so |c| and h are
+// at most a little more than the radius. Let Z = r + r' + |t|_1. R and t rounded, three products
+// and sums, the difference of the centres and the sum of the half widths err by less than 16 v Z a
+// row. kBoxPad = 64 v Z; the absolute term covers underflow.
 class ListedTriangles {
  public:
   ListedTriangles(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
                   const Pose& world_from_b, const RelativePose& pose);
 
   // Two triangles that touch or, at least, are not proved to be apart: under spheres that were
-  // asked for, or, if there are none, none under these have a point in common within both balls.
+  // asked for, or, if there are none, none under these have a point in common within both spheres.
   std::optional<TrianglePair> touching(std::int32_t sphere_a, std::int32_t sphere_b) const;
 
   // As triangle_depth() says.
@@ -54,7 +54,7 @@ class ListedTriangles {
   struct Side {
     // In the frame of the corners.
     Triangle placed(std::int32_t triangle) const;
-    Sphere ball(std::int32_t sphere) const {
+    Sphere sphere(std::int32_t sphere) const {
       return mesh.cover().spheres()[static_cast<std::size_t>(sphere)];
     }
 

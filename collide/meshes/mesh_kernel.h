@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What a search for contacts of balls and triangles works on, as plain data, and the kernels that
+// What a search for contacts of spheres and triangles works on, as plain data, and the kernels that
 // do it, one for each instruction set. It takes place in the frame of the mesh.
 
 #include <cstdint>
@@ -43,8 +43,8 @@ struct MeshView {
   const MeshBlock* blocks;
 };
 
-// A ball, in the mesh's frame, and where the search goes on: below `sphere` (a node of the balls,
-// or ~i for sphere i) and `mesh` (a node, or ~i for block i).
+// A sphere, in the mesh's frame, and where the search goes on: below `sphere` (a node of the
+// spheres, or ~i for sphere i) and `mesh` (a node, or ~i for block i).
 struct MeshTask {
   float x, y, z, radius;
   std::int32_t sphere;
@@ -63,8 +63,8 @@ struct MeshTasks {
 };
 
 // A sphere tree as it is (spheretree/sphere_tree.h), with at most eight children a node; the way to
-// the mesh's frame; and by how much its balls are grown there.
-struct MeshBalls {
+// the mesh's frame; and by how much its spheres are grown there.
+struct MeshSpheres {
   const double* x;
   const double* y;
   const double* z;
@@ -75,7 +75,7 @@ struct MeshBalls {
   double rotation[9];  // by rows
   double translation[3];
   float inflation;
-  MeshTask root;  // the ball around all, there and grown
+  MeshTask root;  // the sphere around all, there and grown
 };
 
 // A sphere and a triangle that single precision cannot tell apart: whether they touch.
@@ -83,7 +83,7 @@ using ConfirmTriangle = bool (*)(void* context, std::int32_t sphere, std::int32_
 
 // True if a sphere meets a triangle for sure, a corner being inside by `margin` at least, or is
 // confirmed to; false if none does.
-using MeshKernel = bool (*)(const MeshView& mesh, const MeshBalls& balls, float margin,
+using MeshKernel = bool (*)(const MeshView& mesh, const MeshSpheres& spheres, float margin,
                             MeshTasks& tasks, ConfirmTriangle confirm, void* context);
 
 MeshKernel portable_mesh_kernel();

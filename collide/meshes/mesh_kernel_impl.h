@@ -7,8 +7,8 @@
 //
 // Error budget, v = 2^-24. Let S bound the coordinates and the distance to the origin of every
 // point of the mesh and of every centre in the mesh's frame, and f how far a placed centre p may be
-// from its exact place. A ball that comes within c of a triangle in exact arithmetic is never found
-// apart from it, or from a box around it, if its radius here is
+// from its exact place. A sphere that comes within c of a triangle in exact arithmetic is never
+// found apart from it, or from a box around it, if its radius here is
 //     r' >= (r + c + f + 25 v S) (1 + 8 v):
 //   boxes: differences, squares and their sum as in packed_tree.h, without the 25 v S;
 //   triangles: w.p - o, three products, three sums, errs by less than 4 v (|w| |p| + |o|) <= 8.1 v
@@ -20,7 +20,8 @@
 // Beyond its range a number becomes infinite or none; no comparison then finds anything apart.
 //
 // A corner within r' - margin of p, which rounds by less than 5 v of r' and of the corner's 2 v S,
-// is inside the ball for sure if the margin is at least 2 (r' - r) and f and 16 v S are in r' - r.
+// is inside the sphere for sure if the margin is at least 2 (r' - r) and f and 16 v S are in r' -
+// r.
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
@@ -33,8 +34,8 @@ namespace {
 typedef float Float4Half __attribute__((vector_size(16), may_alias));
 typedef double Double8 __attribute__((vector_size(64), may_alias));
 
-// Boxes are opened while the box around them is at least so large beside the ball; otherwise the
-// ball is, which costs a change of frame. Measured on the workload of bench/.
+// Boxes are opened while the box around them is at least so large beside the sphere; otherwise the
+// sphere is, which costs a change of frame. Measured on the workload of bench/.
 constexpr float kOpenBoxes = 1.5F;
 
 SPHERULE_INLINE Float8 all(float x) {
@@ -69,77 +70,77 @@ SPHERULE_INLINE Float8 smaller(Float8 a, Float8 b) {
 // The square of a product above this does not underflow.
 constexpr float kLeastProduct = 0x1p-50F;
 
-// Of a ball and a box: how far they are apart, squared, the ball being a point.
-SPHERULE_INLINE Float8 squared_gap(const Balls& balls, const Float8 (&low)[3],
+// Of a sphere and a box: how far they are apart, squared, the sphere being a point.
+SPHERULE_INLINE Float8 squared_gap(const Spheres& spheres, const Float8 (&low)[3],
                                    const Float8 (&high)[3]) {
-  const Float8 dx = larger(larger(low[0] - balls.x, balls.x - high[0]), Float8{});
-  const Float8 dy = larger(larger(low[1] - balls.y, balls.y - high[1]), Float8{});
-  const Float8 dz = larger(larger(low[2] - balls.z, balls.z - high[2]), Float8{});
+  const Float8 dx = larger(larger(low[0] - spheres.x, spheres.x - high[0]), Float8{});
+  const Float8 dy = larger(larger(low[1] - spheres.y, spheres.y - high[1]), Float8{});
+  const Float8 dz = larger(larger(low[2] - spheres.z, spheres.z - high[2]), Float8{});
   return dx * dx + dy * dy + dz * dz;
 }
 
-// Eight balls side by side, those of a node's children, and what they are.
+// Eight spheres side by side, those of a node's children, and what they are.
 struct MeshChildren {
-  KernelBalls balls;
+  KernelSpheres spheres;
   std::int32_t child[8];
   unsigned present;
 };
 
-// `MeshBalls` in the frame of the mesh.
+// `MeshSpheres` in the frame of the mesh.
 class TreeSide {
  public:
-  explicit TreeSide(const MeshBalls& balls) : balls_(balls) {}
+  explicit TreeSide(const MeshSpheres& spheres) : spheres_(spheres) {}
 
   SPHERULE_INLINE void place(std::int32_t node, MeshChildren& to) const {
-    const std::int32_t first = balls_.first_child[node];
-    const std::int32_t count = balls_.child_count[node];
+    const std::int32_t first = spheres_.first_child[node];
+    const std::int32_t count = spheres_.child_count[node];
     Double8 x, y, z, radius;
-    if (first + 8 <= balls_.node_count) {
-      __builtin_memcpy(&x, balls_.x + first, sizeof x);
-      __builtin_memcpy(&y, balls_.y + first, sizeof y);
-      __builtin_memcpy(&z, balls_.z + first, sizeof z);
-      __builtin_memcpy(&radius, balls_.radius + first, sizeof radius);
+    if (first + 8 <= spheres_.node_count) {
+      __builtin_memcpy(&x, spheres_.x + first, sizeof x);
+      __builtin_memcpy(&y, spheres_.y + first, sizeof y);
+      __builtin_memcpy(&z, spheres_.z + first, sizeof z);
+      __builtin_memcpy(&radius, spheres_.radius + first, sizeof radius);
     } else {
       x = y = z = radius = Double8{};
       for (std::int32_t i = 0; i < count; ++i) {
-        x[i] = balls_.x[first + i];
-        y[i] = balls_.y[first + i];
-        z[i] = balls_.z[first + i];
-        radius[i] = balls_.radius[first + i];
+        x[i] = spheres_.x[first + i];
+        y[i] = spheres_.y[first + i];
+        z[i] = spheres_.z[first + i];
+        radius[i] = spheres_.radius[first + i];
       }
     }
-    const double* const r = balls_.rotation;
-    const double* const t = balls_.translation;
-    const Balls placed = {
+    const double* const r = spheres_.rotation;
+    const double* const t = spheres_.translation;
+    const Spheres placed = {
         __builtin_convertvector((r[0] * x + r[1] * y) + (r[2] * z + t[0]), Float8),
         __builtin_convertvector((r[3] * x + r[4] * y) + (r[5] * z + t[1]), Float8),
         __builtin_convertvector((r[6] * x + r[7] * y) + (r[8] * z + t[2]), Float8),
-        __builtin_convertvector(radius, Float8) + balls_.inflation};
-    hold(placed, to.balls);
+        __builtin_convertvector(radius, Float8) + spheres_.inflation};
+    hold(placed, to.spheres);
     for (std::int32_t i = 0; i < count; ++i) {
       const std::int32_t child = first + i;
-      to.child[i] = balls_.child_count[child] == 0 ? ~balls_.first_child[child] : child;
+      to.child[i] = spheres_.child_count[child] == 0 ? ~spheres_.first_child[child] : child;
     }
     to.present = (1U << count) - 1U;
   }
 
  private:
-  const MeshBalls& balls_;
+  const MeshSpheres& spheres_;
 };
 
 class MeshSearch {
  public:
-  MeshSearch(const MeshView& mesh, const MeshBalls& balls, float margin, MeshTasks& tasks,
+  MeshSearch(const MeshView& mesh, const MeshSpheres& spheres, float margin, MeshTasks& tasks,
              ConfirmTriangle confirm, void* context)
       : nodes_(mesh.nodes),
         blocks_(mesh.blocks),
-        spheres_(balls),
+        spheres_(spheres),
         margin_(margin),
         tasks_(tasks.waiting),
         confirm_(confirm),
         context_(context) {}
 
-  // From one ball. True if a sphere and a triangle ended the search.
+  // From one sphere. True if a sphere and a triangle ended the search.
   bool run(const MeshTask& root) {
     tasks_[0] = root;
     top_ = 1;
@@ -147,13 +148,13 @@ class MeshSearch {
       const MeshTask task = tasks_[--top_];
       const MeshBox& box = task.mesh >= 0 ? nodes_[task.mesh].around : blocks_[~task.mesh].around;
       const bool is_small = task.mesh < 0 || box.size < kOpenBoxes * task.radius;
-      if (task.sphere >= 0 && is_small ? open_ball(task, box) : open_boxes(task)) return true;
+      if (task.sphere >= 0 && is_small ? open_sphere(task, box) : open_boxes(task)) return true;
     }
     return false;
   }
 
  private:
-  // The boxes of a node that are not apart from the ball.
+  // The boxes of a node that are not apart from the sphere.
   SPHERULE_INLINE bool open_boxes(const MeshTask& task) {
     const MeshNode& node = nodes_[task.mesh];
     for (unsigned mask = near_boxes(node, task); mask != 0; mask &= mask - 1) {
@@ -168,19 +169,19 @@ class MeshSearch {
     return false;
   }
 
-  // The balls below a node that are not apart from a box.
-  SPHERULE_INLINE bool open_ball(const MeshTask& task, const MeshBox& box) {
+  // The spheres below a node that are not apart from a box.
+  SPHERULE_INLINE bool open_sphere(const MeshTask& task, const MeshBox& box) {
     MeshChildren children;
     spheres_.place(task.sphere, children);
-    const KernelBalls& balls = children.balls;
-    const Balls lanes = balls_of(balls);
+    const KernelSpheres& spheres = children.spheres;
+    const Spheres lanes = spheres_of(spheres);
     const Float8 gap = squared_gap(lanes, {all(box.low[0]), all(box.low[1]), all(box.low[2])},
                                    {all(box.high[0]), all(box.high[1]), all(box.high[2])});
     unsigned hits = children.present & ~mask_of(gap > lanes.radius * lanes.radius);
     for (; hits != 0; hits &= hits - 1) {
       const int hit = __builtin_ctz(hits);
-      const MeshTask next = {balls.x[hit],      balls.y[hit],        balls.z[hit],
-                             balls.radius[hit], children.child[hit], task.mesh};
+      const MeshTask next = {spheres.x[hit],      spheres.y[hit],      spheres.z[hit],
+                             spheres.radius[hit], children.child[hit], task.mesh};
       if (next.mesh >= 0 || next.sphere >= 0) {
         tasks_[top_++] = next;
       } else if (touch(next)) {
@@ -190,56 +191,56 @@ class MeshSearch {
     return false;
   }
 
-  SPHERULE_INLINE static unsigned near_boxes(const MeshNode& node, const MeshTask& ball) {
-    const Balls lanes = {all(ball.x), all(ball.y), all(ball.z), all(ball.radius)};
+  SPHERULE_INLINE static unsigned near_boxes(const MeshNode& node, const MeshTask& sphere) {
+    const Spheres lanes = {all(sphere.x), all(sphere.y), all(sphere.z), all(sphere.radius)};
     const Float8 gap = squared_gap(lanes, {load(node.low[0]), load(node.low[1]), load(node.low[2])},
                                    {load(node.high[0]), load(node.high[1]), load(node.high[2])});
     return mask_of(gap > lanes.radius * lanes.radius) ^ 0xffU;
   }
 
   // A sphere and the triangles of a block.
-  SPHERULE_INLINE bool touch(const MeshTask& ball) {
-    const MeshBlock& block = blocks_[~ball.mesh];
+  SPHERULE_INLINE bool touch(const MeshTask& sphere) {
+    const MeshBlock& block = blocks_[~sphere.mesh];
     const auto along = [&](const float(&axis)[3][8], const float(&offset)[8]) {
-      return (load(axis[0]) * ball.x + load(axis[1]) * ball.y) +
-             (load(axis[2]) * ball.z - load(offset));
+      return (load(axis[0]) * sphere.x + load(axis[1]) * sphere.y) +
+             (load(axis[2]) * sphere.z - load(offset));
     };
     const Float8 height = along(block.normal, block.offset);
     const Float8 outside = larger(larger(along(block.side[0], block.side_offset[0]),
                                          along(block.side[1], block.side_offset[1])),
                                   larger(along(block.side[2], block.side_offset[2]), Float8{}));
     unsigned near =
-        mask_of(height * height + outside * outside > all(ball.radius * ball.radius)) ^ 0xffU;
+        mask_of(height * height + outside * outside > all(sphere.radius * sphere.radius)) ^ 0xffU;
     if (near == 0) return false;
-    Balls corners[3];  // seen from the ball
+    Spheres corners[3];  // seen from the sphere
     for (int i = 0; i < 3; ++i) {
-      corners[i].x = load(block.corner[i][0]) - ball.x;
-      corners[i].y = load(block.corner[i][1]) - ball.y;
-      corners[i].z = load(block.corner[i][2]) - ball.z;
+      corners[i].x = load(block.corner[i][0]) - sphere.x;
+      corners[i].y = load(block.corner[i][1]) - sphere.y;
+      corners[i].z = load(block.corner[i][2]) - sphere.z;
     }
     const Float8 aa = dot(corners[0], corners[0]);
     const Float8 bb = dot(corners[1], corners[1]);
     const Float8 cc = dot(corners[2], corners[2]);
-    const float sure = ball.radius - margin_;
+    const float sure = sphere.radius - margin_;
     if (sure > 0.0F && mask_of(smaller(smaller(aa, bb), cc) <= all(sure * sure)) != 0) {
       return true;
     }
     const Float8 ab = dot(corners[0], corners[1]);
     const Float8 bc = dot(corners[1], corners[2]);
     const Float8 ca = dot(corners[2], corners[0]);
-    near &= ~(separates(aa, ab, ca, ball.radius) | separates(bb, bc, ab, ball.radius) |
-              separates(cc, ca, bc, ball.radius));
+    near &= ~(separates(aa, ab, ca, sphere.radius) | separates(bb, bc, ab, sphere.radius) |
+              separates(cc, ca, bc, sphere.radius));
     for (; near != 0; near &= near - 1) {
-      if (confirm_(context_, ~ball.sphere, block.triangle[__builtin_ctz(near)])) return true;
+      if (confirm_(context_, ~sphere.sphere, block.triangle[__builtin_ctz(near)])) return true;
     }
     return false;
   }
 
-  SPHERULE_INLINE static Float8 dot(const Balls& a, const Balls& b) {
+  SPHERULE_INLINE static Float8 dot(const Spheres& a, const Spheres& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
   }
 
-  // By the axis from the ball's centre to a corner, of this length squared: where it is nearest.
+  // By the axis from the sphere's centre to a corner, of this length squared: where it is nearest.
   SPHERULE_INLINE static unsigned separates(Float8 square, Float8 one, Float8 other, float radius) {
     const Float8 least = smaller(smaller(one, other), square);
     return mask_of(least > all(kLeastProduct)) &
@@ -256,9 +257,9 @@ class MeshSearch {
   void* context_;
 };
 
-bool meets(const MeshView& mesh, const MeshBalls& balls, float margin, MeshTasks& tasks,
+bool meets(const MeshView& mesh, const MeshSpheres& spheres, float margin, MeshTasks& tasks,
            ConfirmTriangle confirm, void* context) {
-  return MeshSearch(mesh, balls, margin, tasks, confirm, context).run(balls.root);
+  return MeshSearch(mesh, spheres, margin, tasks, confirm, context).run(spheres.root);
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ namespace {
 // Of T (relative_pose.h), which bounds what S bounds in mesh_kernel_impl.h: a placed centre errs by
 // 136 u T and one rounding to single; 25 v T for the tests; 2 v r for the radius and 8 v r for the
 // factor; and c = 6 v T. What is found apart is so by more than c then, and the canonical test
-// finds it apart, too: where the mesh's lanes are numbers, because of ball_triangle.h, which asks
-// for 2 v S and a distance of 4 v S; where not, because the leaf's ball is what is apart. 48 v T
+// finds it apart, too: where the mesh's lanes are numbers, because of sphere_triangle.h, which asks
+// for 2 v S and a distance of 4 v S; where not, because the leaf's sphere is what is apart. 48 v T
 // covers it, and the absolute term what underflows (packed_tree.h).
 // A clearance is part of every radius and of T, rounded up once; the margin is that of the growth
 // without it.
@@ -64,27 +64,27 @@ bool collides_by(MeshKernel kernel, const SphereTree& a, const Pose& world_from_
   const FrameChange to_mesh = pose.b_from_a();
   const double rounding = kInflation * (pose.node_size() + clearance) + kAbsolute;
   const float inflation = rounded_up_to_single(rounding + clearance);
-  MeshBalls balls = {.x = data.x.data(),
-                     .y = data.y.data(),
-                     .z = data.z.data(),
-                     .radius = data.radius.data(),
-                     .first_child = data.first_child.data(),
-                     .child_count = data.child_count.data(),
-                     .node_count = static_cast<std::int32_t>(a.node_count()),
-                     .rotation = {},
-                     .translation = {},
-                     .inflation = inflation,
-                     .root = {}};
-  std::copy_n(to_mesh.r, 9, balls.rotation);
-  std::copy_n(to_mesh.t, 3, balls.translation);
-  const Eigen::Vector3d center = to_mesh(a.ball(0).center);
-  balls.root = {
+  MeshSpheres spheres = {.x = data.x.data(),
+                         .y = data.y.data(),
+                         .z = data.z.data(),
+                         .radius = data.radius.data(),
+                         .first_child = data.first_child.data(),
+                         .child_count = data.child_count.data(),
+                         .node_count = static_cast<std::int32_t>(a.node_count()),
+                         .rotation = {},
+                         .translation = {},
+                         .inflation = inflation,
+                         .root = {}};
+  std::copy_n(to_mesh.r, 9, spheres.rotation);
+  std::copy_n(to_mesh.t, 3, spheres.translation);
+  const Eigen::Vector3d center = to_mesh(a.sphere(0).center);
+  spheres.root = {
       static_cast<float>(center.x()),        static_cast<float>(center.y()),
-      static_cast<float>(center.z()),        static_cast<float>(a.ball(0).radius) + inflation,
+      static_cast<float>(center.z()),        static_cast<float>(a.sphere(0).radius) + inflation,
       a.is_leaf(0) ? ~a.sphere_index(0) : 0, 0};
   MeshTasks tasks;  // 24 KiB that are not touched before they are needed
   Question question{a, b, pose, clearance};
-  return kernel(mesh.view(), balls, 3.0F * rounded_up_to_single(rounding), tasks,
+  return kernel(mesh.view(), spheres, 3.0F * rounded_up_to_single(rounding), tasks,
                 &Question::confirm, &question);
 }
 

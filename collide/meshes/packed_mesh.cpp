@@ -94,7 +94,7 @@ MeshBox packed(const Box& box) {
 
 class Builder {
  public:
-  Builder(std::span<const Triangle> triangles, std::span<const Sphere> balls,
+  Builder(std::span<const Triangle> triangles, std::span<const Sphere> spheres,
           std::vector<MeshNode>& nodes, std::vector<MeshBlock>& blocks)
       : triangles_(triangles), nodes_(nodes), blocks_(blocks), order_(triangles.size()) {
     for (const Triangle& t : triangles) {
@@ -108,8 +108,8 @@ class Builder {
       if (sides_[i].hold) {
         for (const Vector3d& corner : triangles[i]) box.extend(corner);
       } else {
-        const Vector3d reach = Vector3d::Constant(balls[i].radius * (1.0 + 0x1p-50));
-        box = Box(balls[i].center - reach, balls[i].center + reach);
+        const Vector3d reach = Vector3d::Constant(spheres[i].radius * (1.0 + 0x1p-50));
+        box = Box(spheres[i].center - reach, spheres[i].center + reach);
       }
       boxes_.push_back(box);
     }
@@ -231,8 +231,8 @@ class Builder {
 
 }  // namespace
 
-PackedMesh::PackedMesh(std::span<const Triangle> triangles, std::span<const Sphere> balls) {
-  depth_ = Builder(triangles, balls, nodes_, blocks_).build();
+PackedMesh::PackedMesh(std::span<const Triangle> triangles, std::span<const Sphere> spheres) {
+  depth_ = Builder(triangles, spheres, nodes_, blocks_).build();
 }
 
 }  // namespace spherule::internal

@@ -27,14 +27,14 @@ namespace spherule::internal {
 // distance from p to the triangle is at least
 //     sqrt((|s| - 4 v B)^2 + u^2) / (1 + 8 v)   (the first square zero where |s| is smaller).
 // Triangles for which that does not hold, and those lower than kLowest of their longest edge, have
-// lanes of not-a-numbers instead, which nothing finds apart; boxes hold their balls.
+// lanes of not-a-numbers instead, which nothing finds apart; boxes hold their spheres.
 class PackedMesh {
  public:
-  // Below this a triangle is as good as a segment, see ball_triangle.h.
+  // Below this a triangle is as good as a segment, see sphere_triangle.h.
   static constexpr double kLowest = 0x1p-24;
 
-  // `balls` enclose the triangles one by one.
-  PackedMesh(std::span<const Triangle> triangles, std::span<const Sphere> balls);
+  // `spheres` enclose the triangles one by one.
+  PackedMesh(std::span<const Triangle> triangles, std::span<const Sphere> spheres);
 
   MeshView view() const { return {nodes_.data(), blocks_.data()}; }
   // Nodes and blocks on the longest way from the root.

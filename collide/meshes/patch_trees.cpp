@@ -85,18 +85,18 @@ std::int32_t build(std::span<Patch> patches, const Vector3d& origin,
 
 }  // namespace
 
-PatchTrees::PatchTrees(std::span<const Patch> patches, std::span<const Sphere> balls)
-    : roots_(balls.size()) {
-  std::vector<Patch> of_ball;
+PatchTrees::PatchTrees(std::span<const Patch> patches, std::span<const Sphere> spheres)
+    : roots_(spheres.size()) {
+  std::vector<Patch> of_sphere;
   while (!patches.empty()) {
-    const auto ball = static_cast<std::size_t>(patches[0].ball);
+    const auto sphere = static_cast<std::size_t>(patches[0].sphere);
     std::size_t count = 0;
-    while (count < patches.size() && patches[count].ball == patches[0].ball) ++count;
-    of_ball.assign(patches.begin(), patches.begin() + static_cast<std::ptrdiff_t>(count));
+    while (count < patches.size() && patches[count].sphere == patches[0].sphere) ++count;
+    of_sphere.assign(patches.begin(), patches.begin() + static_cast<std::ptrdiff_t>(count));
     patches = patches.subspan(count);
-    const Vector3d& origin = balls[ball].center;
-    roots_[ball] = {seen_from(origin, box_around(std::span(of_ball), box_of)),
-                    build(of_ball, origin, nodes_)};
+    const Vector3d& origin = spheres[sphere].center;
+    roots_[sphere] = {seen_from(origin, box_around(std::span(of_sphere), box_of)),
+                      build(of_sphere, origin, nodes_)};
   }
 }
 

@@ -15,7 +15,7 @@
 
 namespace spherule::internal {
 
-// A box along the axes of the mesh's frame, seen from the centre of a ball.
+// A box along the axes of the mesh's frame, seen from the centre of a sphere.
 struct PatchBox {
   float center[3];
   float half[3];
@@ -71,23 +71,23 @@ inline unsigned overlaps(const PatchNode& node, const PatchBox& box) {
 #endif
 }
 
-// For each ball of a cover a tree of boxes over its patches, of eight a node. Every box, its centre
-// in single precision, encloses the patches below it in exact arithmetic.
+// For each sphere of a cover a tree of boxes over its patches, of eight a node. Every box, its
+// centre in single precision, encloses the patches below it in exact arithmetic.
 class PatchTrees {
  public:
-  // The patches sorted by ball, as share_out() returns them.
-  PatchTrees(std::span<const Patch> patches, std::span<const Sphere> balls);
+  // The patches sorted by sphere, as share_out() returns them.
+  PatchTrees(std::span<const Patch> patches, std::span<const Sphere> spheres);
 
   // Nodes on the longest way from a root to a triangle: each has an eighth of the patches of the
   // one above it, rounded up, and there are no more than 2^30.
   static constexpr std::size_t kMaxDepth = 10;
 
-  // The box of all patches of a ball, and its first node; negative if it has no patches.
+  // The box of all patches of a sphere, and its first node; negative if it has no patches.
   struct Root {
     PatchBox box{};
     std::int32_t node = -1;
   };
-  const Root& root(std::int32_t ball) const { return roots_[static_cast<std::size_t>(ball)]; }
+  const Root& root(std::int32_t sphere) const { return roots_[static_cast<std::size_t>(sphere)]; }
   const PatchNode& node(std::int32_t i) const { return nodes_[static_cast<std::size_t>(i)]; }
 
  private:

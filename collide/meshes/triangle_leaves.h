@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collide/mesh_tree.h"
-#include "collide/meshes/ball_triangle.h"
+#include "collide/meshes/sphere_triangle.h"
 #include "collide/search/nearest_first.h"
 #include "collide/search/relative_pose.h"
 #include "collide/search/tree_pair.h"
@@ -14,17 +14,17 @@
 
 namespace spherule::internal {
 
-// Leaf test of a ball against a triangle, in the triangle's frame.
+// Leaf test of a sphere against a triangle, in the triangle's frame.
 //
-// The image p of the ball's centre errs by less than 136 u S (relative_pose.h), and `lower` bounds
-// the distance from p to the triangle. So a ball of radius r that meets the triangle has
+// The image p of the sphere's centre errs by less than 136 u S (relative_pose.h), and `lower`
+// bounds the distance from p to the triangle. So a sphere of radius r that meets the triangle has
 // lower <= r + 136 u S, and the pad of 144 u S covers the rounding of the sum. Conversely a hit has
 // an exact gap of at most 144 u S + 136 u S + (upper - lower): the last term is the width of
 // the interval that point_triangle_distance() returns.
 //
-// That is more than the node tests are proved to keep, so the balls themselves must touch
-// canonically as well. No contact is lost, because the leaf's ball encloses the triangle; and every
-// accepted pair is one that the node tests keep, whatever the trees above it.
+// That is more than the node tests are proved to keep, so the spheres themselves must touch
+// canonically as well. No contact is lost, because the leaf's sphere encloses the triangle; and
+// every accepted pair is one that the node tests keep, whatever the trees above it.
 //
 // The last term has no bound that could be relied on. are_apart() has one, so that filters in
 // single precision never find apart what is accepted here: it loses no contact with r + 136 u S and
@@ -49,36 +49,36 @@ class TriangleLeaves {
     return touches(a_.sphere_index(pair.index(0)), b_.tree().sphere_index(pair.index(1)));
   }
   bool touches(std::int32_t index, std::int32_t triangle) const {
-    const Sphere& ball = a_.spheres()[static_cast<std::size_t>(index)];
-    return pose_.touches(ball, b_.tree().spheres()[static_cast<std::size_t>(triangle)],
+    const Sphere& sphere = a_.spheres()[static_cast<std::size_t>(index)];
+    return pose_.touches(sphere, b_.tree().spheres()[static_cast<std::size_t>(triangle)],
                          clearance_) &&
-           !are_apart(b_from_a_(ball.center), b_.triangle(triangle), ball.radius + axis_pad_) &&
-           lower(ball, triangle) <= ball.radius + pad_;
+           !are_apart(b_from_a_(sphere.center), b_.triangle(triangle), sphere.radius + axis_pad_) &&
+           lower(sphere, triangle) <= sphere.radius + pad_;
   }
   double gap(NodePair pair) const {
-    const Sphere ball = a_.ball(pair.index(0));
-    return std::max(lower(ball, b_.tree().sphere_index(pair.index(1))) - ball.radius,
-                    pose_.gap(ball, b_.tree().ball(pair.index(1))));
+    const Sphere sphere = a_.sphere(pair.index(0));
+    return std::max(lower(sphere, b_.tree().sphere_index(pair.index(1))) - sphere.radius,
+                    pose_.gap(sphere, b_.tree().sphere(pair.index(1))));
   }
-  // So deep is the triangle in the ball at least, if that is above zero: its image errs by less
+  // So deep is the triangle in the sphere at least, if that is above zero: its image errs by less
   // than the pad.
   double depth(std::int32_t index, std::int32_t triangle) const {
-    const Sphere& ball = a_.spheres()[static_cast<std::size_t>(index)];
-    return (ball.radius - pad_) - distance(ball, triangle).upper;
+    const Sphere& sphere = a_.spheres()[static_cast<std::size_t>(index)];
+    return (sphere.radius - pad_) - distance(sphere, triangle).upper;
   }
   GapInterval interval(NodePair pair) const {
-    const Sphere ball = a_.ball(pair.index(0));
-    const TriangleDistance found = distance(ball, b_.tree().sphere_index(pair.index(1)));
-    return {found.lower - ball.radius, found.upper - ball.radius};
+    const Sphere sphere = a_.sphere(pair.index(0));
+    const TriangleDistance found = distance(sphere, b_.tree().sphere_index(pair.index(1)));
+    return {found.lower - sphere.radius, found.upper - sphere.radius};
   }
 
  private:
-  TriangleDistance distance(const Sphere& ball, std::int32_t triangle) const {
+  TriangleDistance distance(const Sphere& sphere, std::int32_t triangle) const {
     const std::array<Eigen::Vector3d, 3>& corners = b_.triangle(triangle);
-    return point_triangle_distance(b_from_a_(ball.center), corners[0], corners[1], corners[2]);
+    return point_triangle_distance(b_from_a_(sphere.center), corners[0], corners[1], corners[2]);
   }
-  double lower(const Sphere& ball, std::int32_t triangle) const {
-    return distance(ball, triangle).lower;
+  double lower(const Sphere& sphere, std::int32_t triangle) const {
+    return distance(sphere, triangle).lower;
   }
 
   const SphereTree& a_;

@@ -29,7 +29,7 @@ struct Look {
   bool complete = false;  // not cut short by a limit
   bool contact = false;   // the canonical test with the clearance accepts `pair`
   SpherePair pair;
-  // Every pair of balls stays farther apart than the clearance for this long, whichever way time
+  // Every pair of spheres stays farther apart than the clearance for this long, whichever way time
   // goes: what was asked for, or a half, a quarter ... of it, or 0 if nothing is known.
   double free_time = 0.0;
   // The pair of leaves that shortened the time last, worth a try in the next look.
@@ -38,8 +38,8 @@ struct Look {
 
 // Traversal policy: branch and bound, depth first, for the shortest time in which some pair of
 // leaves could come within a clearance, and a test of contact at once. A Rate knows how fast pairs
-// of balls approach:
-//   double approach(ball_a, ball_b, time)         upper bound for all balls below two nodes;
+// of spheres approach:
+//   double approach(sphere_a, sphere_b, time)         upper bound for all spheres below two nodes;
 //   double free_time(center_a, center_b, gap)     for two leaves: in this time they do not use up
 //                                                 the gap; the bound above does by the time of
 //                                                 (1 + 96 u) times as much at the latest.
@@ -77,7 +77,7 @@ class FreeTime {
       leaves(*try_first);
     }
     look_.complete = look_.contact ||
-                     !pose_.may_touch(a_.ball(0), b_.ball(0), margin(NodePair(0, 0))) ||
+                     !pose_.may_touch(a_.sphere(0), b_.sphere(0), margin(NodePair(0, 0))) ||
                      traverse(a_, b_, pose_, *this) || look_.contact;
     if (!look_.complete || look_.contact) look_.free_time = 0.0;
     return look_;
@@ -92,15 +92,15 @@ class FreeTime {
   double margin(NodePair pair) const {
     if (look_.free_time == 0.0) return clearance_;
     const double way =
-        rate_.approach(a_.ball(pair.index(0)), b_.ball(pair.index(1)), look_.free_time);
+        rate_.approach(a_.sphere(pair.index(0)), b_.sphere(pair.index(1)), look_.free_time);
     return way * kWayUp + prune_;
   }
 
   bool nearest_first() const { return look_.free_time > 0.0; }
 
   bool leaves(NodePair pair) {
-    const Sphere a = a_.ball(pair.index(0));
-    const Sphere b = b_.ball(pair.index(1));
+    const Sphere a = a_.sphere(pair.index(0));
+    const Sphere b = b_.sphere(pair.index(1));
     if (pose_.touches(a, b, clearance_)) {
       look_.contact = true;
       look_.decisive = pair;

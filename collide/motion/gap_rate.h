@@ -10,11 +10,11 @@
 
 namespace spherule::internal {
 
-// How fast two balls can approach each other while both bodies move: the bounds behind G6.
+// How fast two spheres can approach each other while both bodies move: the bounds behind G6.
 //
-// A ball turned about its own centre is the same ball, so only the ways of the centres count. With
-// the velocities v of the reference points, the angular speeds w (the angle, as t goes from 0 to 1)
-// and the distance rho of a centre from the axis through the reference point, in a time tau
+// A sphere turned about its own centre is the same sphere, so only the ways of the centres count.
+// With the velocities v of the reference points, the angular speeds w (the angle, as t goes from 0
+// to 1) and the distance rho of a centre from the axis through the reference point, in a time tau
 //   1. a centre moves by at most |va - vb| tau + (|wa| rho_a + |wb| rho_b) tau against the other;
 //   2. and turning moves it by at most the diameter of its circle, so the sum in parentheses can be
 //      replaced by 2 (rho_a + rho_b);
@@ -26,7 +26,7 @@ namespace spherule::internal {
 //      exchanged. That is the better bound where both bodies turn alike. The gap is the same seen
 //      from anywhere, so the smaller of the two counts. |cb - ca| is convex in t: its maximum is at
 //      an end of the motion.
-// The gap of two balls changes by no more than any of these. All terms are rounded up.
+// The gap of two spheres changes by no more than any of these. All terms are rounded up.
 class GapRate {
  public:
   GapRate(const SphereTree& a, const Motion& motion_a, const SphereTree& b, const Motion& motion_b)
@@ -57,8 +57,8 @@ class GapRate {
   // Upper bound of the distance of the origins of the two bodies' frames, at any t.
   double farthest_frames() const { return farthest_frames_; }
 
-  // No two balls below these two nodes approach by more than this in a time `tau` (as a part of the
-  // whole motion).
+  // No two spheres below these two nodes approach by more than this in a time `tau` (as a part of
+  // the whole motion).
   double approach(const Sphere& node_a, const Sphere& node_b, double tau) const {
     const double rho_a = sides_[0].rho(node_a.center) + node_a.radius;
     const double rho_b = sides_[1].rho(node_b.center) + node_b.radius;
@@ -68,8 +68,8 @@ class GapRate {
     return std::min(apart, together_ * tau) * kUp;
   }
 
-  // A time in which two balls with these centres do not use up a gap > 0. Huge where nothing moves:
-  // no divisor is zero, for every upper bound of a norm is positive.
+  // A time in which two spheres with these centres do not use up a gap > 0. Huge where nothing
+  // moves: no divisor is zero, for every upper bound of a norm is positive.
   double free_time(const Eigen::Vector3d& center_a, const Eigen::Vector3d& center_b,
                    double gap) const {
     const double rho_a = sides_[0].rho(center_a);

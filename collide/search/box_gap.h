@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Two looks at a pair of trees before a traversal is set up: is the root ball of one apart from the
-// box around the spheres of the other, and are the two boxes apart along one of their six axes?
+// Two looks at a pair of trees before a traversal is set up: is the root sphere of one apart from
+// the box around the spheres of the other, and are the two boxes apart along one of their six axes?
 // Most pairs that are a fifth of their size from each other or more end here. The nine axes that
 // are products of two edges are left out, as is usual: they separate few pairs more.
 //
@@ -15,14 +15,14 @@
 //   roundings, 4 u |h|: less than 233 u S with the sum of both. The gap along the axis errs by 7 u
 //   S more: 480 u S in all. Along the axes of a: R^T times that centre, of length at most 1.74 S,
 //   errs by 240 u S and by 129 u and 5.2 u of 1.74 S: 474 u S, with the reach and the last rounding
-//   714 u S. Ball (c, r) and box. The centre of a root ball need not lie within the reach of its
-//   spheres, so S grows by |c|_1 to U. The centre in the axes of the world, from b's origin: 60 u
-//   |c| + 5.2 u |c| + 4 u U; turned by Rb^T: 65.2 u U more; less the centre and the half size of
+//   714 u S. Sphere (c, r) and box. The centre of a root sphere need not lie within the reach of
+//   its spheres, so S grows by |c|_1 to U. The centre in the axes of the world, from b's origin: 60
+//   u |c| + 5.2 u |c| + 4 u U; turned by Rb^T: 65.2 u U more; less the centre and the half size of
 //   the box: 8 u U. The distance that is made of the three errs by less than 143 u U + 5 u U.
 // So no computed gap is above the exact one by more than kBoxError = 768 u of S or U, and a root
-// ball and a box hold all spheres exactly. Pairs that the canonical test accepts have a gap of at
+// sphere and a box hold all spheres exactly. Pairs that the canonical test accepts have a gap of at
 // most kSlack S + c (1 + 16 u) for a clearance c: they are not apart by kBoxError + kSlack and
-// c (1 + 32 u). The leaf test of a mesh accepts only where that of the balls around its triangles
+// c (1 + 32 u). The leaf test of a mesh accepts only where that of the spheres around its triangles
 // does, so the same holds for it.
 
 #include "collide/search/relative_pose.h"
@@ -35,14 +35,14 @@ namespace spherule::internal {
 inline constexpr double kBoxError = 768.0 * kUnitRoundoff;
 
 // True only if no sphere of a comes within the clearance of one of b by the canonical test: the
-// root ball of `a` is apart from the box of `b`. Of the poses alone, because it takes less time
+// root sphere of `a` is apart from the box of `b`. Of the poses alone, because it takes less time
 // than to set up a RelativePose.
-inline bool ball_apart_from_box(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
-                                const Pose& world_from_b, double clearance) {
+inline bool sphere_apart_from_box(const SphereTree& a, const Pose& world_from_a,
+                                  const SphereTree& b, const Pose& world_from_b, double clearance) {
   const double* ra = world_from_a.matrix().data();  // column by column
   const double* rb = world_from_b.matrix().data();
-  const Sphere ball = a.ball(0);
-  const double x = ball.center.x(), y = ball.center.y(), z = ball.center.z();
+  const Sphere sphere = a.sphere(0);
+  const double x = sphere.center.x(), y = sphere.center.y(), z = sphere.center.z();
   const Eigen::Vector3d& ta = world_from_a.translation();
   const Eigen::Vector3d& tb = world_from_b.translation();
   const double dx = ta.x() - tb.x(), dy = ta.y() - tb.y(), dz = ta.z() - tb.z();
@@ -59,17 +59,18 @@ inline bool ball_apart_from_box(const SphereTree& a, const Pose& world_from_a, c
   const double size = ((std::abs(x) + std::abs(y)) + (std::abs(z) + a.reach())) +
                       ((std::abs(dx) + std::abs(dy)) + (std::abs(dz) + b.reach()));
   const double limit =
-      (ball.radius + clearance * kMarginUp) + ((kSlack + kBoxError) * size + 8.0 * kUnderflow);
+      (sphere.radius + clearance * kMarginUp) + ((kSlack + kBoxError) * size + 8.0 * kUnderflow);
   return squared > limit * limit;
 }
 
-// The first look: the smaller ball and the box of the other tree, since a box fits a body the
+// The first look: the smaller sphere and the box of the other tree, since a box fits a body the
 // better the longer it is.
 inline bool far_apart(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                       const Pose& world_from_b, double clearance = 0.0) {
-  const bool a_is_ball = a.data().radius[0] <= b.data().radius[0];
-  return ball_apart_from_box(a_is_ball ? a : b, a_is_ball ? world_from_a : world_from_b,
-                             a_is_ball ? b : a, a_is_ball ? world_from_b : world_from_a, clearance);
+  const bool a_is_sphere = a.data().radius[0] <= b.data().radius[0];
+  return sphere_apart_from_box(a_is_sphere ? a : b, a_is_sphere ? world_from_a : world_from_b,
+                               a_is_sphere ? b : a, a_is_sphere ? world_from_b : world_from_a,
+                               clearance);
 }
 
 // No sphere of a is nearer to one of b: negative, and of no use, where no axis separates the boxes.
@@ -97,7 +98,7 @@ inline double box_gap(const SphereTree& a, const SphereTree& b, const RelativePo
 }
 
 // The second look: true only if no sphere of a comes within the clearance of one of b by the
-// canonical test. Of boxes around single spheres nothing is asked: their balls say more.
+// canonical test. Of boxes around single spheres nothing is asked: their spheres say more.
 inline bool boxes_apart(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
                         double clearance = 0.0) {
   if (a.is_leaf(0) && b.is_leaf(0)) return false;

@@ -22,7 +22,7 @@ CullingSpheres::CullingSpheres(const SphereTree& tree) : spheres_(tree.node_coun
 // As deep as the tree: 3 log2 n + 9 at most for those of build_tree(). `leaves` are those visited
 // so far.
 void CullingSpheres::visit(const SphereTree& tree, std::size_t node, std::vector<Sphere>& leaves) {
-  spheres_[node] = tree.ball(node);
+  spheres_[node] = tree.sphere(node);
   if (tree.is_leaf(node)) {
     leaves.push_back(spheres_[node]);
     return;

@@ -13,13 +13,13 @@ struct alignas(64) PackedNode {
   float y[kWidth];
   float z[kWidth];
   float radius[kWidth];
-  // Of the child: a node, or ~i for the leaf of sphere i. Lanes without a child are balls of radius
-  // zero so far away that nothing reaches them.
+  // Of the child: a node, or ~i for the leaf of sphere i. Lanes without a child are spheres of
+  // radius zero so far away that nothing reaches them.
   std::int32_t child[kWidth];
 };
 
 // A leaf, as the nodes hold it.
-struct PackedBall {
+struct PackedSphere {
   float center[3];
   float radius;
 };

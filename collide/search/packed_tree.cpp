@@ -17,13 +17,13 @@ namespace {
 constexpr float kNowhere = 3e18F;
 constexpr double kAbsolute = 0x1p-60;
 
-Sphere packed(const Sphere& ball, double inflation) {
-  const Eigen::Vector3d center(in_single_precision(ball.center.x()),
-                               in_single_precision(ball.center.y()),
-                               in_single_precision(ball.center.z()));
-  const double moved = distance_upper(center, ball.center);
+Sphere packed(const Sphere& sphere, double inflation) {
+  const Eigen::Vector3d center(in_single_precision(sphere.center.x()),
+                               in_single_precision(sphere.center.y()),
+                               in_single_precision(sphere.center.z()));
+  const double moved = distance_upper(center, sphere.center);
   const double radius =
-      mul_up(add_up(add_up(ball.radius, moved), inflation), 1.0 + 8.0 * kFloatRoundoff);
+      mul_up(add_up(add_up(sphere.radius, moved), inflation), 1.0 + 8.0 * kFloatRoundoff);
   return {center, static_cast<double>(rounded_up_to_single(add_up(radius, kAbsolute)))};
 }
 
@@ -37,11 +37,11 @@ PackedNode empty_node() {
   return node;
 }
 
-void set_lane(PackedNode& node, int lane, const Sphere& ball, std::int32_t child) {
-  node.x[lane] = static_cast<float>(ball.center.x());
-  node.y[lane] = static_cast<float>(ball.center.y());
-  node.z[lane] = static_cast<float>(ball.center.z());
-  node.radius[lane] = static_cast<float>(ball.radius);
+void set_lane(PackedNode& node, int lane, const Sphere& sphere, std::int32_t child) {
+  node.x[lane] = static_cast<float>(sphere.center.x());
+  node.y[lane] = static_cast<float>(sphere.center.y());
+  node.z[lane] = static_cast<float>(sphere.center.z());
+  node.radius[lane] = static_cast<float>(sphere.radius);
   node.child[lane] = child;
 }
 

@@ -11,17 +11,17 @@
 
 namespace spherule::internal {
 
-// A sphere tree for filters in single precision: a test that finds two of its balls apart proves
+// A sphere tree for filters in single precision: a test that finds two of its spheres apart proves
 // that no spheres below them touch.
 //
-// Every ball is the one of the tree, or the smallest around the spheres below it where that is
-// smaller (it need not contain the balls between, since nothing but leaves decides), with
+// Every sphere is the one of the tree, or the smallest around the spheres below it where that is
+// smaller (it need not contain the spheres between, since nothing but leaves decides), with
 //   centre: rounded to nearest, by which its radius grows;
 //   radius: r' >= (r + rounding of the centre + inflation) (1 + 8 v), rounded up, v = 2^-24.
 //
-// What the test may round. Let two balls overlap in exact arithmetic after their centres have been
-// displaced by at most the `inflation` of each, so that the distance of the displaced centres as
-// they are stored is D <= s = (r1' + r2') / (1 + 8 v). The test computes, with or without fused
+// What the test may round. Let two spheres overlap in exact arithmetic after their centres have
+// been displaced by at most the `inflation` of each, so that the distance of the displaced centres
+// as they are stored is D <= s = (r1' + r2') / (1 + 8 v). The test computes, with or without fused
 // operations, differences with a relative error of v, squares and sums of positive terms with 3 v
 // more, so d2 <= D^2 (1 + 5.1 v), and a limit of (r1' + r2')^2 (1 - 3.1 v) at least. Since
 // (1 + 8 v)^2 > (1 + 5.1 v) / (1 - 3.1 v), d2 <= limit: they are never found apart. Squares that
@@ -42,12 +42,12 @@ class PackedTree {
   PackedTree(const SphereTree& tree, const CullingSpheres& culling, const Pose& pose,
              double inflation);
 
-  // The root is node 0; behind the last, number node_count(), one holds the ball around all.
+  // The root is node 0; behind the last, number node_count(), one holds the sphere around all.
   const PackedNode* nodes() const { return nodes_.data(); }
   std::int32_t node_count() const { return static_cast<std::int32_t>(nodes_.size()) - 1; }
   // One for every sphere of the tree, in its order.
-  const PackedBall* leaves() const { return leaves_.data(); }
-  // The ball around all, as the balls of the nodes; its centre is exact in single precision.
+  const PackedSphere* leaves() const { return leaves_.data(); }
+  // The sphere around all, as the spheres of the nodes; its centre is exact in single precision.
   const Sphere& root() const { return root_; }
   // Nodes on the longest way from the root to a leaf, at least one.
   int depth() const { return depth_; }
@@ -56,7 +56,7 @@ class PackedTree {
 
  private:
   std::vector<PackedNode> nodes_;
-  std::vector<PackedBall> leaves_;
+  std::vector<PackedSphere> leaves_;
   Sphere root_;
   int depth_ = 0;
   double largest_inflation_ = 0.0;

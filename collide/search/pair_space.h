@@ -26,7 +26,7 @@ class PairSpace {
   bool is_leaf(NodePair pair) const { return trees_.is_leaf_pair(pair); }
   OpenedPair open(NodePair pair) const { return trees_.open(pair); }
   void gaps(const OpenedPair& opened, double* gaps) const {
-    ball_gaps(trees_.balls(opened.side), opened.first, opened.count, opened.ball, gaps);
+    sphere_gaps(trees_.spheres(opened.side), opened.first, opened.count, opened.sphere, gaps);
   }
   NodePair child(NodePair pair, const OpenedPair& opened, std::int32_t i) const {
     return pair.with(opened.side, opened.first + i);

@@ -129,10 +129,10 @@ CollisionResult all_pairs(const SphereTree& a, const SphereTree& b, const Relati
   result.cost.node_tests = 1;
   result.cost.leaf_tests = a.is_leaf(0) && b.is_leaf(0) ? 1 : 0;
 
-  if (pose.may_touch(a.ball(0), b.ball(0)) && !boxes_apart(a, b, pose)) {
+  if (pose.may_touch(a.sphere(0), b.sphere(0)) && !boxes_apart(a, b, pose)) {
     result.complete = traverse(a, b, pose, query);
   } else {
-    query.pruned(std::max(pose.gap(a.ball(0), b.ball(0)), box_gap(a, b, pose)));
+    query.pruned(std::max(pose.gap(a.sphere(0), b.sphere(0)), box_gap(a, b, pose)));
     result.complete = true;
   }
   std::sort(result.pairs.begin(), result.pairs.end());

@@ -13,9 +13,9 @@
 //     S = reach(a) + reach(b) + |d|_1
 // two spheres have |x| + ra + |y| + rb + |d| <= S and D <= S. The computed S errs by less than 8 u
 // S. It is the same for every tree over the same spheres, and so is what the canonical test
-// accepts. Balls of nodes lie in the root ball (c, R) of a layered tree, so |x| + r <= |c| + R, for
-// which the sum of absolute coordinates stands in. T is S with the larger of this and the reach for
-// each tree: it bounds the same for nodes and spheres alike, and T >= S.
+// accepts. Spheres of nodes lie in the root sphere (c, R) of a layered tree, so |x| + r <= |c| + R,
+// for which the sum of absolute coordinates stands in. T is S with the larger of this and the reach
+// for each tree: it bounds the same for nodes and spheres alike, and T >= S.
 //
 // Canonical test (touches): the one test that decides whether two leaves overlap, in whatever order
 // and by whatever kernel the traversal reached them.
@@ -35,20 +35,22 @@
 // (entries: three products of unit columns, 3 u each). t = Rb^T d: 60 u |d| + 1 u |d| + 5.2 u |d|.
 // The image R x + t: four terms a row, 4 sqrt(3) u |x| + 4 u |d| < 7 u |x| + 4 u |d|. So an image
 // errs by less than  f = 136 u |x| + 71 u |d|  <= 136 u T.
-//   - gap of two balls, sqrt(d2) - (r + r'): f + 3 u T (differences and squares, half of 5 u) + 3 u
+//   - gap of two spheres, sqrt(d2) - (r + r'): f + 3 u T (differences and squares, half of 5 u) + 3
+//   u
 //     T (root, sum, difference): less than kGapError = 148 u T.
-//   - node test, d2 <= (r + pad + r')^2: it must keep every pair of balls whose gap is at most the
+//   - node test, d2 <= (r + pad + r')^2: it must keep every pair of spheres whose gap is at most
+//   the
 //     slack, because leaves below them may touch canonically: pad >= 152 u S + f + 4 u T + ...:
 //     less than kNodePad = 320 u T. Hence the set of reported pairs is exactly the set of pairs
 //     that touch canonically, whatever the trees between, and the same for every kernel.
 //
-// Clearance c >= 0. Both tests also answer whether balls come within c: the canonical test adds
+// Clearance c >= 0. Both tests also answer whether spheres come within c: the canonical test adds
 // c (1 + 8 u) to its pad, the node test c' (1 + 32 u) for a margin c'.
 //   - never missed: D <= ra + rb + c now asks for c (1 + 8 u)(1 - u)(1 - 2.5 u) >= c (1 + 1.5 u),
 //     beside what it asked for.
 //   - little extra: the gap is at most kSlack S + c (1 + 8 u)(1 + u)(1 + 2.5 u), hence at most
 //     kSlack S + c + 16 u c.
-//   - a node test with the margin c' keeps every pair of balls whose gap is at most kSlack S + c'
+//   - a node test with the margin c' keeps every pair of spheres whose gap is at most kSlack S + c'
 //     (1 + 16 u): its limit takes 3 u of c' (1 + 32 u)(1 - u), the squared distance 1.5 u.
 //     So c' = c keeps all that the canonical test with the clearance c accepts.
 //
@@ -89,9 +91,10 @@ struct FrameChange {
   }
 };
 
-// How far from the origin of its frame any ball of a layered tree reaches, those of nodes included.
+// How far from the origin of its frame any sphere of a layered tree reaches, those of nodes
+// included.
 inline double node_reach(const SphereTree& tree) {
-  const Sphere root = tree.ball(0);
+  const Sphere root = tree.sphere(0);
   const double of_root =
       (std::abs(root.center.x()) + std::abs(root.center.y()) + std::abs(root.center.z())) +
       root.radius;
@@ -122,16 +125,16 @@ class RelativePose {
   double slack() const { return kSlack * scene_size_ + 4.0 * kUnderflow; }
   double slack(double clearance) const { return slack() + 16.0 * kUnitRoundoff * clearance; }
 
-  // The canonical test: true if the closed balls (x, ra) of a and (y, rb) of b overlap or touch
+  // The canonical test: true if the closed spheres (x, ra) of a and (y, rb) of b overlap or touch
   // under the exact poses; never true if their gap exceeds slack().
   bool touches(const Sphere& a, const Sphere& b) const { return within(a, b, leaf_pad()); }
 
-  // The same for balls that come within a clearance; never true beyond slack(clearance).
+  // The same for spheres that come within a clearance; never true beyond slack(clearance).
   bool touches(const Sphere& a, const Sphere& b, double clearance) const {
     return within(a, b, leaf_pad() + clearance * kRelativeUp);
   }
 
-  // Weaker: true for all pairs of balls that contain balls for which touches() is true.
+  // Weaker: true for all pairs of spheres that contain spheres for which touches() is true.
   bool may_touch(const Sphere& a, const Sphere& b) const { return within(a, b, node_pad()); }
   bool may_touch(const Sphere& a, const Sphere& b, double margin) const {
     return within(a, b, node_pad() + margin * kMarginUp);

@@ -8,7 +8,7 @@ inline constexpr double kFloatRoundoff = 0x1p-24;
 
 // The nearest number of single precision. A function that is not inlined: where g++ 12 vectorises
 // the way there and back (at -O2, two numbers at once), it leaves it out.
-// PackedTree.EveryBallHasRoomForTheInflatedSpheresBelow shows it.
+// PackedTree.EverySphereHasRoomForTheInflatedSpheresBelow shows it.
 double in_single_precision(double x);
 
 // A number in single precision, not below the one given.

@@ -30,7 +30,7 @@ inline constexpr std::size_t kInlineStack = 2304;
 
 // A policy says what to do with what the traversal finds:
 //   static constexpr bool kNeedsGaps   whether pruned(gap) is called for every pruned pair, gap
-//                                      being the distance of the two balls, within gap_error();
+//                                      being the distance of the two spheres, within gap_error();
 //   bool afford(opened, leaf_pairs)    before the children are tested: false ends the traversal;
 //                                      leaf_pairs() counts the pairs of leaves among them;
 //   bool leaves(pair)                  a pair of leaves that may touch: false ends the traversal;
@@ -46,10 +46,10 @@ concept HasMargin = requires(const Policy& policy, NodePair pair) {
 };
 
 // The child of smallest gap among those of the mask, which is not 0.
-inline std::int32_t nearest_of(std::uint32_t mask, const BallArrays& children,
+inline std::int32_t nearest_of(std::uint32_t mask, const SphereArrays& children,
                                const OpenedPair& opened) {
   double gaps[SphereTree::kMaxBranching];
-  ball_gaps(children, opened.first, opened.count, opened.ball, gaps);
+  sphere_gaps(children, opened.first, opened.count, opened.sphere, gaps);
   std::int32_t nearest = std::countr_zero(mask);
   for (mask &= mask - 1; mask != 0; mask &= mask - 1) {
     const std::int32_t i = std::countr_zero(mask);
@@ -83,17 +83,17 @@ bool traverse_with(NodePair* stack, [[maybe_unused]] std::size_t capacity, const
     };
     if (!policy.afford(opened, leaf_pairs)) return false;
 
-    QueryBall padded = opened.ball;
+    QuerySphere padded = opened.sphere;
     if constexpr (HasMargin<Policy>) {
       padded.radius += node_pad + policy.margin(pair) * kMarginUp;
     } else {
       padded.radius += node_pad;
     }
-    const BallArrays& children = trees.balls(opened.side);
+    const SphereArrays& children = trees.spheres(opened.side);
     std::uint32_t mask = overlap_mask(children, opened.first, opened.count, padded);
     if constexpr (Policy::kNeedsGaps) {
       double gaps[SphereTree::kMaxBranching];
-      ball_gaps(children, opened.first, opened.count, opened.ball, gaps);
+      sphere_gaps(children, opened.first, opened.count, opened.sphere, gaps);
       for (std::int32_t i = 0; i < opened.count; ++i) {
         if (!(mask >> i & 1u)) policy.pruned(gaps[i]);
       }

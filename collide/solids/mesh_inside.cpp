@@ -96,7 +96,7 @@ bool count_crossings(const MeshTree& mesh, const std::vector<TriangleRole>& role
   stack[top++] = 0;
   while (top > 0) {
     const auto node = static_cast<std::size_t>(stack[--top]);
-    if (!ray.may_meet(tree.ball(node))) continue;
+    if (!ray.may_meet(tree.sphere(node))) continue;
     if (!tree.is_leaf(node)) {
       assert(top + static_cast<std::size_t>(tree.child_count(node)) <= stack.size());
       for (std::int32_t i = 0; i < tree.child_count(node); ++i) {

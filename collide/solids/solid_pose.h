@@ -11,7 +11,7 @@
 //     s <= r + c asks for pad >= 144 u S and the rounding of the three terms of the limit, 1 u of
 //     each of the first two and 3 u of c: kLeafPad = 152 u S. Little extra: s exceeds r + c by at
 //     most (152 + 144 + 8) u S + 40 u c: kSlack = 304 u S.
-//   - Node test: the ball of a node contains those of its leaves, so that its s - r is no larger
+//   - Node test: the sphere of a node contains those of its leaves, so that its s - r is no larger
 //     than theirs. It must keep s - r <= c + 304 u S + 40 u c: a pad of 304 u T + 144 u T and the
 //     same roundings, kNodePad = 464 u T, and c (1 + 64 u).
 //   - Gap s - r: one rounding more, of terms that are at most T each: kGapError = 152 u T.
@@ -44,17 +44,17 @@ class SolidPose {
   double gap_error() const { return 152.0 * kUnitRoundoff * pose_.node_size() + kUnderflow; }
 
   Eigen::Vector3d in_solid(const Eigen::Vector3d& p) const { return solid_from_tree_(p); }
-  double signed_distance(const Sphere& ball) const {
-    return field_.signed_distance(in_solid(ball.center));
+  double signed_distance(const Sphere& sphere) const {
+    return field_.signed_distance(in_solid(sphere.center));
   }
-  // Of the ball and the solid, within gap_error(); negative where they overlap.
-  double gap(const Sphere& ball) const { return signed_distance(ball) - ball.radius; }
-  bool touches(const Sphere& ball) const {
-    return signed_distance(ball) <= ball.radius + leaf_limit_;
+  // Of the sphere and the solid, within gap_error(); negative where they overlap.
+  double gap(const Sphere& sphere) const { return signed_distance(sphere) - sphere.radius; }
+  bool touches(const Sphere& sphere) const {
+    return signed_distance(sphere) <= sphere.radius + leaf_limit_;
   }
-  // True for all balls that contain one that touches.
-  bool may_touch(const Sphere& ball) const {
-    return signed_distance(ball) <= ball.radius + node_limit_;
+  // True for all spheres that contain one that touches.
+  bool may_touch(const Sphere& sphere) const {
+    return signed_distance(sphere) <= sphere.radius + node_limit_;
   }
 
  private:

@@ -2,8 +2,8 @@
 #include "collide/solids/solid_spheres.h"
 
 #include "collide/search/one_tree.h"
-#include "collide/solids/balls_inside.h"
 #include "collide/solids/mesh_inside.h"
+#include "collide/solids/spheres_inside.h"
 #include "spheretree/build.h"
 #include "spheretree/rounding.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Cells at the surface are split down to this part of the mean radius of the triangles' balls, as
+// Cells at the surface are split down to this part of the mean radius of the triangles' spheres, as
 // long as there are not more of them than so many for each triangle.
 constexpr double kSmallestCell = 1.0;
 constexpr std::size_t kCellsATriangle = 4;
@@ -28,20 +28,20 @@ struct Cell {
   double half;
 
   // Halves are powers of two of the first one, but centres err by a few units in the last place.
-  Sphere ball() const {
+  Sphere sphere() const {
     return {center, half * 1.7320508075688774 * (1.0 + 1e-9) + 1e-14 * center.cwiseAbs().sum()};
   }
 };
 
-// Whether the ball around one triangle holds all of another ball.
+// Whether the sphere around one triangle holds all of another sphere.
 class FindHolder {
  public:
-  FindHolder(const SphereTree& tree, const Sphere& ball) : tree_(tree), ball_(ball) {}
+  FindHolder(const SphereTree& tree, const Sphere& sphere) : tree_(tree), sphere_(sphere) {}
 
   bool afford(std::int32_t, std::int32_t) const { return true; }
   bool enters(std::int32_t node) const {
-    const Sphere around = tree_.ball(static_cast<std::size_t>(node));
-    return add_up(distance_upper(around.center, ball_.center), ball_.radius) <= around.radius;
+    const Sphere around = tree_.sphere(static_cast<std::size_t>(node));
+    return add_up(distance_upper(around.center, sphere_.center), sphere_.radius) <= around.radius;
   }
   bool leaf(std::int32_t) {
     found_ = true;
@@ -51,12 +51,12 @@ class FindHolder {
 
  private:
   const SphereTree& tree_;
-  const Sphere ball_;
+  const Sphere sphere_;
   bool found_ = false;
 };
 
-bool is_held(const SolidMesh& solid, const Sphere& ball) {
-  FindHolder query(solid.mesh().tree(), ball);
+bool is_held(const SolidMesh& solid, const Sphere& sphere) {
+  FindHolder query(solid.mesh().tree(), sphere);
   search_tree(solid.mesh().tree(), query);
   return query.found();
 }
@@ -66,10 +66,11 @@ bool is_held(const SolidMesh& solid, const Sphere& ball) {
 std::vector<Sphere> spheres_around(const SolidMesh& solid) {
   std::vector<Sphere> spheres;
   double sum = 0.0;
-  for (const Sphere& ball : solid.mesh().tree().spheres()) {
-    sum += ball.radius;
-    spheres.push_back({ball.center, solid.inflation() > 0.0 ? add_up(ball.radius, solid.inflation())
-                                                            : ball.radius});
+  for (const Sphere& sphere : solid.mesh().tree().spheres()) {
+    sum += sphere.radius;
+    spheres.push_back({sphere.center, solid.inflation() > 0.0
+                                          ? add_up(sphere.radius, solid.inflation())
+                                          : sphere.radius});
   }
   if (!solid.has_inside()) return spheres;
   const Eigen::AlignedBox3d& box = solid.inside().box();
@@ -77,31 +78,31 @@ std::vector<Sphere> spheres_around(const SolidMesh& solid) {
   const double reach = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
   std::vector<Cell> cells = {
       {0.5 * (box.min() + box.max()), 0.5 * box.sizes().maxCoeff() * (1.0 + 1e-9) + 1e-12 * reach}};
-  const Sphere around = cells.front().ball();
+  const Sphere around = cells.front().sphere();
   const SphereTree frame = build_tree({&around, 1});
   const Pose same;  // kept by reference
   const RelativePose pose(frame, same, solid.mesh().tree(), same);
-  const BallsInside inside(frame, solid, pose);
+  const SpheresInside inside(frame, solid, pose);
   const double smallest = kSmallestCell * sum / static_cast<double>(spheres.size());
   const std::size_t most = std::max(kFewestCells, kCellsATriangle * spheres.size());
   for (int level = 0; !cells.empty(); ++level) {
     std::vector<Cell> at_surface;
     for (const Cell& cell : cells) {
-      const Sphere ball = cell.ball();
-      if (inside.is_outside_box(cell.center, ball.radius)) continue;
-      if (!inside.is_clear(cell.center, ball.radius)) {
-        if (!is_held(solid, ball)) at_surface.push_back(cell);
+      const Sphere sphere = cell.sphere();
+      if (inside.is_outside_box(cell.center, sphere.radius)) continue;
+      if (!inside.is_clear(cell.center, sphere.radius)) {
+        if (!is_held(solid, sphere)) at_surface.push_back(cell);
       } else if (inside.contains(cell.center)) {
-        spheres.push_back(ball);
+        spheres.push_back(sphere);
       }
     }
     // Of the eight parts of a cell at the surface four are there as well.
     const bool is_last = level == kMostLevels || 4 * at_surface.size() > most ||
-                         (!at_surface.empty() && at_surface.front().ball().radius <= smallest);
+                         (!at_surface.empty() && at_surface.front().sphere().radius <= smallest);
     cells.clear();
     for (const Cell& cell : at_surface) {
       if (is_last) {
-        spheres.push_back(cell.ball());
+        spheres.push_back(cell.sphere());
         continue;
       }
       for (int part = 0; part < 8; ++part) {

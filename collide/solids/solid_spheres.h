@@ -8,17 +8,17 @@
 
 namespace spherule::internal {
 
-// Spheres that together hold all of a solid, in its frame: a ball around each triangle, grown as
-// the solid is, and balls around the cells of an octree that hold the inside. They stand out where
-// triangles do, and at the surface by a cell, of which there are about as many as triangles: for a
-// search that rules out what is not near the solid.
+// Spheres that together hold all of a solid, in its frame: a sphere around each triangle, grown as
+// the solid is, and spheres around the cells of an octree that hold the inside. They stand out
+// where triangles do, and at the surface by a cell, of which there are about as many as triangles:
+// for a search that rules out what is not near the solid.
 //
-// Proof. What is within growth() of a triangle is in its ball. A point of the inside lies in the
-// root cell, which contains inside().box(). A cell whose ball meets no triangle lies, whole, on one
-// side: it is left out only if its centre is outside. One whose ball may meet a triangle is left
-// out if a triangle's ball holds all of it (those of the tree's nodes hold the balls below them, so
-// that the search for it loses none); else it is split, until it is small or there are too many,
-// and then its ball is kept.
+// Proof. What is within growth() of a triangle is in its sphere. A point of the inside lies in the
+// root cell, which contains inside().box(). A cell whose sphere meets no triangle lies, whole, on
+// one side: it is left out only if its centre is outside. One whose sphere may meet a triangle is
+// left out if a triangle's sphere holds all of it (those of the tree's nodes hold the spheres below
+// them, so that the search for it loses none); else it is split, until it is small or there are too
+// many, and then its sphere is kept.
 std::vector<Sphere> spheres_around(const SolidMesh& solid);
 
 }  // namespace spherule::internal

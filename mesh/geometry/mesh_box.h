@@ -20,10 +20,10 @@ inline Eigen::AlignedBox3d box_of(const TriangleMesh& mesh) {
   return box;
 }
 
-// Around the balls, up to rounding.
-inline Eigen::AlignedBox3d box_of(std::span<const Sphere> balls) {
+// Around the spheres, up to rounding.
+inline Eigen::AlignedBox3d box_of(std::span<const Sphere> spheres) {
   Eigen::AlignedBox3d box;
-  for (const Sphere& s : balls) {
+  for (const Sphere& s : spheres) {
     box.extend(Eigen::Vector3d(s.center - Eigen::Vector3d::Constant(s.radius)));
     box.extend(Eigen::Vector3d(s.center + Eigen::Vector3d::Constant(s.radius)));
   }

@@ -12,7 +12,7 @@
 
 namespace spherule::internal {
 
-// Points sorted into cubes, to find those in a ball. Comparisons are plain double: this serves
+// Points sorted into cubes, to find those in a sphere. Comparisons are plain double: this serves
 // the search, never a proof.
 class PointGrid {
  public:

@@ -17,7 +17,7 @@ namespace spherule::internal {
 // exact point, in exactly the direction given, whose length must be in (0, 1].
 //
 // Budget, with everything taken relative to the point p: the corners of a triangle, of norm at most
-// R, and centres of balls err by e + u R each, where e is the error of p. With Q = R + e:
+// R, and centres of spheres err by e + u R each, where e is the error of p. With Q = R + e:
 //   dot product w.a:         e + u R + 3 u R          < 2 e + 8 u Q;
 //   triple product w.(a x b): 2 (e + u R) R + e^2 and for each of its six terms five roundings,
 //     their absolute sum being at most sqrt(3) |a| |b|: 9 u R^2;   together < 3 e Q + 16 u Q^2;
@@ -27,11 +27,11 @@ class Ray {
   Ray(const Eigen::Vector3d& point, double error, const Eigen::Vector3d& direction)
       : point_(point), error_(error), direction_(direction) {}
 
-  // False only if it does not meet the ball.
-  bool may_meet(const Sphere& ball) const {
-    const Eigen::Vector3d c = ball.center - point_;
+  // False only if it does not meet the sphere.
+  bool may_meet(const Sphere& sphere) const {
+    const Eigen::Vector3d c = sphere.center - point_;
     const double pad = dot_error(c.norm() * kRelativeUp) + kUnderflow;
-    const double reach = ball.radius * kRelativeUp + pad;
+    const double reach = sphere.radius * kRelativeUp + pad;
     // A shorter direction only makes both products smaller.
     return direction_.dot(c) >= -reach && direction_.cross(c).squaredNorm() <= reach * reach;
   }

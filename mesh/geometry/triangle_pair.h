@@ -52,8 +52,8 @@ enum class TriangleContact {
 // overlaps by more than that, so degenerate triangles are at most in doubt.
 //
 // How deep. Where they overlap along all of these axes by more than a depth times the axis' length,
-// a ball of that radius about the origin lies in the difference: a triangle that moves, rigidly or
-// not, none of its points by more than the depth, cannot be parted from the other by any plane.
+// a sphere of that radius about the origin lies in the difference: a triangle that moves, rigidly
+// or not, none of its points by more than the depth, cannot be parted from the other by any plane.
 // |N| <= |n| + 282 u S L.
 //
 // Doubt. Triangles that are apart by clearly more than the pad are found apart by an axis: faces by

@@ -234,7 +234,7 @@ void RobotScene::define_region(Region region, std::span<const BodySphere> sphere
 
 void RobotScene::define_region(Region region, const Sphere& around) {
   require_body(region.body);
-  if (!is_usable(around)) throw Error(region.body, "the ball around a region cannot be used");
+  if (!is_usable(around)) throw Error(region.body, "the sphere around a region cannot be used");
   std::vector<BodySphere> inside;
   const auto trees = trees_of(region.body);
   for (std::size_t tree = 0; tree < trees.size(); ++tree) {

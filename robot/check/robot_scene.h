@@ -107,7 +107,7 @@ class RobotScene {
   // Names some spheres of a body; a region of that name that was there is replaced. Regions may
   // share spheres. Throws Error for spheres that are not there, and for none.
   void define_region(Region region, std::span<const BodySphere> spheres);
-  // Those whose centre lies in `around`, a ball in the frame of the link, or of the object.
+  // Those whose centre lies in `around`, a sphere in the frame of the link, or of the object.
   void define_region(Region region, const Sphere& around);
 
   // A body and an obstacle, or two bodies, may touch: they are not tested any more.

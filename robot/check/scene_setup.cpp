@@ -89,7 +89,7 @@ class Preparation {
     return solid;
   }
   ObstacleShape shape_of(const std::string&, const PointsSource& source) {
-    return shared(build_tree(point_balls(source)));
+    return shared(build_tree(point_spheres(source)));
   }
   ObstacleShape shape_of(const std::string&, const SpheresSource& source) {
     return read_spheres(source);
@@ -136,7 +136,7 @@ class Preparation {
 
 }  // namespace
 
-std::vector<Sphere> point_balls(const PointsSource& source) {
+std::vector<Sphere> point_spheres(const PointsSource& source) {
   const PointCloudFile cloud = read_point_cloud(source.path, source.scale);
   return point_cloud_spheres(cloud.points, add_up(source.radius, cloud.point_error),
                              {.voxel = source.voxel});

@@ -22,10 +22,10 @@
 
 namespace spherule {
 
-// What stands for a cloud of points: balls of which one contains the ball of the source's radius
-// about each point as it is written in the file, scaled exactly; with cells one for those of a
-// cell. Throws Error as read_point_cloud() and point_cloud_spheres().
-std::vector<Sphere> point_balls(const PointsSource& source);
+// What stands for a cloud of points: spheres of which one contains the sphere of the source's
+// radius about each point as it is written in the file, scaled exactly; with cells one for those of
+// a cell. Throws Error as read_point_cloud() and point_cloud_spheres().
+std::vector<Sphere> point_spheres(const PointsSource& source);
 
 // A scene, and what a person should know of it.
 struct PreparedScene {

@@ -91,8 +91,8 @@ double uncovered_share(const TriangleMesh& mesh, std::span<const Sphere> spheres
     const Eigen::Vector3i& t = mesh.triangles[triangle];
     const Vector3d point =
         corner(t, 0) + u * (corner(t, 1) - corner(t, 0)) + v * (corner(t, 2) - corner(t, 0));
-    const bool held = std::any_of(spheres.begin(), spheres.end(), [&](const Sphere& ball) {
-      return (point - ball.center).squaredNorm() <= ball.radius * ball.radius;
+    const bool held = std::any_of(spheres.begin(), spheres.end(), [&](const Sphere& sphere) {
+      return (point - sphere.center).squaredNorm() <= sphere.radius * sphere.radius;
     });
     outside += held ? 0 : 1;
   }
@@ -101,7 +101,7 @@ double uncovered_share(const TriangleMesh& mesh, std::span<const Sphere> spheres
 
 double reach_of(const LinkParts& part) {
   double reach = 0.0;
-  for (const Sphere& ball : part.spheres) reach = std::max(reach, norm_upper(ball.center));
+  for (const Sphere& sphere : part.spheres) reach = std::max(reach, norm_upper(sphere.center));
   if (!part.mesh) return reach;
   for (const Vector3d& vertex : part.mesh->vertices) reach = std::max(reach, norm_upper(vertex));
   return reach;
@@ -115,7 +115,7 @@ double map_error(double kinematics_error, double reach, const Pose& world_from_l
 }
 
 // All parts in the frame of the world, in one configuration. Meshes get the error of the mapping on
-// top of their vertex error, balls lose it of their radius; those that vanish cover nothing.
+// top of their vertex error, spheres lose it of their radius; those that vanish cover nothing.
 class PlacedRobot {
  public:
   PlacedRobot(const RobotDescription& robot, std::span<const LinkParts> parts,
@@ -127,9 +127,9 @@ class PlacedRobot {
       const double error = map_error(kinematics_error_bound(robot.model, reach), reach, pose);
       errors_.push_back(error);
       largest_error_ = std::max(largest_error_, error);
-      for (const Sphere& ball : part.spheres) {
-        const double radius = sub_down(ball.radius, error);
-        if (radius >= 0.0) spheres_.push_back({pose * ball.center, radius});
+      for (const Sphere& sphere : part.spheres) {
+        const double radius = sub_down(sphere.radius, error);
+        if (radius >= 0.0) spheres_.push_back({pose * sphere.center, radius});
       }
     }
   }

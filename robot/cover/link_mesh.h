@@ -18,7 +18,7 @@ enum class LinkGeometry {
 // How the shapes of a link become one mesh.
 struct LinkMeshOptions {
   LinkGeometry geometry = LinkGeometry::kCollision;
-  // How far triangles for a ball, cylinder or capsule may lie outside of it; positive, in metres.
+  // How far triangles for a sphere, cylinder or capsule may lie outside of it; positive, in metres.
   double chord_error = 0.0005;
   // Vertices of a mesh file that are no further apart than this become one, as with
   // MeshReadOptions::weld, but in metres; under a scale with different factors along the axes less

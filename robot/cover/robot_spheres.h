@@ -32,8 +32,9 @@ struct RobotCoverOptions {
   // E of every link. A centimetre is what planners commonly leave as clearance anyway, and an arm
   // of human size gets a few hundred spheres.
   double max_error = 0.01;
-  // D of every link; 0 chooses 4 E, the natural ratio: 90-degree edges ask for balls of radius 2 E,
-  // and what is narrower than the smallest ball of a tool made with the same E need not be kept.
+  // D of every link; 0 chooses 4 E, the natural ratio: 90-degree edges ask for spheres of radius 2
+  // E, and what is narrower than the smallest sphere of a tool made with the same E need not be
+  // kept.
   double min_external_diameter = 0.0;
   double tightness = SimplifyOptions{}.tightness;
   double padding = 0.0;
@@ -45,7 +46,7 @@ struct RobotCoverOptions {
   double seconds = 0.0;                // and its limit in time, for each link; 0: none
   int threads = 0;                     // 0: all; the result does not depend on it
   Progress progress = {};              // the word on what is being done is a link's name
-  // CoverOptions::stop: every link then gets the fewest balls proved so far, those whose turn has
+  // CoverOptions::stop: every link then gets the fewest spheres proved so far, those whose turn has
   // not come their first answer.
   std::stop_token stop = {};
 };

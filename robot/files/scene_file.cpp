@@ -215,7 +215,7 @@ class SceneReader {
     }
     if (key == "ball") {
       value.require_keys({"radius"});
-      return Ball{value.at("radius").number()};
+      return SolidSphere{value.at("radius").number()};
     }
     if (key == "half_space") {
       value.require_keys({});
@@ -286,9 +286,9 @@ class SceneReader {
   void read_region(const Value& value) {
     value.require_keys({"body", "name", "ball"});
     SceneRegion region{value.at("body").name(), value.at("name").name(), {}};
-    const Value ball = value.at("ball");
-    ball.require_keys({"center", "radius"});
-    region.around = {ball.at("center").numbers<3>(), ball.at("radius").positive()};
+    const Value sphere = value.at("ball");
+    sphere.require_keys({"center", "radius"});
+    region.around = {sphere.at("center").numbers<3>(), sphere.at("radius").positive()};
     value.unless(regions_.insert({region.body, region.name}).second,
                  "the region " + internal::quoted(region.name) + " of " +
                      internal::quoted(region.body) + " is there twice");

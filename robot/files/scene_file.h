@@ -51,7 +51,7 @@ struct SceneAttachment {
   Pose link_from_object{};
 };
 
-// A named part of a link or an attached object: the spheres with their centre in a ball, given in
+// A named part of a link or an attached object: the spheres with their centre in a sphere, given in
 // the frame of the link or object.
 struct SceneRegion {
   std::string body;

@@ -88,12 +88,12 @@ DisabledPair pair_of(const XmlElement& element) {
 LinkSpheres spheres_of(const XmlElement& element) {
   LinkSpheres result{element.needed("link"), {}};
   for (const XmlElement& entry : element.children("sphere")) {
-    const Sphere ball{entry.needed_vector("center"), entry.needed_number("radius")};
-    if (ball.radius < 0.0) entry.refuse("its radius is below zero");
-    if (ball.radius > kMaxCoordinate || ball.center.cwiseAbs().maxCoeff() > kMaxCoordinate) {
+    const Sphere sphere{entry.needed_vector("center"), entry.needed_number("radius")};
+    if (sphere.radius < 0.0) entry.refuse("its radius is below zero");
+    if (sphere.radius > kMaxCoordinate || sphere.center.cwiseAbs().maxCoeff() > kMaxCoordinate) {
       entry.refuse("its numbers are too large");
     }
-    if (ball.radius > 0.0) result.spheres.push_back(ball);
+    if (sphere.radius > 0.0) result.spheres.push_back(sphere);
   }
   return result;
 }

@@ -120,7 +120,7 @@ class ShapeReader {
       primitive = Box{solid.needed_vector("size")};
     } else if (solid.tag() == "sphere") {
       solid.require_attributes({"radius"});
-      primitive = Ball{solid.needed_number("radius")};
+      primitive = SolidSphere{solid.needed_number("radius")};
     } else if (solid.tag() == "cylinder") {
       solid.require_attributes({"radius", "length"});
       primitive = Cylinder{solid.needed_number("radius"), solid.needed_number("length")};

@@ -55,9 +55,9 @@ void check_writable(const RobotSpheres& spheres, SphereFormat format, const std:
     check_name(link.link, "the name of a link", file);
     const std::string subject = "link \"" + link.link + "\"";
     if (!names.insert(link.link).second) throw Error(file, subject + " is there twice");
-    for (const Sphere& ball : link.spheres) {
-      if (!is_usable(ball)) throw Error(file, subject + " has a sphere that is not usable");
-      if (format != SphereFormat::kSpherule && ball.radius == 0.0) {
+    for (const Sphere& sphere : link.spheres) {
+      if (!is_usable(sphere)) throw Error(file, subject + " has a sphere that is not usable");
+      if (format != SphereFormat::kSpherule && sphere.radius == 0.0) {
         throw Error(file, subject + " has a sphere of radius 0, which means none in this format");
       }
     }
@@ -113,15 +113,15 @@ std::string written(const RobotSpheres& spheres, SphereFormat format,
   }
 }
 
-// An SRDF's pairs and balls; a radius of zero is its way to say that there is none.
+// An SRDF's pairs and spheres; a radius of zero is its way to say that there is none.
 RobotSpheres read_sphere_srdf(const fs::path& path) {
   const SemanticDescription semantics = read_srdf(path);
   internal::SphereGatherer gathered(path.string());
   gathered.unless(!semantics.sphere_approximations.empty(), {}, "has no link_sphere_approximation");
   for (const LinkSpheres& link : semantics.sphere_approximations) {
     gathered.begin_link(link.link, {});
-    for (const Sphere& ball : link.spheres) {
-      gathered.add(ball.center, ball.radius, "link \"" + link.link + "\"");
+    for (const Sphere& sphere : link.spheres) {
+      gathered.add(sphere.center, sphere.radius, "link \"" + link.link + "\"");
     }
   }
   gathered.spheres.robot = semantics.robot_name;
@@ -191,9 +191,9 @@ std::vector<LinkSpheres> shrunk_by_buffers(const RobotSpheres& spheres) {
     const double buffer =
         own == spheres.collision_buffers.end() ? spheres.collision_buffer : own->second;
     links.push_back({link.link, {}});
-    for (Sphere ball : link.spheres) {
-      if (buffer < 0.0) ball.radius = add_down(ball.radius, buffer);
-      if (ball.radius >= 0.0) links.back().spheres.push_back(ball);
+    for (Sphere sphere : link.spheres) {
+      if (buffer < 0.0) sphere.radius = add_down(sphere.radius, buffer);
+      if (sphere.radius >= 0.0) links.back().spheres.push_back(sphere);
     }
   }
   return links;

@@ -14,7 +14,7 @@
 
 namespace spherule {
 
-// The balls of a robot, and what the formats of other tools say beside them.
+// The spheres of a robot, and what the formats of other tools say beside them.
 struct RobotSpheres {
   std::string robot = {};  // empty where the format names no robot
   // No name twice; a link without spheres is one that is stated to have none.
@@ -22,21 +22,21 @@ struct RobotSpheres {
   // Pairs left out of self-collision checks (cuRobo, XRDF: ignore; SRDF: disable_collisions, which
   // alone has a reason).
   std::vector<DisabledPair> self_collision_ignore = {};
-  // By how much the balls of a link are grown in self-collision checks, metres; cuRobo and XRDF.
+  // By how much the spheres of a link are grown in self-collision checks, metres; cuRobo and XRDF.
   std::map<std::string, double> self_collision_buffer = {};
   // By how much they are grown in checks against the world: all (cuRobo), or each link's (XRDF; of
   // cuRobo where it is not one number).
   double collision_buffer = 0.0;
   std::map<std::string, double> collision_buffers = {};
-  // Balls switched off by a radius of zero or below; not in `links`.
+  // Spheres switched off by a radius of zero or below; not in `links`.
   std::size_t switched_off = 0;
   // Shapes other than spheres in the <collision> elements of a URDF; not in `links`.
   std::size_t other_shapes = 0;
 };
 
-// The files in which tools keep the balls of a robot. The first six are written too.
+// The files in which tools keep the spheres of a robot. The first six are written too.
 enum class SphereFormat {
-  kUrdf,        // spherized URDF: a <collision> with a <sphere> for each ball
+  kUrdf,        // spherized URDF: a <collision> with a <sphere> for each sphere
   kSrdf,        // SRDF: link_sphere_approximation
   kCurobo,      // cuRobo: robot_cfg / kinematics / collision_spheres, or collision_spheres alone
   kXrdf,        // XRDF 1.0
@@ -65,7 +65,7 @@ std::string sphere_file_name(std::string_view robot, SphereFormat format);
 
 // What a file does not say itself.
 struct SphereReadOptions {
-  // Formats of one mesh, and levels of it: to which link the balls belong.
+  // Formats of one mesh, and levels of it: to which link the spheres belong.
   std::string link = {};
   // Formats with levels (foam, Bradshaw): which one, 0 the coarsest; the finest by default.
   std::optional<std::size_t> level = std::nullopt;
@@ -77,18 +77,18 @@ struct SphereFormatFile {
   RobotSpheres spheres;
 };
 
-// Reads a file of any of these formats; which one is told by the content, not by the name. Balls
+// Reads a file of any of these formats; which one is told by the content, not by the name. Spheres
 // are in the frame of the link that carries them, links in the order of the file.
 // - Spherized URDF: the <sphere> elements of each link's <collision>. A leaf that is fixed to
 //   another link, has nothing but one sphere in its <collision>, and is named LINK_sphereN after
-//   that link, is a ball of LINK (MorphIt): its centre is moved by the joint's transform, and the
-//   radius is grown by the bound of the rounding, so that the ball read contains the ball meant.
-//   Links that have other shapes and no sphere are not in `links`.
+//   that link, is a sphere of LINK (MorphIt): its centre is moved by the joint's transform, and the
+//   radius is grown by the bound of the rounding, so that the sphere read contains the sphere
+//   meant. Links that have other shapes and no sphere are not in `links`.
 // - cuRobo: also a file whose `collision_spheres` names another file, relative to it.
 // - XRDF: the geometry that `collision` names.
-// - A radius of zero or below switches a ball off, and so does its link's absence from cuRobo's
+// - A radius of zero or below switches a sphere off, and so does its link's absence from cuRobo's
 //   collision_link_names: it is left out and counted. (In SRDF a radius of zero says that the link
-//   has no balls, and one below zero is refused; in our own formats only the latter.) Shapes that
+//   has no spheres, and one below zero is refused; in our own formats only the latter.) Shapes that
 //   are no spheres are left out and counted. Nothing else is left out.
 // Throws Error, naming the file, the place (a line, a link, a number) and the reason, for a file
 // that cannot be read or is of none of these formats, a URDF without spheres, names or keys that
@@ -96,19 +96,19 @@ struct SphereFormatFile {
 SphereFormatFile read_robot_spheres(const std::filesystem::path& path,
                                     const SphereReadOptions& options = {});
 
-// Whether a format holds the balls of one mesh and names no link.
+// Whether a format holds the spheres of one mesh and names no link.
 bool is_of_one_mesh(const SphereFormatFile& file);
 
-// The balls that checks against the world see where buffers shrink them: radii plus what is below
+// The spheres that checks against the world see where buffers shrink them: radii plus what is below
 // zero of the buffers, rounded down, without those that vanish. Buffers above zero do not count.
 std::vector<LinkSpheres> shrunk_by_buffers(const RobotSpheres& spheres);
 
-// What the formats say of the robot beside its balls.
+// What the formats say of the robot beside its spheres.
 struct SphereFileContext {
   // The robot's URDF: the document whose <collision> elements are replaced (kUrdf), or what
   // urdf_path names, as it stands here (kCurobo).
   std::filesystem::path urdf = {};
-  // A file of the format, kSrdf, kCurobo or kXrdf, that is kept but for the balls. Empty: none.
+  // A file of the format, kSrdf, kCurobo or kXrdf, that is kept but for the spheres. Empty: none.
   std::filesystem::path original = {};
   std::string base_link = {};                 // cuRobo, XRDF: the root
   std::string tool_link = {};                 // cuRobo: ee_link, XRDF: tool_frames
@@ -120,19 +120,20 @@ struct SphereFileContext {
 // Numbers are written in the shortest form that reads back to the same double, decimal without an
 // exponent in XML and YAML. The file appears whole or not at all; equal input gives equal bytes.
 // - kUrdf: `context.urdf`, with the collision elements of each link of `spheres` replaced by one
-//   for each ball, and leaves that stand for one ball of such a link (above) taken out; everything
-//   else is kept. Relative paths of meshes and textures are made relative to the new place.
-// - kSrdf, kCurobo, kXrdf: what `context.original` holds beside the balls is kept, byte by byte
+//   for each sphere, and leaves that stand for one sphere of such a link (above) taken out;
+//   everything else is kept. Relative paths of meshes and textures are made relative to the new
+//   place.
+// - kSrdf, kCurobo, kXrdf: what `context.original` holds beside the spheres is kept, byte by byte
 // (but
 //   YAML in which a changed part stands in a line with others, or in an anchor, is written anew,
 //   without comments). Pairs of `spheres` that it does not list yet, in either order, are added:
 //   with their reason, in YAML as a comment; to cuRobo's files that have `kinematics`, to XRDF that
 //   has `self_collision`, and to an SRDF that does not enable them. Buffers go into a new file
 //   only.
-// - A link without balls: in SRDF, one ball of radius 0 says so; in a URDF it has no <collision>.
-// Throws Error for balls that are not usable or (but for kSpherule) have no extent, names that are
-// empty, twice, not UTF-8 or have control characters, numbers that are not finite, links that the
-// URDF does not have, and files that cannot be read or written.
+// - A link without spheres: in SRDF, one sphere of radius 0 says so; in a URDF it has no
+// <collision>. Throws Error for spheres that are not usable or (but for kSpherule) have no extent,
+// names that are empty, twice, not UTF-8 or have control characters, numbers that are not finite,
+// links that the URDF does not have, and files that cannot be read or written.
 void write_robot_spheres(const RobotSpheres& spheres, SphereFormat format,
                          const SphereFileContext& context, const std::filesystem::path& path);
 

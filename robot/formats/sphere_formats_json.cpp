@@ -70,12 +70,12 @@ class Reader {
   }
 
   // A list of {"CENTER":[x,y,z],"radius":r}.
-  void balls(const Json& value, const char* center, const std::string& link) {
+  void spheres(const Json& value, const char* center, const std::string& link) {
     std::size_t index = 0;
-    for (const Json& ball : list(value, link)) {
-      const std::string place = ball_place(link, index++);
-      const Eigen::Vector3d at = point(member(ball, center, place), place);
-      gathered.add(at, number(member(ball, "radius", place), place), place);
+    for (const Json& sphere : list(value, link)) {
+      const std::string place = sphere_place(link, index++);
+      const Eigen::Vector3d at = point(member(sphere, center, place), place);
+      gathered.add(at, number(member(sphere, "radius", place), place), place);
     }
   }
 
@@ -85,7 +85,7 @@ class Reader {
     const Json& radii = list(member(value, "radii", link), link);
     gathered.unless(centers.size() == radii.size(), link, "has other counts of centers and radii");
     for (std::size_t i = 0; i < centers.size(); ++i) {
-      const std::string place = ball_place(link, i);
+      const std::string place = sphere_place(link, i);
       gathered.add(point(centers[i], place), number(radii[i], place), place);
     }
   }
@@ -95,24 +95,24 @@ class Reader {
     gathered.unless(list(levels, link).size() > options.level.value_or(0), link,
                     "has only " + std::to_string(levels.size()) + " levels");
     const Json& level = levels[options.level.value_or(levels.size() - 1)];
-    balls(member(level, "spheres", link), "origin", link);
+    spheres(member(level, "spheres", link), "origin", link);
   }
 
   // {"BiggesetSphere":[x,y,z,r],"SubSpheres":{"r0":[x,y,z,r],...}}: two levels.
   void irmv(const Json& value, const SphereReadOptions& options, const std::string& link) {
-    const auto add = [&](const Json& ball) {
-      gathered.unless(ball.is_array() && ball.size() == 4, link, "is not [x, y, z, r]");
-      const Json center = {ball[0], ball[1], ball[2]};
-      gathered.add(point(center, link), number(ball[3], link), link);
+    const auto add = [&](const Json& sphere) {
+      gathered.unless(sphere.is_array() && sphere.size() == 4, link, "is not [x, y, z, r]");
+      const Json center = {sphere[0], sphere[1], sphere[2]};
+      gathered.add(point(center, link), number(sphere[3], link), link);
     };
     gathered.unless(options.level.value_or(0) < 2, link, "has only 2 levels");
     if (options.level == 0) return add(member(value, "BiggesetSphere", link));
     const Json& parts = member(value, "SubSpheres", link);
     gathered.unless(parts.is_object(), link, "\"SubSpheres\" is not an object");
-    for (const Json& ball : parts) add(ball);
+    for (const Json& sphere : parts) add(sphere);
   }
 
-  static std::string ball_place(const std::string& link, std::size_t index) {
+  static std::string sphere_place(const std::string& link, std::size_t index) {
     return link + ", sphere " + std::to_string(index);
   }
 
@@ -147,10 +147,10 @@ void read_own(const Json& document, Reader& reader) {
     const std::string place = place_of(name);
     reader.gathered.begin_link(name, place);
     std::size_t index = 0;
-    for (const Json& ball : reader.list(reader.member(link, "spheres", place), place)) {
-      const std::string here = Reader::ball_place(place, index++);
-      const Sphere read{reader.point(reader.member(ball, "center", here), here),
-                        reader.number(reader.member(ball, "radius", here), here)};
+    for (const Json& sphere : reader.list(reader.member(link, "spheres", place), place)) {
+      const std::string here = Reader::sphere_place(place, index++);
+      const Sphere read{reader.point(reader.member(sphere, "center", here), here),
+                        reader.number(reader.member(sphere, "radius", here), here)};
       reader.gathered.unless(is_usable(read), here, "is negative or beyond 1e15");
       spheres.links.back().spheres.push_back(read);
     }
@@ -196,13 +196,13 @@ std::string number_list(const Eigen::Vector3d& point) {
   return text_of(Json{point.x(), point.y(), point.z()});
 }
 
-// One ball a line.
-std::string ball_list(const std::vector<Sphere>& spheres, const char* center) {
+// One sphere a line.
+std::string sphere_list(const std::vector<Sphere>& spheres, const char* center) {
   std::string text = "[";
-  for (const Sphere& ball : spheres) {
+  for (const Sphere& sphere : spheres) {
     text += text.size() == 1 ? "\n" : ",\n";
-    text += std::string("{\"") + center + "\":" + number_list(ball.center) +
-            ",\"radius\":" + text_of(ball.radius) + "}";
+    text += std::string("{\"") + center + "\":" + number_list(sphere.center) +
+            ",\"radius\":" + text_of(sphere.radius) + "}";
   }
   return text + "]";
 }
@@ -250,7 +250,7 @@ std::string sphere_foam(const RobotSpheres& spheres) {
   for (const LinkSpheres& link : spheres.links) {
     text += (text.size() == 1 ? "\n" : ",\n") + text_of(link.link) +
             ":[{\"mean\":null,\"best\":null,\"worst\":null,\"spheres\":" +
-            ball_list(link.spheres, "origin") + "}]";
+            sphere_list(link.spheres, "origin") + "}]";
   }
   return text + "\n}\n";
 }
@@ -262,7 +262,7 @@ std::string sphere_json(const RobotSpheres& spheres) {
   bool first = true;
   for (const LinkSpheres& link : spheres.links) {
     text += std::string(first ? "\n" : ",\n") + "{\"link\":" + text_of(link.link) +
-            ",\"spheres\":" + ball_list(link.spheres, "center") + "}";
+            ",\"spheres\":" + sphere_list(link.spheres, "center") + "}";
     first = false;
   }
   Json pairs = Json::array();

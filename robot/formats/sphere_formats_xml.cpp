@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/internal/format_text.h"
-#include "robot/formats/internal/ball_leaves.h"
 #include "robot/formats/internal/sphere_documents.h"
+#include "robot/formats/internal/sphere_leaves.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 
@@ -29,8 +29,8 @@ std::unique_ptr<XMLDocument> parsed(const fs::path& path) {
   return document;
 }
 
-// Takes out the links that stand for balls of links in `covered`, and their joints.
-void remove_leaves(XMLElement& robot, const std::map<std::string, BallLeaf>& leaves,
+// Takes out the links that stand for spheres of links in `covered`, and their joints.
+void remove_leaves(XMLElement& robot, const std::map<std::string, SphereLeaf>& leaves,
                    const std::set<std::string>& covered) {
   const auto goes = [&](const char* name) {
     const auto leaf = leaves.find(name);
@@ -56,13 +56,13 @@ void remove_children(XMLElement& element, const char* name) {
   while (XMLElement* child = element.FirstChildElement(name)) element.DeleteChild(child);
 }
 
-XMLElement& new_collision(XMLDocument& document, const Sphere& ball) {
+XMLElement& new_collision(XMLDocument& document, const Sphere& sphere) {
   XMLElement* collision = document.NewElement("collision");
   XMLElement* origin = collision->InsertNewChildElement("origin");
-  origin->SetAttribute("xyz", decimals(ball.center, " ").c_str());
+  origin->SetAttribute("xyz", decimals(sphere.center, " ").c_str());
   origin->SetAttribute("rpy", "0 0 0");
   XMLElement* shape = collision->InsertNewChildElement("geometry")->InsertNewChildElement("sphere");
-  shape->SetAttribute("radius", decimal(ball.radius).c_str());
+  shape->SetAttribute("radius", decimal(sphere.radius).c_str());
   return *collision;
 }
 
@@ -76,8 +76,8 @@ void replace_collisions(XMLDocument& document, XMLElement& link,
     before = link.LastChild();
   }
   remove_children(link, "collision");
-  for (const Sphere& ball : spheres) {
-    XMLElement& collision = new_collision(document, ball);
+  for (const Sphere& sphere : spheres) {
+    XMLElement& collision = new_collision(document, sphere);
     before = before ? link.InsertAfterChild(before, &collision) : link.InsertFirstChild(&collision);
   }
 }
@@ -110,7 +110,7 @@ fs::path folder_of(const fs::path& file) {
 std::string sphere_urdf(const RobotSpheres& spheres, const SphereFileContext& context,
                         const fs::path& path) {
   const XmlFile file(context.urdf, "robot");
-  const auto leaves = ball_leaves(file.root());
+  const auto leaves = sphere_leaves(file.root());
   const auto document = parsed(context.urdf);
   XMLElement& robot = *document->RootElement();
   std::map<std::string, XMLElement*> links;

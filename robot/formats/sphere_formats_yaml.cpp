@@ -24,26 +24,26 @@ double number(const Node& node, const std::string& what, const SphereGatherer& g
   return *value;
 }
 
-void read_ball(const Node& node, SphereGatherer& gathered) {
-  const YamlMembers ball = yaml_members(node, "a sphere", gathered);
-  const auto center = find_member(ball, "center");
+void read_sphere(const Node& node, SphereGatherer& gathered) {
+  const YamlMembers sphere = yaml_members(node, "a sphere", gathered);
+  const auto center = find_member(sphere, "center");
   gathered.unless(center && center->IsSequence() && center->size() == 3, place_of(node),
                   "\"center\" is not [x, y, z]");
   Eigen::Vector3d point;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     point[static_cast<Eigen::Index>(axis)] = number((*center)[axis], "a coordinate", gathered);
   }
-  const auto radius = find_member(ball, "radius");
+  const auto radius = find_member(sphere, "radius");
   if (!radius) gathered.refuse(place_of(node), "\"radius\" is missing");
   gathered.add(point, number(*radius, "\"radius\"", gathered), place_of(node));
 }
 
-void read_balls(const Node& node, SphereGatherer& gathered) {
-  for (const auto& [link, key, balls] : yaml_members(node, "the spheres", gathered)) {
+void read_spheres(const Node& node, SphereGatherer& gathered) {
+  for (const auto& [link, key, spheres] : yaml_members(node, "the spheres", gathered)) {
     gathered.begin_link(link, place_of(key));
-    if (balls.IsNull()) continue;
-    gathered.unless(balls.IsSequence(), place_of(balls), "spheres of a link are not a list");
-    for (const auto& ball : balls) read_ball(ball, gathered);
+    if (spheres.IsNull()) continue;
+    gathered.unless(spheres.IsSequence(), place_of(spheres), "spheres of a link are not a list");
+    for (const auto& sphere : spheres) read_sphere(sphere, gathered);
   }
 }
 
@@ -65,7 +65,7 @@ std::map<std::string, double> read_buffers(const YamlMembers& buffers, SphereGat
   return lengths;
 }
 
-// cuRobo looks at the balls of the links it is told to and no others.
+// cuRobo looks at the spheres of the links it is told to and no others.
 void switch_off_unlisted(const YamlMembers& kinematics, SphereGatherer& gathered) {
   const auto listed = find_member(kinematics, "collision_link_names");
   if (!listed) return;
@@ -85,19 +85,19 @@ void read_curobo(const YamlMembers& root, const fs::path& path, SphereGatherer& 
   YamlMembers kinematics =
       members_if_there(configuration.empty() ? root : configuration, "kinematics", gathered);
   if (kinematics.empty()) kinematics = root;
-  const auto balls = find_member(kinematics, "collision_spheres");
-  if (!balls) gathered.refuse({}, "has no \"collision_spheres\" and is no XRDF");
-  if (balls->IsScalar()) {
-    const fs::path side = path.parent_path() / balls->Scalar();
+  const auto spheres = find_member(kinematics, "collision_spheres");
+  if (!spheres) gathered.refuse({}, "has no \"collision_spheres\" and is no XRDF");
+  if (spheres->IsScalar()) {
+    const fs::path side = path.parent_path() / spheres->Scalar();
     SphereGatherer beside(side.string());
     const YamlMembers there =
         yaml_members(yaml_document(read_file(side), beside), "the file", beside);
     const auto found = find_member(there, "collision_spheres");
     if (!found) beside.refuse({}, "has no \"collision_spheres\"");
-    read_balls(*found, beside);
+    read_spheres(*found, beside);
     gathered.spheres = std::move(beside.spheres);
   } else {
-    read_balls(*balls, gathered);
+    read_spheres(*spheres, gathered);
   }
   switch_off_unlisted(kinematics, gathered);
   const auto robot = find_member(root, "robot");
@@ -124,9 +124,9 @@ void read_xrdf(const YamlMembers& root, SphereGatherer& gathered) {
   const YamlMembers geometries = members_if_there(root, "geometry", gathered);
   const auto geometry = find_member(geometries, name);
   if (!geometry) gathered.refuse({}, "has no geometry \"" + name + "\"");
-  const auto balls = find_member(yaml_members(*geometry, "the geometry", gathered), "spheres");
-  if (!balls) gathered.refuse(place_of(*geometry), "the geometry has no spheres");
-  read_balls(*balls, gathered);
+  const auto spheres = find_member(yaml_members(*geometry, "the geometry", gathered), "spheres");
+  if (!spheres) gathered.refuse(place_of(*geometry), "the geometry has no spheres");
+  read_spheres(*spheres, gathered);
   const YamlMembers collision = members_if_there(root, "collision", gathered);
   gathered.spheres.collision_buffers =
       read_buffers(members_if_there(collision, "buffer_distance", gathered), gathered);

@@ -10,7 +10,7 @@
 
 namespace spherule {
 
-// The balls of one link, in the frame of the link, in metres.
+// The spheres of one link, in the frame of the link, in metres.
 struct LinkSpheres {
   std::string link;
   std::vector<Sphere> spheres;

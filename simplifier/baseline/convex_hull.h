@@ -18,9 +18,9 @@ inline constexpr double kFlatShare = 1e-9;
 
 // What the hull is to hold beside the mesh.
 struct ConvexHullOptions {
-  // Every ball of this radius about a vertex of the mesh is inside too (the mesh's vertex_error is
-  // added). It moves flat and long hulls more at their far ends than across; for larger distances
-  // grow the mesh itself.
+  // Every sphere of this radius about a vertex of the mesh is inside too (the mesh's vertex_error
+  // is added). It moves flat and long hulls more at their far ends than across; for larger
+  // distances grow the mesh itself.
   double padding = 0.0;
   // How far a vertex may be moved, as a share of the extent of the vertices (and ten paddings), for
   // the proof to succeed: triangles that are long and thin ask for more than others.

@@ -53,7 +53,7 @@ SphereLevels hubbard_spheres(const TriangleMesh& mesh, const HubbardOptions& opt
   SphereLevels result;
   for (const std::vector<internal::FittedSphere>& level : merged) {
     std::vector<Sphere>& spheres = result.levels.emplace_back();
-    for (const internal::FittedSphere& s : level) spheres.push_back(s.ball);
+    for (const internal::FittedSphere& s : level) spheres.push_back(s.sphere);
     if (result.levels.size() == 1) continue;
     std::vector<std::int32_t>& parents = result.parents.emplace_back();
     for (const internal::FittedSphere& s : level) parents.push_back(s.merged_into);

@@ -68,11 +68,11 @@ std::vector<Sphere> level_set_packing(const TriangleMesh& mesh,
     throw Error("level set", error.what());
   }
   std::vector<Sphere> spheres;
-  for (const openvdb::Vec4s& ball : packed) {
-    // One ball at least the library makes, however small.
-    if (!(ball[3] >= least)) continue;
-    spheres.push_back({box.min() + options.step * Eigen::Vector3d(ball[0], ball[1], ball[2]),
-                       options.step * static_cast<double>(ball[3])});
+  for (const openvdb::Vec4s& sphere : packed) {
+    // One sphere at least the library makes, however small.
+    if (!(sphere[3] >= least)) continue;
+    spheres.push_back({box.min() + options.step * Eigen::Vector3d(sphere[0], sphere[1], sphere[2]),
+                       options.step * static_cast<double>(sphere[3])});
   }
   return spheres;
 }

@@ -13,7 +13,7 @@ namespace spherule {
 struct LevelSetPackingOptions {
   // Edge of a voxel of the level set, in the unit of the mesh. Positive.
   double step = 0.0;
-  // No ball is smaller; 0 chooses half a step, below which the level set tells nothing.
+  // No sphere is smaller; 0 chooses half a step, below which the level set tells nothing.
   double min_radius = 0.0;
   std::size_t max_spheres = 10000;
   // Points of the inside that are looked at as centres.
@@ -21,14 +21,14 @@ struct LevelSetPackingOptions {
   int threads = 0;  // 0: all
 };
 
-// Not conservative; made_conservative() grows the balls until they cover. Sphere packing as
+// Not conservative; made_conservative() grows the spheres until they cover. Sphere packing as
 // OpenVDB's fillWithSpheres has it, beside the paper's own: the mesh becomes a level set (signed
-// distances in voxels near the surface, in 32-bit floats), and the largest ball that fits inside of
-// it about one of many random points is taken, overlapping allowed, until no candidate is left
-// outside of the balls with a ball of the least radius about it. The balls lie in the solid up to a
-// step. What is inside of an open mesh the library guesses; there may be no ball then. Equal input
-// gives equal results. Throws Error for a mesh that validate() refuses, for options out of range,
-// and for a step below 1/4096 of the box diagonal.
+// distances in voxels near the surface, in 32-bit floats), and the largest sphere that fits inside
+// of it about one of many random points is taken, overlapping allowed, until no candidate is left
+// outside of the spheres with a sphere of the least radius about it. The spheres lie in the solid
+// up to a step. What is inside of an open mesh the library guesses; there may be no sphere then.
+// Equal input gives equal results. Throws Error for a mesh that validate() refuses, for options out
+// of range, and for a step below 1/4096 of the box diagonal.
 std::vector<Sphere> level_set_packing(const TriangleMesh& mesh,
                                       const LevelSetPackingOptions& options);
 

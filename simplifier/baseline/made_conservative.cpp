@@ -15,7 +15,7 @@ ConservativeSpheres made_conservative(const TriangleMesh& mesh, std::span<const 
   result.spheres.assign(spheres.begin(), spheres.end());
   result.certificate = certify(mesh, spheres, options);
   if (result.certificate.covered) return result;
-  // A piece of the proof's finest size lies in one ball only if it has room to spare there.
+  // A piece of the proof's finest size lies in one sphere only if it has room to spare there.
   const double piece = options.resolution * internal::box_of(mesh).diagonal().norm();
   result.inflation = add_up(result.certificate.uncovered_depth.upper, piece);
   for (Sphere& sphere : result.spheres) {

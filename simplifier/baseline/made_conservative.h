@@ -10,21 +10,21 @@
 
 namespace spherule {
 
-// A set of balls grown until it covers, and what is proved about it.
+// A set of spheres grown until it covers, and what is proved about it.
 struct ConservativeSpheres {
   std::vector<Sphere> spheres;  // the same centres in the same order
-  double inflation = 0.0;       // of every radius; 0 if the balls cover as they are
-  Certificate certificate;      // of the grown balls, against |M|
+  double inflation = 0.0;       // of every radius; 0 if the spheres cover as they are
+  Certificate certificate;      // of the grown spheres, against |M|
 };
 
 // Conservative. Grows every radius by the proved upper bound of the uncovered depth of |M| grown by
 // `padding` and the mesh's vertex_error (certify() without external spheres: a hollow whose way in
 // is narrower than 1/128 of the box diagonal counts as solid), and by 1/4096 of the diagonal, with
-// which the second proof succeeds. Then every point of it is in a ball: one at distance d from the
-// nearest ball is in that ball grown by d. The certificate is that of a second search, on the balls
-// returned. Lengths in the unit of the mesh. On at most `threads` threads, 0: all; the result is
-// the same. Throws Error if there is no ball, if one is not usable or cannot grow any more, for a
-// mesh that validate() refuses and for a padding out of range.
+// which the second proof succeeds. Then every point of it is in a sphere: one at distance d from
+// the nearest sphere is in that sphere grown by d. The certificate is that of a second search, on
+// the spheres returned. Lengths in the unit of the mesh. On at most `threads` threads, 0: all; the
+// result is the same. Throws Error if there is no sphere, if one is not usable or cannot grow any
+// more, for a mesh that validate() refuses and for a padding out of range.
 ConservativeSpheres made_conservative(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                                       double padding = 0.0, int threads = 0,
                                       const Progress& progress = {});

@@ -32,11 +32,11 @@ using internal::MeshProbe;
 using internal::ReductionGoal;
 using internal::ReductionTask;
 
-// Medial spheres wanted for every ball of the result.
-constexpr std::size_t kSpheresPerBall = 4;
-// And of the next level of a tree, where each ball has only those nearby to be made of.
+// Medial spheres wanted for every sphere of the result.
+constexpr std::size_t kSpheresPerSphere = 4;
+// And of the next level of a tree, where each sphere has only those nearby to be made of.
 constexpr std::size_t kSpheresPerChild = 16;
-// A ball of the tree is made anew from the medial spheres that come as near to its points as this
+// A sphere of the tree is made anew from the medial spheres that come as near to its points as this
 // share of its own protrusion.
 constexpr double kNear = 0.5;
 
@@ -69,7 +69,7 @@ struct Sampled {
   ReductionTask whole(double max_inflation) const {
     return {probe, samples, all_points, axis.spheres(), max_inflation};
   }
-  // About how far `count` balls protrude: no more than the radius of their shares of the surface.
+  // About how far `count` spheres protrude: no more than the radius of their shares of the surface.
   double share_radius(std::size_t count) const {
     return std::sqrt(area / (std::numbers::pi * static_cast<double>(count)));
   }
@@ -81,27 +81,27 @@ struct Sampled {
   double area;
 };
 
-// The medial spheres near the points of a ball.
-std::vector<MedialSphere> spheres_near(const Sampled& sampled, const FittedSphere& ball) {
-  const double reach = kNear * std::max(0.0, ball.protrusion());
+// The medial spheres near the points of a sphere.
+std::vector<MedialSphere> spheres_near(const Sampled& sampled, const FittedSphere& sphere) {
+  const double reach = kNear * std::max(0.0, sphere.protrusion());
   Eigen::AlignedBox3d box;
-  for (const std::uint32_t p : ball.points) box.extend(sampled.samples[p]);
+  for (const std::uint32_t p : sphere.points) box.extend(sampled.samples[p]);
   std::vector<MedialSphere> near;
   for (const MedialSphere& s : sampled.axis.spheres()) {
-    const double far = s.ball.radius + reach;
-    if (box.squaredExteriorDistance(s.ball.center) > far * far) continue;
+    const double far = s.sphere.radius + reach;
+    if (box.squaredExteriorDistance(s.sphere.center) > far * far) continue;
     const bool comes_near =
-        std::any_of(ball.points.begin(), ball.points.end(), [&](std::uint32_t p) {
-          return (sampled.samples[p] - s.ball.center).squaredNorm() <= far * far;
+        std::any_of(sphere.points.begin(), sphere.points.end(), [&](std::uint32_t p) {
+          return (sampled.samples[p] - s.sphere.center).squaredNorm() <= far * far;
         });
     if (comes_near) near.push_back(s);
   }
   return near;
 }
 
-void append_level(SphereLevels& levels, const std::vector<FittedSphere>& balls) {
+void append_level(SphereLevels& levels, const std::vector<FittedSphere>& spheres) {
   std::vector<Sphere>& level = levels.levels.emplace_back();
-  for (const FittedSphere& ball : balls) level.push_back(ball.ball);
+  for (const FittedSphere& sphere : spheres) level.push_back(sphere.sphere);
 }
 
 }  // namespace
@@ -122,9 +122,9 @@ MedialAxisSpheres medial_axis(const TriangleMesh& mesh, const MedialAxisOptions&
   double aim = options.max_protrusion;
   if (by_count) {
     goal.count = options.spheres;
-    // First to learn how far so many balls protrude, then with medial spheres that suit it.
+    // First to learn how far so many spheres protrude, then with medial spheres that suit it.
     aim = sampled.share_radius(goal.count);
-    sampled.axis.refine({aim, kSpheresPerBall * goal.count, options.sampling.max_sites});
+    sampled.axis.refine({aim, kSpheresPerSphere * goal.count, options.sampling.max_sites});
     best = internal::reduce(sampled.whole(aim), goal, options.reduction).spheres;
     aim = std::min(aim, internal::largest_protrusion(best));
   } else {
@@ -137,7 +137,7 @@ MedialAxisSpheres medial_axis(const TriangleMesh& mesh, const MedialAxisOptions&
   if (best.empty() || internal::is_better(refined, best, goal)) best = std::move(refined);
 
   MedialAxisSpheres result;
-  for (const FittedSphere& ball : best) result.spheres.push_back(ball.ball);
+  for (const FittedSphere& sphere : best) result.spheres.push_back(sphere.sphere);
   result.protrusion = internal::largest_protrusion(best);
   result.medial_spheres = sampled.axis.spheres().size();
   result.sites = sampled.axis.sites().size();
@@ -157,8 +157,8 @@ SphereLevels medial_axis_tree(const TriangleMesh& mesh, const MedialTreeOptions&
 
   const auto branching = static_cast<std::size_t>(options.branching);
   FittedSphere root;
-  root.ball = enclosing_sphere(std::span<const Vector3d>(sampled.samples));
-  root.clearance = sampled.probe.clearance(root.ball.center);
+  root.sphere = enclosing_sphere(std::span<const Vector3d>(sampled.samples));
+  root.clearance = sampled.probe.clearance(root.sphere.center);
   root.points = sampled.all_points;
   std::vector<FittedSphere> level = {root};
   SphereLevels levels;

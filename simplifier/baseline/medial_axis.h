@@ -34,9 +34,9 @@ struct MedialSampling {
   std::uint64_t seed = 1;
 };
 
-// What is wanted: a number of balls, or a protrusion.
+// What is wanted: a number of spheres, or a protrusion.
 struct MedialAxisOptions {
-  // Wanted number of balls; not looked at if there is a wanted protrusion.
+  // Wanted number of spheres; not looked at if there is a wanted protrusion.
   std::size_t spheres = 512;
   // Wanted protrusion from the solid, in the unit of the mesh; 0: the count is what is wanted.
   double max_protrusion = 0.0;
@@ -45,30 +45,30 @@ struct MedialAxisOptions {
   int threads = 0;  // 0: all
 };
 
-// The balls, and what they were chosen from.
+// The spheres, and what they were chosen from.
 struct MedialAxisSpheres {
   std::vector<Sphere> spheres;
-  // Upper bound, up to rounding, of the largest distance from a point of the balls to the solid:
+  // Upper bound, up to rounding, of the largest distance from a point of the spheres to the solid:
   // the centres' clearances are measured. For open meshes inside is what MeshProbe takes for it.
   double protrusion = 0.0;
   std::size_t medial_spheres = 0;  // that they were made from
   std::size_t sites = 0;           // of the Voronoi diagram
-  std::size_t cover_points = 0;    // all of them are in the balls, in exact arithmetic
+  std::size_t cover_points = 0;    // all of them are in the spheres, in exact arithmetic
 };
 
-// Not conservative: the balls hold all points that were sampled on the surface, and nothing is
+// Not conservative: the spheres hold all points that were sampled on the surface, and nothing is
 // promised between them, nor of the inside of the solid; made_conservative() grows them until they
 // cover. Adaptive medial-axis approximation (AMAA) after Bradshaw and O'Sullivan, "Adaptive
 // medial-axis approximation for sphere-tree construction" (ACM Transactions on Graphics 23, 2004):
-// balls about the vertices of the Voronoi diagram of points on the surface that lie in the solid;
-// more points where they protrude most; few balls made of them by merging, bursting and expanding.
-// With a wanted count there are at most so many balls (fewer if the points need fewer); with a
-// wanted protrusion they protrude by at most that, or by what the finest medial spheres do where
-// `max_sites` did not suffice, and they are as few as the reductions find. Where they depart from
-// the paper is said at each (internal/medial_spheres.h, internal/sphere_reduction.h). Where there
-// is no inside (sheets), balls about points of the surface are merged. Deterministic for equal
-// input on any number of threads. Throws Error for a mesh that validate() refuses or that has no
-// area, and for options out of range.
+// spheres about the vertices of the Voronoi diagram of points on the surface that lie in the solid;
+// more points where they protrude most; few spheres made of them by merging, bursting and
+// expanding. With a wanted count there are at most so many spheres (fewer if the points need
+// fewer); with a wanted protrusion they protrude by at most that, or by what the finest medial
+// spheres do where `max_sites` did not suffice, and they are as few as the reductions find. Where
+// they depart from the paper is said at each (internal/medial_spheres.h,
+// internal/sphere_reduction.h). Where there is no inside (sheets), spheres about points of the
+// surface are merged. Deterministic for equal input on any number of threads. Throws Error for a
+// mesh that validate() refuses or that has no area, and for options out of range.
 MedialAxisSpheres medial_axis(const TriangleMesh& mesh, const MedialAxisOptions& options = {});
 
 // The shape of the tree.
@@ -81,11 +81,11 @@ struct MedialTreeOptions {
 };
 
 // Not conservative: every level holds all points that were sampled on the surface, see
-// medial_axis(); a ball need not enclose its children (enclosing_tree() makes a tree of them that
-// does). Level 0 is one ball; the points of a ball are covered anew by at most `branching` balls of
-// the next level, made of the medial spheres nearby, which are refined before each level until they
-// protrude by less than that level by error_factor. Departure from the paper: they are refined over
-// the whole solid at once, not ball by ball. Errors as there.
+// medial_axis(); a sphere need not enclose its children (enclosing_tree() makes a tree of them that
+// does). Level 0 is one sphere; the points of a sphere are covered anew by at most `branching`
+// spheres of the next level, made of the medial spheres nearby, which are refined before each level
+// until they protrude by less than that level by error_factor. Departure from the paper: they are
+// refined over the whole solid at once, not sphere by sphere. Errors as there.
 SphereLevels medial_axis_tree(const TriangleMesh& mesh, const MedialTreeOptions& options = {});
 
 }  // namespace spherule

@@ -6,7 +6,7 @@
 #include "simplifier/baseline/internal/simplified_probe.h"
 #include "simplifier/baseline/internal/simplified_solid.h"
 #include "simplifier/proof/protrusion.h"
-#include "simplifier/stage2/inscribed_balls.h"
+#include "simplifier/stage2/inscribed_spheres.h"
 #include "simplifier/support/thread_limit.h"
 #include "spheretree/rounding.h"
 
@@ -24,15 +24,15 @@ namespace {
 using Eigen::Vector3d;
 using internal::FittedSphere;
 
-// Shares of E that the balls may protrude by before they grow over what they leave uncovered. What
-// leaks in one trial is a sample in the next, so that less has to be left for growing.
+// Shares of E that the spheres may protrude by before they grow over what they leave uncovered.
+// What leaks in one trial is a sample in the next, so that less has to be left for growing.
 constexpr std::array kShares{0.7, 0.8, 0.88};
-// Rounds of a trial in which all balls are made anew with what leaked; after those, others are
+// Rounds of a trial in which all spheres are made anew with what leaked; after those, others are
 // added.
 constexpr int kRounds = 6;
 constexpr int kMendingRounds = 12;
 
-// Medial spheres protrude less than the balls made of them by this factor.
+// Medial spheres protrude less than the spheres made of them by this factor.
 constexpr double kErrorFactor = 2.0;
 constexpr std::size_t kFirstSites = 4000;
 constexpr std::size_t kMaxSites = 20000;
@@ -43,15 +43,15 @@ constexpr double kTolerance = 0.02;
 constexpr double kAtBoundary = 0.05;
 constexpr double kLeakSpacing = 0.2;
 
-std::vector<Sphere> balls_of(const std::vector<FittedSphere>& fitted) {
-  std::vector<Sphere> balls;
-  for (const FittedSphere& f : fitted) balls.push_back(f.ball);
-  return balls;
+std::vector<Sphere> spheres_of(const std::vector<FittedSphere>& fitted) {
+  std::vector<Sphere> spheres;
+  for (const FittedSphere& f : fitted) spheres.push_back(f.sphere);
+  return spheres;
 }
 
-std::vector<Sphere> inflated(std::vector<Sphere> balls, double inflation) {
-  for (Sphere& ball : balls) ball.radius = add_up(ball.radius, inflation);
-  return balls;
+std::vector<Sphere> inflated(std::vector<Sphere> spheres, double inflation) {
+  for (Sphere& sphere : spheres) sphere.radius = add_up(sphere.radius, inflation);
+  return spheres;
 }
 
 class MedialCover {
@@ -96,12 +96,12 @@ class MedialCover {
     return sites;
   }
 
-  // Balls that protrude by no more than `wanted`, unless the medial spheres do, and hold what
+  // Spheres that protrude by no more than `wanted`, unless the medial spheres do, and hold what
   // leaked so far; then grown over what they leave open.
   Trial attempt(double wanted) {
     axis_.refine({wanted / kErrorFactor, 0, kMaxSites});
     std::vector<FittedSphere> fitted;
-    std::size_t anew = 0;  // from this sample on, balls are yet to be made
+    std::size_t anew = 0;  // from this sample on, spheres are yet to be made
     for (int round = 0; round < kRounds + kMendingRounds; ++round) {
       if (round < kRounds) {
         anew = 0;
@@ -112,12 +112,12 @@ class MedialCover {
       anew = samples_.size();
       const double room =
           (1.0 - kReserve) * options_.max_error - internal::largest_protrusion(fitted);
-      if (room < 0.0 || !learn_leaks(inflated(balls_of(fitted), room))) break;
+      if (room < 0.0 || !learn_leaks(inflated(spheres_of(fitted), room))) break;
     }
-    return finished(balls_of(fitted));
+    return finished(spheres_of(fitted));
   }
 
-  // Balls for the samples from this one on.
+  // Spheres for the samples from this one on.
   std::vector<FittedSphere> reduced(std::size_t first, double wanted) {
     std::vector<std::uint32_t> points(samples_.size() - first);
     std::iota(points.begin(), points.end(), static_cast<std::uint32_t>(first));
@@ -129,12 +129,12 @@ class MedialCover {
     return std::move(made.spheres);
   }
 
-  // False if the balls are proved to cover S.
-  bool learn_leaks(const std::vector<Sphere>& balls) {
-    const internal::BallHierarchy hierarchy(balls);
-    const internal::SolidCells::Leaks leaks =
-        solid_.cells.find_leaks({balls, hierarchy}, internal::kErrorTolerance * options_.max_error,
-                                kLeakSpacing * options_.max_error);
+  // False if the spheres are proved to cover S.
+  bool learn_leaks(const std::vector<Sphere>& spheres) {
+    const internal::SphereHierarchy hierarchy(spheres);
+    const internal::SolidCells::Leaks leaks = solid_.cells.find_leaks(
+        {spheres, hierarchy}, internal::kErrorTolerance * options_.max_error,
+        kLeakSpacing * options_.max_error);
     if (leaks.empty()) return false;
     samples_.insert(samples_.end(), leaks.in_solid.begin(), leaks.in_solid.end());
     samples_.insert(samples_.end(), leaks.pinched.begin(), leaks.pinched.end());
@@ -142,13 +142,13 @@ class MedialCover {
     return true;
   }
 
-  Trial finished(const std::vector<Sphere>& balls) const {
+  Trial finished(const std::vector<Sphere>& spheres) const {
     const internal::CoverageProof remaining =
-        internal::remaining_error(solid_.clearance, solid_.distance, balls, options_.max_error);
+        internal::remaining_error(solid_.clearance, solid_.distance, spheres, options_.max_error);
     Trial trial;
-    internal::inflate(trial.cover, balls, remaining.upper, options_);
+    internal::inflate(trial.cover, spheres, remaining.upper, options_);
     trial.protrusion = internal::greatest(internal::protrusions_over_solid(
-        solid_.clearance, solid_.distance, inflated(balls, trial.cover.inflation)));
+        solid_.clearance, solid_.distance, inflated(spheres, trial.cover.inflation)));
     return trial;
   }
 

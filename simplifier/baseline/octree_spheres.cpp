@@ -56,12 +56,12 @@ class TreeMaker {
     std::vector<Cell> nodes = {octree_.cells().front()};
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const Cell cell = nodes[i];
-      const Sphere ball{octree_.center(cell), octree_.circumscribed(cell.level)};
-      add_ball(ball);
-      if (is_leaf(cell, ball)) {
+      const Sphere sphere{octree_.center(cell), octree_.circumscribed(cell.level)};
+      add_sphere(sphere);
+      if (is_leaf(cell, sphere)) {
         data_.first_child.push_back(static_cast<std::int32_t>(data_.spheres.size()));
         data_.child_count.push_back(0);
-        data_.spheres.push_back(ball);
+        data_.spheres.push_back(sphere);
         continue;
       }
       data_.first_child.push_back(static_cast<std::int32_t>(nodes.size()));
@@ -97,22 +97,22 @@ class TreeMaker {
     }
   }
 
-  bool is_leaf(const Cell& cell, const Sphere& ball) const {
+  bool is_leaf(const Cell& cell, const Sphere& sphere) const {
     if (cell.level == octree_.levels()) return true;
     const bool inside = cell.state == State::kInside;
     if (!inside && whole_surface_) return false;
-    const SurfaceDistance d = distance_(ball.center);
+    const SurfaceDistance d = distance_(sphere.center);
     const double protrusion = inside || octree_.has_center_inside(cell)
-                                  ? sub_up(ball.radius, d.lower)
-                                  : add_up(ball.radius, d.upper);
+                                  ? sub_up(sphere.radius, d.lower)
+                                  : add_up(sphere.radius, d.upper);
     return protrusion <= max_error_;
   }
 
-  void add_ball(const Sphere& ball) {
-    data_.x.push_back(ball.center.x());
-    data_.y.push_back(ball.center.y());
-    data_.z.push_back(ball.center.z());
-    data_.radius.push_back(ball.radius);
+  void add_sphere(const Sphere& sphere) {
+    data_.x.push_back(sphere.center.x());
+    data_.y.push_back(sphere.center.y());
+    data_.z.push_back(sphere.center.z());
+    data_.radius.push_back(sphere.radius);
   }
 
   const CellOctree& octree_;

@@ -11,17 +11,17 @@ namespace spherule {
 struct OctreeSpheresOptions {
   // Halvings of the cube around the mesh; or 0, and max_error says how far to go.
   int depth = 0;
-  // E: cubes are halved until their ball is known to protrude from |M| by at most E, in the unit of
-  // the mesh. In pockets that are filled, see below, it may be more.
+  // E: cubes are halved until their sphere is known to protrude from |M| by at most E, in the unit
+  // of the mesh. In pockets that are filled, see below, it may be more.
   double max_error = 0.0;
   Filling filling = Filling::kSolid;
   // t: cubes that M grown by this much meets count as the surface's; vertex_error is added.
   double padding = 0.0;
 };
 
-// The balls, as a tree.
+// The spheres, as a tree.
 struct OctreeSpheres {
-  // Its spheres() are the balls around the cubes without halves; its inner nodes are the balls
+  // Its spheres() are the spheres around the cubes without halves; its inner nodes are the spheres
   // around the others, and nothing else.
   SphereTree tree;
   double step = 0.0;  // edge of the smallest cubes
@@ -29,15 +29,15 @@ struct OctreeSpheres {
 
 // Conservative (with Filling::kSurface: of the surface M only). The sphere tree of Liu, Noborio and
 // Arimoto (1988) and of Palmer and Grimsdale, "Collision Detection for Animation using
-// Sphere-Trees" (1995): an octree over the mesh, with the ball around every cube that is not empty.
-// A cube that M meets (as in voxelise()) is halved down to the given depth; a cube inside as long
-// as its ball may protrude by more than those of the smallest cubes. With max_error instead of a
-// depth a cube that M meets is halved only while the bound on its ball's protrusion, radius plus
-// (minus, if the centre is inside) the distance of the centre to M, is above E.
+// Sphere-Trees" (1995): an octree over the mesh, with the sphere around every cube that is not
+// empty. A cube that M meets (as in voxelise()) is halved down to the given depth; a cube inside as
+// long as its sphere may protrude by more than those of the smallest cubes. With max_error instead
+// of a depth a cube that M meets is halved only while the bound on its sphere's protrusion, radius
+// plus (minus, if the centre is inside) the distance of the centre to M, is above E.
 //
-// The tree serves the same traversal as any other. The ball around a cube contains those around its
-// halves, touching them at the corners, so that no other parents are needed than the method's own;
-// radii are larger by a share of 1e-12 or so, that they do so in rounded numbers, too.
+// The tree serves the same traversal as any other. The sphere around a cube contains those around
+// its halves, touching them at the corners, so that no other parents are needed than the method's
+// own; radii are larger by a share of 1e-12 or so, that they do so in rounded numbers, too.
 //
 // Pockets of the outside whose way in is hardly wider than the smallest cubes are filled.
 // Throws Error for a mesh that validate() refuses, for options out of range (a depth of at most

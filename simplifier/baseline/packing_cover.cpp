@@ -3,7 +3,7 @@
 
 #include "simplifier/baseline/internal/simplified_solid.h"
 #include "simplifier/stage2/cover_checks.h"
-#include "simplifier/stage2/inscribed_balls.h"
+#include "simplifier/stage2/inscribed_spheres.h"
 #include "simplifier/support/thread_limit.h"
 
 #include <tbb/parallel_for.h>
@@ -18,13 +18,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A point of S and the ball that grows from it.
+// A point of S and the sphere that grows from it.
 struct Candidate {
   Vector3d point = Vector3d::Zero();
-  Sphere ball;
+  Sphere sphere;
 };
 
-// The largest ball first, ties in the order of the points.
+// The largest sphere first, ties in the order of the points.
 std::vector<Candidate> candidates_of(const std::vector<Vector3d>& points,
                                      const internal::SphereInflater& grow,
                                      std::size_t& seeds_rejected) {
@@ -38,18 +38,18 @@ std::vector<Candidate> candidates_of(const std::vector<Vector3d>& points,
   seeds_rejected += rejected;
   std::stable_sort(
       candidates.begin(), candidates.end(),
-      [](const Candidate& a, const Candidate& b) { return a.ball.radius > b.ball.radius; });
+      [](const Candidate& a, const Candidate& b) { return a.sphere.radius > b.sphere.radius; });
   return candidates;
 }
 
-// Places the candidates whose points are still further than `limit` from the balls.
+// Places the candidates whose points are still further than `limit` from the spheres.
 void place(const std::vector<Candidate>& candidates, double limit, bool where_centers_are_held,
-           internal::BallSet& balls) {
+           internal::SphereSet& spheres) {
   for (const Candidate& c : candidates) {
-    if (balls.nearest(c.point).upper <= limit) continue;
-    if (!where_centers_are_held && balls.nearest(c.ball.center).upper < 0.0) continue;
-    balls.add(c.ball);
-    internal::check_count(balls.balls().size());
+    if (spheres.nearest(c.point).upper <= limit) continue;
+    if (!where_centers_are_held && spheres.nearest(c.sphere.center).upper < 0.0) continue;
+    spheres.add(c.sphere);
+    internal::check_count(spheres.spheres().size());
   }
 }
 
@@ -58,20 +58,20 @@ void place(const std::vector<Candidate>& candidates, double limit, bool where_ce
 SphereCover packing_cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                           const CoverOptions& options) {
   const internal::ThreadLimit threads(options.threads);
-  if (options.progress) options.progress(-1.0, "growing balls");
+  if (options.progress) options.progress(-1.0, "growing spheres");
   const internal::SimplifiedSolid solid(mesh, external, options, "packing");
   SphereCover result;
   const std::vector<Candidate> candidates =
       candidates_of(solid.samples(mesh), internal::SphereInflater(solid.clearance, options),
                     result.seeds_rejected);
   const double limit = internal::kLoopLimit * options.max_error;
-  internal::BallSet balls;
-  place(candidates, limit, false, balls);
-  place(candidates, limit, true, balls);
-  internal::fill_gaps(solid.clearance, solid.distance, options, balls, result.seeds_rejected);
-  const internal::CoverageProof remaining =
-      internal::remaining_error(solid.clearance, solid.distance, balls.balls(), options.max_error);
-  internal::inflate(result, balls.balls(), std::min(limit, remaining.upper), options);
+  internal::SphereSet spheres;
+  place(candidates, limit, false, spheres);
+  place(candidates, limit, true, spheres);
+  internal::fill_gaps(solid.clearance, solid.distance, options, spheres, result.seeds_rejected);
+  const internal::CoverageProof remaining = internal::remaining_error(
+      solid.clearance, solid.distance, spheres.spheres(), options.max_error);
+  internal::inflate(result, spheres.spheres(), std::min(limit, remaining.upper), options);
   return result;
 }
 

@@ -18,7 +18,7 @@ void check(const SphereLevels& levels, std::size_t leaves) {
     throw Error("sphere levels", "need parents for every level but the coarsest");
   }
   if (leaves != levels.levels.back().size()) {
-    throw Error("leaves", "are not as many as the balls of the finest level");
+    throw Error("leaves", "are not as many as the spheres of the finest level");
   }
   for (std::size_t k = 0; k < levels.parents.size(); ++k) {
     if (levels.parents[k].size() != levels.levels[k + 1].size()) {

@@ -10,21 +10,21 @@
 
 namespace spherule {
 
-// Balls in levels as the literature makes them, the coarsest first. Each level is meant to cover
-// the solid by itself; a ball need not enclose its children, only what they cover.
+// Spheres in levels as the literature makes them, the coarsest first. Each level is meant to cover
+// the solid by itself; a sphere need not enclose its children, only what they cover.
 struct SphereLevels {
   std::vector<std::vector<Sphere>> levels;
-  // parents[k][i]: the ball of level k that ball i of level k + 1 hangs under. One fewer than
+  // parents[k][i]: the sphere of level k that sphere i of level k + 1 hangs under. One fewer than
   // levels.
   std::vector<std::vector<std::int32_t>> parents;
 };
 
 // Conservative if `leaves` are. A tree for the traversals of the library: its leaves are `leaves`,
-// the finest level in its order, as it is or made conservative; the balls above become as large as
-// they have to be to enclose their children in exact arithmetic, about their own centre or, where
-// that is smaller, about the centre of the ball that encloses the children. A ball without children
-// is left out. Throws Error if the numbers of balls and parents do not agree, or a parent is not
-// there.
+// the finest level in its order, as it is or made conservative; the spheres above become as large
+// as they have to be to enclose their children in exact arithmetic, about their own centre or,
+// where that is smaller, about the centre of the sphere that encloses the children. A sphere
+// without children is left out. Throws Error if the numbers of spheres and parents do not agree, or
+// a parent is not there.
 LevelTree enclosing_tree(const SphereLevels& levels, std::span<const Sphere> leaves);
 
 }  // namespace spherule

@@ -48,7 +48,7 @@ void count(const CellOctree& octree, Filling filling, Voxelisation& result) {
   }
 }
 
-// Appends the balls of the voxels below a cell.
+// Appends the spheres of the voxels below a cell.
 class Filler {
  public:
   Filler(const CellOctree& octree, Filling filling, double radius, std::vector<Sphere>& spheres)
@@ -83,7 +83,7 @@ Voxelisation voxelise(const TriangleMesh& mesh, const VoxelisationOptions& optio
   const CellOctree octree(mesh, result.step, options.padding);
   count(octree, options.filling, result);
   result.spheres.reserve(result.surface + result.inside);
-  const double radius = options.ball == VoxelBall::kCircumscribed
+  const double radius = options.sphere == VoxelSphere::kCircumscribed
                             ? octree.circumscribed(octree.levels())
                             : 0.5 * result.step;
   Filler(octree, options.filling, radius, result.spheres).fill(octree.cells().front());

@@ -12,8 +12,8 @@
 
 namespace spherule {
 
-// The ball that stands for a voxel.
-enum class VoxelBall {
+// The sphere that stands for a voxel.
+enum class VoxelSphere {
   kCircumscribed,  // around the cube, of diameter sqrt(3) times the step: contains it
   kInscribed       // of the cube's width, as the paper has it: leaves its corners out
 };
@@ -22,16 +22,16 @@ enum class VoxelBall {
 struct VoxelisationOptions {
   // Edge of a voxel, in the unit of the mesh; or 0, and max_error says how large it may be.
   double step = 0.0;
-  // E: the step is a thousandth below E / sqrt(3), so that no point of a circumscribed ball is
+  // E: the step is a thousandth below E / sqrt(3), so that no point of a circumscribed sphere is
   // further than E from its voxel's part of M or, where that is inside, from |M|.
   double max_error = 0.0;
-  VoxelBall ball = VoxelBall::kCircumscribed;
+  VoxelSphere sphere = VoxelSphere::kCircumscribed;
   Filling filling = Filling::kSolid;
   // t: voxels that M grown by this much meets count as the surface's; vertex_error is added.
   double padding = 0.0;
 };
 
-// The balls, and how many voxels there are.
+// The spheres, and how many voxels there are.
 struct Voxelisation {
   std::vector<Sphere> spheres;  // one a voxel, along the Morton curve
   double step = 0.0;            // edge of the voxels
@@ -39,8 +39,8 @@ struct Voxelisation {
   std::size_t inside = 0;       // the others
 };
 
-// Conservative with circumscribed balls (with Filling::kSurface: of the surface M only); with
-// inscribed ones not. A grid of cubes, so placed that the mesh stands in its middle, with a ball
+// Conservative with circumscribed spheres (with Filling::kSurface: of the surface M only); with
+// inscribed ones not. A grid of cubes, so placed that the mesh stands in its middle, with a sphere
 // for every cube that M meets (supercover; by separating axes with outward rounding, so that a cube
 // that M misses by less than the rounding may count, too) and for every cube inside: what cannot be
 // reached from outside of the grid from cube to cube through faces, without a cube that M meets.

@@ -3,8 +3,8 @@
 
 #include "mesh/mesh_distance.h"
 #include "mesh/triangle_mesh.h"
-#include "simplifier/solid/ball_hierarchy.h"
 #include "simplifier/solid/clearance.h"
+#include "simplifier/solid/sphere_hierarchy.h"
 #include "spheretree/sphere.h"
 
 #include <Eigen/Geometry>
@@ -15,7 +15,7 @@
 
 namespace spherule::internal {
 
-// What a subdivision proved about a set of points X and the union of a set of balls.
+// What a subdivision proved about a set of points X and the union of a set of spheres.
 struct CoverageProof {
   // Bounds of the uncovered depth of X; upper is 0 exactly if X is proved to be covered.
   double lower = 0.0;
@@ -34,22 +34,22 @@ struct CoverageProof {
   }
 };
 
-// The balls with their search structure.
-struct BallsToProve {
-  std::span<const Sphere> balls;
-  const BallHierarchy& hierarchy;
+// The spheres with their search structure.
+struct SpheresToProve {
+  std::span<const Sphere> spheres;
+  const SphereHierarchy& hierarchy;
 };
 
 // X = the triangles. They are halved at their longest edge until a piece
-// lies in a single ball (a ball is convex: corners in it, piece in it) or is smaller than `finest`,
-// at least 2^-40 of the largest coordinate.
-CoverageProof prove_surface(const TriangleMesh& mesh, const BallsToProve& balls, double finest);
+// lies in a single sphere (a sphere is convex: corners in it, piece in it) or is smaller than
+// `finest`, at least 2^-40 of the largest coordinate.
+CoverageProof prove_surface(const TriangleMesh& mesh, const SpheresToProve& spheres, double finest);
 
-// X = S. Cells of its box are halved until one lies in a single ball or outside of S, or is smaller
-// than `finest` (where its centre is outside of S, than the shares of it in solid_query.h).
+// X = S. Cells of its box are halved until one lies in a single sphere or outside of S, or is
+// smaller than `finest` (where its centre is outside of S, than the shares of it in solid_query.h).
 // `is_witness` tells whether a point of S may be reported as a leak.
 CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
-                          const BallsToProve& balls, double finest,
+                          const SpheresToProve& spheres, double finest,
                           const std::function<bool(const Eigen::Vector3d&)>& is_witness);
 
 }  // namespace spherule::internal

@@ -44,14 +44,14 @@ bool below(const Cell& a, const Cell& b) {
 }  // namespace
 
 std::vector<double> protrusions_over_solid(const Clearance& clearance, const MeshDistance& distance,
-                                           std::span<const Sphere> balls) {
-  std::vector<double> each(balls.size());
-  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
-    const Sphere& ball = balls[i];
-    const double d = clearance(ball.center).lower;
-    each[i] = d >= 0.0 ? sub_up(ball.radius, d)
-                       : add_up(ball.radius,
-                                distance_to_solid(clearance, distance, ball.center, ball.radius));
+                                           std::span<const Sphere> spheres) {
+  std::vector<double> each(spheres.size());
+  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+    const Sphere& sphere = spheres[i];
+    const double d = clearance(sphere.center).lower;
+    each[i] = d >= 0.0 ? sub_up(sphere.radius, d)
+                       : add_up(sphere.radius, distance_to_solid(clearance, distance, sphere.center,
+                                                                 sphere.radius));
   });
   return each;
 }
@@ -61,24 +61,24 @@ double greatest(std::span<const double> protrusions) {
                          [](double a, double b) { return std::max(a, b); });
 }
 
-double greatest_in(const Zone& zone, std::span<const Sphere> balls,
+double greatest_in(const Zone& zone, std::span<const Sphere> spheres,
                    std::span<const double> protrusions) {
   double result = 0.0;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    if (balls[i].radius < distance_lower(zone.shape, balls[i].center)) continue;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    if (spheres[i].radius < distance_lower(zone.shape, spheres[i].center)) continue;
     result = std::max(result, protrusions[i]);
   }
   return result;
 }
 
 Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& shells,
-                            const Clearance& clearance, const BallsToProve& balls,
+                            const Clearance& clearance, const SpheresToProve& spheres,
                             double tolerance) {
   Bounds result;
-  if (balls.balls.empty()) return result;
+  if (spheres.spheres.empty()) return result;
   std::vector<Cell> heap{
-      {BoxCell::around(box_of(balls.balls)), std::numeric_limits<double>::infinity(), false}};
-  // The greatest distance met in the balls at a point that is not known to be inside: where the
+      {BoxCell::around(box_of(spheres.spheres)), std::numeric_limits<double>::infinity(), false}};
+  // The greatest distance met in the spheres at a point that is not known to be inside: where the
   // search for the upper bound may stop. It goes on for the lower one, whose witnesses are outside
   // of S, while the inside of an open mesh has been looked at by then.
   double met = 0.0;
@@ -97,7 +97,7 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
     if (is_bounded && is_near(cell.upper, result.lower)) break;
     const Vector3d& q = cell.box.center;
     const double reach = cell.box.reach();
-    const NearestBall gap = balls.hierarchy.nearest(q);
+    const NearestSphere gap = spheres.hierarchy.nearest(q);
     if (gap.lower > reach) continue;
     const SurfaceDistance d = distance(q);
     if (!cell.outside && d.lower > reach) {

@@ -24,7 +24,7 @@ void halve(const Cell& cell, std::vector<Cell>& parts) {
 }  // namespace
 
 CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
-                          const BallsToProve& balls, double finest,
+                          const SpheresToProve& spheres, double finest,
                           const std::function<bool(const Vector3d&)>& is_witness) {
   const double rounding = mesh_point_error(distance);
   const double least = std::max(kFinestPinch * finest, least_reach(clearance.box()));
@@ -32,9 +32,9 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
     Finding found;
     found.point = cell.box.center;
     const double reach = cell.box.reach();
-    const NearestBall gap = balls.hierarchy.nearest(found.point);
-    if (gap.index >= 0 &&
-        certainly_contains(balls.balls[static_cast<std::size_t>(gap.index)], found.point, reach)) {
+    const NearestSphere gap = spheres.hierarchy.nearest(found.point);
+    if (gap.index >= 0 && certainly_contains(spheres.spheres[static_cast<std::size_t>(gap.index)],
+                                             found.point, reach)) {
       found.settled = true;
       return found;
     }
@@ -55,12 +55,12 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
       found.smallest = reach <= finest;
     } else if (const auto on_mesh =
                    reach <= finest ? mesh_point_in(distance, cell.box) : std::nullopt) {
-      note(*on_mesh, sub_down(balls.hierarchy.nearest(*on_mesh).lower, rounding));
+      note(*on_mesh, sub_down(spheres.hierarchy.nearest(*on_mesh).lower, rounding));
       found.smallest = true;
     } else if (const auto in_solid = reach <= kFinestOutside * finest
                                          ? solid_point_near(clearance, cell.box, finest)
                                          : std::nullopt) {
-      note(*in_solid, balls.hierarchy.nearest(*in_solid).lower);
+      note(*in_solid, spheres.hierarchy.nearest(*in_solid).lower);
       found.smallest = true;
     } else {
       found.smallest = reach <= least;

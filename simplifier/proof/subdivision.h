@@ -16,9 +16,9 @@ namespace spherule::internal {
 
 // What was found out about a piece of the set X to be covered.
 struct Finding {
-  bool settled = false;   // in a single ball, or no part of X: nothing remains to be proved
+  bool settled = false;   // in a single sphere, or no part of X: nothing remains to be proved
   bool smallest = false;  // not to be split further
-  double upper = 0.0;     // no point of the piece is further from the balls
+  double upper = 0.0;     // no point of the piece is further from the spheres
   double depth = -std::numeric_limits<double>::infinity();  // of `point`, if that is in X
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   bool witness = false;  // `point` may be reported

@@ -26,17 +26,18 @@ double subdivision_error(const TriangleMesh& mesh) {
 
 }  // namespace
 
-CoverageProof prove_surface(const TriangleMesh& mesh, const BallsToProve& balls, double finest) {
+CoverageProof prove_surface(const TriangleMesh& mesh, const SpheresToProve& spheres,
+                            double finest) {
   const double error = subdivision_error(mesh);
   const auto examine = [&](const SurfacePiece& piece) {
     const auto& [a, b, c] = piece.corner;
     Finding found;
     found.point = (a + b + c) / 3.0;
-    const NearestBall gap = balls.hierarchy.nearest(found.point);
+    const NearestSphere gap = spheres.hierarchy.nearest(found.point);
     if (gap.index >= 0) {
-      const Sphere& ball = balls.balls[static_cast<std::size_t>(gap.index)];
+      const Sphere& sphere = spheres.spheres[static_cast<std::size_t>(gap.index)];
       found.settled = std::ranges::all_of(
-          piece.corner, [&](const Vector3d& p) { return certainly_contains(ball, p, error); });
+          piece.corner, [&](const Vector3d& p) { return certainly_contains(sphere, p, error); });
     }
     const double radius = std::max({distance_upper(found.point, a), distance_upper(found.point, b),
                                     distance_upper(found.point, c)});

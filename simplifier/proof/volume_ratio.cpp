@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 
 constexpr double kMaxLines = 4096.0;
 constexpr double kMinLines = 256.0;
-constexpr double kMaxTests = 1e8;  // of a line with a triangle or ball
+constexpr double kMaxTests = 1e8;  // of a line with a triangle or sphere
 
 // Lines along one axis, and the coordinates across it.
 struct Axes {
@@ -69,14 +69,14 @@ void cross_triangle(const std::array<Vector3d, 3>& corners, const Axes& axes, co
   crossings.emplace_back(at / (weights[0] + weights[1] + weights[2]), is_front ? 1 : -1);
 }
 
-void cross_ball(const Sphere& ball, const Axes& axes, const Vector2d& line,
-                std::vector<Crossing>& crossings) {
+void cross_sphere(const Sphere& sphere, const Axes& axes, const Vector2d& line,
+                  std::vector<Crossing>& crossings) {
   const double squared =
-      ball.radius * ball.radius - (axes.across(ball.center) - line).squaredNorm();
+      sphere.radius * sphere.radius - (axes.across(sphere.center) - line).squaredNorm();
   if (!(squared > 0.0)) return;
   const double half = std::sqrt(squared);
-  crossings.emplace_back(ball.center[axes.along] - half, 1);
-  crossings.emplace_back(ball.center[axes.along] + half, -1);
+  crossings.emplace_back(sphere.center[axes.along] - half, 1);
+  crossings.emplace_back(sphere.center[axes.along] + half, -1);
 }
 
 // One line through each cell of a grid across the shortest side of a box, so that none of them
@@ -153,7 +153,7 @@ double sum_of(const std::vector<double>& lengths) {
 
 }  // namespace
 
-double estimate_volume_ratio(const TriangleMesh& mesh, std::span<const Sphere> balls) {
+double estimate_volume_ratio(const TriangleMesh& mesh, std::span<const Sphere> spheres) {
   const Lines through_mesh(box_of(mesh), number_of_lines(mesh.triangles.size()));
   const std::vector<double> solid = through_mesh.lengths_inside(
       [&](const Axes& axes, const Vector2d& line, std::vector<Crossing>& crossings) {
@@ -161,12 +161,12 @@ double estimate_volume_ratio(const TriangleMesh& mesh, std::span<const Sphere> b
           cross_triangle(corners_of(mesh, t), axes, line, crossings);
         }
       });
-  const Lines through_balls(box_of(balls), number_of_lines(balls.size()));
-  const std::vector<double> covered = through_balls.lengths_inside(
+  const Lines through_spheres(box_of(spheres), number_of_lines(spheres.size()));
+  const std::vector<double> covered = through_spheres.lengths_inside(
       [&](const Axes& axes, const Vector2d& line, std::vector<Crossing>& crossings) {
-        for (const Sphere& ball : balls) cross_ball(ball, axes, line, crossings);
+        for (const Sphere& sphere : spheres) cross_sphere(sphere, axes, line, crossings);
       });
-  return sum_of(covered) * through_balls.area / (sum_of(solid) * through_mesh.area);
+  return sum_of(covered) * through_spheres.area / (sum_of(solid) * through_mesh.area);
 }
 
 EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh, const ExternalSpheres& external) {
@@ -177,7 +177,7 @@ EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh, const ExternalS
   const double high = box.max()[axes.along];
   std::vector<double> filled(lines.places.size());
   tbb::parallel_for(std::size_t{0}, lines.count, [&](std::size_t row) {
-    // External balls and |M| are disjoint: one or the other changes the winding number.
+    // External spheres and |M| are disjoint: one or the other changes the winding number.
     std::vector<std::vector<Crossing>> crossings(lines.count);
     const auto of = [&](std::size_t place) -> std::vector<Crossing>& {
       return crossings[place - row * lines.count];
@@ -190,11 +190,11 @@ EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh, const ExternalS
         cross_triangle(corners, axes, lines.places[place], of(place));
       });
     }
-    for (const Sphere& ball : external.balls) {
-      const Vector3d reach = Vector3d::Constant(ball.radius);
+    for (const Sphere& sphere : external.spheres) {
+      const Vector3d reach = Vector3d::Constant(sphere.radius);
       lines.for_each_in(
-          row, axes.across(ball.center - reach), axes.across(ball.center + reach),
-          [&](std::size_t place) { cross_ball(ball, axes, lines.places[place], of(place)); });
+          row, axes.across(sphere.center - reach), axes.across(sphere.center + reach),
+          [&](std::size_t place) { cross_sphere(sphere, axes, lines.places[place], of(place)); });
     }
     for (std::size_t j = 0; j < lines.count; ++j) {
       for (Crossing& crossing : crossings[j]) {

@@ -16,30 +16,30 @@ using Eigen::Vector3d;
 
 namespace {
 
-std::vector<Vector3d> centers_of(std::span<const Sphere> balls) {
+std::vector<Vector3d> centers_of(std::span<const Sphere> spheres) {
   std::vector<Vector3d> centers;
-  centers.reserve(balls.size());
-  for (const Sphere& s : balls) centers.push_back(s.center);
+  centers.reserve(spheres.size());
+  for (const Sphere& s : spheres) centers.push_back(s.center);
   return centers;
 }
 
-double least_radius(std::span<const Sphere> balls) {
+double least_radius(std::span<const Sphere> spheres) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Sphere& s : balls) least = std::min(least, s.radius);
+  for (const Sphere& s : spheres) least = std::min(least, s.radius);
   return least;
 }
 
-// A ball touches the mesh grown by the padding, or nearly: what is further need not be looked at.
-Vector3d contact_of(const Sphere& ball, double padding, const MeshDistance& distance) {
+// A sphere touches the mesh grown by the padding, or nearly: what is further need not be looked at.
+Vector3d contact_of(const Sphere& sphere, double padding, const MeshDistance& distance) {
   constexpr double kNearly = 1.001;
-  const SurfaceDistance near = distance(ball.center, kNearly * (ball.radius + padding));
-  return near.triangle < 0 ? distance(ball.center).closest : near.closest;
+  const SurfaceDistance near = distance(sphere.center, kNearly * (sphere.radius + padding));
+  return near.triangle < 0 ? distance(sphere.center).closest : near.closest;
 }
 
 std::vector<Vector3d> contacts_of(const ExternalSpheres& external, const MeshDistance& distance) {
-  std::vector<Vector3d> contacts(external.balls.size());
+  std::vector<Vector3d> contacts(external.spheres.size());
   tbb::parallel_for(std::size_t{0}, contacts.size(), [&](std::size_t i) {
-    contacts[i] = contact_of(external.balls[i], external.padding, distance);
+    contacts[i] = contact_of(external.spheres[i], external.padding, distance);
   });
   return contacts;
 }
@@ -47,19 +47,19 @@ std::vector<Vector3d> contacts_of(const ExternalSpheres& external, const MeshDis
 }  // namespace
 
 Clearance::Clearance(const ExternalSpheres& external)
-    : Clearance(external, internal::BallHierarchy(external.balls)) {}
+    : Clearance(external, internal::SphereHierarchy(external.spheres)) {}
 
 Clearance::Clearance(const ExternalSpheres& external, const MeshDistance& distance)
     : Clearance(external,
-                internal::BallHierarchy(external.balls, contacts_of(external, distance))) {}
+                internal::SphereHierarchy(external.spheres, contacts_of(external, distance))) {}
 
-Clearance::Clearance(const ExternalSpheres& external, internal::BallHierarchy balls)
-    : centers_(centers_of(external.balls)),
-      balls_(std::move(balls)),
+Clearance::Clearance(const ExternalSpheres& external, internal::SphereHierarchy spheres)
+    : centers_(centers_of(external.spheres)),
+      spheres_(std::move(spheres)),
       box_(external.box),
-      least_external_(least_radius(external.balls)) {}
+      least_external_(least_radius(external.spheres)) {}
 
-// A face of the box is an external ball of infinite radius; its gap is a single difference.
+// A face of the box is an external sphere of infinite radius; its gap is a single difference.
 ClearanceAt Clearance::operator()(const Vector3d& point, double tolerance, double limit) const {
   ClearanceAt result;
   double nearest = std::numeric_limits<double>::infinity();
@@ -78,14 +78,15 @@ ClearanceAt Clearance::operator()(const Vector3d& point, double tolerance, doubl
   // The difference of two doubles is rounded to zero only if they are equal.
   result.lower = nearest == 0.0 ? 0.0 : next_down(nearest);
   result.upper = nearest == 0.0 ? 0.0 : next_up(nearest);
-  const internal::NearestBall ball = balls_.nearest(point, std::min(nearest, limit), tolerance);
-  if (ball.index < 0) {
-    if (!balls_.empty()) result.lower = std::min(result.lower, ball.lower);
+  const internal::NearestSphere sphere =
+      spheres_.nearest(point, std::min(nearest, limit), tolerance);
+  if (sphere.index < 0) {
+    if (!spheres_.empty()) result.lower = std::min(result.lower, sphere.lower);
     return result;
   }
-  result.lower = std::min(result.lower, ball.lower);
-  result.upper = std::min(result.upper, ball.upper);
-  const Vector3d d = point - centers_[static_cast<std::size_t>(ball.index)];
+  result.lower = std::min(result.lower, sphere.lower);
+  result.upper = std::min(result.upper, sphere.upper);
+  const Vector3d d = point - centers_[static_cast<std::size_t>(sphere.index)];
   const double norm = d.norm();
   if (norm > 0.0) result.away = d / norm;
   return result;

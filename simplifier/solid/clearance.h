@@ -3,7 +3,7 @@
 
 #include "mesh/mesh_distance.h"
 #include "simplifier/external_spheres.h"
-#include "simplifier/solid/ball_hierarchy.h"
+#include "simplifier/solid/sphere_hierarchy.h"
 
 #include <Eigen/Geometry>
 
@@ -12,7 +12,7 @@
 
 namespace spherule {
 
-// Clearance of a point to the outside of S: the least gap to an external ball or to a face of the
+// Clearance of a point to the outside of S: the least gap to an external sphere or to a face of the
 // box. Not negative exactly for the points of S, where it is the distance to the outside of S.
 struct ClearanceAt {
   // Bounds of the exact value.
@@ -27,8 +27,8 @@ struct ClearanceAt {
 class Clearance {
  public:
   explicit Clearance(const ExternalSpheres& external);
-  // The same answers, within the tolerance: `distance`, to the mesh that the external balls touch,
-  // makes them faster.
+  // The same answers, within the tolerance: `distance`, to the mesh that the external spheres
+  // touch, makes them faster.
   Clearance(const ExternalSpheres& external, const MeshDistance& distance);
 
   // With a tolerance the bounds may be that far apart; with a limit, clearances beyond it are not
@@ -37,14 +37,14 @@ class Clearance {
                          double limit = std::numeric_limits<double>::infinity()) const;
 
   const Eigen::AlignedBox3d& box() const { return box_; }
-  // Radius of the smallest external ball; infinite if there is none.
+  // Radius of the smallest external sphere; infinite if there is none.
   double least_external() const { return least_external_; }
 
  private:
-  Clearance(const ExternalSpheres& external, internal::BallHierarchy balls);
+  Clearance(const ExternalSpheres& external, internal::SphereHierarchy spheres);
 
   std::vector<Eigen::Vector3d> centers_;
-  internal::BallHierarchy balls_;
+  internal::SphereHierarchy spheres_;
   Eigen::AlignedBox3d box_;
   double least_external_;
 };

@@ -23,9 +23,9 @@ struct AscentOptions {
 
 // Moves a point of S away from its contact, as the paper moves an internal sphere "away from the
 // collision along the normal", until it touches in two or more places that stop it: a step must
-// raise the clearance by 0.6 of its length, so that touching a second external ball beside the
+// raise the clearance by 0.6 of its length, so that touching a second external sphere beside the
 // first, which hardly stops it, does not count. Moving by t against one
-// contact raises the clearance by t, so the grown ball contains the former one. Returns the
+// contact raises the clearance by t, so the grown sphere contains the former one. Returns the
 // positions taken, from the start to the end, which is on or near the medial axis of S.
 std::vector<AscentStep> ascend(const Clearance& clearance, const Eigen::Vector3d& start,
                                const AscentOptions& options);

@@ -15,15 +15,15 @@
 namespace spherule::internal {
 
 // A cell whose centre is outside of S is halved further than others, down to this share of what is
-// the finest elsewhere, to see whether S is there at all: a ball placed for it would protrude for
+// the finest elsewhere, to see whether S is there at all: a sphere placed for it would protrude for
 // nothing.
 inline constexpr double kFinestOutside = 1.0 / 64.0;
 // Where not even a point of S is found near such a cell, it is halved down to this share: external
-// balls that close S by a hair leave none, and the next point of S may be far.
+// spheres that close S by a hair leave none, and the next point of S may be far.
 inline constexpr double kFinestPinch = 0x1p-16;
 
-// No cell smaller than this is looked at: clearances there are mostly rounding (BallHierarchy: 32 u
-// times the largest coordinate, for balls within the box), and halving no longer makes cells
+// No cell smaller than this is looked at: clearances there are mostly rounding (SphereHierarchy: 32
+// u times the largest coordinate, for spheres within the box), and halving no longer makes cells
 // smaller (BoxCell: 8 u).
 double least_reach(const Eigen::AlignedBox3d& box);
 

@@ -19,7 +19,7 @@ namespace {
 // Width of the layer of nodes that is kept at the finest step, in steps (docs/covering.md, stage
 // 1).
 constexpr double kLayer = 1.2;
-// Of the step: rounding that a ball may stick out of another by and still be taken for a part.
+// Of the step: rounding that a sphere may stick out of another by and still be taken for a part.
 constexpr double kContained = 1e-9;
 // Cells that are examined between two reports of progress: siblings stay together.
 constexpr std::size_t kPart = std::size_t{1} << 20;

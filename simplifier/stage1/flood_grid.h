@@ -4,8 +4,8 @@
 #include "mesh/mesh_distance.h"
 #include "mesh/shells/disjoint_sets.h"
 #include "simplifier/external_spheres.h"
-#include "simplifier/stage1/ball_way.h"
 #include "simplifier/stage1/local_diameter.h"
+#include "simplifier/stage1/sphere_way.h"
 
 #include <Eigen/Geometry>
 
@@ -17,10 +17,10 @@
 
 namespace spherule::internal {
 
-// The free space of a ball of radius rho around a mesh, as a sparse octree over a cube that leaves
-// the ball room on every side of the mesh; rho and the finest step h are those of the place
-// (local_diameter.h). Cells are examined from coarse to fine, so that memory grows with the surface
-// over the square of the finest step, not with the volume:
+// The free space of a sphere of radius rho around a mesh, as a sparse octree over a cube that
+// leaves the sphere room on every side of the mesh; rho and the finest step h are those of the
+// place (local_diameter.h). Cells are examined from coarse to fine, so that memory grows with the
+// surface over the square of the finest step, not with the volume:
 //  - a coarse cell all of whose points have clearance >= rho + 1.2 h is free as a whole;
 //  - a cell all of whose points have clearance < rho is blocked;
 //  - a finest cell, of edge h, is a node: free if the clearance at its centre is at least rho.
@@ -51,26 +51,26 @@ class FloodGrid {
   FloodGrid(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
             const Shape& shape, const Progress& progress);
 
-  // Marks the cells that the ball reaches from outside the cube. A step between two nodes counts
-  // only if the ball provably passes on the straight way, whose length is h: (d1 + d2 - h) / 2 >=
-  // rho, the greatest on that way; or, where that makes a difference, by bisection (ball_way.h). A
-  // step between two coarse free cells always passes, through their common face. So does one
+  // Marks the cells that the sphere reaches from outside the cube. A step between two nodes counts
+  // only if the sphere provably passes on the straight way, whose length is h: (d1 + d2 - h) / 2 >=
+  // rho, the greatest on that way; or, where that makes a difference, by bisection (sphere_way.h).
+  // A step between two coarse free cells always passes, through their common face. So does one
   // between a node and a coarse free cell where rho is the same: on the way of h / 2 to the common
   // face the clearance is at least (d1 + rho + 1.2 h - h / 2) / 2 >= rho. Where zones make a
   // difference, that way is examined.
   void flood();
 
-  // After flood(): halves cells where a ball that is larger by a share might get to places that are
-  // not reached yet, until it is proved that there are none, and floods on. Returns the share s for
-  // which this holds, `share` unless memory is short: wherever a ball of radius (1 + s) rho can be
-  // moved from outside the cube, its centre lies in a reached cell, or in the ball of a reached
-  // cell that touches its own. The proof is in flood_refinement.cpp.
+  // After flood(): halves cells where a sphere that is larger by a share might get to places that
+  // are not reached yet, until it is proved that there are none, and floods on. Returns the share s
+  // for which this holds, `share` unless memory is short: wherever a sphere of radius (1 + s) rho
+  // can be moved from outside the cube, its centre lies in a reached cell, or in the sphere of a
+  // reached cell that touches its own. The proof is in flood_refinement.cpp.
   double tighten(double share, const Progress& progress);
 
   // After flood(). Order: from coarse to fine, along the Morton curve.
   std::vector<Cell> reached_cells() const;
-  // The same but for nodes whose ball lies in that of a cell beside it, up to 1e-9 of the step:
-  // such chains end at a larger ball that is kept.
+  // The same but for nodes whose sphere lies in that of a cell beside it, up to 1e-9 of the step:
+  // such chains end at a larger sphere that is kept.
   std::vector<Cell> reached_cells_that_count() const;
   std::vector<Frontier> frontier() const;
 
@@ -116,12 +116,13 @@ class FloodGrid {
   // The cell of `level` or coarser that holds the index and is not refined; cells_.size() if that
   // one is refined further.
   std::size_t locate(int level, const Index& index) const;
-  // Whether the ball of a reached node lies in that of a reached neighbour, of its size or coarser.
+  // Whether the sphere of a reached node lies in that of a reached neighbour, of its size or
+  // coarser.
   bool lies_in_neighbour(const Entry& node) const;
   // The same answer as from LocalDiameter::on_way(), between the centres of two nodes.
   double needed_between(const Entry& a, const Entry& b) const;
-  // Whether the ball provably passes between two free cells that share a face; `face` is the centre
-  // of that.
+  // Whether the sphere provably passes between two free cells that share a face; `face` is the
+  // centre of that.
   bool passes(const Entry& a, const Entry& b, const Eigen::Vector3d& face) const;
   // Calls visit(cell, index) for the face neighbours of the same size or coarser, and
   // visit(cells_.size(), index) for each face on the boundary of the cube.
@@ -131,10 +132,10 @@ class FloodGrid {
   bool passes_by_bisection(const Entry& a, const Entry& b) const;
   // Two free cells.
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
-  // Unites a free cell with the free ones at its faces to which the ball passes by passes(), and
+  // Unites a free cell with the free ones at its faces to which the sphere passes by passes(), and
   // notes the others as doubtful.
   void connect(std::size_t cell);
-  // Unites the doubtful pairs of which one alone is reached and between which the ball passes by
+  // Unites the doubtful pairs of which one alone is reached and between which the sphere passes by
   // bisection, as long as there are some, and marks what is reached. Those between two cells that
   // are not reached are left.
   void reach_on();
@@ -146,14 +147,14 @@ class FloodGrid {
 
   const MeshDistance& distance_;
   double padding_;
-  BallWay way_;
+  SphereWay way_;
   const LocalDiameter& diameter_;
   Shape shape_;
   int levels_;  // with the halvings of zones
   std::vector<Entry> cells_;
   std::vector<std::size_t> level_begin_;
   std::atomic<double> widest_bounds_ = 0.0;  // of distances: upper less lower
-  // Of the outside, 0, and each cell, one further: between which the ball passes.
+  // Of the outside, 0, and each cell, one further: between which the sphere passes.
   DisjointSets sets_{1};
   std::vector<Pair> uncertain_;
 };

@@ -2,18 +2,18 @@
 
 // Makes the flood tight where that matters.
 //
-// What is proved. Let T(x) = (1 + s) rho(x), R the places to which a ball of radius T can be moved
-// from outside the cube: its centre passes points of clearance >= T alone. A leaf is *possible* if
-// its clearance may be T somewhere: the clearance at its centre, rounded up, and half its diagonal
-// make the least T in it; a coarse leaf that is free is, one that is blocked is not. The way of the
-// centre to a place of R passes possible leaves alone. Points of clearance above (1 - 1e-9) T form
-// an open set, in which the way can be moved off edges and corners, so that it passes from leaf to
-// leaf through faces. So each leaf that meets R belongs to the possible leaves that are connected
-// with the outside through faces of possible or reached leaves: *open* leaves. Once each open leaf
-// is reached, or lies as a whole in the ball of a reached leaf that touches it, each place of R
-// lies in a reached leaf or in such a ball. That ball's centre is at most half a diagonal of its
-// leaf and a diagonal of the open one away: 2.6 h, of the coarser of the two (of a coarse free
-// cell: its ball holds more than its leaf).
+// What is proved. Let T(x) = (1 + s) rho(x), R the places to which a sphere of radius T can be
+// moved from outside the cube: its centre passes points of clearance >= T alone. A leaf is
+// *possible* if its clearance may be T somewhere: the clearance at its centre, rounded up, and half
+// its diagonal make the least T in it; a coarse leaf that is free is, one that is blocked is not.
+// The way of the centre to a place of R passes possible leaves alone. Points of clearance above (1
+// - 1e-9) T form an open set, in which the way can be moved off edges and corners, so that it
+// passes from leaf to leaf through faces. So each leaf that meets R belongs to the possible leaves
+// that are connected with the outside through faces of possible or reached leaves: *open* leaves.
+// Once each open leaf is reached, or lies as a whole in the sphere of a reached leaf that touches
+// it, each place of R lies in a reached leaf or in such a sphere. That sphere's centre is at most
+// half a diagonal of its leaf and a diagonal of the open one away: 2.6 h, of the coarser of the two
+// (of a coarse free cell: its sphere holds more than its leaf).
 //
 // Where it is not so, those of the open leaves that are left and lie at the front of what is
 // reached are halved, with the possible leaves around them in two rings, so that what is reached
@@ -187,7 +187,7 @@ class FloodGrid::Refinement {
     return suffices(grid_.diameter_.near(grid_.center(cell), reach).least);
   }
 
-  // Whether the cell lies as a whole in the ball of a reached leaf that touches it.
+  // Whether the cell lies as a whole in the sphere of a reached leaf that touches it.
   bool is_held(std::size_t cell) const {
     return is_held_by(cell, [](const Entry& other) { return other.reached; });
   }

@@ -12,7 +12,7 @@
 
 namespace spherule::internal {
 
-// D as a function of place, as radii, and the grid steps that follow it. At a point x a ball of
+// D as a function of place, as radii, and the grid steps that follow it. At a point x a sphere of
 // radius rho(x) has to have room: D / 2, or d / 2 in a zone of its own d, the least of them where
 // zones overlap. Zones are closed and convex, so a straight way between two points of one zone
 // needs no more than that zone asks for.

@@ -14,22 +14,23 @@ namespace {
 
 using Eigen::Vector3d;
 
-// True only if a ball of radius rho provably passes from one free ball's centre to the other's.
+// True only if a sphere of radius rho provably passes from one free sphere's centre to the other's.
 bool passes(const Sphere& a, const Sphere& b, double rho) {
   return sub_down(add_down(a.radius, b.radius), distance_upper(a.center, b.center)) >= 2.0 * rho;
 }
 
-// Balls that are not reached yet, in a binary hierarchy from which they can be taken out.
+// Spheres that are not reached yet, in a binary hierarchy from which they can be taken out.
 class Waiting {
  public:
-  explicit Waiting(std::vector<Sphere> balls) : balls_(std::move(balls)), taken_(balls_.size()) {
-    if (!balls_.empty()) build(0, balls_.size());
+  explicit Waiting(std::vector<Sphere> spheres)
+      : spheres_(std::move(spheres)), taken_(spheres_.size()) {
+    if (!spheres_.empty()) build(0, spheres_.size());
   }
 
-  // Takes out every ball that `ball` passes to, and hands it to `visit`.
+  // Takes out every sphere that `sphere` passes to, and hands it to `visit`.
   template <typename Visit>
-  void take(const Sphere& ball, double rho, Visit visit) {
-    if (!nodes_.empty()) take(0, ball, rho, visit);
+  void take(const Sphere& sphere, double rho, Visit visit) {
+    if (!nodes_.empty()) take(0, sphere, rho, visit);
   }
 
  private:
@@ -48,14 +49,16 @@ class Waiting {
     nodes_[self].end = end;
     nodes_[self].left_over = end - begin;
     for (std::size_t i = begin; i < end; ++i) {
-      nodes_[self].centers.extend(balls_[i].center);
-      nodes_[self].max_radius = std::max(nodes_[self].max_radius, balls_[i].radius);
+      nodes_[self].centers.extend(spheres_[i].center);
+      nodes_[self].max_radius = std::max(nodes_[self].max_radius, spheres_[i].radius);
     }
     if (end - begin <= 8) return self;
     int axis = 0;
     nodes_[self].centers.sizes().maxCoeff(&axis);
     const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [&](std::size_t i) { return balls_.begin() + static_cast<std::ptrdiff_t>(i); };
+    const auto at = [&](std::size_t i) {
+      return spheres_.begin() + static_cast<std::ptrdiff_t>(i);
+    };
     std::nth_element(at(begin), at(middle), at(end), [axis](const Sphere& s, const Sphere& t) {
       return s.center[axis] < t.center[axis];
     });
@@ -66,27 +69,27 @@ class Waiting {
   }
 
   template <typename Visit>
-  void take(std::size_t index, const Sphere& ball, double rho, Visit visit) {
+  void take(std::size_t index, const Sphere& sphere, double rho, Visit visit) {
     Node& node = nodes_[index];
     if (node.left_over == 0) return;
     // A bound with a margin far above the rounding: it only saves work.
-    const double gap = node.centers.exteriorDistance(ball.center);
-    if (gap * (1.0 - 1e-12) > ball.radius + node.max_radius - 2.0 * rho) return;
+    const double gap = node.centers.exteriorDistance(sphere.center);
+    if (gap * (1.0 - 1e-12) > sphere.radius + node.max_radius - 2.0 * rho) return;
     if (node.right == 0) {
       for (std::size_t i = node.begin; i < node.end; ++i) {
-        if (taken_[i] || !passes(ball, balls_[i], rho)) continue;
+        if (taken_[i] || !passes(sphere, spheres_[i], rho)) continue;
         taken_[i] = true;
         --node.left_over;
-        visit(balls_[i]);
+        visit(spheres_[i]);
       }
       return;
     }
-    take(index + 1, ball, rho, visit);
-    take(node.right, ball, rho, visit);
+    take(index + 1, sphere, rho, visit);
+    take(node.right, sphere, rho, visit);
     node.left_over = nodes_[index + 1].left_over + nodes_[node.right].left_over;
   }
 
-  std::vector<Sphere> balls_;
+  std::vector<Sphere> spheres_;
   std::vector<bool> taken_;
   std::vector<Node> nodes_;
 };
@@ -111,8 +114,8 @@ RandomPlacement place_random(const MeshDistance& distance, double padding, doubl
   std::erase_if(tried, [&](const Sphere& s) { return s.radius < rho; });
   report(0.6);
 
-  // A ball leaves the box if it passes straight on to the nearest face of the field, where a ball
-  // of radius rho is outside of the box.
+  // A sphere leaves the box if it passes straight on to the nearest face of the field, where a
+  // sphere of radius rho is outside of the box.
   const auto leaves = [&](const Sphere& s) {
     int axis = 0;
     const double low = (s.center - field.min()).minCoeff(&axis);
@@ -137,12 +140,12 @@ RandomPlacement place_random(const MeshDistance& distance, double padding, doubl
   result.attempts = options.limit;
   std::vector<Sphere> others;
   for (std::size_t i = 0; i < tried.size(); ++i) {
-    (first[i] != 0 ? result.balls : others).push_back(tried[i]);
+    (first[i] != 0 ? result.spheres : others).push_back(tried[i]);
   }
   Waiting waiting(std::move(others));
-  for (std::size_t i = 0; i < result.balls.size(); ++i) {
-    const Sphere ball = result.balls[i];
-    waiting.take(ball, rho, [&](const Sphere& reached) { result.balls.push_back(reached); });
+  for (std::size_t i = 0; i < result.spheres.size(); ++i) {
+    const Sphere sphere = result.spheres[i];
+    waiting.take(sphere, rho, [&](const Sphere& reached) { result.spheres.push_back(reached); });
   }
   report(1.0);
   return result;

@@ -2,7 +2,7 @@
 #include "simplifier/stage2/cover_bound.h"
 
 #include "simplifier/stage2/fractional_packing.h"
-#include "simplifier/stage2/heaviest_balls.h"
+#include "simplifier/stage2/heaviest_spheres.h"
 
 #include <tbb/parallel_for.h>
 
@@ -32,7 +32,7 @@ constexpr double kReserve = 0.01;
 constexpr double kRounding = 1e-9;
 
 std::vector<Vector3d> certain_points(const CoverBoundInput& input) {
-  const double slack = HeaviestBalls::slack(input.clearance, input.max_error);
+  const double slack = HeaviestSpheres::slack(input.clearance, input.max_error);
   std::vector<Vector3d> points;
   for (const Vector3d& p : input.points) {
     if (input.clearance(p).lower >= 0.0 || input.distance(p, slack).triangle >= 0) {
@@ -55,11 +55,11 @@ std::size_t cover_bound(const CoverBoundInput& input) {
   if (input.max_error > input.clearance.least_external()) return 1;
   const std::vector<Vector3d> points = certain_points(input);
   if (points.empty()) return 1;
-  const HeaviestBalls balls(input.clearance, input.max_error, points);
+  const HeaviestSpheres spheres(input.clearance, input.max_error, points);
   FractionalPacking packing(points.size());
   std::vector<FractionalPacking::Set> sets(input.centers.size());
   tbb::parallel_for(std::size_t{0}, sets.size(),
-                    [&](std::size_t i) { sets[i] = balls.held_by(input.centers[i]); });
+                    [&](std::size_t i) { sets[i] = spheres.held_by(input.centers[i]); });
   packing.add(std::move(sets));
   double best = 1.0;
   for (std::size_t round = 0; round < kRounds.size(); ++round) {
@@ -71,11 +71,11 @@ std::size_t cover_bound(const CoverBoundInput& input) {
     packing.solve(kSteps, input.stop);
     Weights weights = packing.weights();
     for (double& w : weights) w *= 1.0 - kReserve;
-    HeaviestBalls::Found found = balls.find({.weights = weights,
-                                             .finest = kRounds[round].finest * input.max_error,
-                                             .news = kRounds[round].news,
-                                             .stop = input.stop,
-                                             .tell = tell});
+    HeaviestSpheres::Found found = spheres.find({.weights = weights,
+                                                 .finest = kRounds[round].finest * input.max_error,
+                                                 .news = kRounds[round].news,
+                                                 .stop = input.stop,
+                                                 .tell = tell});
     if (input.stop.stop_requested()) break;
     best = std::max(best, proved_sum(weights, found.about));
     packing.add(std::move(found.held));

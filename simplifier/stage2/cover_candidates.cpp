@@ -17,12 +17,12 @@ namespace {
 
 constexpr double kClearanceTolerance = 0.02;  // of E
 constexpr double kContained = 0.97;
-// Of how far a ball reaches along a plane: those of the best size for an edge, which have a
+// Of how far a sphere reaches along a plane: those of the best size for an edge, which have a
 // clearance of E, stand this share of E apart.
 constexpr double kThinning = 0.3;
 const double kReachAtEdge = cap_width(1.0, 1.0);
 
-// In each cube, of an edge that grows with the balls, only the candidate with the largest
+// In each cube, of an edge that grows with the spheres, only the candidate with the largest
 // clearance, the first of equals.
 std::vector<Candidate> thinned(const std::vector<Candidate>& candidates, double max_error,
                                const LocalError& error) {
@@ -88,7 +88,7 @@ std::vector<Candidate> candidates_from(const Clearance& clearance,
         continue;
       }
       // Against a single contact the clearance grows as fast as the point moves, and where the same
-      // error is allowed the next ball contains this one.
+      // error is allowed the next sphere contains this one.
       const AscentStep& next = path[k + 1];
       const double allowed = local.allowance(path[k].point, path[k].clearance);
       const double allowed_next = local.allowance(next.point, std::max(0.0, next.clearance));

@@ -45,8 +45,8 @@ void check_resolved(const Clearance& clearance, double max_error, double share) 
   }
 }
 
-void check_count(std::size_t balls) {
-  if (balls > kMaxSpheres) {
+void check_count(std::size_t spheres) {
+  if (spheres > kMaxSpheres) {
     throw Error("max error", "too small for this model: more than two million spheres");
   }
 }

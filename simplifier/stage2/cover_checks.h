@@ -23,7 +23,7 @@ void refuse_error_zones(const CoverOptions& options, const std::string& method);
 // An E of which the searches could not tell such a share.
 void check_resolved(const Clearance& clearance, double max_error, double share);
 
-// No part is worth two million balls: the error is then too small for the model.
-void check_count(std::size_t balls);
+// No part is worth two million spheres: the error is then too small for the model.
+void check_count(std::size_t spheres);
 
 }  // namespace spherule::internal

@@ -26,7 +26,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Half diagonal of the cells that rows stand for, as a share of E or of how far balls reach
+// Half diagonal of the cells that rows stand for, as a share of E or of how far spheres reach
 // (SolidCells): at the start the first for which there are not too few of them, in the end the
 // first for which there are many.
 constexpr std::array kSpacings{0.7, 0.5, 0.3, 0.2, 0.14};
@@ -37,10 +37,10 @@ constexpr int kPatience = 1;
 constexpr int kConverged = 40;
 
 // Surroundings of rows: the radii as shares of the cells' spacing and, in all, of E; the discs as
-// shares of how much further than E balls reach.
+// shares of how much further than E spheres reach.
 constexpr double kCellRadius = 0.3;
 constexpr double kCellDisc = 0.05;
-constexpr double kLargestDisc = 0.5;  // of E: a ball about the point itself contains them all
+constexpr double kLargestDisc = 0.5;  // of E: a sphere about the point itself contains them all
 constexpr double kLeakRadius = 0.1;   // of the rows that leaks become
 constexpr double kLeakDisc = 0.015;
 
@@ -52,18 +52,18 @@ constexpr double kTolerance = 0.02;    // of the clearances of rows
 constexpr std::size_t kStartsPerRow = 10;  // a start for so many rows
 constexpr std::size_t kMinStarts = 2000;
 constexpr std::size_t kMaxStarts = 10000;
-// Times that candidates are grown, again from where no ball of those before covers: what is still
-// left gets a small ball of its own, of which large thin parts would need a great many.
+// Times that candidates are grown, again from where no sphere of those before covers: what is still
+// left gets a small sphere of its own, of which large thin parts would need a great many.
 constexpr int kPasses = 5;
 
 constexpr std::uint64_t kWork = 60;     // of a search: visits per entry of the rows it begins with
 constexpr std::size_t kSampling = 10;   // a search begins with one of so many rows
 constexpr std::size_t kForgetting = 4;  // times as large as it was the problem may grow
-// So many leaks more than there are balls to gain may still be mended by fewer balls.
+// So many leaks more than there are spheres to gain may still be mended by fewer spheres.
 constexpr std::size_t kHopefulLeaks = 8;
 constexpr std::size_t kOpenRows = 100;  // that candidates are made for in a round
 
-// What a lower bound is made of, for every ball proved and at least.
+// What a lower bound is made of, for every sphere proved and at least.
 constexpr std::size_t kBoundPoints = 120;
 constexpr std::size_t kMinBoundPoints = 6000;
 constexpr std::size_t kBoundCenters = 20;
@@ -80,7 +80,7 @@ std::vector<Item> some_of(const std::vector<Item>& items, std::size_t count) {
 
 }  // namespace
 
-void CoverFitter::Balls::append(const Balls& other) {
+void CoverFitter::Spheres::append(const Spheres& other) {
   places.insert(places.end(), other.places.begin(), other.places.end());
   spheres.insert(spheres.end(), other.spheres.begin(), other.spheres.end());
 }
@@ -180,7 +180,7 @@ void CoverFitter::pose(const std::vector<Candidate>& candidates) {
   problem_.add_candidates(candidates);
   cells_made_ = cells_->size();
   Points sample = cells_->sample();
-  const BallHierarchy given(given_);
+  const SphereHierarchy given(given_);
   std::erase_if(sample, [&](const Vector3d& p) { return given.nearest(p, 0.0).upper < 0.0; });
   sampled_ = sample.size();
   add_rows(problem_, sample, {kCellRadius * kSpacings[spacing_], kCellDisc},
@@ -231,19 +231,19 @@ bool CoverFitter::search() {
 }
 
 void CoverFitter::prove_or_learn() {
-  Balls balls = balls_of(problem_, solution_);
-  SolidCells::Leaks leaks = leaks_of(balls.spheres);
+  Spheres spheres = spheres_of(problem_, solution_);
+  SolidCells::Leaks leaks = leaks_of(spheres.spheres);
   const std::size_t leak_count = leaks.in_solid.size() + leaks.pinched.size();
   const std::size_t rows = problem_.rows().size();
   if (leak_count > 0) learn(problem_, leaks);
   know_from(rows);
   if (!best_.spheres.empty() &&
-      balls.spheres.size() + leak_count >= best_.spheres.size() + kHopefulLeaks)
+      spheres.spheres.size() + leak_count >= best_.spheres.size() + kHopefulLeaks)
     return;
-  balls = mended(std::move(balls), std::move(leaks));
-  if (!best_.spheres.empty() && balls.spheres.size() >= best_.spheres.size()) return;
-  goal_.reached(balls.spheres.size());
-  best_ = std::move(balls);
+  spheres = mended(std::move(spheres), std::move(leaks));
+  if (!best_.spheres.empty() && spheres.spheres.size() >= best_.spheres.size()) return;
+  goal_.reached(spheres.spheres.size());
+  best_ = std::move(spheres);
   if (options_.on_proved) options_.on_proved(given_.size() + best_.spheres.size());
 }
 
@@ -252,7 +252,7 @@ void CoverFitter::widen() {
       some_of(open_rows(problem_.instance(), solution_), kOpenRows);
   Points points;
   for (const std::uint32_t row : open) points.push_back(problem_.rows()[row].point);
-  // Where few are left open it takes new places for other balls, too.
+  // Where few are left open it takes new places for other spheres, too.
   Random random(options_.seed + seeds_used_++);
   while (points.size() < kOpenRows) {
     points.push_back(problem_.rows()[random.index(problem_.rows().size())].point);
@@ -262,13 +262,13 @@ void CoverFitter::widen() {
       candidates_from(clearance_, points, error_, options_.seed + seeds_used_++, local_));
 }
 
-CoverFitter::Balls CoverFitter::mended(Balls balls, SolidCells::Leaks leaks) {
-  for (; !leaks.empty(); leaks = leaks_of(balls.spheres)) {
+CoverFitter::Spheres CoverFitter::mended(Spheres spheres, SolidCells::Leaks leaks) {
+  for (; !leaks.empty(); leaks = leaks_of(spheres.spheres)) {
     CoverProblem rest(error_, options_.min_radius, options_.zones);
     learn(rest, leaks);
-    balls.append(balls_of(rest, greedy_set_cover(rest.instance())));
+    spheres.append(spheres_of(rest, greedy_set_cover(rest.instance())));
   }
-  return balls;
+  return spheres;
 }
 
 // The columns of the solution stay, one for every row, and of the others the newer half.
@@ -333,14 +333,14 @@ void CoverFitter::add_own(CoverProblem& problem, std::size_t row) const {
   problem.add_candidates(own);
 }
 
-CoverFitter::Balls CoverFitter::balls_of(const CoverProblem& problem,
-                                         const Columns& columns) const {
-  Balls balls;
+CoverFitter::Spheres CoverFitter::spheres_of(const CoverProblem& problem,
+                                             const Columns& columns) const {
+  Spheres spheres;
   for (const std::size_t c : columns) {
-    balls.places.push_back(problem.candidate(c));
-    balls.spheres.push_back(problem.ball(c, clearance_));
+    spheres.places.push_back(problem.candidate(c));
+    spheres.spheres.push_back(problem.sphere(c, clearance_));
   }
-  return balls;
+  return spheres;
 }
 
 void CoverFitter::report(double share) const {
@@ -351,10 +351,10 @@ void CoverFitter::report(double share) const {
                         .c_str());
 }
 
-SolidCells::Leaks CoverFitter::leaks_of(const std::vector<Sphere>& balls) {
+SolidCells::Leaks CoverFitter::leaks_of(const std::vector<Sphere>& spheres) {
   std::vector<Sphere> all(given_);
-  all.insert(all.end(), balls.begin(), balls.end());
-  const BallHierarchy hierarchy(all);
+  all.insert(all.end(), spheres.begin(), spheres.end());
+  const SphereHierarchy hierarchy(all);
   return cells_->find_leaks({all, hierarchy}, finest(error_), leak_spacing(error_));
 }
 

@@ -22,21 +22,21 @@
 
 namespace spherule::internal {
 
-// Few balls that cover S (docs/covering.md): a greedy set cover, mended where it leaks, is the
-// first proved answer; then rounds look for a cover of fewer balls by local search, spread the
-// balls to where they have the most to spare, and prove the result or learn from where it leaks.
+// Few spheres that cover S (docs/covering.md): a greedy set cover, mended where it leaks, is the
+// first proved answer; then rounds look for a cover of fewer spheres by local search, spread the
+// spheres to where they have the most to spare, and prove the result or learn from where it leaks.
 // Where that no longer helps, cells and rows become finer.
 class CoverFitter {
  public:
-  // What the balls `given` cover need not be covered again. Throws Error for an E too small for the
-  // rounding of the coordinates.
+  // What the spheres `given` cover need not be covered again. Throws Error for an E too small for
+  // the rounding of the coordinates.
   CoverFitter(const Clearance& clearance, const MeshDistance& distance, const CoverOptions& options,
               std::span<const Sphere> given = {});
 
-  // The fewest balls that were proved to cover S, together with those given.
+  // The fewest spheres that were proved to cover S, together with those given.
   std::vector<Sphere> run();
 
-  // After run(): that many balls at least are in any cover that keeps to E; 0 where it was not
+  // After run(): that many spheres at least are in any cover that keeps to E; 0 where it was not
   // asked for or is not known.
   std::size_t lower_bound() const { return lower_bound_; }
 
@@ -49,17 +49,17 @@ class CoverFitter {
   using Columns = CoverProblem::Columns;
   using Points = std::vector<Eigen::Vector3d>;
 
-  // Balls that stand at candidates.
-  struct Balls {
+  // Spheres that stand at candidates.
+  struct Spheres {
     std::vector<Candidate> places;
     std::vector<Sphere> spheres;
 
-    void append(const Balls& other);
+    void append(const Spheres& other);
   };
 
   // The first proved answer.
   void begin();
-  // One round; true if fewer balls were proved.
+  // One round; true if fewer spheres were proved.
   bool improve();
   // Sets out again with cells and rows of the next finer spacing, if that is not too fine; what was
   // proved and learned stays.
@@ -76,22 +76,22 @@ class CoverFitter {
   void bound();
   // New candidates about the rows that solution_ leaves open.
   void widen();
-  // With balls added until nothing leaks.
-  Balls mended(Balls balls, SolidCells::Leaks leaks);
+  // With spheres added until nothing leaks.
+  Spheres mended(Spheres spheres, SolidCells::Leaks leaks);
   // Keeps the problem from growing for ever.
   void forget();
   // Has the search begin with the rows from this one on.
   void know_from(std::size_t row);
 
   void learn(CoverProblem& problem, const SolidCells::Leaks& leaks);
-  // A ball about the point itself for each of the rows from this one on that no candidate covers,
+  // A sphere about the point itself for each of the rows from this one on that no candidate covers,
   // so that every row can be covered.
   void add_own(CoverProblem& problem, std::size_t row) const;
   // The points of the rows from this one on that no candidate covers.
   static Points uncoverable(const CoverProblem& problem, std::size_t row);
   // Rows at the points, with surroundings of this radius and disc, shares of E and of how much
-  // further than E balls reach there, that can be covered; and candidates grown from the starts and
-  // from what those leave out.
+  // further than E spheres reach there, that can be covered; and candidates grown from the starts
+  // and from what those leave out.
   struct Surroundings {
     double radius;
     double disc;
@@ -99,8 +99,8 @@ class CoverFitter {
   void add_rows(CoverProblem& problem, const Points& points, const Surroundings& surroundings,
                 const Points& starts);
 
-  Balls balls_of(const CoverProblem& problem, const Columns& columns) const;
-  SolidCells::Leaks leaks_of(const std::vector<Sphere>& balls);
+  Spheres spheres_of(const CoverProblem& problem, const Columns& columns) const;
+  SolidCells::Leaks leaks_of(const std::vector<Sphere>& spheres);
   void report(double share) const;
 
   const Clearance& clearance_;
@@ -115,7 +115,7 @@ class CoverFitter {
   std::size_t sampled_ = 0;  // rows that stand for cells; the others were learned
   CoverSearch::Rows known_;  // that the search begins with
   Columns solution_;         // the last that was tried
-  Balls best_;               // proved
+  Spheres best_;             // proved
   CoverGoal goal_;
   std::vector<Sphere> given_;
   std::size_t lower_bound_ = 0;

@@ -6,8 +6,8 @@
 
 namespace spherule::internal {
 
-// How many balls to look for: fewer by a step than are proved. The step is halved where the search
-// fails and doubled where it succeeds.
+// How many spheres to look for: fewer by a step than are proved. The step is halved where the
+// search fails and doubled where it succeeds.
 class CoverGoal {
  public:
   std::size_t target() const { return target_; }

@@ -69,12 +69,13 @@ CoverHistory::CoverHistory(const TriangleMesh& mesh, const MeshDistance& distanc
   }
 }
 
-void CoverHistory::update(std::vector<Sample>& samples, const Sphere& ball) {
-  for (Sample& s : samples) s.gap = std::min(s.gap, (s.point - ball.center).norm() - ball.radius);
+void CoverHistory::update(std::vector<Sample>& samples, const Sphere& sphere) {
+  for (Sample& s : samples)
+    s.gap = std::min(s.gap, (s.point - sphere.center).norm() - sphere.radius);
 }
 
-void CoverHistory::add(const Sphere& ball) {
-  for (std::vector<Sample>* samples : {&surface_, &solid_, &outside_}) update(*samples, ball);
+void CoverHistory::add(const Sphere& sphere) {
+  for (std::vector<Sample>* samples : {&surface_, &solid_, &outside_}) update(*samples, sphere);
   ++count_;
 }
 

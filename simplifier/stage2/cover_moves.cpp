@@ -16,7 +16,7 @@ using Columns = CoverProblem::Columns;
 
 constexpr std::size_t kNearest = 8;
 
-// For every ball of the solution the rows that it alone covers.
+// For every sphere of the solution the rows that it alone covers.
 std::vector<std::vector<std::uint32_t>> exclusive_rows(const CoverProblem& problem,
                                                        const Columns& solution) {
   const std::vector<std::uint32_t> times = problem.times_covered(solution);

@@ -10,12 +10,12 @@
 
 namespace spherule::internal {
 
-// Replaces each ball of the solution by one shifted to have the most to spare over the rows that it
-// alone covers, as long as no row opens. The shifted balls become candidates of the problem.
+// Replaces each sphere of the solution by one shifted to have the most to spare over the rows that
+// it alone covers, as long as no row opens. The shifted spheres become candidates of the problem.
 void spread(const Clearance& clearance, CoverProblem& problem, CoverProblem::Columns& solution);
 
-// Candidates between the balls of the solution and rows that they leave open: the few nearest balls
-// are shifted towards each of these rows as far as the rows that they alone cover let them.
+// Candidates between the spheres of the solution and rows that they leave open: the few nearest
+// spheres are shifted towards each of these rows as far as the rows that they alone cover let them.
 std::vector<Candidate> reach_for(const Clearance& clearance, const CoverProblem& problem,
                                  const CoverProblem::Columns& solution,
                                  std::span<const std::uint32_t> open);

@@ -14,7 +14,7 @@ namespace {
 
 // Shares of E.
 constexpr double kCube = 1.5;            // edge of the cubes that rows are sorted into
-constexpr double kPinchRadius = 0.02;    // of a ball where no point of S is known
+constexpr double kPinchRadius = 0.02;    // of a sphere where no point of S is known
 constexpr double kSheetReserve = 0.005;  // off the radius where S is as thin as the mesh
 
 }  // namespace
@@ -29,7 +29,7 @@ double CoverProblem::radius(const Candidate& candidate) const {
                   candidate.clearance >= 0.0 ? clearance + allowed : kPinchRadius * allowed);
 }
 
-Sphere CoverProblem::ball(std::size_t column, const Clearance& clearance) const {
+Sphere CoverProblem::sphere(std::size_t column, const Clearance& clearance) const {
   const Candidate& at = candidates_[column];
   const double exact = clearance(at.center).lower;
   const double error = error_.allowance(at.center, std::max(0.0, exact));

@@ -17,23 +17,23 @@
 namespace spherule::internal {
 
 // The set cover that stands for covering S: rows are points of S, each with its surroundings, a
-// small ball or, along the boundary of S, a disc grown by one, which a single ball has to contain;
-// columns are candidates.
+// small sphere or, along the boundary of S, a disc grown by one, which a single sphere has to
+// contain; columns are candidates.
 class CoverProblem {
  public:
   using Columns = std::vector<std::size_t>;
   struct Row {
     Eigen::Vector3d point;
-    double radius;                                      // of the ball
+    double radius;                                      // of the sphere
     double disc = 0.0;                                  // radius of the disc about the point
     Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // of the disc
-    bool pinched = false;  // no point of S is known there: its own ball is that of kPinched
+    bool pinched = false;  // no point of S is known there: its own sphere is that of kPinched
 
     // Of the disc, the point furthest from another.
     Eigen::Vector3d furthest_from(const Eigen::Vector3d& other) const;
   };
 
-  // No ball has a radius below `min_radius`. Zones may have an error of their own.
+  // No sphere has a radius below `min_radius`. Zones may have an error of their own.
   CoverProblem(double max_error, double min_radius, std::span<const Zone> zones = {});
 
   void add_rows(std::span<const Row> rows);
@@ -47,12 +47,12 @@ class CoverProblem {
 
   const LocalError& error() const { return error_; }
 
-  // Radius of the ball at a place: E, or the errors of the zones, decide how far it may protrude.
+  // Radius of the sphere at a place: E, or the errors of the zones, decide how far it may protrude.
   double radius(const Candidate& candidate) const;
-  // The ball as it is stored: protruding by E at most, by the exact clearance. That of a point of S
-  // may be negative as computed; a little less than E can still be proved there.
-  Sphere ball(std::size_t column, const Clearance& clearance) const;
-  // How far the row's surroundings lie inside the ball of the candidate; negative: outside.
+  // The sphere as it is stored: protruding by E at most, by the exact clearance. That of a point of
+  // S may be negative as computed; a little less than E can still be proved there.
+  Sphere sphere(std::size_t column, const Clearance& clearance) const;
+  // How far the row's surroundings lie inside the sphere of the candidate; negative: outside.
   double margin(const Candidate& candidate, const Row& row) const {
     return margin(candidate, radius(candidate), row);
   }

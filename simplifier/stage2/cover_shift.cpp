@@ -46,7 +46,7 @@ Candidate shift(const Clearance& clearance, const CoverProblem& problem, const C
     const Vector3d furthest = problem.rows()[worst.row].furthest_from(here.center);
     const Vector3d to_row = (furthest - here.center).normalized();
     Vector3d direction = to_row + at.away;
-    // The ball already grows straight away from the row as fast as it moves.
+    // The sphere already grows straight away from the row as fast as it moves.
     if (direction.norm() < 1e-3) break;
     direction.normalize();
     const Vector3d next = here.center + step * direction;

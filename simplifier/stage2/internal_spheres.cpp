@@ -3,7 +3,7 @@
 
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/cover_history.h"
-#include "simplifier/stage2/inscribed_balls.h"
+#include "simplifier/stage2/inscribed_spheres.h"
 
 #include <algorithm>
 #include <optional>
@@ -17,26 +17,26 @@ SphereCover place_internal_spheres(const TriangleMesh& mesh, const MeshDistance&
   if (options.history) {
     history.emplace(mesh, distance, clearance.box(), options.max_error, options.seed);
   }
-  internal::BallSet balls;
+  internal::SphereSet spheres;
   SphereCover result;
   const auto note = [&](double lower, double upper) {
-    if (!history || balls.balls().empty()) return;
+    if (!history || spheres.spheres().empty()) return;
     CoverHistoryEntry entry = history->entry(upper + internal::kProofMargin * options.max_error);
     entry.max_error_lower = lower;
     entry.max_error_upper = upper;
     result.history.push_back(entry);
   };
-  internal::fill_gaps(clearance, distance, options, balls, result.seeds_rejected,
-                      [&](const internal::UncoveredSearch::Peak& peak, const Sphere& ball) {
+  internal::fill_gaps(clearance, distance, options, spheres, result.seeds_rejected,
+                      [&](const internal::UncoveredSearch::Peak& peak, const Sphere& sphere) {
                         note(peak.lower, peak.upper);
-                        if (history) history->add(ball);
+                        if (history) history->add(sphere);
                       });
   // The search ends as soon as no error exceeds the limit; how large it is, the proof finds out.
   const internal::CoverageProof remaining =
-      internal::remaining_error(clearance, distance, balls.balls(), options.max_error);
+      internal::remaining_error(clearance, distance, spheres.spheres(), options.max_error);
   const double error = std::min(internal::kLoopLimit * options.max_error, remaining.upper);
   note(remaining.lower, error);
-  internal::inflate(result, balls.balls(), error, options);
+  internal::inflate(result, spheres.spheres(), error, options);
   return result;
 }
 

@@ -20,12 +20,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kStarts = 10000;      // of candidates, in all
-constexpr std::size_t kStartsPerBall = 24;  // at most
-constexpr std::uint64_t kWork = 50;         // of a search: visits per entry of the problem
-constexpr std::size_t kLargestStep = 8;     // this part of the count
+constexpr std::size_t kStarts = 10000;        // of candidates, in all
+constexpr std::size_t kStartsPerSphere = 24;  // at most
+constexpr std::uint64_t kWork = 50;           // of a search: visits per entry of the problem
+constexpr std::size_t kLargestStep = 8;       // this part of the count
 
-// What is kept off E for rounding: of clearances (32 u of the largest coordinate, BallHierarchy),
+// What is kept off E for rounding: of clearances (32 u of the largest coordinate, SphereHierarchy),
 // of enclosures, and SphereLevel::kReserve of a radius, which is below twice the box's extent.
 double reserve_of(const Clearance& clearance, double max_error) {
   const double size = largest_coordinate(clearance.box()) + clearance.box().diagonal().norm();
@@ -43,7 +43,7 @@ LevelFitter::LevelFitter(const Clearance& clearance, std::span<const Sphere> fin
       local_(error_, {}),
       problem_(error_, options.min_radius) {
   std::vector<CoverProblem::Row> rows;
-  for (const Sphere& ball : finer) rows.push_back({ball.center, ball.radius});
+  for (const Sphere& sphere : finer) rows.push_back({sphere.center, sphere.radius});
   problem_.add_rows(rows);
 }
 
@@ -62,21 +62,22 @@ SphereLevel LevelFitter::run() {
       children.push_back(finer_[child]);
       level.parent_of[child] = static_cast<std::int32_t>(level.spheres.size());
     }
-    if (!children.empty()) level.spheres.push_back(ball_for(solution[i], children));
+    if (!children.empty()) level.spheres.push_back(sphere_for(solution[i], children));
   }
   return level;
 }
 
 void LevelFitter::add_candidates() {
-  const std::size_t each =
-      std::clamp<std::size_t>(kStarts / std::max<std::size_t>(1, finer_.size()), 2, kStartsPerBall);
+  const std::size_t each = std::clamp<std::size_t>(
+      kStarts / std::max<std::size_t>(1, finer_.size()), 2, kStartsPerSphere);
   Random random(options_.seed);
   const Vector3d reach = Vector3d::Constant(error_);
   std::vector<Vector3d> starts;
-  for (const Sphere& ball : finer_) {
-    starts.push_back(ball.center);
+  for (const Sphere& sphere : finer_) {
+    starts.push_back(sphere.center);
     for (std::size_t i = 1; i < each; ++i) {
-      starts.push_back(random.in({Vector3d(ball.center - reach), Vector3d(ball.center + reach)}));
+      starts.push_back(
+          random.in({Vector3d(sphere.center - reach), Vector3d(sphere.center + reach)}));
     }
   }
   problem_.add_candidates(candidates_from(clearance_, starts, error_, options_.seed, local_));
@@ -86,11 +87,11 @@ void LevelFitter::add_own() {
   std::vector<Candidate> own;
   for (std::size_t row = 0; row < finer_.size(); ++row) {
     if (!problem_.columns_of()[row].empty()) continue;
-    // A finer ball that protrudes by more than it should is enclosed all the same.
-    const Sphere& ball = finer_[row];
-    const double least = (ball.radius - error_) * (1.0 + 4.0 * kUnitRoundoff) +
-                         4.0 * kUnitRoundoff * (ball.radius + error_);
-    own.push_back({ball.center, std::max({0.0, clearance_(ball.center).lower, least})});
+    // A finer sphere that protrudes by more than it should is enclosed all the same.
+    const Sphere& sphere = finer_[row];
+    const double least = (sphere.radius - error_) * (1.0 + 4.0 * kUnitRoundoff) +
+                         4.0 * kUnitRoundoff * (sphere.radius + error_);
+    own.push_back({sphere.center, std::max({0.0, clearance_(sphere.center).lower, least})});
   }
   problem_.add_candidates(own);
 }
@@ -136,7 +137,7 @@ std::vector<std::int32_t> LevelFitter::parents(const Columns& solution) const {
   return parent;
 }
 
-Sphere LevelFitter::ball_for(std::size_t column, const std::vector<Sphere>& children) const {
+Sphere LevelFitter::sphere_for(std::size_t column, const std::vector<Sphere>& children) const {
   if (children.size() == 1) return children.front();
   const auto with_reserve = [&](double radius) {
     return std::max(options_.min_radius, mul_up(radius, 1.0 + SphereLevel::kReserve));

@@ -14,12 +14,12 @@
 
 namespace spherule::internal {
 
-// Few balls that each protrude from S by at most E and together enclose every one of some finer
-// balls whole (simplifier/levels.h). Unlike a cover of S this is a set cover and no more, so what
+// Few spheres that each protrude from S by at most E and together enclose every one of some finer
+// spheres whole (simplifier/levels.h). Unlike a cover of S this is a set cover and no more, so what
 // the search finds needs no proof but that of the enclosures.
 class LevelFitter {
  public:
-  // `options.max_error` is the E of the level. The finer balls must outlive the fitter.
+  // `options.max_error` is the E of the level. The finer spheres must outlive the fitter.
   LevelFitter(const Clearance& clearance, std::span<const Sphere> finer,
               const CoverOptions& options);
 
@@ -29,14 +29,14 @@ class LevelFitter {
   using Columns = CoverProblem::Columns;
 
   void add_candidates();
-  // The places of the finer balls themselves, where no candidate encloses one.
+  // The places of the finer spheres themselves, where no candidate encloses one.
   void add_own();
   void improve(Columns& solution);
-  // Each finer ball goes to the ball of the solution that has the most to spare for it.
+  // Each finer sphere goes to the sphere of the solution that has the most to spare for it.
   std::vector<std::int32_t> parents(const Columns& solution) const;
-  // The smallest ball for the children: their enclosing ball if it is allowed, else the smallest
-  // about the column's place.
-  Sphere ball_for(std::size_t column, const std::vector<Sphere>& children) const;
+  // The smallest sphere for the children: their enclosing sphere if it is allowed, else the
+  // smallest about the column's place.
+  Sphere sphere_for(std::size_t column, const std::vector<Sphere>& children) const;
 
   const Clearance& clearance_;
   std::span<const Sphere> finer_;

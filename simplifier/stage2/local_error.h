@@ -15,7 +15,7 @@
 
 namespace spherule::internal {
 
-// E as a function of place. A ball keeps the promise of all zones if, for each zone Z of its own
+// E as a function of place. A sphere keeps the promise of all zones if, for each zone Z of its own
 // error e, it protrudes by at most e or does not reach into Z:
 //   r <= D(c) + e  or  r < dist(c, Z).
 // With E elsewhere the largest such radius is D(c) + allowance(c, D(c)), where
@@ -30,7 +30,7 @@ class LocalError {
     zones_ = ZoneIndex(with_error);
   }
 
-  // How far a ball about `center` may protrude from S, of which the ball of radius `clearance`
+  // How far a sphere about `center` may protrude from S, of which the sphere of radius `clearance`
   // about it is a subset. Rounded down: a radius of at most clearance + allowance, the sum in exact
   // arithmetic, keeps the promise if it is less than the sum.
   double allowance(const Eigen::Vector3d& center, double clearance) const {

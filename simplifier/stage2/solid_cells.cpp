@@ -13,7 +13,7 @@
 namespace spherule::internal {
 namespace {
 
-// A cell that has shown so many leaks can wait for the next round: the balls that mend them cover
+// A cell that has shown so many leaks can wait for the next round: the spheres that mend them cover
 // most of its parts, which need not be examined then.
 constexpr std::size_t kEnoughLeaks = 3;
 
@@ -26,8 +26,8 @@ constexpr double kSampleTolerance = 0.01;
 // so much less. (Flatter ones may be missed: it decides where rows stand, not what is proved.)
 constexpr double kShrinking = 1.42;
 
-// Cells are only ever halved, along the seams of every set of balls that was examined. From so many
-// times the first number on, and so many in all, it is cheaper to begin again.
+// Cells are only ever halved, along the seams of every set of spheres that was examined. From so
+// many times the first number on, and so many in all, it is cheaper to begin again.
 constexpr std::size_t kForgetting = 8;
 constexpr std::size_t kLeastForgotten = 600000;
 
@@ -38,7 +38,7 @@ using Eigen::Vector3d;
 SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
                        const LocalError& error, double max_error, double share, double widest_cap)
     : clearance_(clearance), distance_(distance), error_(error), spacing_(share * max_error) {
-  // Balls of S that touch the boundary in the cell are large enough for its size, and remain so
+  // Spheres of S that touch the boundary in the cell are large enough for its size, and remain so
   // this far along it.
   const auto is_flat = [&](const BoxCell& cell, const ClearanceAt& at, double local_error) {
     const double width = cell.reach() / share;
@@ -118,7 +118,7 @@ bool SolidCells::meets_solid(Cell& cell) const {
   return !state.outside;
 }
 
-std::optional<SolidCells::Leak> SolidCells::leak_in(const Cell& cell, const NearestBall& gap,
+std::optional<SolidCells::Leak> SolidCells::leak_in(const Cell& cell, const NearestSphere& gap,
                                                     double finest_elsewhere) const {
   const double reach = cell.box.reach();
   const double finest = finest_elsewhere * error_.scale(cell.box.center, reach);
@@ -134,24 +134,25 @@ std::optional<SolidCells::Leak> SolidCells::leak_in(const Cell& cell, const Near
   return Leak{cell.box.center, false};
 }
 
-SolidCells::Refined SolidCells::refine(const Cell& start, const BallsToProve& balls,
+SolidCells::Refined SolidCells::refine(const Cell& start, const SpheresToProve& spheres,
                                        double finest) const {
   Refined result;
   std::vector<Cell> waiting{start};
-  const auto in_its_ball = [&](const Cell& cell) {
-    return cell.ball >= 0 && certainly_contains(balls.balls[static_cast<std::size_t>(cell.ball)],
-                                                cell.box.center, cell.box.reach());
+  const auto in_its_sphere = [&](const Cell& cell) {
+    return cell.sphere >= 0 &&
+           certainly_contains(spheres.spheres[static_cast<std::size_t>(cell.sphere)],
+                              cell.box.center, cell.box.reach());
   };
   while (!waiting.empty()) {
     Cell cell = waiting.back();
     waiting.pop_back();
-    if (result.leaks.size() >= kEnoughLeaks || in_its_ball(cell)) {
+    if (result.leaks.size() >= kEnoughLeaks || in_its_sphere(cell)) {
       result.cells.push_back(cell);
       continue;
     }
-    const NearestBall gap = balls.hierarchy.nearest(cell.box.center);
-    cell.ball = gap.index;
-    if (in_its_ball(cell)) {
+    const NearestSphere gap = spheres.hierarchy.nearest(cell.box.center);
+    cell.sphere = gap.index;
+    if (in_its_sphere(cell)) {
       result.cells.push_back(cell);
       continue;
     }
@@ -162,31 +163,32 @@ SolidCells::Refined SolidCells::refine(const Cell& start, const BallsToProve& ba
       continue;
     }
     for (const BoxCell& half : cell.box.halves()) {
-      waiting.push_back({half, cell.inside, cell.inside, cell.inside, cell.ball});
+      waiting.push_back({half, cell.inside, cell.inside, cell.inside, cell.sphere});
     }
   }
   return result;
 }
 
-void SolidCells::follow(std::span<const Sphere> balls) {
-  std::vector<Sphere> centers(balls.begin(), balls.end());
+void SolidCells::follow(std::span<const Sphere> spheres) {
+  std::vector<Sphere> centers(spheres.begin(), spheres.end());
   for (Sphere& center : centers) center.radius = 0.0;
-  const BallHierarchy hierarchy(centers);
-  std::vector<std::int32_t> number(balls_before_.size());
+  const SphereHierarchy hierarchy(centers);
+  std::vector<std::int32_t> number(spheres_before_.size());
   tbb::parallel_for(std::size_t{0}, number.size(), [&](std::size_t i) {
-    number[i] = hierarchy.nearest(balls_before_[i].center).index;
+    number[i] = hierarchy.nearest(spheres_before_[i].center).index;
   });
   for (Cell& cell : cells_) {
-    if (cell.ball >= 0) cell.ball = number[static_cast<std::size_t>(cell.ball)];
+    if (cell.sphere >= 0) cell.sphere = number[static_cast<std::size_t>(cell.sphere)];
   }
-  balls_before_.assign(balls.begin(), balls.end());
+  spheres_before_.assign(spheres.begin(), spheres.end());
 }
 
-SolidCells::Leaks SolidCells::find_leaks(const BallsToProve& balls, double finest, double spacing) {
-  follow(balls.balls);
+SolidCells::Leaks SolidCells::find_leaks(const SpheresToProve& spheres, double finest,
+                                         double spacing) {
+  follow(spheres.spheres);
   std::vector<Refined> refined(cells_.size());
   tbb::parallel_for(std::size_t{0}, cells_.size(),
-                    [&](std::size_t i) { refined[i] = refine(cells_[i], balls, finest); });
+                    [&](std::size_t i) { refined[i] = refine(cells_[i], spheres, finest); });
   cells_.clear();
   Leaks thinned;
   std::set<GradedCube> taken;

@@ -19,15 +19,15 @@
 namespace spherule::internal {
 
 // A partition of S into cells, kept between rounds of a search: which cells meet S does not depend
-// on the balls, and finding that out is what costs.
+// on the spheres, and finding that out is what costs.
 class SolidCells {
  public:
   // Halves the box of S until a cell lies outside of S (it is forgotten) or its half diagonal is at
-  // most the `share` of E plus half the clearance, since a ball that covers part of the deep inside
-  // covers much of it, or the share of how far balls reach along the boundary there
+  // most the `share` of E plus half the clearance, since a sphere that covers part of the deep
+  // inside covers much of it, or the share of how far spheres reach along the boundary there
   // (surface_extent.h; `widest_cap` times E at most). So the number of cells grows with the edges
   // and thin parts of S over E, and where S is flat only with its area over E times the radius of
-  // the largest balls in it. This and the other lengths below hold where E does, and shrink with
+  // the largest spheres in it. This and the other lengths below hold where E does, and shrink with
   // the error in zones.
   SolidCells(const Clearance& clearance, const MeshDistance& distance, const LocalError& error,
              double max_error, double share, double widest_cap = kWidestCap);
@@ -39,25 +39,25 @@ class SolidCells {
   // centre give none.
   std::vector<Eigen::Vector3d> sample() const;
 
-  // Where the balls do not cover S, at most one point per cube of edge `spacing`. None only if S is
-  // proved to be covered: cells that no single ball contains are halved until one does, or they lie
-  // outside of S. A cell is given up as a leak where its centre is an uncovered point of S or it is
-  // smaller than `finest` (much smaller where no point of S is found near its centre).
+  // Where the spheres do not cover S, at most one point per cube of edge `spacing`. None only if S
+  // is proved to be covered: cells that no single sphere contains are halved until one does, or
+  // they lie outside of S. A cell is given up as a leak where its centre is an uncovered point of S
+  // or it is smaller than `finest` (much smaller where no point of S is found near its centre).
   struct Leaks {
     std::vector<Eigen::Vector3d> in_solid;
-    // Cells that external balls only just close, if at all: no point of S is known near these.
+    // Cells that external spheres only just close, if at all: no point of S is known near these.
     std::vector<Eigen::Vector3d> pinched;
     bool empty() const { return in_solid.empty() && pinched.empty(); }
   };
-  Leaks find_leaks(const BallsToProve& balls, double finest, double spacing);
+  Leaks find_leaks(const SpheresToProve& spheres, double finest, double spacing);
 
  private:
   struct Cell {
     BoxCell box;
     bool inside = false;         // wholly in S
     bool center_inside = false;  // the centre is in S
-    bool classified = false;     // whether it meets S at all is looked up where no ball contains it
-    std::int32_t ball = -1;      // the nearest when it was last looked for
+    bool classified = false;   // whether it meets S at all is looked up where no sphere contains it
+    std::int32_t sphere = -1;  // the nearest when it was last looked for
   };
   struct Leak {
     Eigen::Vector3d point;
@@ -69,12 +69,12 @@ class SolidCells {
   };
 
   bool meets_solid(Cell& cell) const;
-  // Has the cells' balls name those of another set, by the nearest centre: most cells lie in the
-  // ball that contained them the last time, or in what has become of it.
-  void follow(std::span<const Sphere> balls);
-  // The cell as a leak, if it is one or too small to tell; `gap` is its centre's to the balls.
-  std::optional<Leak> leak_in(const Cell& cell, const NearestBall& gap, double finest) const;
-  Refined refine(const Cell& cell, const BallsToProve& balls, double finest) const;
+  // Has the cells' spheres name those of another set, by the nearest centre: most cells lie in the
+  // sphere that contained them the last time, or in what has become of it.
+  void follow(std::span<const Sphere> spheres);
+  // The cell as a leak, if it is one or too small to tell; `gap` is its centre's to the spheres.
+  std::optional<Leak> leak_in(const Cell& cell, const NearestSphere& gap, double finest) const;
+  Refined refine(const Cell& cell, const SpheresToProve& spheres, double finest) const;
 
   const Clearance& clearance_;
   const MeshDistance& distance_;
@@ -82,7 +82,7 @@ class SolidCells {
   double spacing_;           // the share of E
   std::vector<Cell> first_;  // as made
   std::vector<Cell> cells_;
-  std::vector<Sphere> balls_before_;  // to which the cells' numbers refer
+  std::vector<Sphere> spheres_before_;  // to which the cells' numbers refer
 };
 
 }  // namespace spherule::internal

@@ -10,31 +10,31 @@ namespace spherule::internal {
 
 using Eigen::Vector3d;
 
-SphereInflation::SphereInflation(std::span<const Sphere> balls, std::vector<double> limits)
-    : balls_(balls.begin(), balls.end()), limits_(std::move(limits)) {
-  for (const Sphere& ball : balls_) least_.push_back(ball.radius);
+SphereInflation::SphereInflation(std::span<const Sphere> spheres, std::vector<double> limits)
+    : spheres_(spheres.begin(), spheres.end()), limits_(std::move(limits)) {
+  for (const Sphere& sphere : spheres_) least_.push_back(sphere.radius);
   radii_ = least_;
 }
 
 bool SphereInflation::require(const Vector3d& point, double reserve) {
-  std::vector<double> distance(balls_.size());
+  std::vector<double> distance(spheres_.size());
   double most = -std::numeric_limits<double>::infinity();  // of the point's depth
-  for (std::size_t i = 0; i < balls_.size(); ++i) {
-    distance[i] = (balls_[i].center - point).norm();
+  for (std::size_t i = 0; i < spheres_.size(); ++i) {
+    distance[i] = (spheres_[i].center - point).norm();
     most = std::max(most, limits_[i] - distance[i]);
   }
   reserve = std::min(reserve, most);
   Demand demand;
-  for (std::size_t i = 0; i < balls_.size(); ++i) {
+  for (std::size_t i = 0; i < spheres_.size(); ++i) {
     const double needed = distance[i] + reserve;
-    // The ball that sets `most` is meant to offer itself whatever the rounding.
+    // The sphere that sets `most` is meant to offer itself whatever the rounding.
     if (needed <= limits_[i] || limits_[i] - distance[i] == most) {
       demand.push_back({static_cast<std::uint32_t>(i), std::min(needed, limits_[i])});
     }
   }
   if (demand.empty() || is_met(demand)) return false;
   std::sort(demand.begin(), demand.end(), [&](const Offer& a, const Offer& b) {
-    return std::pair(inflation(a), a.ball) < std::pair(inflation(b), b.ball);
+    return std::pair(inflation(a), a.sphere) < std::pair(inflation(b), b.sphere);
   });
   demands_.push_back(std::move(demand));
   return true;
@@ -42,8 +42,8 @@ bool SphereInflation::require(const Vector3d& point, double reserve) {
 
 bool SphereInflation::grow_fully_about(const Vector3d& point, double reach) {
   bool any = false;
-  for (std::size_t i = 0; i < balls_.size(); ++i) {
-    if ((balls_[i].center - point).norm() > limits_[i] + reach) continue;
+  for (std::size_t i = 0; i < spheres_.size(); ++i) {
+    if ((spheres_[i].center - point).norm() > limits_[i] + reach) continue;
     any = any || least_[i] < limits_[i];
     least_[i] = limits_[i];
   }
@@ -51,7 +51,7 @@ bool SphereInflation::grow_fully_about(const Vector3d& point, double reach) {
 }
 
 bool SphereInflation::is_met(const Demand& demand) const {
-  return std::ranges::any_of(demand, [&](const Offer& o) { return radii_[o.ball] >= o.radius; });
+  return std::ranges::any_of(demand, [&](const Offer& o) { return radii_[o.sphere] >= o.radius; });
 }
 
 void SphereInflation::solve() {
@@ -64,22 +64,22 @@ void SphereInflation::solve() {
   for (const std::size_t d : order) {
     if (is_met(demands_[d])) continue;
     const auto cheapest = std::ranges::min_element(
-        demands_[d], {}, [&](const Offer& o) { return o.radius - radii_[o.ball]; });
-    radii_[cheapest->ball] = cheapest->radius;
+        demands_[d], {}, [&](const Offer& o) { return o.radius - radii_[o.sphere]; });
+    radii_[cheapest->sphere] = cheapest->radius;
   }
   shrink();
 }
 
 void SphereInflation::shrink() {
-  std::vector<std::vector<std::pair<std::uint32_t, double>>> offers_of(balls_.size());
+  std::vector<std::vector<std::pair<std::uint32_t, double>>> offers_of(spheres_.size());
   std::vector<std::uint32_t> times(demands_.size(), 0);
   for (std::size_t d = 0; d < demands_.size(); ++d) {
     for (const Offer& o : demands_[d]) {
-      offers_of[o.ball].emplace_back(static_cast<std::uint32_t>(d), o.radius);
-      if (radii_[o.ball] >= o.radius) ++times[d];
+      offers_of[o.sphere].emplace_back(static_cast<std::uint32_t>(d), o.radius);
+      if (radii_[o.sphere] >= o.radius) ++times[d];
     }
   }
-  std::vector<std::size_t> order(balls_.size());
+  std::vector<std::size_t> order(spheres_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return radii_[a] - least_[a] > radii_[b] - least_[b];
@@ -96,8 +96,8 @@ void SphereInflation::shrink() {
   }
 }
 
-std::vector<Sphere> SphereInflation::balls() const {
-  std::vector<Sphere> inflated(balls_);
+std::vector<Sphere> SphereInflation::spheres() const {
+  std::vector<Sphere> inflated(spheres_);
   for (std::size_t i = 0; i < inflated.size(); ++i) inflated[i].radius = radii_[i];
   return inflated;
 }

@@ -4,7 +4,7 @@
 namespace spherule::internal {
 namespace {
 
-constexpr double kSlack = 0.2;      // of E: the ball may protrude by so much
+constexpr double kSlack = 0.2;      // of E: the sphere may protrude by so much
 constexpr double kTolerance = 0.1;  // of E, of the clearance
 constexpr double kFactor = 1.4;
 

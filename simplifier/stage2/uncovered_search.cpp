@@ -12,7 +12,7 @@ namespace spherule::internal {
 namespace {
 
 // A point of S stands for a cell outside of it that is no further off than this share of the
-// target: a ball that is nearer to the point than the rest is near enough to the cell.
+// target: a sphere that is nearer to the point than the rest is near enough to the cell.
 constexpr double kNear = 0.05;
 // The greatest error is bracketed to this share of what it exceeds the target by.
 constexpr double kPlateau = 0.1;
@@ -45,11 +45,11 @@ UncoveredSearch::Cell UncoveredSearch::pop() {
   return cell;
 }
 
-UncoveredSearch::Peak UncoveredSearch::next(const BallSet& balls) {
+UncoveredSearch::Peak UncoveredSearch::next(const SphereSet& spheres) {
   while (!heap_.empty()) {
     Cell cell = pop();
     const double reach = cell.box.reach();
-    const NearestBall gap = balls.nearest(cell.box.center);
+    const NearestSphere gap = spheres.nearest(cell.box.center);
     cell.upper = std::min(cell.upper, add_up(gap.upper, reach));
     if (cell.upper <= target_) continue;
     if (!heap_.empty() && cell.upper < heap_.front().upper) {
@@ -68,12 +68,12 @@ UncoveredSearch::Peak UncoveredSearch::next(const BallSet& balls) {
     const double close = std::max(tolerance_, kPlateau * (cell.upper - target_));
     std::optional<Peak> peak;
     if (center_inside) {
-      // With no ball there is no nearest one either: any point of S will do.
+      // With no sphere there is no nearest one either: any point of S will do.
       if (gap.index < 0 || reach <= close) {
         peak = {cell.box.center, cell.upper, std::max(0.0, gap.lower)};
       }
     } else if (reach <= close) {
-      peak = peak_beside(cell, balls);
+      peak = peak_beside(cell, spheres);
     }
     if (peak) {
       push(cell);
@@ -87,13 +87,13 @@ UncoveredSearch::Peak UncoveredSearch::next(const BallSet& balls) {
 }
 
 std::optional<UncoveredSearch::Peak> UncoveredSearch::peak_beside(const Cell& cell,
-                                                                  const BallSet& balls) const {
+                                                                  const SphereSet& spheres) const {
   const double reach = cell.box.reach();
   const auto on_mesh = mesh_point_in(distance_, cell.box);
-  if (on_mesh && balls.nearest(*on_mesh).lower > target_) return Peak{*on_mesh, cell.upper, 0.0};
+  if (on_mesh && spheres.nearest(*on_mesh).lower > target_) return Peak{*on_mesh, cell.upper, 0.0};
   if (reach > kFinestOutside * tolerance_) return std::nullopt;
   if (const auto near = solid_point_near(clearance_, cell.box, kNear * target_)) {
-    return Peak{*near, cell.upper, std::max(0.0, balls.nearest(*near).lower)};
+    return Peak{*near, cell.upper, std::max(0.0, spheres.nearest(*near).lower)};
   }
   if (reach > least_) return std::nullopt;
   return Peak{cell.box.center, cell.upper, 0.0};

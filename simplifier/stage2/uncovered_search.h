@@ -2,9 +2,9 @@
 #pragma once
 
 #include "mesh/mesh_distance.h"
-#include "simplifier/solid/ball_set.h"
 #include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/clearance.h"
+#include "simplifier/solid/sphere_set.h"
 
 #include <cstdint>
 #include <optional>
@@ -12,10 +12,10 @@
 
 namespace spherule::internal {
 
-// Finds the point of S that is furthest from a growing set of balls, with proved bounds: best-first
-// subdivision of the box of S. A cell with centre q and half diagonal g is at most
-// min(|q - c| - r) + g from the balls everywhere; cells that lie outside of S, or within the
-// target, are dropped for good, since balls are only added. Bounds that are out of date are upper
+// Finds the point of S that is furthest from a growing set of spheres, with proved bounds:
+// best-first subdivision of the box of S. A cell with centre q and half diagonal g is at most
+// min(|q - c| - r) + g from the spheres everywhere; cells that lie outside of S, or within the
+// target, are dropped for good, since spheres are only added. Bounds that are out of date are upper
 // bounds, so a cell is brought up to date only when it comes to the top.
 class UncoveredSearch {
  public:
@@ -28,13 +28,13 @@ class UncoveredSearch {
     // In S, up to the rounding of points of the mesh; or, where no point of S could be found near a
     // cell that is too small to be halved (solid_query.h), the centre of that.
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
-    double upper = 0.0;  // no point of S is further from the balls
+    double upper = 0.0;  // no point of S is further from the spheres
     double lower = 0.0;  // some point of S is this far from them
   };
 
-  // The furthest point for the balls as they are now; `upper` is the target where none exceeds it
+  // The furthest point for the spheres as they are now; `upper` is the target where none exceeds it
   // (then `point` means nothing and `lower` is 0).
-  Peak next(const BallSet& balls);
+  Peak next(const SphereSet& spheres);
 
  private:
   struct Cell {
@@ -45,7 +45,7 @@ class UncoveredSearch {
   };
   // For a cell of S with its centre outside of S, small enough to stand for a peak; none if it has
   // to be halved.
-  std::optional<Peak> peak_beside(const Cell& cell, const BallSet& balls) const;
+  std::optional<Peak> peak_beside(const Cell& cell, const SphereSet& spheres) const;
   static bool below(const Cell& a, const Cell& b);
   void push(const Cell& cell);
   Cell pop();

@@ -39,9 +39,9 @@ struct Box {
   }
 };
 
-// What a half costs a query: it is opened about as often as the ball around it is large, and then
-// there are so many spheres below. The square or the volume of the ball in place of its radius gave
-// a tenth more node tests on the workload of bench/.
+// What a half costs a query: it is opened about as often as the sphere around it is large, and then
+// there are so many spheres below. The square or the volume of the sphere in place of its radius
+// gave a tenth more node tests on the workload of bench/.
 double cost(const Box& box, std::size_t count) {
   return (box.high - box.low).norm() * static_cast<double>(count);
 }
@@ -187,7 +187,7 @@ class Splitter {
   std::vector<double> costs_above_;
 };
 
-// The smallest ball around two balls, unpadded.
+// The smallest sphere around two spheres, unpadded.
 Sphere merged(const Sphere& a, const Sphere& b) {
   const Vector3d offset = b.center - a.center;
   const double distance = offset.norm();
@@ -220,8 +220,8 @@ std::vector<BinaryNode> binary_tree(std::span<const Sphere> spheres) {
     tasks.pop_back();
     BinaryNode& node = nodes[static_cast<std::size_t>(task.node)];
     if (task.end - task.begin == 1) {
-      node.sphere = items[task.begin].sphere;
-      node.ball = spheres[static_cast<std::size_t>(node.sphere)];
+      node.leaf_sphere = items[task.begin].sphere;
+      node.sphere = spheres[static_cast<std::size_t>(node.leaf_sphere)];
       continue;
     }
     const std::span<Item> part = std::span(items).subspan(task.begin, task.end - task.begin);
@@ -234,8 +234,8 @@ std::vector<BinaryNode> binary_tree(std::span<const Sphere> spheres) {
   }
   for (std::size_t i = nodes.size(); i-- > 0;) {
     if (nodes[i].is_leaf()) continue;
-    nodes[i].ball = merged(nodes[static_cast<std::size_t>(nodes[i].left)].ball,
-                           nodes[static_cast<std::size_t>(nodes[i].right)].ball);
+    nodes[i].sphere = merged(nodes[static_cast<std::size_t>(nodes[i].left)].sphere,
+                             nodes[static_cast<std::size_t>(nodes[i].right)].sphere);
   }
   return nodes;
 }

@@ -15,10 +15,10 @@ namespace spherule::internal {
 struct BinaryNode {
   std::int32_t left = -1;  // a leaf has none
   std::int32_t right = -1;
-  std::int32_t sphere = -1;  // of a leaf
+  std::int32_t leaf_sphere = -1;  // its index, of a leaf
   // About the smallest around the spheres below; decides which nodes are kept when the tree is made
   // wide, and is not part of the result.
-  Sphere ball;
+  Sphere sphere;
 
   bool is_leaf() const { return left < 0; }
 };

@@ -15,7 +15,7 @@ WideNodes::WideNodes(std::span<const BinaryNode> nodes, int branching)
   costs_.resize(static_cast<std::size_t>(inner) * static_cast<std::size_t>(branching));
   left_slots_.resize(costs_.size());
   for (std::size_t i = nodes.size(); i-- > 0;) {
-    if (!nodes[i].is_leaf()) choose(static_cast<std::int32_t>(i), nodes[0].ball.radius);
+    if (!nodes[i].is_leaf()) choose(static_cast<std::int32_t>(i), nodes[0].sphere.radius);
   }
 }
 
@@ -31,7 +31,7 @@ float WideNodes::cost(std::int32_t node, int slots) const {
 
 void WideNodes::choose(std::int32_t node, double largest_radius) {
   const auto [left, right] = std::pair(at(node).left, at(node).right);
-  const double size = largest_radius > 0.0 ? at(node).ball.radius / largest_radius : 0.0;
+  const double size = largest_radius > 0.0 ? at(node).sphere.radius / largest_radius : 0.0;
   const auto split = [&](int slots) {
     std::pair best(std::numeric_limits<float>::infinity(), 0);
     for (int i = 1; i < slots; ++i) {

@@ -71,7 +71,7 @@ TEST(ArmCheckers, AgreeAboutEveryKindOfObstacle) {
   expect_agreement(all);
 }
 
-// Two bars with a gap, in which a ball stands: only a hull fills it.
+// Two bars with a gap, in which a sphere stands: only a hull fills it.
 TEST(ArmCheckers, HullsFillGaps) {
   TriangleMesh bars = make_box({0.1, 0.05, 0.05});
   const auto corners = static_cast<int>(bars.vertices.size());
@@ -86,7 +86,7 @@ TEST(ArmCheckers, HullsFillGaps) {
   }
   const Arm arm = test::make_toy_arm(bars);
   ArmScene scene{.name = "ball"};
-  scene.obstacles = {{"ball", Ball{0.01}, Pose::from_translation({0.65, 0.5, 0.2})}};
+  scene.obstacles = {{"ball", SolidSphere{0.01}, Pose::from_translation({0.65, 0.5, 0.2})}};
   for (const auto& checker : checkers_of(arm, scene)) {
     EXPECT_EQ(checker->collides(Configuration{0.5, 0.5, 0.0}),
               std::string(checker->name()) == "Bullet hulls")

@@ -50,9 +50,9 @@ TEST(ClosingJudge, TransformsDistancesAsBruteForceDoes) {
 
 // Above the middle of a face a sphere stands out by as much as it is higher.
 TEST(ClosingJudge, HoldsTheHeightAboveAFace) {
-  const std::vector<Sphere> balls{{Vector3d(0.5, 0.5, 0.9), 0.3}};
+  const std::vector<Sphere> spheres{{Vector3d(0.5, 0.5, 0.9), 0.3}};
   const JudgedProtrusion judged =
-      closing::judge_protrusion_from_closing(cube_mesh(), balls, 0.5, quick(0.05));
+      closing::judge_protrusion_from_closing(cube_mesh(), spheres, 0.5, quick(0.05));
   EXPECT_LE(judged.lower, 0.2);
   EXPECT_GE(judged.upper, 0.2);
   EXPECT_LT(judged.upper - judged.lower, 0.1);
@@ -65,12 +65,12 @@ TEST(ClosingJudge, KnowsWhetherASlotIsClosed) {
       joined(box_mesh(Vector3d(-1.0, -1.0, -1.0), Vector3d(0.0, 1.0, 1.0)),
              box_mesh(Vector3d(width, -1.0, -1.0), Vector3d(width + 1.0, 1.0, 1.0)));
   // From wall to wall.
-  const std::vector<Sphere> balls{{Vector3d(width / 2.0, 0.0, 0.0), width / 2.0}};
+  const std::vector<Sphere> spheres{{Vector3d(width / 2.0, 0.0, 0.0), width / 2.0}};
   const JudgedProtrusion closed =
-      closing::judge_protrusion_from_closing(mesh, balls, 1.15 * width, quick(0.015));
+      closing::judge_protrusion_from_closing(mesh, spheres, 1.15 * width, quick(0.015));
   EXPECT_LT(closed.upper, 0.06);
   const JudgedProtrusion open =
-      closing::judge_protrusion_from_closing(mesh, balls, 0.85 * width, quick(0.015));
+      closing::judge_protrusion_from_closing(mesh, spheres, 0.85 * width, quick(0.015));
   EXPECT_LE(open.lower, width / 2.0);
   EXPECT_GE(open.upper, width / 2.0);
   EXPECT_GT(open.lower, 0.14);

@@ -5,7 +5,7 @@
 #include "bench/scenes/shapes.h"
 #include "bench/scenes/solids.h"
 #include "bench/tree_checker.h"
-#include "tests/bench/surface_balls.h"
+#include "tests/bench/surface_spheres.h"
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ TEST(Engines, FclAgreesWithTheOracleInEverySetting) {
 
 TEST(Engines, SphereEnginesAgreeAndMissNothing) {
   Workload cell = make_paper_cell();
-  test::add_surface_balls(cell);
+  test::add_surface_spheres(cell);
   const auto sample = every(cell, 601);
   const auto touching = Oracle(cell).touching_bodies(sample);
   const auto by_tree = verdicts(*make_tree_checker(cell, TreeMode::kSingle), sample);

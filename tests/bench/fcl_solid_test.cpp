@@ -25,13 +25,13 @@ TEST(FclSolid, SeesOneInsideTheOther) {
 }
 
 TEST(FclSolid, ContainsAgreesWithTheShape) {
-  const FclSolid ball(icosphere(3)), turned(inverted(icosphere(3)));
+  const FclSolid sphere(icosphere(3)), turned(inverted(icosphere(3)));
   Random random(2);
   const Eigen::AlignedBox3d cube(Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1));
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d p = random.in_box(cube);
     if (std::abs(p.norm() - 1.0) < 0.02) continue;
-    EXPECT_EQ(ball.contains(p), p.norm() < 1.0);
+    EXPECT_EQ(sphere.contains(p), p.norm() < 1.0);
     EXPECT_EQ(turned.contains(p), p.norm() < 1.0);
   }
 }

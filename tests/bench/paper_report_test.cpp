@@ -21,8 +21,8 @@
 namespace spherule {
 namespace {
 
-// As many balls about the middle of a unit cube as the reciprocal of the error, with the radius of
-// the one around the cube, and the error and `more` beyond that. The one around it protrudes by
+// As many spheres about the middle of a unit cube as the reciprocal of the error, with the radius
+// of the one around the cube, and the error and `more` beyond that. The one around it protrudes by
 // kThroughCorners.
 const double kHalfDiagonal = 0.5 * std::sqrt(3.0);
 const double kThroughCorners = kHalfDiagonal - 0.5;
@@ -60,7 +60,7 @@ TEST(FewestSpheres, AreNoneWhereNoSettingKeepsToTheLimit) {
   EXPECT_GT(found.protrusion, 0.9);
 }
 
-TEST(SphereMethods, MakeMoreBallsForASmallerError) {
+TEST(SphereMethods, MakeMoreSpheresForASmallerError) {
   if (test::kSanitized) GTEST_SKIP() << "takes a minute under sanitizers";
   std::vector<std::string> names;
   const TriangleMesh cube = make_cube(1.0);

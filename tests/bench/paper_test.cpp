@@ -28,23 +28,24 @@
 namespace spherule {
 namespace {
 
-ExternalSpheres in_box(const Eigen::Vector3d& size, std::vector<Sphere> balls) {
+ExternalSpheres in_box(const Eigen::Vector3d& size, std::vector<Sphere> spheres) {
   ExternalSpheres external;
   external.box = {Eigen::Vector3d::Zero(), size};
-  external.balls = std::move(balls);
+  external.spheres = std::move(spheres);
   return external;
 }
 
-TEST(SpaceShare, IsTheVolumeThatNoBallCovers) {
+TEST(SpaceShare, IsTheVolumeThatNoSphereCovers) {
   const Eigen::Vector3d size(2.0, 3.0, 4.0);
   EXPECT_EQ(uncovered_share(in_box(size, {}), 100), 1.0);
   EXPECT_EQ(uncovered_share(in_box(size, {{{1.0, 1.5, 2.0}, 3.0}}), 100), 0.0);
-  const double ball = 4.0 / 3.0 * std::numbers::pi;
-  EXPECT_NEAR(uncovered_share(in_box(size, {{{1.0, 1.5, 2.0}, 1.0}}), 200), 1.0 - ball / 24, 1e-3);
+  const double sphere = 4.0 / 3.0 * std::numbers::pi;
+  EXPECT_NEAR(uncovered_share(in_box(size, {{{1.0, 1.5, 2.0}, 1.0}}), 200), 1.0 - sphere / 24,
+              1e-3);
   // An eighth of one in a corner, counted once although it is there twice; one beside the box.
   EXPECT_NEAR(
       uncovered_share(in_box(size, {{{0, 0, 0}, 1.0}, {{0, 0, 0}, 1.0}, {{9, 9, 9}, 2.0}}), 200),
-      1.0 - ball / 8 / 24, 1e-3);
+      1.0 - sphere / 8 / 24, 1e-3);
 }
 
 TEST(PaperPipe, ItsBoreIs145PercentOfItsMetal) {
@@ -54,7 +55,7 @@ TEST(PaperPipe, ItsBoreIs145PercentOfItsMetal) {
   EXPECT_NEAR(bore / metal, 1.45, 0.04);
 }
 
-// A pipe's bore is open to balls well below its diameter (by the slack of the flood's grid) and
+// A pipe's bore is open to spheres well below its diameter (by the slack of the flood's grid) and
 // closed to those above it.
 TEST(Figure3, TheStepIsAtTheBore) {
   const TriangleMesh pipe = make_paper_pipe();
@@ -110,7 +111,7 @@ TEST(FclConvexChecker, AnswersAsMeshesOfTheSameParts) {
   EXPECT_THROW(make_fcl_convex_checker(cell, 0, {}), Error);
 }
 
-TEST(Picture, ShowsEveryTriangleWithAnAreaAndEveryBall) {
+TEST(Picture, ShowsEveryTriangleWithAnAreaAndEverySphere) {
   TriangleMesh mesh = make_cube(1.0);
   mesh.triangles.emplace_back(0, 0, 1);
   const auto path = std::filesystem::temp_directory_path() /

@@ -7,7 +7,7 @@
 #include "bench/planning/planning_cell.h"
 #include "bench/scenes/shapes.h"
 #include "bench/tree_checker.h"
-#include "tests/bench/surface_balls.h"
+#include "tests/bench/surface_spheres.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ Workload make_post_cell() {
   cell.bodies.push_back({{.name = "tool", .mesh = make_cube(0.1)}, kJoints});
   cell.obstacles.push_back({{.name = "post", .mesh = make_box({0.3, 0.3, 0.8})},
                             Pose::from_translation({1.73, 0.0, 1.7})});
-  test::add_surface_balls(cell);
+  test::add_surface_spheres(cell);
   return cell;
 }
 
@@ -99,9 +99,9 @@ TEST(Planner, SaysWhyItHasNoPath) {
 
 TEST(PlanningCell, AnswersAsThePairsDo) {
   Workload cell = make_paper_cell();
-  // Such balls are so large that the lower links are always in contact.
+  // Such spheres are so large that the lower links are always in contact.
   std::erase_if(cell.bodies, [](const Body& body) { return body.link < 4; });
-  test::add_surface_balls(cell);
+  test::add_surface_spheres(cell);
   const RobotChecker checker = make_robot_checker(cell);
   RobotChecker::Scratch scratch(checker);
   const auto engine = make_tree_checker(cell, TreeMode::kPairs);

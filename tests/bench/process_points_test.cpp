@@ -8,7 +8,7 @@
 #include "bench/scenes/workpiece.h"
 #include "bench/tree_checker.h"
 #include "robot/model/kinematics.h"
-#include "tests/bench/surface_balls.h"
+#include "tests/bench/surface_spheres.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ TEST(ProcessPoints, BringTheWireToTheSeamInEveryPosture) {
 
 TEST(ProcessStudy, MissesNothing) {
   Workload cell = make_paper_cell();
-  test::add_surface_balls(cell);
+  test::add_surface_spheres(cell);
   const ProcessPoints points = make_process_points(
       cell.robot, flange_from_wire(), static_cast<std::size_t>(test::effort(12, 3)), 6);
   const ProcessStudy study = study_process_points(cell, make_robot_checker(cell), points);
@@ -91,7 +91,7 @@ TEST(ProcessStudy, MissesNothing) {
     EXPECT_EQ(row.free_points + row.lost_points, study.free_points);
     EXPECT_GT(row.checks_a_second, 0.0);
   }
-  // These balls are far too large for the torch to weld, so that something is lost to count.
+  // These spheres are far too large for the torch to weld, so that something is lost to count.
   EXPECT_EQ(study.rows[0].count.extra, study.rows[1].count.extra);
   EXPECT_GT(study.rows[0].lost_points, 0u);
   EXPECT_EQ(study.rows[2].count.extra, 0u);

@@ -85,15 +85,15 @@ TEST(Scale, OracleIsExact) {
 
 // The two ways in which a track is made agree with each other and with the ends.
 TEST(Scale, TracksLeadFromPoseToPose) {
-  const std::array<Sphere, 1> ball{{{{0.3, -0.2, 0.5}, 0.1}}};
+  const std::array<Sphere, 1> sphere{{{{0.3, -0.2, 0.5}, 0.1}}};
   const Pose start(Eigen::Quaterniond(0.9, 0.1, -0.4, 0.2), {1.0, 2.0, 3.0});
   const Pose end(Eigen::Quaterniond(-0.3, 0.8, 0.1, 0.6), {-2.0, 0.5, 1.0});
   const Eigen::Vector3d reference(0.1, 0.7, -0.4);
-  const auto track = MotionTrack<long double>::between(ball, start, end, reference);
+  const auto track = MotionTrack<long double>::between(sphere, start, end, reference);
   std::vector<MotionTrack<long double>::Point> centers;
   for (const auto& [t, pose] : {std::pair{0.0, start}, std::pair{1.0, end}}) {
     track.place(t, centers);
-    const Eigen::Vector3d expected = pose * ball[0].center;
+    const Eigen::Vector3d expected = pose * sphere[0].center;
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_NEAR(static_cast<double>(centers[0][k]), expected[static_cast<int>(k)], 1e-14);
     }
@@ -101,8 +101,8 @@ TEST(Scale, TracksLeadFromPoseToPose) {
   const Eigen::AngleAxisd quarter(0.5, Eigen::Vector3d(0.0, 0.6, 0.8));
   const Pose turned(Eigen::Quaterniond(quarter) * start.rotation(), start.translation());
   const auto turning = MotionTrack<long double>::turning(
-      ball, start, quarter.axis(), quarter.angle(), Eigen::Vector3d::Zero(), {0.0, 0.0, 0.0});
-  const auto between = MotionTrack<long double>::between(ball, start, turned, {0.0, 0.0, 0.0});
+      sphere, start, quarter.axis(), quarter.angle(), Eigen::Vector3d::Zero(), {0.0, 0.0, 0.0});
+  const auto between = MotionTrack<long double>::between(sphere, start, turned, {0.0, 0.0, 0.0});
   std::vector<MotionTrack<long double>::Point> others;
   for (const double t : {0.0, 0.3, 0.8, 1.0}) {
     turning.place(t, centers);

@@ -40,8 +40,8 @@ std::vector<Peer> peers_of(const Workload& workload) {
     const std::string number = std::to_string(static_cast<int>(set));
     peers.push_back({"all pairs, instructions " + number,
                      make_flat_scan_checker(workload, FlatScan::kAllPairs, set)});
-    peers.push_back({"balls in front, instructions " + number,
-                     make_flat_scan_checker(workload, FlatScan::kBallsInFront, set)});
+    peers.push_back({"spheres in front, instructions " + number,
+                     make_flat_scan_checker(workload, FlatScan::kSpheresInFront, set)});
   }
 #if defined(SPHERULE_BENCH_BULLET)
   peers.push_back(
@@ -51,30 +51,31 @@ std::vector<Peer> peers_of(const Workload& workload) {
   return peers;
 }
 
-std::vector<Sphere> random_balls(Random& random, std::size_t count, double spread) {
+std::vector<Sphere> random_spheres(Random& random, std::size_t count, double spread) {
   const Eigen::AlignedBox3d box(Eigen::Vector3d::Constant(-spread),
                                 Eigen::Vector3d::Constant(spread));
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   for (std::size_t i = 0; i < count; ++i) {
-    balls.push_back({random.in_box(box), random.between(0.0, 0.1)});
+    spheres.push_back({random.in_box(box), random.between(0.0, 0.1)});
   }
-  return balls;
+  return spheres;
 }
 
-Part part_of(const std::string& name, const std::vector<Sphere>& balls) {
-  return {.name = name, .mesh = {}, .tree = std::make_shared<const SphereTree>(build_tree(balls))};
+Part part_of(const std::string& name, const std::vector<Sphere>& spheres) {
+  return {
+      .name = name, .mesh = {}, .tree = std::make_shared<const SphereTree>(build_tree(spheres))};
 }
 
 std::vector<std::pair<Eigen::Matrix<long double, 3, 1>, long double>> placed(const Part& part,
                                                                              const Pose& pose) {
-  std::vector<std::pair<Eigen::Matrix<long double, 3, 1>, long double>> balls;
+  std::vector<std::pair<Eigen::Matrix<long double, 3, 1>, long double>> spheres;
   const auto matrix = pose.rotation().cast<long double>().normalized().toRotationMatrix();
-  for (const Sphere& ball : part.tree->spheres()) {
-    balls.emplace_back(
-        matrix * ball.center.cast<long double>() + pose.translation().cast<long double>(),
-        static_cast<long double>(ball.radius));
+  for (const Sphere& sphere : part.tree->spheres()) {
+    spheres.emplace_back(
+        matrix * sphere.center.cast<long double>() + pose.translation().cast<long double>(),
+        static_cast<long double>(sphere.radius));
   }
-  return balls;
+  return spheres;
 }
 
 // The least gap of two spheres of the pairs that are tested, in long double.
@@ -105,29 +106,29 @@ ArmPositions random_configuration(Random& random, const RobotModel& robot) {
   return configuration;
 }
 
-// Some balls on every other link; obstacles with one ball at the gap from a ball of the robot, and
-// some more around.
+// Some spheres on every other link; obstacles with one sphere at the gap from a sphere of the
+// robot, and some more around.
 Workload random_scene(Random& random, ArmPositions& configuration, double gap) {
   Workload scene{.name = "random", .robot = make_robot()};
   configuration = random_configuration(random, scene.robot);
   for (int link = kJoints; link >= 0; link -= 2) {
     scene.bodies.push_back(
-        {part_of("body", random_balls(random, 1 + random.index(40), 0.2)), link});
+        {part_of("body", random_spheres(random, 1 + random.index(40), 0.2)), link});
   }
   std::vector<Pose> world_from_link;
   forward_kinematics(scene.robot, configuration, world_from_link);
   const Body& body = scene.bodies[random.index(scene.bodies.size())];
-  const auto& balls = body.part.tree->spheres();
-  const Sphere& near = balls[random.index(balls.size())];
+  const auto& spheres = body.part.tree->spheres();
+  const Sphere& near = spheres[random.index(spheres.size())];
   const Pose world_from_part(random.rotation(), 2.0 * random.direction());
   const double radius = random.between(0.0, 0.3);
   const Eigen::Vector3d center =
       world_from_link[static_cast<std::size_t>(body.link)] * near.center +
       (near.radius + radius + gap) * random.direction();
-  std::vector<Sphere> of_first = random_balls(random, random.index(3), 0.1);
+  std::vector<Sphere> of_first = random_spheres(random, random.index(3), 0.1);
   of_first.push_back({world_from_part.inverse() * center, radius});
   scene.obstacles.push_back({part_of("first", of_first), world_from_part});
-  scene.obstacles.push_back({part_of("table", random_balls(random, 1 + random.index(100), 0.3)),
+  scene.obstacles.push_back({part_of("table", random_spheres(random, 1 + random.index(100), 0.3)),
                              Pose::from_translation(3.0 * random.direction())});
   return scene;
 }
@@ -164,18 +165,18 @@ TEST(SpherePeers, MissNothingAndAddNoMoreThanTheirPads) {
   EXPECT_GT(near, 100u);
 }
 
-// Their forward kinematics along whole turns, against a ball where the last link's is.
+// Their forward kinematics along whole turns, against a sphere where the last link's is.
 TEST(SpherePeers, MoveAsTheRobotDoes) {
   Random random(6);
   for (int i = 0; i < 200; ++i) {
-    Workload scene{.name = "one ball", .robot = make_robot()};
+    Workload scene{.name = "one sphere", .robot = make_robot()};
     ArmPositions configuration;
     for (double& position : configuration) position = random.between(-10.0, 10.0);
-    const Sphere ball{0.3 * random.direction(), 0.0};
-    scene.bodies.push_back({part_of("ball", {ball}), kJoints});
+    const Sphere sphere{0.3 * random.direction(), 0.0};
+    scene.bodies.push_back({part_of("ball", {sphere}), kJoints});
     std::vector<Pose> world_from_link;
     forward_kinematics(scene.robot, configuration, world_from_link);
-    const Eigen::Vector3d there = world_from_link.back() * ball.center;
+    const Eigen::Vector3d there = world_from_link.back() * sphere.center;
     for (const double away : {0.0, 2e-4}) {
       scene.obstacles = {{part_of("there", {{there + away * random.direction(), 0.0}}), Pose()}};
       for (const Peer& peer : peers_of(scene)) {

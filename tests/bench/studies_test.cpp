@@ -22,9 +22,9 @@ namespace {
 
 using test::Random;
 
-// Not many balls around the triangles, each of some of them that follow each other.
+// Not many spheres around the triangles, each of some of them that follow each other.
 std::vector<Sphere> rough_cover(const TriangleMesh& mesh, std::size_t triangles) {
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   for (std::size_t first = 0; first < mesh.triangles.size(); first += triangles) {
     Eigen::AlignedBox3d box;
     for (std::size_t i = first; i < std::min(first + triangles, mesh.triangles.size()); ++i) {
@@ -32,33 +32,33 @@ std::vector<Sphere> rough_cover(const TriangleMesh& mesh, std::size_t triangles)
         box.extend(mesh.vertices[static_cast<std::size_t>(mesh.triangles[i][k])]);
       }
     }
-    balls.push_back({box.center(), 0.5 * box.diagonal().norm() * (1.0 + 1e-6)});
+    spheres.push_back({box.center(), 0.5 * box.diagonal().norm() * (1.0 + 1e-6)});
   }
-  return balls;
+  return spheres;
 }
 
-bool is_covered(const Eigen::Vector3d& point, const std::vector<Sphere>& balls) {
-  return std::any_of(balls.begin(), balls.end(), [&](const Sphere& ball) {
-    return (point - ball.center).norm() <= ball.radius * (1.0 + 1e-14);
+bool is_covered(const Eigen::Vector3d& point, const std::vector<Sphere>& spheres) {
+  return std::any_of(spheres.begin(), spheres.end(), [&](const Sphere& sphere) {
+    return (point - sphere.center).norm() <= sphere.radius * (1.0 + 1e-14);
   });
 }
 
-TEST(RefinedCover, CoversTheMeshWithinTheOldBalls) {
+TEST(RefinedCover, CoversTheMeshWithinTheOldSpheres) {
   const TriangleMesh mesh = make_torch();
   const std::vector<Sphere> cover = rough_cover(mesh, 40);
   constexpr double kSlack = 1e-4;
   Random random(3);
   double largest_before = 0.0;
-  for (const Sphere& ball : cover) largest_before = std::max(largest_before, ball.radius);
+  for (const Sphere& sphere : cover) largest_before = std::max(largest_before, sphere.radius);
   for (const std::size_t factor : {4, 30}) {
-    const auto balls = refine_cover(mesh, cover, factor * cover.size(), kSlack);
-    EXPECT_LE(balls.size(), factor * cover.size());
-    EXPECT_GT(balls.size(), factor * cover.size() / 2);
+    const auto spheres = refine_cover(mesh, cover, factor * cover.size(), kSlack);
+    EXPECT_LE(spheres.size(), factor * cover.size());
+    EXPECT_GT(spheres.size(), factor * cover.size() / 2);
     double largest = 0.0;
-    for (const Sphere& ball : balls) {
-      largest = std::max(largest, ball.radius);
+    for (const Sphere& sphere : spheres) {
+      largest = std::max(largest, sphere.radius);
       EXPECT_TRUE(std::any_of(cover.begin(), cover.end(), [&](const Sphere& old) {
-        return certainly_encloses({old.center, old.radius + 1.001 * kSlack}, ball);
+        return certainly_encloses({old.center, old.radius + 1.001 * kSlack}, sphere);
       }));
     }
     EXPECT_LT(largest, largest_before);
@@ -75,7 +75,7 @@ TEST(RefinedCover, CoversTheMeshWithinTheOldBalls) {
         if (sample == 1) v = 0.0;      // an edge
         const Eigen::Vector3d point =
             corner(0) + u * (corner(1) - corner(0)) + v * (corner(2) - corner(0));
-        ASSERT_TRUE(is_covered(point, balls));
+        ASSERT_TRUE(is_covered(point, spheres));
       }
     }
   }
@@ -85,22 +85,22 @@ TEST(RefinedCover, RefusesACoverWithAHole) {
   const TriangleMesh mesh = make_cube(1.0);
   std::vector<Sphere> cover = rough_cover(mesh, 1);
   EXPECT_NO_THROW(refine_cover(mesh, cover, 100, 0.01));
-  for (Sphere& ball : cover) ball.radius *= 0.9;
+  for (Sphere& sphere : cover) sphere.radius *= 0.9;
   EXPECT_THROW(refine_cover(mesh, cover, 100, 0.01), Error);
 }
 
-TEST(CoarseCover, HoldsAllBalls) {
+TEST(CoarseCover, HoldsAllSpheres) {
   Random random(4);
-  std::vector<Sphere> balls;
-  for (int i = 0; i < 500; ++i) balls.push_back({random.direction(), random.between(0.0, 0.2)});
-  const SphereTree tree = build_tree(balls);
+  std::vector<Sphere> spheres;
+  for (int i = 0; i < 500; ++i) spheres.push_back({random.direction(), random.between(0.0, 0.2)});
+  const SphereTree tree = build_tree(spheres);
   for (const std::size_t count : {1, 7, 8, 60, 500, 1000}) {
     const auto coarse = coarse_cover(tree, count);
     EXPECT_LE(coarse.size(), count);
     EXPECT_GT(8 * coarse.size(), std::min<std::size_t>(count, 500));
-    for (const Sphere& ball : balls) {
+    for (const Sphere& sphere : spheres) {
       EXPECT_TRUE(std::any_of(coarse.begin(), coarse.end(), [&](const Sphere& outer) {
-        return outer == ball || certainly_encloses(outer, ball);
+        return outer == sphere || certainly_encloses(outer, sphere);
       }));
     }
   }

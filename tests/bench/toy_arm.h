@@ -32,8 +32,9 @@ inline Arm make_toy_arm(const TriangleMesh& bar = make_box({0.3, 0.05, 0.05})) {
   arm.meshes = {make_box({0.2, 0.2, 0.4}), {}, make_box({0.1, 0.1, 0.3}), bar};
   for (std::size_t i = 0; i < arm.meshes.size(); ++i) {
     if (arm.meshes[i].triangles.empty()) continue;
-    arm.model.attach(arm.model.links()[i].name, std::make_shared<const SphereTree>(
-                                                    build_tree(balls_around(arm.meshes[i], 0.03))));
+    arm.model.attach(
+        arm.model.links()[i].name,
+        std::make_shared<const SphereTree>(build_tree(spheres_around(arm.meshes[i], 0.03))));
   }
   return arm;
 }
@@ -49,7 +50,7 @@ inline ArmScene make_toy_scene() {
                                Pose::from_translation(at)});
   };
   add(Box{{0.2, 0.1, 0.6}}, {0.6, 0.3, 0.1});
-  add(Ball{0.15}, {-0.5, 0.5, 0.1});
+  add(SolidSphere{0.15}, {-0.5, 0.5, 0.1});
   add(Cylinder{0.1, 0.5}, {-0.6, -0.2, 0.1});
   add(Capsule{0.1, 0.3}, {0.5, -0.5, 0.2});
   scene.mesh = make_box({0.3, 0.2, 0.5});

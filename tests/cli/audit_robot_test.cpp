@@ -22,8 +22,8 @@ constexpr const char* kRobot = R"(<robot name="two"><link name="base">
   <origin xyz="0.3 0 0"/><axis xyz="0 0 1"/><limit lower="-4" upper="4" effort="1" velocity="1"/>
 </joint></robot>)";
 
-// cuRobo yml with a ball for each link.
-std::string balls(double base, double arm) {
+// cuRobo yml with a sphere for each link.
+std::string spheres(double base, double arm) {
   return "robot_cfg:\n  kinematics:\n    collision_spheres:\n      base:\n      - {center: [0, 0, "
          "0], "
          "radius: " +
@@ -40,11 +40,11 @@ class AuditRobotCommand : public CommandTest {
 };
 
 TEST_F(AuditRobotCommand, ExitCodeAndTable) {
-  write("good.yml", balls(0.12, 0.05));
+  write("good.yml", spheres(0.12, 0.05));
   const Outcome good = run({"audit-robot", "two.urdf", "good.yml"});
   EXPECT_EQ(good.exit_code, 0) << good.err;
   EXPECT_NE(good.out.find("cuRobo yml"), std::string::npos) << good.out;
-  write("leaks.yml", balls(0.09, 0.05));
+  write("leaks.yml", spheres(0.09, 0.05));
   const Outcome leaks = run({"audit-robot", "two.urdf", "leaks.yml"});
   EXPECT_EQ(leaks.exit_code, 1) << leaks.err;
   EXPECT_NE(leaks.out.find("NO"), std::string::npos) << leaks.out;
@@ -52,7 +52,7 @@ TEST_F(AuditRobotCommand, ExitCodeAndTable) {
 }
 
 TEST_F(AuditRobotCommand, Json) {
-  write("leaks.yml", balls(0.09, 0.05) +
+  write("leaks.yml", spheres(0.09, 0.05) +
                          "      ghost:\n      - {center: [0, 0, 0], radius: 1}\n"
                          "      - {center: [0, 0, 0], radius: -1}\n");
   const Outcome result = run({"audit-robot", "two.urdf", "leaks.yml", "--json"});
@@ -70,7 +70,7 @@ TEST_F(AuditRobotCommand, Json) {
 }
 
 TEST_F(AuditRobotCommand, TableSaysWhatWasLeftOut) {
-  write("two.yml", balls(0.12, 0.05) +
+  write("two.yml", spheres(0.12, 0.05) +
                        "      ghost:\n      - {center: [0, 0, 0], radius: 1}\n"
                        "      - {center: [0, 0, 0], radius: -1}\n");
   const std::string table = run({"audit-robot", "two.urdf", "two.yml"}).out;
@@ -87,7 +87,7 @@ TEST_F(AuditRobotCommand, TableSaysWhatWasLeftOut) {
 
 // A leak of 10.1 mm in the first link, none in the second; the last row is of both.
 TEST_F(AuditRobotCommand, TheLastRowIsOfAllLinks) {
-  write("leaks.yml", balls(0.09, 0.05));
+  write("leaks.yml", spheres(0.09, 0.05));
   const std::string table = run({"audit-robot", "two.urdf", "leaks.yml"}).out;
   const std::size_t last = table.find("\nall ");
   ASSERT_NE(last, table.npos) << table;
@@ -205,11 +205,11 @@ TEST_F(AuditRobotCommand, RepairKeepsTheFormat) {
 }
 
 TEST_F(AuditRobotCommand, BuffersBelowZeroShrink) {
-  write("shrunk.yml", balls(0.12, 0.05) + "    collision_sphere_buffer: -0.02\n");
+  write("shrunk.yml", spheres(0.12, 0.05) + "    collision_sphere_buffer: -0.02\n");
   const Outcome result = run({"audit-robot", "two.urdf", "shrunk.yml"});
   EXPECT_EQ(result.exit_code, 1) << result.err;
   EXPECT_NE(result.err.find("shrink"), std::string::npos);
-  write("one.yml", balls(0.12, 0.05) + "    collision_sphere_buffer: {base: -0.02}\n");
+  write("one.yml", spheres(0.12, 0.05) + "    collision_sphere_buffer: {base: -0.02}\n");
   const Outcome one = run({"audit-robot", "two.urdf", "one.yml"});
   EXPECT_EQ(one.exit_code, 1) << one.err;
   EXPECT_NE(one.err.find("shrink"), std::string::npos);
@@ -218,7 +218,7 @@ TEST_F(AuditRobotCommand, BuffersBelowZeroShrink) {
 }
 
 TEST_F(AuditRobotCommand, BadInput) {
-  write("good.yml", balls(0.12, 0.05));
+  write("good.yml", spheres(0.12, 0.05));
   write("one.json", "[{\"spheres\": []}]");
   write("columns.json", "{\"arm\": {\"centers\": [], \"radii\": []}}");
   write("poses.csv", "1, 2\n");

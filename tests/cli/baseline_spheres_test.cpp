@@ -175,8 +175,8 @@ TEST_F(BaselineSpheresTest, PaddingIsCoveredToo) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     const SphereFile file = spheres();
     const Eigen::Vector3d beyond = Eigen::Vector3d::Constant(-0.0999 / std::sqrt(3.0));
-    EXPECT_TRUE(std::ranges::any_of(file.spheres, [&](const Sphere& ball) {
-      return (ball.center - beyond).norm() <= ball.radius;
+    EXPECT_TRUE(std::ranges::any_of(file.spheres, [&](const Sphere& sphere) {
+      return (sphere.center - beyond).norm() <= sphere.radius;
     }));
     EXPECT_EQ(std::get<double>(file.options.at("padding")), 0.1);
     EXPECT_EQ(run({"audit", "bar.stl", "out.json"}).exit_code, 0);

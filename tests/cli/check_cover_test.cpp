@@ -84,7 +84,7 @@ TEST_F(CheckTest, AttachedMeshesAreCoveredAsTheySay) {
     <sphere radius="0.01"/></geometry></visual></link>
     <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
       <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
-  // 0.025 from the wall: one ball around the cube reaches 0.037 beyond its faces.
+  // 0.025 from the wall: one sphere around the cube reaches 0.037 beyond its faces.
   write("path.csv", "-0.3255\n");
   const auto exit_code_with = [this](const std::string& max_error) {
     write("cell.json", wall_and(R"("attached": [{"name": "tool", "link": "hand",
@@ -99,7 +99,7 @@ TEST_F(CheckTest, AttachedMeshesAreCoveredAsTheySay) {
   EXPECT_EQ(exit_code_with(R"(, "max_error": 0.02)"), 0);
 }
 
-// Two cubes that a gap of 0.05 parts, and which one ball around each makes touch.
+// Two cubes that a gap of 0.05 parts, and which one sphere around each makes touch.
 TEST_F(CheckTest, BodiesThatAlwaysTouchGetAdvice) {
   const std::string cube =
       R"(<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>)";

@@ -8,7 +8,7 @@
 
 namespace spherule {
 
-// A ball of radius 0.05 that slides along x and turns about z.
+// A sphere of radius 0.05 that slides along x and turns about z.
 inline constexpr const char* kSlider = R"(<?xml version="1.0"?>
 <robot name="slider">
   <link name="base"/>

@@ -166,22 +166,22 @@ TEST_F(CheckTest, PairsThatAreLeftOut) {
       <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
     <joint name="k" type="prismatic"><parent link="b"/><child link="c"/><axis xyz="1 0 0"/>
       <limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
-  const std::string balls =
+  const std::string spheres =
       "collision_spheres:\n  a: [{center: [0, 0, 0], radius: 0.1}]\n"
       "  b: [{center: [0, 5, 0], radius: 0.1}]\n  c: [{center: [0, 0, 0], radius: 0.1}]\n";
   const std::string scene = R"({"format": "spherule-scene", "version": 1)";
-  write("three.yml", balls);
+  write("three.yml", spheres);
   write("cell.json", scene + "}");
   write("path.csv", "0 0\n");
   const std::vector<std::string> line = {"check",    "three.urdf", "cell.json",
                                          "path.csv", "--spheres",  "three.yml"};
   EXPECT_EQ(run(line).exit_code, 1);
-  write("three.yml", balls + "self_collision_ignore: {a: [c]}\ncollision_sphere_buffer: 0.01\n");
+  write("three.yml", spheres + "self_collision_ignore: {a: [c]}\ncollision_sphere_buffer: 0.01\n");
   const Outcome ignored = run(line);
   EXPECT_EQ(ignored.exit_code, 0) << ignored.out;
   EXPECT_NE(ignored.err.find("1 pairs of links are not tested"), std::string::npos) << ignored.err;
   EXPECT_NE(ignored.err.find("its buffers are not added"), std::string::npos) << ignored.err;
-  write("three.yml", balls);
+  write("three.yml", spheres);
   write("cell.json", scene + R"(, "robot": {"srdf": "three.srdf"}})");
   write("three.srdf", R"(<robot name="three"><disable_collisions link1="a" link2="gone"/>
     <disable_collisions link1="gone" link2="c"/></robot>)");
@@ -203,7 +203,7 @@ TEST_F(CheckTest, PointsAreScaledAndThinnedOut) {
   EXPECT_EQ(checked(0)["verdict"], "free");
   scene(R"(, "scale": 0.001)");
   EXPECT_EQ(checked(0)["verdict"], "free");
-  scene(R"(, "scale": 0.001, "voxel": 2)");  // one ball around both
+  scene(R"(, "scale": 0.001, "voxel": 2)");  // one sphere around both
   EXPECT_EQ(checked(1)["verdict"], "collision");
   write("path.csv", "1.3 0\n");
   scene(R"(, "scale": 0.001)");

@@ -6,7 +6,7 @@ namespace {
 
 using nlohmann::json;
 
-// Two balls of radius 1 at x = 0 and x = 10, and one ball of radius 1 at the origin.
+// Two spheres of radius 1 at x = 0 and x = 10, and one sphere of radius 1 at the origin.
 class CollideTest : public CommandTest {
  protected:
   void SetUp() override {
@@ -30,7 +30,7 @@ TEST_F(CollideTest, ExitCodeIsTheVerdict) {
 }
 
 TEST_F(CollideTest, PosesRotate) {
-  // A quarter turn about z moves the second ball from x = 10 to y = 10.
+  // A quarter turn about z moves the second sphere from x = 10 to y = 10.
   const std::string turn = "0 0 0 0 0 1 1";  // not of unit length: allowed
   EXPECT_EQ(
       run({"collide", "two.tree", "one.tree", "--pose-a", turn, "--pose-b", "0 11.9 0 0 0 0 1"})

@@ -12,7 +12,8 @@
 
 namespace spherule {
 
-// What a run of the built command left behind. A run that a signal ended has exit code -signal.
+// What a run of the built command left behind, without the lines of progress on standard error. A
+// run that a signal ended has exit code -signal.
 struct Outcome {
   int exit_code = 0;
   std::string out;

@@ -61,7 +61,7 @@ TEST_F(FitBodiesTest, OtherCommandsReadTheFile) {
   outcome = run({"info", "all.json"});
   EXPECT_NE(outcome.out.find("bodies: 2\n  a: "), std::string::npos) << outcome.out;
   EXPECT_EQ(run({"view", "a.stl", "b.stl", "all.json", "-o", "all.html"}).exit_code, 0);
-  // One ball of the second body is gone from its place.
+  // One sphere of the second body is gone from its place.
   json all = read_json("all.json");
   json& last = all.at("spheres").back();
   last.at("radius") = 1e-3;

@@ -141,14 +141,14 @@ TEST_F(FitTest, ReportHoldsTheSimplifiedSolid) {
   const std::array<double, 3> size = {40, 20, 10};
   EXPECT_EQ(solid.at("external_sphere_count"), solid.at("external_spheres").size());
   ASSERT_FALSE(solid.at("external_spheres").empty());
-  for (const json& ball : solid.at("external_spheres")) {
+  for (const json& sphere : solid.at("external_spheres")) {
     double squares = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double x = ball.at("center").at(axis);
+      const double x = sphere.at("center").at(axis);
       const double outside = std::max({-x, x - size[axis], 0.0});
       squares += outside * outside;
     }
-    const double radius = ball.at("radius");
+    const double radius = sphere.at("radius");
     EXPECT_GE(radius, 4.0);
     EXPECT_GE(std::sqrt(squares), radius + 0.25 - 1e-9);
   }

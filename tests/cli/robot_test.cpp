@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using SpheresOfLinks = std::map<std::string, std::vector<Sphere>>;
 
-// A mesh in metres and a mirrored one in millimetres, a cylinder, a ball, and a link with nothing.
+// A mesh in metres and a mirrored one in millimetres, a cylinder, a sphere, and a link with
+// nothing.
 constexpr const char* kRobot = R"(<?xml version="1.0"?>
 <robot name="arm_1">
   <link name="base">
@@ -101,14 +102,14 @@ std::set<std::pair<std::string, std::string>> ignored(const RobotSpheres& sphere
   return pairs;
 }
 
-void expect_covered(const std::vector<Sphere>& balls, const Pose& pose, const Primitive& primitive,
-                    test::Random& random) {
+void expect_covered(const std::vector<Sphere>& spheres, const Pose& pose,
+                    const Primitive& primitive, test::Random& random) {
   for (int k = 0; k < 3000; ++k) {
     const test::WidePoint p = test::move(pose, test::point_of(primitive, random));
     test::Wide outside = 1;
-    for (const Sphere& ball : balls) {
-      outside =
-          std::min(outside, (p - ball.center.cast<test::Wide>()).norm() - test::Wide(ball.radius));
+    for (const Sphere& sphere : spheres) {
+      outside = std::min(outside,
+                         (p - sphere.center.cast<test::Wide>()).norm() - test::Wide(sphere.radius));
     }
     ASSERT_LE(outside, 0);
   }
@@ -139,10 +140,10 @@ TEST_F(RobotTest, WritesEveryFormatSoThatItReadsBack) {
   for (const char* file : {"arm_1.srdf", "arm_1.curobo.yml", "arm_1.xrdf"}) {
     EXPECT_EQ(ignored(read_back(file)), neighbours) << file;
   }
-  for (const auto& [link, balls] : links) {
+  for (const auto& [link, spheres] : links) {
     const SphereTree tree = load_tree(folder_ / "out" / ("arm_1." + link + ".tree"));
     EXPECT_TRUE(check(tree).valid);
-    EXPECT_EQ(std::vector(tree.spheres().begin(), tree.spheres().end()), balls);
+    EXPECT_EQ(std::vector(tree.spheres().begin(), tree.spheres().end()), spheres);
   }
 
   // The spherized URDF is a robot: the same joints, spheres only.
@@ -152,8 +153,9 @@ TEST_F(RobotTest, WritesEveryFormatSoThatItReadsBack) {
   ASSERT_EQ(spherized.links.size(), robot.links.size());
   EXPECT_EQ(spherized.model.variable_count(), 2);
   for (const LinkDescription& link : spherized.links) {
-    const auto balls = links.find(link.name);
-    EXPECT_EQ(link.collision.size(), balls == links.end() ? 0 : balls->second.size()) << link.name;
+    const auto spheres = links.find(link.name);
+    EXPECT_EQ(link.collision.size(), spheres == links.end() ? 0 : spheres->second.size())
+        << link.name;
   }
 
   // The exact primitives, and the exact meshes, which are boxes.
@@ -165,7 +167,8 @@ TEST_F(RobotTest, WritesEveryFormatSoThatItReadsBack) {
                  Box{{0.05, 0.04, 0.06}}, random);
   expect_covered(links.at("base"), Pose::from_translation({0.15, 0.1, 0.05}), Box{{0.3, 0.2, 0.1}},
                  random);
-  expect_covered(links.at("finger"), Pose::from_translation({0.02, 0, 0}), Ball{0.04}, random);
+  expect_covered(links.at("finger"), Pose::from_translation({0.02, 0, 0}), SolidSphere{0.04},
+                 random);
 }
 
 TEST_F(RobotTest, TellsInTableJsonAndReportWhatIsProved) {
@@ -190,19 +193,19 @@ TEST_F(RobotTest, TellsInTableJsonAndReportWhatIsProved) {
   const SpheresOfLinks links = by_link(read_back("arm_1.spheres.json"));
   std::size_t count = 0;
   for (const json& link : summary.at("links")) {
-    const auto balls = links.find(link.at("link"));
-    if (balls == links.end()) {
+    const auto spheres = links.find(link.at("link"));
+    if (spheres == links.end()) {
       EXPECT_EQ(link.at("sphere_count"), 0);
       EXPECT_FALSE(link.contains("certificate"));
       continue;
     }
-    EXPECT_EQ(link.at("sphere_count"), balls->second.size());
+    EXPECT_EQ(link.at("sphere_count"), spheres->second.size());
     const json& certificate = link.at("certificate");
     EXPECT_EQ(certificate.at("covered"), true);
     EXPECT_EQ(certificate.at("uncovered_depth").at(1), 0.0);
     EXPECT_LE(certificate.at("protrusion_over_simplified_max"), 0.06 * (1 + 1e-9));
     EXPECT_EQ(link.at("options").at("min-external"), 0.24);
-    count += balls->second.size();
+    count += spheres->second.size();
   }
   EXPECT_EQ(summary.at("total").at("sphere_count"), count);
 

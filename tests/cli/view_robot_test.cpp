@@ -101,7 +101,7 @@ TEST_F(ViewRobotTest, MeshesAndSpheresHangOnTheirLinks) {
 }
 
 TEST_F(ViewRobotTest, LeaksOfSamplesAndOfAnAudit) {
-  // From the ball's centre to the corners of either box.
+  // From the sphere's centre to the corners of either box.
   const double base = std::sqrt(0.04 + 0.04 + 0.01) - 0.31;
   const double boom = std::sqrt(0.16 + 0.0025 + 0.0025) - 0.2;
   ASSERT_LT(base, 0.0);

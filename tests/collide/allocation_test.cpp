@@ -73,12 +73,12 @@ TEST(Allocation, ConfirmationTakesNoMemory) {
                           {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
   TriangleMesh small = mesh;
   for (Eigen::Vector3d& v : small.vertices) v *= 0.05;
-  const auto ball = [](double radius) {
+  const auto tree_of_sphere = [](double radius) {
     const Sphere sphere{Eigen::Vector3d::Zero(), radius};
     return std::make_shared<const SphereTree>(build_tree(std::span(&sphere, 1)));
   };
-  const CoveredMesh a(mesh, ball(1.1));
-  const CoveredMesh b(small, ball(0.1));
+  const CoveredMesh a(mesh, tree_of_sphere(1.1));
+  const CoveredMesh b(small, tree_of_sphere(0.1));
   SceneRandom random(3);
   int hits = 0;
   std::vector<Pose> poses;

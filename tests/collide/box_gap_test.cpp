@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The looks at two trees before a search, where ball and box or two boxes meet or nearly so:
+// The looks at two trees before a search, where sphere and box or two boxes meet or nearly so:
 // against exact gaps, and verdicts against the canonical test of all pairs.
 
 #include "collide/search/box_gap.h"
@@ -35,7 +35,7 @@ struct Scene {
     Real least = std::numeric_limits<double>::infinity();
     for (const Sphere& of_a : a.spheres()) {
       for (const Sphere& of_b : b.spheres()) {
-        least = std::min(least, PlacedBalls{of_a, of_b, world_from_a, world_from_b}.gap());
+        least = std::min(least, PlacedSphereSets{of_a, of_b, world_from_a, world_from_b}.gap());
       }
     }
     return least;
@@ -63,9 +63,9 @@ std::vector<Sphere> corners(const Vector3d& center, const Vector3d& half_size, d
   return spheres;
 }
 
-// A ball that touches all faces of the box around it and `count` smaller ones in it.
-std::vector<Sphere> ball_with_others(SceneRandom& random, const Vector3d& center, double radius,
-                                     int count) {
+// A sphere that touches all faces of the box around it and `count` smaller ones in it.
+std::vector<Sphere> sphere_with_others(SceneRandom& random, const Vector3d& center, double radius,
+                                       int count) {
   std::vector<Sphere> spheres = {{center, radius}};
   for (int i = 0; i < count; ++i) {
     spheres.push_back({center + random.point(0.5 * radius), radius * random.uniform(0.0, 0.4)});
@@ -75,8 +75,8 @@ std::vector<Sphere> ball_with_others(SceneRandom& random, const Vector3d& center
 
 // A box is brought with a corner to the middle of a face of the other set's box, so that the gap
 // along the face's normal is that of two spheres: `gap` units of 2^-53 of the scene, up to what the
-// rounding of the poses adds. Corners are points, or balls where the boxes are parallel. Either set
-// comes first.
+// rounding of the poses adds. Corners are points, or spheres where the boxes are parallel. Either
+// set comes first.
 Scene facing(SceneRandom& random, double gap) {
   const double size = std::ldexp(1.0, random.whole(-40, 36));
   const bool parallel = random.whole(0, 2) == 0;
@@ -86,7 +86,7 @@ Scene facing(SceneRandom& random, double gap) {
                                           parallel ? size * random.uniform(0.0, 0.5) : 0.0);
   const double radius = random.whole(0, 4) == 0 ? 0.0 : size * random.uniform(0.01, 2.0);
   const Vector3d center = random.point(size * random.whole(0, 4));
-  const std::vector<Sphere> round = ball_with_others(random, center, radius, random.whole(0, 4));
+  const std::vector<Sphere> round = sphere_with_others(random, center, radius, random.whole(0, 4));
 
   const Quaterniond turn =
       parallel ? Quaterniond(1.0, random.whole(0, 1), 0.0, 0.0) : random.quaternion();

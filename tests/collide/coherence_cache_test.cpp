@@ -33,7 +33,7 @@ using internal::KernelScratch;
 const std::vector<MechanismPair> kOnePair(1);
 constexpr double kNothing = -1.0;  // for a depth: nothing is to be remembered
 
-// An arm of length one about the z axis whose tip is within a large ball. `confirm` always says
+// An arm of length one about the z axis whose tip is within a large sphere. `confirm` always says
 // yes, and what is to be remembered with it.
 class DeepContact {
  public:
@@ -60,8 +60,8 @@ class DeepContact {
 
  private:
   MechanismCheck check_{std::vector<MechanismFrame>(1),
-                        std::vector<MechanismBody>{{0, Pose(), ball({1, 0, 0}, 0.1)}},
-                        std::vector<MechanismObstacle>{{Pose(), ball({1, 0, 0}, 0.5)}},
+                        std::vector<MechanismBody>{{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}},
+                        std::vector<MechanismObstacle>{{Pose(), one_sphere_tree({1, 0, 0}, 0.5)}},
                         kOnePair,
                         0.0,
                         best_instruction_set(),
@@ -98,8 +98,8 @@ TEST(CoherenceCache, NothingIsKnownAfterAJump) {
   EXPECT_FALSE(contact.is_asked(0.11, kDepth));
 }
 
-// An arm of turns and shifts with a sphere on every frame. The true bodies are smaller balls within
-// the spheres, so that many contacts are refused.
+// An arm of turns and shifts with a sphere on every frame. The true bodies are smaller spheres
+// within the spheres, so that many contacts are refused.
 struct Arm {
   std::vector<MechanismFrame> frames;
   std::vector<Sphere> spheres;
@@ -119,7 +119,7 @@ struct Arm {
     return pose * spheres[body].center;
   }
 
-  // By which the true balls go into each other.
+  // By which the true spheres go into each other.
   double depth(std::size_t body, std::size_t obstacle, const std::vector<double>& at) const {
     const Sphere& other = obstacles[obstacle];
     return kTrueSize * (spheres[body].radius + other.radius) -
@@ -131,10 +131,11 @@ struct Arm {
     std::vector<MechanismObstacle> things;
     std::vector<MechanismPair> pairs;
     for (std::size_t i = 0; i < spheres.size(); ++i) {
-      bodies.push_back({static_cast<int>(i), Pose(), ball(spheres[i].center, spheres[i].radius)});
+      bodies.push_back(
+          {static_cast<int>(i), Pose(), one_sphere_tree(spheres[i].center, spheres[i].radius)});
     }
     for (const Sphere& obstacle : obstacles) {
-      things.push_back({Pose(), ball(obstacle.center, obstacle.radius)});
+      things.push_back({Pose(), one_sphere_tree(obstacle.center, obstacle.radius)});
     }
     for (std::size_t i = 0; i < spheres.size() * obstacles.size(); ++i) {
       pairs.push_back({static_cast<int>(i % spheres.size()), static_cast<int>(i / spheres.size())});
@@ -228,7 +229,7 @@ TEST(CoherenceCache, SavesQuestionsAndChangesNoAnswer) {
   EXPECT_LT(asked, asked_anew / 4);
 }
 
-// Kernels in double precision for bodies of one ball, each turned about an axis of its own. They
+// Kernels in double precision for bodies of one sphere, each turned about an axis of its own. They
 // count pairs that are searched.
 struct PlainKernels {
   static void place(const KernelProblem& problem, const double* configuration,

@@ -26,7 +26,7 @@ struct Scene {
   }
   bool collides() const { return spherule::collides(a, world_from_a, b, world_from_b); }
 
-  PlacedBalls balls(int i, int j) const {
+  PlacedSphereSets spheres(int i, int j) const {
     return {a.spheres()[static_cast<std::size_t>(i)], b.spheres()[static_cast<std::size_t>(j)],
             world_from_a, world_from_b};
   }
@@ -39,7 +39,7 @@ struct Scene {
     std::vector<SpherePair> pairs;
     for (int i = 0; i < count_a(); ++i) {
       for (int j = 0; j < count_b(); ++j) {
-        if (pose.touches(balls(i, j).a, balls(i, j).b)) pairs.push_back({i, j});
+        if (pose.touches(spheres(i, j).a, spheres(i, j).b)) pairs.push_back({i, j});
       }
     }
     return pairs;
@@ -93,7 +93,7 @@ TEST(Collide, AgreesWithExactArithmeticOnEveryPair) {
       for (int k = 0; k < scene.count_b(); ++k) {
         const bool found =
             std::binary_search(result.pairs.begin(), result.pairs.end(), SpherePair{j, k});
-        const Real gap = scene.balls(j, k).gap();
+        const Real gap = scene.spheres(j, k).gap();
         ASSERT_TRUE(found || gap > 0) << gap;
         ASSERT_TRUE(!found || gap <= slack) << gap;
         touching += found;
@@ -208,8 +208,8 @@ TEST(Collide, SaysUnknownWhenThereIsNoTime) {
 }
 
 TEST(Collide, WithoutRoomForAPairSaysOnlyWhether) {
-  const SphereTree ball = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
-  const CollisionResult hit = collide(ball, Pose(), ball, Pose(), {.max_pairs = 0});
+  const SphereTree sphere = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
+  const CollisionResult hit = collide(sphere, Pose(), sphere, Pose(), {.max_pairs = 0});
   EXPECT_EQ(hit.verdict, Verdict::kCollision);
   EXPECT_TRUE(hit.pairs.empty());
 }
@@ -226,7 +226,7 @@ TEST(Collide, BoundsTheDistanceFromBelow) {
     }
     for (int j = 0; j < scene.count_a(); ++j) {
       for (int k = 0; k < scene.count_b(); ++k) {
-        ASSERT_LE(result.distance_lower_bound, scene.balls(j, k).gap());
+        ASSERT_LE(result.distance_lower_bound, scene.spheres(j, k).gap());
       }
     }
     positive += result.distance_lower_bound > 0.0;
@@ -235,8 +235,9 @@ TEST(Collide, BoundsTheDistanceFromBelow) {
 }
 
 TEST(Collide, CountsTheTestOfTheRootsAlone) {
-  const SphereTree ball = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
-  const CollisionResult far = collide(ball, Pose(), ball, Pose::from_translation({5.0, 0.0, 0.0}));
+  const SphereTree sphere = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
+  const CollisionResult far =
+      collide(sphere, Pose(), sphere, Pose::from_translation({5.0, 0.0, 0.0}));
   EXPECT_EQ(far.verdict, Verdict::kFree);
   EXPECT_EQ(far.cost.node_tests, 1u);
   EXPECT_EQ(far.cost.leaf_tests, 1u);

@@ -25,8 +25,9 @@ using Eigen::Vector3d;
 
 Real exact_overlap(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                    const Pose& world_from_b, const SpherePair& pair) {
-  return -PlacedBalls{a.spheres()[static_cast<std::size_t>(pair.a)],
-                      b.spheres()[static_cast<std::size_t>(pair.b)], world_from_a, world_from_b}
+  return -PlacedSphereSets{a.spheres()[static_cast<std::size_t>(pair.a)],
+                           b.spheres()[static_cast<std::size_t>(pair.b)], world_from_a,
+                           world_from_b}
               .gap();
 }
 
@@ -113,8 +114,8 @@ TEST(Contact, OfSpheresIsTheDeepest) {
 }
 
 TEST(Contact, OfSpheresAboutOnePoint) {
-  const auto outer = ball({1.0, 2.0, 3.0}, 2.0);
-  const auto inner = ball({1.0, 2.0, 3.0}, 0.5);
+  const auto outer = one_sphere_tree({1.0, 2.0, 3.0}, 2.0);
+  const auto inner = one_sphere_tree({1.0, 2.0, 3.0}, 0.5);
   const std::optional<Contact> contact = deepest_contact(*outer, Pose(), *inner, Pose());
   ASSERT_TRUE(contact);
   EXPECT_NEAR(contact->overlap_depth, 2.5, 1e-12);

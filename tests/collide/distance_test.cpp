@@ -25,7 +25,7 @@ struct Scene {
     return spherule::distance(a, world_from_a, b, world_from_b, request);
   }
   Real gap(std::size_t i, std::size_t j) const {
-    return PlacedBalls{a.spheres()[i], b.spheres()[j], world_from_a, world_from_b}.gap();
+    return PlacedSphereSets{a.spheres()[i], b.spheres()[j], world_from_a, world_from_b}.gap();
   }
   Real exact_distance() const {
     Real least = std::numeric_limits<double>::infinity();
@@ -144,16 +144,16 @@ TEST(Distance, AgreesWithCollides) {
 }
 
 TEST(Distance, OfTwoSpheres) {
-  const SphereTree ball = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
+  const SphereTree sphere = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
   const DistanceResult result =
-      distance(ball, Pose(), ball, Pose::from_translation({3.0, 4.0, 0.0}));
+      distance(sphere, Pose(), sphere, Pose::from_translation({3.0, 4.0, 0.0}));
   EXPECT_NEAR(result.lower, 3.0, 1e-12);
   EXPECT_NEAR(result.upper, 3.0, 1e-12);
   EXPECT_LE(result.lower, 3.0);
   EXPECT_GE(result.upper, 3.0);
   EXPECT_EQ(result.nearest, (SpherePair{0, 0}));
   EXPECT_EQ(result.cost.leaf_tests, 1u);
-  EXPECT_EQ(distance(ball, Pose(), ball, Pose()).upper, 0.0);
+  EXPECT_EQ(distance(sphere, Pose(), sphere, Pose()).upper, 0.0);
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ class ExactSignedDistance {
     }
     return outside > 0 ? Real(sqrt(outside)) : -nearest_face;
   }
-  Real operator()(const Ball& ball) const {
-    return sqrt(p_[0] * p_[0] + p_[1] * p_[1] + p_[2] * p_[2]) - ball.radius;
+  Real operator()(const SolidSphere& sphere) const {
+    return sqrt(p_[0] * p_[0] + p_[1] * p_[1] + p_[2] * p_[2]) - sphere.radius;
   }
   Real operator()(const Cylinder& cylinder) const {
     const Real side = cylinder.radius - sqrt(p_[0] * p_[0] + p_[1] * p_[1]);

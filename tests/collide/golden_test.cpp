@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// G7: verdicts and pair lists are the same on every machine, as a hash of them. Half of the balls
+// G7: verdicts and pair lists are the same on every machine, as a hash of them. Half of the spheres
 // are in contact up to rounding, where the last bit of the canonical test decides.
 
 #include "collide/mesh_tree.h"
@@ -36,19 +36,19 @@ double distance_of(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
   return std::sqrt(x * x + y * y + z * z);
 }
 
-// Random balls, every second of which touches a point of the other set, up to the test's pad.
-std::vector<Sphere> balls_near(SceneRandom& random, const Pose& world_from_balls,
-                               const Pose& world_from_points,
-                               const std::vector<Eigen::Vector3d>& points) {
-  std::vector<Sphere> balls = random_spheres(random, 20, 1.0, 0.1);
-  for (std::size_t i = 1; i < balls.size(); i += 2) {
+// Random spheres, every second of which touches a point of the other set, up to the test's pad.
+std::vector<Sphere> spheres_near(SceneRandom& random, const Pose& world_from_spheres,
+                                 const Pose& world_from_points,
+                                 const std::vector<Eigen::Vector3d>& points) {
+  std::vector<Sphere> spheres = random_spheres(random, 20, 1.0, 0.1);
+  for (std::size_t i = 1; i < spheres.size(); i += 2) {
     const Eigen::Vector3d p =
-        world_from_balls.inverse() * (world_from_points * points[i % points.size()]);
+        world_from_spheres.inverse() * (world_from_points * points[i % points.size()]);
     const double gap = random.uniform(-1e-13, 1e-13);
-    balls[i].center = p + 0.1 * random.point(1.0);
-    balls[i].radius = std::max(0.0, distance_of(balls[i].center, p) + gap);
+    spheres[i].center = p + 0.1 * random.point(1.0);
+    spheres[i].radius = std::max(0.0, distance_of(spheres[i].center, p) + gap);
   }
-  return balls;
+  return spheres;
 }
 
 std::vector<Eigen::Vector3d> random_points(SceneRandom& random, int count) {
@@ -57,7 +57,7 @@ std::vector<Eigen::Vector3d> random_points(SceneRandom& random, int count) {
   return points;
 }
 
-TEST(Golden, PairsOfBalls) {
+TEST(Golden, PairsOfSpheres) {
   constexpr std::uint64_t kGolden = 0x44f945caf442076e;
   SceneRandom random(1);
   std::ostringstream text;
@@ -67,14 +67,14 @@ TEST(Golden, PairsOfBalls) {
     for (const Eigen::Vector3d& point : points) second.push_back({point, 0.0});
     const Pose world_from_a = random_pose(random, 1.0);
     const Pose world_from_b = random_pose(random, i % 2 == 0 ? 1.0 : 5.0);
-    const std::vector<Sphere> first = balls_near(random, world_from_a, world_from_b, points);
+    const std::vector<Sphere> first = spheres_near(random, world_from_a, world_from_b, points);
     add(collide(build_tree(first), world_from_a, build_tree(second), world_from_b), text);
   }
   const std::uint64_t hash = hash_of(text.str());
   EXPECT_EQ(hash, kGolden) << "0x" << std::hex << hash;
 }
 
-TEST(Golden, PairsOfBallsAndTriangles) {
+TEST(Golden, PairsOfSpheresAndTriangles) {
   constexpr std::uint64_t kGolden = 0xeba7c128466af6d5;
   SceneRandom random(2);
   std::ostringstream text;
@@ -84,8 +84,9 @@ TEST(Golden, PairsOfBallsAndTriangles) {
     for (int k = 0; k < 24; k += 3) mesh.triangles.emplace_back(k, k + 1, k + 2);
     const Pose world_from_a = random_pose(random, 1.0);
     const Pose world_from_b = random_pose(random, i % 2 == 0 ? 1.0 : 5.0);
-    const std::vector<Sphere> balls = balls_near(random, world_from_a, world_from_b, mesh.vertices);
-    add(collide(build_tree(balls), world_from_a, MeshTree(mesh), world_from_b), text);
+    const std::vector<Sphere> spheres =
+        spheres_near(random, world_from_a, world_from_b, mesh.vertices);
+    add(collide(build_tree(spheres), world_from_a, MeshTree(mesh), world_from_b), text);
   }
   const std::uint64_t hash = hash_of(text.str());
   EXPECT_EQ(hash, kGolden) << "0x" << std::hex << hash;

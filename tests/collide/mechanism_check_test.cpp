@@ -21,14 +21,14 @@ namespace {
 // An arm of length one about the z axis.
 const std::vector<MechanismFrame> kArm(1);
 
-// Whether single precision finds a ball at the end of the arm apart from one that stands at a
+// Whether single precision finds a sphere at the end of the arm apart from one that stands at a
 // distance of `gap` from where it is at the angle, surely in contact, or asks.
 enum class Finding { kApart, kTouch, kAsks };
 Finding find(double angle, double gap, InstructionSet set) {
   const double way = 1.0 + 0.2 + gap;
-  const std::vector<MechanismBody> bodies = {{0, Pose(), ball({1, 0, 0}, 0.1)}};
+  const std::vector<MechanismBody> bodies = {{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}};
   const std::vector<MechanismObstacle> obstacles = {
-      {Pose(), ball({way * std::cos(angle), way * std::sin(angle), 0.0}, 0.1)}};
+      {Pose(), one_sphere_tree({way * std::cos(angle), way * std::sin(angle), 0.0}, 0.1)}};
   const std::vector<MechanismPair> pairs(1);
   const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0, set);
   MechanismCheck::Scratch scratch(check);
@@ -71,8 +71,9 @@ TEST(MechanismCheck, OffsetsThatCancelAreMindedInTheMargins) {
     const Pose back(pose.rotation(), -(pose * far));
     const Eigen::Vector3d direction = random.point(1.0).normalized();
     const double gap = random.uniform(-1e-3, 1e-3);
-    const std::vector<MechanismBody> bodies = {{0, back, ball(far, 0.1)}};
-    const std::vector<MechanismObstacle> obstacles = {{Pose(), ball((0.2 + gap) * direction, 0.1)}};
+    const std::vector<MechanismBody> bodies = {{0, back, one_sphere_tree(far, 0.1)}};
+    const std::vector<MechanismObstacle> obstacles = {
+        {Pose(), one_sphere_tree((0.2 + gap) * direction, 0.1)}};
     const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0);
     MechanismCheck::Scratch scratch(check);
     bool asked = false;
@@ -81,7 +82,7 @@ TEST(MechanismCheck, OffsetsThatCancelAreMindedInTheMargins) {
       return false;
     };
     const bool hit = check.collides(std::array{0.0}, scratch, confirm);
-    const PlacedBalls exactly{{far, 0.1}, {(0.2 + gap) * direction, 0.1}, back, Pose()};
+    const PlacedSphereSets exactly{{far, 0.1}, {(0.2 + gap) * direction, 0.1}, back, Pose()};
     EXPECT_TRUE(asked || hit == exactly.overlap()) << i;
   }
 }
@@ -102,10 +103,10 @@ TEST(MechanismCheck, ABlockNeverFindsApartWhatTouches) {
       pose = pose * frames.back().parent_from_frame *
              Pose(Eigen::Quaterniond(turn), Eigen::Vector3d::Zero());
     }
-    const std::vector<MechanismBody> bodies = {{999, Pose(), ball({0.3, 0, 0}, 0.1)}};
+    const std::vector<MechanismBody> bodies = {{999, Pose(), one_sphere_tree({0.3, 0, 0}, 0.1)}};
     const Eigen::Vector3d away = (0.2 - 1e-9) * random.point(1.0).normalized();
     const std::vector<MechanismObstacle> obstacles = {
-        {Pose(), ball(pose * Eigen::Vector3d(0.3, 0, 0) + away, 0.1)}};
+        {Pose(), one_sphere_tree(pose * Eigen::Vector3d(0.3, 0, 0) + away, 0.1)}};
     const std::vector<MechanismPair> pairs(1);
     for (const InstructionSet set : instruction_sets()) {
       const MechanismCheck check(frames, bodies, obstacles, pairs, 0.0, set);
@@ -137,8 +138,8 @@ std::string refused(const std::vector<MechanismFrame>& frames,
 }
 
 TEST(MechanismCheck, RefusesBadInputByName) {
-  const std::vector<MechanismBody> bodies = {{0, Pose(), ball({1, 0, 0}, 0.1)}};
-  const std::vector<MechanismObstacle> obstacles = {{Pose(), ball({2, 0, 0}, 0.1)}};
+  const std::vector<MechanismBody> bodies = {{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}};
+  const std::vector<MechanismObstacle> obstacles = {{Pose(), one_sphere_tree({2, 0, 0}, 0.1)}};
   const std::vector<MechanismPair> pairs(1);
   EXPECT_EQ(refused(kArm, bodies, obstacles, pairs), "accepted");
   const auto says = [](const std::string& text, const std::string& part) {
@@ -171,8 +172,8 @@ TEST(MechanismCheck, RefusesBadInputByName) {
 }
 
 TEST(MechanismCheck, RefusesTheScratchOfAnother) {
-  const std::vector<MechanismBody> bodies = {{0, Pose(), ball({1, 0, 0}, 0.1)}};
-  const std::vector<MechanismObstacle> obstacles = {{Pose(), ball({3, 0, 0}, 0.1)}};
+  const std::vector<MechanismBody> bodies = {{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}};
+  const std::vector<MechanismObstacle> obstacles = {{Pose(), one_sphere_tree({3, 0, 0}, 0.1)}};
   const std::vector<MechanismPair> pairs(1);
   const MechanismCheck other(kArm, bodies, obstacles, pairs, 0.0);
   MechanismCheck::Scratch scratch(other);

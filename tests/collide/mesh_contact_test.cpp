@@ -56,8 +56,8 @@ std::shared_ptr<const SphereTree> tree_of(const std::vector<Sphere>& spheres) {
   return std::make_shared<const SphereTree>(build_tree(spheres));
 }
 
-// The smallest balls around the triangles, each cut into 4^levels, and a bit more where cut.
-std::vector<Sphere> surface_balls(const TriangleMesh& mesh, int levels) {
+// The smallest spheres around the triangles, each cut into 4^levels, and a bit more where cut.
+std::vector<Sphere> surface_spheres(const TriangleMesh& mesh, int levels) {
   std::vector<Corners> pieces;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) pieces.push_back(corners_of(mesh, i));
   for (int level = 0; level < levels; ++level) {
@@ -68,27 +68,28 @@ std::vector<Sphere> surface_balls(const TriangleMesh& mesh, int levels) {
     }
     pieces = std::move(finer);
   }
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   for (const Corners& piece : pieces) {
-    balls.push_back(enclosing_sphere(piece));
-    if (levels > 0) balls.back().radius *= 1.01;
+    spheres.push_back(enclosing_sphere(piece));
+    if (levels > 0) spheres.back().radius *= 1.01;
   }
-  return balls;
+  return spheres;
 }
 
 CoveredMesh surface_covered(const TriangleMesh& mesh, int levels) {
-  return {mesh, tree_of(surface_balls(mesh, levels))};
+  return {mesh, tree_of(surface_spheres(mesh, levels))};
 }
 
-// Balls around the cells of a grid, which cover a box from -half to half with its inside.
+// Spheres around the cells of a grid, which cover a box from -half to half with its inside.
 CoveredMesh solid_covered(const TriangleMesh& mesh, const Vector3d& half, int cells) {
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   const Vector3d cell = 2.0 * half / cells;
   for (int i = 0; i < cells * cells * cells; ++i) {
     const Vector3d index(i % cells, i / cells % cells, i / (cells * cells));
-    balls.push_back({(index.array() + 0.5).matrix().cwiseProduct(cell) - half, 0.51 * cell.norm()});
+    spheres.push_back(
+        {(index.array() + 0.5).matrix().cwiseProduct(cell) - half, 0.51 * cell.norm()});
   }
-  return {mesh, tree_of(balls)};
+  return {mesh, tree_of(spheres)};
 }
 
 TriangleMesh random_mesh(SceneRandom& random, int triangles, double width) {
@@ -106,14 +107,14 @@ TriangleMesh random_mesh(SceneRandom& random, int triangles, double width) {
 // Whether any two triangles touch, exactly; only those are looked at that are not clearly apart.
 bool touch_exactly(const TriangleMesh& a, const Pose& world_from_a, const TriangleMesh& b,
                    const Pose& world_from_b) {
-  const auto ball = [](const TriangleMesh& mesh, std::size_t i, const Pose& pose) -> Sphere {
+  const auto sphere = [](const TriangleMesh& mesh, std::size_t i, const Pose& pose) -> Sphere {
     const Sphere around = enclosing_sphere(corners_of(mesh, i));
     return {pose * around.center, around.radius};
   };
   for (std::size_t i = 0; i < a.triangles.size(); ++i) {
-    const Sphere of_a = ball(a, i, world_from_a);
+    const Sphere of_a = sphere(a, i, world_from_a);
     for (std::size_t j = 0; j < b.triangles.size(); ++j) {
-      const Sphere of_b = ball(b, j, world_from_b);
+      const Sphere of_b = sphere(b, j, world_from_b);
       if ((of_a.center - of_b.center).norm() > of_a.radius + of_b.radius + 1e-9) continue;
       if (exact_gap(corners_of(a, i), world_from_a, corners_of(b, j), world_from_b) == 0.0) {
         return true;
@@ -197,7 +198,7 @@ TEST(MeshContact, IsNeverMissedAmongManyTriangles) {
   int hits = 0, alarms = 0;
   for (int i = 0; i < effort(60, 20); ++i) {
     TriangleMesh meshes[2];
-    std::vector<Sphere> balls[2];
+    std::vector<Sphere> spheres[2];
     for (int k = 0; k < 2; ++k) {
       for (int t = 0; t < 90; ++t) {
         const Vector3d p = random.point(1.0);
@@ -207,9 +208,9 @@ TEST(MeshContact, IsNeverMissedAmongManyTriangles) {
         }
         meshes[k].triangles.emplace_back(first, first + 1, first + 2);
       }
-      balls[k] = {{Vector3d(-0.4, 0, 0), 1.9}, {Vector3d(0.4, 0, 0), 1.9}};
+      spheres[k] = {{Vector3d(-0.4, 0, 0), 1.9}, {Vector3d(0.4, 0, 0), 1.9}};
     }
-    const CoveredMesh a(meshes[0], tree_of(balls[0])), b(meshes[1], tree_of(balls[1]));
+    const CoveredMesh a(meshes[0], tree_of(spheres[0])), b(meshes[1], tree_of(spheres[1]));
     const Pose world_from_a = random.pose(1.0), turned(random.quaternion(), Vector3d::Zero());
     const Pose world_from_b(turned.rotation(),
                             world_from_a.translation() + 1.9 * random.point(1.0));
@@ -263,7 +264,7 @@ TEST(MeshContact, ABodyInsideAnotherCollides) {
   EXPECT_TRUE(outer.is_closed());
   for (int i = 0; i < 2000; ++i) {
     const Pose world_from_outer = random.pose(10.0);
-    // A ball around the small box stays within the large one, or goes beyond it for sure.
+    // A sphere around the small box stays within the large one, or goes beyond it for sure.
     Vector3d center = random.point(0.6);
     const bool inside = random.whole(0, 1) == 0;
     if (!inside) center[random.whole(0, 2)] = random.whole(0, 1) == 0 ? 1.4 : -1.4;
@@ -336,10 +337,10 @@ TEST(MeshContact, AnOpenMeshHasNoInside) {
 TEST(MeshContact, EveryPointIsInASphereThatListsItsTriangle) {
   SceneRandom random(7);
   const TriangleMesh mesh = random_mesh(random, 40, 0.5);
-  std::vector<Sphere> balls = surface_balls(mesh, 1);
-  const std::vector<Sphere> finer = surface_balls(mesh, 3);
-  balls.insert(balls.end(), finer.begin(), finer.end() - 500);
-  const CoveredMesh covered(mesh, tree_of(balls));
+  std::vector<Sphere> spheres = surface_spheres(mesh, 1);
+  const std::vector<Sphere> finer = surface_spheres(mesh, 3);
+  spheres.insert(spheres.end(), finer.begin(), finer.end() - 500);
+  const CoveredMesh covered(mesh, tree_of(spheres));
   for (std::int32_t triangle = 0; triangle < 40; ++triangle) {
     const auto [a, b, c] = corners_of(mesh, static_cast<std::size_t>(triangle));
     for (int k = 0; k < 200; ++k) {
@@ -347,21 +348,21 @@ TEST(MeshContact, EveryPointIsInASphereThatListsItsTriangle) {
       const double w = (1.0 - v) * random.whole(0, 4) / 4.0;
       const Vector<Real> p = exact<Real>(a + v * (b - a) + w * (c - a));
       bool found = false;
-      for (std::size_t i = 0; i < balls.size() && !found; ++i) {
+      for (std::size_t i = 0; i < spheres.size() && !found; ++i) {
         const auto listed = covered.triangles_under(static_cast<std::int32_t>(i));
         ASSERT_TRUE(std::is_sorted(listed.begin(), listed.end()));
-        const Real limit = balls[i].radius * (1.0 + 1e-14);  // p is rounded
+        const Real limit = spheres[i].radius * (1.0 + 1e-14);  // p is rounded
         found = std::binary_search(listed.begin(), listed.end(), triangle) &&
-                squared_distance(p, exact<Real>(balls[i].center)) <= limit * limit;
+                squared_distance(p, exact<Real>(spheres[i].center)) <= limit * limit;
       }
       ASSERT_TRUE(found);
     }
   }
 }
 
-std::string refusal(const TriangleMesh& mesh, std::vector<Sphere> balls) {
+std::string refusal(const TriangleMesh& mesh, std::vector<Sphere> spheres) {
   try {
-    const CoveredMesh covered(mesh, tree_of(balls));
+    const CoveredMesh covered(mesh, tree_of(spheres));
   } catch (const Error& error) {
     return error.reason();
   }
@@ -370,26 +371,26 @@ std::string refusal(const TriangleMesh& mesh, std::vector<Sphere> balls) {
 
 TEST(MeshContact, RefusesWhatDoesNotCover) {
   const TriangleMesh box = box_mesh(Vector3d::Constant(1.0));
-  std::vector<Sphere> balls = surface_balls(box, 2);
-  EXPECT_EQ(refusal(box, balls), "");
-  // A hole in the middle of a triangle (two balls have the same hypotenuse as diameter), and balls
-  // around the corners only.
-  std::vector<Sphere> holed = balls;
-  for (Sphere& ball : holed) {
-    if ((ball.center - balls[15].center).norm() < 1e-9) ball.radius *= 0.5;
+  std::vector<Sphere> spheres = surface_spheres(box, 2);
+  EXPECT_EQ(refusal(box, spheres), "");
+  // A hole in the middle of a triangle (two spheres have the same hypotenuse as diameter), and
+  // spheres around the corners only.
+  std::vector<Sphere> holed = spheres;
+  for (Sphere& sphere : holed) {
+    if ((sphere.center - spheres[15].center).norm() < 1e-9) sphere.radius *= 0.5;
   }
   EXPECT_NE(refusal(box, holed).find("triangle 0"), std::string::npos) << refusal(box, holed);
   std::vector<Sphere> corners;
   for (const Vector3d& vertex : box.vertices) corners.push_back({vertex, 0.9});
   EXPECT_NE(refusal(box, corners), "");
-  balls.erase(balls.end() - 16, balls.end());
-  EXPECT_NE(refusal(box, balls).find("triangle 11"), std::string::npos) << refusal(box, balls);
-  // Balls that meet in points only are more than can be proved.
+  spheres.erase(spheres.end() - 16, spheres.end());
+  EXPECT_NE(refusal(box, spheres).find("triangle 11"), std::string::npos) << refusal(box, spheres);
+  // Spheres that meet in points only are more than can be proved.
   EXPECT_NE(refusal(TriangleMesh{{{-1, 0, 0}, {1, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}},
                     {{{-2.0 / 3.0, 0, 0}, 1.0 / 3.0}, {{1.0 / 3.0, 0, 0}, 2.0 / 3.0}}),
             "");
   EXPECT_THROW(CoveredMesh(box, nullptr), Error);
-  EXPECT_THROW(CoveredMesh(TriangleMesh{}, tree_of(balls)), Error);
+  EXPECT_THROW(CoveredMesh(TriangleMesh{}, tree_of(spheres)), Error);
 }
 
 }  // namespace

@@ -85,28 +85,28 @@ TEST(Ray, DecidesForEveryPointWithinTheError) {
   EXPECT_GT(doubtful, 500);
 }
 
-TEST(Ray, KeepsTheBallsItMeets) {
+TEST(Ray, KeepsTheSpheresItMeets) {
   SceneRandom random(2);
   int met = 0, missed = 0;
   for (int i = 0; i < 4000; ++i) {
     const Vector3d direction = Vector3d::Unit(random.whole(0, 2));
     const Vector3d point = random.point(1.0);
-    // A ball that the ray touches, up to rounding, from within or without, or starts behind.
+    // A sphere that the ray touches, up to rounding, from within or without, or starts behind.
     const double along = random.uniform(-0.5, 1.0);
     const Vector3d foot = point + along * direction;
     const Vector3d aside = random.point(1.0).cross(direction);
     const double change = 1.0 + random.whole(-3, 3) * 0x1p-51;
-    const Sphere ball{foot + aside, aside.norm() * change};
+    const Sphere sphere{foot + aside, aside.norm() * change};
     Vector<Real> nearest = exact<Real>(point);
-    const Vector<Real> to = difference(exact<Real>(ball.center), nearest);
+    const Vector<Real> to = difference(exact<Real>(sphere.center), nearest);
     const Vector<Real> w = exact<Real>(direction);
     Real t = dot(to, w) / dot(w, w);
     if (t < 0) t = 0;
-    const Real square = squared_distance(plus(nearest, t, w), exact<Real>(ball.center));
-    const bool meets = square <= Real(ball.radius) * Real(ball.radius);
-    ASSERT_TRUE(!meets || Ray(point, 0.0, direction).may_meet(ball)) << i;
+    const Real square = squared_distance(plus(nearest, t, w), exact<Real>(sphere.center));
+    const bool meets = square <= Real(sphere.radius) * Real(sphere.radius);
+    ASSERT_TRUE(!meets || Ray(point, 0.0, direction).may_meet(sphere)) << i;
     met += meets;
-    missed += !Ray(point, 0.0, direction).may_meet({ball.center, 0.9 * ball.radius});
+    missed += !Ray(point, 0.0, direction).may_meet({sphere.center, 0.9 * sphere.radius});
   }
   EXPECT_GT(met, 500);
   EXPECT_GT(missed, 2000);

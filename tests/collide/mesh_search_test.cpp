@@ -5,8 +5,8 @@
 #include "collide/meshes/mesh_search.h"
 
 #include "collide/mesh_contact.h"
-#include "collide/meshes/ball_triangle.h"
 #include "collide/meshes/packed_mesh.h"
+#include "collide/meshes/sphere_triangle.h"
 #include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
 #include "tests/collide/exact_triangles.h"
@@ -95,18 +95,18 @@ TEST(MeshSearch, MissesNoContactWithOneTriangleOnAnyInstructionSet) {
     const MeshTree mesh(mesh_of({triangle}));
     const Pose world_from_a = random.pose(size);
     const Pose world_from_b = random.pose(size * std::pow(10.0, random.whole(-3, 1)));
-    // From a point of the triangle outwards, seen from the ball's frame.
+    // From a point of the triangle outwards, seen from the sphere's frame.
     const Eigen::Vector3d direction = random.point(1.0).normalized();
     const double length = size * std::pow(10.0, random.whole(-9, 1));
     const Eigen::Vector3d center =
         world_from_a.inverse() * (world_from_b * (point_of(random, triangle) + length * direction));
-    Sphere ball{center, 0.0};
+    Sphere sphere{center, 0.0};
     const Real distance = exact_distance(center, world_from_a, triangle, world_from_b);
     if (random.whole(0, 9) != 0) {
-      ball.radius = std::max(0.0, distance.convert_to<double>() * (1.0 + random_gap(random)));
+      sphere.radius = std::max(0.0, distance.convert_to<double>() * (1.0 + random_gap(random)));
     }
-    const SphereTree tree = build_tree(std::span(&ball, 1));
-    const Real gap = distance - ball.radius;
+    const SphereTree tree = build_tree(std::span(&sphere, 1));
+    const Real gap = distance - sphere.radius;
     const bool expected = meets_triangle(tree, 0, world_from_a, mesh, 0, world_from_b);
     ASSERT_TRUE(expected || gap > 0) << "missed by " << gap;
     for (const InstructionSet set : instruction_sets()) {
@@ -171,7 +171,7 @@ TEST(MeshSearch, AnswersAsAllPairsDo) {
     const Pose world_from_a = random.pose(size);
     const Pose world_from_b(random.quaternion(),
                             world_from_a.translation() + random.point(1.8 * size));
-    // The pose of a or b moves until they nearly touch: one ball is given the exact distance.
+    // The pose of a or b moves until they nearly touch: one sphere is given the exact distance.
     Real nearest = 1e300;
     Sphere& changed = spheres.front();
     for (const Triangle& t : triangles) {
@@ -206,7 +206,7 @@ TEST(MeshSearch, TheDepthInASphereIsNoMoreThanItIs) {
     const Pose world_from_b = random.pose(size);
     const Eigen::Vector3d center =
         world_from_b.inverse() * (world_from_a * (point_of(random, triangle) + random.point(size)));
-    const auto other = ball(center, random.uniform(0.0, 2.0 * size));
+    const auto other = one_sphere_tree(center, random.uniform(0.0, 2.0 * size));
     const auto [index, depth] =
         nearest_triangle(*covered, 0, world_from_a, *other, 0, world_from_b);
     ASSERT_EQ(index, 0);

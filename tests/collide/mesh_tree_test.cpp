@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Balls against triangles, with the distance of point and triangle in 100 digits as the oracle.
+// Spheres against triangles, with the distance of point and triangle in 100 digits as the oracle.
 
 #include "collide/mesh_tree.h"
 
@@ -17,10 +17,10 @@
 namespace spherule::test {
 namespace {
 
-Real exact_distance(const Sphere& ball, const Pose& world_from_a,
+Real exact_distance(const Sphere& sphere, const Pose& world_from_a,
                     const std::array<Eigen::Vector3d, 3>& corners, const Pose& world_from_b) {
   const Real square = squared_distance_to_triangle(
-      transform(world_from_a, exact<Real>(ball.center)), placed<Real>(world_from_b, corners));
+      transform(world_from_a, exact<Real>(sphere.center)), placed<Real>(world_from_b, corners));
   return sqrt(square);
 }
 
@@ -50,12 +50,12 @@ void compare_near_contact(double thin, double largest_excess, int least_extra) {
     const MeshTree mesh(random_mesh(random, 1, 1.0, thin));
     const Pose world_from_a = random.pose(1.0);
     const Pose world_from_b = random.pose(1.0);
-    Sphere ball{random.point(1.0), 0.0};
-    const Real exact = exact_distance(ball, world_from_a, mesh.triangle(0), world_from_b);
-    ball.radius = exact.convert_to<double>() * (1.0 + random.whole(-2, 2) * 0x1p-52);
-    const SphereTree tree = tree_of(ball);
+    Sphere sphere{random.point(1.0), 0.0};
+    const Real exact = exact_distance(sphere, world_from_a, mesh.triangle(0), world_from_b);
+    sphere.radius = exact.convert_to<double>() * (1.0 + random.whole(-2, 2) * 0x1p-52);
+    const SphereTree tree = tree_of(sphere);
     const bool hit = collides(tree, world_from_a, mesh, world_from_b);
-    const Real gap = exact - ball.radius;
+    const Real gap = exact - sphere.radius;
     ASSERT_TRUE(hit || gap > 0) << "missed by " << gap;
     const double slack =
         2.5 * collision_slack(tree, world_from_a, mesh.tree(), world_from_b) + largest_excess;
@@ -65,8 +65,8 @@ void compare_near_contact(double thin, double largest_excess, int least_extra) {
 
     // Clearly apart must be free.
     const SphereTree smaller =
-        tree_of({ball.center, std::max(0.0, ball.radius - 2.0 * slack - 1e-12)});
-    if (ball.radius > 1e-3) {
+        tree_of({sphere.center, std::max(0.0, sphere.radius - 2.0 * slack - 1e-12)});
+    if (sphere.radius > 1e-3) {
       ASSERT_FALSE(collides(smaller, world_from_a, mesh, world_from_b));
     }
   }
@@ -100,9 +100,9 @@ TEST(MeshTree, FindsThePairsOfAllPairs) {
       for (int k = 0; k < 20; ++k) {
         const bool found =
             std::binary_search(result.pairs.begin(), result.pairs.end(), SpherePair{j, k});
-        const Sphere& ball = a.spheres()[static_cast<std::size_t>(j)];
+        const Sphere& sphere = a.spheres()[static_cast<std::size_t>(j)];
         const Real gap =
-            exact_distance(ball, world_from_a, b.triangle(k), world_from_b) - ball.radius;
+            exact_distance(sphere, world_from_a, b.triangle(k), world_from_b) - sphere.radius;
         ASSERT_EQ(found, gap <= 0) << gap;
         ASSERT_LE(result.distance_lower_bound, std::max(Real(0), gap));
         hits += found;
@@ -112,7 +112,7 @@ TEST(MeshTree, FindsThePairsOfAllPairs) {
   EXPECT_GT(hits, 30);
 }
 
-TEST(MeshTree, ABallInsideAClosedMeshDoesNotMeetItsSurface) {
+TEST(MeshTree, ASphereInsideAClosedMeshDoesNotMeetItsSurface) {
   const MeshTree tetrahedron(
       {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}});
   EXPECT_FALSE(collides(tree_of({{0.2, 0.2, 0.2}, 0.1}), Pose(), tetrahedron, Pose()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Balls and triangles that come within a clearance, against 100 digits.
+// Spheres and triangles that come within a clearance, against 100 digits.
 
 #include "collide/mesh_tree.h"
 #include "collide/meshes/mesh_search.h"
@@ -37,20 +37,20 @@ TEST(MeshTreeTest, KernelsAgreeWithinAClearance) {
     const MeshTree mesh(TriangleMesh{{t[0], t[1], third}, {{0, 1, 2}}});
     const Pose world_from_a = random.pose(size);
     const Pose world_from_b = random.pose(size);
-    Sphere ball{random.point(size), 0.0};
+    Sphere sphere{random.point(size), 0.0};
     const Real distance =
-        sqrt(squared_distance_to_triangle(transform(world_from_a, exact<Real>(ball.center)),
+        sqrt(squared_distance_to_triangle(transform(world_from_a, exact<Real>(sphere.center)),
                                           placed<Real>(world_from_b, mesh.triangle(0))));
     const double steps[] = {0.0, 1e-15, 1e-14, 1e-12, 1e-9, 1e-7, 1e-6, 0.1};
     const double way = distance.convert_to<double>() *
                        (1.0 + random.uniform(-1.0, 1.0) * steps[random.whole(0, 7)]);
-    ball.radius = random.whole(0, 1) * random.uniform(0.0, 1.0) * way;
-    const double clearance = way - ball.radius;
-    const SphereTree tree = tree_of(ball);
+    sphere.radius = random.whole(0, 1) * random.uniform(0.0, 1.0) * way;
+    const double clearance = way - sphere.radius;
+    const SphereTree tree = tree_of(sphere);
     const internal::RelativePose pose(tree, world_from_a, mesh.tree(), world_from_b);
     const bool expected =
         internal::TriangleLeaves(tree, mesh, pose, clearance).touches(std::int32_t{0}, 0);
-    ASSERT_TRUE(expected || distance > Real(ball.radius) + clearance) << i;
+    ASSERT_TRUE(expected || distance > Real(sphere.radius) + clearance) << i;
     for (const InstructionSet set : instruction_sets()) {
       ASSERT_EQ(internal::collides_by(internal::mesh_kernel_for(set), tree, world_from_a, mesh,
                                       world_from_b, clearance),
@@ -66,11 +66,11 @@ TEST(MeshTreeTest, KernelsAgreeWithinAClearance) {
 // What within() and distance() say of the surface alone.
 TEST(MeshTreeTest, SurfaceWithinAClearance) {
   const MeshTree cube(cube_mesh());
-  const SphereTree ball = tree_of({{0.5, 0.5, 0.5}, 0.25});
-  EXPECT_FALSE(within(ball, Pose(), cube, Pose(), 0.2));
-  EXPECT_TRUE(within(ball, Pose(), cube, Pose(), 0.25));
-  EXPECT_NEAR(distance(ball, Pose(), cube, Pose()).lower, 0.25, 1e-12);
-  EXPECT_NEAR(distance(ball, Pose(), cube, Pose()).upper, 0.25, 1e-12);
+  const SphereTree sphere = tree_of({{0.5, 0.5, 0.5}, 0.25});
+  EXPECT_FALSE(within(sphere, Pose(), cube, Pose(), 0.2));
+  EXPECT_TRUE(within(sphere, Pose(), cube, Pose(), 0.25));
+  EXPECT_NEAR(distance(sphere, Pose(), cube, Pose()).lower, 0.25, 1e-12);
+  EXPECT_NEAR(distance(sphere, Pose(), cube, Pose()).upper, 0.25, 1e-12);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ Sphere lane_of(const PackedNode& node, int lane) {
   return {{node.x[lane], node.y[lane], node.z[lane]}, node.radius[lane]};
 }
 
-// Goes down a packed tree and checks that every ball has room for the inflated spheres below it.
+// Goes down a packed tree and checks that every sphere has room for the inflated spheres below it.
 class Inspection {
  public:
   Inspection(const SphereTree& tree, const PackedTree& packed, double inflation)
@@ -37,9 +37,9 @@ class Inspection {
     const PackedNode& node = packed_.nodes()[number];
     std::vector<std::int32_t> below;
     for (int lane = 0; lane < PackedNode::kWidth; ++lane) {
-      const Sphere ball = lane_of(node, lane);
-      if (ball.center.x() > 1e18) {
-        EXPECT_EQ(ball.radius, 0.0);
+      const Sphere sphere = lane_of(node, lane);
+      if (sphere.center.x() > 1e18) {
+        EXPECT_EQ(sphere.radius, 0.0);
         continue;
       }
       const std::int32_t child = node.child[lane];
@@ -48,21 +48,21 @@ class Inspection {
         here = visit(child, depth + 1);
       } else {
         ++seen_[static_cast<std::size_t>(~child)];
-        const double inflated = ball.radius - spheres_[static_cast<std::size_t>(~child)].radius;
+        const double inflated = sphere.radius - spheres_[static_cast<std::size_t>(~child)].radius;
         EXPECT_LE(inflated, packed_.largest_inflation());
       }
-      expect_room(ball, here);
+      expect_room(sphere, here);
       below.insert(below.end(), here.begin(), here.end());
     }
     return below;
   }
 
-  void expect_room(const Sphere& ball, const std::vector<std::int32_t>& below) const {
+  void expect_room(const Sphere& sphere, const std::vector<std::int32_t>& below) const {
     for (const std::int32_t i : below) {
       const Sphere& inner = spheres_[static_cast<std::size_t>(i)];
       const Real distance =
-          sqrt(squared_distance(exact<Real>(ball.center), exact<Real>(inner.center)));
-      EXPECT_LE((distance + inner.radius + inflation_) * (1 + Real(0x1p-21)), Real(ball.radius));
+          sqrt(squared_distance(exact<Real>(sphere.center), exact<Real>(inner.center)));
+      EXPECT_LE((distance + inner.radius + inflation_) * (1 + Real(0x1p-21)), Real(sphere.radius));
     }
   }
 
@@ -73,7 +73,7 @@ class Inspection {
   int deepest_ = 0;
 };
 
-TEST(PackedTree, EveryBallHasRoomForTheInflatedSpheresBelow) {
+TEST(PackedTree, EverySphereHasRoomForTheInflatedSpheresBelow) {
   SceneRandom random(11);
   for (const double size : {1e-6, 1.0, 1e6}) {
     for (const int count : {1, 2, 9, 300}) {

@@ -72,25 +72,25 @@ TEST(PairCache, AnswersAsCollidesDoes) {
 
 // Towards contact by steps that shrink with the gap, so that the memory is asked at its limit.
 TEST(PairCache, IsNotFooledNextToContact) {
-  const SphereTree ball = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
+  const SphereTree sphere = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
   SceneRandom random(2);
   for (int i = 0; i < 300; ++i) {
     const Eigen::Vector3d direction = random.point(1.0).normalized();
-    PairCache cache(ball, ball);
+    PairCache cache(sphere, sphere);
     double gap = 1.0;
     for (int k = 0; k < 80; ++k) {
       const Pose pose(random.quaternion(), (2.0 + gap) * direction);
-      ASSERT_EQ(cache.collides(Pose(), pose), collides(ball, Pose(), ball, pose)) << gap;
+      ASSERT_EQ(cache.collides(Pose(), pose), collides(sphere, Pose(), sphere, pose)) << gap;
       gap *= random.uniform(0.3, 0.9);
     }
     const Pose touching = Pose::from_translation(2.0 * direction);
-    ASSERT_EQ(cache.collides(Pose(), touching), collides(ball, Pose(), ball, touching));
+    ASSERT_EQ(cache.collides(Pose(), touching), collides(sphere, Pose(), sphere, touching));
   }
 }
 
 TEST(PairCache, ARestingPairIsSearchedOnce) {
-  const SphereTree ball = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
-  PairCache cache(ball, ball);
+  const SphereTree sphere = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
+  PairCache cache(sphere, sphere);
   const Pose near = Pose::from_translation({2.5, 0.0, 0.0});
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(cache.collides(Pose(), near));
   EXPECT_EQ(cache.counts().free_from_memory, 9u);

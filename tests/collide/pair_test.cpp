@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// G4 and G5 on single pairs of balls, against exact arithmetic.
+// G4 and G5 on single pairs of spheres, against exact arithmetic.
 
 #include "collide/collide.h"
 #include "collide/search/relative_pose.h"
@@ -20,12 +20,12 @@ SphereTree tree_of(const Sphere& sphere) {
 }
 
 // What a test without a pad would say.
-bool plain_test(const PlacedBalls& balls) {
+bool plain_test(const PlacedSphereSets& spheres) {
   const Eigen::Vector3d offset =
-      (balls.world_from_a.matrix() * balls.a.center -
-       balls.world_from_b.matrix() * balls.b.center) +
-      (balls.world_from_a.translation() - balls.world_from_b.translation());
-  const double limit = balls.a.radius + balls.b.radius;
+      (spheres.world_from_a.matrix() * spheres.a.center -
+       spheres.world_from_b.matrix() * spheres.b.center) +
+      (spheres.world_from_a.translation() - spheres.world_from_b.translation());
+  const double limit = spheres.a.radius + spheres.b.radius;
   return offset.squaredNorm() <= limit * limit;
 }
 
@@ -36,28 +36,28 @@ struct Tally {
   int extra = 0;       // free, and called a collision
 };
 
-void judge(const PlacedBalls& balls, Tally& tally) {
-  const SphereTree a = tree_of(balls.a);
-  const SphereTree b = tree_of(balls.b);
-  const bool answer = collides(a, balls.world_from_a, b, balls.world_from_b);
-  const bool overlap = balls.overlap();
+void judge(const PlacedSphereSets& spheres, Tally& tally) {
+  const SphereTree a = tree_of(spheres.a);
+  const SphereTree b = tree_of(spheres.b);
+  const bool answer = collides(a, spheres.world_from_a, b, spheres.world_from_b);
+  const bool overlap = spheres.overlap();
   ++tally.pairs;
   tally.overlapping += overlap;
-  tally.pad_needed += overlap && !plain_test(balls);
+  tally.pad_needed += overlap && !plain_test(spheres);
   tally.extra += answer && !overlap;
-  ASSERT_TRUE(answer || !overlap) << "missed, gap " << balls.gap();
-  ASSERT_EQ(answer, collides(b, balls.world_from_b, a, balls.world_from_a)) << "not symmetric";
-  const double slack = collision_slack(a, balls.world_from_a, b, balls.world_from_b);
-  ASSERT_TRUE(!answer || balls.gap() <= slack) << "gap " << balls.gap() << ", slack " << slack;
+  ASSERT_TRUE(answer || !overlap) << "missed, gap " << spheres.gap();
+  ASSERT_EQ(answer, collides(b, spheres.world_from_b, a, spheres.world_from_a)) << "not symmetric";
+  const double slack = collision_slack(a, spheres.world_from_a, b, spheres.world_from_b);
+  ASSERT_TRUE(!answer || spheres.gap() <= slack) << "gap " << spheres.gap() << ", slack " << slack;
 }
 
-// Sets the larger radius so that the balls are within a few ulps of contact, on either side.
-bool bring_to_contact(PlacedBalls& balls, int ulps) {
-  const Real rest = balls.center_distance() - balls.b.radius;
+// Sets the larger radius so that the spheres are within a few ulps of contact, on either side.
+bool bring_to_contact(PlacedSphereSets& spheres, int ulps) {
+  const Real rest = spheres.center_distance() - spheres.b.radius;
   if (rest <= 0) return false;
-  balls.a.radius = rest.convert_to<double>();
+  spheres.a.radius = rest.convert_to<double>();
   for (int i = 0; i < std::abs(ulps); ++i) {
-    balls.a.radius = std::nextafter(balls.a.radius, ulps > 0 ? 1e300 : 0.0);
+    spheres.a.radius = std::nextafter(spheres.a.radius, ulps > 0 ? 1e300 : 0.0);
   }
   return true;
 }
@@ -81,14 +81,14 @@ TEST_P(NearContact, IsNeverMissedAndExtraOnlyWithinTheSlack) {
   SceneRandom random(7);
   Tally tally;
   for (int i = 0; i < effort(4000, 1000); ++i) {
-    PlacedBalls balls;
+    PlacedSphereSets spheres;
     const Eigen::Vector3d center = random.point(scene.away);
-    balls.a.center = random.point(scene.size);
-    balls.b = {random.point(scene.size), random.uniform(0.0, scene.radius_b)};
-    balls.world_from_a = Pose(random.quaternion(), center + random.point(scene.apart));
-    balls.world_from_b = Pose(random.quaternion(), center + random.point(scene.apart));
-    if (!bring_to_contact(balls, random.whole(-2, 2))) continue;
-    judge(balls, tally);
+    spheres.a.center = random.point(scene.size);
+    spheres.b = {random.point(scene.size), random.uniform(0.0, scene.radius_b)};
+    spheres.world_from_a = Pose(random.quaternion(), center + random.point(scene.apart));
+    spheres.world_from_b = Pose(random.quaternion(), center + random.point(scene.apart));
+    if (!bring_to_contact(spheres, random.whole(-2, 2))) continue;
+    judge(spheres, tally);
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(tally.pairs, effort(3000, 750));
@@ -117,21 +117,21 @@ TEST(Touching, IsACollision) {
     for (const auto& qb : rotations) {
       for (const auto& step : steps) {
         for (const double scale : {1.0, 0x1p-30, 0x1p30}) {
-          PlacedBalls balls;
-          balls.a = {{scale, 2.0 * scale, 3.0 * scale}, 0.25 * scale * step.norm()};
-          balls.b = {{-scale, 0.0, scale}, 0.75 * scale * step.norm()};
+          PlacedSphereSets spheres;
+          spheres.a = {{scale, 2.0 * scale, 3.0 * scale}, 0.25 * scale * step.norm()};
+          spheres.b = {{-scale, 0.0, scale}, 0.75 * scale * step.norm()};
           // Right-angled rotations: rounding the image to whole multiples of the scale is exact.
           const auto image = [&](const Eigen::Quaterniond& q, const Eigen::Vector3d& p) {
             return Eigen::Vector3d((q.normalized() * (p / scale)).array().round() * scale);
           };
-          balls.world_from_a = Pose(qa, Eigen::Vector3d(1.0, 2.0, 3.0) * scale);
-          balls.world_from_b =
-              Pose(qb, balls.world_from_a.translation() + image(qa, balls.a.center) -
-                           image(qb, balls.b.center) + scale * step);
-          const Rational sum = Rational(balls.a.radius) + Rational(balls.b.radius);
-          ASSERT_EQ(balls.squared_center_distance<Rational>(), Rational(sum * sum));
-          ASSERT_TRUE(
-              collides(tree_of(balls.a), balls.world_from_a, tree_of(balls.b), balls.world_from_b));
+          spheres.world_from_a = Pose(qa, Eigen::Vector3d(1.0, 2.0, 3.0) * scale);
+          spheres.world_from_b =
+              Pose(qb, spheres.world_from_a.translation() + image(qa, spheres.a.center) -
+                           image(qb, spheres.b.center) + scale * step);
+          const Rational sum = Rational(spheres.a.radius) + Rational(spheres.b.radius);
+          ASSERT_EQ(spheres.squared_center_distance<Rational>(), Rational(sum * sum));
+          ASSERT_TRUE(collides(tree_of(spheres.a), spheres.world_from_a, tree_of(spheres.b),
+                               spheres.world_from_b));
           ++touching;
         }
       }
@@ -149,14 +149,14 @@ TEST(Touching, PointsOnOneSpotAreACollision) {
 }
 
 TEST(Slack, IsAboutTheRoundingOfTheSceneAndNotOfTheWorld) {
-  const SphereTree ball = tree_of({{1.0, 0.0, 0.0}, 0.5});
+  const SphereTree sphere = tree_of({{1.0, 0.0, 0.0}, 0.5});
   const Pose pose = Pose::from_translation({1.0, 0.0, 0.0});
   const Pose far = Pose::from_translation({1e9 + 1.0, 1e9, 0.0});
   const Pose far_origin = Pose::from_translation({1e9, 1e9, 0.0});
-  const double near_slack = collision_slack(ball, pose, ball, Pose());
+  const double near_slack = collision_slack(sphere, pose, sphere, Pose());
   EXPECT_LT(near_slack, 1e-13);
   EXPECT_GT(near_slack, 0.0);
-  EXPECT_EQ(collision_slack(ball, far, ball, far_origin), near_slack);
+  EXPECT_EQ(collision_slack(sphere, far, sphere, far_origin), near_slack);
 }
 
 // The constants of the budget against what rounding really does, so that a wrong proof shows.
@@ -165,21 +165,21 @@ TEST(ErrorBudget, CoversTheImagesOfBothFrames) {
   double worst = 0.0;
   for (int i = 0; i < 3000; ++i) {
     const double size = std::ldexp(1.0, random.whole(-20, 20));
-    PlacedBalls balls{
+    PlacedSphereSets spheres{
         {random.point(size), 0.0}, {random.point(1.0), 0.0}, random.pose(1.0), random.pose(1.0)};
-    const SphereTree a = tree_of(balls.a);
-    const SphereTree b = tree_of(balls.b);
-    const internal::RelativePose pose(a, balls.world_from_a, b, balls.world_from_b);
-    const double exact = balls.center_distance().convert_to<double>();
+    const SphereTree a = tree_of(spheres.a);
+    const SphereTree b = tree_of(spheres.b);
+    const internal::RelativePose pose(a, spheres.world_from_a, b, spheres.world_from_b);
+    const double exact = spheres.center_distance().convert_to<double>();
     const auto distance_by = [](const internal::FrameChange& change, const Eigen::Vector3d& x,
                                 const Eigen::Vector3d& y) {
       const Eigen::Vector3d image(change.x(x[0], x[1], x[2]), change.y(x[0], x[1], x[2]),
                                   change.z(x[0], x[1], x[2]));
       return (image - y).norm();
     };
-    for (const double computed : {distance_by(pose.b_from_a(), balls.a.center, balls.b.center),
-                                  distance_by(pose.a_from_b(), balls.b.center, balls.a.center),
-                                  pose.gap(balls.a, balls.b)}) {
+    for (const double computed : {distance_by(pose.b_from_a(), spheres.a.center, spheres.b.center),
+                                  distance_by(pose.a_from_b(), spheres.b.center, spheres.a.center),
+                                  pose.gap(spheres.a, spheres.b)}) {
       ASSERT_LE(std::abs(computed - exact), pose.gap_error());
       worst = std::max(worst, std::abs(computed - exact) / pose.gap_error());
     }

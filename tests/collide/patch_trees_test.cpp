@@ -68,8 +68,8 @@ TEST(PatchTrees, BoxesEncloseWhatIsBelowThem) {
       if (random.whole(0, 5) != 0) box.extend(corner + random.point(0.1));
       patches.push_back({1, i, box});
     }
-    const std::vector<Sphere> balls = {{Vector3d::Zero(), 1.0}, {origin, 1.0}};
-    const PatchTrees trees(patches, balls);
+    const std::vector<Sphere> spheres = {{Vector3d::Zero(), 1.0}, {origin, 1.0}};
+    const PatchTrees trees(patches, spheres);
     EXPECT_LT(trees.root(0).node, 0);
     std::vector<PatchBox> above = {trees.root(1).box};
     std::multiset<std::int32_t> found;

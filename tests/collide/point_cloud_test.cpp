@@ -25,7 +25,7 @@ std::vector<Vector3d> random_points(SceneRandom& random, int count, double size)
 }
 
 // In rational numbers: |c - p| <= R - r.
-bool contains_ball(const Sphere& sphere, const Vector3d& point, double radius) {
+bool contains_sphere(const Sphere& sphere, const Vector3d& point, double radius) {
   if ((sphere.center - point).norm() > sphere.radius * (1.0 + 1e-6)) return false;
   const Rational room = Rational(sphere.radius) - Rational(radius);
   return room >= 0 &&
@@ -48,7 +48,7 @@ TEST(PointCloudTest, OneSphereForEveryPoint) {
   }
 }
 
-TEST(PointCloudTest, CellsCoverTheBallsOfTheirPoints) {
+TEST(PointCloudTest, CellsCoverTheSpheresOfTheirPoints) {
   SceneRandom random(2);
   for (int i = 0; i < effort(60, 4); ++i) {
     const double size = std::ldexp(1.0, random.whole(-30, 25));
@@ -64,7 +64,7 @@ TEST(PointCloudTest, CellsCoverTheBallsOfTheirPoints) {
     for (const Vector3d& point : points) {
       bool found = false;
       for (std::size_t k = 0; k < spheres.size(); ++k) {
-        if (!contains_ball(spheres[k], point, radius)) continue;
+        if (!contains_sphere(spheres[k], point, radius)) continue;
         found = true;
         used[k] = 1;
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Balls and solids next to contact, against 100 digits.
+// Spheres and solids next to contact, against 100 digits.
 
 #include "collide/primitive.h"
 
@@ -57,7 +57,7 @@ struct Scene {
   }
 };
 
-// A solid, a point of its surface and a direction in which balls that touch there lie.
+// A solid, a point of its surface and a direction in which spheres that touch there lie.
 struct Contact {
   Primitive solid;
   Vector3d point;
@@ -127,7 +127,7 @@ Contact random_contact(SceneRandom& random, double size) {
     case 1: {
       const double radius = length();
       const Vector3d out = random.point(1.0).normalized();
-      return {Ball{radius}, radius * out, out};
+      return {SolidSphere{radius}, radius * out, out};
     }
     case 2:
       return cylinder_contact(random, length(), length());
@@ -139,7 +139,7 @@ Contact random_contact(SceneRandom& random, double size) {
   }
 }
 
-// A ball `gap` away from a solid, and smaller ones that are nearer by no more than rounding; tree
+// A sphere `gap` away from a solid, and smaller ones that are nearer by no more than rounding; tree
 // and solid are placed anywhere, far from the origin of the world and of their frames at times.
 Scene near_contact(SceneRandom& random, double size, double gap) {
   const Contact contact = random_contact(random, size);
@@ -327,7 +327,7 @@ TEST(PrimitiveTest, DeepestContact) {
                          4.0 * scene.slack();
     ASSERT_LE(exact_gap(point, Pose(), scene.solid, scene.world_from_solid), error);
     const Sphere sphere = scene.tree.spheres()[static_cast<std::size_t>(contact->sphere)];
-    ASSERT_LE((PlacedBalls{sphere, point, scene.world_from_tree, Pose()}.gap()), error);
+    ASSERT_LE((PlacedSphereSets{sphere, point, scene.world_from_tree, Pose()}.gap()), error);
   }
   EXPECT_GT(found, effort(150, 20));
   // Of equally deep ones the first.
@@ -339,16 +339,16 @@ TEST(PrimitiveTest, DeepestContact) {
 }
 
 TEST(PrimitiveTest, OneWhollyInsideTheOther) {
-  const auto ball = [](double radius) {
+  const auto sphere = [](double radius) {
     return build_tree(std::vector<Sphere>{{{0.1, 0.2, 0.3}, radius}});
   };
   for (const double scale : {1e-6, 1.0, 1e6}) {
     for (const Primitive& solid : {Primitive(Box{{scale, 2 * scale, 3 * scale}}),
-                                   Primitive(Ball{scale}), Primitive(Cylinder{scale, scale}),
+                                   Primitive(SolidSphere{scale}), Primitive(Cylinder{scale, scale}),
                                    Primitive(Capsule{scale, 0.0}), Primitive(HalfSpace{})}) {
       const Pose under = Pose::from_translation({0.1, 0.2, 0.3 + 2e-8});
-      EXPECT_TRUE(collides(ball(1e-7), Pose(), solid, under));
-      EXPECT_TRUE(collides(ball(1e7), Pose(), solid, under));
+      EXPECT_TRUE(collides(sphere(1e-7), Pose(), solid, under));
+      EXPECT_TRUE(collides(sphere(1e7), Pose(), solid, under));
     }
   }
 }
@@ -357,7 +357,7 @@ TEST(PrimitiveTest, HoldsForTheSmallestAndTheLargest) {
   for (const double size : {0x1p-1074, 0x1p-1000, 0x1p-540, 0x1p-500, 1e-30, 1e14}) {
     const SphereTree tree =
         build_tree(std::vector<Sphere>{{{size, 0.0, 0.0}, 0.0}, {{0.0, size, -size}, size}});
-    for (const Primitive& solid : {Primitive(Box{{size, size, size}}), Primitive(Ball{size}),
+    for (const Primitive& solid : {Primitive(Box{{size, size, size}}), Primitive(SolidSphere{size}),
                                    Primitive(Cylinder{size, size}), Primitive(Capsule{size, size}),
                                    Primitive(HalfSpace{})}) {
       for (const double way : {0.0, 0.5, 3.0, 7.0}) {
@@ -375,9 +375,9 @@ TEST(PrimitiveTest, HoldsForTheSmallestAndTheLargest) {
 TEST(PrimitiveTest, RefusesWhatIsNoSolid) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double bad : {0.0, -1.0, infinity, std::nan(""), 2e15}) {
-    for (const Primitive& solid :
-         {Primitive(Box{{1.0, bad, 1.0}}), Primitive(Ball{bad}), Primitive(Cylinder{bad, 1.0}),
-          Primitive(Cylinder{1.0, bad}), Primitive(Capsule{bad, 1.0})}) {
+    for (const Primitive& solid : {Primitive(Box{{1.0, bad, 1.0}}), Primitive(SolidSphere{bad}),
+                                   Primitive(Cylinder{bad, 1.0}), Primitive(Cylinder{1.0, bad}),
+                                   Primitive(Capsule{bad, 1.0})}) {
       EXPECT_THROW(require_primitive(solid, "table"), Error) << bad << ' ' << solid.index();
     }
     if (bad != 0.0) {
@@ -387,13 +387,13 @@ TEST(PrimitiveTest, RefusesWhatIsNoSolid) {
   EXPECT_NO_THROW(require_primitive(Capsule{1.0, 0.0}, "table"));
   EXPECT_NO_THROW(require_primitive(HalfSpace{}, "table"));
   try {
-    require_primitive(Ball{-1.0}, "table");
+    require_primitive(SolidSphere{-1.0}, "table");
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.subject(), "table");
   }
   const SphereTree tree = build_tree(std::vector<Sphere>{{Vector3d::Zero(), 1.0}});
-  EXPECT_THROW(within(tree, Pose(), Ball{1.0}, Pose(), -1.0), Error);
+  EXPECT_THROW(within(tree, Pose(), SolidSphere{1.0}, Pose(), -1.0), Error);
 }
 
 }  // namespace

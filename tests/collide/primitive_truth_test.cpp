@@ -33,7 +33,7 @@ std::pair<Primitive, Geometry> random_solid(Random& random, int kind) {
     case 0:
       return {Box{{a, b, c}}, std::make_shared<fcl::Boxd>(a, b, c)};
     case 1:
-      return {Ball{a}, std::make_shared<fcl::Sphered>(a)};
+      return {SolidSphere{a}, std::make_shared<fcl::Sphered>(a)};
     case 2:
       return {Cylinder{a, b}, std::make_shared<fcl::Cylinderd>(a, b)};
     case 3:
@@ -46,10 +46,10 @@ std::pair<Primitive, Geometry> random_solid(Random& random, int kind) {
 bool fcl_collides(const Geometry& solid, const Pose& world_from_solid, double radius,
                   const Vector3d& center) {
   const fcl::CollisionObjectd placed(solid, world_from_solid.isometry());
-  const fcl::CollisionObjectd ball(std::make_shared<fcl::Sphered>(radius),
-                                   Eigen::Matrix3d::Identity(), center);
+  const fcl::CollisionObjectd sphere(std::make_shared<fcl::Sphered>(radius),
+                                     Eigen::Matrix3d::Identity(), center);
   fcl::CollisionResultd result;
-  return fcl::collide(&ball, &placed, fcl::CollisionRequestd(), result) > 0;
+  return fcl::collide(&sphere, &placed, fcl::CollisionRequestd(), result) > 0;
 }
 
 TEST(PrimitiveTruth, AgreesWithFcl) {

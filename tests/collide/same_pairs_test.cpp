@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which pairs are reported does not depend on the trees above them (G7), and least of all near
-// contact, where the pads decide: balls against balls, against triangles, and against needles,
+// contact, where the pads decide: spheres against spheres, against triangles, and against needles,
 // whose distance in double is loose.
 
 #include "collide/mesh_tree.h"
 #include "collide/meshes/triangle_leaves.h"
-#include "collide/search/ball_leaves.h"
 #include "collide/search/queries.h"
+#include "collide/search/sphere_leaves.h"
 #include "spheretree/build.h"
 #include "tests/collide/trees.h"
 
@@ -31,32 +31,32 @@ std::vector<SpherePair> pairs_without_pruning(const SphereTree& a, const SphereT
   return result.pairs;
 }
 
-constexpr int kBalls = 24;
+constexpr int kSpheres = 24;
 
-TEST(SamePairs, OfBallsForEveryTree) {
+TEST(SamePairs, OfSpheresForEveryTree) {
   SceneRandom random(2);
   std::size_t pairs = 0;
   for (int i = 0; i < 400; ++i) {
-    const std::vector<Sphere> first = random_spheres(random, kBalls, 10.0, 0.1);
+    const std::vector<Sphere> first = random_spheres(random, kSpheres, 10.0, 0.1);
     const Eigen::Quaterniond turned = random.quaternion();
     const Pose world_from_b(turned, random.point(1.0));
     const Pose world_from_a;
     const Pose b_from_a = world_from_b.inverse();
-    // Beside each ball one of the other set, at a gap of a share of the slack.
+    // Beside each sphere one of the other set, at a gap of a share of the slack.
     std::vector<Sphere> second;
-    for (const Sphere& ball : first) {
+    for (const Sphere& sphere : first) {
       const double radius = random.uniform(0.01, 0.1);
       const double gap = random.uniform(-1e-13, 4e-13);
       const Eigen::Vector3d direction = random.point(1.0).normalized();
       second.push_back(
-          {b_from_a * (ball.center + (ball.radius + radius + gap) * direction), radius});
+          {b_from_a * (sphere.center + (sphere.radius + radius + gap) * direction), radius});
     }
     std::vector<SpherePair> expected;
     for (const int branching : {2, 8, 16}) {
       const SphereTree a = build_tree(first, {.branching = branching});
       const SphereTree b = build_tree(second, {.branching = branching});
       const internal::RelativePose pose(a, world_from_a, b, world_from_b);
-      const auto all = pairs_without_pruning(a, b, pose, internal::BallLeaves(a, b, pose));
+      const auto all = pairs_without_pruning(a, b, pose, internal::SphereLeaves(a, b, pose));
       if (branching == 2) expected = all;
       ASSERT_EQ(all, expected) << "branching " << branching;
       ASSERT_EQ(collide(a, world_from_a, b, world_from_b).pairs, expected)
@@ -68,7 +68,7 @@ TEST(SamePairs, OfBallsForEveryTree) {
   EXPECT_LT(pairs, 8000u);
 }
 
-constexpr int kTriangles = kBalls;
+constexpr int kTriangles = kSpheres;
 
 // Triangles far apart from each other; needles where `thin` is small.
 TriangleMesh scattered_triangles(SceneRandom& random, double thin) {
@@ -83,12 +83,12 @@ TriangleMesh scattered_triangles(SceneRandom& random, double thin) {
   return mesh;
 }
 
-// A ball beyond the first corner of every triangle, seen from the middle of the leaf's ball, so
-// that the gaps to the triangle and to the leaf's ball are the same. Gaps of 1e-16 to 1e-9, of both
-// signs.
-std::vector<Sphere> balls_at_corners(SceneRandom& random, const MeshTree& mesh,
-                                     const Pose& a_from_b) {
-  std::vector<Sphere> balls;
+// A sphere beyond the first corner of every triangle, seen from the middle of the leaf's sphere, so
+// that the gaps to the triangle and to the leaf's sphere are the same. Gaps of 1e-16 to 1e-9, of
+// both signs.
+std::vector<Sphere> spheres_at_corners(SceneRandom& random, const MeshTree& mesh,
+                                       const Pose& a_from_b) {
+  std::vector<Sphere> spheres;
   for (int i = 0; i < kTriangles; ++i) {
     const Sphere leaf = mesh.tree().spheres()[static_cast<std::size_t>(i)];
     const Eigen::Vector3d& corner = mesh.triangle(i)[0];
@@ -97,9 +97,9 @@ std::vector<Sphere> balls_at_corners(SceneRandom& random, const MeshTree& mesh,
     const double gap = sign * mantissa * std::pow(10.0, random.whole(-15, -9));
     const double radius = random.uniform(0.01, 0.1);
     const Eigen::Vector3d outwards = (corner - leaf.center).normalized();
-    balls.push_back({a_from_b * (corner + (radius + gap) * outwards), radius});
+    spheres.push_back({a_from_b * (corner + (radius + gap) * outwards), radius});
   }
-  return balls;
+  return spheres;
 }
 
 void compare_trees(double thin) {
@@ -110,11 +110,11 @@ void compare_trees(double thin) {
     const Pose world_from_a(random.quaternion(), Eigen::Vector3d::Zero());
     const Eigen::Quaterniond turned = random.quaternion();
     const Pose world_from_b(turned, random.point(1.0));
-    const std::vector<Sphere> balls =
-        balls_at_corners(random, mesh, world_from_a.inverse() * world_from_b);
+    const std::vector<Sphere> spheres =
+        spheres_at_corners(random, mesh, world_from_a.inverse() * world_from_b);
     std::vector<SpherePair> expected;
     for (const int branching : {2, 8, 16}) {
-      const SphereTree a = build_tree(balls, {.branching = branching});
+      const SphereTree a = build_tree(spheres, {.branching = branching});
       const internal::RelativePose pose(a, world_from_a, mesh.tree(), world_from_b);
       const auto all =
           pairs_without_pruning(a, mesh.tree(), pose, internal::TriangleLeaves(a, mesh, pose));

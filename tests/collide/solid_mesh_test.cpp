@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Balls and meshes with their inside: tetrahedra next to contact in 100 digits, and shells of all
+// Spheres and meshes with their inside: tetrahedra next to contact in 100 digits, and shells of all
 // kinds against winding numbers from solid angles.
 
 #include "collide/solid_mesh.h"
@@ -33,11 +33,11 @@ struct TetrahedronScene {
   std::array<Vector3d, 4> corners;
   TriangleMesh mesh;
   Pose world_from_mesh;
-  Sphere ball;
-  Pose world_from_ball;
+  Sphere sphere;
+  Pose world_from_sphere;
   double size = 0.0;
 
-  Vector<Real> center() const { return transform(world_from_ball, exact<Real>(ball.center)); }
+  Vector<Real> center() const { return transform(world_from_sphere, exact<Real>(sphere.center)); }
   Real distance_to_surface() const {
     Real least = std::numeric_limits<double>::infinity();
     for (const Eigen::Vector3i& t : mesh.triangles) {
@@ -64,16 +64,16 @@ struct TetrahedronScene {
     }
     return true;
   }
-  // From the ball to the solid; where negative, how far the ball has to move, with the sign
+  // From the sphere to the solid; where negative, how far the sphere has to move, with the sign
   // changed.
   Real gap() const {
     const Real distance = distance_to_surface();
-    return (is_inside() ? Real(-distance) : distance) - ball.radius - mesh.vertex_error;
+    return (is_inside() ? Real(-distance) : distance) - sphere.radius - mesh.vertex_error;
   }
   // What two times the rounding of relative_pose.h is, and the leaves of a mesh give away.
   double slack() const {
-    const SphereTree tree = tree_of(ball);
-    return 2.5 * collision_slack(tree, world_from_ball, MeshTree(mesh).tree(), world_from_mesh) +
+    const SphereTree tree = tree_of(sphere);
+    return 2.5 * collision_slack(tree, world_from_sphere, MeshTree(mesh).tree(), world_from_mesh) +
            4e-16 * mesh.vertex_error;
   }
 };
@@ -94,7 +94,7 @@ TetrahedronScene random_scene(SceneRandom& random) {
   }
   scene.mesh.vertex_error = random.whole(0, 1) * size * std::ldexp(1.0, random.whole(-50, -3));
   scene.world_from_mesh = random.pose(size * random.whole(0, 8));
-  scene.world_from_ball = random.pose(size * random.whole(0, 8));
+  scene.world_from_sphere = random.pose(size * random.whole(0, 8));
   // Where a weighted mean of the corners is, inside or out.
   Vector3d place = Vector3d::Zero();
   double sum = 0.0;
@@ -103,12 +103,12 @@ TetrahedronScene random_scene(SceneRandom& random) {
     place += weight * corner;
     sum += weight;
   }
-  scene.ball.center =
-      scene.world_from_ball.inverse() * (scene.world_from_mesh * Vector3d(place / sum));
+  scene.sphere.center =
+      scene.world_from_sphere.inverse() * (scene.world_from_mesh * Vector3d(place / sum));
   const double steps[] = {0.0, 4e-16, 2e-15, 1e-14, 1e-13, 1e-12, 1e-9, 1e-3};
   const double way = scene.distance_to_surface().convert_to<double>() - scene.mesh.vertex_error +
                      (random.whole(0, 1) == 0 ? 1.0 : -1.0) * steps[random.whole(0, 7)] * size;
-  scene.ball.radius = random.whole(0, 3) == 0 ? 0.0 : std::max(0.0, way);
+  scene.sphere.radius = random.whole(0, 3) == 0 ? 0.0 : std::max(0.0, way);
   return scene;
 }
 
@@ -119,12 +119,12 @@ TEST(SolidMeshTest, NeitherMissesNorInventsAContact) {
     const TetrahedronScene scene = random_scene(random);
     const SolidMesh solid(scene.mesh);
     ASSERT_TRUE(solid.is_closed());
-    const SphereTree tree = tree_of(scene.ball);
+    const SphereTree tree = tree_of(scene.sphere);
     const Real gap = scene.gap();
-    const bool hit = collides(tree, scene.world_from_ball, solid, scene.world_from_mesh);
+    const bool hit = collides(tree, scene.world_from_sphere, solid, scene.world_from_mesh);
     ASSERT_TRUE(hit || gap > 0) << i;
     ASSERT_TRUE(!hit || gap <= scene.slack()) << i << ' ' << gap;
-    inside_untouched += scene.is_inside() && scene.ball.radius == 0.0;
+    inside_untouched += scene.is_inside() && scene.sphere.radius == 0.0;
     touching += gap <= 0 && !scene.is_inside();
     free += !hit;
     slack_needed += hit && gap > 0;
@@ -140,13 +140,14 @@ TEST(SolidMeshTest, WithinAClearance) {
   int counts[2] = {};
   for (int i = 0; i < effort(300, 40); ++i) {
     TetrahedronScene scene = random_scene(random);
-    scene.ball.radius *= 0.5;
+    scene.sphere.radius *= 0.5;
     const SolidMesh solid(scene.mesh);
-    const SphereTree tree = tree_of(scene.ball);
+    const SphereTree tree = tree_of(scene.sphere);
     const double gap = std::max(0.0, scene.gap().convert_to<double>());
     for (const double factor : {0.5, 1.0 - 1e-12, 1.0, 1.0 + 1e-15, 1.0 + 1e-12, 20.0}) {
       const double clearance = factor * gap;
-      const bool hit = within(tree, scene.world_from_ball, solid, scene.world_from_mesh, clearance);
+      const bool hit =
+          within(tree, scene.world_from_sphere, solid, scene.world_from_mesh, clearance);
       ASSERT_TRUE(hit || scene.gap() > clearance) << i << ' ' << factor;
       ASSERT_TRUE(!hit || scene.gap() <= clearance + scene.slack() + 1e-14 * clearance)
           << i << ' ' << factor;
@@ -156,7 +157,7 @@ TEST(SolidMeshTest, WithinAClearance) {
   EXPECT_GT(counts[0], effort(60, 5));
   EXPECT_GT(counts[1], effort(60, 5));
   const TetrahedronScene scene = random_scene(random);
-  EXPECT_THROW(within(tree_of(scene.ball), Pose(), SolidMesh(scene.mesh), Pose(), std::nan("")),
+  EXPECT_THROW(within(tree_of(scene.sphere), Pose(), SolidMesh(scene.mesh), Pose(), std::nan("")),
                Error);
 }
 
@@ -165,11 +166,11 @@ TEST(SolidMeshTest, DistanceBoundsAreNeverCrossed) {
   int inside = 0, apart = 0;
   for (int i = 0; i < effort(300, 40); ++i) {
     TetrahedronScene scene = random_scene(random);
-    if (random.whole(0, 1) == 0) scene.ball.radius *= 0.5;
+    if (random.whole(0, 1) == 0) scene.sphere.radius *= 0.5;
     const SolidMesh solid(scene.mesh);
-    const SphereTree tree = tree_of(scene.ball);
+    const SphereTree tree = tree_of(scene.sphere);
     const auto ask = [&](const DistanceRequest& request) {
-      return distance(tree, scene.world_from_ball, solid, scene.world_from_mesh, request);
+      return distance(tree, scene.world_from_sphere, solid, scene.world_from_mesh, request);
     };
     const Real exact = std::max(Real(0), scene.gap());
     const DistanceResult result = ask({});
@@ -197,20 +198,22 @@ TEST(SolidMeshTest, DeepestContact) {
   int inside = 0, outside = 0;
   for (int i = 0; i < effort(250, 40); ++i) {
     TetrahedronScene scene = random_scene(random);
-    scene.ball.radius *= random.uniform(0.9, 2.0);
+    scene.sphere.radius *= random.uniform(0.9, 2.0);
     const SolidMesh solid(scene.mesh);
-    const SphereTree tree = tree_of(scene.ball);
-    const auto contact = deepest_contact(tree, scene.world_from_ball, solid, scene.world_from_mesh);
+    const SphereTree tree = tree_of(scene.sphere);
+    const auto contact =
+        deepest_contact(tree, scene.world_from_sphere, solid, scene.world_from_mesh);
     ASSERT_EQ(contact.has_value(),
-              collides(tree, scene.world_from_ball, solid, scene.world_from_mesh));
+              collides(tree, scene.world_from_sphere, solid, scene.world_from_mesh));
     if (!contact) continue;
     const Real depth = -scene.gap();
     ASSERT_LE(contact->overlap_depth, depth) << i;
     ASSERT_GE(contact->overlap_depth, depth - 4.0 * scene.slack() - 1e-6 * scene.size) << i;
-    const double way = (contact->world_point - scene.world_from_ball * scene.ball.center).norm();
-    ASSERT_LE(way, (scene.ball.radius + scene.mesh.vertex_error) * (1.0 + 1e-6) +
+    const double way =
+        (contact->world_point - scene.world_from_sphere * scene.sphere.center).norm();
+    ASSERT_LE(way, (scene.sphere.radius + scene.mesh.vertex_error) * (1.0 + 1e-6) +
                        10.0 * scene.slack() +
-                       1e-14 * scene.world_from_ball.translation().lpNorm<1>());
+                       1e-14 * scene.world_from_sphere.translation().lpNorm<1>());
     ++(scene.is_inside() ? inside : outside);
   }
   EXPECT_GT(inside, effort(20, 2));
@@ -283,7 +286,7 @@ std::vector<Shell> closed_shells() {
                 4);
 }
 
-// Sets of small balls all over the place, of which none, one or many are inside.
+// Sets of small spheres all over the place, of which none, one or many are inside.
 TEST(SolidMeshTest, AgreesWithWindingNumbers) {
   SceneRandom random(5);
   for (const Shell& shell : closed_shells()) {
@@ -374,15 +377,15 @@ TEST(SolidMeshTest, GrowsByTheVertexError) {
   mesh.vertex_error = 0.1;
   const SolidMesh solid(mesh);
   EXPECT_EQ(solid.inflation(), 0.1);
-  const SphereTree ball = tree_of({{1.5, 0.5, 0.5}, 0.25});
+  const SphereTree sphere = tree_of({{1.5, 0.5, 0.5}, 0.25});
   const auto at = [](double x) { return Pose::from_translation({x, 0.0, 0.0}); };
-  EXPECT_TRUE(collides(ball, at(-0.16), solid, Pose()));
-  EXPECT_FALSE(collides(ball, at(-0.14), solid, Pose()));
-  EXPECT_TRUE(within(ball, at(-0.14), solid, Pose(), 0.02));
-  const DistanceResult result = distance(ball, at(0.0), solid, Pose());
+  EXPECT_TRUE(collides(sphere, at(-0.16), solid, Pose()));
+  EXPECT_FALSE(collides(sphere, at(-0.14), solid, Pose()));
+  EXPECT_TRUE(within(sphere, at(-0.14), solid, Pose(), 0.02));
+  const DistanceResult result = distance(sphere, at(0.0), solid, Pose());
   EXPECT_NEAR(result.lower, 0.15, 1e-12);
   EXPECT_NEAR(result.upper, 0.15, 1e-12);
-  EXPECT_EQ(distance(ball, at(-0.2), solid, Pose()).upper, 0.0);
+  EXPECT_EQ(distance(sphere, at(-0.2), solid, Pose()).upper, 0.0);
 }
 
 }  // namespace

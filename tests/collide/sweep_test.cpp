@@ -57,7 +57,7 @@ TEST(Sweep, IsTrueNextToContact) {
     const double angle = random.uniform(-7.0, 7.0);
     const Vector3d way = random.point(2.0);
     const Body mover = turning_body(spheres, start, axis, angle, way);
-    // A ball whose surface the mover passes at `gap`: its radius is the least distance of its
+    // A sphere whose surface the mover passes at `gap`: its radius is the least distance of its
     // centre, found by steps and then narrowed down.
     const Vector3d center = random.point(4.0);
     const auto distance = [&](double t) { return gap_at(mover, still_body({{center, 0.0}}), t); };
@@ -165,15 +165,15 @@ TEST(Sweep, LimitsLeaveItUnknownAndTrue) {
 }
 
 TEST(Sweep, RefusesWhatCannotBeUsed) {
-  const Body ball = still_body({{Vector3d::Zero(), 1.0}});
+  const Body sphere = still_body({{Vector3d::Zero(), 1.0}});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -1e-9, 2e15}) {
-    EXPECT_THROW(run(ball, ball, {.clearance = bad}), Error);
-    EXPECT_THROW(run(ball, ball, {.resolution = bad}), Error);
+    EXPECT_THROW(run(sphere, sphere, {.clearance = bad}), Error);
+    EXPECT_THROW(run(sphere, sphere, {.resolution = bad}), Error);
   }
-  EXPECT_THROW(run(ball, ball, {.resolution = 0.0}), Error);
-  EXPECT_THROW(run(ball, ball, {.resolution = 1e-13}), Error);
+  EXPECT_THROW(run(sphere, sphere, {.resolution = 0.0}), Error);
+  EXPECT_THROW(run(sphere, sphere, {.resolution = 1e-13}), Error);
 }
 
 }  // namespace

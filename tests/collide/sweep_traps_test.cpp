@@ -59,7 +59,7 @@ TEST(Sweep, ARodThatTurnsManyTimes) {
     const double rho = random.uniform(0.1, 1.0);
     const double at = random.uniform(0.3, 2.0 * kPi - 0.3);
     const int turns = random.whole(0, 6);
-    // Beside a ball, over it at a height that the rod just misses, or just does not.
+    // Beside a sphere, over it at a height that the rod just misses, or just does not.
     const double height = random.whole(0, 1) ? 0.031 : 0.0299;
     const Body obstacle = still_body({{{rho * std::cos(at), rho * std::sin(at), height}, 0.01}});
     const Vector3d axis(0.0, 0.0, random.whole(1, 3));
@@ -77,7 +77,7 @@ TEST(Sweep, ARodThatTurnsManyTimes) {
     if (height > 0.03) {
       ASSERT_EQ(result.verdict, Verdict::kFree);
     } else if (rho < 0.9) {
-      // Between two spheres of the rod there is a dent, which the low ball does not fit through
+      // Between two spheres of the rod there is a dent, which the low sphere does not fit through
       // everywhere; where it does, brute force must agree.
       expect_true(past_it, obstacle, result, 3000);
     }
@@ -91,10 +91,10 @@ TEST(Sweep, AFullTurnBackToTheStartIsNoRest) {
     EXPECT_EQ(run(turning, obstacle).verdict, Verdict::kCollision);
     EXPECT_LT(gap_at(turning, obstacle, (turns > 0.0 ? 0.25 : 0.75) / std::abs(turns)), 0.0);
   }
-  // A ball about its own centre goes nowhere: one look.
-  const Body ball = turning_body({{{1.0, 2.0, 3.0}, 1.0}}, Pose(), {1.0, 1.0, 0.0}, 1e4,
-                                 Vector3d::Zero(), {1.0, 2.0, 3.0});
-  const SweepResult result = run(ball, still_body({{{3.0001, 2.0, 3.0}, 1.0}}));
+  // A sphere about its own centre goes nowhere: one look.
+  const Body sphere = turning_body({{{1.0, 2.0, 3.0}, 1.0}}, Pose(), {1.0, 1.0, 0.0}, 1e4,
+                                   Vector3d::Zero(), {1.0, 2.0, 3.0});
+  const SweepResult result = run(sphere, still_body({{{3.0001, 2.0, 3.0}, 1.0}}));
   EXPECT_EQ(result.verdict, Verdict::kFree);
   EXPECT_EQ(result.looks, 1u);
 }
@@ -107,23 +107,23 @@ TEST(Sweep, ABodyThatTurnsWithoutHaltNeedsNoManyLooksFarAway) {
 }
 
 TEST(Sweep, StartsOrEndsInContact) {
-  const std::vector<Sphere> ball = {{Vector3d::Zero(), 1.0}};
+  const std::vector<Sphere> sphere = {{Vector3d::Zero(), 1.0}};
   for (const double overlap : {0.5, 1e-6, 0.0}) {
     const Vector3d at(2.0 - overlap, 0.0, 0.0);
     const Body away =
-        turning_body(ball, Pose::from_translation(at), {0.0, 0.0, 1.0}, 1.0, {3.0, 0.0, 0.0});
-    const SweepResult first = run(away, still_body(ball));
+        turning_body(sphere, Pose::from_translation(at), {0.0, 0.0, 1.0}, 1.0, {3.0, 0.0, 0.0});
+    const SweepResult first = run(away, still_body(sphere));
     EXPECT_EQ(first.verdict, Verdict::kCollision);
     EXPECT_EQ(first.free_until, 0.0);
     EXPECT_EQ(first.contact_at, 0.0);
-    const Body towards = body_between(ball, Pose::from_translation(at + Vector3d(3.0, 0.0, 0.0)),
+    const Body towards = body_between(sphere, Pose::from_translation(at + Vector3d(3.0, 0.0, 0.0)),
                                       Pose::from_translation(at));
-    const SweepResult last = run(towards, still_body(ball), {.resolution = 1e-9});
+    const SweepResult last = run(towards, still_body(sphere), {.resolution = 1e-9});
     EXPECT_EQ(last.verdict, Verdict::kCollision);
     EXPECT_NEAR(last.free_until, 1.0 - overlap / 3.0, 1e-8);
     EXPECT_NEAR(last.contact_at, 1.0 - overlap / 3.0, 1e-6);
   }
-  const SweepResult resting = run(still_body(ball), still_body(ball));
+  const SweepResult resting = run(still_body(sphere), still_body(sphere));
   EXPECT_EQ(resting.verdict, Verdict::kCollision);
   EXPECT_EQ(resting.contact_at, 0.0);
 }
@@ -131,7 +131,8 @@ TEST(Sweep, StartsOrEndsInContact) {
 TEST(Sweep, TouchingForAnInstantIsContact) {
   SceneRandom random(5);
   for (int i = 0; i < effort(400, 60); ++i) {
-    // A ball passes another whose surface it touches at exactly one instant; the numbers are exact.
+    // A sphere passes another whose surface it touches at exactly one instant; the numbers are
+    // exact.
     const double when = random.uniform(0.0, 1.0);
     const double speed = std::ldexp(1.0, random.whole(-10, 10));
     const Vector3d way(speed, 0.0, 0.0);
@@ -151,7 +152,7 @@ TEST(Sweep, TouchingForAnInstantIsContact) {
   }
 }
 
-// Poses far from the origin are rounded by more than the balls overlap. They overlap all the way.
+// Poses far from the origin are rounded by more than the spheres overlap. They overlap all the way.
 TEST(Sweep, RoundingOfThePosesHidesNoContact) {
   SceneRandom random(7);
   int apart_by_rounding = 0;
@@ -161,9 +162,9 @@ TEST(Sweep, RoundingOfThePosesHidesNoContact) {
     const Vector3d way = random.point(1e8);
     const Vector3d axis = random.point(1.0);
     const double angle = random.whole(0, 1) ? random.uniform(-3.0, 3.0) : 0.0;
-    const std::vector<Sphere> ball = {{Vector3d::Zero(), 1.0 - 0x1p-31}};
-    const Body a = turning_body(ball, Pose::from_translation(place), axis, angle, way);
-    const Body b = turning_body(ball, Pose::from_translation(place + beside), axis, -angle, way);
+    const std::vector<Sphere> sphere = {{Vector3d::Zero(), 1.0 - 0x1p-31}};
+    const Body a = turning_body(sphere, Pose::from_translation(place), axis, angle, way);
+    const Body b = turning_body(sphere, Pose::from_translation(place + beside), axis, -angle, way);
     const SweepResult result = run(a, b);
     ASSERT_NE(result.verdict, Verdict::kFree);
     ASSERT_EQ(result.free_until, 0.0);

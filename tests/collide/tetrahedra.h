@@ -8,10 +8,10 @@
 
 namespace spherule::test {
 
-// A closed tetrahedron, covered by one ball a corner's cell and many more than it needs.
+// A closed tetrahedron, covered by one sphere a corner's cell and many more than it needs.
 std::shared_ptr<const CoveredMesh> covered_tetrahedron(SceneRandom& random, double size);
 
-// A mesh whose spheres are the balls around its triangles.
+// A mesh whose spheres are the spheres around its triangles.
 std::shared_ptr<const CoveredMesh> covered_surface(const TriangleMesh& mesh);
 
 // Its spheres, which keep it alive.

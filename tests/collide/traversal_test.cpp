@@ -82,7 +82,7 @@ TEST(Traversal, TakesTreesThatOutgrowTheInlineStack) {
   EXPECT_EQ(result.pairs.size(), a.spheres().size() * b.spheres().size());
   EXPECT_TRUE(result.complete);
   EXPECT_FALSE(collides(a, Pose(), b, Pose::from_translation({5000.0, 0.0, 0.0})));
-  // Deep inside each other by the inner balls and by the boxes, but no leaf touches.
+  // Deep inside each other by the inner spheres and by the boxes, but no leaf touches.
   EXPECT_FALSE(collides(a, Pose(), b, Pose::from_translation({1.3, 1.3, 1.3})));
 }
 

@@ -46,7 +46,7 @@ SphereTree caterpillar(int depth, int branching, bool inner_first) {
   return SphereTree(std::move(data));
 }
 
-std::shared_ptr<const SphereTree> ball(const Eigen::Vector3d& center, double radius) {
+std::shared_ptr<const SphereTree> one_sphere_tree(const Eigen::Vector3d& center, double radius) {
   return std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{center, radius}}));
 }
 

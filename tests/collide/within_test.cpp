@@ -28,7 +28,7 @@ struct Scene {
   double slack(double clearance) const {
     return within_slack(a, world_from_a, b, world_from_b, clearance);
   }
-  PlacedBalls balls(std::size_t i, std::size_t j) const {
+  PlacedSphereSets spheres(std::size_t i, std::size_t j) const {
     return {a.spheres()[i], b.spheres()[j], world_from_a, world_from_b};
   }
 };
@@ -45,12 +45,12 @@ Scene random_scene(SceneRandom& random, int largest_count) {
 }
 
 // D <= ra + rb + c for the exact gap, in rational numbers.
-bool exactly_within(const PlacedBalls& balls, const Rational& clearance) {
-  const Rational sum = Rational(balls.a.radius) + Rational(balls.b.radius) + clearance;
-  return balls.squared_center_distance<Rational>() <= sum * sum;
+bool exactly_within(const PlacedSphereSets& spheres, const Rational& clearance) {
+  const Rational sum = Rational(spheres.a.radius) + Rational(spheres.b.radius) + clearance;
+  return spheres.squared_center_distance<Rational>() <= sum * sum;
 }
 
-TEST(Within, IsExactToTheSlackOnPairsOfBalls) {
+TEST(Within, IsExactToTheSlackOnPairsOfSpheres) {
   SceneRandom random(1);
   int needed = 0;
   for (int i = 0; i < effort(800, 200); ++i) {
@@ -59,7 +59,7 @@ TEST(Within, IsExactToTheSlackOnPairsOfBalls) {
     const std::vector<Sphere> other = random_spheres(random, 1, size, 0.5 * size);
     const Scene scene = {build_tree(one), build_tree(other), random.pose(size),
                          random.pose(size * std::ldexp(1.0, random.whole(0, 12)))};
-    const Real gap = scene.balls(0, 0).gap();
+    const Real gap = scene.spheres(0, 0).gap();
     if (gap <= 0) continue;
     // Clearances next to the gap: a few units in the last place, and a few slacks, to both sides.
     const auto near = static_cast<double>(gap);
@@ -68,10 +68,10 @@ TEST(Within, IsExactToTheSlackOnPairsOfBalls) {
         const double clearance = near + k * unit;
         if (clearance < 0.0) continue;
         const bool answer = scene.within(clearance);
-        const bool truth = exactly_within(scene.balls(0, 0), Rational(clearance));
+        const bool truth = exactly_within(scene.spheres(0, 0), Rational(clearance));
         ASSERT_TRUE(answer || !truth) << "missed";
         if (answer) {
-          ASSERT_TRUE(exactly_within(scene.balls(0, 0),
+          ASSERT_TRUE(exactly_within(scene.spheres(0, 0),
                                      Rational(clearance) + Rational(scene.slack(clearance))));
         }
         needed += answer && !truth;
@@ -116,14 +116,14 @@ TEST(Within, IsWhatTheTestOfSomePairSays) {
 }
 
 TEST(Within, RefusesWhatCannotBeUsed) {
-  const SphereTree ball = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
+  const SphereTree sphere = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity(), -1e-300, 2e15}) {
-    EXPECT_THROW(within(ball, Pose(), ball, Pose(), bad), Error);
-    EXPECT_THROW(within_slack(ball, Pose(), ball, Pose(), bad), Error);
-    EXPECT_THROW(spheres_within(ball, 0, Pose(), ball, 0, Pose(), bad), Error);
+    EXPECT_THROW(within(sphere, Pose(), sphere, Pose(), bad), Error);
+    EXPECT_THROW(within_slack(sphere, Pose(), sphere, Pose(), bad), Error);
+    EXPECT_THROW(spheres_within(sphere, 0, Pose(), sphere, 0, Pose(), bad), Error);
   }
-  EXPECT_TRUE(within(ball, Pose(), ball, Pose::from_translation({1e14, 0.0, 0.0}), 1e15));
+  EXPECT_TRUE(within(sphere, Pose(), sphere, Pose::from_translation({1e14, 0.0, 0.0}), 1e15));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ const FittedModel& cached(const std::string& name, const std::function<TriangleM
 TriangleMesh shape_mesh(const std::string& name) {
   const std::map<std::string, std::function<TriangleMesh()>> makers = {
       {"cube", [] { return make_cube(100); }},
-      // Small enough to find leaks between the balls of a large model.
+      // Small enough to find leaks between the spheres of a large model.
       {"probe", [] { return make_cube(0.5); }},
       {"slab",
        [] {

@@ -19,13 +19,13 @@ struct FittedModel {
   FclSolid mesh;  // the same
   SphereTree tree;
   Eigen::Vector3d center;   // of its box
-  double radius;            // of a ball about `center` that encloses the mesh
+  double radius;            // of a sphere about `center` that encloses the mesh
   double max_error;         // E
-  double protrusion_bound;  // certified: no ball reaches further than this from the mesh
+  double protrusion_bound;  // certified: no sphere reaches further than this from the mesh
 };
 
 // Fits the mesh with E of `error_share` of its box diagonal and D of four E. `radius_factor` other
-// than 1 spoils the balls.
+// than 1 spoils the spheres.
 FittedModel fit_model(const std::string& name, const TriangleMesh& mesh, double error_share = 0.05,
                       double radius_factor = 1.0);
 

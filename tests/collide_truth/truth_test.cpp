@@ -45,8 +45,8 @@ struct Tally {
 };
 
 // Every point near a convex body can be reached from outside, so that its simplified solid is the
-// body and what stands between the external balls: along a flat wall some 0.02 E, for the grid step
-// that stage 1 chooses (ExternalOptions::grid_step).
+// body and what stands between the external spheres: along a flat wall some 0.02 E, for the grid
+// step that stage 1 chooses (ExternalOptions::grid_step).
 constexpr double kScallops = 0.02;
 
 bool is_convex(const FittedModel& model) {
@@ -170,14 +170,14 @@ INSTANTIATE_TEST_SUITE_P(, RealTruth,
                                            RealPair{kRiser, kPipe}, RealPair{kWrist, kSheet}),
                          [](const auto& tested) { return pair_name(tested.param); });
 
-// The comparison is able to fail: a cover whose balls are a tenth too small is caught.
-TEST(TruthTest, ShrunkBallsAreCaught) {
+// The comparison is able to fail: a cover whose spheres are a tenth too small is caught.
+TEST(TruthTest, ShrunkSpheresAreCaught) {
   const FittedModel shrunk = test::fit_model("shrunk", test::shape_mesh("cube"), 0.05, 0.9);
   EXPECT_GT(compare(shrunk, test::shape_model("probe"), 10000, 5).missed, 0u);
 }
 
-// And so is one whose balls are a fifth too large.
-TEST(TruthTest, GrownBallsAreCaught) {
+// And so is one whose spheres are a fifth too large.
+TEST(TruthTest, GrownSpheresAreCaught) {
   const FittedModel inflated = test::fit_model("grown", test::shape_mesh("cube"), 0.05, 1.2);
   const Tally tally = compare(inflated, test::shape_model("probe"), 2000, 5);
   EXPECT_GT(tally.worst_excess, 0.0);

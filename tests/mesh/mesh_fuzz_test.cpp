@@ -75,8 +75,8 @@ TEST_P(MeshFuzz, ErrorOrValidMesh) {
   EXPECT_LT(refused, kFilesPerFormat);
 }
 
-const TriangleMesh kBall = test::icosphere(1);
-const std::string kModel = test::threemf_model(kBall, "1 0 0 0 1 0 0 0 1 10 20 30");
+const TriangleMesh kSphere = test::icosphere(1);
+const std::string kModel = test::threemf_model(kSphere, "1 0 0 0 1 0 0 0 1 10 20 30");
 
 std::string stored(const std::string& model) {
   return test::threemf_bytes(model);
@@ -84,16 +84,16 @@ std::string stored(const std::string& model) {
 
 INSTANTIATE_TEST_SUITE_P(
     , MeshFuzz,
-    ::testing::Values(Format{"stl", test::binary_stl(kBall)}, Format{"stl", test::text_stl(kBall)},
-                      Format{"obj", test::obj_text(kBall)}, Format{"off", test::off_text(kBall)},
-                      Format{"ply", test::ply_bytes(kBall, test::PlyForm::kText, true)},
-                      Format{"ply", test::ply_bytes(kBall, test::PlyForm::kBigEndian, false)},
-                      Format{"dae", test::dae_text(kBall, Eigen::Matrix4d::Identity())},
-                      Format{"3mf", test::threemf_bytes(kModel)},
-                      Format{"3mf", test::threemf_bytes(kModel, test::Zip::kDeflated64)},
-                      Format{"3mf", kModel, &stored},
-                      Format{"gltf", test::gltf_text(kBall, {1, 2, 3})},
-                      Format{"glb", test::glb_bytes(kBall, {1, 2, 3})}));
+    ::testing::Values(
+        Format{"stl", test::binary_stl(kSphere)}, Format{"stl", test::text_stl(kSphere)},
+        Format{"obj", test::obj_text(kSphere)}, Format{"off", test::off_text(kSphere)},
+        Format{"ply", test::ply_bytes(kSphere, test::PlyForm::kText, true)},
+        Format{"ply", test::ply_bytes(kSphere, test::PlyForm::kBigEndian, false)},
+        Format{"dae", test::dae_text(kSphere, Eigen::Matrix4d::Identity())},
+        Format{"3mf", test::threemf_bytes(kModel)},
+        Format{"3mf", test::threemf_bytes(kModel, test::Zip::kDeflated64)},
+        Format{"3mf", kModel, &stored}, Format{"gltf", test::gltf_text(kSphere, {1, 2, 3})},
+        Format{"glb", test::glb_bytes(kSphere, {1, 2, 3})}));
 
 }  // namespace
 }  // namespace spherule

@@ -27,56 +27,56 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const double kRoot3 = std::numbers::sqrt3;
 const Vector3d kMiddle = Vector3d::Constant(0.5);
 
-// A solid without external balls: its box.
+// A solid without external spheres: its box.
 ExternalSpheres box_of(const TriangleMesh& mesh) {
   return place_external_spheres(mesh, {.placement = ExternalPlacement::kNone});
 }
 
-// Without external balls, what is inside is found by a flood, whose fine cells are many.
+// Without external spheres, what is inside is found by a flood, whose fine cells are many.
 CertifyOptions flooded() {
   CertifyOptions options;
   if (kSanitized) options.resolution = 1.0 / 512.0;
   return options;
 }
 
-// One ball a cell of an n x n x n grid over the unit cube, around the cell and a little more: a
+// One sphere a cell of an n x n x n grid over the unit cube, around the cell and a little more: a
 // piece of surface that crosses from cell to cell has to fit into one of them.
-std::vector<Sphere> grid_of_balls(int n) {
-  std::vector<Sphere> balls;
+std::vector<Sphere> grid_of_spheres(int n) {
+  std::vector<Sphere> spheres;
   for (int i = 0; i < n * n * n; ++i) {
     const Vector3d cell(i % n, i / n % n, i / n / n);
-    balls.push_back({(cell + kMiddle) / n, kRoot3 / (2 * n) * 1.01});
+    spheres.push_back({(cell + kMiddle) / n, kRoot3 / (2 * n) * 1.01});
   }
-  return balls;
+  return spheres;
 }
 
-// The cells of the solid fit into the balls; the piece of an inner triangle about the middle, where
-// eight cells meet, fits into none however small it is.
-TEST(Certificate, SurfaceThatCrossesWhereBallsHardlyOverlapIsCoveredAsPartOfTheSolid) {
+// The cells of the solid fit into the spheres; the piece of an inner triangle about the middle,
+// where eight cells meet, fits into none however small it is.
+TEST(Certificate, SurfaceThatCrossesWhereSpheresHardlyOverlapIsCoveredAsPartOfTheSolid) {
   TriangleMesh mesh = cube_mesh();
   const int first = static_cast<int>(mesh.vertices.size());
   const Vector3d a(0.1, 0.2, 0.3), b(0.9, 0.35, 0.6);
   mesh.vertices.insert(mesh.vertices.end(), {a, b, (kMiddle - 0.3 * a - 0.37 * b) / 0.33});
   mesh.triangles.push_back({first, first + 1, first + 2});
-  std::vector<Sphere> balls = grid_of_balls(4);
-  for (Sphere& ball : balls) ball.radius = kRoot3 / 8 * (1 + 1e-9);
+  std::vector<Sphere> spheres = grid_of_spheres(4);
+  for (Sphere& sphere : spheres) sphere.radius = kRoot3 / 8 * (1 + 1e-9);
   ExternalSpheres external = box_of(mesh);
   CertifyOptions options;
   options.external = &external;
-  EXPECT_TRUE(certify(mesh, balls, options).covered);
+  EXPECT_TRUE(certify(mesh, spheres, options).covered);
 
   // Not if S does not hold the mesh: then nothing is proved of the rest of it.
-  external.balls.push_back({{0.5, 0.5, 0.5}, 0.3});
-  const Certificate pierced = certify(mesh, balls, options);
+  external.spheres.push_back({{0.5, 0.5, 0.5}, 0.3});
+  const Certificate pierced = certify(mesh, spheres, options);
   EXPECT_FALSE(pierced.covered);
   EXPECT_EQ(pierced.solid_depth.upper, 0.0);
   EXPECT_EQ(pierced.surface_depth.lower, 0.0);
-  external.balls.clear();
+  external.spheres.clear();
   external.box.max().x() = 0.75;
-  EXPECT_FALSE(certify(mesh, balls, options).covered);
+  EXPECT_FALSE(certify(mesh, spheres, options).covered);
 }
 
-TEST(Certificate, ACubeIsCoveredByItsCircumscribedBallAndByNoSmallerOne) {
+TEST(Certificate, ACubeIsCoveredByItsCircumscribedSphereAndByNoSmallerOne) {
   const ExternalSpheres box = box_of(cube_mesh());
   // The flood without external spheres is fine, and slow under sanitizers.
   for (const ExternalSpheres* external :
@@ -98,17 +98,17 @@ TEST(Certificate, ACubeIsCoveredByItsCircumscribedBallAndByNoSmallerOne) {
   }
 }
 
-// Without the ball of one cell, the point of that cell that is furthest from the other balls is
+// Without the sphere of one cell, the point of that cell that is furthest from the other spheres is
 // known: the corner of the cube, or the middle of the cell, as far as its neighbours leave it.
-TEST(Certificate, AMissingBallIsALeakOfTheExactDepth) {
+TEST(Certificate, AMissingSphereIsALeakOfTheExactDepth) {
   const int n = 3;
   const ExternalSpheres box = box_of(cube_mesh());
   CertifyOptions options;
   options.external = &box;
-  const std::vector<Sphere> all = grid_of_balls(n);
+  const std::vector<Sphere> all = grid_of_spheres(n);
   EXPECT_TRUE(certify(cube_mesh(), all, options).covered);
 
-  // Balls that only just meet: nothing is open, but that is not proved, and so not said.
+  // Spheres that only just meet: nothing is open, but that is not proved, and so not said.
   std::vector<Sphere> tight = all;
   for (Sphere& s : tight) s.radius = kRoot3 / (2 * n) * (1 + 1e-9);
   const Certificate unproved = certify(cube_mesh(), tight, options);
@@ -118,7 +118,7 @@ TEST(Certificate, AMissingBallIsALeakOfTheExactDepth) {
 
   std::vector<Sphere> hollow = all;
   hollow.erase(hollow.begin() + (n * n * n) / 2);
-  // The middle of the middle cell, to the balls of the cells beside it.
+  // The middle of the middle cell, to the spheres of the cells beside it.
   const double in_the_middle = 1.0 / n - all.front().radius;
   const Certificate inner = certify(cube_mesh(), hollow, options);
   EXPECT_FALSE(inner.covered);
@@ -140,11 +140,11 @@ TEST(Certificate, AMissingBallIsALeakOfTheExactDepth) {
   EXPECT_NEAR(outer.deepest_leak.norm(), 0.0, 0.02);
 }
 
-// Where balls meet in a point of the surface, no piece of it is ever in one of them. The proof must
-// come to an end however close it is told to look.
+// Where spheres meet in a point of the surface, no piece of it is ever in one of them. The proof
+// must come to an end however close it is told to look.
 TEST(Certificate, TheSmallestResolutionIsThatOfTheCoordinates) {
   const int n = 3;
-  std::vector<Sphere> touching = grid_of_balls(n);
+  std::vector<Sphere> touching = grid_of_spheres(n);
   for (Sphere& s : touching) s.radius = kRoot3 / (2 * n) * (1 - 1e-15);
   const ExternalSpheres box = box_of(cube_mesh());
   CertifyOptions options;
@@ -156,9 +156,9 @@ TEST(Certificate, TheSmallestResolutionIsThatOfTheCoordinates) {
   EXPECT_LT(unproved.uncovered_depth.upper, 1e-11);
 }
 
-// A sealed hollow is inside, whatever is in it: the balls protrude as if the cube were solid. Nor
+// A sealed hollow is inside, whatever is in it: the spheres protrude as if the cube were solid. Nor
 // does a part that is not closed take its closed neighbours' inside away.
-TEST(Certificate, BallsInASealedHollowDoNotProtrude) {
+TEST(Certificate, SpheresInASealedHollowDoNotProtrude) {
   const auto cube = [](double low, double high) {
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
     motion.translation() = Vector3d::Constant(low);
@@ -170,8 +170,8 @@ TEST(Certificate, BallsInASealedHollowDoNotProtrude) {
   sheet.triangles.resize(2);
   const TriangleMesh hollow = joined(cube_mesh(), inverted(cube(0.2, 0.8)));
   const int n = 3;
-  const std::vector<Sphere> balls = grid_of_balls(n);
-  const double beyond_a_face = balls.front().radius - 0.5 / n;
+  const std::vector<Sphere> spheres = grid_of_spheres(n);
+  const double beyond_a_face = spheres.front().radius - 0.5 / n;
   CertifyOptions options;
   options.protrusion_tolerance = 1e-3;
   const ExternalSpheres box = box_of(cube_mesh());
@@ -179,31 +179,31 @@ TEST(Certificate, BallsInASealedHollowDoNotProtrude) {
   const std::vector<TriangleMesh> meshes = {joined(hollow, sheet), joined(hollow, cube(0.4, 0.6)),
                                             hollow, cube_mesh()};
   for (const TriangleMesh& mesh : effort(meshes, 1)) {
-    const Bounds protrusion = certify(mesh, balls, options).protrusion_over_mesh.value();
+    const Bounds protrusion = certify(mesh, spheres, options).protrusion_over_mesh.value();
     EXPECT_LE(protrusion.lower, beyond_a_face);
     EXPECT_GE(protrusion.upper, beyond_a_face);
     EXPECT_LT(protrusion.upper, 1.05 * beyond_a_face);
   }
 }
 
-// Balls along the surface leave the inside open. The surface is covered, but |M| is not.
+// Spheres along the surface leave the inside open. The surface is covered, but |M| is not.
 TEST(Certificate, AHollowSetIsNotACoverEvenWithoutExternalSpheres) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   Random random(91);
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   const int n = 8;
   for (int i = 0; i <= n; ++i) {
     for (int k = 0; k <= n; ++k) {
       const double u = static_cast<double>(i) / n, v = static_cast<double>(k) / n;
       for (const double w : {0.0, 1.0}) {
-        balls.push_back({{u, v, w}, 0.12});
-        balls.push_back({{u, w, v}, 0.12});
-        balls.push_back({{w, u, v}, 0.12});
+        spheres.push_back({{u, v, w}, 0.12});
+        spheres.push_back({{u, w, v}, 0.12});
+        spheres.push_back({{w, u, v}, 0.12});
       }
     }
   }
   for (const TriangleMesh& mesh : {inverted(cube_mesh()), cube_mesh()}) {
-    const Certificate certificate = certify(mesh, balls);
+    const Certificate certificate = certify(mesh, spheres);
     EXPECT_FALSE(certificate.covered);
     EXPECT_EQ(certificate.surface_depth.upper, 0.0);
     EXPECT_NEAR(certificate.solid_depth.lower, 0.38, 0.005);
@@ -212,20 +212,20 @@ TEST(Certificate, AHollowSetIsNotACoverEvenWithoutExternalSpheres) {
   }
   // Of a double-sided one nothing says that the middle is inside, but it cannot be reached.
   const TriangleMesh twice = with_duplicates(cube_mesh());
-  const Certificate of_twice = certify(joined(twice, inverted(twice)), balls);
+  const Certificate of_twice = certify(joined(twice, inverted(twice)), spheres);
   EXPECT_FALSE(of_twice.covered);
   EXPECT_NEAR(of_twice.solid_depth.upper, 0.38, 0.01);
   // An open box has no inside that its witness could be in, but what cannot be reached counts.
-  EXPECT_EQ(certify(open_box(), balls).surface_depth.upper, 0.0);
+  EXPECT_EQ(certify(open_box(), spheres).surface_depth.upper, 0.0);
 }
 
-TEST(Certificate, TheProtrusionOfOneBallAroundACubeIsExact) {
+TEST(Certificate, TheProtrusionOfOneSphereAroundACubeIsExact) {
   const double radius = 1.0;
-  const std::vector<Sphere> ball{{kMiddle, radius}};
+  const std::vector<Sphere> sphere{{kMiddle, radius}};
   const ExternalSpheres box = box_of(cube_mesh());
   CertifyOptions options;
   options.external = &box;
-  const Certificate certificate = certify(cube_mesh(), ball, options);
+  const Certificate certificate = certify(cube_mesh(), sphere, options);
   EXPECT_TRUE(certificate.covered);
   // Above the middle of a face.
   const double exact = radius - 0.5;
@@ -241,12 +241,12 @@ TEST(Certificate, TheProtrusionOfOneBallAroundACubeIsExact) {
   EXPECT_NEAR(*certificate.volume_ratio, 4.0 / 3.0 * std::numbers::pi, 0.05);
 }
 
-TEST(Certificate, ABallFarOffProtrudesByItsDistance) {
-  const std::vector<Sphere> balls{{kMiddle, 0.9}, {{4, 0.5, 0.5}, 0.25}};
+TEST(Certificate, ASphereFarOffProtrudesByItsDistance) {
+  const std::vector<Sphere> spheres{{kMiddle, 0.9}, {{4, 0.5, 0.5}, 0.25}};
   const ExternalSpheres box = box_of(cube_mesh());
   CertifyOptions options;
   options.external = &box;
-  const Certificate certificate = certify(cube_mesh(), balls, options);
+  const Certificate certificate = certify(cube_mesh(), spheres, options);
   EXPECT_GE(*certificate.protrusion_over_simplified_max, 3.25);
   EXPECT_LE(*certificate.protrusion_over_simplified_max, 3.26);
   EXPECT_LE(certificate.protrusion_over_mesh->lower, 3.25);
@@ -267,17 +267,17 @@ TEST(Certificate, AnEmptySetCoversNothing) {
   }
 }
 
-std::string refused(const std::vector<Sphere>& balls, const CertifyOptions& options = {},
+std::string refused(const std::vector<Sphere>& spheres, const CertifyOptions& options = {},
                     const TriangleMesh& mesh = cube_mesh()) {
   try {
-    certify(mesh, balls, options);
+    certify(mesh, spheres, options);
   } catch (const Error& error) {
     return error.subject();
   }
   return "accepted";
 }
 
-TEST(Certificate, BadBallsAndOptionsAreRefusedByName) {
+TEST(Certificate, BadSpheresAndOptionsAreRefusedByName) {
   const Sphere good{kMiddle, 1.0};
   for (const Sphere& bad :
        {Sphere{kMiddle, kNan}, Sphere{kMiddle, -1e-9}, Sphere{kMiddle, kInfinity},
@@ -295,14 +295,14 @@ TEST(Certificate, BadBallsAndOptionsAreRefusedByName) {
   EXPECT_EQ(refused({good}, {}, {}), "mesh");
 }
 
-// A cube whose corners eight external balls take: what remains is furthest from the middle where
+// A cube whose corners eight external spheres take: what remains is furthest from the middle where
 // two of them and a face of the cube meet, at (1/2, y, 0) with 1/4 + y^2 = R^2.
 TEST(Certificate, TheDepthOfALeakInACurvedSolidIsExact) {
   ExternalSpheres external = box_of(cube_mesh());
   for (const double taken : effort(std::vector{0.6, 0.55, 0.7}, 1)) {
-    external.balls.clear();
+    external.spheres.clear();
     for (int i = 0; i < 8; ++i) {
-      external.balls.push_back({Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), taken});
+      external.spheres.push_back({Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), taken});
     }
     const double y = std::sqrt(taken * taken - 0.25);
     const double furthest = Vector3d(0.0, 0.5 - y, 0.5).norm();
@@ -324,7 +324,7 @@ TEST(Certificate, TheDepthOfALeakInACurvedSolidIsExact) {
   }
 }
 
-// Sets that cover a part: some balls of a fit, shrunk or left out at random.
+// Sets that cover a part: some spheres of a fit, shrunk or left out at random.
 TEST(Certificate, TheBoundsOfTheDepthHoldAgainstSampling) {
   Random random(92);
   int leaks = 0;
@@ -340,15 +340,15 @@ TEST(Certificate, TheBoundsOfTheDepthHoldAgainstSampling) {
     const std::vector<Vector3d> surface = points_on_surface(mesh, count, random);
     const std::vector<Vector3d> solid = points_of_solid(fitted.external, count, random);
     for (int round = 0; round < effort(3, 1); ++round) {
-      std::vector<Sphere> balls;
+      std::vector<Sphere> spheres;
       for (const Sphere& s : fitted.cover.spheres) {
         if (random.unit() < 0.1) continue;
-        balls.push_back({s.center, s.radius * random.between(0.9, 1.0)});
+        spheres.push_back({s.center, s.radius * random.between(0.9, 1.0)});
       }
-      if (balls.empty()) continue;  // no set at all has no depth to compare
-      const Certificate certificate = certificate_of(mesh, fitted, balls);
-      const Judgement on_surface = judge_cover(surface, balls);
-      const Judgement in_solid = judge_cover(solid, balls);
+      if (spheres.empty()) continue;  // no set at all has no depth to compare
+      const Certificate certificate = certificate_of(mesh, fitted, spheres);
+      const Judgement on_surface = judge_cover(surface, spheres);
+      const Judgement in_solid = judge_cover(solid, spheres);
       ASSERT_GE(certificate.surface_depth.upper, on_surface.depth - 1e-15L);
       ASSERT_GE(certificate.solid_depth.upper, in_solid.depth);
       ASSERT_LE(certificate.uncovered_depth.lower, certificate.uncovered_depth.upper);
@@ -361,7 +361,7 @@ TEST(Certificate, TheBoundsOfTheDepthHoldAgainstSampling) {
       ++leaks;
       // The lower bound is witnessed by a point of S.
       if (certificate.uncovered_depth.lower > 0.0) {
-        ASSERT_GE(gap_to_balls(certificate.deepest_leak, balls),
+        ASSERT_GE(gap_to_spheres(certificate.deepest_leak, spheres),
                   certificate.uncovered_depth.lower * (1.0L - 1e-12L) - 1e-15L);
         ASSERT_TRUE(is_in_solid(certificate.deepest_leak, fitted.external));
       }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/solid/clearance.h"
 
-#include "simplifier/solid/ball_hierarchy.h"
+#include "simplifier/solid/sphere_hierarchy.h"
 #include "tests/mesh/distance_oracle.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
@@ -19,28 +19,28 @@ namespace spherule::test {
 namespace {
 
 using Eigen::Vector3d;
-using internal::BallHierarchy;
-using internal::NearestBall;
+using internal::NearestSphere;
+using internal::SphereHierarchy;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Of all sizes; those of an odd `kind` line a plane, with radii up to it, as external balls do.
-std::vector<Sphere> random_balls(Random& random, std::size_t count, int kind, double scale,
-                                 const Vector3d& shift) {
+// Of all sizes; those of an odd `kind` line a plane, with radii up to it, as external spheres do.
+std::vector<Sphere> random_spheres(Random& random, std::size_t count, int kind, double scale,
+                                   const Vector3d& shift) {
   const Eigen::AlignedBox3d box(Vector3d::Zero(), Vector3d::Constant(4));
-  std::vector<Sphere> balls;
+  std::vector<Sphere> spheres;
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3d c = random.in_box(box);
     const double radius = kind % 2 == 1 ? c.z() : random.between(0.0, kind % 3 == 0 ? 0.1 : 1.5);
-    balls.push_back({scale * c + shift, scale * radius});
+    spheres.push_back({scale * c + shift, scale * radius});
   }
-  return balls;
+  return spheres;
 }
 
-Digits50 exact_gap(const Vector3d& p, std::span<const Sphere> balls) {
-  Digits50 gap = balls.empty() ? Digits50(1e300) : Digits50(-1e300);
+Digits50 exact_gap(const Vector3d& p, std::span<const Sphere> spheres) {
+  Digits50 gap = spheres.empty() ? Digits50(1e300) : Digits50(-1e300);
   bool first = true;
-  for (const Sphere& s : balls) {
+  for (const Sphere& s : spheres) {
     const Digits50 g = exact_distance(p, s.center) - s.radius;
     if (first || g < gap) gap = g;
     first = false;
@@ -49,7 +49,7 @@ Digits50 exact_gap(const Vector3d& p, std::span<const Sphere> balls) {
 }
 
 Digits50 exact_clearance(const Vector3d& p, const ExternalSpheres& external) {
-  Digits50 least = exact_gap(p, external.balls);
+  Digits50 least = exact_gap(p, external.spheres);
   for (int axis = 0; axis < 3; ++axis) {
     least = std::min({least, Digits50(p[axis]) - external.box.min()[axis],
                       Digits50(external.box.max()[axis]) - p[axis]});
@@ -60,25 +60,25 @@ Digits50 exact_clearance(const Vector3d& p, const ExternalSpheres& external) {
 ExternalSpheres random_external(Random& random, int i) {
   ExternalSpheres external;
   external.box = Eigen::AlignedBox3d(Vector3d::Zero(), Vector3d::Constant(4));
-  external.balls =
-      random_balls(random, i % 7 == 0 ? 0 : 1 + random.index(200), i, 1.0, Vector3d::Zero());
+  external.spheres =
+      random_spheres(random, i % 7 == 0 ? 0 : 1 + random.index(200), i, 1.0, Vector3d::Zero());
   return external;
 }
 
-// Balls that touch a rod of radius 1 about the z axis from outside, or (every third) wrong
+// Spheres that touch a rod of radius 1 about the z axis from outside, or (every third) wrong
 // contacts.
-struct TouchingBalls {
-  std::vector<Sphere> balls;
+struct TouchingSpheres {
+  std::vector<Sphere> spheres;
   std::vector<Vector3d> contacts;
 };
-TouchingBalls touching_balls(Random& random, bool wrong) {
-  TouchingBalls result;
+TouchingSpheres touching_spheres(Random& random, bool wrong) {
+  TouchingSpheres result;
   for (int i = 0; i < 400; ++i) {
     const double angle = random.between(0.0, 6.2831853);
     const Vector3d out(std::cos(angle), std::sin(angle), 0.0);
     const Vector3d contact = out + Vector3d(0, 0, random.between(0.0, 4.0));
     const double radius = random.between(1.0, i % 5 == 0 ? 20.0 : 1.2);
-    result.balls.push_back({contact + radius * out, radius});
+    result.spheres.push_back({contact + radius * out, radius});
     result.contacts.push_back(wrong ? random.in_box({Vector3d::Zero(), Vector3d::Constant(4)})
                                     : contact);
   }
@@ -87,39 +87,40 @@ TouchingBalls touching_balls(Random& random, bool wrong) {
 
 const Eigen::AlignedBox3d kAround(Vector3d::Constant(-1), Vector3d::Constant(5));
 
-TEST(BallHierarchy, BoundsContainTheExactGapAtEveryScaleAndPlace) {
+TEST(SphereHierarchy, BoundsContainTheExactGapAtEveryScaleAndPlace) {
   Random random(41);
   for (int i = 0; i < effort(60, 12); ++i) {
     const double scale = i % 4 == 0 ? 1e-6 : i % 4 == 1 ? 1e6 : 1.0;
     const Vector3d shift = i % 4 == 2 ? Vector3d(1e6, 1e6, -1e6) : Vector3d(0, 0, 0);
-    const std::vector<Sphere> balls = random_balls(random, 1 + random.index(150), i, scale, shift);
-    const BallHierarchy hierarchy(balls);
+    const std::vector<Sphere> spheres =
+        random_spheres(random, 1 + random.index(150), i, scale, shift);
+    const SphereHierarchy hierarchy(spheres);
     for (int k = 0; k < 40; ++k) {
       const Vector3d p =
-          k == 0 ? balls.front().center : Vector3d(scale * random.in_box(kAround) + shift);
-      const Digits50 exact = exact_gap(p, balls);
-      const NearestBall found = hierarchy.nearest(p);
+          k == 0 ? spheres.front().center : Vector3d(scale * random.in_box(kAround) + shift);
+      const Digits50 exact = exact_gap(p, spheres);
+      const NearestSphere found = hierarchy.nearest(p);
       ASSERT_LE(Digits50(found.lower), exact);
       ASSERT_GE(Digits50(found.upper), exact);
       ASSERT_LE(found.upper - found.lower, 1e-13 * (10.0 * scale + shift.norm()));
-      const Sphere& ball = balls.at(static_cast<std::size_t>(found.index));
-      ASSERT_LE(exact_distance(p, ball.center) - ball.radius, Digits50(found.upper));
+      const Sphere& sphere = spheres.at(static_cast<std::size_t>(found.index));
+      ASSERT_LE(exact_distance(p, sphere.center) - sphere.radius, Digits50(found.upper));
     }
   }
 }
 
-TEST(BallHierarchy, LimitAndToleranceLoosenTheBoundsAsStated) {
+TEST(SphereHierarchy, LimitAndToleranceLoosenTheBoundsAsStated) {
   Random random(42);
   int within = 0;
   int beyond = 0;
   for (int i = 0; i < effort(60, 12); ++i) {
-    const std::vector<Sphere> balls = random_balls(random, 120, i, 1.0, Vector3d::Zero());
-    const BallHierarchy hierarchy(balls);
+    const std::vector<Sphere> spheres = random_spheres(random, 120, i, 1.0, Vector3d::Zero());
+    const SphereHierarchy hierarchy(spheres);
     for (int k = 0; k < 30; ++k) {
       const Vector3d p = random.in_box(kAround);
-      const Digits50 exact = exact_gap(p, balls);
+      const Digits50 exact = exact_gap(p, spheres);
       const double limit = random.between(-1.0, 1.0);
-      const NearestBall limited = hierarchy.nearest(p, limit);
+      const NearestSphere limited = hierarchy.nearest(p, limit);
       if (exact >= limit) {
         ++beyond;
         ASSERT_EQ(limited.index, -1);
@@ -133,7 +134,7 @@ TEST(BallHierarchy, LimitAndToleranceLoosenTheBoundsAsStated) {
         ASSERT_GE(Digits50(limited.upper), exact);
       }
       const double tolerance = random.between(0.0, 0.3);
-      const NearestBall loose = hierarchy.nearest(p, kInfinity, tolerance);
+      const NearestSphere loose = hierarchy.nearest(p, kInfinity, tolerance);
       ASSERT_LE(Digits50(loose.lower), exact);
       ASSERT_GE(Digits50(loose.upper), exact);
       ASSERT_LE(loose.upper - loose.lower, tolerance + 1e-12);
@@ -143,17 +144,17 @@ TEST(BallHierarchy, LimitAndToleranceLoosenTheBoundsAsStated) {
   EXPECT_GT(beyond, 50);
 }
 
-TEST(BallHierarchy, BoundsHoldWhereBallsAreTiedAndWhateverContactsAreSaid) {
+TEST(SphereHierarchy, BoundsHoldWhereSpheresAreTiedAndWhateverContactsAreSaid) {
   Random random(43);
   for (int i = 0; i < effort(30, 6); ++i) {
-    const TouchingBalls touching = touching_balls(random, i % 3 == 2);
-    const BallHierarchy hierarchy(touching.balls, touching.contacts);
+    const TouchingSpheres touching = touching_spheres(random, i % 3 == 2);
+    const SphereHierarchy hierarchy(touching.spheres, touching.contacts);
     for (int k = 0; k < 40; ++k) {
       Vector3d p = random.in_box(kAround);
-      if (k % 2 == 0) p.head<2>() *= 1e-3;  // near the axis, where all balls are nearly tied
-      const Digits50 exact = exact_gap(p, touching.balls);
+      if (k % 2 == 0) p.head<2>() *= 1e-3;  // near the axis, where all spheres are nearly tied
+      const Digits50 exact = exact_gap(p, touching.spheres);
       const double tolerance = k % 4 < 2 ? 0.0 : 0.01;
-      const NearestBall found = hierarchy.nearest(p, kInfinity, tolerance);
+      const NearestSphere found = hierarchy.nearest(p, kInfinity, tolerance);
       ASSERT_LE(Digits50(found.lower), exact);
       ASSERT_GE(Digits50(found.upper), exact);
       ASSERT_LE(found.upper - found.lower, tolerance + 1e-12);
@@ -163,28 +164,28 @@ TEST(BallHierarchy, BoundsHoldWhereBallsAreTiedAndWhateverContactsAreSaid) {
 
 // Normals that are alike in threes about (1, 1, 1): their mean is then, to the last bits, the
 // direction that they have least in common with, or most.
-TEST(BallHierarchy, BoundsHoldWhereNormalAndAxisOfANodeAreOne) {
+TEST(SphereHierarchy, BoundsHoldWhereNormalAndAxisOfANodeAreOne) {
   Random random(44);
   for (int i = 0; i < effort(3000, 300); ++i) {
     const double tilt = random.between(0.001, 0.5);
     const Vector3d n(1.0 + tilt, tilt - 1.0, tilt);
     const Vector3d contact = Vector3d::Constant(random.between(-5.0, 5.0));
-    std::vector<Sphere> balls;
+    std::vector<Sphere> spheres;
     for (int k = 0; k < 3; ++k) {
       const Vector3d out(n[k], n[(k + 1) % 3], n[(k + 2) % 3]);
-      balls.push_back({contact + 0.5 * out.normalized(), 0.5});
+      spheres.push_back({contact + 0.5 * out.normalized(), 0.5});
     }
-    const BallHierarchy hierarchy(balls, std::vector<Vector3d>(3, contact));
+    const SphereHierarchy hierarchy(spheres, std::vector<Vector3d>(3, contact));
     const Vector3d p = Vector3d::Constant(10.0);
-    const Digits50 exact = exact_gap(p, balls);
-    const NearestBall found = hierarchy.nearest(p, 1.2 * static_cast<double>(exact));
+    const Digits50 exact = exact_gap(p, spheres);
+    const NearestSphere found = hierarchy.nearest(p, 1.2 * static_cast<double>(exact));
     ASSERT_GE(found.index, 0) << "tilt " << tilt << ", contact " << contact.x();
     ASSERT_LE(Digits50(found.lower), exact);
   }
 }
 
-TEST(BallHierarchy, AnEmptySetIsInfinitelyFar) {
-  const BallHierarchy hierarchy;
+TEST(SphereHierarchy, AnEmptySetIsInfinitelyFar) {
+  const SphereHierarchy hierarchy;
   EXPECT_TRUE(hierarchy.empty());
   EXPECT_EQ(hierarchy.nearest({0, 0, 0}).lower, kInfinity);
   EXPECT_EQ(hierarchy.nearest({0, 0, 0}).index, -1);
@@ -226,7 +227,7 @@ TEST(Clearance, ToleranceAndLimitKeepTheBoundsTrue) {
       ASSERT_GE(Digits50(limited.upper), exact);
       if (exact < limit - tolerance - 1e-12) {
         ASSERT_LE(limited.upper - limited.lower, tolerance + 1e-12);
-      } else if (!external.balls.empty()) {
+      } else if (!external.spheres.empty()) {
         ASSERT_LE(limited.lower, limit);
         ASSERT_GE(limited.lower, std::min(limit, static_cast<double>(exact)) - tolerance - 1e-12);
       }

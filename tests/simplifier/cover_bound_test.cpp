@@ -20,13 +20,13 @@ SphereCover bounded_cover(const TriangleMesh& mesh, double max_error, double dia
 TEST(CoverBound, IsAboveWhatIsEasyAndNeverAboveACover) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const SphereCover cube = bounded_cover(cube_mesh(), 0.1, 1.0);
-  // Any cover needs a ball for each of the eight corners and more along the edges: a ball reaches
-  // 2.83 E along an edge of 10 E.
+  // Any cover needs a sphere for each of the eight corners and more along the edges: a sphere
+  // reaches 2.83 E along an edge of 10 E.
   EXPECT_GE(cube.lower_bound, 27U);
   EXPECT_LE(cube.lower_bound, cube.spheres.size());
 }
 
-TEST(CoverBound, IsOneWhereOneBallDoes) {
+TEST(CoverBound, IsOneWhereOneSphereDoes) {
   const SphereCover cube = bounded_cover(cube_mesh(), 0.5, 2.0);
   EXPECT_EQ(cube.spheres.size(), 1U);
   EXPECT_EQ(cube.lower_bound, 1U);
@@ -68,7 +68,7 @@ TEST(CoverBound, IsUnknownWhereItWouldNotHold) {
       cover(mesh, external, {.max_error = 0.2, .min_radius = 0.5, .effort = 0, .lower_bound = true})
           .lower_bound,
       0U);
-  // An external ball smaller than E may lie wholly within E of S.
+  // An external sphere smaller than E may lie wholly within E of S.
   EXPECT_EQ(cover(mesh, external, {.max_error = 0.6, .effort = 0, .lower_bound = true}).lower_bound,
             1U);
 }

@@ -22,7 +22,7 @@ CoverBreakdown breakdown_of(const TriangleMesh& mesh, const Fit& fitted) {
   return result;
 }
 
-// Some ball along each of the twelve edges.
+// Some sphere along each of the twelve edges.
 TEST(CoverBreakdown, ACubeCostsItsEdges) {
   const TriangleMesh mesh = cube_mesh();
   const Fit fitted = fit(mesh, {}, {.max_error = 0.06});
@@ -36,9 +36,9 @@ TEST(CoverBreakdown, ACubeCostsItsEdges) {
       middle[(axis + 1) % 3] = corner % 2;
       middle[(axis + 2) % 3] = corner / 2;
       for (std::size_t i = 0; i < found.roles.size(); ++i) {
-        const Sphere& ball = fitted.cover.spheres[i];
-        if (found.roles[i] != BallRole::kEdge) continue;
-        if ((ball.center - middle).norm() > ball.radius) continue;
+        const Sphere& sphere = fitted.cover.spheres[i];
+        if (found.roles[i] != SphereRole::kEdge) continue;
+        if ((sphere.center - middle).norm() > sphere.radius) continue;
         ++edges;
         break;
       }
@@ -64,29 +64,29 @@ TEST(CoverBreakdown, APlateIsThin) {
   EXPECT_EQ(found.faces, 0U);
 }
 
-TEST(CoverBreakdown, ABallHasFacesOnly) {
+TEST(CoverBreakdown, ASphereHasFacesOnly) {
   const TriangleMesh mesh = icosphere(3);
   const FitShares shares{.max_error = 0.02};
   const ExternalSpheres external = externals_of(mesh, shares);
-  std::vector<Sphere> balls;  // on the surface, as if the one inside were missing
-  for (const Vector3d& v : mesh.vertices) balls.push_back({0.8 * v, 0.22});
+  std::vector<Sphere> spheres;  // on the surface, as if the one inside were missing
+  for (const Vector3d& v : mesh.vertices) spheres.push_back({0.8 * v, 0.22});
   const CoverBreakdown found =
-      cover_breakdown(mesh, external, balls, shares.max_error * diagonal_of(mesh));
-  EXPECT_EQ(found.faces, balls.size() - found.inside);
-  EXPECT_GT(found.faces, balls.size() / 3);
+      cover_breakdown(mesh, external, spheres, shares.max_error * diagonal_of(mesh));
+  EXPECT_EQ(found.faces, spheres.size() - found.inside);
+  EXPECT_GT(found.faces, spheres.size() / 3);
 }
 
-// Counted by the gaps to all external balls and to the box.
+// Counted by the gaps to all external spheres and to the box.
 TEST(SpheresInThinParts, AreThoseWhoseCentresAreNearTheOutside) {
   std::size_t in_plate = 0;
   for (const TriangleMesh& mesh : {thin_sheet(0.01), cube_mesh()}) {
     const Fit fitted = fit(mesh, {}, {.max_error = 0.03});
     std::size_t thin = 0;
-    for (const Sphere& ball : fitted.cover.spheres) {
-      const Vector3d& c = ball.center;
+    for (const Sphere& sphere : fitted.cover.spheres) {
+      const Vector3d& c = sphere.center;
       double gap = std::min((c - fitted.external.box.min()).minCoeff(),
                             (fitted.external.box.max() - c).minCoeff());
-      for (const Sphere& outside : fitted.external.balls) {
+      for (const Sphere& outside : fitted.external.spheres) {
         gap = std::min(gap, (c - outside.center).norm() - outside.radius);
       }
       if (gap < fitted.max_error) ++thin;
@@ -102,16 +102,16 @@ TEST(SpheresInThinParts, AreThoseWhoseCentresAreNearTheOutside) {
   EXPECT_THROW(spheres_in_thin_parts({}, {}, 0.0), Error);
 }
 
-// A concave edge is no edge of S that costs balls.
+// A concave edge is no edge of S that costs spheres.
 TEST(CoverBreakdown, ConcaveEdgesAreNone) {
   const TriangleMesh mesh = joined(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({1, 0, 0}, {2, 2, 1}));
   const FitShares shares{.max_error = 0.03};
   const ExternalSpheres external = externals_of(mesh, shares);
-  const std::vector<Sphere> balls = {{{1.0, 1.0, 0.5}, 0.1}, {{0.0, 0.0, 0.5}, 0.1}};
+  const std::vector<Sphere> spheres = {{{1.0, 1.0, 0.5}, 0.1}, {{0.0, 0.0, 0.5}, 0.1}};
   const CoverBreakdown found =
-      cover_breakdown(mesh, external, balls, shares.max_error * diagonal_of(mesh));
-  EXPECT_NE(found.roles[0], BallRole::kEdge);
-  EXPECT_EQ(found.roles[1], BallRole::kEdge);
+      cover_breakdown(mesh, external, spheres, shares.max_error * diagonal_of(mesh));
+  EXPECT_NE(found.roles[0], SphereRole::kEdge);
+  EXPECT_EQ(found.roles[1], SphereRole::kEdge);
 }
 
 TEST(CoverBreakdown, RefusesErrorsOutOfRange) {

@@ -60,7 +60,7 @@ double least_margin(const CoverProblem& problem, const Candidate& candidate,
   return least;
 }
 
-TEST(CoverMoves, ARowsSurroundingsAreADiscGrownByABall) {
+TEST(CoverMoves, ARowsSurroundingsAreADiscGrownByASphere) {
   Random random(13);
   const CoverProblem problem{kError, 0.0};
   for (int i = 0; i < 200; ++i) {
@@ -85,7 +85,7 @@ TEST(CoverMoves, ARowsSurroundingsAreADiscGrownByABall) {
   }
 }
 
-TEST(CoverMoves, AShiftedBallHasNoLessToSpareAndItsClearanceIsABound) {
+TEST(CoverMoves, AShiftedSphereHasNoLessToSpareAndItsClearanceIsABound) {
   Random random(11);
   const Scene scene(random);
   int gained = 0;
@@ -117,7 +117,7 @@ TEST(CoverMoves, SpreadingOpensNoRowAndGivesMoreToSpare) {
   EXPECT_NE(solution, before);
 }
 
-TEST(CoverMoves, BallsReachForRowsThatAreOpen) {
+TEST(CoverMoves, SpheresReachForRowsThatAreOpen) {
   Random random(13);
   Scene scene(random);
   CoverProblem::Columns solution = greedy_set_cover(scene.problem.instance());
@@ -162,7 +162,7 @@ TEST(CoverEffort, ALongSearchTakesFewerSpheresAndIsProved) {
 }
 
 // A large thin part: more rows than candidates are grown for at once, and rows that were learned
-// before cells become finer. A ball about the middle plane protrudes by E above a disc of radius
+// before cells become finer. A sphere about the middle plane protrudes by E above a disc of radius
 // sqrt((E + 1/2)^2 - 1/4); the squares in these tile the plate.
 TEST(CoverEffort, ALargeThinPlateTakesLittleMoreThanALattice) {
   struct Case {

@@ -27,14 +27,14 @@ class CoverOfZoo : public testing::TestWithParam<std::tuple<std::size_t, CoverMe
   CoverOptions options() const { return options_for(std::get<1>(GetParam())); }
 };
 
-// Without any volume, whose solid is as thin as the external balls leave it.
+// Without any volume, whose solid is as thin as the external spheres leave it.
 bool is_sheet(const TriangleMesh& mesh) {
   return mesh.triangles.size() == three_fins().triangles.size();
 }
 
 void expect_covered(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t seed) {
-  const std::vector<Sphere>& balls = fitted.cover.spheres;
-  const Certificate certificate = certificate_of(mesh, fitted, balls);
+  const std::vector<Sphere>& spheres = fitted.cover.spheres;
+  const Certificate certificate = certificate_of(mesh, fitted, spheres);
   EXPECT_TRUE(certificate.covered);
   EXPECT_EQ(certificate.uncovered_depth.upper, 0.0);
 
@@ -45,8 +45,8 @@ void expect_covered(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t s
   const std::vector<Vector3d> solid = points_of_solid(fitted.external, count, random);
   // Of sheets without a volume few points are met, and nearly all of the others.
   EXPECT_GE(solid.size(), is_sheet(mesh) ? 10U : count / 3);
-  EXPECT_EQ(judge_cover(surface, balls).uncovered, 0U);
-  EXPECT_EQ(judge_cover(solid, balls).uncovered, 0U);
+  EXPECT_EQ(judge_cover(surface, spheres).uncovered, 0U);
+  EXPECT_EQ(judge_cover(solid, spheres).uncovered, 0U);
 }
 
 TEST_P(CoverOfZoo, TheSolidIsCoveredAndNothingProtrudesByMoreThanTheError) {
@@ -118,7 +118,7 @@ TEST_P(CoverByMethod, WithPaddingTheGrownMeshIsCovered) {
   }
 }
 
-TEST_P(CoverByMethod, NoBallIsSmallerThanTheLeastRadius) {
+TEST_P(CoverByMethod, NoSphereIsSmallerThanTheLeastRadius) {
   const TriangleMesh mesh = mesh_named("open-box");
   for (const double share : effort(std::vector{2.5, 5.0, 1.0}, 2)) {
     CoverOptions options = this->options();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// External balls are where a tool of the least diameter can get, and nowhere else.
+// External spheres are where a tool of the least diameter can get, and nowhere else.
 #include "simplifier/external_spheres.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Whether a ball of radius rho meets nothing on the straight way, at points so close together that
-// the clearance between two of them is known.
+// Whether a sphere of radius rho meets nothing on the straight way, at points so close together
+// that the clearance between two of them is known.
 bool passes(const TriangleMesh& mesh, const Vector3d& from, const Vector3d& to, double rho) {
   const double length = (to - from).norm();
   double at = 0.0;
@@ -25,13 +25,13 @@ bool passes(const TriangleMesh& mesh, const Vector3d& from, const Vector3d& to, 
     const Real room = judged_mesh_distance(from + at * (to - from), mesh) - rho;
     if (room < -1e-12L) return false;
     if (at >= 1.0) return true;
-    // Nothing is met for `room`; a ball that just fits steps on by a hair.
+    // Nothing is met for `room`; a sphere that just fits steps on by a hair.
     const double way = std::max(static_cast<double>(room), 0.01 * rho);
     at = std::min(1.0, at + way / length);
   }
 }
 
-// Whether the ball gets straight out of the box along an axis.
+// Whether the sphere gets straight out of the box along an axis.
 bool leaves(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box, const Vector3d& from,
             double rho) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -45,21 +45,21 @@ bool leaves(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box, const Vect
   return false;
 }
 
-// How many balls a ball of radius rho gets to from outside, straight from ball to ball.
+// How many spheres a sphere of radius rho gets to from outside, straight from sphere to sphere.
 std::size_t reached(const TriangleMesh& mesh, const ExternalSpheres& external) {
   const double rho = external.min_external_diameter / 2.0;
-  const std::vector<Sphere>& balls = external.balls;
+  const std::vector<Sphere>& spheres = external.spheres;
   std::vector<std::size_t> front;
-  std::vector<bool> seen(balls.size(), false);
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    if (!leaves(mesh, external.box, balls[i].center, rho)) continue;
+  std::vector<bool> seen(spheres.size(), false);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    if (!leaves(mesh, external.box, spheres[i].center, rho)) continue;
     seen[i] = true;
     front.push_back(i);
   }
   for (std::size_t k = 0; k < front.size(); ++k) {
-    const Sphere& here = balls[front[k]];
-    for (std::size_t i = 0; i < balls.size(); ++i) {
-      const Sphere& there = balls[i];
+    const Sphere& here = spheres[front[k]];
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const Sphere& there = spheres[i];
       if (seen[i] || (there.center - here.center).norm() >= there.radius + here.radius) continue;
       if (!passes(mesh, here.center, there.center, rho)) continue;
       seen[i] = true;
@@ -88,7 +88,7 @@ TriangleMesh bent_duct() {
   return mesh;
 }
 
-TEST(ExternalReach, EveryBallCanBeReachedFromOutside) {
+TEST(ExternalReach, EverySphereCanBeReachedFromOutside) {
   for (const TriangleMesh& mesh : effort(std::vector{bent_duct(), pipe(2, 1.6, 4, 12)}, 1)) {
     for (const ExternalPlacement placement :
          {ExternalPlacement::kReachable, ExternalPlacement::kRandom}) {
@@ -98,7 +98,7 @@ TEST(ExternalReach, EveryBallCanBeReachedFromOutside) {
       options.grid_step = kSanitized ? 0.4 : 0.3;
       options.limit = static_cast<std::size_t>(effort(1500, 200));
       const ExternalSpheres external = place_external_spheres(mesh, options);
-      EXPECT_EQ(reached(mesh, external), external.balls.size());
+      EXPECT_EQ(reached(mesh, external), external.spheres.size());
     }
   }
 }
@@ -120,8 +120,8 @@ TEST(ExternalReach, TheFarPartOfADuctIsOpenOnlyWhereTheWayThereIsWide) {
   }
 }
 
-// A tool of balls of diameter at least D and room for the grid, in a position that it reaches from
-// outside, meets S by no more than that room, unless it meets M.
+// A tool of spheres of diameter at least D and room for the grid, in a position that it reaches
+// from outside, meets S by no more than that room, unless it meets M.
 TEST(ExternalReach, NothingIsLostForToolsOfTheLeastDiameter) {
   Random random(61);
   int tried = 0;
@@ -131,7 +131,7 @@ TEST(ExternalReach, NothingIsLostForToolsOfTheLeastDiameter) {
     options.min_external_diameter = 0.4;
     options.grid_step = 0.05;
     const ExternalSpheres external = place_external_spheres(mesh, options);
-    // With so much room the place's own cell is reached, and its ball is known up to that.
+    // With so much room the place's own cell is reached, and its sphere is known up to that.
     const double slack = 2.0 * (0.8661 + 0.5) * external.grid_step;
     const double rho = (options.min_external_diameter + slack) / 2.0;
     const Vector3d margin = Vector3d::Constant(0.5);

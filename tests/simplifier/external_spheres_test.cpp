@@ -41,7 +41,7 @@ TriangleMesh two_plates(double gap) {
   return joined(box_mesh({0, 0, 0}, {10, 10, 1}), box_mesh({0, 0, 1 + gap}, {10, 10, 2 + gap}));
 }
 
-TEST(ExternalSpheres, EveryBallIsFreeOfThePaddedMeshAndLargeEnough) {
+TEST(ExternalSpheres, EverySphereIsFreeOfThePaddedMeshAndLargeEnough) {
   for (const NamedMesh& named : zoo_to_fit()) {
     SCOPED_TRACE(named.name);
     const double size = diagonal(named.mesh);
@@ -53,13 +53,13 @@ TEST(ExternalSpheres, EveryBallIsFreeOfThePaddedMeshAndLargeEnough) {
         mesh.vertex_error = padding / 16.0;
         const ExternalSpheres external = place_external_spheres(mesh, options);
         ASSERT_GE(external.padding, padding + mesh.vertex_error);
-        ASSERT_FALSE(external.balls.empty());
+        ASSERT_FALSE(external.spheres.empty());
         const std::size_t stride = kSanitized ? 64 : 16;
-        for (std::size_t i = 0; i < external.balls.size(); i += stride) {
-          const Sphere& ball = external.balls[i];
-          ASSERT_GE(2.0 * ball.radius, options.min_external_diameter);
-          ASSERT_LE(static_cast<Real>(ball.radius) + external.padding,
-                    judged_mesh_distance(ball.center, mesh) + 1e-17L * size);
+        for (std::size_t i = 0; i < external.spheres.size(); i += stride) {
+          const Sphere& sphere = external.spheres[i];
+          ASSERT_GE(2.0 * sphere.radius, options.min_external_diameter);
+          ASSERT_LE(static_cast<Real>(sphere.radius) + external.padding,
+                    judged_mesh_distance(sphere.center, mesh) + 1e-17L * size);
         }
       }
     }
@@ -156,7 +156,7 @@ TEST(ExternalSpheres, WithoutPlacementTheSolidIsTheBox) {
   options.placement = ExternalPlacement::kNone;
   options.padding = 0.5;
   const ExternalSpheres external = place_external_spheres(cube_mesh(), options);
-  EXPECT_TRUE(external.balls.empty());
+  EXPECT_TRUE(external.spheres.empty());
   EXPECT_LE(external.box.min().maxCoeff(), -0.5);
   EXPECT_GE(external.box.max().minCoeff(), 1.5);
   EXPECT_NEAR(external.box.sizes().norm(), 2.0 * std::sqrt(3.0), 1e-12);
@@ -167,14 +167,14 @@ TEST(ExternalSpheres, AreEqualInEveryRunOnAnyNumberOfThreads) {
   for (const ExternalPlacement placement : kPlacements) {
     const ExternalOptions options = options_for(placement, 0.3);
     const ExternalSpheres first = place_external_spheres(l_bracket(), options);
-    EXPECT_EQ(place_external_spheres(l_bracket(), options).balls, first.balls);
+    EXPECT_EQ(place_external_spheres(l_bracket(), options).spheres, first.spheres);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    EXPECT_EQ(place_external_spheres(l_bracket(), options).balls, first.balls);
+    EXPECT_EQ(place_external_spheres(l_bracket(), options).spheres, first.spheres);
   }
   ExternalOptions other = options_for(ExternalPlacement::kRandom, 0.3);
   const ExternalSpheres first = place_external_spheres(l_bracket(), other);
   other.seed = 2;
-  EXPECT_NE(place_external_spheres(l_bracket(), other).balls, first.balls);
+  EXPECT_NE(place_external_spheres(l_bracket(), other).spheres, first.spheres);
   EXPECT_EQ(first.nodes_examined, other.limit);
 }
 

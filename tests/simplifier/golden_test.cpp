@@ -61,7 +61,7 @@ TEST(Golden, ExternalSpheresAndTheSpheresOfBothMethods) {
     shares.max_error = 0.07;
     shares.placement = golden.placement;
     const Fit fitted = fit(golden.mesh, options, shares);
-    const std::uint64_t external = hash_of(fitted.external.balls);
+    const std::uint64_t external = hash_of(fitted.external.spheres);
     const std::uint64_t paper = hash_of(fitted.cover.spheres);
     options.method = CoverMethod::kCover;
     shares.effort = 2;

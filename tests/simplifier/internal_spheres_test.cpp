@@ -29,18 +29,18 @@ Fit paper_fit(const TriangleMesh& mesh, const FitShares& shares = {}) {
   return fit(mesh, paper_options(), shares);
 }
 
-// Free of all external balls and within the box. A point, a ball of radius zero, may stand where a
-// sliver of S is too thin to be found, just outside of it.
+// Free of all external spheres and within the box. A point, a sphere of radius zero, may stand
+// where a sliver of S is too thin to be found, just outside of it.
 void expect_in_solid(const Sphere& s, const Fit& fitted) {
   const double off = (s.radius == 0.0 ? 1e-3 : 1e-15) * fitted.max_error;
-  ASSERT_GE(gap_to_balls(s.center, fitted.external.balls), s.radius - off);
+  ASSERT_GE(gap_to_spheres(s.center, fitted.external.spheres), s.radius - off);
   for (int axis = 0; axis < 3; ++axis) {
     ASSERT_GE(s.center[axis] - s.radius, fitted.external.box.min()[axis] - off);
     ASSERT_LE(s.center[axis] + s.radius, fitted.external.box.max()[axis] + off);
   }
 }
 
-TEST(InternalSpheres, EveryBallOfTheSolidIsInflatedByTheSameErrorWithinTheLimit) {
+TEST(InternalSpheres, EverySphereOfTheSolidIsInflatedByTheSameErrorWithinTheLimit) {
   for (const NamedMesh& named : zoo_to_fit()) {
     SCOPED_TRACE(named.name);
     const Fit fitted = paper_fit(named.mesh);
@@ -58,7 +58,7 @@ TEST(InternalSpheres, EveryBallOfTheSolidIsInflatedByTheSameErrorWithinTheLimit)
   }
 }
 
-// An audit of the balls before inflation finds the leak, as deep as the loop itself says that the
+// An audit of the spheres before inflation finds the leak, as deep as the loop itself says that the
 // remaining error is.
 TEST(InternalSpheres, AnAuditBeforeInflationFindsTheErrorOfTheLoop) {
   for (const TriangleMesh& mesh :
@@ -76,7 +76,7 @@ TEST(InternalSpheres, AnAuditBeforeInflationFindsTheErrorOfTheLoop) {
     ASSERT_GT(certificate.uncovered_depth.lower, 0.0);
     // The witness stands up before the judge.
     EXPECT_TRUE(is_in_solid(certificate.deepest_leak, fitted.external));
-    EXPECT_GE(gap_to_balls(certificate.deepest_leak, before),
+    EXPECT_GE(gap_to_spheres(certificate.deepest_leak, before),
               certificate.uncovered_depth.lower * (1.0 - 1e-12));
     // No sample is deeper than proved.
     Random random(81);
@@ -129,12 +129,12 @@ TEST(InternalSpheres, SeedsThatCollideDoNotStallTheLoop) {
     const Fit fitted = fit(cube_mesh(), options);
     EXPECT_TRUE(certificate_of(cube_mesh(), fitted, fitted.cover.spheres).covered);
     EXPECT_LE(fitted.cover.seeds_rejected, fitted.cover.spheres.size());
-    // The corners of the cube: a ball of the size of the cube fits into none.
+    // The corners of the cube: a sphere of the size of the cube fits into none.
     EXPECT_GE(fitted.cover.seeds_rejected, share == 8.0 ? 8U : 0U);
   }
 }
 
-// Sheets and meshes without any inside: the solid is as thin as the external balls leave it.
+// Sheets and meshes without any inside: the solid is as thin as the external spheres leave it.
 TEST(InternalSpheres, ThinAndFlatInputIsCovered) {
   TriangleMesh line;
   line.vertices = {{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}};
@@ -160,7 +160,7 @@ TEST(InternalSpheres, AnErrorBelowTheRoundingOfTheCoordinatesIsRefused) {
   EXPECT_THROW(cover(mesh, box, options), Error);
 }
 
-TEST(InternalSpheres, ASmallerErrorAsksForMoreBallsAndGivesLessExcess) {
+TEST(InternalSpheres, ASmallerErrorAsksForMoreSpheresAndGivesLessExcess) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   std::size_t last = 0;
   for (const double error : {0.12, 0.08, 0.05}) {

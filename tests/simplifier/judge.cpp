@@ -37,9 +37,9 @@ Real triangle_distance(const Vector3l& p, const std::array<Vector3l, 3>& t) {
   return above ? std::min(best, std::abs(normal.dot(p - t[0])) / normal.norm()) : best;
 }
 
-bool is_in_open_ball(const Vector3l& p, const Sphere& ball) {
-  const Real radius = ball.radius;
-  return (p - wide(ball.center)).squaredNorm() < radius * radius;
+bool is_in_open_sphere(const Vector3l& p, const Sphere& sphere) {
+  const Real radius = sphere.radius;
+  return (p - wide(sphere.center)).squaredNorm() < radius * radius;
 }
 
 // Points on the way from a point of the sphere to its centre are tried at these shares of the
@@ -52,10 +52,10 @@ Real judged_distance(const Vector3d& a, const Vector3d& b) {
   return (wide(a) - wide(b)).norm();
 }
 
-Real gap_to_balls(const Vector3d& p, std::span<const Sphere> balls) {
+Real gap_to_spheres(const Vector3d& p, std::span<const Sphere> spheres) {
   const Vector3l q = wide(p);
   Real gap = std::numeric_limits<Real>::infinity();
-  for (const Sphere& s : balls) gap = std::min(gap, (q - wide(s.center)).norm() - s.radius);
+  for (const Sphere& s : spheres) gap = std::min(gap, (q - wide(s.center)).norm() - s.radius);
   return gap;
 }
 
@@ -71,8 +71,8 @@ Real judged_mesh_distance(const Vector3d& p, const TriangleMesh& mesh) {
 bool is_in_solid(const Vector3d& p, const ExternalSpheres& external) {
   if (!external.box.contains(p)) return false;
   const Vector3l q = wide(p);
-  return std::ranges::none_of(external.balls,
-                              [&](const Sphere& s) { return is_in_open_ball(q, s); });
+  return std::ranges::none_of(external.spheres,
+                              [&](const Sphere& s) { return is_in_open_sphere(q, s); });
 }
 
 std::vector<Vector3d> points_on_surface(const TriangleMesh& mesh, std::size_t count,
@@ -123,9 +123,9 @@ std::vector<Vector3d> points_of_solid(const ExternalSpheres& external, std::size
         break;
       }
       default:
-        if (external.balls.empty()) break;
-        const Sphere& ball = external.balls[random.index(external.balls.size())];
-        p = ball.center + ball.radius * (1.0 + 1e-12) * random.direction();
+        if (external.spheres.empty()) break;
+        const Sphere& sphere = external.spheres[random.index(external.spheres.size())];
+        p = sphere.center + sphere.radius * (1.0 + 1e-12) * random.direction();
         break;
     }
     keep(p);
@@ -133,11 +133,11 @@ std::vector<Vector3d> points_of_solid(const ExternalSpheres& external, std::size
   return points;
 }
 
-Judgement judge_cover(std::span<const Vector3d> points, std::span<const Sphere> balls) {
+Judgement judge_cover(std::span<const Vector3d> points, std::span<const Sphere> spheres) {
   Judgement judgement;
   judgement.points = points.size();
   for (const Vector3d& p : points) {
-    const Real gap = gap_to_balls(p, balls);
+    const Real gap = gap_to_spheres(p, spheres);
     if (gap > 0.0L) ++judgement.uncovered;
     if (gap > judgement.depth) {
       judgement.depth = gap;
@@ -147,18 +147,18 @@ Judgement judge_cover(std::span<const Vector3d> points, std::span<const Sphere> 
   return judgement;
 }
 
-ProtrusionJudgement judge_protrusion(std::span<const Sphere> balls, const TriangleMesh& mesh,
+ProtrusionJudgement judge_protrusion(std::span<const Sphere> spheres, const TriangleMesh& mesh,
                                      const ExternalSpheres& external, double max_error,
-                                     std::size_t per_ball, Random& random) {
+                                     std::size_t per_sphere, Random& random) {
   ProtrusionJudgement judgement;
-  for (const Sphere& ball : balls) {
-    for (std::size_t i = 0; i < per_ball; ++i) {
+  for (const Sphere& sphere : spheres) {
+    for (std::size_t i = 0; i < per_sphere; ++i) {
       const Vector3d direction = random.direction();
-      const Vector3d y = ball.center + ball.radius * direction;
+      const Vector3d y = sphere.center + sphere.radius * direction;
       ++judgement.points;
       const auto is_in_solid_further_in = [&](double share) {
-        const double way = std::min(share * max_error, ball.radius);
-        return is_in_solid(ball.center + (ball.radius - way) * direction, external);
+        const double way = std::min(share * max_error, sphere.radius);
+        return is_in_solid(sphere.center + (sphere.radius - way) * direction, external);
       };
       if (std::ranges::any_of(kShares, is_in_solid_further_in)) continue;
       if (judged_mesh_distance(y, mesh) <= max_error) continue;

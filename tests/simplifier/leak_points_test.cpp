@@ -17,16 +17,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The distance to the union of the balls, ball by ball.
-long double gap(const Vector3d& point, const std::vector<Sphere>& balls) {
+// The distance to the union of the spheres, sphere by sphere.
+long double gap(const Vector3d& point, const std::vector<Sphere>& spheres) {
   long double least = std::numeric_limits<long double>::infinity();
-  for (const Sphere& ball : balls) {
+  for (const Sphere& sphere : spheres) {
     long double squared = 0.0L;
     for (int axis = 0; axis < 3; ++axis) {
-      const long double d = static_cast<long double>(point[axis]) - ball.center[axis];
+      const long double d = static_cast<long double>(point[axis]) - sphere.center[axis];
       squared += d * d;
     }
-    least = std::min(least, std::sqrt(squared) - ball.radius);
+    least = std::min(least, std::sqrt(squared) - sphere.radius);
   }
   return least;
 }
@@ -45,15 +45,15 @@ TEST(LeakPointsTest, AreLeaksOfTheSurfaceAndMissNone) {
   const double diagonal = std::sqrt(3.0);
   std::size_t leaks_seen = 0;
   for (int round = 0; round < effort(12, 3); ++round) {
-    std::vector<Sphere> balls;
-    for (int i = 0; i < 12; ++i) balls.push_back({random.in_box(room), random.between(0.1, 0.6)});
-    const auto leaks = leak_points(cube_mesh(), balls, options);
+    std::vector<Sphere> spheres;
+    for (int i = 0; i < 12; ++i) spheres.push_back({random.in_box(room), random.between(0.1, 0.6)});
+    const auto leaks = leak_points(cube_mesh(), spheres, options);
     leaks_seen += leaks.size();
     for (std::size_t i = 0; i < leaks.size(); ++i) {
       EXPECT_LT(from_cube(leaks[i].point), 1e-15);
       EXPECT_GT(leaks[i].depth, 0.0);
-      EXPECT_GE(gap(leaks[i].point, balls), static_cast<long double>(leaks[i].depth));
-      EXPECT_NEAR(static_cast<double>(gap(leaks[i].point, balls)), leaks[i].depth, 1e-14);
+      EXPECT_GE(gap(leaks[i].point, spheres), static_cast<long double>(leaks[i].depth));
+      EXPECT_NEAR(static_cast<double>(gap(leaks[i].point, spheres)), leaks[i].depth, 1e-14);
       if (i > 0) {
         EXPECT_GE(leaks[i - 1].depth, leaks[i].depth);
       }
@@ -66,7 +66,7 @@ TEST(LeakPointsTest, AreLeaksOfTheSurfaceAndMissNone) {
     for (int sample = 0; sample < effort(500, 100); ++sample) {
       Vector3d p = random.in_box({Vector3d::Zero(), Vector3d::Ones()});
       p[static_cast<int>(random.index(3))] = random.index(2) == 0 ? 0.0 : 1.0;
-      if (gap(p, balls) < options.spacing * diagonal) continue;
+      if (gap(p, spheres) < options.spacing * diagonal) continue;
       EXPECT_TRUE(std::any_of(leaks.begin(), leaks.end(), [&](const LeakPoint& leak) {
         return (leak.point - p).norm() <= reach;
       }));
@@ -94,12 +94,12 @@ TEST(LeakPointsTest, NoneWhereAllIsCovered) {
 }
 
 TEST(LeakPointsTest, RefusesBadInput) {
-  const std::vector<Sphere> ball{{Vector3d::Zero(), 1.0}};
-  EXPECT_THROW(leak_points({}, ball), Error);
+  const std::vector<Sphere> sphere{{Vector3d::Zero(), 1.0}};
+  EXPECT_THROW(leak_points({}, sphere), Error);
   EXPECT_THROW(leak_points(cube_mesh(), std::vector<Sphere>{{Vector3d::Zero(), -1.0}}), Error);
   for (const double share : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW(leak_points(cube_mesh(), ball, {.spacing = share}), Error);
-    EXPECT_THROW(leak_points(cube_mesh(), ball, {.separation = share}), Error);
+    EXPECT_THROW(leak_points(cube_mesh(), sphere, {.spacing = share}), Error);
+    EXPECT_THROW(leak_points(cube_mesh(), sphere, {.separation = share}), Error);
   }
 }
 

@@ -49,25 +49,25 @@ void expect_good_levels(const TriangleMesh& mesh, const Simplification& result) 
   std::span<const Sphere> finer = result.cover.spheres;
   for (const CoverLevel& level : result.levels) {
     SCOPED_TRACE(level.max_error);
-    expect_enclosed(finer, level.balls);
-    EXPECT_LE(level.balls.spheres.size(), finer.size());
-    const OctreeProof proof = prove_by_octree(result.external, level.balls.spheres, 26,
+    expect_enclosed(finer, level.spheres);
+    EXPECT_LE(level.spheres.spheres.size(), finer.size());
+    const OctreeProof proof = prove_by_octree(result.external, level.spheres.spheres, 26,
                                               static_cast<std::size_t>(effort(300'000, 60'000)));
     EXPECT_NE(proof.verdict, OctreeVerdict::kLeak) << proof.point.transpose();
     if (result.options.min_radius == 0.0) {
       EXPECT_LE(level.protrusion, level.max_error);
-      EXPECT_EQ(judge_protrusion(level.balls.spheres, mesh, result.external,
+      EXPECT_EQ(judge_protrusion(level.spheres.spheres, mesh, result.external,
                                  level.protrusion + 1e-9 * size,
                                  static_cast<std::size_t>(effort(12, 3)), random)
                     .beyond,
                 0U);
     }
-    EXPECT_LE(level.clustering_count, level.balls.spheres.size());
-    finer = level.balls.spheres;
+    EXPECT_LE(level.clustering_count, level.spheres.spheres.size());
+    finer = level.spheres.spheres;
   }
   const LevelTree tree = level_tree(result.cover.spheres, result.levels);
   for (std::size_t k = 0; k < result.levels.size(); ++k) {
-    ASSERT_EQ(tree.nodes[k].size(), result.levels[k].balls.spheres.size());
+    ASSERT_EQ(tree.nodes[k].size(), result.levels[k].spheres.spheres.size());
   }
 }
 
@@ -84,7 +84,7 @@ TEST(Levels, StandAboveThePapersSpheresAndAboveALeastRadius) {
   expect_good_levels(l_bracket(), fitted_levels(l_bracket(), CoverMethod::kCover, 0.1));
 }
 
-// With an error so small that no level is a single ball: a ball around a cube is as good as
+// With an error so small that no level is a single sphere: a sphere around a cube is as good as
 // another.
 TEST(Levels, AreFewerAndCloserThanPlainClustering) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
@@ -95,9 +95,9 @@ TEST(Levels, AreFewerAndCloserThanPlainClustering) {
                                                 .effort = 1});
   std::size_t finer = result.cover.spheres.size();
   for (const CoverLevel& level : result.levels) {
-    EXPECT_LT(level.balls.spheres.size(), finer);
+    EXPECT_LT(level.spheres.spheres.size(), finer);
     EXPECT_LT(level.protrusion, level.clustering_protrusion);
-    finer = level.balls.spheres.size();
+    finer = level.spheres.spheres.size();
   }
 }
 
@@ -107,8 +107,8 @@ TEST(Levels, AreEqualInEveryRunOnAnyNumberOfThreads) {
   for (const int threads : {1, 2}) {
     const Simplification again = fitted_levels(l_bracket(), CoverMethod::kCover, 0.0, threads);
     for (std::size_t k = 0; k < first.levels.size(); ++k) {
-      EXPECT_EQ(first.levels[k].balls.spheres, again.levels[k].balls.spheres);
-      EXPECT_EQ(first.levels[k].balls.parent_of, again.levels[k].balls.parent_of);
+      EXPECT_EQ(first.levels[k].spheres.spheres, again.levels[k].spheres.spheres);
+      EXPECT_EQ(first.levels[k].spheres.parent_of, again.levels[k].spheres.parent_of);
       EXPECT_EQ(first.levels[k].protrusion, again.levels[k].protrusion);
     }
   }

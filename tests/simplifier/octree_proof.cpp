@@ -34,13 +34,13 @@ bool clip(Cube& cube, const Eigen::AlignedBox3d& box) {
 
 enum class Relation { kApart, kMeets, kInside };
 
-// How a cube lies to a ball: surely apart from the closed one, surely inside of the open one, or
+// How a cube lies to a sphere: surely apart from the closed one, surely inside of the open one, or
 // neither.
-Relation relation(const Cube& cube, const Sphere& ball) {
+Relation relation(const Cube& cube, const Sphere& sphere) {
   Real nearest = 0.0L;
   Real furthest = 0.0L;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Real c = ball.center[static_cast<Eigen::Index>(k)];
+    const Real c = sphere.center[static_cast<Eigen::Index>(k)];
     const Real below = cube.low[k] - c;
     const Real above = cube.high[k] - c;
     const Real near = std::max({below, -above, 0.0L});
@@ -48,17 +48,17 @@ Relation relation(const Cube& cube, const Sphere& ball) {
     nearest += near * near;
     furthest += far * far;
   }
-  const Real radius = ball.radius;
+  const Real radius = sphere.radius;
   if (furthest * (1.0L + kSlack) < radius * radius) return Relation::kInside;
   return nearest * (1.0L - kSlack) > radius * radius ? Relation::kApart : Relation::kMeets;
 }
 
-// The balls that meet the cube; true if one of them holds it.
+// The spheres that meet the cube; true if one of them holds it.
 bool select(const Cube& cube, std::span<const Sphere> from, std::vector<Sphere>& meeting) {
-  for (const Sphere& ball : from) {
-    const Relation found = relation(cube, ball);
+  for (const Sphere& sphere : from) {
+    const Relation found = relation(cube, sphere);
     if (found == Relation::kInside) return true;
-    if (found == Relation::kMeets) meeting.push_back(ball);
+    if (found == Relation::kMeets) meeting.push_back(sphere);
   }
   return false;
 }
@@ -69,14 +69,14 @@ class Prover {
       : box_(box), max_depth_(max_depth), max_cubes_(max_cubes) {}
 
   // False as soon as the verdict is not kCovered.
-  bool prove(const Cube& cube, std::span<const Sphere> external, std::span<const Sphere> balls,
+  bool prove(const Cube& cube, std::span<const Sphere> external, std::span<const Sphere> spheres,
              int depth) {
     Cube part = cube;
     if (!clip(part, box_)) return true;
     ++proof.cubes;
     std::vector<Sphere> outside;
     std::vector<Sphere> holding;
-    if (select(part, external, outside) || select(part, balls, holding)) return true;
+    if (select(part, external, outside) || select(part, spheres, holding)) return true;
     for (unsigned corner = 0; corner < 8; ++corner) {
       std::array<Real, 3> point;
       for (std::size_t k = 0; k < 3; ++k) point[k] = (corner >> k & 1U ? part.high : part.low)[k];
@@ -104,8 +104,8 @@ class Prover {
   static bool is_leak(const Vector3d& p, std::span<const Sphere> outside,
                       std::span<const Sphere> holding) {
     const Cube point{{p.x(), p.y(), p.z()}, {p.x(), p.y(), p.z()}};
-    const auto is_apart = [&](const Sphere& ball) {
-      return relation(point, ball) == Relation::kApart;
+    const auto is_apart = [&](const Sphere& sphere) {
+      return relation(point, sphere) == Relation::kApart;
     };
     return std::ranges::all_of(outside, is_apart) && std::ranges::all_of(holding, is_apart);
   }
@@ -122,7 +122,7 @@ class Prover {
 
 }  // namespace
 
-OctreeProof prove_by_octree(const ExternalSpheres& external, std::span<const Sphere> balls,
+OctreeProof prove_by_octree(const ExternalSpheres& external, std::span<const Sphere> spheres,
                             int max_depth, std::size_t max_cubes) {
   // A cube about the box with an edge 2^k, its corner at multiples of 2^(k - 10): all corners of
   // the octree are multiples of 2^(k - 50) at most, hence exact in 64 bits if the box is not
@@ -139,7 +139,7 @@ OctreeProof prove_by_octree(const ExternalSpheres& external, std::span<const Sph
   if (external.box.min().cwiseAbs().maxCoeff() > std::ldexp(1.0, k + 12)) {
     return {OctreeVerdict::kUndecided, external.box.min(), 0};
   }
-  prover.prove(cube, external.balls, balls, 0);
+  prover.prove(cube, external.spheres, spheres, 0);
   return prover.proof;
 }
 

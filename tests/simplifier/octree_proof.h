@@ -2,7 +2,7 @@
 #pragma once
 
 // A proof of coverage that shares no code with the simplifier and nothing with its method but the
-// definition of S: an octree of cubes with exact corners, every ball tried on every cube that it
+// definition of S: an octree of cubes with exact corners, every sphere tried on every cube that it
 // meets, in long double with an explicit error. Slow and short.
 
 #include "simplifier/external_spheres.h"
@@ -16,8 +16,8 @@
 namespace spherule::test {
 
 enum class OctreeVerdict {
-  kCovered,   // proved: S is a subset of the union of the balls
-  kLeak,      // proved: `point` is in S and in no ball
+  kCovered,   // proved: S is a subset of the union of the spheres
+  kLeak,      // proved: `point` is in S and in no sphere
   kUndecided  // a cube was to be split too often, or there were too many
 };
 
@@ -28,7 +28,7 @@ struct OctreeProof {
 };
 
 // Cubes are split `max_depth` times at most, at most 40; no more than `max_cubes` are looked at.
-OctreeProof prove_by_octree(const ExternalSpheres& external, std::span<const Sphere> balls,
+OctreeProof prove_by_octree(const ExternalSpheres& external, std::span<const Sphere> spheres,
                             int max_depth = 32, std::size_t max_cubes = 20'000'000);
 
 }  // namespace spherule::test

@@ -26,11 +26,11 @@ ExternalSpheres cube_without_externals() {
   return external;
 }
 
-OctreeVerdict verdict(const ExternalSpheres& external, const std::vector<Sphere>& balls) {
-  return prove_by_octree(external, balls).verdict;
+OctreeVerdict verdict(const ExternalSpheres& external, const std::vector<Sphere>& spheres) {
+  return prove_by_octree(external, spheres).verdict;
 }
 
-TEST(OctreeProof, ACubeIsCoveredByItsCircumscribedBallAndByNoSmallerOne) {
+TEST(OctreeProof, ACubeIsCoveredByItsCircumscribedSphereAndByNoSmallerOne) {
   const ExternalSpheres cube = cube_without_externals();
   const double radius = std::sqrt(0.75);
   EXPECT_EQ(verdict(cube, {{kMiddle, radius + 1e-12}}), OctreeVerdict::kCovered);
@@ -42,15 +42,15 @@ TEST(OctreeProof, ACubeIsCoveredByItsCircumscribedBallAndByNoSmallerOne) {
   }
 }
 
-TEST(OctreeProof, WhatExternalBallsTakeNeedNotBeCovered) {
+TEST(OctreeProof, WhatExternalSpheresTakeNeedNotBeCovered) {
   ExternalSpheres cube = cube_without_externals();
-  cube.balls = {{{0, 0, 0}, 0.5}};
+  cube.spheres = {{{0, 0, 0}, 0.5}};
   // Reaches every corner but the one that is taken.
-  const std::vector<Sphere> ball{{Vector3d::Constant(0.55), 0.92}};
-  EXPECT_EQ(verdict(cube_without_externals(), ball), OctreeVerdict::kLeak);
-  EXPECT_EQ(verdict(cube, ball), OctreeVerdict::kCovered);
-  // Balls that touch leave a point of S between them.
-  cube.balls = {{{0, 0.5, 0.5}, 0.5}, {{1, 0.5, 0.5}, 0.5}};
+  const std::vector<Sphere> sphere{{Vector3d::Constant(0.55), 0.92}};
+  EXPECT_EQ(verdict(cube_without_externals(), sphere), OctreeVerdict::kLeak);
+  EXPECT_EQ(verdict(cube, sphere), OctreeVerdict::kCovered);
+  // Spheres that touch leave a point of S between them.
+  cube.spheres = {{{0, 0.5, 0.5}, 0.5}, {{1, 0.5, 0.5}, 0.5}};
   EXPECT_NE(verdict(cube, {{{0.5, 0, 0.5}, 0.4}}), OctreeVerdict::kCovered);
 }
 
@@ -90,15 +90,15 @@ TEST(OctreeProof, AgreesWithTheCertificateOnSpoiltCovers) {
     const Fit fitted = fit(named.mesh, options);
     for (int round = 0; round < effort(4, 2); ++round) {
       const double share = std::pow(10.0, -1.0 - round);
-      std::vector<Sphere> balls = fitted.cover.spheres;
-      for (Sphere& s : balls) s.radius -= random.between(0.0, share) * fitted.max_error;
-      const Certificate certificate = certificate_of(named.mesh, fitted, balls);
-      const OctreeProof proof = prove_by_octree(fitted.external, balls, 20, 300'000);
+      std::vector<Sphere> spheres = fitted.cover.spheres;
+      for (Sphere& s : spheres) s.radius -= random.between(0.0, share) * fitted.max_error;
+      const Certificate certificate = certificate_of(named.mesh, fitted, spheres);
+      const OctreeProof proof = prove_by_octree(fitted.external, spheres, 20, 300'000);
       if (proof.verdict == OctreeVerdict::kLeak) {
         ++leaks;
         ASSERT_FALSE(certificate.covered);
         ASSERT_TRUE(is_in_solid(proof.point, fitted.external));
-        ASSERT_GT(gap_to_balls(proof.point, balls), 0.0L);
+        ASSERT_GT(gap_to_spheres(proof.point, spheres), 0.0L);
       }
       if (proof.verdict == OctreeVerdict::kCovered) {
         ++covers;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// G2: nothing protrudes by more than E, whatever external balls there are.
+// G2: nothing protrudes by more than E, whatever external spheres there are.
 #include "simplifier/cover.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
@@ -23,34 +23,34 @@ class Protrusion : public testing::TestWithParam<CoverMethod> {
 };
 
 void expect_nothing_beyond_the_error(const TriangleMesh& mesh, const Fit& fitted) {
-  const std::vector<Sphere>& balls = fitted.cover.spheres;
-  const Certificate certificate = certificate_of(mesh, fitted, balls);
+  const std::vector<Sphere>& spheres = fitted.cover.spheres;
+  const Certificate certificate = certificate_of(mesh, fitted, spheres);
   EXPECT_TRUE(certificate.covered);
   ASSERT_TRUE(certificate.protrusion_over_simplified_max.has_value());
   EXPECT_LE(*certificate.protrusion_over_simplified_max, fitted.max_error);
   Random random(83);
   const double slack = 1e-9 * fitted.external.box.diagonal().norm();
   const ProtrusionJudgement judged =
-      judge_protrusion(balls, mesh, fitted.external, fitted.max_error + slack,
+      judge_protrusion(spheres, mesh, fitted.external, fitted.max_error + slack,
                        static_cast<std::size_t>(effort(24, 6)), random);
   EXPECT_EQ(judged.beyond, 0U) << "of " << judged.points << ", one at "
                                << judged.example.transpose();
 }
 
-// Eight balls about the corners of a cube that leave no room in its middle, by `depth`. The solid
+// Eight spheres about the corners of a cube that leave no room in its middle, by `depth`. The solid
 // begins about 1 above that. The box is such that its halves do not fit the cube.
 ExternalSpheres pinched(double depth) {
   ExternalSpheres external;
   external.box = Eigen::AlignedBox3d(Vector3d(-0.07, -0.03, -0.05), Vector3d(1.01, 1.02, 4));
   for (int i = 0; i < 8; ++i) {
-    external.balls.push_back({Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), std::sqrt(0.75) + depth});
+    external.spheres.push_back({Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), std::sqrt(0.75) + depth});
   }
   return external;
 }
 
-// Where the solid is empty by less than the search looks for uncovered points of it, a ball would
+// Where the solid is empty by less than the search looks for uncovered points of it, a sphere would
 // protrude by the whole way to the solid.
-TEST_P(Protrusion, NoBallStandsWhereExternalBallsOnlyJustCloseTheSolid) {
+TEST_P(Protrusion, NoSphereStandsWhereExternalSpheresOnlyJustCloseTheSolid) {
   const TriangleMesh mesh = box_mesh({0.2, 0.2, 3.8}, {0.8, 0.8, 4});
   for (const double depth : {1e-3, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6}) {
     SCOPED_TRACE(depth);
@@ -81,12 +81,12 @@ TEST_P(Protrusion, NothingProtrudesHoweverExternalSpheresArePlaced) {
 TEST(ProtrusionOverMesh, IsWitnessedBeyondAnOpenMeshToo) {
   const TriangleMesh loosely_shut =
       joined(open_box(), box_mesh({0.0, 0.0, 1.001}, {1.0, 1.0, 1.01}));
-  const std::vector<Sphere> ball{{Vector3d::Constant(0.5), 0.7}};
+  const std::vector<Sphere> sphere{{Vector3d::Constant(0.5), 0.7}};
   const ExternalSpheres box =
       place_external_spheres(loosely_shut, {.placement = ExternalPlacement::kNone});
   CertifyOptions options;
   options.external = &box;
-  const Bounds protrusion = certify(loosely_shut, ball, options).protrusion_over_mesh.value();
+  const Bounds protrusion = certify(loosely_shut, sphere, options).protrusion_over_mesh.value();
   EXPECT_GE(protrusion.upper, 0.5);
   EXPECT_GE(protrusion.lower, 0.19);
   EXPECT_LE(protrusion.lower, 0.2);

@@ -23,15 +23,15 @@ Repair expect_repaired(const TriangleMesh& mesh, const Fit& fitted, std::vector<
                        double max_error) {
   Repair result =
       repair(mesh, fitted.external, leaking, {.max_error = max_error, .effort = effort(4, 1)});
-  const std::vector<Sphere>& balls = result.spheres;
-  EXPECT_EQ(balls.size(), leaking.size() + result.added);
+  const std::vector<Sphere>& spheres = result.spheres;
+  EXPECT_EQ(spheres.size(), leaking.size() + result.added);
   double largest = 0.0;
   double total = 0.0;
   std::size_t inflated = 0;
   for (std::size_t i = 0; i < leaking.size(); ++i) {
-    EXPECT_EQ(balls[i].center, leaking[i].center);
-    EXPECT_GE(balls[i].radius, leaking[i].radius);
-    const double by = balls[i].radius - leaking[i].radius;
+    EXPECT_EQ(spheres[i].center, leaking[i].center);
+    EXPECT_GE(spheres[i].radius, leaking[i].radius);
+    const double by = spheres[i].radius - leaking[i].radius;
     largest = std::max(largest, by);
     total += by;
     inflated += by > 0.0 ? 1U : 0U;
@@ -43,17 +43,17 @@ Repair expect_repaired(const TriangleMesh& mesh, const Fit& fitted, std::vector<
   EXPECT_NEAR(result.total_inflation, total, 1e-9 * total);
   EXPECT_EQ(result.max_error, max_error);
   EXPECT_LE(result.protrusion_after, std::max(max_error, result.protrusion_before));
-  EXPECT_TRUE(certificate_of(mesh, fitted, balls).covered);
-  const OctreeProof proof = prove_by_octree(fitted.external, balls, 26,
+  EXPECT_TRUE(certificate_of(mesh, fitted, spheres).covered);
+  const OctreeProof proof = prove_by_octree(fitted.external, spheres, 26,
                                             static_cast<std::size_t>(effort(300'000, 60'000)));
   EXPECT_NE(proof.verdict, OctreeVerdict::kLeak) << proof.point.transpose();
   Random random(91);
   const auto count = static_cast<std::size_t>(effort(4000, 400));
-  EXPECT_EQ(judge_cover(points_of_solid(fitted.external, count, random), balls).uncovered, 0U);
-  EXPECT_EQ(judge_cover(points_on_surface(mesh, count, random), balls).uncovered, 0U);
+  EXPECT_EQ(judge_cover(points_of_solid(fitted.external, count, random), spheres).uncovered, 0U);
+  EXPECT_EQ(judge_cover(points_on_surface(mesh, count, random), spheres).uncovered, 0U);
   std::vector<Sphere> changed;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    if (i >= leaking.size() || leaking[i].radius > 0.0) changed.push_back(balls[i]);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    if (i >= leaking.size() || leaking[i].radius > 0.0) changed.push_back(spheres[i]);
   }
   const Certificate of_changed = certificate_of(mesh, fitted, changed);
   EXPECT_LE(*of_changed.protrusion_over_simplified_max, max_error);
@@ -75,7 +75,7 @@ TEST(RepairOf, CoversThatAreWholeComeBackUnchanged) {
   EXPECT_EQ(result.spheres, fitted.cover.spheres);
 }
 
-TEST(RepairOf, NoBallsIsACover) {
+TEST(RepairOf, NoSpheresIsACover) {
   const TriangleMesh mesh = cube_mesh();
   const Fit fitted = fit_of(mesh);
   const Repair result = expect_repaired(mesh, fitted, {}, fitted.max_error);
@@ -83,7 +83,7 @@ TEST(RepairOf, NoBallsIsACover) {
   EXPECT_LE(result.added, fitted.cover.spheres.size() + 3);
 }
 
-TEST(RepairOf, CoversWithoutSomeOfTheirBalls) {
+TEST(RepairOf, CoversWithoutSomeOfTheirSpheres) {
   for (const char* name :
        effort(std::vector{"cube", "l-bracket", "torus", "open-box", "three-fins"}, 1)) {
     SCOPED_TRACE(name);
@@ -102,9 +102,9 @@ TEST(RepairOf, CoversWithoutSomeOfTheirBalls) {
   }
 }
 
-// All that is missing is within reach of the balls: none has to be added, and none grows beyond
+// All that is missing is within reach of the spheres: none has to be added, and none grows beyond
 // what it had.
-TEST(RepairOf, CoversWithShrunkBallsGrowsThemAgain) {
+TEST(RepairOf, CoversWithShrunkSpheresGrowsThemAgain) {
   int leaked = 0;
   for (const char* name : effort(std::vector{"cube", "l-bracket", "torus", "soup"}, 1)) {
     SCOPED_TRACE(name);
@@ -112,9 +112,9 @@ TEST(RepairOf, CoversWithShrunkBallsGrowsThemAgain) {
     const Fit fitted = fit_of(mesh);
     std::vector<Sphere> leaking = fitted.cover.spheres;
     double taken = 0.0;
-    for (Sphere& ball : leaking) {
-      taken += 0.03 * ball.radius;
-      ball.radius *= 0.97;
+    for (Sphere& sphere : leaking) {
+      taken += 0.03 * sphere.radius;
+      sphere.radius *= 0.97;
     }
     const Repair result = expect_repaired(mesh, fitted, leaking, fitted.max_error);
     EXPECT_EQ(result.added, 0U);
@@ -125,7 +125,7 @@ TEST(RepairOf, CoversWithShrunkBallsGrowsThemAgain) {
   EXPECT_GE(leaked, effort(3, 1));
 }
 
-TEST(RepairOf, ThePapersBallsBeforeInflation) {
+TEST(RepairOf, ThePapersSpheresBeforeInflation) {
   const TriangleMesh mesh = l_bracket();
   const Fit fitted = fit_of(mesh, CoverMethod::kPaper);
   const Repair result =
@@ -134,7 +134,7 @@ TEST(RepairOf, ThePapersBallsBeforeInflation) {
   EXPECT_LE(result.largest_inflation, fitted.max_error);
 }
 
-TEST(RepairOf, BallsAnywhere) {
+TEST(RepairOf, SpheresAnywhere) {
   for (const char* name : effort(std::vector{"cube", "l-bracket", "open-box"}, 1)) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = mesh_named(name);
@@ -148,8 +148,8 @@ TEST(RepairOf, BallsAnywhere) {
   }
 }
 
-// Balls about points outside of S are all there is at the corners, and may not grow to hold them.
-TEST(RepairOf, BallsBesideTheSolid) {
+// Spheres about points outside of S are all there is at the corners, and may not grow to hold them.
+TEST(RepairOf, SpheresBesideTheSolid) {
   const TriangleMesh mesh = cube_mesh();
   const Fit fitted = fit(mesh, options_for(CoverMethod::kCover), {.max_error = 0.07});
   std::vector<Sphere> leaking;
@@ -183,8 +183,8 @@ TEST(RepairOf, OneFarSphereDoesNotLicenseTheOthers) {
   for (int i = 0; i < effort(10'000, 1'000); ++i) {
     const Vector3d between(random.between(15.0, 35.0), random.between(0.0, 10.0),
                            random.between(50.0, 60.0));
-    for (const Sphere& ball : mended.spheres) {
-      EXPECT_GT((between - ball.center).norm(), ball.radius) << ball.center.transpose();
+    for (const Sphere& sphere : mended.spheres) {
+      EXPECT_GT((between - sphere.center).norm(), sphere.radius) << sphere.center.transpose();
     }
   }
 }
@@ -195,7 +195,7 @@ TEST(RepairOf, IsEqualInEveryRunOnAnyNumberOfThreads) {
   const Fit fitted = fit_of(mesh);
   std::vector<Sphere> leaking = fitted.cover.spheres;
   leaking.pop_back();
-  for (Sphere& ball : leaking) ball.radius *= 0.98;
+  for (Sphere& sphere : leaking) sphere.radius *= 0.98;
   const auto on = [&](int threads) {
     return repair(mesh, fitted.external, leaking,
                   {.max_error = fitted.max_error, .effort = 2, .threads = threads})

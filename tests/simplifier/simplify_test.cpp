@@ -300,7 +300,7 @@ TEST(Simplify, AFileHoldsSpheresCertificateAndOptions) {
                                            .max_error = options.max_error,
                                            .limit = options.external_limit,
                                            .seed = options.seed});
-  EXPECT_EQ(external.balls, result.external.balls);
+  EXPECT_EQ(external.spheres, result.external.spheres);
 }
 
 }  // namespace

@@ -36,13 +36,13 @@ struct Box {
 TEST(SurfaceExtent, ACapIsAsWideAsItsGeometrySays) {
   for (const double inside : {0.0, 0.3, 5.0, 400.0}) {
     const double width = cap_width(inside, kError);
-    // A corner of the cap is on the ball of radius inside + E.
+    // A corner of the cap is on the sphere of radius inside + E.
     EXPECT_NEAR(std::hypot(inside, width), inside + kError, 1e-9);
     EXPECT_NEAR(inside_radius(width, kError), inside, 1e-9);
   }
 }
 
-TEST(SurfaceExtent, BallsThatTouchNearAnEdgeAreNoLargerThanTheWayToIt) {
+TEST(SurfaceExtent, SpheresThatTouchNearAnEdgeAreNoLargerThanTheWayToIt) {
   const Box box;
   for (const double way : {0.0, 2.0, 10.0, 45.0}) {
     for (const double depth : {-0.5, 0.0, 1.0}) {

@@ -30,7 +30,7 @@ Eigen::Isometry3d random_pose(Random& random) {
 }
 
 // A closed chamber of the inner half-widths 1.2, its walls 0.2 thick, with a square way in of the
-// given width and length through the wall at x = 1.2: a ball gets in exactly if it is no wider.
+// given width and length through the wall at x = 1.2: a sphere gets in exactly if it is no wider.
 TriangleMesh chamber(double width, double length) {
   constexpr double kHalf = 1.2;
   constexpr double kOuter = kHalf + 0.2;
@@ -93,8 +93,8 @@ TEST(TightReach, TheGridAloneIsNotTight) {
   EXPECT_GT(closed, 0);
 }
 
-// A flood of its own: nodes of a grid whose exact distance leaves room for a ball, from node to
-// node where the ball provably passes.
+// A flood of its own: nodes of a grid whose exact distance leaves room for a sphere, from node to
+// node where the sphere provably passes.
 class FineFlood {
  public:
   FineFlood(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box, double step, double radius)
@@ -171,7 +171,7 @@ TriangleMesh random_blocks(Random& random) {
   return mesh;
 }
 
-// Every place lies in a ball whose centre is within 2.6 steps.
+// Every place lies in a sphere whose centre is within 2.6 steps.
 TEST(TightReach, NoPlaceAmongBlocksIsLost) {
   Random random(73);
   std::size_t narrow = 0;
@@ -185,9 +185,10 @@ TEST(TightReach, NoPlaceAmongBlocksIsLost) {
         .for_each_reached([&](const Vector3d& place) {
           if (external.box.exteriorDistance(place) > 0.0) return;
           ++narrow;
-          const bool is_near = std::ranges::any_of(external.balls, [&](const Sphere& ball) {
-            const double distance = (ball.center - place).norm();
-            return distance < ball.radius && distance <= 2.6 * std::max(0.12, ball.radius - 0.5);
+          const bool is_near = std::ranges::any_of(external.spheres, [&](const Sphere& sphere) {
+            const double distance = (sphere.center - place).norm();
+            return distance < sphere.radius &&
+                   distance <= 2.6 * std::max(0.12, sphere.radius - 0.5);
           });
           ASSERT_TRUE(is_near);
         });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Covers with zones of their own E: the balls keep both errors, the certificate knows it, and the
+// Covers with zones of their own E: the spheres keep both errors, the certificate knows it, and the
 // tool that made D does not notice the simplification.
 #include "mesh/mesh_distance.h"
 #include "simplifier/simplify.h"
@@ -24,8 +24,8 @@ constexpr double kError = kSanitized ? 0.2 : 0.1;
 constexpr double kZoneError = kSanitized ? 0.04 : 0.01;
 
 bool holds(const ZoneShape& shape, const Vector3d& p) {
-  if (const auto* ball = std::get_if<Sphere>(&shape)) {
-    return (p - ball->center).norm() <= ball->radius;
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    return (p - sphere->center).norm() <= sphere->radius;
   }
   if (const auto* box = std::get_if<AlignedBox3d>(&shape)) return box->contains(p);
   const auto& capsule = std::get<ZoneCapsule>(shape);
@@ -36,28 +36,28 @@ bool holds(const ZoneShape& shape, const Vector3d& p) {
   return false;
 }
 
-// Of points in balls and in the zone, densest on the balls' surfaces: how many there are outside of
-// S, and how many of these have no point of S within the error, where a ball that holds them
-// promises one: on the way to its centre.
+// Of points in spheres and in the zone, densest on the spheres' surfaces: how many there are
+// outside of S, and how many of these have no point of S within the error, where a sphere that
+// holds them promises one: on the way to its centre.
 struct ZoneJudgement {
   int outside = 0;
   int beyond = 0;
 };
 
-ZoneJudgement judge_zone(const Zone& zone, const std::vector<Sphere>& balls,
+ZoneJudgement judge_zone(const Zone& zone, const std::vector<Sphere>& spheres,
                          const ExternalSpheres& external, double error, Random& random) {
   ZoneJudgement judgement;
-  for (const Sphere& ball : balls) {
+  for (const Sphere& sphere : spheres) {
     for (int i = 0; i < effort(600, 150); ++i) {
       const Vector3d direction = random.direction();
-      const double way = ball.radius * (i % 2 == 0 ? 1.0 : random.between(0.7, 1.0));
-      const Vector3d p = ball.center + way * direction;
+      const double way = sphere.radius * (i % 2 == 0 ? 1.0 : random.between(0.7, 1.0));
+      const Vector3d p = sphere.center + way * direction;
       if (!holds(zone.shape, p) || is_in_solid(p, external)) continue;
       ++judgement.outside;
       bool near = false;
       for (const double share : {0.5, 0.9, 1.0 + 1e-9}) {
         const double back = std::min(way, share * error);
-        near = near || is_in_solid(ball.center + (way - back) * direction, external);
+        near = near || is_in_solid(sphere.center + (way - back) * direction, external);
       }
       if (!near) ++judgement.beyond;
     }
@@ -80,7 +80,7 @@ std::vector<Zone> zones_of_all_shapes() {
           {.shape = ZoneCapsule{{1, 0.2, 0}, {1, 0.5, 0}, 0.1}, .max_error = kZoneError}};
 }
 
-TEST(ZoneFit, NoPointOfABallInAZoneIsFurtherFromTheSolidThanTheZoneAllows) {
+TEST(ZoneFit, NoPointOfASphereInAZoneIsFurtherFromTheSolidThanTheZoneAllows) {
   const TriangleMesh mesh = cube_mesh();
   Random random(81);
   const Simplification fit = simplify(mesh, options_with(zones_of_all_shapes()));
@@ -118,14 +118,14 @@ TEST(ZoneFit, ASmallZoneCostsLittle) {
   const Simplification coarse = simplify(cube_mesh(), options_with({}));
   const Simplification fit = simplify(cube_mesh(), options_with({zone}));
   EXPECT_EQ(broken_promises(fit), "");
-  const auto elsewhere = [](const std::vector<Sphere>& balls) {
+  const auto elsewhere = [](const std::vector<Sphere>& spheres) {
     return std::ranges::count_if(
-        balls, [](const Sphere& s) { return (s.center - Vector3d(1, 1, 1)).norm() > 0.4; });
+        spheres, [](const Sphere& s) { return (s.center - Vector3d(1, 1, 1)).norm() > 0.4; });
   };
   EXPECT_LE(elsewhere(fit.cover.spheres), 5 * elsewhere(coarse.cover.spheres) / 4 + 2);
 }
 
-TEST(ZoneFit, ABallThatReachesIntoAZoneTooFarIsBlamed) {
+TEST(ZoneFit, ASphereThatReachesIntoAZoneTooFarIsBlamed) {
   const std::vector<Zone> zones = zones_of_all_shapes();
   Simplification fit = simplify(cube_mesh(), options_with({}));
   const Certificate certificate =
@@ -150,7 +150,7 @@ TEST(ZoneFit, ZonesSurviveTheRecordAndAnAuditPlacesTheSameExternalSpheres) {
   const SimplifyOptions again = options_from_record(file.options);
   EXPECT_EQ(again.zones, options.zones);
   EXPECT_TRUE(again.keep_concave_edges);
-  EXPECT_EQ(place_external_spheres(mesh, external_options(again)).balls, fit.external.balls);
+  EXPECT_EQ(place_external_spheres(mesh, external_options(again)).spheres, fit.external.spheres);
   EXPECT_EQ(file.certificate->protrusion_in_zones, fit.certificate.protrusion_in_zones);
   EXPECT_FALSE(option_record({}, 1.0).contains("zones"));
   EXPECT_FALSE(option_record({}, 1.0).contains("keep-concave-edges"));
@@ -184,7 +184,7 @@ TEST(ZoneFit, WhatCannotBeDoneIsRefused) {
 
 // --- the right tool ---
 
-TEST(Tool, DIsTheDiameterOfItsSmallestBall) {
+TEST(Tool, DIsTheDiameterOfItsSmallestSphere) {
   EXPECT_EQ(tool_diameter(std::vector<Sphere>{{{0, 0, 0}, 2.0}, {{1, 0, 0}, 0.75}}), 1.5);
   EXPECT_THROW(tool_diameter({}), Error);
   EXPECT_THROW(tool_diameter(std::vector<Sphere>{{{0, 0, 0}, 2.0}, {{1, 0, 0}, 0.0}}), Error);
@@ -192,26 +192,26 @@ TEST(Tool, DIsTheDiameterOfItsSmallestBall) {
 }
 
 // "Nothing is lost by simplifying, for the right tool" (docs/guarantee.md). Let h be the grid step.
-// A tool whose every ball (c, r), r >= rho, keeps a room of m = 1.733 h > 2 sqrt(3)/2 h beyond r
-// all the way in meets nothing of S, not even by the scallops: take a point p of the ball and c'
+// A tool whose every sphere (c, r), r >= rho, keeps a room of m = 1.733 h > 2 sqrt(3)/2 h beyond r
+// all the way in meets nothing of S, not even by the scallops: take a point p of the sphere and c'
 // between c and p, p within rho of c', where the room is still rho + m. As m is more than the 1.367
 // h that the flood asks for, the grid reaches the cell of c'. If that is a node x, |x - c'| <=
 // 0.867 h, then d(x) >= rho + m - 0.867 h > rho + 0.866 h >= |p - x|; if it is a coarse cell of
-// half diagonal g, then d(x) >= rho + g + 1.2 h > |p - x|. So p lies in the ball kept for that
+// half diagonal g, then d(x) >= rho + g + 1.2 h > |p - x|. So p lies in the sphere kept for that
 // cell, which is open, and not in S.
 class Walk {
  public:
   Walk(const MeshDistance& distance, const std::vector<Sphere>& tool, double room)
       : distance_(distance), tool_(tool), room_(room) {}
 
-  static Vector3d at(const Eigen::Isometry3d& pose, const Sphere& ball) {
-    return pose * ball.center;
+  static Vector3d at(const Eigen::Isometry3d& pose, const Sphere& sphere) {
+    return pose * sphere.center;
   }
 
-  // Whether every ball has the room here, and half a step more for the way here.
+  // Whether every sphere has the room here, and half a step more for the way here.
   bool is_free(const Eigen::Isometry3d& pose, double step) const {
-    return std::ranges::all_of(tool_, [&](const Sphere& ball) {
-      return distance_(at(pose, ball)).lower >= ball.radius + room_ + step / 2.0;
+    return std::ranges::all_of(tool_, [&](const Sphere& sphere) {
+      return distance_(at(pose, sphere)).lower >= sphere.radius + room_ + step / 2.0;
     });
   }
 
@@ -219,14 +219,14 @@ class Walk {
   Eigen::Isometry3d run(Eigen::Isometry3d pose, const Vector3d& target, double step,
                         Random& random) const {
     double reach = 0.1;
-    for (const Sphere& ball : tool_) reach = std::max(reach, ball.center.norm());
+    for (const Sphere& sphere : tool_) reach = std::max(reach, sphere.center.norm());
     for (int i = 0; i < effort(400, 200); ++i) {
       const double angle = random.between(-0.2, 0.2) * step / reach;
       const Vector3d towards = target - pose.translation();
       const Vector3d astray = random.between(0.0, 1.5) * random.direction();
       Eigen::Isometry3d next = pose;
       next.linear() = (Eigen::AngleAxisd(angle, random.direction()) * pose.linear()).eval();
-      // A ball moves by at most the step in all: 0.8 of it and a fifth of it.
+      // A sphere moves by at most the step in all: 0.8 of it and a fifth of it.
       next.translation() +=
           std::min(towards.norm(), 0.8 * step) * (towards.normalized() + astray).normalized();
       if (is_free(next, step)) pose = next;
@@ -240,7 +240,7 @@ class Walk {
   double room_;
 };
 
-// A thin rod, covered by balls of one radius nearly along its axis.
+// A thin rod, covered by spheres of one radius nearly along its axis.
 std::vector<Sphere> rod() {
   SimplifyOptions options;
   options.max_error = 0.05;
@@ -256,19 +256,19 @@ ExternalSpheres externals_for(const std::vector<Sphere>& tool, const TriangleMes
   return place_external_spheres(mesh, options);
 }
 
-// No point of the closed balls, those next to the mesh among them, is in S.
+// No point of the closed spheres, those next to the mesh among them, is in S.
 void expect_nothing_met(const std::vector<Sphere>& tool, const Eigen::Isometry3d& pose,
                         const MeshDistance& distance, const ExternalSpheres& external,
                         Random& random) {
-  for (const Sphere& ball : tool) {
-    const Vector3d c = Walk::at(pose, ball);
+  for (const Sphere& sphere : tool) {
+    const Vector3d c = Walk::at(pose, sphere);
     const Vector3d to_mesh = (distance(c).closest - c).normalized();
-    ASSERT_FALSE(is_in_solid(c + ball.radius * to_mesh, external));
+    ASSERT_FALSE(is_in_solid(c + sphere.radius * to_mesh, external));
     for (int k = 0; k < 30; ++k) {
       const double share = k % 3 == 0 ? random.unit() : 1.0;
       const Vector3d beside = to_mesh + 0.3 * random.unit() * random.direction();
       const Vector3d direction = k % 2 == 0 ? random.direction() : beside.normalized();
-      ASSERT_FALSE(is_in_solid(c + share * ball.radius * direction, external));
+      ASSERT_FALSE(is_in_solid(c + share * sphere.radius * direction, external));
     }
   }
 }
@@ -302,8 +302,8 @@ TEST(Tool, AToolThatDIsMadeForMeetsNothingOfTheSolidUnlessItMeetsTheMesh) {
 TEST(Tool, ANarrowSlotIsOpenForTheToolThatFits) {
   const std::vector<Sphere> tool = rod();
   double radius = 0.0;
-  for (const Sphere& ball : tool) {
-    radius = std::max(radius, ball.radius + std::abs(ball.center.y()));
+  for (const Sphere& sphere : tool) {
+    radius = std::max(radius, sphere.radius + std::abs(sphere.center.y()));
   }
   const double step = 0.02;
   const double grid = externals_for(tool, cube_mesh()).grid_step;

@@ -45,20 +45,20 @@ ExternalSpheres placed(const TriangleMesh& mesh, std::vector<Zone> zones, double
   return place_external_spheres(mesh, options);
 }
 
-// Brute force: no ball meets the mesh, and each is as large as its place asks for.
-void expect_true_balls(const TriangleMesh& mesh, const ExternalSpheres& external,
-                       const std::vector<Zone>& zones) {
+// Brute force: no sphere meets the mesh, and each is as large as its place asks for.
+void expect_true_spheres(const TriangleMesh& mesh, const ExternalSpheres& external,
+                         const std::vector<Zone>& zones) {
   bool some_small = false;
-  for (const Sphere& ball : external.balls) {
-    ASSERT_LE(ball.radius, judged_mesh_distance(ball.center, mesh));
+  for (const Sphere& sphere : external.spheres) {
+    ASSERT_LE(sphere.radius, judged_mesh_distance(sphere.center, mesh));
     double least = kWide / 2.0;
     for (const Zone& zone : zones) {
-      if (std::get<AlignedBox3d>(zone.shape).contains(ball.center)) {
+      if (std::get<AlignedBox3d>(zone.shape).contains(sphere.center)) {
         least = std::min(least, *zone.min_external_diameter / 2.0);
       }
     }
-    ASSERT_GE(ball.radius, least);
-    some_small = some_small || ball.radius < kWide / 2.0;
+    ASSERT_GE(sphere.radius, least);
+    some_small = some_small || sphere.radius < kWide / 2.0;
   }
   EXPECT_EQ(some_small, !zones.empty());
 }
@@ -70,7 +70,7 @@ TEST(ZoneReach, ASlotIsOpenInTheZoneAndClosedOutsideOfIt) {
     const TriangleMesh mesh =
         joined(two_plates(1.9), box_mesh({0, 0, -2.0 - shift}, {0.1, 0.1, -1.0}));
     const ExternalSpheres external = placed(mesh, zones);
-    expect_true_balls(mesh, external, zones);
+    expect_true_spheres(mesh, external, zones);
     EXPECT_FALSE(is_in_solid({1.0, 10.0, 0.95}, external));
     EXPECT_FALSE(is_in_solid({6.0, 10.0, 0.95}, external));
     // What is wider than d only, beyond the zone, and at the far mouth.
@@ -236,7 +236,7 @@ TEST(ConcaveEdges, InDoubtAnEdgeCounts) {
 }
 
 // The fillet that is left in the corner: wide with D, at most E / 2 and the grid's share with the
-// zone; and no ball meets the mesh.
+// zone; and no sphere meets the mesh.
 TEST(ConcaveEdges, TheCornerIsKept) {
   TriangleMesh bracket = l_bracket();
   for (Vector3d& v : bracket.vertices) v *= 20.0;
@@ -260,8 +260,8 @@ TEST(ConcaveEdges, TheCornerIsKept) {
   const ExternalSpheres kept = place_external_spheres(bracket, options);
   EXPECT_EQ(kept.concave_edges.size(), 1U);
   EXPECT_LT(fillet(kept), 0.5 + 0.3);  // E / 2 and a step
-  for (const Sphere& ball : kept.balls) {
-    ASSERT_LE(ball.radius, judged_mesh_distance(ball.center, bracket));
+  for (const Sphere& sphere : kept.spheres) {
+    ASSERT_LE(sphere.radius, judged_mesh_distance(sphere.center, bracket));
   }
 }
 

@@ -23,8 +23,8 @@ using Vector3l = Eigen::Matrix<Real, 3, 1>;
 
 Real true_distance(const ZoneShape& shape, const Vector3d& at) {
   const Vector3l p = at.cast<Real>();
-  if (const auto* ball = std::get_if<Sphere>(&shape)) {
-    return std::max(0.0L, (p - ball->center.cast<Real>()).norm() - ball->radius);
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    return std::max(0.0L, (p - sphere->center.cast<Real>()).norm() - sphere->radius);
   }
   if (const auto* box = std::get_if<AlignedBox3d>(&shape)) {
     const Vector3l inside =
@@ -68,7 +68,7 @@ TEST(Zones, DistancesAreBoundsAndContainmentIsCertain) {
     ASSERT_GE(lower, exact - 1e-12L);
     const AlignedBox3d box = bounds(shape);
     ASSERT_TRUE(exact > 0.0L || box.contains(p));
-    // A ball in the shape: so are the points on it.
+    // A sphere in the shape: so are the points on it.
     const double reach = random.index(2) == 0 ? 0.0 : 0.3 * random.unit();
     if (!certainly_contains(shape, p, reach)) continue;
     ++contained;
@@ -119,7 +119,7 @@ constexpr const char* kAllShapes = R"({"format":"spherule-zones","version":1,"zo
   {"shape":"box","min":[0,0,0],"max":[1,2.5,3],"max_error":0.1},
   {"shape":"capsule","from":[0,0,0],"to":[0,0,9],"radius":1e-3,"min_external":0.3}]})";
 
-TEST(Zones, AFileHoldsBallsBoxesAndCapsules) {
+TEST(Zones, AFileHoldsSpheresBoxesAndCapsules) {
   const TempDir folder;
   const std::vector<Zone> zones = read_zones(folder.write("zones.json", kAllShapes));
   const std::vector<Zone> expected = {
@@ -171,21 +171,21 @@ TEST(Zones, FaultsAreNamedWithFileAndEntry) {
   expect(file(good + R"(,{"shape":"cone","max_error":1})"), "zone 1: unknown shape \"cone\"");
   expect(file(R"({"center":[0,0,0],"radius":1,"max_error":1})"), "zone 0: \"shape\" is missing");
   expect(file(R"({"shape":3})"), "zone 0: \"shape\" is not a text");
-  const auto ball = [&](const std::string& rest) {
+  const auto sphere = [&](const std::string& rest) {
     return file(R"({"shape":"ball",)" + rest + "}");
   };
-  expect(ball(R"("center":[0,0],"radius":1,"max_error":1)"), "zone 0: \"center\" is not [x,y,z]");
-  expect(ball(R"("center":[0,0,"a"],"radius":1,"max_error":1)"), "\"center\" is not a number");
-  expect(ball(R"("center":[0,0,0],"max_error":1)"), "zone 0: \"radius\" is missing");
-  expect(ball(R"("center":[0,0,0],"radius":-1,"max_error":1)"), "zone 0: the shape has");
-  expect(ball(R"("center":[0,0,1e16],"radius":1,"max_error":1)"), "zone 0: the shape has");
-  expect(ball(R"("center":[0,0,0],"radius":1)"), "zone 0: has neither");
-  expect(ball(R"("center":[0,0,0],"radius":1,"max_error":0)"), "zone 0: the max error must be");
-  expect(ball(R"("center":[0,0,0],"radius":1,"min_external":-2)"), "zone 0: the min external");
-  expect(ball(R"("center":[0,0,0],"radius":1,"max_eror":1)"), "zone 0: unknown key \"max_eror\"");
-  expect(ball(R"("center":[0,0,0],"radius":1,"radius":2,"max_error":1)"),
+  expect(sphere(R"("center":[0,0],"radius":1,"max_error":1)"), "zone 0: \"center\" is not [x,y,z]");
+  expect(sphere(R"("center":[0,0,"a"],"radius":1,"max_error":1)"), "\"center\" is not a number");
+  expect(sphere(R"("center":[0,0,0],"max_error":1)"), "zone 0: \"radius\" is missing");
+  expect(sphere(R"("center":[0,0,0],"radius":-1,"max_error":1)"), "zone 0: the shape has");
+  expect(sphere(R"("center":[0,0,1e16],"radius":1,"max_error":1)"), "zone 0: the shape has");
+  expect(sphere(R"("center":[0,0,0],"radius":1)"), "zone 0: has neither");
+  expect(sphere(R"("center":[0,0,0],"radius":1,"max_error":0)"), "zone 0: the max error must be");
+  expect(sphere(R"("center":[0,0,0],"radius":1,"min_external":-2)"), "zone 0: the min external");
+  expect(sphere(R"("center":[0,0,0],"radius":1,"max_eror":1)"), "zone 0: unknown key \"max_eror\"");
+  expect(sphere(R"("center":[0,0,0],"radius":1,"radius":2,"max_error":1)"),
          "the key \"radius\" appears twice");
-  expect(ball(R"("center":[0,0,0],"radius":1,"from":[0,0,0],"max_error":1)"),
+  expect(sphere(R"("center":[0,0,0],"radius":1,"from":[0,0,0],"max_error":1)"),
          "zone 0: unknown key \"from\"");
   expect(file(R"({"shape":"box","min":[0,0,0],"max":[1,-1,1],"max_error":1})"),
          "zone 0: the shape has");

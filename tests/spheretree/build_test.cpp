@@ -93,13 +93,13 @@ TEST(BuildTree, OneSphereIsALeaf) {
   EXPECT_EQ(tree.node_count(), 1U);
   EXPECT_TRUE(tree.is_leaf(0));
   EXPECT_EQ(tree.depth(), 0);
-  EXPECT_EQ(tree.ball(0), (Sphere{{1, 2, 3}, 0.5}));
+  EXPECT_EQ(tree.sphere(0), (Sphere{{1, 2, 3}, 0.5}));
 }
 
-TEST(BuildTree, TheRootOfFewSpheresIsTheirSmallestBall) {
+TEST(BuildTree, TheRootOfFewSpheresIsTheirSmallestSphere) {
   const std::vector<Sphere> corners = {
       {{1, 1, 1}, 0.5}, {{1, -1, -1}, 0.5}, {{-1, 1, -1}, 0.5}, {{-1, -1, 1}, 0.5}};
-  const Sphere root = build_tree(corners).ball(0);
+  const Sphere root = build_tree(corners).sphere(0);
   EXPECT_LT(root.center.norm(), 1e-14);
   EXPECT_NEAR(root.radius, std::sqrt(3.0) + 0.5, 1e-14);
 }
@@ -119,8 +119,8 @@ TEST(BuildTree, AMillionDegenerateSpheres) {
   for (const auto* spheres : {&coincident, &line, &geometric}) {
     const SphereTree tree = build_tree(*spheres);  // the constructor runs check()
     EXPECT_LE(tree.depth(), largest_depth(kCount));
-    EXPECT_TRUE(encloses_exactly(tree.ball(0), spheres->front()));
-    EXPECT_TRUE(encloses_exactly(tree.ball(0), spheres->back()));
+    EXPECT_TRUE(encloses_exactly(tree.sphere(0), spheres->front()));
+    EXPECT_TRUE(encloses_exactly(tree.sphere(0), spheres->back()));
   }
 }
 
@@ -160,11 +160,11 @@ TEST(BuildTree, AMillionSpheresOnAShellStayShallow) {
   const SphereTree tree = build_tree(spheres);
   EXPECT_LE(tree.depth(), 9);
   EXPECT_LE(tree.node_count(), kCount + kCount / 2);
-  EXPECT_LE(tree.ball(0).radius, 1.75);
+  EXPECT_LE(tree.sphere(0).radius, 1.75);
 }
 
 // Where the spheres are spread out, each level must be a good deal tighter than the one above it:
-// a tree that is valid but useless (for example, all balls as large as the root) fails here.
+// a tree that is valid but useless (for example, all spheres as large as the root) fails here.
 TEST(BuildTree, LevelsShrink) {
   Random random(9);
   std::vector<Sphere> spheres;
@@ -172,13 +172,13 @@ TEST(BuildTree, LevelsShrink) {
   const SphereTree tree = build_tree(spheres);
   EXPECT_LE(tree.depth(), 8);
   EXPECT_LE(tree.node_count(), 6000U);
-  EXPECT_LE(tree.ball(0).radius, 1.2 * std::sqrt(3.0));
-  double previous = tree.ball(0).radius;
+  EXPECT_LE(tree.sphere(0).radius, 1.2 * std::sqrt(3.0));
+  double previous = tree.sphere(0).radius;
   for (int level = 1; level <= 3; ++level) {
     double sum = 0.0;
-    const std::vector<Sphere> balls = tree.level(level);
-    for (const Sphere& ball : balls) sum += ball.radius;
-    const double mean = sum / static_cast<double>(balls.size());
+    const std::vector<Sphere> of_level = tree.level(level);
+    for (const Sphere& sphere : of_level) sum += sphere.radius;
+    const double mean = sum / static_cast<double>(of_level.size());
     EXPECT_LT(mean, 0.75 * previous) << "level " << level;
     previous = mean;
   }
@@ -188,9 +188,9 @@ TEST(BuildTree, LevelsCoverAllSpheres) {
   const std::vector<Sphere> spheres = sphere_families(300, 4).front().spheres;
   const SphereTree tree = build_tree(spheres);
   for (int level = 0; level <= tree.depth(); ++level) {
-    const std::vector<Sphere> balls = tree.level(level);
+    const std::vector<Sphere> of_level = tree.level(level);
     for (const Sphere& sphere : spheres) {
-      EXPECT_TRUE(std::any_of(balls.begin(), balls.end(),
+      EXPECT_TRUE(std::any_of(of_level.begin(), of_level.end(),
                               [&](const Sphere& b) { return encloses_exactly(b, sphere); }));
     }
   }
@@ -213,7 +213,7 @@ TEST(BuildTree, RefusesBadInput) {
     spheres.push_back(bad);
     EXPECT_THROW(build_tree(spheres), Error);
   }
-  // Each is usable, but no usable ball encloses them all.
+  // Each is usable, but no usable sphere encloses them all.
   const Vector3d corner(1e15, 1e15, 1e15);
   EXPECT_THROW(build_tree(std::vector<Sphere>{{corner, 1.0}, {-corner, 1.0}}), Error);
 }

@@ -45,7 +45,7 @@ TEST(Check, ReportsAValidTree) {
   EXPECT_EQ(report.node_count, tree.node_count());
   EXPECT_EQ(report.depth, depth_of(tree.data()));
   EXPECT_EQ(report.branching, 4);
-  EXPECT_EQ(report.root_radius, tree.ball(0).radius);
+  EXPECT_EQ(report.root_radius, tree.sphere(0).radius);
   EXPECT_GT(report.mean_inflation, 1.0);
 }
 
@@ -165,7 +165,7 @@ TEST(Check, RefusesTooManyChildren) {
 
 // Radii moved by single units in the last place about the limit: "valid" must never be said where
 // exact arithmetic denies it, and both answers must occur for the test to mean something.
-TEST(Check, NeverPassesABallThatDoesNotEnclose) {
+TEST(Check, NeverPassesASphereThatDoesNotEnclose) {
   Random random(21);
   int passed = 0;
   int refused = 0;
@@ -181,11 +181,11 @@ TEST(Check, NeverPassesABallThatDoesNotEnclose) {
     }
     SphereTreeData data;
     data.spheres = {child};
-    for (const Sphere& ball : {parent, child}) {
-      data.x.push_back(ball.center.x());
-      data.y.push_back(ball.center.y());
-      data.z.push_back(ball.center.z());
-      data.radius.push_back(ball.radius);
+    for (const Sphere& sphere : {parent, child}) {
+      data.x.push_back(sphere.center.x());
+      data.y.push_back(sphere.center.y());
+      data.z.push_back(sphere.center.z());
+      data.radius.push_back(sphere.radius);
     }
     data.first_child = {1, 0};
     data.child_count = {1, 0};

@@ -12,9 +12,9 @@ namespace {
 using Real = long double;
 using Vector = Eigen::Matrix<Real, 3, 1>;
 
-// A ball that (nearly) touches the candidate from inside.
+// A sphere that (nearly) touches the candidate from inside.
 struct Contact {
-  Vector direction;  // from the ball's centre to the candidate's
+  Vector direction;  // from the sphere's centre to the candidate's
   Real reach;        // |c - c_i| + r_i
 };
 
@@ -102,7 +102,7 @@ Real dual_bound(const std::vector<Contact>& contacts, Real room) {
 
 }  // namespace
 
-long double smallest_radius_lower_bound(const Sphere& candidate, std::span<const Sphere> balls) {
+long double smallest_radius_lower_bound(const Sphere& candidate, std::span<const Sphere> spheres) {
   const Vector center = candidate.center.cast<Real>();
   const Real radius = candidate.radius;
   Real bound = 0.0L;
@@ -110,12 +110,12 @@ long double smallest_radius_lower_bound(const Sphere& candidate, std::span<const
   // near the limit (centres rounded to double) among the loose ones. Every choice gives a bound.
   std::vector<Contact> all;
   Real room = radius;
-  for (const Sphere& ball : balls) {
-    bound = std::max(bound, static_cast<Real>(ball.radius));
-    const Vector offset = center - ball.center.cast<Real>();
+  for (const Sphere& sphere : spheres) {
+    bound = std::max(bound, static_cast<Real>(sphere.radius));
+    const Vector offset = center - sphere.center.cast<Real>();
     const Real length = offset.stableNorm();
-    room = std::min(room, length + radius - ball.radius);
-    if (length > 0.0L) all.push_back({offset / length, length + ball.radius});
+    room = std::min(room, length + radius - sphere.radius);
+    if (length > 0.0L) all.push_back({offset / length, length + sphere.radius});
   }
   for (const Real slack : {1e-15L, 1e-14L, 1e-13L, 1e-12L, 1e-10L, 1e-8L, 1e-6L}) {
     std::vector<Contact> contacts;

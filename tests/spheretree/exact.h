@@ -27,7 +27,7 @@ inline bool encloses_exactly(const Sphere& outer, const Sphere& inner) {
   return room >= 0 && squared_distance(outer.center, inner.center) <= room * room;
 }
 
-// The closed balls share a point: |c_a - c_b| <= r_a + r_b.
+// The closed spheres share a point: |c_a - c_b| <= r_a + r_b.
 inline bool overlap_exactly(const Sphere& a, const Sphere& b) {
   const Rational sum = Rational(a.radius) + Rational(b.radius);
   return squared_distance(a.center, b.center) <= sum * sum;

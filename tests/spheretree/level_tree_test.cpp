@@ -17,14 +17,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-Sphere around(std::span<const Sphere> balls, double factor) {
-  if (balls.size() == 1) return balls.front();
-  Sphere ball = enclosing_sphere(balls);
-  ball.radius = ball.radius * factor + 0x1p-500;
-  return ball;
+Sphere around(std::span<const Sphere> spheres, double factor) {
+  if (spheres.size() == 1) return spheres.front();
+  Sphere sphere = enclosing_sphere(spheres);
+  sphere.radius = sphere.radius * factor + 0x1p-500;
+  return sphere;
 }
 
-// Parents of `per_parent` balls in a row each, as small as they may be, or larger by a factor.
+// Parents of `per_parent` spheres in a row each, as small as they may be, or larger by a factor.
 SphereLevel level_over(std::span<const Sphere> finer, std::size_t per_parent, double factor) {
   SphereLevel level;
   for (std::size_t begin = 0; begin < finer.size(); begin += per_parent) {
@@ -47,10 +47,10 @@ void expect_good(const LevelTree& made, std::span<const Sphere> spheres,
   for (std::size_t k = 0; k < levels.size(); ++k) {
     ASSERT_EQ(made.nodes[k].size(), levels[k].spheres.size());
     for (std::size_t i = 0; i < made.nodes[k].size(); ++i) {
-      ASSERT_EQ(tree.ball(static_cast<std::size_t>(made.nodes[k][i])), levels[k].spheres[i]);
+      ASSERT_EQ(tree.sphere(static_cast<std::size_t>(made.nodes[k][i])), levels[k].spheres[i]);
     }
   }
-  // Which ball of the finest level stands above each sphere.
+  // Which sphere of the finest level stands above each sphere.
   std::vector<std::int32_t> above(tree.node_count(), -1);
   if (levels.empty()) return;
   for (std::size_t i = 0; i < made.nodes[0].size(); ++i) {
@@ -99,8 +99,9 @@ TEST(LevelTree, WithoutLevelsIsTheOrdinaryTree) {
   EXPECT_EQ(made.tree.data().first_child, plain.first_child);
 }
 
-// Balls that touch the parent from inside leave no room for smallest balls around groups of them.
-TEST(LevelTree, GroupsThatDoNotFitTakeTheBallOfTheParent) {
+// Spheres that touch the parent from inside leave no room for smallest spheres around groups of
+// them.
+TEST(LevelTree, GroupsThatDoNotFitTakeTheSphereOfTheParent) {
   Random random(11);
   std::vector<Sphere> spheres;
   for (int i = 0; i < 300; ++i) spheres.push_back({0.9 * random.direction(), 0.1});
@@ -132,27 +133,28 @@ TEST(LevelTree, RefusesWhatIsNoLevel) {
   };
   const Sphere around{{0.5, 0.0, 0.0}, 2.0};
   EXPECT_EQ(reason({{around}, {0, 0}}), "");
-  EXPECT_NE(reason({{around}, {0}}).find("1 parents for 2 balls"), std::string::npos);
-  EXPECT_NE(reason({{around}, {0, 1}}).find("parent 1 of ball 1"), std::string::npos);
+  EXPECT_NE(reason({{around}, {0}}).find("1 parents for 2 spheres"), std::string::npos);
+  EXPECT_NE(reason({{around}, {0, 1}}).find("parent 1 of sphere 1"), std::string::npos);
   EXPECT_NE(reason({{around}, {0, -1}}).find("does not exist"), std::string::npos);
-  EXPECT_NE(reason({{around, around}, {0, 0}}).find("ball 1: has no children"), std::string::npos);
+  EXPECT_NE(reason({{around, around}, {0, 0}}).find("sphere 1: has no children"),
+            std::string::npos);
   // Encloses exactly, without the reserve.
   EXPECT_NE(reason({{{{0.5, 0.0, 0.0}, 1.5}}, {0, 0}}).find("reserve"), std::string::npos);
 }
 
-TEST(Cut, HoldsAllSpheresInAtMostSoManyBalls) {
+TEST(Cut, HoldsAllSpheresInAtMostSoManySpheres) {
   constexpr std::size_t kCount = effort(150, 40);
   for (const Family& family : sphere_families(kCount, 3)) {
     SCOPED_TRACE(family.name);
     const SphereTree tree = build_tree(family.spheres);
     for (const std::size_t count :
          {std::size_t{1}, std::size_t{2}, std::size_t{20}, kCount - 1, kCount, 8 * kCount}) {
-      const std::vector<Sphere> balls = cut(tree, count);
-      EXPECT_LE(balls.size(), count);
-      EXPECT_TRUE(count < kCount || balls.size() == kCount);
+      const std::vector<Sphere> spheres = cut(tree, count);
+      EXPECT_LE(spheres.size(), count);
+      EXPECT_TRUE(count < kCount || spheres.size() == kCount);
       for (const Sphere& sphere : family.spheres) {
         EXPECT_TRUE(std::ranges::any_of(
-            balls, [&](const Sphere& ball) { return encloses_exactly(ball, sphere); }));
+            spheres, [&](const Sphere& held) { return encloses_exactly(held, sphere); }));
       }
     }
   }

@@ -33,7 +33,7 @@ bool same_nodes(const SphereTree& a, const SphereTree& b) {
          same_bytes(a.data().child_count, b.data().child_count);
 }
 
-bool same_balls(const SphereTree& a, const SphereTree& b) {
+bool same_spheres(const SphereTree& a, const SphereTree& b) {
   const SphereTreeData& p = a.data();
   const SphereTreeData& q = b.data();
   return same_bytes(p.x, q.x) && same_bytes(p.y, q.y) && same_bytes(p.z, q.z) &&
@@ -100,19 +100,19 @@ TEST(Refit, ATreeThatIsMovedInGivesTheSame) {
     EXPECT_EQ(copied.reach(), anew.reach()) << family.name;
     EXPECT_EQ(copied.box().center, anew.box().center) << family.name;
     EXPECT_EQ(copied.box().half_size, anew.box().half_size) << family.name;
-    EXPECT_TRUE(same_balls(refit(std::move(tree), moved), copied)) << family.name;
+    EXPECT_TRUE(same_spheres(refit(std::move(tree), moved), copied)) << family.name;
   }
 }
 
 TEST(Refit, SpheresThatStayGiveTheSameBytes) {
   for (const Family& family : sphere_families(500, 5)) {
     const SphereTree tree = build_tree(family.spheres);
-    EXPECT_TRUE(same_balls(refit(tree, family.spheres), tree)) << family.name;
+    EXPECT_TRUE(same_spheres(refit(tree, family.spheres), tree)) << family.name;
   }
 }
 
-// A tree through levels has balls that are not the smallest; what has not moved keeps them.
-TEST(Refit, BallsAboveWhatStaysAreKept) {
+// A tree through levels has spheres that are not the smallest; what has not moved keeps them.
+TEST(Refit, SpheresAboveWhatStaysAreKept) {
   std::vector<Sphere> spheres;
   SphereLevel level;
   for (int i = 0; i < 40; ++i) {
@@ -121,22 +121,22 @@ TEST(Refit, BallsAboveWhatStaysAreKept) {
   }
   for (int i = 0; i < 4; ++i) level.spheres.push_back({{10.0 * i + 4.5, 1.0, 0.0}, 9.0});
   const LevelTree levels = build_tree_from_levels(spheres, std::vector{level});
-  EXPECT_TRUE(same_balls(refit(levels.tree, spheres), levels.tree));
+  EXPECT_TRUE(same_spheres(refit(levels.tree, spheres), levels.tree));
 
   spheres[25].center.y() += 0.25;
   const SphereTree refitted = refit(levels.tree, spheres);
   expect_good(refitted, levels.tree, spheres);
   for (std::size_t i = 0; i < 4; ++i) {
-    const Sphere ball = refitted.ball(static_cast<std::size_t>(levels.nodes[0][i]));
+    const Sphere sphere = refitted.sphere(static_cast<std::size_t>(levels.nodes[0][i]));
     if (i == 2) {
-      EXPECT_LT(ball.radius, 5.1);
+      EXPECT_LT(sphere.radius, 5.1);
     } else {
-      EXPECT_EQ(ball, level.spheres[i]);
+      EXPECT_EQ(sphere, level.spheres[i]);
     }
   }
 }
 
-// The balls depend on the nodes and on where the spheres are, not on where they have been.
+// The spheres depend on the nodes and on where the spheres are, not on where they have been.
 TEST(Refit, TheWayThereLeavesNoTrace) {
   Random random(23);
   for (const Family& family : sphere_families(300, 6)) {
@@ -146,8 +146,8 @@ TEST(Refit, TheWayThereLeavesNoTrace) {
     for (const double size : {0.01, 1.0, 0.1}) {
       current = refit(current, stirred(family.spheres, random, size, 2));
     }
-    EXPECT_TRUE(same_balls(refit(current, moved), refit(tree, moved))) << family.name;
-    EXPECT_TRUE(same_balls(refit(current, family.spheres), tree)) << family.name;
+    EXPECT_TRUE(same_spheres(refit(current, moved), refit(tree, moved))) << family.name;
+    EXPECT_TRUE(same_spheres(refit(current, family.spheres), tree)) << family.name;
   }
 }
 
@@ -159,7 +159,7 @@ TEST(Refit, SignsOfZeroAreTakenOver) {
   const SphereTree tree = build_tree(spheres);
   const SphereTree refitted = refit(tree, moved);
   expect_good(refitted, tree, moved);
-  EXPECT_TRUE(same_balls(refitted, build_tree(moved)));
+  EXPECT_TRUE(same_spheres(refitted, build_tree(moved)));
 }
 
 // All pairs of a refitted tree, in their order, are those of a new one over the same spheres.
@@ -204,11 +204,11 @@ TEST(Refit, AShiftGivesTheTreeThatWouldBeBuilt) {
   for (Sphere& sphere : spheres) sphere.center += Vector3d(4096.0, -8192.0, 16384.0);
   const SphereTree built = build_tree(spheres);
   ASSERT_TRUE(same_nodes(built, tree));
-  EXPECT_TRUE(same_balls(refit(tree, spheres), built));
+  EXPECT_TRUE(same_spheres(refit(tree, spheres), built));
 }
 
-// Balls as tight as a new tree's where neighbours stay neighbours; a tree that is valid but useless
-// would fail here. Stirring shows in what the comment says to look at.
+// Spheres as tight as a new tree's where neighbours stay neighbours; a tree that is valid but
+// useless would fail here. Stirring shows in what the comment says to look at.
 TEST(Refit, IsAsTightAsANewTreeWhileNeighboursStayTogether) {
   Random random(25);
   std::vector<Sphere> spheres;
@@ -221,7 +221,7 @@ TEST(Refit, IsAsTightAsANewTreeWhileNeighboursStayTogether) {
   }
   const SphereTree refitted = refit(tree, bent);
   const SphereTree built = build_tree(bent);
-  EXPECT_LE(refitted.ball(0).radius, 1.05 * built.ball(0).radius);
+  EXPECT_LE(refitted.sphere(0).radius, 1.05 * built.sphere(0).radius);
   EXPECT_LE(check(refitted).mean_inflation, 1.1 * check(built).mean_inflation);
   const SphereTree scattered = refit(tree, stirred(bent, random, 0.5, 1));
   EXPECT_GE(check(scattered).mean_inflation, 1.5 * check(tree).mean_inflation);
@@ -242,7 +242,7 @@ TEST(Refit, RefusesBadInput) {
         Sphere{{0, 0, 0}, -1.0}, Sphere{{0, 0, 2e15}, 1.0}, Sphere{{0, 0, 0}, infinity}}) {
     EXPECT_THROW(refit(tree, std::vector<Sphere>{good[0], bad}), Error);
   }
-  // Each is usable, but no usable ball encloses them all.
+  // Each is usable, but no usable sphere encloses them all.
   const Vector3d corner(1e15, 1e15, 1e15);
   EXPECT_THROW(refit(tree, std::vector<Sphere>{{corner, 1.0}, {-corner, 1.0}}), Error);
 }

@@ -69,7 +69,7 @@ TEST(Sphere, PossiblyOverlapIsNeverWrong) {
   EXPECT_GT(tally.padded, kCases / 100);
 }
 
-// The textbook merge of two balls is what this library must not do: it often loses an input.
+// The textbook merge of two spheres is what this library must not do: it often loses an input.
 TEST(Sphere, TheExactOracleRefusesTheTextbookMerge) {
   Random random(3);
   int lost = 0;

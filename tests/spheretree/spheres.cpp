@@ -87,7 +87,7 @@ std::vector<Family> degenerate_families(std::size_t count, Random& random) {
                   [&](std::size_t) {
                     return Sphere{lattice_point(random), static_cast<double>(random.below(3))};
                   })},
-      {"inside touching the unit ball",
+      {"inside touching the unit sphere",
        spheres_of(count,
                   [&](std::size_t) {
                     const double r = random.unit();

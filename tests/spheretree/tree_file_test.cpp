@@ -177,7 +177,7 @@ TEST_F(TreeFile, RefusesWhatCheckRefuses) {
   const std::size_t child_counts = first_children + 4 * nodes;
   refused(kNodes, std::nan(""), "not usable");
   refused(radii, -1.0, "not usable");
-  refused(radii, tree_.ball(0).radius * 0.99, "does not enclose");
+  refused(radii, tree_.sphere(0).radius * 0.99, "does not enclose");
   refused(first_children, std::int32_t{0}, "breadth-first");
   refused(first_children + 4 * (nodes - 1), std::int32_t{-1}, "does not exist");
   refused(child_counts, std::int32_t{-1}, "children");

@@ -13,7 +13,7 @@
 namespace spherule::test {
 namespace {
 
-Sphere ball_of(const SphereTreeData& data, std::size_t node) {
+Sphere sphere_of(const SphereTreeData& data, std::size_t node) {
   return {{data.x.at(node), data.y.at(node), data.z.at(node)}, data.radius.at(node)};
 }
 
@@ -44,21 +44,22 @@ std::string fault_of(const SphereTreeData& data) {
     const std::string name = "node " + std::to_string(node);
     if (node != expected++) return name + " is out of breadth-first order";
     if (++visits.at(node) > 1) return name + " is visited twice";
-    const Sphere ball = ball_of(data, node);
-    if (!usable(ball)) return name + " is not usable";
+    const Sphere sphere = sphere_of(data, node);
+    if (!usable(sphere)) return name + " is not usable";
     const auto first = data.first_child.at(node);
     const auto children = data.child_count.at(node);
     if (children == 0) {
       const auto index = static_cast<std::size_t>(first);
       if (++leaves.at(index) > 1) return name + ": the sphere has two leaves";
-      if (!identical(ball, data.spheres[index])) return name + " differs from its sphere";
+      if (!identical(sphere, data.spheres[index])) return name + " differs from its sphere";
       continue;
     }
     if (children < 0 || children > 16) return name + " has too many children";
     for (std::int32_t i = 0; i < children; ++i) {
       const auto child = static_cast<std::size_t>(first + i);
       if (child <= node) return name + " comes after its child";
-      if (!encloses_exactly(ball, ball_of(data, child))) return name + " does not enclose a child";
+      if (!encloses_exactly(sphere, sphere_of(data, child)))
+        return name + " does not enclose a child";
       open.push_back(child);
     }
   }

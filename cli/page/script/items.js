@@ -27,7 +27,7 @@ function make_item(data, order) {
       part.outline = make_lines(new Float32Array(0), item_outline_material, 1000);
       part.group.add(surface.body, part.outline);
     } else {
-      part.materials = make_ball_materials(order, ball_uniforms(item.kind));
+      part.materials = make_sphere_materials(order, sphere_uniforms(item.kind));
       part.levels = part_data.levels.map((text) => ({count: text_count(text), text, body: null}));
     }
     item.parts.push(part);
@@ -40,13 +40,13 @@ function make_item(data, order) {
 // Leaks are shown wherever the cut is. Circles of many thousands of external spheres would blacken.
 const not_cut = {value: new THREE.Vector4(0, 0, 0, 1)};
 const leak_radius = {value: 1e30};
-function ball_uniforms(kind) {
+function sphere_uniforms(kind) {
   if (kind === "external") return {ring_tint: {value: 0.74}};
   return kind === "leaks" ? {least_radius: {value: kLeakPixels}, greatest_radius: leak_radius,
                              cut: not_cut} : {};
 }
 
-// Balls in a base64 text, 16 bytes each.
+// Spheres in a base64 text, 16 bytes each.
 function text_count(text) {
   const padding = text.endsWith("==") ? 2 : text.endsWith("=") ? 1 : 0;
   return (text.length / 4 * 3 - padding) / 16;
@@ -61,24 +61,24 @@ const kNouns = {mesh: "triangle", spheres: "sphere", tree: "sphere", external: "
                 leaks: "leak"};
 
 // Levels are decoded when they are first shown.
-function balls_of(level) {
-  if (!level.balls) {
-    level.balls = new Float32Array(decode(level.text));
+function spheres_of(level) {
+  if (!level.spheres) {
+    level.spheres = new Float32Array(decode(level.text));
     level.text = null;
   }
-  return level.balls;
+  return level.spheres;
 }
 function load_level(item, part) {
   const level = level_of(item, part);
   if (level.body || level.count === 0) return;
-  level.body = make_body(make_ball_geometry(balls_of(level)), part.materials, item.order);
+  level.body = make_body(make_sphere_geometry(spheres_of(level)), part.materials, item.order);
   part.group.add(level.body);
   if (item.kind === "leaks") add_ghost(item, level, part);
 }
 
 // Leaks inside or behind other things shine through.
 function add_ghost(item, level, part) {
-  part.ghost = make_ball_materials(item.order, ball_uniforms(item.kind),
+  part.ghost = make_sphere_materials(item.order, sphere_uniforms(item.kind),
                                    {depthTest: false, depthWrite: false}).colour;
   part.ghost.uniforms.alpha.value = 0.4;
   const ghost = new THREE.Mesh(level.body.children[0].geometry, part.ghost);
@@ -102,7 +102,7 @@ const has_mesh = items.some((item) => item.kind === "mesh");
     if (item.kind === "external") item.alpha = 0.3;
     for (const part of item.parts) {
       for (const level of item.kind === "mesh" ? [] : [part.levels[part.levels.length - 1]]) {
-        part.box = box_of(balls_of(level), 4);
+        part.box = box_of(spheres_of(level), 4);
       }
     }
   }

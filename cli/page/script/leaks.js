@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Leaks as a list, the deepest first. Each is a mark at its point, and the one with the label also a
-// ball about it, as large as it is deep: the depth is the distance to the nearest sphere.
+// sphere about it, as large as it is deep: the depth is the distance to the nearest sphere.
 const leaks = [];
 for (const item of items.filter((one) => one.kind === "leaks")) {
   for (const part of item.parts) {
-    const balls = balls_of(part.levels[0]);
-    for (let i = 0; i < balls.length; i += 4) {
-      leaks.push({item, part, point: new THREE.Vector3().fromArray(balls, i), depth: balls[i + 3]});
+    const spheres = spheres_of(part.levels[0]);
+    for (let i = 0; i < spheres.length; i += 4) {
+      leaks.push({item, part, point: new THREE.Vector3().fromArray(spheres, i), depth: spheres[i + 3]});
     }
   }
 }
@@ -21,17 +21,17 @@ const leak_link = (leak) => leak.part.link >= 0 ? robot_data.links[leak.part.lin
 // The one with a label in the scene.
 let labelled_leak = null;
 
-const depth_materials = make_ball_materials(1000, {cut: not_cut}, {depthWrite: false});
-let depth_ball = null;
+const depth_materials = make_sphere_materials(1000, {cut: not_cut}, {depthWrite: false});
+let depth_sphere = null;
 function label_leak(leak) {
-  if (depth_ball) depth_ball.parent.remove(depth_ball);
+  if (depth_sphere) depth_sphere.parent.remove(depth_sphere);
   labelled_leak = leak;
   if (!leak) return;
-  const ball = new Float32Array([...leak.point.toArray(), leak.depth]);
-  depth_ball = new THREE.Mesh(make_ball_geometry(ball), depth_materials.colour);
-  depth_ball.frustumCulled = false;
-  depth_ball.renderOrder = 1500;
-  leak.part.group.add(depth_ball);
+  const sphere = new Float32Array([...leak.point.toArray(), leak.depth]);
+  depth_sphere = new THREE.Mesh(make_sphere_geometry(sphere), depth_materials.colour);
+  depth_sphere.frustumCulled = false;
+  depth_sphere.renderOrder = 1500;
+  leak.part.group.add(depth_sphere);
 }
 set_alpha(depth_materials, 0.3);
 theme_listeners.push(() => depth_materials.colour.uniforms.base.value.set(theme().leak));

@@ -50,7 +50,7 @@ function make_line_material(width, lift, obeys_cut) {
 
 function line_geometry(ends) {
   const geometry = new THREE.InstancedBufferGeometry();
-  geometry.setAttribute("position", ball_square);
+  geometry.setAttribute("position", sphere_square);
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
   const both = new THREE.InstancedInterleavedBuffer(ends, 6, 1);
   geometry.setAttribute("begin", new THREE.InterleavedBufferAttribute(both, 3, 0));

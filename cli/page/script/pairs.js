@@ -39,14 +39,14 @@ function in_free_box(boxes, positions) {
 
 // How deep the deepest two of two lists of spheres overlap, in lengths of the scene; `matrix` takes
 // the second ones into the frame of the first.
-function overlap_depth(balls, others, matrix) {
+function overlap_depth(spheres, others, matrix) {
   const center = new THREE.Vector3();
   let deepest = -Infinity;
   for (let k = 0; k < others.length; k += 4) {
     center.fromArray(others, k).applyMatrix4(matrix);
-    for (let i = 0; i < balls.length; i += 4) {
-      const gap = Math.hypot(balls[i] - center.x, balls[i + 1] - center.y, balls[i + 2] - center.z);
-      deepest = Math.max(deepest, balls[i + 3] + others[k + 3] - gap);
+    for (let i = 0; i < spheres.length; i += 4) {
+      const gap = Math.hypot(spheres[i] - center.x, spheres[i + 1] - center.y, spheres[i + 2] - center.z);
+      deepest = Math.max(deepest, spheres[i + 3] + others[k + 3] - gap);
     }
   }
   return deepest;
@@ -74,7 +74,7 @@ function overlapping_pairs() {
     const matrix = new THREE.Matrix4().getInverse(link_frames[first.link].matrixWorld)
                        .multiply(link_frames[second.link].matrixWorld);
     const depth_at = (level_in) =>
-        overlap_depth(balls_of(level_in(first)), balls_of(level_in(second)), matrix);
+        overlap_depth(spheres_of(level_in(first)), spheres_of(level_in(second)), matrix);
     if (depth_at((part) => part.levels[0]) < 0) continue;
     const depth = depth_at((part) => part.levels[part.levels.length - 1]);
     if (depth >= 0) found.push({pair, depth, ...standing_of(pair)});

@@ -18,24 +18,24 @@
 #include <limits>
 #include <utility>
 
-// Root balls. Let W bound |p| + |t| of the centre p of a root ball in its frame and the pose's
+// Root spheres. Let W bound |p| + |t| of the centre p of a root sphere in its frame and the pose's
 // translation t, and all that a sphere reaches from the world's origin. A placed centre errs by
 // 40 u W (pose.h), so that the computed distance of two is within 90 u W of the exact one, with
 // roundings. What a canonical test accepts is at most collision_slack() apart: 152 u of the scene,
-// at most 152 u (2 W + 1.74 * 2 W) < 840 u W. So two whose balls are further apart than the radii,
-// the clearance and kBallPad W touch for no canonical test, and their exact gap is at least the
-// computed one less that. For primitives primitive_slack() is 304 u of the scene, below 1700 u W;
-// the image of a placed centre in the solid's frame errs by less than 40 u + 70 u of 2 W more, and
-// the distance computed there by less than 8 u of 3 W: twice kBallPad.
+// at most 152 u (2 W + 1.74 * 2 W) < 840 u W. So two whose spheres are further apart than the
+// radii, the clearance and kSpherePad W touch for no canonical test, and their exact gap is at
+// least the computed one less that. For primitives primitive_slack() is 304 u of the scene, below
+// 1700 u W; the image of a placed centre in the solid's frame errs by less than 40 u + 70 u of 2 W
+// more, and the distance computed there by less than 8 u of 3 W: twice kSpherePad.
 
 namespace spherule::internal {
 namespace {
 
-constexpr double kBallPad = 1024.0 * kUnitRoundoff;
+constexpr double kSpherePad = 1024.0 * kUnitRoundoff;
 
-// How far any of the balls of a tree, those of nodes included, reaches.
+// How far any of the spheres of a tree, those of nodes included, reaches.
 double reach_of(const SphereTree& tree) {
-  return std::max(tree.reach(), tree.ball(0).center.norm() + tree.ball(0).radius);
+  return std::max(tree.reach(), tree.sphere(0).center.norm() + tree.sphere(0).radius);
 }
 
 struct SizeOf {
@@ -45,19 +45,19 @@ struct SizeOf {
   }
   double operator()(const Primitive& primitive) const { return std::visit(*this, primitive); }
   double operator()(const Box& box) const { return box.size.norm(); }
-  double operator()(const Ball& ball) const { return ball.radius; }
+  double operator()(const SolidSphere& sphere) const { return sphere.radius; }
   double operator()(const Cylinder& solid) const { return solid.radius + solid.length; }
   double operator()(const Capsule& solid) const { return solid.radius + solid.length; }
   double operator()(const HalfSpace&) const { return 0.0; }
 };
 
-// The radius of a ball around the origin of the shape's frame that holds all of it.
+// The radius of a sphere around the origin of the shape's frame that holds all of it.
 struct RadiusOf {
   double operator()(const std::shared_ptr<const SphereTree>&) const { return kUnbounded; }
   double operator()(const std::shared_ptr<const SolidMesh>&) const { return kUnbounded; }
   double operator()(const Primitive& primitive) const { return std::visit(*this, primitive); }
   double operator()(const Box& box) const { return kUp * 0.5 * box.size.norm(); }
-  double operator()(const Ball& ball) const { return ball.radius; }
+  double operator()(const SolidSphere& sphere) const { return sphere.radius; }
   double operator()(const Cylinder& solid) const {
     return kUp * std::hypot(solid.radius, 0.5 * solid.length);
   }
@@ -118,7 +118,7 @@ BodyPairs::BodyPairs(RobotModel robot, const Pose& world_from_root,
   for (const PlacedShape& obstacle : obstacles_) {
     scene = std::max(scene, obstacle.world_from_shape.translation().norm() +
                                 std::visit(SizeOf(), obstacle.shape));
-    solid_balls_.push_back(
+    solid_spheres_.push_back(
         {obstacle.world_from_shape.translation(), std::visit(RadiusOf(), obstacle.shape)});
   }
   const double reach = largest_reach(robot_, pieces_);
@@ -144,7 +144,7 @@ void BodyPairs::make_paths() {
   };
   for (const CheckedPiece& piece : pieces_) {
     paths_.emplace_back(robot_, poses, pose_error_, moving_joints(piece.link, 0), piece.link,
-                        piece.tree->ball(0));
+                        piece.tree->sphere(0));
   }
   for (const CheckedPair& pair : pairs_) {
     if (pair.is_obstacle) {
@@ -155,7 +155,7 @@ void BodyPairs::make_paths() {
     const CheckedPiece& second = pieces_[static_cast<std::size_t>(pair.other)];
     path_of_.push_back(paths_.size());
     paths_.emplace_back(robot_, poses, pose_error_, moving_joints(first.link, second.link),
-                        first.link, first.tree->ball(0), second.link, second.tree->ball(0));
+                        first.link, first.tree->sphere(0), second.link, second.tree->sphere(0));
   }
 }
 
@@ -179,14 +179,14 @@ void BodyPairs::place(std::span<const double> configuration, Memory& memory) con
   memory.configuration.assign(configuration.begin(), configuration.end());
   memory.placed.resize(pieces_.size());
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const Sphere ball = pieces_[i].tree->ball(0);
-    memory.placed[i] = {pose_of(pieces_[i], memory) * ball.center, ball.radius};
+    const Sphere sphere = pieces_[i].tree->sphere(0);
+    memory.placed[i] = {pose_of(pieces_[i], memory) * sphere.center, sphere.radius};
   }
   memory.pad =
-      in_filter_range(configuration) ? kBallPad * size_ : std::numeric_limits<double>::infinity();
+      in_filter_range(configuration) ? kSpherePad * size_ : std::numeric_limits<double>::infinity();
 }
 
-// From the centre of a piece's root ball to a primitive; -infinity for other obstacles.
+// From the centre of a piece's root sphere to a primitive; -infinity for other obstacles.
 double BodyPairs::signed_distance(const CheckedPair& pair, const Memory& memory) const {
   const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
   const Primitive* const solid = std::get_if<Primitive>(&obstacle.shape);
@@ -199,7 +199,8 @@ double BodyPairs::signed_distance(const CheckedPair& pair, const Memory& memory)
 }
 
 // True only if the canonical test for this clearance would say no.
-bool BodyPairs::balls_apart(const CheckedPair& pair, double clearance, const Memory& memory) const {
+bool BodyPairs::spheres_apart(const CheckedPair& pair, double clearance,
+                              const Memory& memory) const {
   const Sphere& a = memory.placed[static_cast<std::size_t>(pair.piece)];
   if (pair.is_obstacle) {
     const double reach = a.radius + (clearance * (1.0 + 1e-9) + 2.0 * memory.pad);
@@ -213,7 +214,7 @@ bool BodyPairs::balls_apart(const CheckedPair& pair, double clearance, const Mem
 
 bool BodyPairs::touches(std::size_t index, const Memory& memory) const {
   const CheckedPair& pair = pairs_[index];
-  if (balls_apart(pair, 0.0, memory) || is_proved_free(index, memory)) return false;
+  if (spheres_apart(pair, 0.0, memory) || is_proved_free(index, memory)) return false;
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
   bool touch = false;
   if (pair.is_obstacle) {
@@ -242,7 +243,7 @@ bool BodyPairs::any_touches(Memory& memory) const {
 bool BodyPairs::is_near(std::size_t index, double clearance, const Memory& memory) const {
   const CheckedPair& pair = pairs_[index];
   if (!(clearance <= kMaxCoordinate)) return true;
-  return !balls_apart(pair, clearance, memory) && spheres_within(pair, clearance, memory) &&
+  return !spheres_apart(pair, clearance, memory) && spheres_within(pair, clearance, memory) &&
          (!is_confirmed(pair) || meshes_within(pair, clearance, memory));
 }
 

@@ -79,7 +79,7 @@ class BodyPairs {
   struct Memory {
     std::vector<double> configuration{};
     std::vector<Pose> world_from_link{};
-    std::vector<Sphere> placed{};  // root balls of the pieces, in the world, up to pad
+    std::vector<Sphere> placed{};  // root spheres of the pieces, in the world, up to pad
     double pad = 0.0;
     std::size_t last = 0;  // the pair that touched last
   };
@@ -141,15 +141,15 @@ class BodyPairs {
     return memory.world_from_link[static_cast<std::size_t>(piece.link)];
   }
   double signed_distance(const CheckedPair& pair, const Memory& memory) const;
-  bool balls_apart(const CheckedPair& pair, double clearance, const Memory& memory) const;
+  bool spheres_apart(const CheckedPair& pair, double clearance, const Memory& memory) const;
   bool spheres_within(const CheckedPair& pair, double clearance, const Memory& memory) const;
   bool meshes_within(const CheckedPair& pair, double clearance, const Memory& memory) const;
-  // True only if the solid is farther than `reach` from the ball's centre in the world; the pad is
-  // in it.
+  // True only if the solid is farther than `reach` from the sphere's centre in the world; the pad
+  // is in it.
   bool is_beyond(std::size_t obstacle, const Eigen::Vector3d& center, double reach) const {
-    const Sphere& ball = solid_balls_[obstacle];
-    const double limit = ball.radius + reach;
-    return (center - ball.center).squaredNorm() > limit * limit;
+    const Sphere& sphere = solid_spheres_[obstacle];
+    const double limit = sphere.radius + reach;
+    return (center - sphere.center).squaredNorm() > limit * limit;
   }
   // Fills paths_ and path_of_; what stands still hangs on the root.
   void make_paths();
@@ -160,8 +160,8 @@ class BodyPairs {
   std::vector<PlacedShape> obstacles_;
   std::vector<CheckedPair> pairs_;
   std::size_t tested_;
-  std::vector<Sphere> solid_balls_;  // in the world, around each primitive; else of infinite size
-  double size_ = 0.0;                // bounds all coordinates within the usual range
+  std::vector<Sphere> solid_spheres_;  // in the world, around each primitive; else of infinite size
+  double size_ = 0.0;                  // bounds all coordinates within the usual range
   double pose_error_ = 0.0;
   double middle_error_ = 0.0;
   std::vector<PathReach> paths_;      // of pieces to the root, then of pairs of pieces

@@ -203,7 +203,7 @@ double StaticTrees::depth_of(const Touch& touch, const Memory& memory) const {
 }
 
 // The poses of forward_kinematics() are within pose_error() of those of the exact mechanism, now
-// and wherever the memory is asked for; as much again covers the ball's.
+// and wherever the memory is asked for; as much again covers the sphere's.
 void StaticTrees::remember(const Touch& touch, double depth, Memory& memory) const {
   if (depth <= 3.0 * pairs_.pose_error()) return;
   const Body& body = body_of(touch.contact.pair);

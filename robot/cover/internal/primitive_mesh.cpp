@@ -133,7 +133,7 @@ struct MeshAround {
                       {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
     return mesh;
   }
-  TriangleMesh operator()(const Ball& ball) const { return rounded(ball.radius, 0.0); }
+  TriangleMesh operator()(const SolidSphere& sphere) const { return rounded(sphere.radius, 0.0); }
   TriangleMesh operator()(const Capsule& capsule) const {
     return rounded(capsule.radius, capsule.length);
   }

@@ -162,12 +162,12 @@ std::string srdf_pairs(std::span<const DisabledPair> pairs, const std::string& i
 std::string srdf_spheres(std::span<const LinkSpheres> links, const std::string& indent) {
   std::string text;
   for (const LinkSpheres& link : links) {
-    const auto put = [&](const Sphere& ball) {
-      text += indent + std::string(kIndent) + "<sphere center=\"" + decimals(ball.center, " ") +
-              "\" radius=\"" + decimal(ball.radius) + "\"/>\n";
+    const auto put = [&](const Sphere& sphere) {
+      text += indent + std::string(kIndent) + "<sphere center=\"" + decimals(sphere.center, " ") +
+              "\" radius=\"" + decimal(sphere.radius) + "\"/>\n";
     };
     text += indent + "<link_sphere_approximation link=\"" + xml_escaped(link.link) + "\">\n";
-    for (const Sphere& ball : link.spheres) put(ball);
+    for (const Sphere& sphere : link.spheres) put(sphere);
     if (link.spheres.empty()) put({});
     text += indent + "</link_sphere_approximation>\n";
   }

@@ -27,9 +27,9 @@ class SphereGatherer {
     if (!good) refuse(place, reason);
   }
 
-  // The link to which the next balls belong.
+  // The link to which the next spheres belong.
   void begin_link(const std::string& name, const std::string& place);
-  // Leaves out and counts a ball that is switched off.
+  // Leaves out and counts a sphere that is switched off.
   void add(const Eigen::Vector3d& center, double radius, const std::string& place);
   // Once for each two links, in whatever order.
   void ignore(const std::string& link_a, const std::string& link_b);
@@ -43,10 +43,10 @@ class SphereGatherer {
   std::set<std::pair<std::string, std::string>> ignored_;
 };
 
-// A ball that contains the ball about `center` moved by the rotation of roll, pitch and yaw about
-// the fixed axes x, y, z and then by `translation`.
-Sphere moved_ball(const Sphere& ball, const Eigen::Vector3d& roll_pitch_yaw,
-                  const Eigen::Vector3d& translation);
+// A sphere that contains the sphere about `center` moved by the rotation of roll, pitch and yaw
+// about the fixed axes x, y, z and then by `translation`.
+Sphere moved_sphere(const Sphere& sphere, const Eigen::Vector3d& roll_pitch_yaw,
+                    const Eigen::Vector3d& translation);
 
 // XML. The root element's children tell URDF from SRDF, which srdf.h reads.
 bool is_srdf(const std::filesystem::path& path);
@@ -54,23 +54,23 @@ RobotSpheres read_sphere_urdf(const std::filesystem::path& path);
 std::string sphere_urdf(const RobotSpheres& spheres, const SphereFileContext& context,
                         const std::filesystem::path& path);
 std::string sphere_srdf(const RobotSpheres& spheres, const SphereFileContext& context);
-// An SRDF with other balls, and with the pairs that it neither disables nor enables yet; all other
-// bytes as they are.
+// An SRDF with other spheres, and with the pairs that it neither disables nor enables yet; all
+// other bytes as they are.
 std::string kept_srdf(const RobotSpheres& spheres, const std::filesystem::path& original);
-// Its elements for pairs and balls, each line indented and ended.
+// Its elements for pairs and spheres, each line indented and ended.
 std::string srdf_pairs(std::span<const DisabledPair> pairs, const std::string& indent);
 std::string srdf_spheres(std::span<const LinkSpheres> links, const std::string& indent);
 
 // YAML: cuRobo or XRDF.
 SphereFormatFile read_sphere_yaml(std::string_view text, const std::filesystem::path& path);
-// A file with other balls, and with the pairs that it does not ignore yet: all other bytes as they
-// are or, where its style does not allow that, written anew without its comments.
+// A file with other spheres, and with the pairs that it does not ignore yet: all other bytes as
+// they are or, where its style does not allow that, written anew without its comments.
 std::string with_spheres(std::string_view text, const std::filesystem::path& path,
                          const RobotSpheres& spheres, SphereFormat format);
 // A new file.
 std::string sphere_curobo(const RobotSpheres& spheres, const SphereFileContext& context);
 std::string sphere_xrdf(const RobotSpheres& spheres, const SphereFileContext& context);
-// The balls of all links as a block of YAML, each line indented by `indent` spaces and ended.
+// The spheres of all links as a block of YAML, each line indented by `indent` spaces and ended.
 std::string yaml_spheres(const RobotSpheres& spheres, int indent);
 
 // Links that are not tested against a first one, with a reason each.

@@ -23,9 +23,9 @@ void SphereGatherer::add(const Eigen::Vector3d& center, double radius, const std
     ++spheres.switched_off;
     return;
   }
-  const Sphere ball{center, radius};
-  unless(is_usable(ball), place, "a number is beyond 1e15");
-  spheres.links.back().spheres.push_back(ball);
+  const Sphere sphere{center, radius};
+  unless(is_usable(sphere), place, "a number is beyond 1e15");
+  spheres.links.back().spheres.push_back(sphere);
 }
 
 void SphereGatherer::ignore(const std::string& link_a, const std::string& link_b) {
@@ -38,9 +38,9 @@ void SphereGatherer::ignore(const std::string& link_a, const std::string& link_b
 // at most three factors, is within 16 u; a row of it times the centre within 32 u of the centre's
 // norm, the three rows within 56 u of it, and the sum with the translation adds 1 u of both. Half a
 // dozen more u for the bounds' own rounding.
-Sphere moved_ball(const Sphere& ball, const Eigen::Vector3d& roll_pitch_yaw,
-                  const Eigen::Vector3d& translation) {
-  if (ball.center.isZero(0.0)) return {translation, ball.radius};  // exact, however it turns
+Sphere moved_sphere(const Sphere& sphere, const Eigen::Vector3d& roll_pitch_yaw,
+                    const Eigen::Vector3d& translation) {
+  if (sphere.center.isZero(0.0)) return {translation, sphere.radius};  // exact, however it turns
   const Eigen::Vector3d& angles = roll_pitch_yaw;
   const double sr = std::sin(angles.x()), cr = std::cos(angles.x());
   const double sp = std::sin(angles.y()), cp = std::cos(angles.y());
@@ -50,8 +50,8 @@ Sphere moved_ball(const Sphere& ball, const Eigen::Vector3d& roll_pitch_yaw,
       sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,          //
       -sp, cp * sr, cp * cr;
   const double error =
-      64.0 * kUnitRoundoff * (norm_upper(ball.center) + norm_upper(translation)) + kUnderflow;
-  return {rotation * ball.center + translation, add_up(ball.radius, error)};
+      64.0 * kUnitRoundoff * (norm_upper(sphere.center) + norm_upper(translation)) + kUnderflow;
+  return {rotation * sphere.center + translation, add_up(sphere.radius, error)};
 }
 
 }  // namespace spherule::internal

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/formats/internal/ball_leaves.h"
 #include "robot/formats/internal/sphere_documents.h"
+#include "robot/formats/internal/sphere_leaves.h"
 
 #include <algorithm>
 #include <map>
@@ -19,12 +19,12 @@ Vector3d vector(const std::optional<XmlElement>& element, const char* name) {
 }
 
 // The <sphere> of a <collision>, or nothing if that is of another shape.
-std::optional<Sphere> ball_of(const XmlElement& collision) {
+std::optional<Sphere> sphere_of(const XmlElement& collision) {
   const auto shapes = collision.needed_child("geometry").children();
   if (shapes.size() != 1) collision.refuse("its geometry is not one shape");
   if (shapes.front().tag() != "sphere") return std::nullopt;
   const auto origin = collision.child("origin");
-  vector(origin, "rpy");  // a ball looks the same however it is turned
+  vector(origin, "rpy");  // a sphere looks the same however it is turned
   return Sphere{vector(origin, "xyz"), shapes.front().needed_number("radius")};
 }
 
@@ -37,7 +37,7 @@ bool is_named_after(std::string_view name, std::string_view parent) {
   return !name.empty() && name.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-bool is_one_ball(const XmlElement& link) {
+bool is_one_sphere(const XmlElement& link) {
   const auto collisions = link.children("collision");
   if (collisions.size() != 1) return false;
   const auto geometry = collisions.front().child("geometry");
@@ -56,12 +56,12 @@ std::string place_of(const std::string& link) {
 
 }  // namespace
 
-std::map<std::string, BallLeaf> ball_leaves(const XmlElement& robot) {
+std::map<std::string, SphereLeaf> sphere_leaves(const XmlElement& robot) {
   std::map<std::string, XmlElement> links;
   for (const XmlElement& link : robot.children("link")) {
     if (!links.insert({link.needed("name"), link}).second) link.refuse("it is there twice");
   }
-  std::map<std::string, BallLeaf> leaves;
+  std::map<std::string, SphereLeaf> leaves;
   std::set<std::string> parents;
   for (const XmlElement& joint : robot.children("joint")) {
     const std::string parent = joint.needed_child("parent").needed("link");
@@ -69,7 +69,7 @@ std::map<std::string, BallLeaf> ball_leaves(const XmlElement& robot) {
     parents.insert(parent);
     const auto link = links.find(child);
     if (joint.needed("type") != "fixed" || !is_named_after(child, parent) || link == links.end() ||
-        !is_one_ball(link->second)) {
+        !is_one_sphere(link->second)) {
       continue;
     }
     if (!links.contains(parent)) joint.refuse("there is no link \"" + parent + "\"");
@@ -86,13 +86,13 @@ RobotSpheres read_sphere_urdf(const std::filesystem::path& path) {
   const XmlElement robot = file.root();
   SphereGatherer gathered(path.string());
   gathered.spheres.robot = robot.attribute("name").value_or("");
-  const auto leaves = ball_leaves(robot);
-  std::map<std::string, std::vector<const BallLeaf*>> leaves_of;
+  const auto leaves = sphere_leaves(robot);
+  std::map<std::string, std::vector<const SphereLeaf*>> leaves_of;
   for (const XmlElement& link : robot.children("link")) {
     const auto leaf = leaves.find(link.needed("name"));
     if (leaf != leaves.end()) leaves_of[leaf->second.parent].push_back(&leaf->second);
   }
-  std::size_t balls = 0;
+  std::size_t spheres = 0;
   for (const XmlElement& link : robot.children("link")) {
     const std::string name = link.needed("name");
     if (leaves.contains(name)) continue;
@@ -100,22 +100,22 @@ RobotSpheres read_sphere_urdf(const std::filesystem::path& path) {
     std::size_t others = 0;
     std::size_t here = 0;
     for (const XmlElement& collision : link.children("collision")) {
-      const auto ball = ball_of(collision);
-      if (ball) gathered.add(ball->center, ball->radius, place_of(name));
-      ++(ball ? here : others);
+      const auto sphere = sphere_of(collision);
+      if (sphere) gathered.add(sphere->center, sphere->radius, place_of(name));
+      ++(sphere ? here : others);
     }
-    for (const BallLeaf* leaf : leaves_of[name]) {
-      const auto ball = ball_of(leaf->link.needed_child("collision"));
+    for (const SphereLeaf* leaf : leaves_of[name]) {
+      const auto sphere = sphere_of(leaf->link.needed_child("collision"));
       const auto origin = leaf->joint.child("origin");
-      const Sphere moved = moved_ball(*ball, vector(origin, "rpy"), vector(origin, "xyz"));
-      gathered.add(moved.center, ball->radius <= 0.0 ? 0.0 : moved.radius, place_of(name));
+      const Sphere moved = moved_sphere(*sphere, vector(origin, "rpy"), vector(origin, "xyz"));
+      gathered.add(moved.center, sphere->radius <= 0.0 ? 0.0 : moved.radius, place_of(name));
       ++here;
     }
     gathered.spheres.other_shapes += others;
-    balls += here;
+    spheres += here;
     if (others > 0 && here == 0) gathered.spheres.links.pop_back();
   }
-  gathered.unless(balls > 0 || gathered.spheres.other_shapes == 0, {}, "holds no spheres");
+  gathered.unless(spheres > 0 || gathered.spheres.other_shapes == 0, {}, "holds no spheres");
   return std::move(gathered.spheres);
 }
 

@@ -113,18 +113,18 @@ std::string yaml_spheres(const RobotSpheres& spheres, int indent) {
   std::string text;
   for (const LinkSpheres& link : spheres.links) {
     text += space + yaml_text(link.link) + (link.spheres.empty() ? ": []\n" : ":\n");
-    for (const Sphere& ball : link.spheres) {
-      text += space + "  - {center: [" + decimals(ball.center, ", ") +
-              "], radius: " + decimal(ball.radius) + "}\n";
+    for (const Sphere& sphere : link.spheres) {
+      text += space + "  - {center: [" + decimals(sphere.center, ", ") +
+              "], radius: " + decimal(sphere.radius) + "}\n";
     }
   }
   return text;
 }
 
 std::string sphere_curobo(const RobotSpheres& spheres, const SphereFileContext& context) {
-  std::vector<std::string> with_balls;
+  std::vector<std::string> with_spheres;
   for (const LinkSpheres& link : spheres.links) {
-    if (!link.spheres.empty()) with_balls.push_back(link.link);
+    if (!link.spheres.empty()) with_spheres.push_back(link.link);
   }
   const std::size_t joints = context.joint_names.size();
   std::string text = "robot_cfg:\n  kinematics:\n";
@@ -141,7 +141,7 @@ std::string sphere_curobo(const RobotSpheres& spheres, const SphereFileContext& 
   }
   put("base_link", yaml_text(context.base_link));
   put("ee_link", yaml_text(context.tool_link));
-  put("collision_link_names", names(with_balls));
+  put("collision_link_names", names(with_spheres));
   put_block("collision_spheres", std::string(1, '\n').append(yaml_spheres(spheres, 6)));
   if (spheres.collision_buffers.empty()) {
     put("collision_sphere_buffer", decimal(spheres.collision_buffer));

@@ -39,12 +39,12 @@
 namespace spherule::internal {
 namespace {
 
-// Of all points of a ball from the axes of joints, the nearest joint first.
+// Of all points of a sphere from the axes of joints, the nearest joint first.
 std::vector<double> reaches(const RobotModel& robot, std::span<const Pose> link_poses, double error,
-                            std::span<const int> joints, int link, const Sphere& ball) {
+                            std::span<const int> joints, int link, const Sphere& sphere) {
   std::vector<double> result;
-  Eigen::Vector3d last = link_poses[static_cast<std::size_t>(link)] * ball.center;
-  double from_last = ball.radius;
+  Eigen::Vector3d last = link_poses[static_cast<std::size_t>(link)] * sphere.center;
+  double from_last = sphere.radius;
   for (const int j : joints) {
     const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
     const Pose& child = link_poses[static_cast<std::size_t>(joint.child_link)];

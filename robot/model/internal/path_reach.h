@@ -32,9 +32,9 @@ class PathReach {
   };
 
   // The joints that move one of the two against the other, from the first body to the second; the
-  // first body is in a ball of the frame of its link, the second in another one, or else it stands
-  // still. `link_poses` are those of the robot with all joints at zero; a point mapped by them, or
-  // a direction times `error`, may be off by `error`.
+  // first body is in a sphere of the frame of its link, the second in another one, or else it
+  // stands still. `link_poses` are those of the robot with all joints at zero; a point mapped by
+  // them, or a direction times `error`, may be off by `error`.
   PathReach(const RobotModel& robot, std::span<const Pose> link_poses, double error,
             std::span<const int> joints, int first_link, const Sphere& first);
   PathReach(const RobotModel& robot, std::span<const Pose> link_poses, double error,

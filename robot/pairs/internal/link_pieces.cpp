@@ -85,15 +85,15 @@ class Builder {
       all_triangles &= elements_[i].corner_count == 3;
     }
     const bool is_one_sphere = last - first == 1 && !all_triangles;
-    Sphere ball{0.5 * (low + high), 0.0};
+    Sphere sphere{0.5 * (low + high), 0.0};
     for (std::size_t i = first; i < last; ++i) {
       for (int c = 0; c < elements_[i].corner_count; ++c) {
         const Vector3d& corner = elements_[i].corners[static_cast<std::size_t>(c)];
-        ball.radius =
-            std::max(ball.radius, add_up(distance_upper(ball.center, corner), elements_[i].radius));
+        sphere.radius = std::max(
+            sphere.radius, add_up(distance_upper(sphere.center, corner), elements_[i].radius));
       }
     }
-    pieces_.nodes[node].ball = ball;
+    pieces_.nodes[node].sphere = sphere;
     const std::size_t count = last - first;
     if (is_one_sphere || (all_triangles && count <= kTrianglesOfPiece)) {
       std::vector<Vector3d> points;

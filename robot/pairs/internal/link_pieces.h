@@ -18,7 +18,7 @@ namespace spherule::internal {
 // mesh grown by its growth lies in a leaf, and every point of a sphere.
 struct LinkPieces {
   struct Node {
-    Sphere ball;                    // holds all leaves below
+    Sphere sphere;                  // holds all leaves below
     std::int32_t first_child = -1;  // the second one follows it; -1 for a leaf
     std::int32_t first_point = 0;   // of a piece
     std::int32_t point_count = 0;   // 0 if the node is none

@@ -58,12 +58,12 @@ bool clear_front(const PlacedPair& pair, std::vector<PieceNodes>& front) {
     const auto& of_a = a.nodes[static_cast<std::size_t>(nodes.first)];
     const auto& of_b = b.nodes[static_cast<std::size_t>(nodes.second)];
     const Vector3d way =
-        pair.world_from_first * of_a.ball.center - pair.world_from_second * of_b.ball.center;
+        pair.world_from_first * of_a.sphere.center - pair.world_from_second * of_b.sphere.center;
     const double length = way.norm();
-    const double radii = add_up(of_a.ball.radius, of_b.ball.radius);
+    const double radii = add_up(of_a.sphere.radius, of_b.sphere.radius);
     if (length > radii &&
-        pair.bound.are_apart(way / length, pair.world_from_first, std::span(&of_a.ball.center, 1),
-                             pair.world_from_second, std::span(&of_b.ball.center, 1), radii)) {
+        pair.bound.are_apart(way / length, pair.world_from_first, std::span(&of_a.sphere.center, 1),
+                             pair.world_from_second, std::span(&of_b.sphere.center, 1), radii)) {
       continue;
     }
     if (of_a.point_count > 0 && of_b.point_count > 0 && pieces_apart(pair, of_a, of_b, way))
@@ -73,7 +73,7 @@ bool clear_front(const PlacedPair& pair, std::vector<PieceNodes>& front) {
     if (is_leaf && other_is_leaf) {
       front.push_back(nodes);
       ++open_leaves;
-    } else if (other_is_leaf || (!is_leaf && of_a.ball.radius > of_b.ball.radius)) {
+    } else if (other_is_leaf || (!is_leaf && of_a.sphere.radius > of_b.sphere.radius)) {
       todo.push_back({of_a.first_child, nodes.second});
       todo.push_back({of_a.first_child + 1, nodes.second});
     } else {

@@ -130,10 +130,10 @@ class Search {
   }
 
   void halve(Box box, std::vector<Box>& open) {
-    const Vector3d first = first_pose() * space_.of_first->nodes[0].ball.center;
-    const Vector3d second = second_pose() * space_.of_second->nodes[0].ball.center;
+    const Vector3d first = first_pose() * space_.of_first->nodes[0].sphere.center;
+    const Vector3d second = second_pose() * space_.of_second->nodes[0].sphere.center;
     const double radius =
-        std::min(space_.of_first->nodes[0].ball.radius, space_.of_second->nodes[0].ball.radius);
+        std::min(space_.of_first->nodes[0].sphere.radius, space_.of_second->nodes[0].sphere.radius);
     std::array<double, FreeBoxes::kMostVariables> motions{};
     double sum = 0.0;
     for (std::size_t step = 0; step < space_.joints.size(); ++step) {

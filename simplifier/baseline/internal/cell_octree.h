@@ -20,7 +20,7 @@ namespace spherule::internal {
 //
 // The cubes are exact: those of a grid with corners at origin + step * (whole numbers). They fill
 // space without a gap; their centres and sizes as computed are off by rounding, for which the tests
-// and the balls have a margin.
+// and the spheres have a margin.
 class CellOctree {
  public:
   enum class State : std::uint8_t { kOutside, kInside, kSurface, kRefined };
@@ -55,9 +55,9 @@ class CellOctree {
   double edge(int level) const;
   // As computed, off by a few units in the last place of the largest coordinate.
   Eigen::Vector3d center(const Cell& cell) const;
-  // Radius of a ball about the computed centre that contains the exact cube, and with the reserve
-  // that SphereTree asks for the balls of its eight halves: in exact arithmetic these touch it from
-  // inside at the corners, so that an octree is a layered hierarchy but for rounding.
+  // Radius of a sphere about the computed centre that contains the exact cube, and with the reserve
+  // that SphereTree asks for the spheres of its eight halves: in exact arithmetic these touch it
+  // from inside at the corners, so that an octree is a layered hierarchy but for rounding.
   double circumscribed(int level) const;
   // Whether the centre of a refined cell lies in a free cell that counts as inside.
   bool has_center_inside(const Cell& cell) const;

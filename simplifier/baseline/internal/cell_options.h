@@ -6,7 +6,7 @@
 
 namespace spherule::internal {
 
-// Edge of a cube whose circumscribed ball, with its margins for rounding, is nowhere further than
+// Edge of a cube whose circumscribed sphere, with its margins for rounding, is nowhere further than
 // `max_error` from any point of the cube.
 inline double edge_for_error(double max_error) {
   return max_error * (0.5773502691896257 * (1.0 - 0x1p-10));

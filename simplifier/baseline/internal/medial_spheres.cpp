@@ -2,7 +2,7 @@
 #include "simplifier/baseline/internal/medial_spheres.h"
 
 #include "simplifier/baseline/internal/voronoi.h"
-#include "simplifier/solid/ball_hierarchy.h"
+#include "simplifier/solid/sphere_hierarchy.h"
 
 #include <tbb/parallel_for.h>
 
@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 // New sites of one round, as a share of those there are, and at least.
 constexpr double kShare = 0.5;
 constexpr std::size_t kLeastBatch = 64;
-// Of the radius: a ball that protrudes by less is as good as the coordinates allow.
+// Of the radius: a sphere that protrudes by less is as good as the coordinates allow.
 constexpr double kSettled = 1e-6;
 // Each round makes a share more sites or ends, so few suffice; this only bounds the time.
 constexpr int kRounds = 60;
@@ -38,7 +38,7 @@ struct Wish {
 double gap(const Vector3d& point, std::span<const MedialSphere> spheres) {
   double least = std::numeric_limits<double>::infinity();
   for (const MedialSphere& s : spheres) {
-    least = std::min(least, (point - s.ball.center).norm() - s.ball.radius);
+    least = std::min(least, (point - s.sphere.center).norm() - s.sphere.radius);
   }
   return least;
 }
@@ -72,12 +72,12 @@ bool MedialAxis::add_sites(const MedialGoal& goal) {
   const double allowed = wants_more ? 0.0 : goal.max_protrusion;
   std::vector<Wish> wishes;
   for (const MedialSphere& s : spheres_) {
-    if (s.protrusion() <= std::max(allowed, kSettled * s.ball.radius)) continue;
-    wishes.push_back({s.protrusion(), probe_.nearest_boundary(s.ball.center), kNone});
+    if (s.protrusion() <= std::max(allowed, kSettled * s.sphere.radius)) continue;
+    wishes.push_back({s.protrusion(), probe_.nearest_boundary(s.sphere.center), kNone});
   }
-  std::vector<Sphere> balls;
-  for (const MedialSphere& s : spheres_) balls.push_back(s.ball);
-  const BallHierarchy hierarchy(balls);
+  std::vector<Sphere> spheres;
+  for (const MedialSphere& s : spheres_) spheres.push_back(s.sphere);
+  const SphereHierarchy hierarchy(spheres);
   std::vector<double> gaps(watched_.size());
   tbb::parallel_for(std::size_t{0}, watched_.size(),
                     [&](std::size_t i) { gaps[i] = hierarchy.nearest(watched_[i]).upper; });

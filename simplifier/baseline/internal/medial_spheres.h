@@ -13,13 +13,13 @@
 
 namespace spherule::internal {
 
-// A ball about a Voronoi vertex inside of the solid. It is empty of sites and has at least four of
-// them on its boundary, up to rounding.
+// A sphere about a Voronoi vertex inside of the solid. It is empty of sites and has at least four
+// of them on its boundary, up to rounding.
 struct MedialSphere {
-  Sphere ball;
+  Sphere sphere;
   double clearance = 0.0;  // of the centre: its distance to the surface
-  // Upper bound of the largest distance from a point of the ball to the solid.
-  double protrusion() const { return ball.radius - clearance; }
+  // Upper bound of the largest distance from a point of the sphere to the solid.
+  double protrusion() const { return sphere.radius - clearance; }
 };
 
 // When an adaptive approximation is good enough: all of it holds, or the limit is reached.
@@ -29,12 +29,12 @@ struct MedialGoal {
   std::size_t max_sites = 0;
 };
 
-// The medial axis of a solid as balls about Voronoi vertices of sites on its surface, refined where
-// that pays (Bradshaw and O'Sullivan 2004): a ball that protrudes has the point of the
-// surface that is nearest to its centre inside, and becomes smaller balls once that is a site.
-// Departures: sites are added many at a time, the worst balls' first and none in a ball that
+// The medial axis of a solid as spheres about Voronoi vertices of sites on its surface, refined
+// where that pays (Bradshaw and O'Sullivan 2004): a sphere that protrudes has the point of the
+// surface that is nearest to its centre inside, and becomes smaller spheres once that is a site.
+// Departures: sites are added many at a time, the worst spheres' first and none in a sphere that
 // another new site has hit, and the diagram is made anew each time; the protrusion is bounded by
-// one distance query; a point of `watched` that all balls leave open by more than is allowed
+// one distance query; a point of `watched` that all spheres leave open by more than is allowed
 // becomes a site, which stands for their rules about parts of the surface that are not covered.
 class MedialAxis {
  public:
@@ -61,8 +61,8 @@ class MedialAxis {
   std::vector<MedialSphere> spheres_;
 };
 
-// The least of |p - c| - r over the balls: not positive where one of them holds p. Infinite without
-// balls.
+// The least of |p - c| - r over the spheres: not positive where one of them holds p. Infinite
+// without spheres.
 double gap(const Eigen::Vector3d& point, std::span<const MedialSphere> spheres);
 
 }  // namespace spherule::internal

@@ -14,22 +14,22 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kNearest = 3;       // balls of a point that are neighbours
-constexpr std::size_t kNearestLinks = 4;  // of a ball, where no point joins it to others
+constexpr std::size_t kNearest = 3;       // spheres of a point that are neighbours
+constexpr std::size_t kNearestLinks = 4;  // of a sphere, where no point joins it to others
 
 struct Near {
   double gap = std::numeric_limits<double>::infinity();
-  std::int32_t ball = -1;
+  std::int32_t sphere = -1;
 };
 using Nearest = std::array<Near, kNearest>;
 
-// The balls with the least |p - c| - r, the nearest first.
-template <class BallAt>
-Nearest nearest_of(const Vector3d& p, std::size_t count, const BallAt& ball_at) {
+// The spheres with the least |p - c| - r, the nearest first.
+template <class SphereAt>
+Nearest nearest_of(const Vector3d& p, std::size_t count, const SphereAt& sphere_at) {
   Nearest best;
   for (std::size_t i = 0; i < count; ++i) {
-    const Sphere& ball = ball_at(i);
-    Near near{(p - ball.center).norm() - ball.radius, static_cast<std::int32_t>(i)};
+    const Sphere& sphere = sphere_at(i);
+    Near near{(p - sphere.center).norm() - sphere.radius, static_cast<std::int32_t>(i)};
     for (Near& held : best) {
       if (near.gap < held.gap) std::swap(near, held);
     }
@@ -37,12 +37,12 @@ Nearest nearest_of(const Vector3d& p, std::size_t count, const BallAt& ball_at) 
   return best;
 }
 
-template <class BallAt>
-std::vector<Nearest> nearest_balls(const ReductionTask& task, std::size_t count,
-                                   const BallAt& ball_at) {
+template <class SphereAt>
+std::vector<Nearest> nearest_spheres(const ReductionTask& task, std::size_t count,
+                                     const SphereAt& sphere_at) {
   std::vector<Nearest> nearest(task.points.size());
   tbb::parallel_for(std::size_t{0}, nearest.size(), [&](std::size_t k) {
-    nearest[k] = nearest_of(task.samples[task.points[k]], count, ball_at);
+    nearest[k] = nearest_of(task.samples[task.points[k]], count, sphere_at);
   });
   return nearest;
 }
@@ -56,18 +56,18 @@ double largest_protrusion(std::span<const FittedSphere> spheres) {
 }
 
 std::vector<FittedSphere> assign_points(const ReductionTask& task) {
-  const auto ball_at = [&](std::size_t i) -> const Sphere& { return task.spheres[i].ball; };
-  const auto nearest = nearest_balls(task, task.spheres.size(), ball_at);
+  const auto sphere_at = [&](std::size_t i) -> const Sphere& { return task.spheres[i].sphere; };
+  const auto nearest = nearest_spheres(task, task.spheres.size(), sphere_at);
   std::vector<FittedSphere> all;
-  for (const MedialSphere& s : task.spheres) all.push_back({s.ball, s.clearance, {}, -1});
+  for (const MedialSphere& s : task.spheres) all.push_back({s.sphere, s.clearance, {}, -1});
   for (std::size_t k = 0; k < task.points.size(); ++k) {
     const std::uint32_t point = task.points[k];
     const Vector3d& p = task.samples[point];
     const Near& near = nearest[k][0];
-    if (near.ball >= 0 && near.gap <= task.max_inflation) {
-      FittedSphere& owner = all[static_cast<std::size_t>(near.ball)];
+    if (near.sphere >= 0 && near.gap <= task.max_inflation) {
+      FittedSphere& owner = all[static_cast<std::size_t>(near.sphere)];
       owner.points.push_back(point);
-      owner.ball.radius = std::max(owner.ball.radius, distance_upper(p, owner.ball.center));
+      owner.sphere.radius = std::max(owner.sphere.radius, distance_upper(p, owner.sphere.center));
     } else {
       all.push_back({{p, 0.0}, 0.0, {point}, -1});
     }
@@ -81,12 +81,12 @@ ReductionGraph::ReductionGraph(const ReductionTask& task)
       links_(nodes_.size()),
       live_(nodes_.size(), true),
       live_count_(nodes_.size()) {
-  const auto ball_at = [&](std::size_t i) -> const Sphere& { return nodes_[i].ball; };
-  for (const Nearest& n : nearest_balls(task, nodes_.size(), ball_at)) {
+  const auto sphere_at = [&](std::size_t i) -> const Sphere& { return nodes_[i].sphere; };
+  for (const Nearest& n : nearest_spheres(task, nodes_.size(), sphere_at)) {
     for (std::size_t a = 0; a < kNearest; ++a) {
       for (std::size_t b = 0; b < a; ++b) {
-        if (n[a].ball < 0 || n[b].ball < 0) continue;
-        link(static_cast<std::uint32_t>(n[a].ball), static_cast<std::uint32_t>(n[b].ball));
+        if (n[a].sphere < 0 || n[b].sphere < 0) continue;
+        link(static_cast<std::uint32_t>(n[a].sphere), static_cast<std::uint32_t>(n[b].sphere));
       }
     }
   }
@@ -125,12 +125,12 @@ void ReductionGraph::remove(std::uint32_t i, std::uint32_t heir) {
 }
 
 void ReductionGraph::link_nearest() {
-  const std::vector<std::uint32_t> balls = live();
-  for (const std::uint32_t i : balls) {
+  const std::vector<std::uint32_t> spheres = live();
+  for (const std::uint32_t i : spheres) {
     std::vector<std::pair<double, std::uint32_t>> others;
-    for (const std::uint32_t j : balls) {
+    for (const std::uint32_t j : spheres) {
       if (j == i) continue;
-      others.emplace_back((nodes_[i].ball.center - nodes_[j].ball.center).norm(), j);
+      others.emplace_back((nodes_[i].sphere.center - nodes_[j].sphere.center).norm(), j);
     }
     const std::size_t count = std::min(kNearestLinks, others.size());
     std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count),

@@ -10,14 +10,16 @@
 
 namespace spherule::internal {
 
-// The balls of a reduction that are still there, and which are neighbours. Merging and bursting
+// The spheres of a reduction that are still there, and which are neighbours. Merging and bursting
 // work on it.
 class ReductionGraph {
  public:
-  // The balls of assign_points, neighbours where both are among the three nearest of some point.
+  // The spheres of assign_points, neighbours where both are among the three nearest of some point.
   explicit ReductionGraph(const ReductionTask& task);
 
-  std::size_t size() const { return nodes_.size(); }  // of all indices, those of removed balls too
+  std::size_t size() const {
+    return nodes_.size();
+  }  // of all indices, those of removed spheres too
   std::size_t live_count() const { return live_count_; }
   bool is_live(std::size_t i) const { return live_[i]; }
   const FittedSphere& operator[](std::size_t i) const { return nodes_[i]; }
@@ -26,9 +28,9 @@ class ReductionGraph {
   std::vector<std::uint32_t> live() const;  // ascending
 
   std::uint32_t add(FittedSphere sphere);
-  // Takes a ball out; its neighbours become neighbours of `heir`.
+  // Takes a sphere out; its neighbours become neighbours of `heir`.
   void remove(std::uint32_t i, std::uint32_t heir);
-  // Makes every ball a neighbour of those nearest to it, where nothing else joins what is left.
+  // Makes every sphere a neighbour of those nearest to it, where nothing else joins what is left.
   void link_nearest();
 
  private:

@@ -8,7 +8,7 @@ using Eigen::Vector3d;
 double SimplifiedProbe::clearance(const Vector3d& point) const {
   const ClearanceAt at = clearance_(point, tolerance_);
   if (at.upper >= 0.0) return at.lower;
-  // Out of a single ball a point of S is as far as its surface; of several, the mesh is in S.
+  // Out of a single sphere a point of S is as far as its surface; of several, the mesh is in S.
   const double way = -1.01 * at.lower;
   if (clearance_(point + way * at.away, tolerance_, way).lower >= 0.0) return -way;
   return -distance_(point).upper;

@@ -7,7 +7,7 @@
 
 namespace spherule::internal {
 
-// The simplified solid S: its boundary is made of external balls and faces of the box. Clearances
+// The simplified solid S: its boundary is made of external spheres and faces of the box. Clearances
 // inside are lower bounds, within `tolerance`; outside, the distance to a point of S found beyond
 // the contact, or else to the mesh.
 class SimplifiedProbe final : public SolidProbe {

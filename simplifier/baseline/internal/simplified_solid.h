@@ -27,7 +27,7 @@ struct SimplifiedSolid {
 
   // Points of S, up to rounding, that a cover is made for: one on the boundary in every cell that
   // this crosses, one in the middle of every other, and, since they stick out first, corners and
-  // points of the edges of the mesh where they lie on the boundary. (Ridges where external balls
+  // points of the edges of the mesh where they lie on the boundary. (Ridges where external spheres
   // meet elsewhere are left to the proof: what leaks there becomes a sample, too.) At least one.
   std::vector<Eigen::Vector3d> samples(const TriangleMesh& mesh) const;
 

@@ -11,7 +11,7 @@ class SolidProbe {
  public:
   virtual ~SolidProbe() = default;
 
-  // Distance to the boundary, negative outside of the solid. A ball of radius r about the point
+  // Distance to the boundary, negative outside of the solid. A sphere of radius r about the point
   // protrudes from the solid by at most r minus this.
   virtual double clearance(const Eigen::Vector3d& point) const = 0;
 

@@ -18,13 +18,13 @@ using Eigen::Vector3d;
 
 struct Bursting {
   double protrusion = 0.0;  // largest of the heirs
-  std::uint32_t ball = 0;
+  std::uint32_t sphere = 0;
   std::uint32_t version = 0;
 };
 
 struct ComesLater {
   bool operator()(const Bursting& a, const Bursting& b) const {
-    return std::tie(a.protrusion, a.ball) > std::tie(b.protrusion, b.ball);
+    return std::tie(a.protrusion, a.sphere) > std::tie(b.protrusion, b.sphere);
   }
 };
 
@@ -54,7 +54,7 @@ class Burster {
       const Bursting next = queue_.top();
       if (goal.count == 0 && next.protrusion > goal.max_protrusion) return;
       queue_.pop();
-      apply(next.ball);
+      apply(next.sphere);
     }
   }
 
@@ -73,15 +73,15 @@ class Burster {
       double radius = 0.0;
       std::uint32_t heir = i;
       for (const std::uint32_t j : graph_.neighbours(i)) {
-        const double needed = distance_upper(p, graph_[j].ball.center);
-        if (needed - graph_[j].ball.radius < least) {
-          least = needed - graph_[j].ball.radius;
+        const double needed = distance_upper(p, graph_[j].sphere.center);
+        if (needed - graph_[j].sphere.radius < least) {
+          least = needed - graph_[j].sphere.radius;
           radius = needed;
           heir = j;
         }
       }
       Inheritance& part =
-          heirs.try_emplace(heir, Inheritance{graph_[heir].ball.radius, {}}).first->second;
+          heirs.try_emplace(heir, Inheritance{graph_[heir].sphere.radius, {}}).first->second;
       part.radius = std::max(part.radius, radius);
       part.points.push_back(point);
     }
@@ -89,17 +89,17 @@ class Burster {
   }
 
   void evaluate(const std::set<std::uint32_t>& changed) {
-    const std::vector<std::uint32_t> balls(changed.begin(), changed.end());
-    std::vector<double> protrusions(balls.size());
-    tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t k) {
+    const std::vector<std::uint32_t> spheres(changed.begin(), changed.end());
+    std::vector<double> protrusions(spheres.size());
+    tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t k) {
       double largest = -std::numeric_limits<double>::infinity();
-      for (const auto& [j, part] : heirs_of(balls[k])) {
+      for (const auto& [j, part] : heirs_of(spheres[k])) {
         largest = std::max(largest, part.radius - graph_[j].clearance);
       }
       protrusions[k] = largest;
     });
-    for (std::size_t k = 0; k < balls.size(); ++k) {
-      const std::uint32_t i = balls[k];
+    for (std::size_t k = 0; k < spheres.size(); ++k) {
+      const std::uint32_t i = spheres[k];
       ++versions_[i];
       if (!graph_.neighbours(i).empty()) queue_.push({protrusions[k], i, versions_[i]});
     }
@@ -109,7 +109,7 @@ class Burster {
   bool drop_stale() {
     while (!queue_.empty()) {
       const Bursting& top = queue_.top();
-      if (graph_.is_live(top.ball) && versions_[top.ball] == top.version) return true;
+      if (graph_.is_live(top.sphere) && versions_[top.sphere] == top.version) return true;
       queue_.pop();
     }
     return false;
@@ -122,7 +122,7 @@ class Burster {
     for (const auto& [j, part] : heirs) {
       if (part.points.size() > heirs.at(main_heir).points.size()) main_heir = j;
       FittedSphere& heir = graph_[j];
-      heir.ball.radius = part.radius;
+      heir.sphere.radius = part.radius;
       heir.points.insert(heir.points.end(), part.points.begin(), part.points.end());
       std::sort(heir.points.begin(), heir.points.end());
     }

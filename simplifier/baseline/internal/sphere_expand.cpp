@@ -30,37 +30,37 @@ class Expander {
   }
 
   std::vector<FittedSphere> at(double stand_off) const {
-    std::vector<FittedSphere> balls;
+    std::vector<FittedSphere> spheres;
     for (const MedialSphere& s : task_.spheres) {
-      balls.push_back({{s.ball.center, s.clearance + stand_off}, s.clearance, {}, -1});
+      spheres.push_back({{s.sphere.center, s.clearance + stand_off}, s.clearance, {}, -1});
     }
-    SetCoverInstance cover{points_.size(), std::vector<std::vector<std::uint32_t>>(balls.size())};
-    tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
-      const Sphere& ball = balls[i].ball;
-      grid_->find(ball.center, ball.radius, cover.columns[i]);
+    SetCoverInstance cover{points_.size(), std::vector<std::vector<std::uint32_t>>(spheres.size())};
+    tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+      const Sphere& sphere = spheres[i].sphere;
+      grid_->find(sphere.center, sphere.radius, cover.columns[i]);
       std::erase_if(cover.columns[i],
-                    [&](std::uint32_t k) { return !certainly_contains(ball, points_[k]); });
+                    [&](std::uint32_t k) { return !certainly_contains(sphere, points_[k]); });
     });
-    // What is open without them gets balls about points, which have no room to protrude less.
-    std::vector<std::size_t> all(balls.size());
+    // What is open without them gets spheres about points, which have no room to protrude less.
+    std::vector<std::size_t> all(spheres.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
     for (const std::uint32_t k : open_rows(cover, all)) {
-      balls.push_back({{points_[k], stand_off}, 0.0, {}, -1});
+      spheres.push_back({{points_[k], stand_off}, 0.0, {}, -1});
       std::vector<std::uint32_t> held;
       grid_->find(points_[k], stand_off, held);
       std::erase_if(held, [&](std::uint32_t p) {
-        return !certainly_contains(balls.back().ball, points_[p]);
+        return !certainly_contains(spheres.back().sphere, points_[p]);
       });
       if (held.empty()) held.push_back(k);
       cover.columns.push_back(std::move(held));
     }
     std::vector<std::size_t> chosen = greedy_set_cover(cover);
     std::sort(chosen.begin(), chosen.end());
-    return with_points(balls, cover, chosen);
+    return with_points(spheres, cover, chosen);
   }
 
-  // The least stand-off distance found that needs at most `count` balls; at the diagonal of the
-  // box, a ball about any point of it holds all.
+  // The least stand-off distance found that needs at most `count` spheres; at the diagonal of the
+  // box, a sphere about any point of it holds all.
   double stand_off_for(std::size_t count) const {
     double low = 0.0;
     double high = box_.sizes().norm() / 256.0;
@@ -82,8 +82,8 @@ class Expander {
     return points;
   }
 
-  // Each point goes to the chosen ball that holds it deepest.
-  std::vector<FittedSphere> with_points(const std::vector<FittedSphere>& balls,
+  // Each point goes to the chosen sphere that holds it deepest.
+  std::vector<FittedSphere> with_points(const std::vector<FittedSphere>& spheres,
                                         const SetCoverInstance& cover,
                                         const std::vector<std::size_t>& chosen) const {
     std::vector<FittedSphere> result;
@@ -91,13 +91,14 @@ class Expander {
     std::vector<double> least(points_.size(), std::numeric_limits<double>::infinity());
     for (const std::size_t i : chosen) {
       for (const std::uint32_t k : cover.columns[i]) {
-        const double gap = (points_[k] - balls[i].ball.center).norm() - balls[i].ball.radius;
+        const double gap =
+            (points_[k] - spheres[i].sphere.center).norm() - spheres[i].sphere.radius;
         if (gap < least[k]) {
           least[k] = gap;
           owner[k] = result.size();
         }
       }
-      result.push_back(balls[i]);
+      result.push_back(spheres[i]);
     }
     for (std::size_t k = 0; k < points_.size(); ++k) {
       result[owner[k]].points.push_back(task_.points[k]);
@@ -125,12 +126,12 @@ std::vector<FittedSphere> expand(const ReductionTask& task, const ReductionGoal&
   ReductionTask search = task;
   search.points = some;
   double stand_off = Expander(search).stand_off_for(goal.count);
-  std::vector<FittedSphere> balls = expander.at(stand_off);
-  while (balls.size() > goal.count) {
+  std::vector<FittedSphere> spheres = expander.at(stand_off);
+  while (spheres.size() > goal.count) {
     stand_off = std::max(kStep * stand_off, std::numeric_limits<double>::min());
-    balls = expander.at(stand_off);
+    spheres = expander.at(stand_off);
   }
-  return balls;
+  return spheres;
 }
 
 }  // namespace spherule::internal

@@ -16,12 +16,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A pair and the ball that would take its place.
+// A pair and the sphere that would take its place.
 struct Merging {
   double protrusion = 0.0;
   std::uint32_t first = 0;
   std::uint32_t second = 0;
-  Sphere ball;
+  Sphere sphere;
   double clearance = 0.0;
 };
 
@@ -63,14 +63,14 @@ class Merger {
     return spheres;
   }
   std::vector<std::uint32_t> live() const { return graph_.live(); }
-  // The ball that holds the points of ball i now.
+  // The sphere that holds the points of sphere i now.
   std::uint32_t current(std::uint32_t i) const {
     while (graph_[i].merged_into >= 0) i = static_cast<std::uint32_t>(graph_[i].merged_into);
     return i;
   }
 
  private:
-  // The pairs of ball i with its neighbours; with `ascending` only those after it.
+  // The pairs of sphere i with its neighbours; with `ascending` only those after it.
   void add_pairs(std::uint32_t i, std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs,
                  bool ascending) const {
     for (const std::uint32_t j : graph_.neighbours(i)) {
@@ -85,14 +85,14 @@ class Merger {
     points.reserve(a.points.size() + b.points.size());
     for (const std::uint32_t p : a.points) points.push_back(task_.samples[p]);
     for (const std::uint32_t p : b.points) points.push_back(task_.samples[p]);
-    const Sphere both[] = {a.ball, b.ball};
+    const Sphere both[] = {a.sphere, b.sphere};
     Merging best;
-    for (const Sphere& ball : {enclosing_sphere(std::span<const Vector3d>(points)),
-                               enclosing_sphere(std::span<const Sphere>(both))}) {
-      const double clearance = task_.probe.clearance(ball.center);
-      const double protrusion = ball.radius - clearance;
+    for (const Sphere& sphere : {enclosing_sphere(std::span<const Vector3d>(points)),
+                                 enclosing_sphere(std::span<const Sphere>(both))}) {
+      const double clearance = task_.probe.clearance(sphere.center);
+      const double protrusion = sphere.radius - clearance;
       const bool is_first = best.first == best.second;
-      if (is_first || protrusion < best.protrusion) best = {protrusion, i, j, ball, clearance};
+      if (is_first || protrusion < best.protrusion) best = {protrusion, i, j, sphere, clearance};
     }
     return best;
   }
@@ -115,7 +115,7 @@ class Merger {
   }
 
   void apply(const Merging& m) {
-    FittedSphere merged{m.ball, m.clearance, {}, -1};
+    FittedSphere merged{m.sphere, m.clearance, {}, -1};
     std::merge(graph_[m.first].points.begin(), graph_[m.first].points.end(),
                graph_[m.second].points.begin(), graph_[m.second].points.end(),
                std::back_inserter(merged.points));

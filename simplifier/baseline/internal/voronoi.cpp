@@ -31,7 +31,7 @@ class Delaunay {
     if (!messages_) throw Error("Voronoi diagram", "no temporary file for messages");
     qh_zero(&qhull_, messages_.get());
     // Qbb and Qz scale the lifted coordinate and add a point at infinity, against sites on one
-    // ball; Qt turns what is not a simplex into simplices; Pp leaves warnings out.
+    // sphere; Qt turns what is not a simplex into simplices; Pp leaves warnings out.
     char command[] = "qhull d Qbb Qz Qt Pp";
     status_ = qh_new_qhull(&qhull_, 3, static_cast<int>(points.size()), points.front().data(),
                            False, command, nullptr, messages_.get());
@@ -71,7 +71,7 @@ class Delaunay {
   int status_ = 0;
 };
 
-// Centre of the ball through the four corners; not a number where they lie in a plane.
+// Centre of the sphere through the four corners; not a number where they lie in a plane.
 Vector3d circumcenter(const std::array<Vector3d, 4>& corners) {
   Eigen::Matrix3d rows;
   Vector3d right;

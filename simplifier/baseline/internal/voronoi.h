@@ -10,7 +10,7 @@
 
 namespace spherule::internal {
 
-// A vertex of the Voronoi diagram of some sites: the centre of a ball that has four of them (or
+// A vertex of the Voronoi diagram of some sites: the centre of a sphere that has four of them (or
 // more) on its boundary and none inside.
 struct VoronoiVertex {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -21,9 +21,9 @@ struct VoronoiVertex {
 // The vertices within the box of the sites, from the Delaunay tetrahedra (qhull, as the lower hull
 // of the sites lifted to a paraboloid). Left out are those of tetrahedra so flat that their centre
 // has few digits: its distances to the four sites agree to kVoronoiTolerance times the radius plus
-// the rounding of the coordinates, or it is dropped. More than four sites on one ball give several
-// vertices in the same place, up to rounding. Empty for fewer than five sites and for sites in one
-// plane. Sites that occur twice are one. Deterministic; sorted by `sites`.
+// the rounding of the coordinates, or it is dropped. More than four sites on one sphere give
+// several vertices in the same place, up to rounding. Empty for fewer than five sites and for sites
+// in one plane. Sites that occur twice are one. Deterministic; sorted by `sites`.
 std::vector<VoronoiVertex> voronoi_vertices(std::span<const Eigen::Vector3d> sites);
 
 inline constexpr double kVoronoiTolerance = 1e-9;

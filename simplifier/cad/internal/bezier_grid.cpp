@@ -213,7 +213,7 @@ BezierGrid::BezierGrid(std::vector<double> u_knots, std::vector<double> v_knots,
       for (const Vector4d& p : net.points) {
         radius = std::max(radius, (p.head<3>() / p[3] - box.center()).norm());
       }
-      balls_.push_back({box.center(), radius});
+      spheres_.push_back({box.center(), radius});
       bounds_.push_back(bound_patch(net, u_length(i), v_length(j), box.center(), radius));
       // About the middle of the whole patch again: about the origin far away, the jump would
       // drown in rounding.
@@ -291,8 +291,8 @@ CurveBounds BezierGrid::curve_bounds(Interval t) const {
   const SurfaceBounds b = bounds(t, {0.0, 1.0});
   Eigen::AlignedBox3d box;
   for (const std::size_t i : reach(t, u_knots_, u_periodic_).spans) {
-    box.extend(Vector3d(balls_[i].center.array() - balls_[i].radius));
-    box.extend(Vector3d(balls_[i].center.array() + balls_[i].radius));
+    box.extend(Vector3d(spheres_[i].center.array() - spheres_[i].radius));
+    box.extend(Vector3d(spheres_[i].center.array() + spheres_[i].radius));
   }
   return {.center = box.center(),
           .radius = 0.5 * box.diagonal().norm(),

@@ -41,7 +41,7 @@ class BezierGrid {
   CurveBounds curve_bounds(Interval t) const;
 
  private:
-  struct Ball {
+  struct Sphere {
     Eigen::Vector3d center;
     double radius;
   };
@@ -59,7 +59,7 @@ class BezierGrid {
   bool u_periodic_;
   bool v_periodic_;
   std::vector<SurfaceBounds> bounds_;  // of each patch, without jumps
-  std::vector<Ball> balls_;
+  std::vector<Sphere> spheres_;
   std::vector<double> u_jumps_;  // across the side of patch (i, j) at u_knots[i]
   std::vector<double> v_jumps_;  // across the side of patch (i, j) at v_knots[j]
 };

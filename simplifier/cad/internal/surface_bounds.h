@@ -18,7 +18,7 @@ struct Interval {
 };
 
 // Of a curve C(t) over an interval: |C'| <= first and |C''| <= second wherever these exist; where
-// C' jumps, the jumps add up to at most `jump`. The curve lies in the ball (center, radius).
+// C' jumps, the jumps add up to at most `jump`. The curve lies in the sphere (center, radius).
 struct CurveBounds {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0.0;

@@ -31,7 +31,7 @@ fcl::Transform3d at(double x, double y, double z) {
 }
 
 template <class S>
-std::shared_ptr<api::SphereModel<S>> row_of_balls(int count) {
+std::shared_ptr<api::SphereModel<S>> row_of_spheres(int count) {
   std::vector<Sphere> spheres;
   for (int i = 0; i < count; ++i) spheres.push_back({{2.0 * i, 0.0, 0.0}, 1.0});
   return std::make_shared<api::SphereModel<S>>(
@@ -49,7 +49,7 @@ std::string subject_of(const Ask& ask) {
 }
 
 TEST(FclQueries, ContactsAreSpheresThatTouch) {
-  const auto a = row_of_balls<double>(10), b = row_of_balls<double>(8);
+  const auto a = row_of_spheres<double>(10), b = row_of_spheres<double>(8);
   test::Random random(1);
   std::size_t touching = 0;
   for (int i = 0; i < 300; ++i) {
@@ -87,7 +87,7 @@ TEST(FclQueries, ContactsAreSpheresThatTouch) {
 
 // FCL adds to what a result holds; here nothing of an earlier call survives.
 TEST(FclQueries, ResultsAreFresh) {
-  const auto row = row_of_balls<double>(10);
+  const auto row = row_of_spheres<double>(10);
   const api::CollisionObjectd here(row), near(row, at(0, 1.5, 0)), far(row, at(0, 5, 0));
   const api::CollisionRequestd request(1000, false);
   api::CollisionResultd result;
@@ -104,8 +104,8 @@ TEST(FclQueries, ResultsAreFresh) {
 }
 
 TEST(FclQueries, DistanceIsALowerBound) {
-  const auto a = row_of_balls<double>(10), b = row_of_balls<double>(8);
-  const auto a_float = row_of_balls<float>(10), b_float = row_of_balls<float>(8);
+  const auto a = row_of_spheres<double>(10), b = row_of_spheres<double>(8);
+  const auto a_float = row_of_spheres<float>(10), b_float = row_of_spheres<float>(8);
   test::Random random(2);
   for (int i = 0; i < 300; ++i) {
     const fcl::Transform3d tf_a = test::random_transform(random, 5.0);
@@ -209,12 +209,12 @@ TEST(FclQueries, BoxesHoldTheSpheres) {
       }
     }
   };
-  check(row_of_balls<double>(10), 4);
-  check(row_of_balls<float>(10), 5);
+  check(row_of_spheres<double>(10), 4);
+  check(row_of_spheres<float>(10), 5);
 }
 
 TEST(FclQueries, WhatCannotBeAnsweredIsAnError) {
-  const auto row = row_of_balls<double>(3);
+  const auto row = row_of_spheres<double>(3);
   const auto bare = test::fcl_model<fcl::OBBRSSd>(test::fcl_test_mesh("cube"));
   const fcl::Transform3d id = fcl::Transform3d::Identity();
   fcl::Transform3d bad = id;
@@ -253,21 +253,21 @@ TEST(FclQueries, WhatCannotBeAnsweredIsAnError) {
 
 // An fcl:: that was overlooked is no silent "free".
 TEST(FclQueries, FclItselfRefusesSphereModels) {
-  const auto row = row_of_balls<double>(3);
+  const auto row = row_of_spheres<double>(3);
   const fcl::CollisionObjectd object(row);
   fcl::CollisionResultd result;
   EXPECT_THROW(fcl::collide(&object, &object, fcl::CollisionRequestd(), result), Error);
   fcl::DistanceResultd distance;
   EXPECT_THROW(fcl::distance(&object, &object, fcl::DistanceRequestd(), distance), Error);
   const auto bare = std::make_shared<fcl::Sphered>(1.0);
-  const fcl::CollisionObjectd ball(bare);
-  EXPECT_THROW(fcl::collide(&ball, &object, fcl::CollisionRequestd(), result), Error);
+  const fcl::CollisionObjectd sphere(bare);
+  EXPECT_THROW(fcl::collide(&sphere, &object, fcl::CollisionRequestd(), result), Error);
 }
 
 TEST(FclQueries, ModelsNeedSpheres) {
   EXPECT_THROW(api::SphereModeld(std::shared_ptr<const SphereTree>()), Error);
   auto part = test::covered_model("cube", true)->part();
-  part.spheres = row_of_balls<double>(3)->part().spheres;
+  part.spheres = row_of_spheres<double>(3)->part().spheres;
   EXPECT_THROW(api::SphereModeld{part}, Error);
   EXPECT_THROW(api::cover_part({}), Error);
   EXPECT_THROW(api::cover_part(test::fcl_test_mesh("cube"), {.fit = {.max_error = -1.0}}), Error);

@@ -22,7 +22,7 @@ using test::PairAnswer;
 using test::PlacedPair;
 using test::ProgramModel;
 
-// The simplified solid of a convex mesh is the mesh and what stands between the external balls.
+// The simplified solid of a convex mesh is the mesh and what stands between the external spheres.
 constexpr double kScallops = 0.02;
 constexpr double kFclDistanceError = 1e-9;
 
@@ -62,7 +62,7 @@ bool touches(const Scene& scene, const PlacedPair& pair) {
 // How far the spheres of a model may reach from its mesh.
 double bound_of(std::size_t model) {
   const std::string& name = kNames[model];
-  if (name == "bracket") {  // what the external balls do not reach is no part of it
+  if (name == "bracket") {  // what the external spheres do not reach is no part of it
     return test::covered_model(name)->part().certificate->protrusion_over_mesh->upper;
   }
   return (1.0 + kScallops) * test::fcl_test_error(test::fcl_test_mesh(name));

@@ -16,11 +16,11 @@ namespace spherule::test {
 namespace {
 
 constexpr double kLength = 0.5;
-constexpr double kBall = 0.05;
-constexpr int kBalls = 11;
-constexpr double kWallBall = 0.06;
+constexpr double kSphere = 0.05;
+constexpr int kSpheres = 11;
+constexpr double kWallSphere = 0.06;
 constexpr double kWallBegin = 0.95, kWallStep = 0.08;
-constexpr int kWallBalls = 9;
+constexpr int kWallSpheres = 9;
 
 std::shared_ptr<const SphereTree> row(double begin, double step, int count, double radius) {
   std::vector<Sphere> spheres;
@@ -42,11 +42,11 @@ RobotChecker planar_arm() {
     joint.upper = std::numbers::pi;
     const std::string link = "link_" + std::to_string(i);
     robot.add_link(link, parent, joint);
-    robot.attach(link, row(0.0, kLength / (kBalls - 1), kBalls, kBall));
+    robot.attach(link, row(0.0, kLength / (kSpheres - 1), kSpheres, kSphere));
     parent = link;
   }
   RobotScene scene(robot);
-  scene.add("wall", row(kWallBegin, kWallStep, kWallBalls, kWallBall));
+  scene.add("wall", row(kWallBegin, kWallStep, kWallSpheres, kWallSphere));
   return scene.snapshot();
 }
 
@@ -55,12 +55,12 @@ double planar_arm_gap(std::span<const double> configuration) {
   double x = 0.0, y = 0.0, angle = 0.0;
   for (const double turn : configuration) {
     angle += turn;
-    for (int i = 0; i < kBalls; ++i) {
-      const double along = kLength * i / (kBalls - 1);
-      for (int k = 0; k < kWallBalls; ++k) {
+    for (int i = 0; i < kSpheres; ++i) {
+      const double along = kLength * i / (kSpheres - 1);
+      for (int k = 0; k < kWallSpheres; ++k) {
         const double dx = x + along * std::cos(angle) - (kWallBegin + kWallStep * k);
         const double dy = y + along * std::sin(angle);
-        gap = std::min(gap, std::hypot(dx, dy) - kBall - kWallBall);
+        gap = std::min(gap, std::hypot(dx, dy) - kSphere - kWallSphere);
       }
     }
     x += kLength * std::cos(angle);

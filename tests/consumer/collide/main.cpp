@@ -5,7 +5,7 @@
 #include <spherule/spheretree/build.h>
 #include <vector>
 
-// Two rows of ten balls of radius 1, side by side: apart, then moved into each other.
+// Two rows of ten spheres of radius 1, side by side: apart, then moved into each other.
 int main() {
   std::vector<spherule::Sphere> row;
   for (int i = 0; i < 10; ++i) row.push_back({.center = {2.0 * i, 0.0, 0.0}, .radius = 1.0});

@@ -8,9 +8,9 @@
 #include <spherule/spheretree/build.h>
 #include <vector>
 
-// A ball on a rail, and a ball in its way.
+// A sphere on a rail, and a sphere in its way.
 int main() {
-  const auto ball = std::make_shared<const spherule::SphereTree>(
+  const auto sphere = std::make_shared<const spherule::SphereTree>(
       spherule::build_tree(std::vector<spherule::Sphere>{{{0.0, 0.0, 0.0}, 0.1}}));
   spherule::RobotModel robot;
   robot.add_link("sled", "base_link",
@@ -19,9 +19,9 @@ int main() {
                   .axis = Eigen::Vector3d::UnitX(),
                   .lower = -1.0,
                   .upper = 1.0});
-  robot.attach("sled", ball);
+  robot.attach("sled", sphere);
   spherule::RobotScene scene(robot);
-  scene.add("stop", ball);
+  scene.add("stop", sphere);
   const spherule::RobotChecker checker = scene.snapshot();
 
   auto space = std::make_shared<ompl::base::RealVectorStateSpace>(1);

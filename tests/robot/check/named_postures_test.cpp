@@ -26,9 +26,9 @@ BoxRobot slide(double lower) {
                         .upper = 1.0});
   for (const int link : {0, 1}) {
     robot.add_boxes(link, {{Eigen::Vector3d::Constant(-0.1), Eigen::Vector3d::Constant(0.1)}});
-    const std::vector<Sphere> ball = {{Eigen::Vector3d::Zero(), 0.18}};
+    const std::vector<Sphere> sphere = {{Eigen::Vector3d::Zero(), 0.18}};
     robot.model.attach(robot.model.links()[static_cast<std::size_t>(link)].name,
-                       std::make_shared<const SphereTree>(build_tree(ball)));
+                       std::make_shared<const SphereTree>(build_tree(sphere)));
   }
   return robot;
 }

@@ -138,7 +138,7 @@ TEST(ObstacleChecker, AnswersAsTheExactQueriesDoAtContact) {
     const Eigen::Vector3d center =
         sphere->center + (sphere->radius + other.radius + gap) * direction;
     const std::vector<PlacedTree> obstacles = {
-        {ball(other.center, other.radius),
+        {one_sphere_tree(other.center, other.radius),
          Pose(turned.rotation(), center - turned * other.center)}};
     const ObstacleOptions options{.world_from_root = root};
     SCOPED_TRACE(testing::Message() << i << ' ' << gap);
@@ -171,7 +171,7 @@ TEST(ObstacleChecker, AnswersAsTheExactQueriesDoForOddFrames) {
     robot.add_link("tool", parent,
                    {.name = "bolt", .parent_from_joint = Pose::from_translation(-offset)});
     const Sphere sphere{offset + random.point(0.2), 0.1};
-    robot.attach("tool", ball(sphere.center, sphere.radius));
+    robot.attach("tool", one_sphere_tree(sphere.center, sphere.radius));
     const std::vector<double> configuration = random_configuration(random, robot, 3.2);
     std::vector<Pose> world_from_link;
     forward_kinematics(robot, configuration, world_from_link);
@@ -181,7 +181,7 @@ TEST(ObstacleChecker, AnswersAsTheExactQueriesDoForOddFrames) {
     const Eigen::Vector3d center = world_from_link.back() * sphere.center +
                                    (sphere.radius + 0.2 + gap) * random.point(1.0).normalized();
     const std::vector<PlacedTree> obstacles = {
-        {ball(away, 0.2), Pose::from_translation(center - away)}};
+        {one_sphere_tree(away, 0.2), Pose::from_translation(center - away)}};
     SCOPED_TRACE(testing::Message() << i << ' ' << far);
     hits += expect_answer(robot, obstacles, configuration, {}) ? 1 : 0;
     if (HasFailure()) return;
@@ -189,18 +189,18 @@ TEST(ObstacleChecker, AnswersAsTheExactQueriesDoForOddFrames) {
   EXPECT_GT(hits, effort(1000, 100));
 }
 
-// An arm of length one about the z axis, with a ball at its end and one at its root.
+// An arm of length one about the z axis, with a sphere at its end and one at its root.
 RobotModel arm() {
   RobotModel robot("base");
-  robot.attach("base", ball({0, 0, 0}, 0.1));
+  robot.attach("base", one_sphere_tree({0, 0, 0}, 0.1));
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
-  robot.attach("arm", ball({1, 0, 0}, 0.1));
+  robot.attach("arm", one_sphere_tree({1, 0, 0}, 0.1));
   return robot;
 }
 
 TEST(ObstacleChecker, WhatIsNotTestedIsNotFound) {
-  const std::vector<PlacedTree> obstacles = {{ball({0, 0, 0}, 0.05), Pose()},
-                                             {ball({0, 1, 0}, 0.05), Pose()}};
+  const std::vector<PlacedTree> obstacles = {{one_sphere_tree({0, 0, 0}, 0.05), Pose()},
+                                             {one_sphere_tree({0, 1, 0}, 0.05), Pose()}};
   const auto collides = [&](std::vector<UntestedPair> untested, double angle) {
     ObstacleOptions options;
     options.untested = std::move(untested);
@@ -222,14 +222,14 @@ TEST(ObstacleChecker, NothingToTestIsFree) {
   const ObstacleChecker no_obstacle(arm(), {});
   RobotChecker::Scratch scratch(no_obstacle);
   EXPECT_FALSE(no_obstacle.collides(std::vector<double>{1.0}, scratch));
-  const ObstacleChecker no_robot(RobotModel("base"), {{ball({0, 0, 0}, 1.0), Pose()}});
+  const ObstacleChecker no_robot(RobotModel("base"), {{one_sphere_tree({0, 0, 0}, 1.0), Pose()}});
   RobotChecker::Scratch other(no_robot);
   EXPECT_FALSE(no_robot.collides({}, other));
 }
 
 TEST(ObstacleChecker, RefusesBadInput) {
   EXPECT_THROW(ObstacleChecker(arm(), {{nullptr, Pose()}}), Error);
-  const std::vector<PlacedTree> one = {{ball({5, 0, 0}, 1.0), Pose()}};
+  const std::vector<PlacedTree> one = {{one_sphere_tree({5, 0, 0}, 1.0), Pose()}};
   const ObstacleChecker checker(arm(), one);
   RobotChecker::Scratch scratch(checker);
   for (const std::vector<double>& bad : {std::vector<double>{},

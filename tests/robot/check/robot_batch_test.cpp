@@ -112,7 +112,7 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDo) {
   EXPECT_GT(count.free, effort(2000, 40));
 }
 
-// A ball stands where one of the robot is in the middle of a path, at a distance that single
+// A sphere stands where one of the robot is in the middle of a path, at a distance that single
 // precision cannot tell from contact, or can only just, or that is about as long as a step.
 TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
   SceneRandom random(42);
@@ -132,7 +132,7 @@ TEST(RobotBatch, AnswersAsTheExactQueriesDoAtContact) {
         (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-12.0, -2.0));
     const Eigen::Vector3d center =
         sphere->center + (sphere->radius + 0.1 + gap) * random.point(1.0).normalized();
-    const std::vector<PlacedTree> obstacles = {{ball(center, 0.1), Pose()}};
+    const std::vector<PlacedTree> obstacles = {{one_sphere_tree(center, 0.1), Pose()}};
     ObstacleOptions options{.world_from_root = root};
     const std::vector<std::uint8_t> expected = answers(robot, obstacles, path, options);
     count.add(expected);
@@ -168,8 +168,9 @@ TEST(RobotBatch, AnswersWhereThereIsTooMuchToRemember) {
   }
 }
 
-// A ball inside a shell of small spheres overlaps every inner ball of the shell's tree, but only
-// one sphere: more waits to be searched than there is room for, and nothing of it may be forgotten.
+// A sphere inside a shell of small spheres overlaps every inner sphere of the shell's tree, but
+// only one sphere: more waits to be searched than there is room for, and nothing of it may be
+// forgotten.
 TEST(RobotBatch, NothingThatWaitsIsForgotten) {
   std::vector<Sphere> shell;
   constexpr int kCount = 5000;
@@ -183,7 +184,7 @@ TEST(RobotBatch, NothingThatWaitsIsForgotten) {
   robot.add_link("slide", "base", {.name = "slide", .type = JointType::kPrismatic});
   robot.attach("slide", std::make_shared<const SphereTree>(
                             build_tree(std::vector<Sphere>{{{0, 0, 0}, 0.95}, {{2, 0, 0}, 0.01}})));
-  shell.push_back({{0, 5, 0}, 3.9});  // only the ball around all of the body overlaps it
+  shell.push_back({{0, 5, 0}, 3.9});  // only the sphere around all of the body overlaps it
   Path path{.variables = 1};
   for (int i = 0; i < 32; ++i) path.add({1e-4 * i});
   for (int at = 0; at < kCount; at += effort(97, 997)) {
@@ -203,8 +204,8 @@ TEST(RobotBatch, NothingThatWaitsIsForgotten) {
 TEST(RobotBatch, RefusesBadInput) {
   RobotModel robot("base");
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
-  robot.attach("arm", ball({1, 0, 0}, 0.1));
-  const ObstacleChecker checker(robot, {{ball({0, 1, 0}, 0.1), Pose()}});
+  robot.attach("arm", one_sphere_tree({1, 0, 0}, 0.1));
+  const ObstacleChecker checker(robot, {{one_sphere_tree({0, 1, 0}, 0.1), Pose()}});
   RobotChecker::Scratch scratch(checker);
   std::vector<std::uint8_t> two(2);
   EXPECT_THROW(checker.collides(std::vector<double>{0.0}, scratch, two), Error);

@@ -86,7 +86,7 @@ TEST(RobotCheckerEdge, AWallOnALinkIsNotPassed) {
                  {.type = JointType::kPrismatic, .axis = {1, 0, 0}, .lower = -99, .upper = 99});
   robot.add_link("drill", "slide", {.type = JointType::kContinuous, .axis = {1, 0, 0}});
   robot.attach("door", wall());
-  robot.attach("drill", ball({0.0, 0.1, 0.05}, 1e-3));
+  robot.attach("drill", one_sphere_tree({0.0, 0.1, 0.05}, 1e-3));
   const RobotChecker checker = RobotScene(robot).snapshot();
   RobotChecker::Scratch scratch(checker);
   for (int i = 0; i < effort(200, 20); ++i) {
@@ -115,10 +115,10 @@ TEST(RobotCheckerEdge, ATurningBladeMeetsAPlate) {
     RobotModel robot("base");
     robot.add_link("left", "base", {.type = JointType::kContinuous});
     robot.add_link("right", "base", {.type = JointType::kContinuous});
-    robot.attach("left", ball({radius, 0, 0}, size));
-    robot.attach("right", ball({radius * std::cos(angle), radius * std::sin(angle),
-                                meets ? 1.2 * size : 2.4 * size + 2e-4},
-                               size));
+    robot.attach("left", one_sphere_tree({radius, 0, 0}, size));
+    robot.attach("right", one_sphere_tree({radius * std::cos(angle), radius * std::sin(angle),
+                                           meets ? 1.2 * size : 2.4 * size + 2e-4},
+                                          size));
     const RobotChecker checker = RobotScene(robot).snapshot();
     RobotChecker::Scratch scratch(checker);
     // Both turn, one against the other by more than a turn.
@@ -157,8 +157,8 @@ TEST(RobotCheckerEdge, OnlyJointsBetweenTheTwoCount) {
   };
   robot.add_link("left", "elbow", finger(0.0));
   robot.add_link("right", "elbow", finger(0.05));
-  robot.attach("left", ball({0, 0, 0}, 0.02));
-  robot.attach("right", ball({0, 0, 0}, 0.02));
+  robot.attach("left", one_sphere_tree({0, 0, 0}, 0.02));
+  robot.attach("right", one_sphere_tree({0, 0, 0}, 0.02));
   const RobotChecker checker = RobotScene(robot).snapshot();
   RobotChecker::Scratch scratch(checker);
   const EdgeResult free = checker.check_edge(Configuration{-50, 40, 0.0, 0.0},
@@ -186,8 +186,8 @@ TEST(RobotCheckerEdge, MimicJointsMoveToo) {
   robot.add_link("left", "hand", finger("left_finger", -0.1));
   robot.add_link("right", "hand", finger("right_finger", 0.1));
   robot.mimic("right_finger", "left_finger", -3.0, 0.01);
-  robot.attach("left", ball({0, 0, 0}, 0.01));
-  robot.attach("right", ball({0, 0, 0}, 0.01));
+  robot.attach("left", one_sphere_tree({0, 0, 0}, 0.01));
+  robot.attach("right", one_sphere_tree({0, 0, 0}, 0.01));
   RobotScene scene(robot);
   const RobotChecker checker = scene.snapshot();
   RobotChecker::Scratch scratch(checker);
@@ -209,9 +209,9 @@ TEST(RobotCheckerEdge, LimitsEndAMotion) {
   RobotModel robot("base");
   robot.add_link("slide", "base",
                  {.type = JointType::kPrismatic, .axis = {1, 0, 0}, .lower = -1.0, .upper = 1.0});
-  robot.attach("slide", ball({0, 0, 0}, 0.1));
+  robot.attach("slide", one_sphere_tree({0, 0, 0}, 0.1));
   RobotScene scene(robot);
-  scene.add("post", ball({0.8, 0, 0}, 0.1), Pose());
+  scene.add("post", one_sphere_tree({0.8, 0, 0}, 0.1), Pose());
   const RobotChecker checker = scene.snapshot({.enforce_limits = true});
   RobotChecker::Scratch scratch(checker);
   const auto measure = [&](double from, double to) {
@@ -235,22 +235,22 @@ TEST(RobotCheckerEdge, LimitsEndAMotion) {
   EXPECT_EQ(measure(-1.0, -1.5).free_until, 0.0);
 }
 
-// Solids of other kinds in the way of a ball on a slide that turns.
+// Solids of other kinds in the way of a sphere on a slide that turns.
 TEST(RobotCheckerEdge, StopsAtSolidsOfEveryKind) {
   RobotModel robot("base");
   robot.add_link("slide", "base",
                  {.type = JointType::kPrismatic, .axis = {1, 0, 0}, .lower = -9, .upper = 9});
   robot.add_link("spindle", "slide", {.type = JointType::kContinuous, .axis = {1, 0, 0}});
-  robot.attach("spindle", ball({0, 0, 0}, 0.05));
+  robot.attach("spindle", one_sphere_tree({0, 0, 0}, 0.05));
   const std::vector<std::pair<ObstacleShape, double>> shapes = {
       {Primitive(Box{{0.2, 1, 1}}), 0.1},
-      {Primitive(Ball{0.3}), 0.3},
+      {Primitive(SolidSphere{0.3}), 0.3},
       {Primitive(Cylinder{0.25, 1.0}), 0.25},
       {Primitive(Capsule{0.2, 1.0}), 0.2},
       {std::make_shared<const SolidMesh>(
            box_mesh(Eigen::Vector3d(-0.15, -1, -1), Eigen::Vector3d(0.15, 1, 1))),
        0.15},
-      {ball({0, 0, 0}, 0.4), 0.4},
+      {one_sphere_tree({0, 0, 0}, 0.4), 0.4},
   };
   for (const auto& [shape, half] : shapes) {
     RobotScene scene(robot);
@@ -325,10 +325,10 @@ TEST(RobotCheckerEdge, BudgetsLeaveTheAnswerOpen) {
   RobotModel robot("base");
   robot.add_link("a", "base", {.type = JointType::kContinuous});
   robot.add_link("b", "base", {.type = JointType::kContinuous});
-  robot.attach("a", ball({1, 0, 0}, 0.01));
-  robot.attach("b", ball({1, 0, 0.0202}, 0.01));
+  robot.attach("a", one_sphere_tree({1, 0, 0}, 0.01));
+  robot.attach("b", one_sphere_tree({1, 0, 0.0202}, 0.01));
   RobotScene scene(robot);
-  scene.add("post", ball({-1, 0, 0.0404}, 0.01), Pose());
+  scene.add("post", one_sphere_tree({-1, 0, 0.0404}, 0.01), Pose());
   const RobotChecker checker = scene.snapshot();
   RobotChecker::Scratch scratch(checker);
   const Configuration from = {0.5, 2.0};

@@ -280,13 +280,13 @@ TEST(RobotChecker, ManyAndThreadsAnswerAsOne) {
   }
 }
 
-// Two balls at the ends of arms that turn about the same axis.
+// Two spheres at the ends of arms that turn about the same axis.
 RobotScene two_arms() {
   RobotModel robot("base");
   robot.add_link("a", "base", {.type = JointType::kContinuous});
   robot.add_link("b", "base", {.type = JointType::kContinuous});
-  robot.attach("a", ball({1, 0, 0}, 0.1));
-  robot.attach("b", ball({1, 0, 0}, 0.1));
+  robot.attach("a", one_sphere_tree({1, 0, 0}, 0.1));
+  robot.attach("b", one_sphere_tree({1, 0, 0}, 0.1));
   return RobotScene(robot);
 }
 

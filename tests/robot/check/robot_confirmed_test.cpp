@@ -27,17 +27,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A tetrahedron of `size` with its cover, or one ball: what every body and many an obstacle is.
+// A tetrahedron of `size` with its cover, or one sphere: what every body and many an obstacle is.
 struct Thing {
-  std::shared_ptr<const CoveredMesh> mesh;  // null: the ball
-  Sphere ball{Vector3d::Zero(), 0.0};
+  std::shared_ptr<const CoveredMesh> mesh;  // null: the sphere
+  Sphere sphere{Vector3d::Zero(), 0.0};
   double padding = 0.0;
 
   std::shared_ptr<const SphereTree> tree() const {
-    return mesh ? cover_of(mesh) : test::ball(ball.center, ball.radius);
+    return mesh ? cover_of(mesh) : test::one_sphere_tree(sphere.center, sphere.radius);
   }
   Projection at(const Pose& pose) const {
-    if (!mesh) return onto_ball(pose * ball.center, ball.radius);
+    if (!mesh) return onto_sphere(pose * sphere.center, sphere.radius);
     std::array<Vector3d, 4> corners;
     std::size_t count = 0;
     for (const auto& triangle : {mesh->mesh().triangle(0), mesh->mesh().triangle(3)}) {
@@ -78,8 +78,8 @@ class ConfirmedScene {
         add("thing " + std::to_string(k), thing.tree(), pose, 0.0, thing.at(pose));
       }
     }
-    const std::vector<Primitive> solids = {Box{{0.3, 0.1, 0.2}}, Ball{0.1}, Cylinder{0.1, 0.3},
-                                           Capsule{0.08, 0.3}};
+    const std::vector<Primitive> solids = {Box{{0.3, 0.1, 0.2}}, SolidSphere{0.1},
+                                           Cylinder{0.1, 0.3}, Capsule{0.08, 0.3}};
     for (const Primitive& solid : solids) {
       const Pose pose = place();
       add("solid " + std::to_string(solid.index()), solid, pose, 0.0, onto_primitive(solid, pose));

@@ -25,14 +25,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Voxels, or one ball about the origin.
+// Voxels, or one sphere about the origin.
 struct Shape {
-  std::shared_ptr<const VoxelSolid> voxels;  // null: the ball
+  std::shared_ptr<const VoxelSolid> voxels;  // null: the sphere
   double radius = 0.0;
   double padding = 0.0;
 
   std::shared_ptr<const SphereTree> tree() const {
-    return voxels ? cover_of(voxels->covered()) : ball(Vector3d::Zero(), radius);
+    return voxels ? cover_of(voxels->covered()) : one_sphere_tree(Vector3d::Zero(), radius);
   }
 };
 
@@ -69,7 +69,7 @@ class VoxelScene {
         mesh.vertex_error = shape.padding = 0.01;
         scene_.add(name, std::make_shared<const SolidMesh>(mesh), pose);
       } else if (k == 2 && !shape.voxels) {
-        scene_.add(name, Primitive(Ball{shape.radius}), pose);
+        scene_.add(name, Primitive(SolidSphere{shape.radius}), pose);
         shape.padding = 0.0;
       } else {
         scene_.add(name, shape.tree(), pose);
@@ -253,11 +253,13 @@ TEST(RobotConfirmedTruth, NoContactInAMotionThatIsFree) {
 TEST(RobotConfirmedTruth, WhatIsInsideTouches) {
   SceneRandom random(274);
   const VoxelSolid small(random, 4, 0.05), large(random, 1, 2.0);
-  const std::vector<ObstacleShape> inside = {
-      cover_of(small.covered()),       std::make_shared<const SolidMesh>(small.mesh()),
-      Primitive(Box{{0.1, 0.2, 0.1}}), Primitive(Ball{0.1}),
-      Primitive(Capsule{0.1, 0.1}),    Primitive(Cylinder{0.1, 0.1}),
-      ball(Vector3d::Zero(), 0.1)};
+  const std::vector<ObstacleShape> inside = {cover_of(small.covered()),
+                                             std::make_shared<const SolidMesh>(small.mesh()),
+                                             Primitive(Box{{0.1, 0.2, 0.1}}),
+                                             Primitive(SolidSphere{0.1}),
+                                             Primitive(Capsule{0.1, 0.1}),
+                                             Primitive(Cylinder{0.1, 0.1}),
+                                             one_sphere_tree(Vector3d::Zero(), 0.1)};
   const std::vector<ObstacleShape> around = {cover_of(large.covered()),
                                              std::make_shared<const SolidMesh>(large.mesh())};
   for (const double padding : {0.0, 0.01}) {

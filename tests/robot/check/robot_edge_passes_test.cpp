@@ -30,7 +30,7 @@ struct DistanceTo {
   double operator()(const Box& box) const {
     return (p.cwiseAbs() - 0.5 * box.size).cwiseMax(0.0).norm();
   }
-  double operator()(const Ball& ball) const { return p.norm() - ball.radius; }
+  double operator()(const SolidSphere& sphere) const { return p.norm() - sphere.radius; }
   double operator()(const Cylinder& solid) const {
     return std::hypot(std::max(0.0, std::hypot(p.x(), p.y()) - solid.radius),
                       std::max(0.0, std::abs(p.z()) - 0.5 * solid.length));
@@ -47,28 +47,29 @@ struct Static {
   Pose world_from_solid;
 };
 
-// A robot each of whose links carries one ball.
-struct BallRobot {
+// A robot each of whose links carries one sphere.
+struct SphereRobot {
   RobotModel model;
-  std::vector<Sphere> balls;  // of links
+  std::vector<Sphere> spheres;  // of links
 };
 
-BallRobot random_ball_robot(SceneRandom& random, bool branching) {
-  BallRobot result{random_robot(random, random.whole(2, 7), branching), {}};
+SphereRobot random_sphere_robot(SceneRandom& random, bool branching) {
+  SphereRobot result{random_robot(random, random.whole(2, 7), branching), {}};
   if (random.whole(0, 3) == 0) add_random_mimics(random, result.model, 1.0);
   for (const Link& link : std::vector<Link>(result.model.links())) {
-    result.balls.push_back({random.point(0.5), std::pow(10.0, random.uniform(-4.0, -1.0))});
-    result.model.attach(link.name, ball(result.balls.back().center, result.balls.back().radius));
+    result.spheres.push_back({random.point(0.5), std::pow(10.0, random.uniform(-4.0, -1.0))});
+    result.model.attach(
+        link.name, one_sphere_tree(result.spheres.back().center, result.spheres.back().radius));
   }
   return result;
 }
 
-std::vector<Vector3d> placed(const BallRobot& robot, const Configuration& at) {
+std::vector<Vector3d> placed(const SphereRobot& robot, const Configuration& at) {
   std::vector<Pose> poses;
   forward_kinematics(robot.model, at, poses);
   std::vector<Vector3d> centers;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    centers.push_back(poses[i] * robot.balls[i].center);
+    centers.push_back(poses[i] * robot.spheres[i].center);
   }
   return centers;
 }
@@ -88,27 +89,27 @@ Move random_move(SceneRandom& random, const RobotModel& robot) {
   return move;
 }
 
-// Of the ball that is told it is `gap` away there.
+// Of the sphere that is told it is `gap` away there.
 Static solid_beside(SceneRandom& random, const Vector3d& center, double radius, double gap) {
   const double thin = std::pow(10.0, random.uniform(-5.0, -1.0));
   const double large = random.uniform(0.05, 0.5);
-  const Primitive solids[] = {Box{{large, large, thin}}, Ball{thin}, Cylinder{large, thin},
+  const Primitive solids[] = {Box{{large, large, thin}}, SolidSphere{thin}, Cylinder{large, thin},
                               Capsule{thin, large}, HalfSpace{}};
   const Primitive solid = solids[random.whole(0, 4)];
   // How far the surface is from the origin, along z; along x for a capsule.
   const bool is_capsule = std::holds_alternative<Capsule>(solid);
-  const double surface = std::holds_alternative<HalfSpace>(solid)            ? 0.0
-                         : is_capsule || std::holds_alternative<Ball>(solid) ? thin
-                                                                             : 0.5 * thin;
+  const double surface = std::holds_alternative<HalfSpace>(solid)                   ? 0.0
+                         : is_capsule || std::holds_alternative<SolidSphere>(solid) ? thin
+                                                                                    : 0.5 * thin;
   const Eigen::Quaterniond turn = random.quaternion().normalized();
   const Vector3d normal = turn * (is_capsule ? Vector3d::UnitX() : Vector3d::UnitZ());
   return {solid, Pose(turn, center - (surface + radius + gap) * normal)};
 }
 
-RobotChecker checker_of(const BallRobot& robot, const std::vector<Static>& solids) {
+RobotChecker checker_of(const SphereRobot& robot, const std::vector<Static>& solids) {
   RobotScene scene(robot.model);
   AllowedCollisions allowed(robot.model);
-  for (std::size_t i = 0; i < robot.balls.size(); ++i) {
+  for (std::size_t i = 0; i < robot.spheres.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       allowed.allow(static_cast<int>(k), static_cast<int>(i), AllowedReason::kGiven);
     }
@@ -120,13 +121,14 @@ RobotChecker checker_of(const BallRobot& robot, const std::vector<Static>& solid
   return scene.snapshot();
 }
 
-double gap_to(const BallRobot& robot, const std::vector<Static>& solids, const Configuration& at) {
+double gap_to(const SphereRobot& robot, const std::vector<Static>& solids,
+              const Configuration& at) {
   const std::vector<Vector3d> centers = placed(robot, at);
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [solid, pose] : solids) {
     for (std::size_t i = 0; i < centers.size(); ++i) {
       const Vector3d p = pose.matrix().transpose() * (centers[i] - pose.translation());
-      least = std::min(least, std::visit(DistanceTo{p}, solid) - robot.balls[i].radius);
+      least = std::min(least, std::visit(DistanceTo{p}, solid) - robot.spheres[i].radius);
     }
   }
   return least;
@@ -137,12 +139,12 @@ TEST(RobotEdgePasses, NoSolidIsPassedThrough) {
   int found = 0;
   const int cases = effort(4000, 400);
   for (int n = 0; n < cases; ++n) {
-    const BallRobot robot = random_ball_robot(random, false);
+    const SphereRobot robot = random_sphere_robot(random, false);
     if (robot.model.variable_count() == 0) continue;
     const Move move = random_move(random, robot.model);
-    const std::size_t last = robot.balls.size() - 1;
+    const std::size_t last = robot.spheres.size() - 1;
     const Vector3d center = placed(robot, on_the_way(move.from, move.to, move.between))[last];
-    const double radius = robot.balls[last].radius;
+    const double radius = robot.spheres[last].radius;
     const std::vector<Static> solids = {
         solid_beside(random, center, radius, -radius * random.uniform(1e-6, 1.0))};
     const RobotChecker checker = checker_of(robot, solids);
@@ -163,21 +165,21 @@ TEST(RobotEdgePasses, NoSolidIsPassedThrough) {
 TEST(RobotEdgePasses, NoLinkIsPassedThrough) {
   SceneRandom random(312);
   for (int n = 0; n < effort(3000, 300); ++n) {
-    BallRobot robot = random_ball_robot(random, true);
+    SphereRobot robot = random_sphere_robot(random, true);
     const Move move = random_move(random, robot.model);
     const Configuration between = on_the_way(move.from, move.to, move.between);
     const std::vector<Vector3d> centers = placed(robot, between);
-    const std::size_t last = robot.balls.size() - 1;
+    const std::size_t last = robot.spheres.size() - 1;
     const std::size_t other = static_cast<std::size_t>(random.whole(0, static_cast<int>(last) - 1));
-    // Beside the last link's ball, carried by another link.
+    // Beside the last link's sphere, carried by another link.
     const double size = std::pow(10.0, random.uniform(-5.0, -1.0));
-    const double apart = (size + robot.balls[last].radius) * random.uniform(0.0, 0.9999);
+    const double apart = (size + robot.spheres[last].radius) * random.uniform(0.0, 0.9999);
     std::vector<Pose> poses;
     forward_kinematics(robot.model, between, poses);
     const Vector3d beside = centers[last] + apart * random.point(1.0).normalized();
     RobotScene scene(robot.model);
     scene.attach("trap", robot.model.links()[other].name,
-                 ball(poses[other].inverse() * beside, size));
+                 one_sphere_tree(poses[other].inverse() * beside, size));
     const RobotChecker checker = scene.snapshot();
     RobotChecker::Scratch scratch(checker);
     if (checker.check_config(between, scratch)) continue;  // nothing moves the two
@@ -194,15 +196,15 @@ TEST(RobotEdgePasses, WhatIsProvedAmongSolidsIsFree) {
   int unknown = 0;
   const int cases = effort(600, 60);
   for (int n = 0; n < cases; ++n) {
-    const BallRobot robot = random_ball_robot(random, false);
+    const SphereRobot robot = random_sphere_robot(random, false);
     const Move move = random_move(random, robot.model);
     std::vector<Static> solids;
     for (int i = 0; i < 3; ++i) {
       const double t = random.uniform(0.0, 1.0);
       const std::size_t link =
-          static_cast<std::size_t>(random.whole(0, static_cast<int>(robot.balls.size()) - 1));
+          static_cast<std::size_t>(random.whole(0, static_cast<int>(robot.spheres.size()) - 1));
       const Configuration at = on_the_way(move.from, move.to, t);
-      solids.push_back(solid_beside(random, placed(robot, at)[link], robot.balls[link].radius,
+      solids.push_back(solid_beside(random, placed(robot, at)[link], robot.spheres[link].radius,
                                     std::pow(10.0, random.uniform(-4.0, 0.0))));
     }
     const RobotChecker checker = checker_of(robot, solids);
@@ -230,7 +232,7 @@ TEST(RobotEdgePasses, NothingIsLostBySlidingAlongAWall) {
   RobotModel robot("base");
   robot.add_link("slide", "base",
                  {.type = JointType::kPrismatic, .axis = {1, 0, 0}, .lower = -90, .upper = 90});
-  robot.attach("slide", ball({0, 0, 0.1}, 0.05));
+  robot.attach("slide", one_sphere_tree({0, 0, 0.1}, 0.05));
   RobotScene scene(robot);
   scene.add("floor", Primitive(Box{{200, 1, 0.02}}), Pose::from_translation({0, 0, 0.0394}));
   const RobotChecker checker = scene.snapshot();

@@ -74,11 +74,11 @@ TEST(RobotEdge, WhatIsProvedFreeAlongAPathIsFree) {
     forward_kinematics(robot, at, links);
     const std::optional<Sphere> near = random_sphere_of(random, robot, links);
     if (!near) continue;
-    // A ball that the path begins beside.
+    // A sphere that the path begins beside.
     const double gap = std::pow(10.0, random.uniform(-6.0, -1.0));
     const Eigen::Vector3d center =
         near->center + (near->radius + 0.05 + gap) * random.point(1.0).normalized();
-    const ObstacleChecker checker(robot, {{ball(center, 0.05), Pose()}});
+    const ObstacleChecker checker(robot, {{one_sphere_tree(center, 0.05), Pose()}});
     RobotChecker::Scratch scratch(checker);
     double step = 0.0;
     std::vector<double> heading;
@@ -107,11 +107,11 @@ TEST(RobotEdge, WhatIsProvedFreeAlongAPathIsFree) {
   EXPECT_LT(unknown, (free + hits) / 20);
 }
 
-// A long arm with a small ball at its end.
+// A long arm with a small sphere at its end.
 RobotModel long_arm() {
   RobotModel robot("base");
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
-  robot.attach("arm", ball({10, 0, 0}, 1e-3));
+  robot.attach("arm", one_sphere_tree({10, 0, 0}, 1e-3));
   return robot;
 }
 
@@ -125,7 +125,7 @@ TEST(RobotEdge, NothingIsPassedThrough) {
     const double beside =
         (1e-3 + size) * (random.whole(0, 1) == 0 ? random.uniform(0.0, 0.999) : 1.3);
     const Eigen::Vector3d center(10.0 * std::cos(angle), 10.0 * std::sin(angle), beside);
-    const ObstacleChecker checker(robot, {{ball(center, size), Pose()}});
+    const ObstacleChecker checker(robot, {{one_sphere_tree(center, size), Pose()}});
     RobotChecker::Scratch scratch(checker);
     const double before = random.uniform(0.1, 50.0);
     const double after = random.uniform(0.1, 50.0);
@@ -161,7 +161,7 @@ TEST(RobotEdge, AWallIsNotPassed) {
     robot.add_link("drill", "slide",
                    {.name = "drill", .type = JointType::kRevolute, .axis = {1, 0, 0}});
     const Eigen::Vector3d offset(0.0, random.uniform(0.0, 0.2), random.uniform(0.0, 0.2));
-    robot.attach("drill", ball(offset, 1e-3));
+    robot.attach("drill", one_sphere_tree(offset, 1e-3));
     const ObstacleChecker checker(robot, obstacles);
     RobotChecker::Scratch scratch(checker);
     const std::vector<double> from = {random.uniform(-60.0, 0.9), random.uniform(-9.0, 9.0)};
@@ -177,7 +177,7 @@ TEST(RobotEdge, AWallIsNotPassed) {
 TEST(RobotEdge, PassesCloseAtAFineResolution) {
   const RobotModel robot = long_arm();
   // Beside the way of the arm's end, at a gap of 2e-4.
-  const ObstacleChecker checker(robot, {{ball({0, 10, 0.0022}, 1e-3), Pose()}});
+  const ObstacleChecker checker(robot, {{one_sphere_tree({0, 10, 0.0022}, 1e-3), Pose()}});
   RobotChecker::Scratch scratch(checker);
   const auto verdict = [&](double resolution) {
     return checker
@@ -194,7 +194,7 @@ TEST(RobotEdge, EndsAtAnyResolution) {
   const RobotModel robot = long_arm();
   for (const double angle : {0.5, 1e-9, 1e-15, 3.0}) {
     const Eigen::Vector3d center(10.0 * std::cos(angle + 2e-4), 10.0 * std::sin(angle + 2e-4), 0.0);
-    const ObstacleChecker checker(robot, {{ball(center, 1e-3), Pose()}});
+    const ObstacleChecker checker(robot, {{one_sphere_tree(center, 1e-3), Pose()}});
     RobotChecker::Scratch scratch(checker);
     for (const double resolution : {1e-12, 1e-300, std::numeric_limits<double>::denorm_min()}) {
       const std::vector<double> from = {0.0};
@@ -208,13 +208,13 @@ TEST(RobotEdge, EndsAtAnyResolution) {
   }
 }
 
-// Past a ball that is touched at the closest approach only: free up to where the resolution ends.
+// Past a sphere that is touched at the closest approach only: free up to where the resolution ends.
 TEST(RobotEdge, IsFreeUpToWhereItGrazes) {
   RobotModel robot("base");
   robot.add_link("slide", "base",
                  {.name = "slide", .type = JointType::kPrismatic, .axis = {1, 0, 0}});
-  robot.attach("slide", ball({0, 0, 0}, 1.0));
-  const ObstacleChecker checker(robot, {{ball({0, 0, 2}, 1.0), Pose()}});
+  robot.attach("slide", one_sphere_tree({0, 0, 0}, 1.0));
+  const ObstacleChecker checker(robot, {{one_sphere_tree({0, 0, 2}, 1.0), Pose()}});
   RobotChecker::Scratch scratch(checker);
   for (const double resolution : {1e-2, 1e-3, 1e-4}) {
     const EdgeResult result =
@@ -228,8 +228,8 @@ TEST(RobotEdge, IsFreeUpToWhereItGrazes) {
 TEST(RobotEdge, TakesAnyContactUnlessAskedForTheFirst) {
   const RobotModel robot = long_arm();
   const ObstacleChecker checker(
-      robot, {{ball({10.0 * std::cos(0.5), 10.0 * std::sin(0.5), 0}, 0.01), Pose()},
-              {ball({10.0 * std::cos(1.5), 10.0 * std::sin(1.5), 0}, 0.01), Pose()}});
+      robot, {{one_sphere_tree({10.0 * std::cos(0.5), 10.0 * std::sin(0.5), 0}, 0.01), Pose()},
+              {one_sphere_tree({10.0 * std::cos(1.5), 10.0 * std::sin(1.5), 0}, 0.01), Pose()}});
   RobotChecker::Scratch scratch(checker);
   const std::vector<double> from = {0.0};
   const std::vector<double> to = {3.0};
@@ -244,7 +244,7 @@ TEST(RobotEdge, TakesAnyContactUnlessAskedForTheFirst) {
 
 TEST(RobotEdge, BudgetsAndEnds) {
   const RobotModel robot = long_arm();
-  const ObstacleChecker checker(robot, {{ball({0, 10, 0.0022}, 1e-3), Pose()}});
+  const ObstacleChecker checker(robot, {{one_sphere_tree({0, 10, 0.0022}, 1e-3), Pose()}});
   RobotChecker::Scratch scratch(checker);
   const std::vector<double> from = {0.0};
   const std::vector<double> to = {3.0};
@@ -255,7 +255,7 @@ TEST(RobotEdge, BudgetsAndEnds) {
     expect_true(checker, from, to, result, 100);
   }
   // A contact that was found counts, however short the budget for what lies before it.
-  const ObstacleChecker met(robot, {{ball({0, 10, 0}, 1e-3), Pose()}});
+  const ObstacleChecker met(robot, {{one_sphere_tree({0, 10, 0}, 1e-3), Pose()}});
   RobotChecker::Scratch third(met);
   const EdgeRequest all{.resolution = 1e-9, .first = true};
   const std::uint64_t needed = met.check_edge(from, to, third, all).configurations;
@@ -268,7 +268,7 @@ TEST(RobotEdge, BudgetsAndEnds) {
     expect_true(met, from, to, result, 10);
   }
   EXPECT_EQ(checker.check_edge(from, from, scratch).verdict, Verdict::kFree);
-  const ObstacleChecker touched(robot, {{ball({10, 0, 0}, 1e-3), Pose()}});
+  const ObstacleChecker touched(robot, {{one_sphere_tree({10, 0, 0}, 1e-3), Pose()}});
   RobotChecker::Scratch other(touched);
   const EdgeResult at_once = touched.check_edge(from, to, other, {.first = true});
   EXPECT_EQ(at_once.verdict, Verdict::kCollision);
@@ -280,12 +280,12 @@ TEST(RobotEdge, BudgetsAndEnds) {
 }
 
 TEST(RobotEdge, RefusesBadInput) {
-  const ObstacleChecker checker(long_arm(), {{ball({0, 10, 0}, 1e-3), Pose()}});
+  const ObstacleChecker checker(long_arm(), {{one_sphere_tree({0, 10, 0}, 1e-3), Pose()}});
   RobotChecker::Scratch scratch(checker);
   const std::vector<double> good = {0.0};
   RobotModel touching = long_arm();
-  touching.attach("base", ball({0, 10, 0}, 1e-3));
-  const ObstacleChecker standing(touching, {{ball({0, 10, 0}, 1e-3), Pose()}});
+  touching.attach("base", one_sphere_tree({0, 10, 0}, 1e-3));
+  const ObstacleChecker standing(touching, {{one_sphere_tree({0, 10, 0}, 1e-3), Pose()}});
   RobotChecker::Scratch other(standing);
   EXPECT_EQ(standing.check_edge(good, good, other).verdict, Verdict::kCollision);
   for (const std::vector<double>& bad : {std::vector<double>{},

@@ -215,7 +215,7 @@ TEST(RobotExplain, IsEmptyExactlyIfFreeNearContact) {
         (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-17.0, -5.0));
     const Eigen::Vector3d center =
         sphere->center + (sphere->radius + 0.1 + gap) * random.point(1.0).normalized();
-    scene.obstacles = {{ball({0, 0, 0}, 0.1), Pose::from_translation(center)}};
+    scene.obstacles = {{one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation(center)}};
     const ObstacleChecker checker(scene.robot, scene.obstacles, scene.options);
     RobotChecker::Scratch scratch(checker);
     ASSERT_NO_FATAL_FAILURE(expect_explained(scene, checker, at, scratch, count)) << i;
@@ -264,13 +264,13 @@ TEST(RobotExplain, TellsWhatMeshesTouch) {
 
 TEST(RobotExplain, NamesLinksAndRefusesBadInput) {
   RobotModel robot("base");
-  robot.attach("base", ball({0, 0, 0}, 0.1));
+  robot.attach("base", one_sphere_tree({0, 0, 0}, 0.1));
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
-  robot.attach("arm", ball({5, 0, 0}, 0.1));
-  robot.attach("arm", ball({1, 0, 0}, 0.1));
-  const ObstacleChecker checker(robot,
-                                {{ball({0, 0, 0.15}, 0.1), Pose()},
-                                 {ball({1, 0, 0}, 0.1), Pose::from_translation({0.1, 0, 0})}});
+  robot.attach("arm", one_sphere_tree({5, 0, 0}, 0.1));
+  robot.attach("arm", one_sphere_tree({1, 0, 0}, 0.1));
+  const ObstacleChecker checker(
+      robot, {{one_sphere_tree({0, 0, 0.15}, 0.1), Pose()},
+              {one_sphere_tree({1, 0, 0}, 0.1), Pose::from_translation({0.1, 0, 0})}});
   RobotChecker::Scratch scratch(checker);
   const std::vector<CheckedContact> contacts = checker.explain(std::vector<double>{0.0}, scratch);
   ASSERT_EQ(contacts.size(), 2U);

@@ -27,7 +27,7 @@ Primitive random_primitive(SceneRandom& random, double size) {
     case 0:
       return Box{{length(), length(), length()}};
     case 1:
-      return Ball{length()};
+      return SolidSphere{length()};
     case 2:
       return Cylinder{length(), length()};
     case 3:
@@ -207,7 +207,7 @@ TEST(RobotLanes, WhatIsJustOutOfReachHidesNothing) {
     RobotScene scene(robot);
     scene.add("a", Primitive(Box{{1, 1, 1}}),
               Pose::from_translation({2.7 * (1.0 + i * 2e-7), 0, 0}));
-    scene.add("b", Primitive(Ball{0.1}), Pose::from_translation({0, 1.2 - 1e-6, 0}));
+    scene.add("b", Primitive(SolidSphere{0.1}), Pose::from_translation({0, 1.2 - 1e-6, 0}));
     Checkers checkers(scene);
     const double middle = 1.5707963267948966;
     const EdgeResult result = checkers.checker(0).check_edge(

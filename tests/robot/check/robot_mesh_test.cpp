@@ -281,9 +281,9 @@ TEST(RobotMesh, ASphereInsideCollides) {
   for (const bool mesh_moves : {true, false}) {
     RobotModel robot("base");
     robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
-    robot.attach("arm", mesh_moves ? cover_of(outer) : ball({0, 0, 0}, 0.02));
+    robot.attach("arm", mesh_moves ? cover_of(outer) : one_sphere_tree({0, 0, 0}, 0.02));
     const std::vector<PlacedTree> obstacles = {
-        {mesh_moves ? ball({0, 0, 0}, 0.02) : cover_of(outer), Pose()}};
+        {mesh_moves ? one_sphere_tree({0, 0, 0}, 0.02) : cover_of(outer), Pose()}};
     const ObstacleChecker checker(robot, obstacles, {.meshes = {outer}});
     RobotChecker::Scratch scratch(checker);
     EXPECT_TRUE(checker.collides(std::span(path).first(1), scratch));

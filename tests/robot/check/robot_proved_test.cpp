@@ -26,7 +26,7 @@ namespace {
 
 using Configuration = std::vector<double>;
 
-// Boxes cut across their longest side, a ball around each piece.
+// Boxes cut across their longest side, a sphere around each piece.
 std::vector<Sphere> coarse_cover(const std::vector<Eigen::AlignedBox3d>& boxes, int pieces) {
   std::vector<Sphere> spheres;
   for (const Eigen::AlignedBox3d& box : boxes) {
@@ -61,7 +61,7 @@ class ProvedRobot : public testing::Test {
       model.attach(model.links()[i].name, tree_of(coarse_cover(robot_.boxes[i], 3)));
     }
     scene_.emplace(model);
-    if (random.whole(0, 1) == 0) scene_->add("ball", Ball{0.2}, random.pose(2.0));
+    if (random.whole(0, 1) == 0) scene_->add("ball", SolidSphere{0.2}, random.pose(2.0));
     attach_tool(random);
     plain_.emplace(scene_->snapshot());
     plain_scratch_.emplace(*plain_);
@@ -363,7 +363,7 @@ TEST(ProvedScene, RangesAsThinAsRoundingAreNoFreeCells) {
 TEST_F(TwoBarScene, ContactsAreToldBeforeWhatIsProvedFree) {
   RobotScene scene(robot_.model);
   scene.set_link_pairs(pairs_);
-  scene.add("wall", Ball{0.1}, Pose::from_translation({0.5, 0.0, 0.0}));
+  scene.add("wall", SolidSphere{0.1}, Pose::from_translation({0.5, 0.0, 0.0}));
   const RobotChecker checker = scene.snapshot();
   RobotChecker::Scratch scratch(checker);
   const Configuration aligned{0.0, 0.0};

@@ -35,8 +35,8 @@ TEST(RobotSceneMimics, FarOnesAreMetToTheLastDigits) {
                   .type = JointType::kContinuous,
                   .parent_from_joint = Pose::from_translation({0.3, 0.1, 0.2}),
                   .axis = {0.3, 0.5, 0.8}});
-  robot.attach("a", ball({0.1234, 0.2345, 0.345}, 0.1));
-  robot.attach("b", ball({0.3, -0.2, 0.1}, 0.1));
+  robot.attach("a", one_sphere_tree({0.1234, 0.2345, 0.345}, 0.1));
+  robot.attach("b", one_sphere_tree({0.3, -0.2, 0.1}, 0.1));
   const Pose root(Eigen::Quaterniond(0.3, 0.5, 0.1, 0.7), {0.1, 0.2, 0.3});
   RobotScene scene(robot, root);
   AllowedCollisions allowed(robot);

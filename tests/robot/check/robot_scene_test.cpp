@@ -26,8 +26,8 @@ std::shared_ptr<const SphereTree> row(std::vector<Sphere> spheres) {
   return std::make_shared<const SphereTree>(build_tree(spheres));
 }
 
-// A base of a ball of 0.2, and a slide along x that carries a torch: a nozzle of three spheres and
-// a wire of two, whose tip reaches 0.5 ahead of the slide.
+// A base of a sphere of 0.2, and a slide along x that carries a torch: a nozzle of three spheres
+// and a wire of two, whose tip reaches 0.5 ahead of the slide.
 RobotModel welder() {
   RobotModel robot("base");
   robot.add_link("lift", "base",
@@ -38,7 +38,7 @@ RobotModel welder() {
                   .axis = {1, 0, 0},
                   .lower = -2.0,
                   .upper = 2.0});
-  robot.attach("base", ball({0, 0, 0}, 0.2));
+  robot.attach("base", one_sphere_tree({0, 0, 0}, 0.2));
   robot.attach("slide", row({{{0.1, 0, 0}, 0.05},
                              {{0.2, 0, 0}, 0.05},
                              {{0.3, 0, 0}, 0.05},
@@ -60,7 +60,7 @@ TEST(RobotScene, ObstaclesComeMoveAndGo) {
   RobotScene scene(welder());
   EXPECT_TRUE(Asked(scene).free(1.0, 0.0));
   EXPECT_FALSE(Asked(scene).free(0.0, -0.3)) << "in the base";
-  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({1, 0, 1}));
+  scene.add("post", one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation({1, 0, 1}));
   Asked before(scene);
   EXPECT_TRUE(Asked(scene).free(1.0, 0.3));
   EXPECT_FALSE(Asked(scene).free(1.0, 0.6));
@@ -78,9 +78,9 @@ TEST(RobotScene, ObstaclesComeMoveAndGo) {
 // What was an obstacle moves with the robot, and meets what the robot alone would pass.
 TEST(RobotScene, AnObstacleIsPickedUp) {
   RobotScene scene(welder());
-  const auto part = ball({0, 0, 0}, 0.1);
+  const auto part = one_sphere_tree({0, 0, 0}, 0.1);
   scene.add("part", part, Pose::from_translation({1, 0, 1}));
-  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({1.3, 0, 1.15}));
+  scene.add("post", one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation({1.3, 0, 1.15}));
   EXPECT_FALSE(Asked(scene).free(1.0, 0.6));
   scene.remove("part");
   EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
@@ -100,7 +100,7 @@ TEST(RobotScene, AnObstacleIsPickedUp) {
 
 TEST(RobotScene, PaddingKeepsApart) {
   RobotScene scene(welder());
-  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({1, 0, 1}));
+  scene.add("post", one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation({1, 0, 1}));
   // The tip of the wire is 0.02 in front of the post.
   EXPECT_TRUE(Asked(scene).free(1.0, 0.38));
   scene.set_padding("slide", 0.015);
@@ -131,8 +131,8 @@ TEST(RobotScene, CloudsAreTrees) {
 TEST(RobotScene, OnlyARegionMayTouch) {
   for (const bool is_tree : {true, false}) {
     RobotScene scene(welder());
-    const ObstacleShape shape =
-        is_tree ? ObstacleShape(ball({0, 0, 0}, 0.02)) : ObstacleShape(Primitive(Ball{0.02}));
+    const ObstacleShape shape = is_tree ? ObstacleShape(one_sphere_tree({0, 0, 0}, 0.02))
+                                        : ObstacleShape(Primitive(SolidSphere{0.02}));
     scene.add("seam", shape, Pose::from_translation({1, 0, 1}));
     scene.add("clamp", shape, Pose::from_translation({1, 0, 0.5}));
     EXPECT_FALSE(Asked(scene).free(1.0, 0.5));
@@ -195,7 +195,7 @@ TEST(RobotScene, AToolHasNoPartInItsLinksRights) {
   robot.add_link("wrist", "base",
                  {.type = JointType::kRevolute, .axis = {0, 1, 0}, .lower = -3.0, .upper = 3.0});
   robot.attach("base", row({{{0, 0, -0.5}, 0.1}, {{0, 0, 0}, 0.1}}));
-  robot.attach("wrist", ball({0, 0, 0}, 0.1));
+  robot.attach("wrist", one_sphere_tree({0, 0, 0}, 0.1));
   RobotScene scene(robot);
   const auto free = [&](double q) {
     const RobotChecker checker = scene.snapshot();
@@ -203,7 +203,7 @@ TEST(RobotScene, AToolHasNoPartInItsLinksRights) {
     return checker.check_config(Configuration{q}, scratch);
   };
   EXPECT_TRUE(free(3.0)) << "adjacent";
-  scene.attach("pole", "wrist", ball({0, 0, 0.5}, 0.05));
+  scene.attach("pole", "wrist", one_sphere_tree({0, 0, 0.5}, 0.05));
   EXPECT_TRUE(free(0.0));
   EXPECT_FALSE(free(3.0)) << "the pole is turned onto the base";
   scene.allow_contact("pole", "base");
@@ -225,7 +225,7 @@ TEST(RobotScene, EdgesOfAllowedPairs) {
 
 TEST(RobotScene, RefusesBadEdits) {
   RobotScene scene(welder());
-  const auto tree = ball({0, 0, 0}, 0.1);
+  const auto tree = one_sphere_tree({0, 0, 0}, 0.1);
   scene.add("post", tree, Pose::from_translation({5, 0, 0}));
   scene.attach("tool", "slide", tree);
   for (const char* taken : {"base", "post", "tool", ""}) {
@@ -234,7 +234,7 @@ TEST(RobotScene, RefusesBadEdits) {
   }
   EXPECT_THROW(scene.add("a", std::shared_ptr<const SphereTree>()), Error);
   EXPECT_THROW(scene.add("a", std::shared_ptr<const SolidMesh>()), Error);
-  EXPECT_THROW(scene.add("a", Primitive(Ball{0.0})), Error);
+  EXPECT_THROW(scene.add("a", Primitive(SolidSphere{0.0})), Error);
   EXPECT_THROW(scene.add("a", Primitive(Box{{1, 1, kNan}})), Error);
   EXPECT_THROW(scene.attach("a", "nose", tree), Error);
   EXPECT_THROW(scene.attach("a", "post", tree), Error);
@@ -269,13 +269,13 @@ TEST(RobotScene, RefusesBadEdits) {
   EXPECT_EQ(scene.obstacles(), std::vector<std::string>{"post"});
   EXPECT_EQ(scene.attached(), std::vector<std::string>{"tool"});
   EXPECT_TRUE(Asked(scene).free(1.0, 0.0));
-  scene.add("far", ball({1e15, 0, 0}, 1.0), Pose::from_translation({1e15, 0, 0}));
+  scene.add("far", one_sphere_tree({1e15, 0, 0}, 1.0), Pose::from_translation({1e15, 0, 0}));
   EXPECT_THROW((void)scene.snapshot(), Error);
 }
 
 TEST(RobotScene, RefusesBadConfigurations) {
   RobotScene scene(welder());
-  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({5, 0, 0}));
+  scene.add("post", one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation({5, 0, 0}));
   for (const bool enforce : {false, true}) {
     const RobotChecker checker = scene.snapshot({.enforce_limits = enforce});
     RobotChecker::Scratch scratch(checker);
@@ -315,9 +315,9 @@ TEST(RobotScene, AdjacencyIsThatOfItsOwnSpheres) {
                    {.name = "turn", .type = JointType::kRevolute, .lower = -3.0, .upper = 3.0});
     model.add_link("tool", "arm", {.parent_from_joint = Pose::from_translation({1, 0, 0})});
     if (!has_spheres) return model;
-    model.attach("base", ball({-1, 0, 0}, 0.3));
-    model.attach("arm", ball({0.5, 0, 0}, 0.1));
-    model.attach("tool", ball({0, 0, 0}, 0.1));
+    model.attach("base", one_sphere_tree({-1, 0, 0}, 0.3));
+    model.attach("arm", one_sphere_tree({0.5, 0, 0}, 0.1));
+    model.attach("tool", one_sphere_tree({0, 0, 0}, 0.1));
     return model;
   };
   RobotScene scene(robot(true));
@@ -355,7 +355,7 @@ TEST(RobotScene, PaddingsAddUpToNoLess) {
 // The scene has changed: what a scratch remembers of the old one is of no use.
 TEST(RobotScene, RefusesTheScratchOfAnotherSnapshot) {
   RobotScene scene(welder());
-  scene.add("post", ball({0, 0, 0}, 0.1), Pose::from_translation({5, 0, 0}));
+  scene.add("post", one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation({5, 0, 0}));
   std::optional<RobotChecker> before(scene.snapshot());
   std::vector<RobotChecker::Scratch> old;
   old.emplace_back(*before);

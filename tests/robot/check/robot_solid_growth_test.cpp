@@ -23,7 +23,7 @@ TEST(RobotSolidGrowth, TouchesWithinTheGrowth) {
   RobotModel robot("base");
   robot.add_link("slide", "base",
                  {.type = JointType::kPrismatic, .axis = {1, 0, 0}, .lower = -9, .upper = 9});
-  robot.attach("slide", ball({0, 0, 0}, 1e-3));
+  robot.attach("slide", one_sphere_tree({0, 0, 0}, 1e-3));
   TriangleMesh mesh = icosphere(4);
   mesh.vertex_error = 0.5;
   for (const double offset : {0.0, 7.0}) {

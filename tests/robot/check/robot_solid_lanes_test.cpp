@@ -163,7 +163,7 @@ TEST(RobotSolidLanes, AMotionInsideIsNotFree) {
   RobotModel robot("base");
   robot.add_link("slide", "base",
                  {.type = JointType::kPrismatic, .axis = {1, 0, 0}, .lower = -9, .upper = 9});
-  robot.attach("slide", ball({0, 0, 0}, 1e-3));
+  robot.attach("slide", one_sphere_tree({0, 0, 0}, 1e-3));
   for (const int kind : {0, 1, 6}) {
     TriangleMesh mesh = mesh_of_kind(kind);
     for (Eigen::Vector3d& vertex : mesh.vertices) vertex *= 3.0;
@@ -192,7 +192,7 @@ TEST(SolidSpheres, HoldWhatTheCanonicalTestFindsInside) {
     const std::vector<Sphere> cover = internal::spheres_around(solid);
     for (int i = 0; i < effort(300, 30); ++i) {
       const Eigen::Vector3d p = random.point(1.2);
-      if (!collides(*ball(p, 0.0), Pose(), solid, Pose())) continue;
+      if (!collides(*one_sphere_tree(p, 0.0), Pose(), solid, Pose())) continue;
       ++inside;
       const auto holds = [&](const Sphere& s) { return (s.center - p).norm() <= s.radius; };
       ASSERT_TRUE(std::any_of(cover.begin(), cover.end(), holds)) << "kind " << n;

@@ -94,8 +94,8 @@ ObstacleChecker slide() {
   RobotModel robot("base");
   robot.add_link("slide", "base",
                  {.name = "slide", .type = JointType::kPrismatic, .axis = {1, 0, 0}});
-  robot.attach("slide", ball({0, 0, 0}, 0.05));
-  return ObstacleChecker(robot, {{ball({1, 0, 0}, 0.05), Pose()}});
+  robot.attach("slide", one_sphere_tree({0, 0, 0}, 0.05));
+  return ObstacleChecker(robot, {{one_sphere_tree({1, 0, 0}, 0.05), Pose()}});
 }
 
 // What is thrown is what one thread would meet first, whichever thread meets which first.

@@ -18,12 +18,12 @@ namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
 
-// Whether a ball contains the one of the radius about (x, y, z), in exact arithmetic.
-bool contains(const Sphere& ball, const Rational (&point)[3], double radius) {
-  const Rational room = Rational(ball.radius) - Rational(radius);
+// Whether a sphere contains the one of the radius about (x, y, z), in exact arithmetic.
+bool contains(const Sphere& sphere, const Rational (&point)[3], double radius) {
+  const Rational room = Rational(sphere.radius) - Rational(radius);
   Rational squared = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const Rational off = point[axis] - Rational(ball.center[axis]);
+    const Rational off = point[axis] - Rational(sphere.center[axis]);
     squared += off * off;
   }
   return room >= 0 && squared <= room * room;
@@ -56,7 +56,7 @@ TEST(PrepareScene, AttachedMeshesHaveTheirOwnErrorAndD) {
   robot.add_link("hand", "base",
                  {.name = "slide", .type = JointType::kPrismatic, .lower = -1.0, .upper = 1.0});
   SceneDescription scene;
-  scene.obstacles.push_back({.name = "pin", .shape = Primitive(Ball{.radius = 0.01})});
+  scene.obstacles.push_back({.name = "pin", .shape = Primitive(SolidSphere{.radius = 0.01})});
   scene.attached.push_back({.name = "fork",
                             .link = "hand",
                             .shape = MeshFile{.path = folder.write("fork.obj", obj.str())}});
@@ -75,8 +75,8 @@ TEST(PrepareScene, AttachedMeshesHaveTheirOwnErrorAndD) {
 }
 
 // Decimals are rounded when they are read and again when they are scaled: by less than one part in
-// 10^15, but a ball that does not grow by it is too small.
-TEST(PointBalls, ContainThoseAboutThePointsAsWritten) {
+// 10^15, but a sphere that does not grow by it is too small.
+TEST(PointSpheres, ContainThoseAboutThePointsAsWritten) {
   const TempDir folder;
   constexpr double kRadius = 0.01;
   int needed = 0;
@@ -93,23 +93,23 @@ TEST(PointBalls, ContainThoseAboutThePointsAsWritten) {
       }
       const PointsSource source{
           .path = folder.write("scan.xyz", line.str()), .radius = kRadius, .scale = 1.0 / scale};
-      const std::vector<Sphere> balls = point_balls(source);
-      ASSERT_EQ(balls.size(), 1U);
-      EXPECT_TRUE(contains(balls[0], point, kRadius)) << i << ' ' << scale;
-      EXPECT_LE(balls[0].radius, kRadius + 1e-13);
-      needed += contains({balls[0].center, kRadius}, point, kRadius) ? 0 : 1;
+      const std::vector<Sphere> spheres = point_spheres(source);
+      ASSERT_EQ(spheres.size(), 1U);
+      EXPECT_TRUE(contains(spheres[0], point, kRadius)) << i << ' ' << scale;
+      EXPECT_LE(spheres[0].radius, kRadius + 1e-13);
+      needed += contains({spheres[0].center, kRadius}, point, kRadius) ? 0 : 1;
     }
   }
   EXPECT_GT(needed, 60);
 }
 
-TEST(PointBalls, OneForThoseOfACell) {
+TEST(PointSpheres, OneForThoseOfACell) {
   const TempDir folder;
   PointsSource source{.path = folder.write("scan.xyz", "1 1 1\n2 1 1\n9 1 1\n"), .radius = 0.01};
-  EXPECT_EQ(point_balls(source).size(), 3U);
+  EXPECT_EQ(point_spheres(source).size(), 3U);
   source.scale = 0.001;
   source.voxel = 0.005;
-  EXPECT_EQ(point_balls(source).size(), 2U);
+  EXPECT_EQ(point_spheres(source).size(), 2U);
 }
 
 }  // namespace

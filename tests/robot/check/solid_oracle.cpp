@@ -36,8 +36,8 @@ struct Nearest {
   Vector3d operator()(const Box& box) const {
     return p.cwiseMin(0.5 * box.size).cwiseMax(-0.5 * box.size);
   }
-  Vector3d operator()(const Ball& ball) const {
-    return p.normalized() * std::min(p.norm(), ball.radius);
+  Vector3d operator()(const SolidSphere& sphere) const {
+    return p.normalized() * std::min(p.norm(), sphere.radius);
   }
   Vector3d operator()(const Cylinder& cylinder) const {
     const double side = std::hypot(p.x(), p.y());
@@ -83,7 +83,7 @@ Projection onto_primitive(const Primitive& solid, const Pose& world_from_solid) 
   };
 }
 
-Projection onto_ball(const Vector3d& center, double radius) {
+Projection onto_sphere(const Vector3d& center, double radius) {
   return [center, radius](const Vector3d& p) -> Vector3d {
     const Vector3d off = p - center;
     return off.norm() <= radius ? p : Vector3d(center + radius / off.norm() * off);

@@ -22,7 +22,7 @@ using Projection = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 // Of a tetrahedron with its inside, given by its corners in the world.
 Projection onto_tetrahedron(const std::array<Eigen::Vector3d, 4>& corners);
 Projection onto_primitive(const Primitive& solid, const Pose& world_from_solid);
-Projection onto_ball(const Eigen::Vector3d& center, double radius);
+Projection onto_sphere(const Eigen::Vector3d& center, double radius);
 
 // Not below the distance; above it by little, see solid_oracle.cpp. 0 where the two overlap by more
 // than that.

@@ -51,13 +51,13 @@ std::vector<Vector3d> corners_of(const Vector3d& half) {
   return corners;
 }
 
-// Of a box about the origin, from one ball: a corner is the farthest point.
-double depth_of_box(const Vector3d& half, const Sphere& ball) {
+// Of a box about the origin, from one sphere: a corner is the farthest point.
+double depth_of_box(const Vector3d& half, const Sphere& sphere) {
   double farthest = 0.0;
   for (const Vector3d& corner : corners_of(half)) {
-    farthest = std::max(farthest, (corner - ball.center).norm());
+    farthest = std::max(farthest, (corner - sphere.center).norm());
   }
-  return farthest - ball.radius;
+  return farthest - sphere.radius;
 }
 
 TEST_F(AuditRobot, LinkByLink) {
@@ -77,7 +77,7 @@ TEST_F(AuditRobot, LinkByLink) {
   EXPECT_EQ(audit.links[1].uncovered_share, 0.0);
   EXPECT_FALSE(audit.links[2].certificate.has_value());
 
-  // The share of the surface outside of the ball, by random points on the faces.
+  // The share of the surface outside of the sphere, by random points on the faces.
   test::Random random(5);
   const Vector3d areas(kBaseHalf.y() * kBaseHalf.z(), kBaseHalf.x() * kBaseHalf.z(),
                        kBaseHalf.x() * kBaseHalf.y());
@@ -103,7 +103,8 @@ TEST_F(AuditRobot, LinksWithoutSpheresLeak) {
 }
 
 TEST_F(AuditRobot, NeighboursCoverInSomeConfigurations) {
-  // The arm carries a ball that holds the base where the joint stands near pi, and one for itself.
+  // The arm carries a sphere that holds the base where the joint stands near pi, and one for
+  // itself.
   const Vector3d center(0.3, 0.0, 0.0);
   const double radius = 0.102;
   const std::vector<LinkSpheres> spheres = {{"base", {}},

@@ -19,7 +19,7 @@ Wide2 point_of_disc(Wide radius, Random& random) {
   return Wide2(std::cos(angle), std::sin(angle)) * radius * share;
 }
 
-WidePoint point_of_ball(Wide radius, Random& random) {
+WidePoint point_of_sphere(Wide radius, Random& random) {
   const Wide share = random.index(3) == 0 ? Wide(random.unit()) : Wide(1);
   WidePoint direction = random.direction().cast<Wide>();
   if (random.index(4) == 0) direction = WidePoint::Unit(static_cast<int>(random.index(3)));
@@ -40,13 +40,15 @@ struct PointOf {
     for (int k = 0; k < 3; ++k) p[k] = along(Wide(box.size[k]) / 2, random);
     return p;
   }
-  WidePoint operator()(const Ball& ball) const { return point_of_ball(ball.radius, random); }
+  WidePoint operator()(const SolidSphere& sphere) const {
+    return point_of_sphere(sphere.radius, random);
+  }
   WidePoint operator()(const Cylinder& cylinder) const {
     const Wide2 p = point_of_disc(cylinder.radius, random);
     return {p.x(), p.y(), along(Wide(cylinder.length) / 2, random)};
   }
   WidePoint operator()(const Capsule& capsule) const {
-    WidePoint p = point_of_ball(capsule.radius, random);
+    WidePoint p = point_of_sphere(capsule.radius, random);
     p.z() += along(Wide(capsule.length) / 2, random);
     return p;
   }
@@ -60,8 +62,8 @@ struct DistanceTo {
     const WidePoint half = box.size.cast<Wide>() / 2;
     return (p.cwiseAbs() - half).cwiseMax(WidePoint::Zero()).norm();
   }
-  Wide operator()(const Ball& ball) const {
-    return std::max(Wide(0), p.norm() - Wide(ball.radius));
+  Wide operator()(const SolidSphere& sphere) const {
+    return std::max(Wide(0), p.norm() - Wide(sphere.radius));
   }
   Wide operator()(const Cylinder& cylinder) const {
     const Wide side = std::max(Wide(0), p.head<2>().norm() - Wide(cylinder.radius));
@@ -90,7 +92,7 @@ Primitive random_primitive(Random& random, double size) {
     case 0:
       return Box{{length(), length(), length()}};
     case 1:
-      return Ball{0.5 * length()};
+      return SolidSphere{0.5 * length()};
     case 2:
       return Cylinder{0.5 * length(), length()};
     default:

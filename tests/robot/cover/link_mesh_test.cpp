@@ -94,7 +94,7 @@ TEST(LinkMesh, TakesNoMoreTrianglesThanTheChordErrorAsksFor) {
   // for 16.
   EXPECT_EQ(triangles(Cylinder{1, 1}, 0.0087), 4U * 24);
   EXPECT_EQ(triangles(Cylinder{1, 1}, 0.0197), 4U * 16);
-  EXPECT_EQ(triangles(Ball{1}, 0.2), 8U * 8);
+  EXPECT_EQ(triangles(SolidSphere{1}, 0.2), 8U * 8);
 }
 
 // A mesh of points that are hard to round, as text, so that the file's numbers are those of the
@@ -207,12 +207,12 @@ TEST(LinkMesh, RefusesWhatHasNoMesh) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(has(refusal(link_of(HalfSpace{})), "link 'arm'"));
   EXPECT_TRUE(has(refusal(link_of(HalfSpace{})), "half-space"));
-  EXPECT_TRUE(has(refusal(link_of(Ball{-1})), "link 'arm'"));
+  EXPECT_TRUE(has(refusal(link_of(SolidSphere{-1})), "link 'arm'"));
   EXPECT_TRUE(has(refusal(link_of(Box{{1, 0, 1}})), "link 'arm'"));
-  EXPECT_TRUE(has(refusal(link_of(Ball{1}), {.chord_error = 0}), "chord error"));
-  EXPECT_TRUE(has(refusal(link_of(Ball{1}), {.chord_error = -kInfinity}), "chord error"));
-  EXPECT_TRUE(has(refusal(link_of(Ball{1}), {.chord_error = std::nan("")}), "chord error"));
-  EXPECT_TRUE(has(refusal(link_of(Ball{1}), {.chord_error = 1e-9}), "too many triangles"));
+  EXPECT_TRUE(has(refusal(link_of(SolidSphere{1}), {.chord_error = 0}), "chord error"));
+  EXPECT_TRUE(has(refusal(link_of(SolidSphere{1}), {.chord_error = -kInfinity}), "chord error"));
+  EXPECT_TRUE(has(refusal(link_of(SolidSphere{1}), {.chord_error = std::nan("")}), "chord error"));
+  EXPECT_TRUE(has(refusal(link_of(SolidSphere{1}), {.chord_error = 1e-9}), "too many triangles"));
   const std::filesystem::path file = folder.path() / "box.stl";
   EXPECT_TRUE(has(refusal(link_of(file, {1, 0, 1})), "box.stl must be finite and not 0"));
   EXPECT_TRUE(has(refusal(link_of(file, {1, kInfinity, 1})), "must be finite"));

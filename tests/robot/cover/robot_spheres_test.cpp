@@ -21,11 +21,11 @@
 namespace spherule::test {
 namespace {
 
-// How far outside of all balls a point lies; below 0 within one.
-Wide outside_of(const std::vector<Sphere>& balls, const WidePoint& point) {
+// How far outside of all spheres a point lies; below 0 within one.
+Wide outside_of(const std::vector<Sphere>& spheres, const WidePoint& point) {
   Wide outside = std::numeric_limits<Wide>::infinity();
-  for (const Sphere& ball : balls) {
-    outside = std::min(outside, (point - ball.center.cast<Wide>()).norm() - Wide(ball.radius));
+  for (const Sphere& sphere : spheres) {
+    outside = std::min(outside, (point - sphere.center.cast<Wide>()).norm() - Wide(sphere.radius));
   }
   return outside;
 }
@@ -36,13 +36,13 @@ WidePoint point_of(const LinkDescription& link, Random& random) {
   return move(shape.link_from_shape, point_of(std::get<Primitive>(shape.geometry), random));
 }
 
-// The farthest that a point of a ball's surface lies from the shapes of the link, over samples.
+// The farthest that a point of a sphere's surface lies from the shapes of the link, over samples.
 Wide sampled_protrusion(const LinkCover& cover, const LinkDescription& link, Random& random) {
   Wide largest = 0;
-  for (const Sphere& ball : cover.spheres) {
+  for (const Sphere& sphere : cover.spheres) {
     for (int k = 0; k < 50; ++k) {
-      const WidePoint p = ball.center.cast<Wide>() +
-                          Wide(ball.radius) * random.direction().cast<Wide>().normalized();
+      const WidePoint p = sphere.center.cast<Wide>() +
+                          Wide(sphere.radius) * random.direction().cast<Wide>().normalized();
       Wide nearest = std::numeric_limits<Wide>::infinity();
       for (const LinkShape& shape : link.collision) {
         const Pose pose = shape.link_from_shape.inverse();
@@ -103,13 +103,14 @@ TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
   }
 }
 
-TEST(RobotSpheres, ABallIsOneBall) {
+TEST(RobotSpheres, ASphereIsOneSphere) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   RobotDescription robot;
   robot.name = "ball";
-  robot.links = {{.name = "base_link",
-                  .visual = {},
-                  .collision = {{.name = "", .link_from_shape = {}, .geometry = Ball{0.05}}}}};
+  robot.links = {
+      {.name = "base_link",
+       .visual = {},
+       .collision = {{.name = "", .link_from_shape = {}, .geometry = SolidSphere{0.05}}}}};
   const RobotCover cover = cover_robot(robot, quick(0.02));
   ASSERT_EQ(cover.links[0].spheres.size(), 1U);
   EXPECT_NEAR(cover.links[0].spheres[0].radius, 0.06, 0.011);

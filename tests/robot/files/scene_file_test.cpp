@@ -82,7 +82,7 @@ TEST_F(SceneFileTest, Everything) {
   EXPECT_EQ(obstacles[0].name, "table");
   EXPECT_EQ(std::get<Box>(primitive(0)).size, Vector3d(1, 2, 0.1));
   EXPECT_EQ(obstacles[0].world_from_shape.translation(), Vector3d(0.5, 0, 0));
-  EXPECT_EQ(std::get<Ball>(primitive(1)).radius, 0.2);
+  EXPECT_EQ(std::get<SolidSphere>(primitive(1)).radius, 0.2);
   EXPECT_EQ(std::get<Cylinder>(primitive(2)).length, 2.0);
   EXPECT_LT((obstacles[2].world_from_shape * Vector3d(1, 0, 0) - Vector3d(0, 1, 0)).norm(), 1e-15);
   EXPECT_EQ(std::get<Capsule>(primitive(3)).length, 0.0);
@@ -152,7 +152,7 @@ TEST_F(SceneFileTest, RefusesFaultyObstacles) {
                "attached object 0: the name \"a\" is there twice");
   expect_fault(obstacle(R"("pose": {})"), "obstacle 0 \"table\": has no shape: one of mesh");
   expect_fault(obstacle(R"("half_space": {}, "ball": {"radius": 1})"), "has both");
-  expect_fault(obstacle(R"("ball": {"radius": -1})"), "\"table\", ball: the radius");
+  expect_fault(obstacle(R"("ball": {"radius": -1})"), "\"table\", sphere: the radius");
   expect_fault(obstacle(R"("ball": {"radius": 1e16})"), "is beyond 1e15");
   expect_fault(obstacle(R"("ball": {"radius": "1"})"), "is not a number");
   expect_fault(obstacle(R"("ball": {"radius": 1, "length": 2})"), "the key \"length\"");

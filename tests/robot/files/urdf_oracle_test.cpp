@@ -74,7 +74,8 @@ void expect_geometry(const LinkShape& shape, const urdf::Geometry& expected) {
   if (expected.type == urdf::Geometry::BOX) {
     EXPECT_EQ(std::get<Box>(solid).size, vector_of(static_cast<const urdf::Box&>(expected).dim));
   } else if (expected.type == urdf::Geometry::SPHERE) {
-    EXPECT_EQ(std::get<Ball>(solid).radius, static_cast<const urdf::Sphere&>(expected).radius);
+    EXPECT_EQ(std::get<SolidSphere>(solid).radius,
+              static_cast<const urdf::Sphere&>(expected).radius);
   } else {
     const auto& cylinder = static_cast<const urdf::Cylinder&>(expected);
     EXPECT_EQ(std::get<Cylinder>(solid).radius, cylinder.radius);

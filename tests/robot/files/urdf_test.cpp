@@ -137,7 +137,7 @@ TEST(ReadUrdf, ReadsShapes) {
   EXPECT_EQ(link.collision[1].name, "round");
   EXPECT_EQ(std::get<Cylinder>(solid(1)).length, 4.0);
   EXPECT_EQ(std::get<Cylinder>(solid(1)).radius, 5.0);
-  EXPECT_EQ(std::get<Ball>(solid(2)).radius, 6.0);
+  EXPECT_EQ(std::get<SolidSphere>(solid(2)).radius, 6.0);
 }
 
 TEST(ReadUrdf, FindsMeshes) {
@@ -374,7 +374,7 @@ TEST(ReadUrdf, ReadsNumbersInAnyLocale) {
   std::locale::global(before);
   const LinkShape& shape = robot.links[0].visual[0];
   EXPECT_EQ(shape.link_from_shape.translation(), Eigen::Vector3d(0.5, 1.5e-3, 2.0));
-  EXPECT_EQ(std::get<Ball>(std::get<Primitive>(shape.geometry)).radius, 0.25);
+  EXPECT_EQ(std::get<SolidSphere>(std::get<Primitive>(shape.geometry)).radius, 0.25);
 }
 
 }  // namespace

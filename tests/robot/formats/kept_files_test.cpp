@@ -66,7 +66,7 @@ class KeptFiles : public ::testing::Test {
           {"base", "arm", "Adjacent"}, {"hand", "base", kNever}, {"arm", "hand", {}}}};
 };
 
-const std::string kBalls =
+const std::string kSpheres =
     "      base:\n        - {center: [0.0, 0.0, 0.0], radius: 0.5}\n"
     "      arm:\n        - {center: [1.0, 2.0, 3.0], radius: 0.25}\n      hand: []\n";
 
@@ -97,11 +97,11 @@ robot_cfg:
       }
     lock_joints: {"a": 0.04, 'b': !!float 4e-2}
 )";
-  const std::string balls = R"(      "base":
+  const std::string spheres = R"(      "base":
         - "center": [9, 9, 9]
           "radius": 9.0
 )";
-  std::string expected = replaced(original, balls, kBalls);
+  std::string expected = replaced(original, spheres, kSpheres);
   expected = replaced(expected, R"("hand",)", R"("hand", arm,)");
   expected = replaced(expected, "      {\n", "      {\n        hand: [arm],  # given: arm\n");
   expected =
@@ -121,7 +121,7 @@ TEST_F(KeptFiles, CuroboInBlocks) {
   std::string expected = replaced(original,
                                   "      base:\n      - center:\n        - 9.0\n        - 9.0\n"
                                   "        - 9.0\n        radius: 9.0\n",
-                                  kBalls);
+                                  kSpheres);
   expected = replaced(expected, "# mine\n", "# mine\n      - hand  # " + kNever + "\n");
   expected = replaced(expected, "      - base\n    text",
                       "      - base\n      arm: [hand]  # given: hand\n    text");
@@ -131,7 +131,7 @@ TEST_F(KeptFiles, CuroboInBlocks) {
 TEST_F(KeptFiles, CuroboWithoutPairsGetsAPlaceForThem) {
   const std::string lists = "base: [arm, hand]  # Adjacent: arm; " + kNever +
                             ": hand\n      arm: [hand]  # given: hand\n";
-  const std::string head = "kinematics:\n    collision_spheres:\n" + kBalls;
+  const std::string head = "kinematics:\n    collision_spheres:\n" + kSpheres;
   for (const std::string missing :
        {"", "    self_collision_ignore: # none\n", "    self_collision_ignore:\n"}) {
     const std::string text = kept(SphereFormat::kCurobo, head + missing);
@@ -166,7 +166,7 @@ TEST_F(KeptFiles, Xrdf) {
       "geometry: \n  auto: \n    spheres: \n      base: \n"
       "      - center: [0.0, 0.0, 0.1]\n        radius: 0.07\n  rest: {}\n";
   std::string expected = replaced(
-      original, "      base: \n      - center: [0.0, 0.0, 0.1]\n        radius: 0.07\n", kBalls);
+      original, "      base: \n      - center: [0.0, 0.0, 0.1]\n        radius: 0.07\n", kSpheres);
   expected = replaced(expected, "\"world\"\n", "\"world\"\n      - hand  # " + kNever + "\n");
   EXPECT_EQ(kept(SphereFormat::kXrdf, original), expected);
   // Ends of lines are kept, too.
@@ -208,7 +208,7 @@ TEST_F(KeptFiles, ListsOfAnAnchorAreToldApart) {
 }
 
 TEST_F(KeptFiles, Srdf) {
-  const std::string balls = R"(  <link_sphere_approximation link="base">
+  const std::string spheres = R"(  <link_sphere_approximation link="base">
       <sphere center="0.0 0.0 0.0" radius="0.5"/>
   </link_sphere_approximation>
   <link_sphere_approximation link="arm">
@@ -234,7 +234,7 @@ TEST_F(KeptFiles, Srdf) {
       replaced(original,
                "  <link_sphere_approximation link=\"old\"><sphere center=\"0 0 0\" "
                "radius=\"9\"/></link_sphere_approximation>\n",
-               balls);
+               spheres);
   const std::string pairs = R"(    <disable_collisions link1="hand" link2="base" reason=")" +
                             kNever +
                             "\"/>\n    <disable_collisions link1=\"arm\" link2=\"hand\"/>\n";

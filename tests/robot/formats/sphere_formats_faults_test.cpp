@@ -67,24 +67,24 @@ TEST_F(SphereFormatFaults, Xml) {
   expect_refusal(robot("<link name=\"a\"/><link name=\"a\"/>"), "there twice");
   expect_refusal(collision(""), "has no <geometry>");
   expect_refusal(collision("<geometry/>"), "not one shape");
-  const auto ball_of = [](const std::string& radius) {
+  const auto sphere_of = [](const std::string& radius) {
     return collision("<geometry><sphere " + radius + "/></geometry>");
   };
-  expect_refusal(ball_of(""), "has no radius");
+  expect_refusal(sphere_of(""), "has no radius");
   for (const char* text : {"x", "nan", "inf", "1e999"}) {
-    expect_refusal(ball_of("radius=\"" + std::string(text) + "\""), "is no finite number");
+    expect_refusal(sphere_of("radius=\"" + std::string(text) + "\""), "is no finite number");
   }
-  expect_refusal(ball_of("radius=\"1 2\""), "numbers where");
-  expect_refusal(ball_of("radius=\"1e16\""), "beyond 1e15");
+  expect_refusal(sphere_of("radius=\"1 2\""), "numbers where");
+  expect_refusal(sphere_of("radius=\"1e16\""), "beyond 1e15");
   expect_refusal(collision("<geometry><sphere radius=\"1\"/><box size=\"1 1 1\"/></geometry>"),
                  "not one shape");
   expect_refusal(collision("<geometry><box size=\"1 1 1\"/></geometry>"), "holds no spheres");
-  const std::string ball = "<geometry><sphere radius=\"1\"/></geometry>";
-  expect_refusal(collision(ball + "<origin xyz=\"1 2\"/>"), "numbers where");
-  expect_refusal(collision(ball + "<origin rpy=\"1 2 z\"/>"), "is no finite number");
-  expect_refusal(collision(ball + "<origin/><origin/>"), "there is one already");
-  expect_refusal(collision(ball) + std::string(1, '\0'), "zero byte");
-  const std::string leaf = "<link name=\"a_sphere1\"><collision>" + ball + "</collision></link>";
+  const std::string sphere = "<geometry><sphere radius=\"1\"/></geometry>";
+  expect_refusal(collision(sphere + "<origin xyz=\"1 2\"/>"), "numbers where");
+  expect_refusal(collision(sphere + "<origin rpy=\"1 2 z\"/>"), "is no finite number");
+  expect_refusal(collision(sphere + "<origin/><origin/>"), "there is one already");
+  expect_refusal(collision(sphere) + std::string(1, '\0'), "zero byte");
+  const std::string leaf = "<link name=\"a_sphere1\"><collision>" + sphere + "</collision></link>";
   const std::string joint =
       "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"a_sphere1\"/></joint>";
   expect_refusal(robot(leaf + joint), "there is no link \"a\"");
@@ -214,7 +214,7 @@ TEST_F(SphereFormatFaults, LevelsAndFormatsOfOneMesh) {
   EXPECT_EQ(one.spheres.links[0].spheres.size(), 1u);
 }
 
-TEST_F(SphereFormatFaults, CuroboSwitchesBallsOff) {
+TEST_F(SphereFormatFaults, CuroboSwitchesSpheresOff) {
   const std::string text =
       "robot_cfg:\n  kinematics:\n    collision_link_names: [a]\n    collision_spheres:\n"
       "      a: [{center: [0, 0, 0], radius: -10}, {center: [0, 0, 0], radius: 0.0}, "
@@ -313,8 +313,8 @@ TEST_F(SphereFormatFaults, MutatedFiles) {
         try {
           const SphereFormatFile file = read(bad);
           for (const LinkSpheres& link : file.spheres.links) {
-            for (const Sphere& ball : link.spheres)
-              EXPECT_TRUE(is_usable(ball) && ball.radius >= 0.0);
+            for (const Sphere& sphere : link.spheres)
+              EXPECT_TRUE(is_usable(sphere) && sphere.radius >= 0.0);
           }
         } catch (const Error&) {
           ++refused;

@@ -119,9 +119,9 @@ TEST(ReadSpheres, NamesPairsAndBuffers) {
   EXPECT_EQ(urdf.links.size(), 1U);
 }
 
-// Links that are named like the balls of another, but are none.
-TEST(ReadSpheres, LinksThatAreNoBalls) {
-  const std::string ball = "<collision><geometry><sphere radius=\"1\"/></geometry></collision>";
+// Links that are named like the spheres of another, but are none.
+TEST(ReadSpheres, LinksThatAreNoSpheres) {
+  const std::string sphere = "<collision><geometry><sphere radius=\"1\"/></geometry></collision>";
   const auto with_leaf = [](const std::string& leaf, const std::string& type,
                             const std::string& more = "") {
     return read(
@@ -132,16 +132,16 @@ TEST(ReadSpheres, LinksThatAreNoBalls) {
         "<child link=\"a_sphere1\"/><origin xyz=\"0 0 5\"/></joint>" +
         more + "</robot>");
   };
-  const RobotSpheres is_one = with_leaf(ball, "fixed");
+  const RobotSpheres is_one = with_leaf(sphere, "fixed");
   ASSERT_EQ(is_one.links.size(), 1U);
   EXPECT_EQ(is_one.links[0].spheres.size(), 2U);
   const std::string child =
       "<link name=\"b\"/><joint name=\"k\" type=\"fixed\"><parent link=\"a_sphere1\"/>"
       "<child link=\"b\"/></joint>";
   for (const RobotSpheres& is_none :
-       {with_leaf(ball, "revolute"), with_leaf(ball + ball, "fixed"),
-        with_leaf(ball, "fixed", child),
-        with_leaf(ball + "<visual><geometry><mesh filename=\"m.stl\"/></geometry></visual>",
+       {with_leaf(sphere, "revolute"), with_leaf(sphere + sphere, "fixed"),
+        with_leaf(sphere, "fixed", child),
+        with_leaf(sphere + "<visual><geometry><mesh filename=\"m.stl\"/></geometry></visual>",
                   "fixed")}) {
     ASSERT_GE(is_none.links.size(), 2U);
     EXPECT_EQ(is_none.links[0].spheres.size(), 1U);
@@ -152,7 +152,7 @@ TEST(ReadSpheres, LinksThatAreNoBalls) {
       with_leaf("<collision><geometry><box size=\"1 1 1\"/></geometry></collision>", "fixed");
   EXPECT_EQ(box.links.size(), 1U);
   EXPECT_EQ(box.other_shapes, 1U);
-  // One that is switched off stays so, though a ball that is moved grows a little.
+  // One that is switched off stays so, though a sphere that is moved grows a little.
   const RobotSpheres off = with_leaf(
       "<collision><origin xyz=\"1 0 0\"/><geometry><sphere radius=\"0\"/></geometry></collision>",
       "fixed");
@@ -161,18 +161,19 @@ TEST(ReadSpheres, LinksThatAreNoBalls) {
 }
 
 TEST(ShrunkByBuffers, TakesTheOwnBufferBeforeTheCommonOne) {
-  const Sphere ball{{1, 2, 3}, 1.0};
-  RobotSpheres spheres{.links = {{"a", {ball, {{0, 0, 0}, 0.125}}}, {"b", {ball}}, {"c", {ball}}}};
+  const Sphere sphere{{1, 2, 3}, 1.0};
+  RobotSpheres spheres{
+      .links = {{"a", {sphere, {{0, 0, 0}, 0.125}}}, {"b", {sphere}}, {"c", {sphere}}}};
   spheres.collision_buffer = -0.25;
   spheres.collision_buffers = {{"b", -0.5}, {"c", 0.5}};
   const std::vector<LinkSpheres> shrunk = shrunk_by_buffers(spheres);
-  // Of a ball that is smaller than its buffer nothing is left; buffers above zero do not count.
+  // Of a sphere that is smaller than its buffer nothing is left; buffers above zero do not count.
   const double expected[] = {0.75, 0.5, 1.0};
   ASSERT_EQ(shrunk.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(shrunk[i].link, spheres.links[i].link);
     ASSERT_EQ(shrunk[i].spheres.size(), 1U);
-    EXPECT_EQ(shrunk[i].spheres[0].center, ball.center);
+    EXPECT_EQ(shrunk[i].spheres[0].center, sphere.center);
     EXPECT_LE(shrunk[i].spheres[0].radius, expected[i]);
     EXPECT_GE(shrunk[i].spheres[0].radius, expected[i] - 1e-15);
   }

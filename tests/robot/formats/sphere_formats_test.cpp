@@ -226,18 +226,18 @@ TEST_F(SphereFormats, UrdfKeepsTheRestAndFindsItsMeshes) {
   EXPECT_NE(read_file(file("here.urdf")).find("filename=\"m/a.dae\""), std::string::npos);
 }
 
-// A ball of a link on a fixed joint that turns: the ball read contains the ball meant, whose centre
-// an oracle of 50 digits knows.
-TEST_F(SphereFormats, BallsOnFixedJointsAreMovedOutward) {
+// A sphere of a link on a fixed joint that turns: the sphere read contains the sphere meant, whose
+// centre an oracle of 50 digits knows.
+TEST_F(SphereFormats, SpheresOnFixedJointsAreMovedOutward) {
   using Real = boost::multiprecision::cpp_bin_float_50;
   test::Random random(13);
   for (int round = 0; round < test::effort(5000, 300); ++round) {
     const double size = std::pow(10.0, random.between(-8, 8));
-    const Sphere ball{random.direction() * size * random.unit(), random.unit() * 0.01 * size};
+    const Sphere sphere{random.direction() * size * random.unit(), random.unit() * 0.01 * size};
     const Eigen::Vector3d angles = random.direction() * random.between(0, 8);
     const Eigen::Vector3d shift = random.direction() * size * random.unit();
-    const Sphere moved = internal::moved_ball(ball, angles, shift);
-    Real x = ball.center.x(), y = ball.center.y(), z = ball.center.z();
+    const Sphere moved = internal::moved_sphere(sphere, angles, shift);
+    Real x = sphere.center.x(), y = sphere.center.y(), z = sphere.center.z();
     const auto turn = [](Real& a, Real& b, double angle) {
       const Real c = cos(Real(angle)), s = sin(Real(angle)), a_new = c * a - s * b;
       b = s * a + c * b;
@@ -249,12 +249,12 @@ TEST_F(SphereFormats, BallsOnFixedJointsAreMovedOutward) {
     const Real dx = x + shift.x() - moved.center.x(), dy = y + shift.y() - moved.center.y(),
                dz = z + shift.z() - moved.center.z();
     const Real off = sqrt(dx * dx + dy * dy + dz * dz);
-    ASSERT_LE(off + ball.radius, Real(moved.radius)) << round;
-    ASSERT_LE(moved.radius - ball.radius, 1e-13 * size) << round;
+    ASSERT_LE(off + sphere.radius, Real(moved.radius)) << round;
+    ASSERT_LE(moved.radius - sphere.radius, 1e-13 * size) << round;
   }
 }
 
-TEST_F(SphereFormats, BallsThatAreLinksBelongToTheParent) {
+TEST_F(SphereFormats, SpheresThatAreLinksBelongToTheParent) {
   const std::string text =
       "<robot name=\"r\"><link name=\"a\"><visual><geometry><mesh filename=\"a.stl\"/></geometry>"
       "</visual></link><link name=\"b_sphere1\"/>"
@@ -281,7 +281,7 @@ TEST_F(SphereFormats, BallsThatAreLinksBelongToTheParent) {
   EXPECT_GT(turned.radius, 0.25);
   EXPECT_LT(turned.radius, 0.25 + 1e-13);
   EXPECT_EQ(read.links[2].link, "a_spherex");
-  // Written, they are balls of the link, and their links and joints are gone.
+  // Written, they are spheres of the link, and their links and joints are gone.
   RobotSpheres changed = read;
   changed.links.resize(1);
   write_robot_spheres(changed, SphereFormat::kUrdf, {.urdf = path}, file("w.urdf"));

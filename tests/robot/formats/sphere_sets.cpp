@@ -26,15 +26,15 @@ double random_length(test::Random& random) {
   }
 }
 
-Sphere random_ball(test::Random& random) {
-  Sphere ball;
+Sphere random_sphere(test::Random& random) {
+  Sphere sphere;
   for (int axis = 0; axis < 3; ++axis) {
-    ball.center[axis] = random_length(random) * (random.index(2) == 0 ? 1.0 : -1.0);
+    sphere.center[axis] = random_length(random) * (random.index(2) == 0 ? 1.0 : -1.0);
   }
   do {
-    ball.radius = random_length(random);
-  } while (ball.radius == 0.0);
-  return ball;
+    sphere.radius = random_length(random);
+  } while (sphere.radius == 0.0);
+  return sphere;
 }
 
 std::string escaped(const std::string& text) {
@@ -130,7 +130,7 @@ RobotSpheres random_spheres(test::Random& random, std::size_t links) {
     link.link = awkward_names()[which % awkward_names().size()];
     for (std::size_t round = which / awkward_names().size(); round-- > 0;) link.link += "+";
     const std::size_t count = random.index(4) == 0 ? 0 : random.index(6);
-    for (std::size_t k = 0; k < count; ++k) link.spheres.push_back(random_ball(random));
+    for (std::size_t k = 0; k < count; ++k) link.spheres.push_back(random_sphere(random));
     spheres.links.push_back(std::move(link));
   }
   for (std::size_t a = 0; a < links; ++a) {

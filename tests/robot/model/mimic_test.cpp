@@ -238,10 +238,10 @@ TEST(Mimic, FastFollowersDoNotPassThrough) {
     robot.add_link("arm", "base", {.name = "arm", .type = JointType::kContinuous});
     robot.add_link("handle", "base",
                    {.name = "handle", .type = JointType::kPrismatic, .lower = -99, .upper = 99});
-    robot.attach("arm", ball({10, 0, 0}, 1e-3));
+    robot.attach("arm", one_sphere_tree({10, 0, 0}, 1e-3));
     robot.mimic("arm", "handle", multiplier, offset);
     const double size = std::pow(10.0, random.uniform(-6.0, -2.0));
-    const ObstacleChecker checker(robot, {{ball(center, size), Pose()}});
+    const ObstacleChecker checker(robot, {{one_sphere_tree(center, size), Pose()}});
     RobotChecker::Scratch scratch(checker);
     const double reach = std::min(5.0, 30.0 / multiplier);
     const double before = random.uniform(0.01, 1.0) * reach;
@@ -271,10 +271,10 @@ TEST(Mimic, DoubtsOnEdgesAreSettledWhereTheyAre) {
     RobotModel robot("base");
     robot.add_link("arm", "base", {.name = "arm", .type = JointType::kContinuous});
     robot.add_link("handle", "base", {.name = "handle", .type = JointType::kPrismatic});
-    robot.attach("arm", ball({10, 0, 0}, 1e-3));
+    robot.attach("arm", one_sphere_tree({10, 0, 0}, 1e-3));
     robot.mimic("arm", "handle", multiplier, angle - multiplier * handle);
     const Eigen::Vector3d center(10.0 * std::cos(angle), 10.0 * std::sin(angle), 3e-3 - 1e-9);
-    const ObstacleChecker checker(robot, {{ball(center, 2e-3), Pose()}});
+    const ObstacleChecker checker(robot, {{one_sphere_tree(center, 2e-3), Pose()}});
     RobotChecker::Scratch scratch(checker);
     const double before = random.uniform(0.01, 0.5);
     const EdgeResult result =
@@ -285,7 +285,7 @@ TEST(Mimic, DoubtsOnEdgesAreSettledWhereTheyAre) {
   }
 }
 
-// A ball that two followers move along a line, with multipliers and offsets so large that the
+// A sphere that two followers move along a line, with multipliers and offsets so large that the
 // computed positions are up to a millimetre beside it, where obstacles stand.
 TEST(Mimic, RoundingDoesNotHideContactsOnEdges) {
   SceneRandom random(87);
@@ -298,14 +298,15 @@ TEST(Mimic, RoundingDoesNotHideContactsOnEdges) {
     robot.add_link("x", "base",
                    {.name = "x", .type = JointType::kPrismatic, .axis = {1.0, 0.0, 0.0}});
     robot.add_link("y", "x", {.name = "y", .type = JointType::kPrismatic, .axis = {0.0, 1.0, 0.0}});
-    robot.attach("y", ball({0, 0, 0}, 0.01));
+    robot.attach("y", one_sphere_tree({0, 0, 0}, 0.01));
     const double handle = random.uniform(9.0, 15.0);
     const double to_x = random.uniform(0.5e12, 1e12);
     const double to_y = random.uniform(-1e12, 1e12);
     robot.mimic("x", "handle", to_x, -to_x * handle);
     robot.mimic("y", "handle", to_y, -to_y * handle);
     const Eigen::Vector3d beside_line = Eigen::Vector3d(-to_y, to_x, 0.0).normalized();
-    const ObstacleChecker checker(robot, {{ball(beside_line * (0.51 + gap), 0.5), Pose()}});
+    const ObstacleChecker checker(robot,
+                                  {{one_sphere_tree(beside_line * (0.51 + gap), 0.5), Pose()}});
     RobotChecker::Scratch scratch(checker);
     const std::vector<double> from = {handle - 1e-12};
     const std::vector<double> to = {handle + 1e-12};
@@ -327,9 +328,9 @@ TEST(Mimic, PositionsBeyondTheRangeAreRefusedOnEdges) {
   RobotModel robot("base");
   robot.add_link("a", "base", {.name = "a", .type = JointType::kRevolute});
   robot.add_link("b", "a", {.name = "b", .type = JointType::kRevolute});
-  robot.attach("b", ball({1, 0, 0}, 0.1));
+  robot.attach("b", one_sphere_tree({1, 0, 0}, 0.1));
   robot.mimic("b", "a", 10.0);
-  const ObstacleChecker checker(robot, {{ball({9, 0, 0}, 0.1), Pose()}});
+  const ObstacleChecker checker(robot, {{one_sphere_tree({9, 0, 0}, 0.1), Pose()}});
   RobotChecker::Scratch scratch(checker);
   const auto edge = [&](double to) {
     return checker.check_edge(std::vector<double>{0.0}, std::vector<double>{to}, scratch).verdict;

@@ -23,14 +23,14 @@ using Configuration = std::vector<double>;
 
 struct Body {
   int link;
-  Sphere ball;
-  Eigen::Vector3d point;  // in the ball
+  Sphere sphere;
+  Eigen::Vector3d point;  // in the sphere
 };
 
 Body random_body(SceneRandom& random, const RobotModel& robot) {
-  const Sphere ball{random.point(1.0), random.uniform(0.0, 0.3)};
-  return {random.whole(0, static_cast<int>(robot.links().size()) - 1), ball,
-          ball.center + ball.radius * random.point(1.0).normalized()};
+  const Sphere sphere{random.point(1.0), random.uniform(0.0, 0.3)};
+  return {random.whole(0, static_cast<int>(robot.links().size()) - 1), sphere,
+          sphere.center + sphere.radius * random.point(1.0).normalized()};
 }
 
 std::vector<Pose> poses_at_zero(const RobotModel& robot) {
@@ -69,8 +69,8 @@ TEST(PathReach, BoundsHowDistancesChange) {
     const std::vector<Pose> poses = poses_at_zero(robot);
     const internal::PathReach reach =
         b_is_static
-            ? internal::PathReach(robot, poses, 1e-13, joints, a.link, a.ball)
-            : internal::PathReach(robot, poses, 1e-13, joints, a.link, a.ball, b.link, b.ball);
+            ? internal::PathReach(robot, poses, 1e-13, joints, a.link, a.sphere)
+            : internal::PathReach(robot, poses, 1e-13, joints, a.link, a.sphere, b.link, b.sphere);
     std::vector<internal::PathBounds> work;
     const internal::PathBounds bounds = reach.bounds(rates, shifts, work);
     std::vector<Pose> placed;

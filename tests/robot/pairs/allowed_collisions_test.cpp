@@ -29,7 +29,7 @@ RobotModel arm() {
   robot.add_link("tool", "flange", {});
   robot.add_link("finger", "tool", turning);
   for (const char* link : {"base", "plate", "a", "tool", "finger"}) {
-    robot.attach(link, ball({0, 0, 0}, 0.1));
+    robot.attach(link, one_sphere_tree({0, 0, 0}, 0.1));
   }
   return robot;
 }
@@ -96,7 +96,7 @@ TEST(AllowedCollisions, BitsEqualNames) {
   for (int i = 1; i < 40; ++i) {
     robot.add_link("link_" + std::to_string(i), "link_" + std::to_string(random.whole(0, i - 1)),
                    {.type = JointType::kRevolute, .lower = -1.0, .upper = 1.0});
-    robot.attach("link_" + std::to_string(i), ball({0, 0, 0}, 0.1));
+    robot.attach("link_" + std::to_string(i), one_sphere_tree({0, 0, 0}, 0.1));
   }
   AllowedCollisions allowed(robot);
   std::vector<std::vector<bool>> expected(40, std::vector<bool>(40));
@@ -137,9 +137,9 @@ TEST(AllowedCollisions, Sampled) {
   RobotModel robot = arm();
   robot.add_link("long", "finger",
                  {.type = JointType::kPrismatic, .axis = {1, 0, 0}, .lower = 0.0, .upper = 1.0});
-  robot.attach("long", ball({0, 0, 0}, 0.05));
+  robot.attach("long", one_sphere_tree({0, 0, 0}, 0.05));
   robot.add_link("far", "a", {.type = JointType::kPrismatic, .lower = 5.0, .upper = 6.0});
-  robot.attach("far", ball({0, 0, 0}, 0.05));
+  robot.attach("far", one_sphere_tree({0, 0, 0}, 0.05));
   AllowedCollisions allowed(robot);
   const SampledCollisions sampled =
       sample_collisions(robot, allowed, {.configurations = 500, .seed = 7});

@@ -259,9 +259,10 @@ TEST(LinkPairs, SpheresCountAsSolid) {
                   .axis = Vector3d::UnitX(),
                   .lower = 0.0,
                   .upper = 2.0});
-  const auto ball =
+  const auto sphere =
       std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{Vector3d::Zero(), 0.5}}));
-  const std::vector<LinkBody> bodies{{.link = 0, .spheres = ball}, {.link = 1, .spheres = ball}};
+  const std::vector<LinkBody> bodies{{.link = 0, .spheres = sphere},
+                                     {.link = 1, .spheres = sphere}};
   const LinkPairs pairs = prove_link_pairs(robot, bodies);
   EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kTouching);
   EXPECT_FALSE(pairs.is_free(0, 1, Configuration{1.0}));

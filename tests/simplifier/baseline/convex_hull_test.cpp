@@ -130,12 +130,12 @@ TEST(ConvexHull, PaddingAndVertexErrorAreInside) {
   mesh.vertex_error = 0.001;
   const ConvexHull hull = convex_hull(mesh, {.padding = 0.002});
   Random random(73);
-  Points balls;
+  Points spheres;
   for (const Vector3d& p : used_vertices(mesh)) {
-    for (int i = 0; i < 8; ++i) balls.push_back(p + 0.003 * random.direction());
+    for (int i = 0; i < 8; ++i) spheres.push_back(p + 0.003 * random.direction());
   }
-  EXPECT_EQ(exact_outside(hull.mesh, balls), 0U);
-  EXPECT_GE(exact_outside(convex_hull(l_bracket()).mesh, balls), 1U);  // so it was needed
+  EXPECT_EQ(exact_outside(hull.mesh, spheres), 0U);
+  EXPECT_GE(exact_outside(convex_hull(l_bracket()).mesh, spheres), 1U);  // so it was needed
   EXPECT_LE(hull.expansion, 0.05);
 }
 

@@ -38,7 +38,7 @@ TEST(HubbardSpheres, EveryLevelHoldsTheSamples) {
 TEST(HubbardSpheres, ReachesTheWantedCounts) {
   const SphereLevels levels = hubbard_spheres(l_bracket(), kCoarse);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(levels.levels[k].size(), kCoarse.counts[k]);
-  // Each ball is what became of some of the finer ones.
+  // Each sphere is what became of some of the finer ones.
   for (std::size_t k = 0; k < 2; ++k) {
     const std::set<std::int32_t> parents(levels.parents[k].begin(), levels.parents[k].end());
     EXPECT_EQ(parents.size(), levels.levels[k].size());
@@ -65,7 +65,7 @@ TEST(HubbardSpheres, MakesAConservativeTree) {
   EXPECT_TRUE(leaves.certificate.covered);
   const LevelTree tree = enclosing_tree(levels, leaves.spheres);
   EXPECT_TRUE(check(tree.tree).valid);
-  // Each ball of a level stands in the tree and is no smaller than it was.
+  // Each sphere of a level stands in the tree and is no smaller than it was.
   ASSERT_EQ(tree.nodes.size(), 2U);
 }
 

@@ -12,39 +12,39 @@
 namespace spherule::test {
 namespace {
 
-// Judged by the distance to the mesh and the winding number. A ball about a point of the level set
-// reaches at most a step beyond the surface.
-TEST(LevelSetPacking, FillsTheSolidWithBallsInsideOfIt) {
+// Judged by the distance to the mesh and the winding number. A sphere about a point of the level
+// set reaches at most a step beyond the surface.
+TEST(LevelSetPacking, FillsTheSolidWithSpheresInsideOfIt) {
   constexpr double kStep = 0.5;
   const TriangleMesh mesh = pipe(20.0, 14.0, 60.0, 40);
-  const std::vector<Sphere> balls =
+  const std::vector<Sphere> spheres =
       level_set_packing(mesh, {.step = kStep, .min_radius = 1.0, .max_spheres = 400});
-  EXPECT_GT(balls.size(), 50U);
-  EXPECT_LE(balls.size(), 400U);
+  EXPECT_GT(spheres.size(), 50U);
+  EXPECT_LE(spheres.size(), 400U);
   const MeshDistance distance(mesh);
-  for (const Sphere& ball : balls) {
-    EXPECT_NE(std::round(distance.winding_number(ball.center)), 0.0);
-    EXPECT_LE(ball.radius, distance(ball.center).upper + kStep);
-    EXPECT_GE(ball.radius, 1.0 - 1e-3);
+  for (const Sphere& sphere : spheres) {
+    EXPECT_NE(std::round(distance.winding_number(sphere.center)), 0.0);
+    EXPECT_LE(sphere.radius, distance(sphere.center).upper + kStep);
+    EXPECT_GE(sphere.radius, 1.0 - 1e-3);
   }
 }
 
 TEST(LevelSetPacking, IsTheSameWhereverTheMeshIsAndOnAnyNumberOfThreads) {
   TriangleMesh mesh = cube_mesh();
   const LevelSetPackingOptions options{.step = 0.0625, .max_spheres = 100, .threads = 1};
-  const std::vector<Sphere> balls = level_set_packing(mesh, options);
-  EXPECT_EQ(level_set_packing(mesh, {.step = 0.0625, .max_spheres = 100}), balls);
+  const std::vector<Sphere> spheres = level_set_packing(mesh, options);
+  EXPECT_EQ(level_set_packing(mesh, {.step = 0.0625, .max_spheres = 100}), spheres);
   const Eigen::Vector3d shift(4096.0, -8192.0, 0.0);
   for (Eigen::Vector3d& vertex : mesh.vertices) vertex = 1024.0 * vertex + shift;
   const std::vector<Sphere> larger = level_set_packing(mesh, {.step = 64.0, .max_spheres = 100});
-  ASSERT_EQ(larger.size(), balls.size());
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    EXPECT_EQ(larger[i].radius, 1024.0 * balls[i].radius);
-    EXPECT_EQ(larger[i].center, 1024.0 * balls[i].center + shift);
+  ASSERT_EQ(larger.size(), spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    EXPECT_EQ(larger[i].radius, 1024.0 * spheres[i].radius);
+    EXPECT_EQ(larger[i].center, 1024.0 * spheres[i].center + shift);
   }
 }
 
-TEST(LevelSetPacking, MakesNoBallThatIsTooSmall) {
+TEST(LevelSetPacking, MakesNoSphereThatIsTooSmall) {
   EXPECT_TRUE(level_set_packing(cube_mesh(), {.step = 0.05, .min_radius = 0.6}).empty());
 }
 

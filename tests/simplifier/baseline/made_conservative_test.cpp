@@ -24,33 +24,33 @@ const Vector3d kMiddle(8.0, 0.5, 0.5);
 const double kToCorner = std::sqrt(64.5);
 
 TEST(MadeConservative, GrowsByTheUncoveredDepth) {
-  const std::vector<Sphere> balls = {{kMiddle, kToCorner - 2.0}};
-  const ConservativeSpheres result = made_conservative(kBar, balls);
+  const std::vector<Sphere> spheres = {{kMiddle, kToCorner - 2.0}};
+  const ConservativeSpheres result = made_conservative(kBar, spheres);
   ASSERT_EQ(result.spheres.size(), 1U);
-  EXPECT_EQ(result.spheres[0].center, balls[0].center);
+  EXPECT_EQ(result.spheres[0].center, spheres[0].center);
   EXPECT_TRUE(result.certificate.covered);
   EXPECT_GE(result.spheres[0].radius, kToCorner);
   EXPECT_LE(result.inflation, 2.05);
 }
 
 TEST(MadeConservative, LeavesWhatCovers) {
-  const std::vector<Sphere> balls = {{kMiddle, kToCorner + 0.05}, {Vector3d::Zero(), 0.0}};
-  const ConservativeSpheres result = made_conservative(kBar, balls);
+  const std::vector<Sphere> spheres = {{kMiddle, kToCorner + 0.05}, {Vector3d::Zero(), 0.0}};
+  const ConservativeSpheres result = made_conservative(kBar, spheres);
   EXPECT_EQ(result.inflation, 0.0);
-  EXPECT_EQ(result.spheres, balls);
+  EXPECT_EQ(result.spheres, spheres);
   EXPECT_TRUE(result.certificate.covered);
 }
 
 TEST(MadeConservative, CountsPaddingAndVertexError) {
-  const std::vector<Sphere> balls = {{kMiddle, kToCorner + 0.05}};
+  const std::vector<Sphere> spheres = {{kMiddle, kToCorner + 0.05}};
   TriangleMesh mesh = kBar;
   mesh.vertex_error = 0.5;
-  const ConservativeSpheres result = made_conservative(mesh, balls, 0.5);
+  const ConservativeSpheres result = made_conservative(mesh, spheres, 0.5);
   EXPECT_TRUE(result.certificate.covered);
   EXPECT_GE(result.spheres[0].radius, kToCorner + 1.0);
 }
 
-TEST(MadeConservative, CoversMeshesOfEveryKindFromRandomBalls) {
+TEST(MadeConservative, CoversMeshesOfEveryKindFromRandomSpheres) {
   Random random(7);
   // Solid, open, self-intersecting, with hollows, and closed without an inside.
   for (const std::string& name :
@@ -60,11 +60,11 @@ TEST(MadeConservative, CoversMeshesOfEveryKindFromRandomBalls) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = slender(mesh_named(name));
     const Eigen::AlignedBox3d box = MeshDistance(mesh).box();
-    std::vector<Sphere> balls(5);
-    for (Sphere& ball : balls) {
-      ball = {random.in_box(box), random.between(0.0, 0.3) * box.diagonal().norm()};
+    std::vector<Sphere> spheres(5);
+    for (Sphere& sphere : spheres) {
+      sphere = {random.in_box(box), random.between(0.0, 0.3) * box.diagonal().norm()};
     }
-    const ConservativeSpheres result = made_conservative(mesh, balls);
+    const ConservativeSpheres result = made_conservative(mesh, spheres);
     EXPECT_TRUE(result.certificate.covered);
     expect_samples_covered(mesh, result.spheres, random);
   }

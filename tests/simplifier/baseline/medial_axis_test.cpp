@@ -35,7 +35,7 @@ TEST(MedialAxis, SpheresAreEmptyOfSitesAndTouchFour) {
     for (const MedialSphere& s : axis.spheres()) {
       int touching = 0;
       for (const Vector3d& site : axis.sites()) {
-        const Real gap = gap_to_balls(site, {&s.ball, 1});
+        const Real gap = gap_to_spheres(site, {&s.sphere, 1});
         ASSERT_GE(gap, -1e-8L);
         if (gap <= 1e-8L) ++touching;
       }
@@ -72,7 +72,8 @@ TEST(MedialAxis, WatchedPointsAreReached) {
   axis.refine({.max_protrusion = 0.05, .min_spheres = 0, .max_sites = 5000});
   for (const Vector3d& p : watched) {
     Real gap = 1.0L;
-    for (const MedialSphere& s : axis.spheres()) gap = std::min(gap, gap_to_balls(p, {&s.ball, 1}));
+    for (const MedialSphere& s : axis.spheres())
+      gap = std::min(gap, gap_to_spheres(p, {&s.sphere, 1}));
     EXPECT_LE(gap, 0.05L);
   }
 }
@@ -129,7 +130,7 @@ TEST(MedialAxis, BearsTinyFeaturesDistantPartsAndPlates) {
   }
 }
 
-TEST(MedialAxis, FartherProtrusionNeedsFewerBalls) {
+TEST(MedialAxis, FartherProtrusionNeedsFewerSpheres) {
   std::size_t before = 100000;
   for (const double wanted : {0.05, 0.1, 0.2}) {
     const MedialAxisSpheres result =

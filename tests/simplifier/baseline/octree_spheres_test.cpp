@@ -22,17 +22,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The tree's parents enclose their children, by long double; its leaves are balls around cubes.
+// The tree's parents enclose their children, by long double; its leaves are spheres around cubes.
 void expect_layered(const SphereTree& tree) {
   EXPECT_TRUE(check(tree).valid);
   for (std::size_t node = 0; node < tree.node_count(); ++node) {
     if (tree.is_leaf(node)) continue;
-    const Sphere parent = tree.ball(node);
+    const Sphere parent = tree.sphere(node);
     for (std::int32_t k = 0; k < tree.child_count(node); ++k) {
-      const Sphere child = tree.ball(static_cast<std::size_t>(tree.first_child(node) + k));
+      const Sphere child = tree.sphere(static_cast<std::size_t>(tree.first_child(node) + k));
       ASSERT_LE(judged_distance(parent.center, child.center) + static_cast<Real>(child.radius),
                 static_cast<Real>(parent.radius));
-      // The method's own ball around the cube, not one made for the children.
+      // The method's own sphere around the cube, not one made for the children.
       ASSERT_NEAR(child.radius, parent.radius / 2.0, 1e-4 * child.radius);
     }
   }
@@ -87,7 +87,7 @@ TEST(OctreeSpheres, ADepthGivesCubesOfOneSizeOnTheSurface) {
     expect_layered(surface.tree);
     const double radius = surface.tree.spheres().front().radius;
     EXPECT_NEAR(radius, std::sqrt(0.75) * surface.step, 1e-9);
-    for (const Sphere& ball : surface.tree.spheres()) EXPECT_EQ(ball.radius, radius);
+    for (const Sphere& sphere : surface.tree.spheres()) EXPECT_EQ(sphere.radius, radius);
     EXPECT_EQ(
         judge_cover(points_on_surface(l_bracket(), 2000, random), surface.tree.spheres()).uncovered,
         0U);
@@ -95,7 +95,7 @@ TEST(OctreeSpheres, ADepthGivesCubesOfOneSizeOnTheSurface) {
   }
 }
 
-// Large cubes stay whole where they may: far fewer balls than cubes of the smallest size.
+// Large cubes stay whole where they may: far fewer spheres than cubes of the smallest size.
 TEST(OctreeSpheres, KeepsLargeCubesInside) {
   const OctreeSpheres result = octree_spheres(icosphere(3), {.max_error = 0.1});
   const auto [least, most] =
@@ -108,10 +108,10 @@ TEST(OctreeSpheres, FillsSealedHollows) {
   const TriangleMesh shells = nested_shells(2);
   const OctreeSpheres result = octree_spheres(shells, {.max_error = 0.1});
   const Vector3d middle = MeshDistance(shells).box().center();
-  EXPECT_LE(gap_to_balls(middle, result.tree.spheres()), 0.0L);
+  EXPECT_LE(gap_to_spheres(middle, result.tree.spheres()), 0.0L);
   const OctreeSpheres surface =
       octree_spheres(shells, {.max_error = 0.1, .filling = Filling::kSurface});
-  EXPECT_GT(gap_to_balls(middle, surface.tree.spheres()), 0.0L);
+  EXPECT_GT(gap_to_spheres(middle, surface.tree.spheres()), 0.0L);
 }
 
 TEST(OctreeSpheres, Refuses) {

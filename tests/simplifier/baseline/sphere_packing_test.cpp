@@ -58,9 +58,9 @@ TEST(PackSpheres, PacksTheWallOfAPipeAndNotItsBore) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const TriangleMesh mesh = pipe(20.0, 14.0, 25.0, 24);
   const SpherePacking packing = pack_spheres(mesh, {.max_error = 2.0, .closed_below = 4.0});
-  for (const Sphere& ball : packing.spheres) {
-    EXPECT_GT(std::hypot(ball.center.x(), ball.center.y()), 14.0 - 1.0);
-    EXPECT_LE(ball.radius, 3.5);
+  for (const Sphere& sphere : packing.spheres) {
+    EXPECT_GT(std::hypot(sphere.center.x(), sphere.center.y()), 14.0 - 1.0);
+    EXPECT_LE(sphere.radius, 3.5);
   }
   const Certificate certificate = certify(mesh, packing.inflated, {.external = &packing.solid});
   EXPECT_TRUE(certificate.covered);

@@ -37,19 +37,19 @@ struct Problem {
   std::vector<std::uint32_t> points;
 };
 
-std::vector<Sphere> balls_of(const std::vector<FittedSphere>& spheres) {
-  std::vector<Sphere> balls;
-  for (const FittedSphere& s : spheres) balls.push_back(s.ball);
-  return balls;
+std::vector<Sphere> spheres_of(const std::vector<FittedSphere>& fitted) {
+  std::vector<Sphere> spheres;
+  for (const FittedSphere& s : fitted) spheres.push_back(s.sphere);
+  return spheres;
 }
 
-// Each point of the task belongs to one ball, which holds it; judged in extended precision.
+// Each point of the task belongs to one sphere, which holds it; judged in extended precision.
 void expect_points_held(const Problem& problem, const std::vector<FittedSphere>& spheres) {
   std::vector<std::uint32_t> held;
   for (const FittedSphere& s : spheres) {
     EXPECT_FALSE(s.points.empty());
     for (const std::uint32_t p : s.points) {
-      EXPECT_LE(gap_to_balls(problem.samples[p], {&s.ball, 1}), 0.0L);
+      EXPECT_LE(gap_to_spheres(problem.samples[p], {&s.sphere, 1}), 0.0L);
       held.push_back(p);
     }
   }
@@ -57,14 +57,14 @@ void expect_points_held(const Problem& problem, const std::vector<FittedSphere>&
   EXPECT_EQ(held, problem.points);
 }
 
-// Points of the balls' surfaces, against the distance to a convex mesh by brute force.
+// Points of the spheres' surfaces, against the distance to a convex mesh by brute force.
 double sampled_protrusion(const TriangleMesh& mesh, const Problem& problem,
                           const std::vector<FittedSphere>& spheres) {
   Random random(5);
   Real worst = 0.0L;
   for (const FittedSphere& s : spheres) {
     for (int k = 0; k < 50; ++k) {
-      const Vector3d p = s.ball.center + s.ball.radius * random.direction();
+      const Vector3d p = s.sphere.center + s.sphere.radius * random.direction();
       if (problem.probe.is_inside(p)) continue;
       worst = std::max(worst, judged_mesh_distance(p, mesh));
     }
@@ -107,13 +107,13 @@ TEST(SphereReduction, ProtrudesNoMoreThanWanted) {
 }
 
 TEST(SphereReduction, ManyMedialSpheresBecomeFewOfThem) {
-  // A ball of the solid alone: one of its medial spheres holds nearly all of it.
+  // A sphere of the solid alone: one of its medial spheres holds nearly all of it.
   const Problem problem(icosphere(2));
   for (const Reduce reduce : kReductions) {
     const std::vector<FittedSphere> one = reduce(problem.task(), {.count = 1});
     ASSERT_EQ(one.size(), 1U);
-    EXPECT_LT(one[0].ball.radius, 1.25);
-    EXPECT_GE(one[0].ball.radius, 0.99);
+    EXPECT_LT(one[0].sphere.radius, 1.25);
+    EXPECT_GE(one[0].sphere.radius, 0.99);
   }
 }
 
@@ -144,8 +144,8 @@ TEST(SphereReduction, MergedLevelsHoldWhatBecamePartOfThem) {
 TEST(SphereReduction, IsTheSameOnAnyNumberOfThreadsAndTwice) {
   const Problem problem(l_bracket());
   for (const Reduce reduce : kReductions) {
-    EXPECT_EQ(balls_of(reduce(problem.task(), {.count = 12})),
-              balls_of(reduce(problem.task(), {.count = 12})));
+    EXPECT_EQ(spheres_of(reduce(problem.task(), {.count = 12})),
+              spheres_of(reduce(problem.task(), {.count = 12})));
   }
 }
 

@@ -48,23 +48,23 @@ class Stage2OfBaselines : public testing::TestWithParam<Stage2Method> {
 // G1 by the certificate, by samples and by a proof that shares no code with the fit.
 void expect_covered(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t seed,
                     int samples = effort(3000, 300)) {
-  const std::vector<Sphere>& balls = fitted.cover.spheres;
-  EXPECT_TRUE(certificate_of(mesh, fitted, balls).covered);
+  const std::vector<Sphere>& spheres = fitted.cover.spheres;
+  EXPECT_TRUE(certificate_of(mesh, fitted, spheres).covered);
   Random random(seed);
   const auto count = static_cast<std::size_t>(samples);
   std::vector<Vector3d> surface = points_on_surface(mesh, count, random);
   for (Vector3d& p : surface) p += 0.999999 * fitted.external.padding * random.direction();
-  EXPECT_EQ(judge_cover(surface, balls).uncovered, 0U);
-  EXPECT_EQ(judge_cover(points_of_solid(fitted.external, count, random), balls).uncovered, 0U);
+  EXPECT_EQ(judge_cover(surface, spheres).uncovered, 0U);
+  EXPECT_EQ(judge_cover(points_of_solid(fitted.external, count, random), spheres).uncovered, 0U);
 }
 
-// G2 by the certificate and by samples of the surfaces of the balls.
+// G2 by the certificate and by samples of the surfaces of the spheres.
 void expect_tight(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t seed,
-                  int per_ball = effort(40, 6)) {
+                  int per_sphere = effort(40, 6)) {
   Random random(seed);
   const ProtrusionJudgement judged = judge_protrusion(fitted.cover.spheres, mesh, fitted.external,
                                                       fitted.max_error + 1e-9 * diagonal_of(mesh),
-                                                      static_cast<std::size_t>(per_ball), random);
+                                                      static_cast<std::size_t>(per_sphere), random);
   EXPECT_EQ(judged.beyond, 0U) << "of " << judged.points << ", one at "
                                << judged.example.transpose();
   const Certificate certificate = certificate_of(mesh, fitted, fitted.cover.spheres);
@@ -100,7 +100,7 @@ TEST_P(Stage2OfBaselines, EveryWayToPlaceExternalSpheresGivesACoveredSolid) {
 TEST_P(Stage2OfBaselines, CoversTheSolidAsItIs) {
   const TriangleMesh mesh = open_box();
   const Fit fitted = fit_of(mesh, {.max_error = 0.12, .diameter = 0.5});
-  // Of more than a hundred thousand external balls, all of which are tried.
+  // Of more than a hundred thousand external spheres, all of which are tried.
   expect_covered(mesh, fitted, 175, 100);
   expect_tight(mesh, fitted, 176, 1);
 }
@@ -136,7 +136,7 @@ TEST_P(Stage2OfBaselines, IsEqualInEveryRunOnAnyNumberOfThreads) {
   }
 }
 
-TEST_P(Stage2OfBaselines, ALargerErrorNeedsFewerBalls) {
+TEST_P(Stage2OfBaselines, ALargerErrorNeedsFewerSpheres) {
   std::size_t before = 100000;
   for (const double share : {0.05, 0.1, 0.2}) {
     const std::size_t count = fit_of(cube_mesh(), {.max_error = share}).cover.spheres.size();
@@ -145,7 +145,7 @@ TEST_P(Stage2OfBaselines, ALargerErrorNeedsFewerBalls) {
   }
 }
 
-TEST_P(Stage2OfBaselines, EveryBallIsInflatedByTheSame) {
+TEST_P(Stage2OfBaselines, EverySphereIsInflatedByTheSame) {
   const Fit fitted = fit_of(l_bracket());
   const SphereCover& cover = fitted.cover;
   EXPECT_GT(cover.inflation, 0.0);
@@ -157,7 +157,7 @@ TEST_P(Stage2OfBaselines, EveryBallIsInflatedByTheSame) {
   }
 }
 
-TEST_P(Stage2OfBaselines, NoBallIsSmallerThanTheLeastRadius) {
+TEST_P(Stage2OfBaselines, NoSphereIsSmallerThanTheLeastRadius) {
   const TriangleMesh mesh = l_bracket();
   CoverOptions options;
   options.min_radius = 2.5 * FitShares{}.max_error * diagonal_of(mesh);
@@ -204,7 +204,7 @@ TEST_P(Stage2OfBaselines, StandsInSimplify) {
             GetParam().name);
   ASSERT_EQ(result.levels.size(), 1U);
   EXPECT_LE(result.levels[0].protrusion, 3.0 * max_error);
-  EXPECT_LT(result.levels[0].balls.spheres.size(), result.cover.spheres.size());
+  EXPECT_LT(result.levels[0].spheres.spheres.size(), result.cover.spheres.size());
 }
 
 INSTANTIATE_TEST_SUITE_P(Phases, Stage2OfBaselines,
@@ -212,18 +212,18 @@ INSTANTIATE_TEST_SUITE_P(Phases, Stage2OfBaselines,
                                          Stage2Method{"packing", packing_cover}),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST(PackingCover, TheLargestInscribedBallComesFirst) {
+TEST(PackingCover, TheLargestInscribedSphereComesFirst) {
   const TriangleMesh mesh = box_mesh({0, 0, 0}, {1.0, 1.2, 1.4});
   const ExternalSpheres external = externals_of(mesh, {});
   const SphereCover packed = packing_cover(mesh, external, {.max_error = 0.05});
-  const std::vector<Sphere>& balls = packed.spheres_before_inflation;
-  ASSERT_GT(balls.size(), 20U);
+  const std::vector<Sphere>& spheres = packed.spheres_before_inflation;
+  ASSERT_GT(spheres.size(), 20U);
   // No larger one fits between the faces that are 1 apart; E tells how closely it is found.
-  EXPECT_NEAR(balls.front().radius, 0.5, 0.005);
+  EXPECT_NEAR(spheres.front().radius, 0.5, 0.005);
   // By size, as long as no centre is held.
   std::size_t placed = 1;
-  while (placed < balls.size() && balls[placed].radius <= balls[placed - 1].radius &&
-         gap_to_balls(balls[placed].center, std::span(balls).first(placed)) >= 0.0L) {
+  while (placed < spheres.size() && spheres[placed].radius <= spheres[placed - 1].radius &&
+         gap_to_spheres(spheres[placed].center, std::span(spheres).first(placed)) >= 0.0L) {
     ++placed;
   }
   EXPECT_GE(placed, 8U);
@@ -239,7 +239,7 @@ TEST(PackingCover, ThePackingLiesInTheSolid) {
     for (const Sphere& s : packed.spheres_before_inflation) {
       // A point may stand where a sliver of S is too thin to be found, just outside of it.
       const double off = (s.radius == 0.0 ? 1e-3 : 1e-14) * max_error;
-      ASSERT_GE(gap_to_balls(s.center, external.balls), s.radius - off);
+      ASSERT_GE(gap_to_spheres(s.center, external.spheres), s.radius - off);
       for (int axis = 0; axis < 3; ++axis) {
         ASSERT_GE(s.center[axis] - s.radius, external.box.min()[axis] - off);
         ASSERT_LE(s.center[axis] + s.radius, external.box.max()[axis] + off);
@@ -248,7 +248,7 @@ TEST(PackingCover, ThePackingLiesInTheSolid) {
   }
 }
 
-// Against all external balls and faces in turn.
+// Against all external spheres and faces in turn.
 TEST(SimplifiedProbe, TellsTheClearanceInS) {
   const TriangleMesh mesh = l_bracket();
   const ExternalSpheres external = externals_of(mesh, {});
@@ -257,7 +257,7 @@ TEST(SimplifiedProbe, TellsTheClearanceInS) {
   constexpr double kTolerance = 1e-3;
   const internal::SimplifiedProbe probe(clearance, distance, kTolerance);
   const auto judged = [&](const Vector3d& p) {
-    Real least = gap_to_balls(p, external.balls);
+    Real least = gap_to_spheres(p, external.spheres);
     for (int axis = 0; axis < 3; ++axis) {
       least = std::min({least, Real(p[axis]) - external.box.min()[axis],
                         external.box.max()[axis] - Real(p[axis])});

@@ -44,7 +44,7 @@ void expect_empty_and_touching(const std::vector<Vector3d>& sites, double tolera
   }
 }
 
-TEST(Voronoi, BallsAreEmptyAndTouchFourSites) {
+TEST(Voronoi, SpheresAreEmptyAndTouchFourSites) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const std::vector<Vector3d> sites = random_sites(300, seed);
     EXPECT_GT(voronoi_vertices(sites).size(), 1000U);
@@ -52,8 +52,8 @@ TEST(Voronoi, BallsAreEmptyAndTouchFourSites) {
   }
 }
 
-// Every set of four sites in turn: those whose ball is empty, and centre in the box of the sites.
-std::vector<std::array<std::uint32_t, 4>> all_empty_balls(const std::vector<Vector3d>& sites) {
+// Every set of four sites in turn: those whose sphere is empty, and centre in the box of the sites.
+std::vector<std::array<std::uint32_t, 4>> all_empty_spheres(const std::vector<Vector3d>& sites) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : sites) box.extend(p);
   std::vector<std::array<std::uint32_t, 4>> found;
@@ -86,16 +86,16 @@ std::vector<std::array<std::uint32_t, 4>> all_empty_balls(const std::vector<Vect
   return found;
 }
 
-TEST(Voronoi, FindsEveryEmptyBallInTheBox) {
+TEST(Voronoi, FindsEveryEmptySphereInTheBox) {
   for (const std::uint64_t seed : {4, 5, 6}) {
     const std::vector<Vector3d> sites = random_sites(24, seed);
     std::vector<std::array<std::uint32_t, 4>> found;
     for (const VoronoiVertex& v : voronoi_vertices(sites)) found.push_back(v.sites);
-    EXPECT_EQ(found, all_empty_balls(sites));
+    EXPECT_EQ(found, all_empty_spheres(sites));
   }
 }
 
-TEST(Voronoi, BearsManySitesOnOneBall) {
+TEST(Voronoi, BearsManySitesOnOneSphere) {
   std::vector<Vector3d> grid;
   for (int i = 0; i < 64; ++i) grid.emplace_back(i % 4, i / 4 % 4, i / 16);
   expect_empty_and_touching(grid, 1e-8);

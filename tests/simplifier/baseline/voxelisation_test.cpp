@@ -27,8 +27,8 @@ using Index = std::array<int, 3>;
 // Centres as whole steps from the first one.
 std::set<Index> indices(const Voxelisation& voxels, const Vector3d& from) {
   std::set<Index> result;
-  for (const Sphere& ball : voxels.spheres) {
-    const Vector3d at = (ball.center - from) / voxels.step;
+  for (const Sphere& sphere : voxels.spheres) {
+    const Vector3d at = (sphere.center - from) / voxels.step;
     result.insert({static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())),
                    static_cast<int>(std::lround(at.z()))});
   }
@@ -140,8 +140,8 @@ TEST(Voxelise, FillsWhatCannotBeReached) {
   }
 }
 
-// Circumscribed balls cover, by the certificate and by samples, near the origin and far from it.
-TEST(Voxelise, CoversWithCircumscribedBalls) {
+// Circumscribed spheres cover, by the certificate and by samples, near the origin and far from it.
+TEST(Voxelise, CoversWithCircumscribedSpheres) {
   Random random(5);
   for (const NamedMesh& named : effort(zoo_to_fit(), 2)) {
     SCOPED_TRACE(named.name);
@@ -171,11 +171,11 @@ TEST(Voxelise, GrowsByPaddingAndVertexError) {
   expect_inflated_covered(mesh, 0.2999, 3000, voxels.spheres, 6);
 }
 
-TEST(Voxelise, ThePapersBallsLeaveCorners) {
-  const VoxelisationOptions options{.step = 0.1, .ball = VoxelBall::kInscribed};
+TEST(Voxelise, ThePapersSpheresLeaveCorners) {
+  const VoxelisationOptions options{.step = 0.1, .sphere = VoxelSphere::kInscribed};
   const TriangleMesh mesh = slender(l_bracket());
   const Voxelisation voxels = voxelise(mesh, options);
-  for (const Sphere& ball : voxels.spheres) EXPECT_EQ(ball.radius, 0.05);
+  for (const Sphere& sphere : voxels.spheres) EXPECT_EQ(sphere.radius, 0.05);
   const Certificate certificate = certify(mesh, voxels.spheres, {.resolution = 1.0 / 512.0});
   EXPECT_FALSE(certificate.covered);
   EXPECT_GT(certificate.uncovered_depth.lower, 0.01);
@@ -183,8 +183,8 @@ TEST(Voxelise, ThePapersBallsLeaveCorners) {
 
 TEST(Voxelise, LeavesTheBoreOfAPipeOpen) {
   const Voxelisation voxels = voxelise(pipe(20.0, 17.0, 100.0, 40), {.step = 2.0});
-  for (const Sphere& ball : voxels.spheres) {
-    EXPECT_GT(std::hypot(ball.center.x(), ball.center.y()), 14.0);
+  for (const Sphere& sphere : voxels.spheres) {
+    EXPECT_GT(std::hypot(sphere.center.x(), sphere.center.y()), 14.0);
   }
   EXPECT_EQ(voxelise(nested_shells(3), {.step = 0.1}).inside,
             voxelise(nested_shells(1), {.step = 0.1}).spheres.size() -

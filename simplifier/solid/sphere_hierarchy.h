@@ -10,44 +10,45 @@
 
 namespace spherule::internal {
 
-// The least of |p - c| - r over a set of balls: negative inside of the union, where its absolute
-// value is the depth in the deepest ball; outside, the distance to the union.
-struct NearestBall {
+// The least of |p - c| - r over a set of spheres: negative inside of the union, where its absolute
+// value is the depth in the deepest sphere; outside, the distance to the union.
+struct NearestSphere {
   double lower = std::numeric_limits<double>::infinity();  // bounds of the exact value
   double upper = std::numeric_limits<double>::infinity();
   std::int32_t index =
-      -1;  // a ball that attains it, up to rounding; -1 if none is nearer than asked
+      -1;  // a sphere that attains it, up to rounding; -1 if none is nearer than asked
 };
 
-// Branch and bound over a binary hierarchy. What bounds a node is made for balls that touch a
-// surface, as external balls do: where it is flat they have a half-space in common, however far
+// Branch and bound over a binary hierarchy. What bounds a node is made for spheres that touch a
+// surface, as external spheres do: where it is flat they have a half-space in common, however far
 // their centres are from it, and where it turns about an axis, as along a rod or a rounded edge,
 // they leave a cylinder free, whose axis is nearly as far from all of them. Immutable and safe to
 // share between threads.
-class BallHierarchy {
+class SphereHierarchy {
  public:
-  BallHierarchy() = default;
-  // Of any balls: split in centre and radius; the wall that the balls of a node touch is guessed by
-  // regression, as their radii are then an affine function of their centres.
-  explicit BallHierarchy(std::span<const Sphere> balls);
-  // Of balls that touch a surface, each in its point of `contacts` (which need not be exact: wrong
-  // ones cost time only): split by contact and normal. Much faster where balls are nearly tied.
-  BallHierarchy(std::span<const Sphere> balls, std::span<const Eigen::Vector3d> contacts);
+  SphereHierarchy() = default;
+  // Of any spheres: split in centre and radius; the wall that the spheres of a node touch is
+  // guessed by regression, as their radii are then an affine function of their centres.
+  explicit SphereHierarchy(std::span<const Sphere> spheres);
+  // Of spheres that touch a surface, each in its point of `contacts` (which need not be exact:
+  // wrong ones cost time only): split by contact and normal. Much faster where spheres are nearly
+  // tied.
+  SphereHierarchy(std::span<const Sphere> spheres, std::span<const Eigen::Vector3d> contacts);
 
   // Only values below `limit` are looked for; without one, both bounds are the limit. The search
-  // may be content with a ball that is up to `tolerance` worse than the nearest: many balls are
+  // may be content with a sphere that is up to `tolerance` worse than the nearest: many spheres are
   // nearly tied where they line a smooth surface, and the bounds are then that far apart.
-  NearestBall nearest(const Eigen::Vector3d& point,
-                      double limit = std::numeric_limits<double>::infinity(),
-                      double tolerance = 0.0) const;
+  NearestSphere nearest(const Eigen::Vector3d& point,
+                        double limit = std::numeric_limits<double>::infinity(),
+                        double tolerance = 0.0) const;
 
-  bool empty() const { return balls_.empty(); }
+  bool empty() const { return spheres_.empty(); }
 
  private:
-  // The balls [begin, end); the two children of an inner node stand side by side. In the frame of a
-  // node (normal, axis, side) its centres lie in the box [low, high]; normal.x is at least
+  // The spheres [begin, end); the two children of an inner node stand side by side. In the frame of
+  // a node (normal, axis, side) its centres lie in the box [low, high]; normal.x is at least
   // `offset`, and the distance of x from the line through `focus` along the axis at least `free`,
-  // for every point x of its balls.
+  // for every point x of its spheres.
   struct Node {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     Eigen::Vector3d axis = Eigen::Vector3d::Zero();
@@ -64,23 +65,23 @@ class BallHierarchy {
     std::int32_t end = 0;
   };
   struct Entry {
-    Sphere ball;
+    Sphere sphere;
     std::int32_t index;
   };
-  // How a ball meets the surface.
+  // How a sphere meets the surface.
   struct Touch {
     Eigen::Vector3d contact;
     Eigen::Vector3d normal;
   };
 
   void build(std::size_t self, const std::vector<Touch>& touches);
-  std::span<const Entry> balls_of(const Node& node) const;
+  std::span<const Entry> spheres_of(const Node& node) const;
   Eigen::Vector3d regressed_normal(const Node& node) const;
   void fit_cylinder(Node& node, const std::vector<Touch>& touches) const;
   void fit_box(Node& node, const Eigen::Vector3d& normal, const Eigen::Vector3d& axis) const;
   double bound(const Node& node, const Eigen::Vector3d& point, double enough) const;
 
-  std::vector<Entry> balls_;
+  std::vector<Entry> spheres_;
   std::vector<Node> nodes_;
   double magnitude_ = 0.0;  // largest norm of a centre
 };

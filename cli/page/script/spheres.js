@@ -1,43 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Balls, exact at any zoom: each is a square in which the ray of every pixel is met with the ball.
+// Spheres, exact at any zoom: each is a square in which the ray of every pixel is met with the sphere.
 
-// The square stands through the centre, perpendicular to the line of sight, and covers the ball:
-// its half side is r d / sqrt(d^2 - r^2) for a ball of radius r at distance d.
-const kBallVertex = `
-  attribute vec4 ball;
-  uniform float least_radius;     // pixels; no ball is drawn smaller
+// The square stands through the centre, perpendicular to the line of sight, and covers the sphere:
+// its half side is r d / sqrt(d^2 - r^2) for a sphere of radius r at distance d.
+const kSphereVertex = `
+  attribute vec4 sphere;
+  uniform float least_radius;     // pixels; no sphere is drawn smaller
   uniform float greatest_radius;  // none larger
   uniform vec2 viewport;
   varying vec3 ray;
-  flat varying vec4 eye_ball;
+  flat varying vec4 eye_sphere;
   flat varying float variation;
   void main() {
-    vec3 center = (modelViewMatrix * vec4(ball.xyz, 1.0)).xyz;
+    vec3 center = (modelViewMatrix * vec4(sphere.xyz, 1.0)).xyz;
     float d = length(center);
     float pixel = 2.0 * max(-center.z, 0.0) / (projectionMatrix[1][1] * viewport.y);
-    float r = max(min(ball.w, greatest_radius), least_radius * pixel);
+    float r = max(min(sphere.w, greatest_radius), least_radius * pixel);
     float side = r * d / sqrt(max(d * d - r * r, 0.04 * r * r));
     vec3 sight = center / max(d, 1e-20);
     vec3 across = normalize(cross(sight, abs(sight.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0)));
     ray = center + side * (position.x * across + position.y * cross(across, sight));
-    eye_ball = vec4(center, r);
+    eye_sphere = vec4(center, r);
     variation = fract(float(gl_InstanceID) * 0.754878) - 0.5;
     gl_Position = projectionMatrix * vec4(ray, 1.0);
   }`;
 
-const kBallFragment = `
+const kSphereFragment = `
   uniform vec3 base;
   uniform float alpha, lift, ring_tint;
   uniform mat4 projectionMatrix;
   varying vec3 ray;
-  flat varying vec4 eye_ball;
+  flat varying vec4 eye_sphere;
   flat varying float variation;
   ${kShading}
   void main() {
     vec3 direction = normalize(ray);
-    float along = dot(direction, eye_ball.xyz);
-    vec3 offset = eye_ball.xyz - along * direction;
-    float chord = eye_ball.w * eye_ball.w - dot(offset, offset);
+    float along = dot(direction, eye_sphere.xyz);
+    vec3 offset = eye_sphere.xyz - along * direction;
+    float chord = eye_sphere.w * eye_sphere.w - dot(offset, offset);
     if (chord < 0.0) discard;
     float reach = sqrt(chord);
     vec3 hit = (along - reach) * direction;
@@ -45,20 +45,20 @@ const kBallFragment = `
     float nearer = 0.0;
     vec3 result;
     if (is_cut_away(hit)) {
-      // The ray goes on to the plane, and shows the disc in which that cuts the ball.
+      // The ray goes on to the plane, and shows the disc in which that cuts the sphere.
       float slope = dot(cut.xyz, direction);
       if (slope >= 0.0) discard;
       float t = cut.w / slope;
       if (t > along + reach) discard;
       hit = t * direction;
-      float height = cut.w - dot(cut.xyz, eye_ball.xyz);
-      float radius = sqrt(max(eye_ball.w * eye_ball.w - height * height, 0.0));
-      float within = radius - distance(hit, eye_ball.xyz + height * cut.xyz);
+      float height = cut.w - dot(cut.xyz, eye_sphere.xyz);
+      float radius = sqrt(max(eye_sphere.w * eye_sphere.w - height * height, 0.0));
+      float within = radius - distance(hit, eye_sphere.xyz + height * cut.xyz);
       bool ring = within < 1.4 * fwidth(within);
       result = base * (ring ? ring_tint : 0.86);
       nearer = ring ? 2.0 * lift : lift;
     } else {
-      vec3 normal = (hit - eye_ball.xyz) / eye_ball.w;
+      vec3 normal = (hit - eye_sphere.xyz) / eye_sphere.w;
       float facing = dot(normal, -direction);
       result = shade(own, normal) * mix(0.62, 1.0, smoothstep(0.0, 0.45, facing));
     }
@@ -69,21 +69,21 @@ const kBallFragment = `
     gl_FragColor = vec4(result, alpha);
   }`;
 
-const ball_square = new THREE.BufferAttribute(
+const sphere_square = new THREE.BufferAttribute(
     new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3);
 
-// Of x, y, z, radius a ball.
-function make_ball_geometry(balls) {
+// Of x, y, z, radius a sphere.
+function make_sphere_geometry(spheres) {
   const geometry = new THREE.InstancedBufferGeometry();
-  geometry.setAttribute("position", ball_square);
+  geometry.setAttribute("position", sphere_square);
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  geometry.setAttribute("ball", new THREE.InstancedBufferAttribute(balls, 4));
-  geometry.maxInstancedCount = geometry.instanceCount = balls.length / 4;
+  geometry.setAttribute("ball", new THREE.InstancedBufferAttribute(spheres, 4));
+  geometry.maxInstancedCount = geometry.instanceCount = spheres.length / 4;
   return geometry;
 }
 
-function make_ball_materials(order, uniforms = {}, options = {}) {
-  return make_materials(kBallVertex, kBallFragment, order, {
+function make_sphere_materials(order, uniforms = {}, options = {}) {
+  return make_materials(kSphereVertex, kSphereFragment, order, {
     base: {value: new THREE.Color()},
     alpha: {value: 1},
     ring_tint: {value: 0.45},
@@ -95,7 +95,7 @@ function make_ball_materials(order, uniforms = {}, options = {}) {
   }, options);
 }
 
-// The box of balls, of meshes' corners (width 3) or of balls with their radii (width 4).
+// The box of spheres, of meshes' corners (width 3) or of spheres with their radii (width 4).
 function box_of(numbers, width) {
   const box = new THREE.Box3();
   const point = new THREE.Vector3();

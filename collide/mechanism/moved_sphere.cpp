@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/mechanism/moved_ball.h"
+#include "collide/mechanism/moved_sphere.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,11 +14,11 @@ double length(const double (&v)[3]) {
 
 }  // namespace
 
-MovedBall::MovedBall(const KernelFrame* frames, std::size_t count, double error)
+MovedSphere::MovedSphere(const KernelFrame* frames, std::size_t count, double error)
     : frames_(frames), error_(error), joints_(count) {}
 
-void MovedBall::place(std::int32_t frame, const double* center, double radius,
-                      const KernelPose* poses, const double* configuration) {
+void MovedSphere::place(std::int32_t frame, const double* center, double radius,
+                        const KernelPose* poses, const double* configuration) {
   const auto& at = poses[frame].columns;
   double c[3];
   for (int i = 0; i < 3; ++i) {
@@ -50,16 +50,16 @@ void MovedBall::place(std::int32_t frame, const double* center, double radius,
   }
 }
 
-double MovedBall::way_to(const double* configuration) const {
+double MovedSphere::way_to(const double* configuration) const {
   return way({configuration});
 }
 
-double MovedBall::way_along(const double* from, const double* to) const {
+double MovedSphere::way_along(const double* from, const double* to) const {
   return way({from, to});
 }
 
 template <std::size_t kEnds>
-double MovedBall::way(const double* const (&ends)[kEnds]) const {
+double MovedSphere::way(const double* const (&ends)[kEnds]) const {
   double moved[kEnds][3] = {};
   double turned[kEnds][3] = {};
   double changes = 0.0;

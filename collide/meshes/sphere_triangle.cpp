@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/meshes/ball_triangle.h"
+#include "collide/meshes/sphere_triangle.h"
 
 #include "mesh/geometry/separating_axis.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/internal/node_balls.h"
+#include "spheretree/internal/node_spheres.h"
 
 #include "spheretree/enclosing_sphere.h"
 #include "spheretree/error.h"
@@ -26,28 +26,28 @@ bool same_bits(const Sphere& a, const Sphere& b) {
          bits(a.center.z()) == bits(b.center.z()) && bits(a.radius) == bits(b.radius);
 }
 
-Sphere ball_of(const SphereTreeData& data, std::size_t node) {
+Sphere sphere_of(const SphereTreeData& data, std::size_t node) {
   return {{data.x[node], data.y[node], data.z[node]}, data.radius[node]};
 }
 
-void set_ball(SphereTreeData& data, std::size_t node, const Sphere& ball) {
-  data.x[node] = ball.center.x();
-  data.y[node] = ball.center.y();
-  data.z[node] = ball.center.z();
-  data.radius[node] = ball.radius;
+void set_sphere(SphereTreeData& data, std::size_t node, const Sphere& sphere) {
+  data.x[node] = sphere.center.x();
+  data.y[node] = sphere.center.y();
+  data.z[node] = sphere.center.z();
+  data.radius[node] = sphere.radius;
 }
 
-Sphere ball_around_children(const SphereTreeData& data, std::size_t node) {
+Sphere sphere_around_children(const SphereTreeData& data, std::size_t node) {
   const auto first = static_cast<std::size_t>(data.first_child[node]);
   const auto count = static_cast<std::size_t>(data.child_count[node]);
   std::array<Sphere, SphereTree::kMaxBranching> children;
-  for (std::size_t i = 0; i < count; ++i) children[i] = ball_of(data, first + i);
+  for (std::size_t i = 0; i < count; ++i) children[i] = sphere_of(data, first + i);
   return enclosing_sphere(std::span<const Sphere>(children).first(count));
 }
 
 void check_root(const SphereTreeData& data) {
   if (!(data.radius[0] <= kMaxCoordinate)) {
-    throw Error("sphere tree", "the ball around all spheres is too large");
+    throw Error("sphere tree", "the sphere around all spheres is too large");
   }
 }
 

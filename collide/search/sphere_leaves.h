@@ -8,21 +8,21 @@
 namespace spherule::internal {
 
 // Leaf test of two sphere trees.
-class BallLeaves {
+class SphereLeaves {
  public:
-  BallLeaves(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
-             double clearance = 0.0)
+  SphereLeaves(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
+               double clearance = 0.0)
       : a_(a), b_(b), pose_(pose), clearance_(clearance) {}
 
   bool touches(NodePair pair) const {
-    return pose_.touches(ball_a(pair), ball_b(pair), clearance_);
+    return pose_.touches(sphere_a(pair), sphere_b(pair), clearance_);
   }
-  double gap(NodePair pair) const { return pose_.gap(ball_a(pair), ball_b(pair)); }
+  double gap(NodePair pair) const { return pose_.gap(sphere_a(pair), sphere_b(pair)); }
   GapInterval interval(NodePair pair) const { return {gap(pair), gap(pair)}; }
 
  private:
-  Sphere ball_a(NodePair pair) const { return a_.ball(pair.index(0)); }
-  Sphere ball_b(NodePair pair) const { return b_.ball(pair.index(1)); }
+  Sphere sphere_a(NodePair pair) const { return a_.sphere(pair.index(0)); }
+  Sphere sphere_b(NodePair pair) const { return b_.sphere(pair.index(1)); }
 
   const SphereTree& a_;
   const SphereTree& b_;

@@ -10,11 +10,11 @@
 namespace spherule::internal {
 
 // The nodes of one tree as a space of NearestFirst. `Gaps` has
-//   double gap(ball)              of the ball of a node;
+//   double gap(sphere)              of the sphere of a node;
 //   GapInterval leaf_gap(sphere)  of what the sphere of that index stands for.
 // In a pair, `a` is the sphere and `b` is 0.
 template <class Gaps>
-class BallSpace {
+class SphereSpace {
  public:
   using Node = std::int32_t;
   struct Opened {
@@ -22,7 +22,7 @@ class BallSpace {
     std::int32_t count;
   };
 
-  BallSpace(const SphereTree& tree, const Gaps& gaps) : tree_(tree), gaps_(gaps) {}
+  SphereSpace(const SphereTree& tree, const Gaps& gaps) : tree_(tree), gaps_(gaps) {}
 
   static std::uint64_t key(Node node) { return static_cast<std::uint64_t>(node); }
   bool is_leaf(Node node) const { return tree_.is_leaf(static_cast<std::size_t>(node)); }
@@ -38,7 +38,7 @@ class BallSpace {
   SpherePair pair(Node node) const {
     return {tree_.sphere_index(static_cast<std::size_t>(node)), 0};
   }
-  double gap(Node node) const { return gaps_.gap(tree_.ball(static_cast<std::size_t>(node))); }
+  double gap(Node node) const { return gaps_.gap(tree_.sphere(static_cast<std::size_t>(node))); }
 
  private:
   const SphereTree& tree_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The kernels of the inner loop give the same bits as the portable code, lane by lane.
 
-#include "collide/search/ball_tests.h"
+#include "collide/search/sphere_tests.h"
 
 #include "tests/collide/exact_scene.h"
 #include "tests/collide/scene_random.h"
@@ -22,8 +22,8 @@ TEST(OverlapMask, IsThePortableOneForEveryCountNearTheLimit) {
   for (int round = 0; round < 3000; ++round) {
     const double size = std::ldexp(1.0, random.whole(-30, 30));
     std::vector<double> x, y, z, radius;
-    const internal::QueryBall query{random.uniform(-size, size), random.uniform(-size, size),
-                                    random.uniform(-size, size), random.uniform(0.0, 0.1 * size)};
+    const internal::QuerySphere query{random.uniform(-size, size), random.uniform(-size, size),
+                                      random.uniform(-size, size), random.uniform(0.0, 0.1 * size)};
     // Radii within two ulps of where the test turns. The last ones are never to be read as part of
     // a mask, and overlap, so that a lane too many shows.
     for (int i = 0; i < 40; ++i) {
@@ -42,15 +42,15 @@ TEST(OverlapMask, IsThePortableOneForEveryCountNearTheLimit) {
       const double limit = query.radius + radius.back();
       equal += dx * dx + dy * dy + dz * dz == limit * limit;
     }
-    const internal::BallArrays balls{x.data(), y.data(), z.data(), radius.data()};
+    const internal::SphereArrays spheres{x.data(), y.data(), z.data(), radius.data()};
     for (std::int32_t count = 1; count <= 32; ++count) {
       for (const std::int32_t first : {0, 1, 36 - std::min(count, 36)}) {
-        const std::uint32_t mask = internal::overlap_mask(balls, first, count, query);
-        ASSERT_EQ(mask, internal::portable_overlap_mask(balls, first, count, query))
-            << count << " balls from " << first;
+        const std::uint32_t mask = internal::overlap_mask(spheres, first, count, query);
+        ASSERT_EQ(mask, internal::portable_overlap_mask(spheres, first, count, query))
+            << count << " spheres from " << first;
         for (std::int32_t i = 0; i < 32; ++i) {
           const bool bit = mask >> i & 1u;
-          ASSERT_EQ(bit, i < count && internal::overlaps(balls, first + i, query));
+          ASSERT_EQ(bit, i < count && internal::overlaps(spheres, first + i, query));
           if (i < count) bit ? ++overlapping : ++apart;
         }
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/solid/ball_hierarchy.h"
+#include "simplifier/solid/sphere_hierarchy.h"
 
 #include "spheretree/rounding.h"
 
@@ -47,7 +47,7 @@ double distance_across(const Vector3d& d, const Vector3d& axis) {
   return (d - axis.dot(d) * axis).norm();
 }
 
-// Least gap to balls with radii up to max_radius whose centres are at least `ahead` plus their
+// Least gap to spheres with radii up to max_radius whose centres are at least `ahead` plus their
 // radius away in one direction and `squared_aside`, squared, in others: it shrinks with the radius.
 // `ahead` plus each radius must be positive.
 double gap_to(double ahead, double squared_aside, double max_radius) {
@@ -57,35 +57,36 @@ double gap_to(double ahead, double squared_aside, double max_radius) {
 
 }  // namespace
 
-BallHierarchy::BallHierarchy(std::span<const Sphere> balls) : BallHierarchy(balls, {}) {}
+SphereHierarchy::SphereHierarchy(std::span<const Sphere> spheres) : SphereHierarchy(spheres, {}) {}
 
-BallHierarchy::BallHierarchy(std::span<const Sphere> balls, std::span<const Vector3d> contacts) {
-  balls_.reserve(balls.size());
-  for (const Sphere& s : balls) {
-    balls_.push_back({s, static_cast<std::int32_t>(balls_.size())});
+SphereHierarchy::SphereHierarchy(std::span<const Sphere> spheres,
+                                 std::span<const Vector3d> contacts) {
+  spheres_.reserve(spheres.size());
+  for (const Sphere& s : spheres) {
+    spheres_.push_back({s, static_cast<std::int32_t>(spheres_.size())});
     magnitude_ = std::max(magnitude_, s.center.norm());
   }
   std::vector<Touch> touches;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    touches.push_back({contacts[i], (balls[i].center - contacts[i]).stableNormalized()});
+    touches.push_back({contacts[i], (spheres[i].center - contacts[i]).stableNormalized()});
   }
-  nodes_.reserve(balls_.size() / 2 + 1);
-  if (balls_.empty()) return;
-  nodes_.push_back({.end = static_cast<std::int32_t>(balls_.size())});
+  nodes_.reserve(spheres_.size() / 2 + 1);
+  if (spheres_.empty()) return;
+  nodes_.push_back({.end = static_cast<std::int32_t>(spheres_.size())});
   build(0, touches);
 }
 
-// Halved where the balls differ most: in the point where a ball of the least radius would have its
-// centre if it touched there, so that balls go together that touch alike, however large; or, where
-// contacts are not known, in centre and radius.
-void BallHierarchy::build(std::size_t self, const std::vector<Touch>& touches) {
+// Halved where the spheres differ most: in the point where a sphere of the least radius would have
+// its centre if it touched there, so that spheres go together that touch alike, however large; or,
+// where contacts are not known, in centre and radius.
+void SphereHierarchy::build(std::size_t self, const std::vector<Touch>& touches) {
   Node& node = nodes_[self];
   const auto [begin, end] = std::pair(node.begin, node.end);
   node.free = -kInfinity;
   node.min_radius = kInfinity;
-  for (const Entry& e : balls_of(node)) {
-    node.min_radius = std::min(node.min_radius, e.ball.radius);
-    node.max_radius = std::max(node.max_radius, e.ball.radius);
+  for (const Entry& e : spheres_of(node)) {
+    node.min_radius = std::min(node.min_radius, e.sphere.radius);
+    node.max_radius = std::max(node.max_radius, e.sphere.radius);
   }
   if (touches.empty()) {
     fit_box(node, regressed_normal(node), Vector3d::Zero());
@@ -94,21 +95,21 @@ void BallHierarchy::build(std::size_t self, const std::vector<Touch>& touches) {
   }
   if (end - begin <= kLeafSize) return;
   const auto key = [&](const Entry& e) -> Eigen::Vector4d {
-    const Vector3d& c = e.ball.center;
-    if (touches.empty()) return {c.x(), c.y(), c.z(), e.ball.radius};
+    const Vector3d& c = e.sphere.center;
+    if (touches.empty()) return {c.x(), c.y(), c.z(), e.sphere.radius};
     const Touch& touch = touches[static_cast<std::size_t>(e.index)];
     const Vector3d alike = touch.contact + nodes_[0].min_radius * touch.normal;
     return {alike.x(), alike.y(), alike.z(), 0.0};
   };
   Eigen::Array4d mean = Eigen::Array4d::Zero();
   Eigen::Array4d spread = Eigen::Array4d::Zero();
-  for (const Entry& e : balls_of(node)) mean += key(e).array();
+  for (const Entry& e : spheres_of(node)) mean += key(e).array();
   mean /= static_cast<double>(end - begin);
-  for (const Entry& e : balls_of(node)) spread += (key(e).array() - mean).square();
+  for (const Entry& e : spheres_of(node)) spread += (key(e).array() - mean).square();
   Eigen::Index widest = 0;
   spread.maxCoeff(&widest);
   const std::int32_t middle = begin + (end - begin) / 2;
-  std::nth_element(balls_.begin() + begin, balls_.begin() + middle, balls_.begin() + end,
+  std::nth_element(spheres_.begin() + begin, spheres_.begin() + middle, spheres_.begin() + end,
                    [&](const Entry& a, const Entry& b) {
                      const double ka = key(a)[widest];
                      const double kb = key(b)[widest];
@@ -122,42 +123,42 @@ void BallHierarchy::build(std::size_t self, const std::vector<Touch>& touches) {
   build(children + 1, touches);
 }
 
-std::span<const BallHierarchy::Entry> BallHierarchy::balls_of(const Node& node) const {
-  return std::span(balls_).subspan(static_cast<std::size_t>(node.begin),
-                                   static_cast<std::size_t>(node.end - node.begin));
+std::span<const SphereHierarchy::Entry> SphereHierarchy::spheres_of(const Node& node) const {
+  return std::span(spheres_).subspan(static_cast<std::size_t>(node.begin),
+                                     static_cast<std::size_t>(node.end - node.begin));
 }
 
-// Balls that touch a flat wall have radii that are an affine function of their centres, with the
+// Spheres that touch a flat wall have radii that are an affine function of their centres, with the
 // wall's normal for a gradient.
-Vector3d BallHierarchy::regressed_normal(const Node& node) const {
-  const std::span<const Entry> balls = balls_of(node);
+Vector3d SphereHierarchy::regressed_normal(const Node& node) const {
+  const std::span<const Entry> spheres = spheres_of(node);
   Vector3d mean = Vector3d::Zero();
   double mean_radius = 0.0;
-  for (const Entry& e : balls) {
-    mean += e.ball.center;
-    mean_radius += e.ball.radius;
+  for (const Entry& e : spheres) {
+    mean += e.sphere.center;
+    mean_radius += e.sphere.radius;
   }
-  mean /= static_cast<double>(balls.size());
-  mean_radius /= static_cast<double>(balls.size());
+  mean /= static_cast<double>(spheres.size());
+  mean_radius /= static_cast<double>(spheres.size());
   Matrix3d covariance = Matrix3d::Zero();
   Vector3d slope = Vector3d::Zero();
-  for (const Entry& e : balls) {
-    const Vector3d d = e.ball.center - mean;
+  for (const Entry& e : spheres) {
+    const Vector3d d = e.sphere.center - mean;
     covariance += d * d.transpose();
-    slope += d * (e.ball.radius - mean_radius);
+    slope += d * (e.sphere.radius - mean_radius);
   }
   return covariance.inverse() * slope;
 }
 
 // The axis is the direction that the normals have least in common with, and the focus the point
 // nearest to the lines along the normals through the contacts. Any others would give a true bound.
-void BallHierarchy::fit_cylinder(Node& node, const std::vector<Touch>& touches) const {
-  const std::span<const Entry> balls = balls_of(node);
+void SphereHierarchy::fit_cylinder(Node& node, const std::vector<Touch>& touches) const {
+  const std::span<const Entry> spheres = spheres_of(node);
   Vector3d normal = Vector3d::Zero();
   Matrix3d common = Matrix3d::Zero();
   Matrix3d across = Matrix3d::Zero();
   Vector3d sum = Vector3d::Zero();
-  for (const Entry& e : balls) {
+  for (const Entry& e : spheres) {
     const Touch& touch = touches[static_cast<std::size_t>(e.index)];
     const Matrix3d along = touch.normal * touch.normal.transpose();
     const Matrix3d rest = Matrix3d::Identity() - along;
@@ -167,7 +168,7 @@ void BallHierarchy::fit_cylinder(Node& node, const std::vector<Touch>& touches) 
     sum += rest * touch.contact;
   }
   constexpr double kLeastShare = 1e-3;  // keeps the inverse finite
-  common += kLeastShare * static_cast<double>(balls.size()) * Matrix3d::Identity();
+  common += kLeastShare * static_cast<double>(spheres.size()) * Matrix3d::Identity();
   const Matrix3d inverse = common.inverse();
   Vector3d axis(0.48, 0.6, 0.64);
   for (int i = 0; i < 6; ++i) axis = (inverse * axis).normalized();
@@ -175,14 +176,14 @@ void BallHierarchy::fit_cylinder(Node& node, const std::vector<Touch>& touches) 
   node.focus = across.inverse() * sum;
   if (!node.focus.allFinite() || node.focus.norm() > magnitude_) return;
   node.free = kInfinity;
-  for (const Entry& e : balls) {
-    const double distance = distance_across(e.ball.center - node.focus, node.axis);
-    node.free = std::min(node.free, distance - e.ball.radius);
+  for (const Entry& e : spheres) {
+    const double distance = distance_across(e.sphere.center - node.focus, node.axis);
+    node.free = std::min(node.free, distance - e.sphere.radius);
   }
   if (node.free <= 0.0) node.free = -kInfinity;
 }
 
-void BallHierarchy::fit_box(Node& node, const Vector3d& normal, const Vector3d& axis) const {
+void SphereHierarchy::fit_box(Node& node, const Vector3d& normal, const Vector3d& axis) const {
   const Vector3d n = direction_of(normal, Vector3d::UnitX());
   const Vector3d across = axis - n.dot(axis) * n;
   const Vector3d a = across.norm() > kAcross ? across.normalized() : any_across(n);
@@ -192,18 +193,18 @@ void BallHierarchy::fit_box(Node& node, const Vector3d& normal, const Vector3d& 
   node.low = Vector3d::Constant(kInfinity);
   node.high = Vector3d::Constant(-kInfinity);
   node.offset = kInfinity;
-  for (const Entry& e : balls_of(node)) {
-    const Vector3d& x = e.ball.center;
+  for (const Entry& e : spheres_of(node)) {
+    const Vector3d& x = e.sphere.center;
     const Vector3d c(node.normal.dot(x), node.axis.dot(x), node.side.dot(x));
     node.low = node.low.cwiseMin(c);
     node.high = node.high.cwiseMax(c);
-    node.offset = std::min(node.offset, c.x() - e.ball.radius);
+    node.offset = std::min(node.offset, c.x() - e.sphere.radius);
   }
 }
 
-// No ball of the node has a smaller gap to the point, up to rounding. Bounds that reach `enough`
+// No sphere of the node has a smaller gap to the point, up to rounding. Bounds that reach `enough`
 // are not improved.
-double BallHierarchy::bound(const Node& node, const Vector3d& point, double enough) const {
+double SphereHierarchy::bound(const Node& node, const Vector3d& point, double enough) const {
   const double along_normal = node.normal.dot(point);
   const double ahead = node.offset - along_normal;
   if (ahead >= enough) return ahead;
@@ -227,15 +228,16 @@ double BallHierarchy::bound(const Node& node, const Vector3d& point, double enou
   return best;
 }
 
-// Values are compared as computed and the rounding is charged at the end. For a ball at distance d
-// with radius R the computed v = d - R errs by at most 3.5 u d + u |v|, and the test d^2 < (v +
+// Values are compared as computed and the rounding is charged at the end. For a sphere at distance
+// d with radius R the computed v = d - R errs by at most 3.5 u d + u |v|, and the test d^2 < (v +
 // R)^2 that saves the root by 5 u (v + R); with d = v + R both are below 8 u (|v| + R). As v - 8 u
-// |v| grows with v, a ball that compared less favourably is exactly at least v - 8 u (|v| + R_max +
-// |c|_max + |p|) for the v that is returned. The bounds of nodes take some 60 operations on vectors
-// no longer than |p| + 2 |c|_max + R_max (|focus| <= |c|_max), none of which magnifies an error,
-// and the frame is shrunk by 64 u: 256 u of that length is charged to each.
-NearestBall BallHierarchy::nearest(const Vector3d& point, double limit, double tolerance) const {
-  NearestBall best{limit, limit, -1};
+// |v| grows with v, a sphere that compared less favourably is exactly at least v - 8 u (|v| + R_max
+// + |c|_max + |p|) for the v that is returned. The bounds of nodes take some 60 operations on
+// vectors no longer than |p| + 2 |c|_max + R_max (|focus| <= |c|_max), none of which magnifies an
+// error, and the frame is shrunk by 64 u: 256 u of that length is charged to each.
+NearestSphere SphereHierarchy::nearest(const Vector3d& point, double limit,
+                                       double tolerance) const {
+  NearestSphere best{limit, limit, -1};
   if (nodes_.empty()) return best;
   double nearest = limit;
   const double length = point.norm() + magnitude_ + nodes_[0].max_radius;
@@ -257,11 +259,11 @@ NearestBall BallHierarchy::nearest(const Vector3d& point, double limit, double t
     const Node& node = nodes_[static_cast<std::size_t>(top.index)];
     if (node.children < 0) {
       for (auto i = node.begin; i < node.end; ++i) {
-        const Entry& entry = balls_[static_cast<std::size_t>(i)];
-        const double squared = (point - entry.ball.center).squaredNorm();
-        const double reach = nearest + entry.ball.radius;
+        const Entry& entry = spheres_[static_cast<std::size_t>(i)];
+        const double squared = (point - entry.sphere.center).squaredNorm();
+        const double reach = nearest + entry.sphere.radius;
         if (reach <= 0.0 || squared >= reach * reach) continue;
-        nearest = std::min(nearest, std::sqrt(squared) - entry.ball.radius);
+        nearest = std::min(nearest, std::sqrt(squared) - entry.sphere.radius);
         best.index = entry.index;
       }
       continue;

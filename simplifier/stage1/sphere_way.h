@@ -7,13 +7,14 @@
 
 namespace spherule::internal {
 
-// Whether a ball of radius rho provably passes on the straight way between the centres of two
+// Whether a sphere of radius rho provably passes on the straight way between the centres of two
 // spheres that are free of the mesh grown by the padding: by bisection, up to 2^8 pieces. On a
 // piece of length g between clearances c1 and c2 the clearance is at least (c1 + c2 - g) / 2. It
 // fails only where the clearance comes below rho + (length of the way) / 2^8 somewhere.
-class BallWay {
+class SphereWay {
  public:
-  BallWay(const MeshDistance& distance, double padding) : distance_(distance), padding_(padding) {}
+  SphereWay(const MeshDistance& distance, double padding)
+      : distance_(distance), padding_(padding) {}
 
   bool passes(const Sphere& a, const Sphere& b, double rho, int depth = 0) const {
     constexpr int kMaxDepth = 8;

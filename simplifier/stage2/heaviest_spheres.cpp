@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/stage2/heaviest_balls.h"
+#include "simplifier/stage2/heaviest_spheres.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -40,9 +40,9 @@ struct Slope {
 }  // namespace
 
 // Of the cells of one task: depth first, with what every sphere of the cell holds on a stack.
-class HeaviestBalls::Descent {
+class HeaviestSpheres::Descent {
  public:
-  Descent(const HeaviestBalls& of, const Search& search, Found& found)
+  Descent(const HeaviestSpheres& of, const Search& search, Found& found)
       : of_(of), search_(search), found_(found) {}
 
   // `near` holds all other points that spheres of the cell may hold, if that is known; the
@@ -145,33 +145,33 @@ class HeaviestBalls::Descent {
     found_.held.push_back(std::move(all));
   }
 
-  const HeaviestBalls& of_;
+  const HeaviestSpheres& of_;
   const Search& search_;
   Found& found_;
   Held sure_;  // that every sphere of the cell holds
   double sure_weight_ = 0.0;
 };
 
-HeaviestBalls::HeaviestBalls(const Clearance& clearance, double max_error,
-                             std::span<const Vector3d> points)
+HeaviestSpheres::HeaviestSpheres(const Clearance& clearance, double max_error,
+                                 std::span<const Vector3d> points)
     : clearance_(clearance),
       error_(max_error),
       slack_(slack(clearance, max_error)),
       points_(points.begin(), points.end()),
       grid_(points, kCube * max_error) {}
 
-double HeaviestBalls::slack(const Clearance& clearance, double max_error) {
+double HeaviestSpheres::slack(const Clearance& clearance, double max_error) {
   return kRounding * (largest_coordinate(clearance.box()) + max_error);
 }
 
-HeaviestBalls::Held HeaviestBalls::held_by(const Vector3d& center) const {
+HeaviestSpheres::Held HeaviestSpheres::held_by(const Vector3d& center) const {
   Held held;
   const double radius = clearance_(center).upper + error_;
   if (radius > 0.0) grid_.find(center, radius, held);
   return held;
 }
 
-HeaviestBalls::Found HeaviestBalls::find(const Search& search) const {
+HeaviestSpheres::Found HeaviestSpheres::find(const Search& search) const {
   const Vector3d by = Vector3d::Constant(error_);
   std::vector<BoxCell> cells{
       BoxCell::around({clearance_.box().min() - by, clearance_.box().max() + by})};

@@ -9,10 +9,10 @@
 
 namespace spherule::internal {
 
-// A ball on a frame where one configuration of a mechanism has it, and how far any of its points
+// A sphere on a frame where one configuration of a mechanism has it, and how far any of its points
 // can be from there in another.
 //
-// Along the straight motion q(t) = q + t D of the variables let p be a point of the ball, and for
+// Along the straight motion q(t) = q + t D of the variables let p be a point of the sphere, and for
 // the joint of each frame k on the way from the root a_k the axis and o_k the origin, all moving.
 // The velocity of p is the sum of D_k a_k x (p - o_k) for turns and D_k a_k for shifts. With c the
 // centre it is v + w x (p - c), v and w being the sums for c and of D_k a_k over turns, so at the
@@ -34,10 +34,10 @@ namespace spherule::internal {
 // the root, W being how far the mechanism reaches (mechanism_parts.cpp): v and w radius err by less
 // than 1e-10 (n + 1) (W + radius) sum |D_k| together. The caller gives twice that per sum |D_k|.
 // All other roundings are far below kRelative.
-class MovedBall {
+class MovedSphere {
  public:
   // Nothing is known of it at first; allocates for frames at most.
-  MovedBall(const KernelFrame* frames, std::size_t count, double error);
+  MovedSphere(const KernelFrame* frames, std::size_t count, double error);
 
   // In the frame, as placed for the configuration.
   void place(std::int32_t frame, const double* center, double radius, const KernelPose* poses,
@@ -66,7 +66,7 @@ class MovedBall {
 
   const KernelFrame* frames_;
   double error_;
-  std::vector<Joint> joints_;  // from the ball's frame to the root
+  std::vector<Joint> joints_;  // from the sphere's frame to the root
   std::size_t count_ = 0;
   double radius_ = 0.0;
   double room_ = 0.0;

@@ -19,13 +19,13 @@ namespace spherule::internal {
 // Bounds what the spheres that may cover S hold of weighted points: those with a centre c and a
 // radius up to D(c) + E, D the clearance to the outside of S, negative outside. Space is subdivided
 // into cells of centres; what any sphere of a cell may hold is bounded together.
-class HeaviestBalls {
+class HeaviestSpheres {
  public:
   using Held = std::vector<std::uint32_t>;
 
   // E is at most the radius of every external sphere.
-  HeaviestBalls(const Clearance& clearance, double max_error,
-                std::span<const Eigen::Vector3d> points);
+  HeaviestSpheres(const Clearance& clearance, double max_error,
+                  std::span<const Eigen::Vector3d> points);
 
   struct Search {
     std::span<const double> weights;  // of the points

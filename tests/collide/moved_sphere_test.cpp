@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far points of a ball move, against where they are.
+// How far points of a sphere move, against where they are.
 
-#include "collide/mechanism/moved_ball.h"
+#include "collide/mechanism/moved_sphere.h"
 
 #include "tests/collide/scene_random.h"
 
@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector3d;
 using internal::KernelFrame;
 using internal::KernelPose;
-using internal::MovedBall;
+using internal::MovedSphere;
 
 // A chain or a tree of frames; two may share a variable.
 std::vector<KernelFrame> random_frames(SceneRandom& random, int count) {
@@ -82,7 +82,7 @@ double most_uses(const std::vector<KernelFrame>& frames) {
   return *std::max_element(uses.begin(), uses.end());
 }
 
-// Of the ball's points from the joints that carry it, and at least one.
+// Of the sphere's points from the joints that carry it, and at least one.
 double reach(const std::vector<KernelFrame>& frames, const std::vector<KernelPose>& poses,
              int frame, const Vector3d& center, double radius) {
   const Vector3d c = image(poses[static_cast<std::size_t>(frame)], center);
@@ -94,10 +94,10 @@ double reach(const std::vector<KernelFrame>& frames, const std::vector<KernelPos
   return result;
 }
 
-// To first order the ball's centre goes by v and all is turned by w: said is |v| + |w| radius, and
-// some point goes by the root of the sum of their squares, of which 60 points miss little. The rest
-// is in the squares of the changes, for what is said and for what is true.
-TEST(MovedBall, NoPointGoesFurtherThanIsSaid) {
+// To first order the sphere's centre goes by v and all is turned by w: said is |v| + |w| radius,
+// and some point goes by the root of the sum of their squares, of which 60 points miss little. The
+// rest is in the squares of the changes, for what is said and for what is true.
+TEST(MovedSphere, NoPointGoesFurtherThanIsSaid) {
   SceneRandom random(71);
   int known = 0, tight = 0, curved = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -113,10 +113,10 @@ TEST(MovedBall, NoPointGoesFurtherThanIsSaid) {
     const int frame = random.whole(0, count - 1);
     const Vector3d center = random.point(1.0);
     const double radius = random.whole(0, 4) == 0 ? 0.0 : random.uniform(0.0, 1.0);
-    MovedBall ball(frames.data(), frames.size(), 1e-11);
-    EXPECT_EQ(ball.way_to(from.data()), std::numeric_limits<double>::infinity());
-    ball.place(frame, center.data(), radius, before.data(), from.data());
-    const double said = ball.way_to(to.data());
+    MovedSphere sphere(frames.data(), frames.size(), 1e-11);
+    EXPECT_EQ(sphere.way_to(from.data()), std::numeric_limits<double>::infinity());
+    sphere.place(frame, center.data(), radius, before.data(), from.data());
+    const double said = sphere.way_to(to.data());
     if (std::isinf(said)) {
       EXPECT_GT(size, 0.01);
       continue;
@@ -143,7 +143,7 @@ TEST(MovedBall, NoPointGoesFurtherThanIsSaid) {
   EXPECT_GT(curved, 100);
 }
 
-TEST(MovedBall, CountsTheCurvatureOfTheWay) {
+TEST(MovedSphere, CountsTheCurvatureOfTheWay) {
   // Two hinges with parallel axes, one metre between them and another to the tip.
   KernelFrame hinge = {};
   for (int k = 0; k < 3; ++k) hinge.rotation[k][k] = 1.0;
@@ -155,14 +155,14 @@ TEST(MovedBall, CountsTheCurvatureOfTheWay) {
   const std::vector<KernelFrame> frames = {hinge, second};
   const std::vector<double> from = {0.0, 0.0};
   const Vector3d tip(1.0, 0.0, 0.0);
-  MovedBall ball(frames.data(), 2, 0.0);
+  MovedSphere sphere(frames.data(), 2, 0.0);
   const std::vector<KernelPose> before = placed(frames, from);
-  ball.place(1, tip.data(), 0.0, before.data(), from.data());
+  sphere.place(1, tip.data(), 0.0, before.data(), from.data());
   // First order: the tip moves by 2 a - 2 a = 0.
   const std::vector<double> to = {0.05, -0.1};
   const std::vector<KernelPose> after = placed(frames, to);
   const double moved = (image(after[1], tip) - image(before[1], tip)).norm();
-  const double said = ball.way_to(to.data());
+  const double said = sphere.way_to(to.data());
   EXPECT_GT(moved, 0.002);
   EXPECT_LE(moved, said);
   // Terms of second order alone, their lengths a quarter of the reach too large.

@@ -8,14 +8,14 @@
 
 namespace spherule::internal {
 
-// A link that stands for a ball of the link that it is fixed to (sphere_formats.h).
-struct BallLeaf {
+// A link that stands for a sphere of the link that it is fixed to (sphere_formats.h).
+struct SphereLeaf {
   XmlElement link;
   XmlElement joint;
   std::string parent;
 };
 
 // All of a URDF's <robot>, by name. Throws Error for names that are missing or there twice.
-std::map<std::string, BallLeaf> ball_leaves(const XmlElement& robot);
+std::map<std::string, SphereLeaf> sphere_leaves(const XmlElement& robot);
 
 }  // namespace spherule::internal

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is said of the spheres that may cover a solid, held against many of them taken at random.
-#include "simplifier/stage2/heaviest_balls.h"
+#include "simplifier/stage2/heaviest_spheres.h"
 
 #include "simplifier/external_spheres.h"
 #include "tests/simplifier/fitting.h"
@@ -44,9 +44,9 @@ void check(const TriangleMesh& mesh, double max_error, double diameter) {
     points.push_back(p);
     weights.push_back(unit(random) < 0.7 ? 0.0 : 0.2 * unit(random));
   }
-  const HeaviestBalls balls(clearance, max_error, points);
-  const HeaviestBalls::Found found =
-      balls.find({.weights = weights, .finest = 0.1 * max_error, .news = 1.05});
+  const HeaviestSpheres spheres(clearance, max_error, points);
+  const HeaviestSpheres::Found found =
+      spheres.find({.weights = weights, .finest = 0.1 * max_error, .news = 1.05});
   double heaviest = 0.0;
   for (int i = 0; i < effort(8000, 500); ++i) {
     Vector3d center = point_in(max_error);
@@ -76,11 +76,11 @@ void check(const TriangleMesh& mesh, double max_error, double diameter) {
   EXPECT_FALSE(found.held.empty());
 }
 
-TEST(HeaviestBalls, NoneInACubeIsHeavierThanSaid) {
+TEST(HeaviestSpheres, NoneInACubeIsHeavierThanSaid) {
   check(cube_mesh(), 0.15, 1.0);
 }
 
-TEST(HeaviestBalls, NoneInAConcavePartIsHeavierThanSaid) {
+TEST(HeaviestSpheres, NoneInAConcavePartIsHeavierThanSaid) {
   const TriangleMesh mesh = l_bracket();
   const double diagonal = diagonal_of(mesh);
   check(mesh, 0.06 * diagonal, 0.2 * diagonal);
