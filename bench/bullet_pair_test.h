@@ -26,7 +26,7 @@ class BulletPairTest {
  public:
   BulletPairTest() {
     // As btGImpactCollisionAlgorithm::registerAlgorithm(), which forgets the table that
-    // contactPairTest looks at.
+    // contactPairTest examines.
     for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type) {
       dispatcher_.registerClosestPointsCreateFunc(GIMPACT_SHAPE_PROXYTYPE, type, &gimpact_);
       dispatcher_.registerClosestPointsCreateFunc(type, GIMPACT_SHAPE_PROXYTYPE, &swapped_gimpact_);

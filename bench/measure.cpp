@@ -32,9 +32,9 @@ class Rounds {
 
   void add(Checker& checker, std::vector<std::uint8_t>& verdicts) {
     for (std::size_t i = 0; i < times_.size(); ++i) {
-      const auto asked = timed_.subspan(i * run_, std::min(run_, timed_.size() - i * run_));
+      const auto queried = timed_.subspan(i * run_, std::min(run_, timed_.size() - i * run_));
       const auto start = Clock::now();
-      checker.check(asked, {verdicts.data(), asked.size()});
+      checker.check(queried, {verdicts.data(), queried.size()});
       times_[i].push_back(nanoseconds(Clock::now() - start));
     }
   }

@@ -47,9 +47,9 @@ struct VerdictCount {
 VerdictCount count(const std::vector<std::uint8_t>& verdicts,
                    const std::vector<std::uint8_t>& truth);
 
-// Times the methods in alternating rounds, so that a slow moment of the machine meets all of them,
-// in path order and, but for slow ones, in a random order, then single queries, and collects all
-// verdicts.
+// Times the methods in alternating rounds, so that a slow moment of the machine affects all of
+// them, in path order and, but for slow ones, in a random order, then single queries, and collects
+// all verdicts.
 std::vector<Measurement> measure(const std::vector<Method>& methods,
                                  const std::vector<ArmPositions>& program,
                                  const MeasureOptions& options);

@@ -34,7 +34,7 @@ struct Obstacle {
   Pose world_from_part;
 };
 
-// What is asked of every engine: for each configuration of the program, does any body touch an
+// What is queried of every engine: for each configuration of the program, does any body touch an
 // obstacle? Bodies are tested in their order, the torch first, because it is what usually touches.
 struct Workload {
   std::string name;
@@ -46,7 +46,7 @@ struct Workload {
 };
 
 // The base does not move: whether it touches the table that it is bolted beside is no question of
-// the program, and no engine is asked. (The workpiece is exchanged, so the base is tested against
+// the program, and no engine is queried. (The workpiece is exchanged, so the base is tested against
 // it.)
 bool is_tested(const Body& body, const Obstacle& obstacle);
 

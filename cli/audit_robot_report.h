@@ -16,7 +16,7 @@ struct RobotAuditReport {
   RobotAudit audit;
   std::string repaired_file;  // where the mended spheres went; empty if nowhere
   std::optional<RobotRepair> repair;
-  std::optional<PairKinds> pairs;  // if they were asked for
+  std::optional<PairKinds> pairs;  // if they were requested
 };
 
 // A table of the links, the configurations, the repair and the pairs of links, lengths in

@@ -29,7 +29,7 @@ void add_seed(CLI::App& command, SphereArguments& arguments) {
 
 void add_surface(CLI::App& command, SphereArguments& arguments) {
   command.add_flag("--surface", arguments.surface,
-                   "Only the cells that the surface meets, none inside");
+                   "Only the cells that the surface intersects, none inside");
 }
 
 CLI::Option* add_tree_file(CLI::App& command, SphereArguments& arguments, const char* help) {
@@ -46,7 +46,7 @@ OptionValue stored(std::uint64_t count) {
   return static_cast<std::int64_t>(count);
 }
 
-// Only lengths and counts that were asked for are stored.
+// Only lengths and counts that were requested are stored.
 template <typename Number>
 void store(MadeSpheres& made, const char* name, Number value, Number unasked) {
   if (value != unasked) made.options[name] = value;

@@ -46,7 +46,7 @@ struct MadeSpheres {
   std::vector<Sphere> spheres;
   // What only this method has to tell.
   Json figures = Json::object();
-  // What it was asked for, for SphereFile::options.
+  // What was required of it, for SphereFile::options.
   std::map<std::string, OptionValue> options;
   // The method's own tree over `leaves`: the spheres as they are, or each as large or larger.
   // Absent if it makes none.

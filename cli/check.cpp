@@ -320,7 +320,7 @@ void add_check(CLI::App& app, int& exit_code) {
                     "Prove every motion from one configuration to the next");
   arguments->lengths.add(
       *command, "--resolution", arguments->resolution,
-      "With --edges: how closely motions are looked at, in metres (default 1e-4)");
+      "With --edges: how closely motions are examined, in metres (default 1e-4)");
   command
       ->add_option("--spheres", arguments->spheres,
                    "Spheres of the robot, in any format that audit-robot reads (default: cover "
@@ -336,7 +336,7 @@ void add_check(CLI::App& app, int& exit_code) {
       "Without --spheres: how far spheres may protrude, in metres (default 0.01)");
   command
       ->add_option("--effort", arguments->cover.effort,
-                   "Without --spheres: how long to look for fewer spheres, as fit has it")
+                   "Without --spheres: how long to search for fewer spheres, as fit has it")
       ->check(CLI::NonNegativeNumber);
   add_geometry_option(*command,
                       "Which of the robot's geometries stands for it (default: collision)",

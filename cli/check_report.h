@@ -39,9 +39,9 @@ struct CheckReport {
   std::size_t colliding = 0;                  // of the motions, or of the configurations
   std::vector<TrajectoryPoint> not_proved{};  // motions, and up to where they are free
   std::vector<TouchingPair> pairs{};          // in the order of the first contacts
-  // Whose spheres overlap while they are proved free, in the configurations that were looked at.
+  // Whose spheres overlap while they are proved free, in the configurations that were examined.
   std::vector<TouchingPair> proved_free{};
-  std::size_t explained = 0;  // configurations that were looked at for these, the first ones
+  std::size_t explained = 0;  // configurations that were examined for these, the first ones
 
   bool is_whole = true;  // no part of the robot was left out
 

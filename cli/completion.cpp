@@ -34,7 +34,7 @@ void add_completion(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", *file, "Where the script goes (default: standard output)")
       ->type_name(kFile);
   command->footer(to_text(
-      {.text = "An installed spherule has the scripts where bash, fish and zsh look for them.",
+      {.text = "An installed spherule has the scripts where bash, fish and zsh search for them.",
        .exit_codes = "0 done",
        .examples = {
            "spherule completion bash > ~/.local/share/bash-completion/completions/spherule",

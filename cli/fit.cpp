@@ -82,7 +82,7 @@ std::vector<NextStep> next_steps(const FitArguments& arguments, bool is_covered)
     std::vector<std::string> view = {"view", arguments.models.front(), arguments.spheres};
     if (reading.scale != 1.0) repeat("--units", arguments.unit.units, view);
     repeat("-o", beside(arguments.spheres, ".html"), view);
-    steps.push_back({std::move(view), "look at them"});
+    steps.push_back({std::move(view), "examine them"});
   }
   if (arguments.tree.empty()) {
     steps.push_back({{"tree", arguments.spheres, "-o", beside(arguments.spheres, ".tree")},
@@ -136,7 +136,7 @@ int fit(FitArguments& arguments) {
     return blaming_named_file(arguments.zones, "zone ", [&] { return simplify(mesh, options); });
   }();
 
-  // First of all what was asked for and is proved.
+  // First of all what was requested and is proved.
   write_uninterrupted([&] {
     SphereFile spheres = sphere_file(result, unit.scale);
     store_reading(read_options, model, spheres);

@@ -36,13 +36,15 @@ void add_fit_options(CLI::App& command, FitArguments& arguments) {
   lengths.add(command, "--chord-error", arguments.reading.chord_error,
               "STEP and IGES: how far the part may be from its triangles; what is proved of it "
               "is added to the padding (default: a two-thousandth of the box diagonal)");
-  auto* diameter = lengths.add(
-      command, "--min-external", options.min_external_diameter,
-      "D, diameter of the smallest thing that will meet the model (default: 4 E). With E / 2 "
-      "or less only gaps narrower than that are filled: the method without stage 1");
+  auto* diameter =
+      lengths.add(command, "--min-external", options.min_external_diameter,
+                  "D, diameter of the smallest object to be checked against the model (default: 4 "
+                  "E). With E / 2 "
+                  "or less only gaps narrower than that are filled: the method without stage 1");
   command
-      .add_option("--tool", arguments.tool,
-                  "D from the tool that will meet the model: the smallest of these spheres (JSON)")
+      .add_option(
+          "--tool", arguments.tool,
+          "D from the tool that is checked against the model: the smallest of these spheres (JSON)")
       ->type_name(kFile)
       ->excludes(diameter);
   command
@@ -82,9 +84,9 @@ void add_fit_options(CLI::App& command, FitArguments& arguments) {
   // Without the check CLI11 takes -1 for the largest number; files store 63 bits.
   command.add_option("--seed", options.seed, "Seed of everything random")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
-  auto* effort =
-      command.add_option("--effort", options.effort,
-                         "Rounds of looking for fewer spheres than at first, with cover; 0: none");
+  auto* effort = command.add_option(
+      "--effort", options.effort,
+      "Rounds of searching for fewer spheres than at first, with cover; 0: none");
   effort->check(CLI::NonNegativeNumber);
   command
       .add_option_function<double>(
@@ -93,7 +95,8 @@ void add_fit_options(CLI::App& command, FitArguments& arguments) {
             options.seconds = seconds;
             options.effort = std::numeric_limits<int>::max();
           },
-          "With cover: look for fewer spheres for so long, less where it no longer finds any; the "
+          "With cover: search for fewer spheres for so long, less where it no longer finds any; "
+          "the "
           "result then depends on the machine")
       ->check(CLI::PositiveNumber)
       ->check(check_not_negative)
@@ -109,7 +112,7 @@ void add_fit_options(CLI::App& command, FitArguments& arguments) {
                    "Prove, too, how few spheres any cover must have (with cover); takes several "
                    "times as long as the first answer");
   command.add_option("--tree", arguments.tree, "Where the sphere tree goes")->type_name(kFile);
-  command.add_option("--view", arguments.view, "Where a page to look at goes (HTML)")
+  command.add_option("--view", arguments.view, "Where a page to examine goes (HTML)")
       ->type_name(kFile);
 }
 

@@ -18,7 +18,7 @@ void check_mesh_output(const std::filesystem::path& path);
 bool rounds_coordinates(const std::filesystem::path& path);
 
 // Writes the meshes into one file, a component (in OBJ an object) each, in the format that its name
-// asks for; or, if `path` is a folder, each as an OBJ file of its own, part-0001.obj and on. OBJ
+// requires; or, if `path` is a folder, each as an OBJ file of its own, part-0001.obj and on. OBJ
 // and PLY hold the coordinates bit for bit, STL rounds them to 32-bit floats. Each file appears
 // whole or not at all. Throws Error.
 void write_meshes(std::span<const TriangleMesh> meshes, const std::filesystem::path& path);

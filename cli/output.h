@@ -7,7 +7,7 @@
 namespace spherule {
 
 // Throws Error, before long work is done for nothing, if a file of `outputs` cannot be made where
-// it is asked for, is one of `inputs`, or is named twice. Empty paths are files not asked for.
+// it is requested, is one of `inputs`, or is named twice. Empty paths are files not requested.
 void check_outputs(const std::vector<std::filesystem::path>& outputs,
                    const std::vector<std::filesystem::path>& inputs);
 

@@ -10,7 +10,7 @@ namespace spherule {
 // Whether a report lists the external spheres, often a hundred thousand.
 enum class ReportContent { kNoExternalSpheres, kAll };
 
-// Adds the option --external-spheres, which asks for all.
+// Adds the option --external-spheres, which requires all.
 void add_external_spheres_flag(CLI::App& command, ReportContent& content);
 
 }  // namespace spherule

@@ -126,7 +126,7 @@ bool has_plain_links(const RobotArguments& arguments) {
                       [](const auto& link) { return link.second.padding.value_or(0.0) > 0.0; });
 }
 
-// With the file of all links that the other commands read, if it was asked for.
+// With the file of all links that the other commands read, if it was requested.
 std::vector<NextStep> next_steps(const RobotArguments& arguments,
                                  const std::vector<fs::path>& written) {
   const auto spheres = std::find_if(written.begin(), written.end(), [](const fs::path& file) {
@@ -148,7 +148,7 @@ std::vector<NextStep> next_steps(const RobotArguments& arguments,
   for (std::vector<std::string>* step : {&view, &check}) {
     repeat_robot_options(arguments.geometry, arguments.packages, *step);
   }
-  return {{std::move(view), "look at them"}, {std::move(check), "check a program"}};
+  return {{std::move(view), "examine them"}, {std::move(check), "check a program"}};
 }
 
 // By the spheres and the lists of ignored pairs that are written.
@@ -184,7 +184,7 @@ bool keeps_promises(const std::string& urdf, const MeasuredCover& result) {
 }
 
 // Fails (kNo), naming the links, if something promised of a link is not proved, or if the share of
-// false alarms that is asked for is not reached; the files are written nevertheless and say so.
+// false alarms that is requested is not reached; the files are written nevertheless and say so.
 int cover_links(const RobotArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   RobotCoverOptions options = arguments.options;
@@ -274,7 +274,7 @@ void add_search_options(CLI::App& command, const std::shared_ptr<RobotArguments>
   command.add_option("--seed", options.seed, "Seed of everything random")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
   auto* effort = command.add_option("--effort", options.effort,
-                                    "Rounds of looking for fewer spheres than at first, for each "
+                                    "Rounds of searching for fewer spheres than at first, for each "
                                     "link; 0: none");
   effort->check(CLI::NonNegativeNumber);
   command
@@ -284,7 +284,7 @@ void add_search_options(CLI::App& command, const std::shared_ptr<RobotArguments>
             arguments->options.seconds = seconds;
             arguments->options.effort = std::numeric_limits<int>::max();
           },
-          "Look for fewer spheres for so long, for each link; the result then depends on the "
+          "Search for fewer spheres for so long, for each link; the result then depends on the "
           "machine")
       ->check(CLI::PositiveNumber)
       ->check(check_not_negative)
@@ -309,9 +309,9 @@ void add_robot(CLI::App& app, int& exit_code) {
   const CLI::Option* const max_error = arguments->lengths.add_positive(
       *command, "--max-error", options.max_error,
       "E in metres, how far the spheres may protrude (default: 0.01)");
-  arguments->lengths.add(
-      *command, "--min-external", options.min_external_diameter,
-      "D in metres, diameter of the smallest thing that will meet the robot (default: 4 E)");
+  arguments->lengths.add(*command, "--min-external", options.min_external_diameter,
+                         "D in metres, diameter of the smallest object to be checked against the "
+                         "robot (default: 4 E)");
   command
       ->add_option("--tightness", options.tightness,
                    "How much wider than D a way into a link may be and still be filled, as a share "

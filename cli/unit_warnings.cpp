@@ -19,7 +19,7 @@ struct UnitPair {
   double factor() const { return meant->micrometres / mesh->micrometres; }
 };
 
-// The first with which the error would be one that people ask for, of a part of this extent. The
+// The first with which the error would be one that people choose, of a part of this extent. The
 // unit of the mesh may be known.
 std::optional<UnitPair> likely_units(double error, double extent, const LengthUnit* known) {
   for (const char* symbol : {"m", "inch", "cm"}) {
@@ -47,11 +47,11 @@ std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyO
         unit.micrometres && known == nullptr ? std::nullopt : likely_units(error, extent, known);
     if (units && known != nullptr) {
       text << ": both are in " << known->plural << " (" << unit.origin
-           << "); if the error was meant in " << units->meant->plural << ", ask for --max-error "
+           << "); if the error was meant in " << units->meant->plural << ", use --max-error "
            << error << units->meant->symbol;
     } else if (units) {
       text << ": if that is in " << units->mesh->plural << " and the error was meant in "
-           << units->meant->plural << ", ask for --max-error " << error * units->factor()
+           << units->meant->plural << ", use --max-error " << error * units->factor()
            << ", or for --scale " << 1.0 / units->factor();
     }
     warnings.push_back(text.str());
@@ -74,7 +74,7 @@ std::vector<std::string> volume_warnings(const Simplification& result) {
        << result.options.max_error
        << " is coarse for it, or spaces are filled that a sphere of the min external diameter "
        << result.options.min_external_diameter
-       << " cannot enter; if that is not wanted, ask for less of either";
+       << " cannot enter; if that is not wanted, choose less of either";
   return {text.str()};
 }
 

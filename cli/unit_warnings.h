@@ -14,7 +14,7 @@ namespace spherule {
 // with the likely one. None of them stops the work.
 
 // Before it: an E above a tenth of the part's largest extent, a D below a tenth of E. `options` as
-// asked for, 0 where a default is to be taken; `unit` that of the output.
+// requested, 0 where a default is to be taken; `unit` that of the output.
 std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyOptions& options,
                                          const ModelUnit& unit);
 

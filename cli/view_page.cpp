@@ -199,7 +199,7 @@ std::string make_view_page(const ViewScene& scene) {
   for (const ViewItem& item : scene.items) {
     if (!item.parts.empty()) json["items"].push_back(json_of(item, middle));
   }
-  // The scene goes in last: no mark is looked for in what the user named.
+  // The scene goes in last: no mark is searched for in what the user named.
   std::string page(kViewPageHtml);
   replace(page, "/*STYLE*/", kViewPageStyle);
   replace(page, "/*THREE*/", kViewPageThree);

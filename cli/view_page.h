@@ -23,7 +23,7 @@ struct ViewPart {
   int link = -1;  // -1: the world
 };
 
-// One thing to look at. Of trees, a slider on the page chooses the level.
+// One thing to examine. Of trees, a slider on the page chooses the level.
 struct ViewItem {
   std::string name;
   std::vector<ViewPart> parts;  // of one kind

@@ -61,7 +61,7 @@ class DeepestFirst {
     }
   }
 
-  // `gap` is only looked at for pairs that are not leaves. None that touch are above the node pad.
+  // `gap` is only examined for pairs that are not leaves. None that touch are above the node pad.
   void wait(internal::NodePair pair, double gap) {
     if (trees_.is_leaf_pair(pair)) {
       if (!leaves_.touches(pair)) return;

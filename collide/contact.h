@@ -15,7 +15,7 @@ namespace spherule {
 
 // What shows that two bodies touch.
 enum class ContactKind {
-  kSpheres,    // the spheres of both; no meshes were asked
+  kSpheres,    // the spheres of both; no meshes were queried
   kTriangles,  // triangles under these spheres
   kInside,     // no triangles touch, but a component of one mesh lies inside the other
 };
@@ -39,7 +39,7 @@ struct Contact {
 
 // The contact of two sets of spheres: of all pairs of spheres that touch, the one that overlaps
 // deepest up to rounding; none exactly if collides() is false. Equal for every tree over the same
-// spheres. Allocates. Where bodies overlap it has to look at most of the pairs that collide() would
+// spheres. Allocates. Where bodies overlap it has to examine most of the pairs that collide() would
 // list and takes about as long as that, tens to hundreds of times as long as collides().
 std::optional<Contact> deepest_contact(const SphereTree& a, const Pose& world_from_a,
                                        const SphereTree& b, const Pose& world_from_b);

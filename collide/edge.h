@@ -30,7 +30,7 @@ struct EdgeResult {
   // contact that was found, or the budget was spent; count it as a collision.
   Verdict verdict = Verdict::kUnknown;
   // Every point of the motion before this fraction is proved free; 1 for kFree (then its end is,
-  // too). Nothing is proved if it is 0. More may be free unless the first contact was asked for.
+  // too). Nothing is proved if it is 0. More may be free unless the first contact was requested.
   double free_until = 0.0;
   double contact_at = std::numeric_limits<double>::infinity();
   // Evaluated: the middles of parts of the motion, by a RobotChecker up to eight side by side.

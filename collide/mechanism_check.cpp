@@ -71,12 +71,12 @@ bool MechanismCheck::is_in_range(std::span<const double> variables) {
                      [](double v) { return std::abs(v) <= MechanismCheck::kLargestVariable; });
 }
 
-bool MechanismCheck::collides(std::span<const double> variables, Scratch& scratch, Ask ask,
-                              void* context) const {
+bool MechanismCheck::collides(std::span<const double> variables, Scratch& scratch,
+                              ConfirmFunction confirm_function, void* context) const {
   assert(is_in_range(variables));
   assert(variables.size() >= static_cast<std::size_t>(parts_->problem.variable_count));
   require_own(scratch);
-  Translator translator{parts_->scene, ask, context};
+  Translator translator{parts_->scene, confirm_function, context};
   Scratch::Memory& memory = *scratch.memory_;
   return memory.motion->collides(*parts_->kernels, parts_->problem, variables.data(), memory.view,
                                  &Translator::confirm, &translator);
@@ -107,11 +107,11 @@ void MechanismCheck::remember_contact(int frame, const Sphere& sphere, double de
 }
 
 MechanismCheck::BlockAnswer MechanismCheck::collides(
-    std::span<const double* const, kBlock> configurations, Scratch& scratch, Ask ask,
-    void* context) const {
+    std::span<const double* const, kBlock> configurations, Scratch& scratch,
+    ConfirmFunction confirm_function, void* context) const {
   static_assert(kBlock == internal::kLanes && kLargestVariable == internal::kLargestKernelVariable);
   require_own(scratch);
-  Translator translator{parts_->scene, ask, context};
+  Translator translator{parts_->scene, confirm_function, context};
   const auto [hits, refused] =
       parts_->kernels->check_block(parts_->problem, configurations.data(), scratch.memory_->view,
                                    &Translator::confirm, &translator);

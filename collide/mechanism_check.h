@@ -42,7 +42,7 @@ struct MechanismPair {
   int obstacle = 0;
 };
 
-// A contact of two spheres, in doubt.
+// A contact of two spheres that is uncertain.
 struct MechanismContact {
   MechanismPair pair;
   std::int32_t body_sphere = 0;  // indices into spheres() of the trees
@@ -51,7 +51,7 @@ struct MechanismContact {
 
 // Bodies of a jointed mechanism against obstacles that stand still, in single precision: a fast
 // test before an exact one. For each configuration it finds either that no two spheres of a pair
-// touch, or that some do, for sure; where rounding leaves a doubt it asks.
+// touch, or that some do, for sure; where rounding leaves that uncertain it queries.
 //
 // Proof in mechanism/mechanism_parts.cpp. Exactness is meant with respect to any poses of the
 // bodies that are within `pose_error` of those of the exact mechanism: the largest distance of a
@@ -88,7 +88,7 @@ class MechanismCheck {
     std::unique_ptr<Memory> memory_;
   };
 
-  // Whether the variables are such that collides() can be asked: none larger than this in
+  // Whether the variables are such that collides() can be queried: none larger than this in
   // magnitude.
   static constexpr double kLargestVariable = 100.0;
   // Whether none is larger than that or not finite.
@@ -100,16 +100,17 @@ class MechanismCheck {
   // changes no answer: near the last ones it may answer without asking. Allocates nothing.
   template <class Confirm>
   bool collides(std::span<const double> variables, Scratch& scratch, Confirm confirm) const {
-    const Ask ask = [](void* context, int, const MechanismContact& contact) -> bool {
+    const ConfirmFunction confirm_function = [](void* context, int,
+                                                const MechanismContact& contact) -> bool {
       return (*static_cast<Confirm*>(context))(contact);
     };
-    return collides(variables, scratch, ask, std::addressof(confirm));
+    return collides(variables, scratch, confirm_function, std::addressof(confirm));
   }
 
   // Whether no two spheres of a pair touch for any variables on the straight motion from one
   // configuration to another, in exact arithmetic: true only if so, false where that is not known
-  // soon. None where the motion does not follow in small steps what the scratch was asked last, as
-  // those of a path do. is_in_range() must hold for both ends. Allocates nothing.
+  // soon. None where the motion does not follow in small steps what the scratch was queried last,
+  // as those of a path do. is_in_range() must hold for both ends. Allocates nothing.
   std::optional<bool> is_free_along(std::span<const double> from, std::span<const double> to,
                                     Scratch& scratch) const;
 
@@ -121,7 +122,7 @@ class MechanismCheck {
   // Whether it is worth while: the last configurations were near each other.
   bool is_following(const Scratch& scratch) const;
 
-  // Configurations that are asked for side by side; answers are bits, the first configuration's is
+  // Configurations that are checked side by side; answers are bits, the first configuration's is
   // the lowest.
   static constexpr std::size_t kBlock = 16;
   // A bit for every configuration of a block.
@@ -136,17 +137,19 @@ class MechanismCheck {
   template <class Confirm>
   BlockAnswer collides(std::span<const double* const, kBlock> configurations, Scratch& scratch,
                        Confirm confirm) const {
-    const Ask ask = [](void* context, int index, const MechanismContact& contact) -> bool {
+    const ConfirmFunction confirm_function = [](void* context, int index,
+                                                const MechanismContact& contact) -> bool {
       return (*static_cast<Confirm*>(context))(index, contact);
     };
-    return collides(configurations, scratch, ask, std::addressof(confirm));
+    return collides(configurations, scratch, confirm_function, std::addressof(confirm));
   }
 
  private:
-  using Ask = bool (*)(void* context, int index, const MechanismContact& contact);
-  bool collides(std::span<const double> variables, Scratch& scratch, Ask ask, void* context) const;
+  using ConfirmFunction = bool (*)(void* context, int index, const MechanismContact& contact);
+  bool collides(std::span<const double> variables, Scratch& scratch,
+                ConfirmFunction confirm_function, void* context) const;
   BlockAnswer collides(std::span<const double* const, kBlock> configurations, Scratch& scratch,
-                       Ask ask, void* context) const;
+                       ConfirmFunction confirm_function, void* context) const;
 
   void require_own(const Scratch& scratch) const;
 

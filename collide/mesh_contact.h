@@ -28,7 +28,7 @@ class PatchTrees;
 //
 // Inside. A closed surface, triangles in which every directed edge, by positions, is met by as many
 // in the other direction, has an inside: the points about which its winding number is not zero. The
-// surfaces looked at are those of mesh/shells/mesh_shells.h, each by itself: all triangles that are
+// surfaces examined are those of mesh/shells/mesh_shells.h, each by itself: all triangles that are
 // connected by shared edges, as they are turned; the parts of these that are connected where no
 // more than two triangles meet, all turned alike; and what bounds one room where more meet. So a
 // sealed hollow is inside, a double-sided part has the inside of one of its sides, and so have the
@@ -81,7 +81,7 @@ struct TrianglePair {
 // Never false if they have one in exact arithmetic under exactly the given poses, and the spheres
 // cover the insides. Proof: let a triangle s of a and a triangle t of b share the point p. p lies
 // in a sphere under which s is listed and in one under which t is; these two touch, so the
-// traversal meets the pair, and s and t are tested. If no triangles touch, each component lies
+// traversal reaches the pair, and s and t are tested. If no triangles touch, each component lies
 // wholly inside the other mesh or wholly outside; one point tells which, and if it is inside, it is
 // in spheres of both, so that two of them touch.
 // If it is true, the exact gap is some units in the last place of the scene: in our tests at most

@@ -67,8 +67,9 @@ CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const Mes
   return internal::all_pairs(a, b.tree(), pose, internal::TriangleLeaves(a, b, pose), request);
 }
 
-bool meets_triangle(const SphereTree& a, std::int32_t sphere, const Pose& world_from_a,
-                    const MeshTree& b, std::int32_t triangle, const Pose& world_from_b) noexcept {
+bool intersects_triangle(const SphereTree& a, std::int32_t sphere, const Pose& world_from_a,
+                         const MeshTree& b, std::int32_t triangle,
+                         const Pose& world_from_b) noexcept {
   const internal::RelativePose pose(a, world_from_a, b.tree(), world_from_b);
   return internal::TriangleLeaves(a, b, pose).touches(sphere, triangle);
 }

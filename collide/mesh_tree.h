@@ -39,12 +39,12 @@ class MeshTree {
 };
 
 // Whether a set of spheres and the surface of a mesh meet, triangles in the place of the second
-// set's spheres: what meets_triangle() says of all pairs. G4 as for collides(). G5 up to the width
-// of the interval in which point_triangle_distance() leaves the distance: with R the distance from
-// the sphere's centre to the triangle's farthest corner, some 64 u R where the centre is not near
-// the triangle; nearer it is wider, in our tests at most 1e-6 R, for needles 1e-4 R. Allocates as
-// collides() does. A sphere wholly inside a closed mesh does not meet its surface. In a pair, `b`
-// is the triangle.
+// set's spheres: what intersects_triangle() says of all pairs. G4 as for collides(). G5 up to the
+// width of the interval in which point_triangle_distance() leaves the distance: with R the distance
+// from the sphere's centre to the triangle's farthest corner, some 64 u R where the centre is not
+// near the triangle; nearer it is wider, in our tests at most 1e-6 R, for needles 1e-4 R. Allocates
+// as collides() does. A sphere wholly inside a closed mesh does not meet its surface. In a pair,
+// `b` is the triangle.
 bool collides(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
               const Pose& world_from_b) noexcept;
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
@@ -62,7 +62,8 @@ DistanceResult distance(const SphereTree& a, const Pose& world_from_a, const Mes
                         const Pose& world_from_b, const DistanceRequest& request = {});
 
 // The test that collides() and collide() rest on, for one sphere and one triangle.
-bool meets_triangle(const SphereTree& a, std::int32_t sphere, const Pose& world_from_a,
-                    const MeshTree& b, std::int32_t triangle, const Pose& world_from_b) noexcept;
+bool intersects_triangle(const SphereTree& a, std::int32_t sphere, const Pose& world_from_a,
+                         const MeshTree& b, std::int32_t triangle,
+                         const Pose& world_from_b) noexcept;
 
 }  // namespace spherule

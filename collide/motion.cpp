@@ -7,7 +7,7 @@
 #include <cmath>
 
 // The error budget of motions, u = 2^-53. The stored start, reference c, displacement v, axis n and
-// angle phi define an exact motion, the stored one. What was asked for differs from it by the
+// angle phi define an exact motion, the stored one. What was requested differs from it by the
 // drift, and pose_at() from it by rounding. Unit quaternions that are e apart belong to rotations
 // whose quotient turns by 2 asin(e / 2) * 2 = 2 e, to first order; a rotation by a small angle
 // moves a point by no more than the angle times its distance from a fixed point.

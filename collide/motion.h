@@ -66,7 +66,7 @@ class Motion {
   Eigen::Vector3d displacement_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d axis_ = Eigen::Vector3d::UnitZ();
   double angle_ = 0.0;
-  // Between the motion of the exact numbers above and the one that was asked for, at any t: the
+  // Between the motion of the exact numbers above and the one that was requested, at any t: the
   // angle of the rotation that takes one to the other, and the distance of the reference points.
   double drift_angle_ = 0.0;
   double drift_offset_ = 0.0;

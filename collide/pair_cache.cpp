@@ -82,14 +82,15 @@ bool PairCache::collides(const Pose& world_from_a, const Pose& world_from_b) {
   internal::Limits no_limits{std::numeric_limits<std::uint64_t>::max(),
                              internal::Deadline(std::chrono::nanoseconds::max()),
                              {}};
-  const internal::Look look = internal::FreeTime(a_, b_, pose, UnitRate(), 0.0, 0.0,
-                                                 kStepsAhead * step, kUsefulSteps * step, no_limits)
-                                  .run(std::nullopt);
-  if (look.contact) witness_ = look.pair;
-  now.clearance = look.free_time;
+  const internal::Evaluation evaluation =
+      internal::FreeTime(a_, b_, pose, UnitRate(), 0.0, 0.0, kStepsAhead * step,
+                         kUsefulSteps * step, no_limits)
+          .run(std::nullopt);
+  if (evaluation.contact) witness_ = evaluation.pair;
+  now.clearance = evaluation.free_time;
   before_ = now;
   queries_since_ = 0;
-  return look.contact;
+  return evaluation.contact;
 }
 
 }  // namespace spherule

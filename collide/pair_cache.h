@@ -8,11 +8,11 @@
 
 namespace spherule {
 
-// collides() for two sets that are asked about again and again under poses that change little. It
+// collides() for two sets that are queried again and again under poses that change little. It
 // answers exactly as collides() does, always; the memory only saves work:
 //   - after a free answer it knows a clearance, proved where the bodies stood then. As long as they
-//     have moved against each other by less, no tree is looked at;
-//   - after a collision, the two spheres that met are tried first.
+//     have moved against each other by less, no tree is examined;
+//   - after a collision, the two spheres that touched are tried first.
 // Not to be shared between threads. The trees must outlive it.
 class PairCache {
  public:
@@ -22,7 +22,7 @@ class PairCache {
   // Exactly what collides() answers for the two trees.
   bool collides(const Pose& world_from_a, const Pose& world_from_b);
 
-  // What has been asked, and how many of the answers came from memory.
+  // What has been queried, and how many of the answers came from memory.
   struct Counts {
     std::uint64_t queries = 0;
     std::uint64_t free_from_memory = 0;

@@ -125,7 +125,7 @@ class CollectSpheres {
   double smallest_gap_ = std::numeric_limits<double>::infinity();
 };
 
-// What SphereSpace asks for.
+// What SphereSpace requires.
 template <class Field>
 class SphereGaps {
  public:

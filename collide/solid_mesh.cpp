@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 using internal::GapInterval;
 using internal::SpheresInside;
 
-// With a clearance, growth included. Where no sphere comes so near to a triangle, none meets one,
-// and each is on one side of the surface.
+// With a clearance, growth included. Where no sphere comes so near to a triangle, none intersects
+// one, and each is on one side of the surface.
 bool comes_within(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
                   const Pose& world_from_solid, double clearance) noexcept {
   const double reach = clearance > 0.0 ? add_up(clearance, solid.inflation()) : solid.inflation();
@@ -33,7 +33,7 @@ bool comes_within(const SphereTree& tree, const Pose& world_from_tree, const Sol
 }
 
 // Of a point, given in the mesh's frame, to the spheres of its tree and to its triangles: what
-// SphereSpace asks for.
+// SphereSpace requires.
 class PointGaps {
  public:
   PointGaps(const MeshTree& mesh, const Vector3d& point) : mesh_(mesh), point_(point) {}
@@ -139,7 +139,8 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
   DistanceResult result =
       distance(tree, world_from_tree, solid.mesh(), world_from_solid, to_surface);
   result.upper = result.upper > solid.inflation() ? sub_up(result.upper, solid.inflation()) : 0.0;
-  // Where a sphere may meet a triangle, the lower bound is 0 and the upper one as good as it gets.
+  // Where a sphere may intersect a triangle, the lower bound is 0 and the upper one as good as it
+  // gets.
   if (!(result.lower > 0.0)) return result;
   const internal::RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
   const std::int32_t inside = SpheresInside(tree, solid, pose).find();

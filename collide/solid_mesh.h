@@ -67,12 +67,12 @@ bool within(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh
 
 // Their separation distance between certified bounds, both 0 where a sphere is inside. In
 // `nearest`, `b` is the triangle, or -1 where sphere `a` is inside. The limits of the request are
-// those of the search for the nearest triangle; whether a sphere is inside is asked after it.
+// those of the search for the nearest triangle; whether a sphere is inside is queried after it.
 DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
                         const Pose& world_from_solid, const DistanceRequest& request = {});
 
 // The sphere that is deepest in the solid, up to rounding; none exactly if collides() is false.
-// Looks at every sphere that touches. Allocates.
+// Examines every sphere that touches. Allocates.
 std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
                                             const SolidMesh& solid, const Pose& world_from_solid);
 

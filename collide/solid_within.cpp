@@ -33,9 +33,9 @@ double sum_up(double a, double b) {
 
 // Leaf test of two triangles: not proved to be farther apart than the clearance. An axis that
 // triangle_contact() finds to separate them by more than its pad separates the exact triangles by
-// what the pad has above the 76 u S that it is asked for: the clearance, and 32 u of it, of which
-// the comparison takes 4 u. No two triangles come nearer than the spheres around them, so those
-// must touch canonically as well.
+// what the pad has above the 76 u S that are required of it: the clearance, and 32 u of it, of
+// which the comparison takes 4 u. No two triangles come nearer than the spheres around them, so
+// those must touch canonically as well.
 class TrianglePairLeaves {
  public:
   TrianglePairLeaves(const MeshTree& a, const Pose& world_from_a, const MeshTree& b,
@@ -127,7 +127,7 @@ class HullSearch {
         limit_(reach * (1.0 + 32.0 * kUnitRoundoff) + kPad * kUnitRoundoff * pose.scene_size() +
                kUnderflow) {}
 
-  // Every step looks at all corners.
+  // Every step examines all corners.
   static bool is_worth_while(const MeshTree& a, const MeshTree& b) {
     return a.tree().spheres().size() + b.tree().spheres().size() <= kMostTriangles;
   }

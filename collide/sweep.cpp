@@ -12,27 +12,27 @@
 #include <cmath>
 #include <optional>
 
-// Proof of G6. At a look, t = m, the traversal finds a lower bound g of the gap of every pair of
-// spheres under exactly the poses pose_at(m), and from
+// Proof of G6. At an evaluation, t = m, the traversal finds a lower bound g of the gap of every
+// pair of spheres under exactly the poses pose_at(m), and from
 //     g - clearance - 2 E - (largest slack of the canonical test at any t)
 // the time in which the pair cannot use that up. Here E = pose_error(a) + pose_error(b), and each
 // of these bounds the distance of a pose from the motion that is stored plus the distance of that
-// from the motion that was asked for. GapRate speaks of the stored motions. So from pose_at(m) to
-// the motions asked for, at any t within that time of m, the gap shrinks by no more than E and the
+// from the motion that was requested. GapRate speaks of the stored motions. So from pose_at(m) to
+// the motions requested, at any t within that time of m, the gap shrinks by no more than E and the
 // way: it stays above the clearance. From pose_at(m) to pose_at(t) it shrinks by no more than 2 E
 // and the way: it stays above the clearance by more than the slack, and the canonical test does not
 // accept the pair there.
 //
-// The intervals are proved closed and cover [0, 1]: a look at m proves [m - time, m + time], whose
-// ends are rounded inward, and what is left of the interval to either side of these ends, which are
-// part of it, waits its turn.
+// The intervals are proved closed and cover [0, 1]: an evaluation at m proves [m - time, m + time],
+// whose ends are rounded inward, and what is left of the interval to either side of these ends,
+// which are part of it, waits its turn.
 
 namespace spherule {
 namespace {
 
+using internal::Evaluation;
 using internal::GapRate;
 using internal::Limits;
-using internal::Look;
 
 constexpr double kFinest = 0x1p-40;
 // If less than this part of an interval can be proved from its middle, its exact length is not
@@ -99,23 +99,23 @@ class Sweep {
     // Rounded up, so that it reaches both ends.
     const double half = next_up(std::max(middle - first, last - middle));
     const bool smallest = last - first <= request_.resolution;
-    const Look look = look_at(middle, half, smallest ? half : kUseful * half);
-    if (!look.complete) return stop(first, last);
-    if (look.contact) {
+    const Evaluation evaluation = evaluate(middle, half, smallest ? half : kUseful * half);
+    if (!evaluation.complete) return stop(first, last);
+    if (evaluation.contact) {
       waiting_ = 0;  // what follows the contact does not matter any more
       if (!smallest) {
         push(first, middle);
         return true;
       }
     }
-    if (!look.contact && look.free_time >= half) return true;
+    if (!evaluation.contact && evaluation.free_time >= half) return true;
     if (smallest) {
       hunt(first, last);
       return stop(first, last);
     }
     // Nothing known means no time: the middle then belongs to both parts.
-    push(std::clamp(add_down(middle, look.free_time), middle, last), last);
-    push(first, std::clamp(sub_up(middle, look.free_time), first, middle));
+    push(std::clamp(add_down(middle, evaluation.free_time), middle, last), last);
+    push(first, std::clamp(sub_up(middle, evaluation.free_time), first, middle));
     return true;
   }
 
@@ -125,34 +125,34 @@ class Sweep {
     return false;
   }
 
-  // Looks for a contact at the start of an interval that could not be proved and, while none is
+  // Searches for a contact at the start of an interval that could not be proved and, while none is
   // known, behind it, at distances that double: a motion that goes on into the obstacle is soon
   // there. Without one the answer would be kUnknown, which is as true and tells less.
   void hunt(double first, double last) {
     double t = first;
     double next = last;
     double step = last - first;
-    while (look_at(t, 0.0, 0.0).complete && !in_contact() && t < 1.0) {
+    while (evaluate(t, 0.0, 0.0).complete && !in_contact() && t < 1.0) {
       t = next;
       next = std::min(1.0, t + step);
       step *= 2.0;
     }
   }
 
-  Look look_at(double t, double wanted, double useful) {
+  Evaluation evaluate(double t, double wanted, double useful) {
     const Pose world_from_a = motion_a_.pose_at(t);
     const Pose world_from_b = motion_b_.pose_at(t);
     const internal::RelativePose pose(a_, world_from_a, b_, world_from_b);
     internal::FreeTime query(a_, b_, pose, rate_, request_.clearance, reserve_, wanted, useful,
                              limits_);
-    const Look look = query.run(decisive_);
-    if (look.decisive) decisive_ = look.decisive;
-    ++result_.looks;
-    if (look.contact && t < result_.contact_at) {
+    const Evaluation evaluation = query.run(decisive_);
+    if (evaluation.decisive) decisive_ = evaluation.decisive;
+    ++result_.evaluations;
+    if (evaluation.contact && t < result_.contact_at) {
       result_.contact_at = t;
-      result_.contact = look.pair;
+      result_.contact = evaluation.pair;
     }
-    return look;
+    return evaluation;
   }
 
   const SphereTree& a_;
@@ -167,7 +167,7 @@ class Sweep {
   // waits, and only those longer than kFinest are divided: 42 at most.
   std::array<Interval, 48> intervals_;
   std::size_t waiting_ = 0;
-  std::optional<internal::NodePair> decisive_;  // of an earlier look
+  std::optional<internal::NodePair> decisive_;  // of an earlier evaluation
   SweepResult result_;
 };
 

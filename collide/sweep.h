@@ -9,7 +9,7 @@
 
 namespace spherule {
 
-// How closely a motion is looked at.
+// How closely a motion is examined.
 struct SweepRequest {
   // What comes this close counts as contact.
   double clearance = 0.0;
@@ -17,7 +17,7 @@ struct SweepRequest {
   // clearance by more than about (half the resolution) x (speed at which the bodies can approach)
   // everywhere, the motion is proved free. The default leaves 0.05 mm per metre of way. A finer one
   // costs little, because the search ends at the first interval that it cannot prove; what costs is
-  // a free motion close by, of up to 2 / resolution looks. From 2^-40 to 1.
+  // a free motion close by, of up to 2 / resolution evaluations. From 2^-40 to 1.
   double resolution = 1e-4;
   // Limits, with the verdict kUnknown unless a contact was found before.
   std::uint64_t max_node_tests = std::numeric_limits<std::uint64_t>::max();
@@ -35,8 +35,8 @@ struct SweepResult {
   // Only with kCollision, otherwise infinite: a t at which contact is proved, in the sense of
   // collides(), but for rounding not before free_until. The first contact may be earlier.
   double contact_at = std::numeric_limits<double>::infinity();
-  SpherePair contact;       // two spheres in contact at that t
-  std::uint64_t looks = 0;  // instants at which the trees were examined
+  SpherePair contact;             // two spheres in contact at that t
+  std::uint64_t evaluations = 0;  // instants at which the trees were examined
   QueryCost cost;
 };
 

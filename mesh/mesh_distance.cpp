@@ -110,7 +110,8 @@ SurfaceDistance MeshDistance::operator()(const Vector3d& point, double limit) co
 
 // Where the ray is between the planes of the box: each quotient errs by 2 u of itself, and so do
 // the least and the greatest of them.
-bool MeshDistance::may_meet(const Node& node, const Vector3d& point, const Vector3d& direction) {
+bool MeshDistance::may_intersect(const Node& node, const Vector3d& point,
+                                 const Vector3d& direction) {
   double enter = -std::numeric_limits<double>::infinity();
   double leave = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {

@@ -24,7 +24,7 @@ struct SurfaceDistance {
 
 // Distance to the triangles of a mesh over a hierarchy of axis-aligned boxes. All guarantees of the
 // simplifier rest on it, so every answer is an interval that contains the exact distance: the
-// bounds of mesh/point_triangle.h for the triangles looked at, and for the boxes that were
+// bounds of mesh/point_triangle.h for the triangles examined, and for the boxes that were
 // skipped that they are no nearer than the answer. Usually upper - lower is below 1e-14 of the
 // distance to the corners of the nearest triangle. Thread-safe after construction.
 class MeshDistance {
@@ -33,7 +33,7 @@ class MeshDistance {
   explicit MeshDistance(const TriangleMesh& mesh);
 
   // Bounds of the distance from `point` to the surface. With a `limit`, only triangles nearer than
-  // it are looked for; if there are none, `triangle` is -1, `lower` is the limit (or the proved
+  // it are searched for; if there are none, `triangle` is -1, `lower` is the limit (or the proved
   // bound, a rounding below it) and `upper` infinite.
   SurfaceDistance operator()(const Eigen::Vector3d& point,
                              double limit = std::numeric_limits<double>::infinity()) const;
@@ -49,9 +49,9 @@ class MeshDistance {
     std::int32_t triangle;  // its index in the mesh
   };
 
-  // Calls visit(corners) for every triangle that the ray from `point` along `direction` meets, and
-  // for some that it misses, until a call returns false; returns whether none did. No component of
-  // the direction may be 0.
+  // Calls visit(corners) for every triangle that the ray from `point` along `direction` intersects,
+  // and for some that it misses, until a call returns false; returns whether none did. No component
+  // of the direction may be 0.
   template <typename Visit>
   bool visit_ray(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, Visit visit) const;
   // Calls visit(corners) for every triangle.
@@ -78,8 +78,8 @@ class MeshDistance {
   // depth-first search that holds one waiting sibling per level needs no more entries than that.
   static constexpr std::size_t kStackSize = 40;
 
-  static bool may_meet(const Node& node, const Eigen::Vector3d& point,
-                       const Eigen::Vector3d& direction);
+  static bool may_intersect(const Node& node, const Eigen::Vector3d& point,
+                            const Eigen::Vector3d& direction);
   void build(std::int32_t begin, std::int32_t end);
 
   std::vector<Node> nodes_;
@@ -96,7 +96,7 @@ bool MeshDistance::visit_ray(const Eigen::Vector3d& point, const Eigen::Vector3d
   while (size > 0) {
     const std::int32_t index = stack[--size];
     const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (!may_meet(node, point, direction)) continue;
+    if (!may_intersect(node, point, direction)) continue;
     if (node.right >= 0) {
       stack[size++] = node.right;
       stack[size++] = index + 1;

@@ -190,7 +190,7 @@ std::string describe(const MeshReport& report) {
            " turned inside out (a cavity, or the wrong way round)");
   if (report.self_intersections >= kMaxSelfIntersections) out << "\nat least";
   add_line(out, report.self_intersections, "pair", "pairs",
-           " of triangles that meet without a common corner");
+           " of triangles that intersect without a common corner");
   return out.str();
 }
 

@@ -25,7 +25,8 @@ struct MeshReport {
   std::size_t misoriented_edges = 0;    // used twice in the same direction
   std::size_t components = 0;           // connected by shared vertices
   std::size_t inverted_components = 0;  // closed, with negative volume
-  // Pairs of triangles without a common vertex that meet; counting stops at kMaxSelfIntersections.
+  // Pairs of triangles without a common vertex that intersect; counting stops at
+  // kMaxSelfIntersections.
   std::size_t self_intersections = 0;
   // Every edge is used as often in one direction as in the other, so that the winding number of a
   // point is a whole number, and one that is not zero proves the point to be inside.
@@ -35,13 +36,13 @@ struct MeshReport {
   double volume = 0.0;  // signed; meaningful if closed
 };
 
-// What is looked at.
+// What is examined.
 struct MeshReportOptions {
-  // Pairs of meeting triangles are by far the most work to count.
+  // Pairs of intersecting triangles are by far the most work to count.
   bool self_intersections = true;
 };
 
-// Looks at a mesh as a whole; it changes nothing.
+// Examines a mesh as a whole; it changes nothing.
 MeshReport mesh_report(const TriangleMesh& mesh, const MeshReportOptions& options = {});
 
 // The report in a few lines for a person: counts, size, and a sentence for everything unusual.

@@ -38,7 +38,7 @@ struct BodyFit {
 // are 0 are chosen for each. `options.progress` tells of all bodies; of a body that is not begun
 // when a stop is requested there are no spheres, and its certificate says that it is not covered.
 // Throws Error, naming the body, as simplify() does; with the subject "levels" or "zones" where
-// these are asked for, which are of one body.
+// these are requested, which are of one body.
 std::vector<BodyFit> fit_bodies(std::span<const Body> bodies, const SimplifyOptions& options = {});
 
 // Spheres that hold the given ones after the motion.

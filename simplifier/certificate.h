@@ -59,10 +59,10 @@ struct Certificate {
   // G2: proved upper bound of the protrusion of the spheres over S; absent without external
   // spheres.
   std::optional<double> protrusion_over_simplified_max;
-  // The same for the points of the spheres that lie in a zone, for every zone asked for: the
+  // The same for the points of the spheres that lie in a zone, for every zone requested: the
   // greatest bound of a sphere that may reach into it, 0 if none does.
   std::vector<double> protrusion_in_zones;
-  // Proved bounds of the protrusion over |M|; absent if not asked for.
+  // Proved bounds of the protrusion over |M|; absent if not requested.
   std::optional<Bounds> protrusion_over_mesh;
   std::optional<double> volume_ratio;  // of the union of the spheres to the solid mesh; estimated
   // With external spheres and a closed mesh: volume of what stage 1 fills, S without |M|;

@@ -20,7 +20,7 @@ enum class CoverMethod {
   kPaper   // the paper's Algorithm 1, second loop
 };
 
-// How the second stage covers, and how long it may look.
+// How the second stage covers, and how long it may search.
 struct CoverOptions {
   CoverMethod method = CoverMethod::kCover;
   // E: how far the spheres may protrude from S. Positive.
@@ -29,13 +29,13 @@ struct CoverOptions {
   // such a zone is at most its `max_error` from S.
   std::vector<Zone> zones = {};
   // No sphere of the result is smaller than this radius (a tool made of such spheres passes stage 1
-  // of what it meets unchanged). Protrusion may exceed E where it forces a larger sphere.
+  // of what it intersects unchanged). Protrusion may exceed E where it forces a larger sphere.
   double min_radius = 0.0;
   // kPaper, and a Stage2Method that packs: diameter at which a sphere is seeded (the paper's
   // min_internal_size); 0 chooses E / 2.
   double min_internal_diameter = 0.0;
   std::uint64_t seed = 1;
-  // kCover: rounds of looking for fewer spheres than the first proved answer; 0: none. The search
+  // kCover: rounds of searching for fewer spheres than the first proved answer; 0: none. The search
   // ends sooner where 40 rounds on end have gained nothing.
   int effort = 60;
   // kCover: no new round begins after so many seconds, either; 0 sets no limit. The result then

@@ -73,7 +73,7 @@ Eigen::AlignedBox3d inflated_outwards(const Eigen::AlignedBox3d& box, double by)
   return inflated;
 }
 
-// For spheres of this diameter that meet S with this error.
+// For spheres of this diameter that intersect S with this error.
 double chosen_step(const ExternalOptions& options, double diameter, double max_error) {
   if (options.grid_step > 0.0) {
     return options.grid_step * (diameter / options.min_external_diameter);
@@ -106,10 +106,10 @@ FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double s
   return shape;
 }
 
-// Makes external spheres sit close to concave edges, corners and ends of ways, which the grid meets
-// only by chance: points of a cell beside a reached node are pushed away from the surface until a
-// sphere of radius rho has room, and the sphere is kept if it takes something from S there, that
-// is, in the direction from which it was pushed, and provably gets there from the node.
+// Makes external spheres sit close to concave edges, corners and ends of ways, which the grid
+// reaches only by chance: points of a cell beside a reached node are pushed away from the surface
+// until a sphere of radius rho has room, and the sphere is kept if it takes something from S there,
+// that is, in the direction from which it was pushed, and provably gets there from the node.
 class SnugSpheres {
  public:
   SnugSpheres(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
@@ -122,7 +122,7 @@ class SnugSpheres {
 
   std::vector<Sphere> operator()(const FloodGrid::Frontier& frontier) const {
     std::vector<Sphere> found;
-    look(frontier, frontier.center, 0.5 * frontier.step, found);
+    sample(frontier, frontier.center, 0.5 * frontier.step, found);
     return found;
   }
 
@@ -135,8 +135,8 @@ class SnugSpheres {
 
   // From a point, and, unless only a wall is there that the grid does as well for, from eight
   // around it, and around those that find a sphere.
-  void look(const FloodGrid::Frontier& frontier, const Vector3d& start, double apart,
-            std::vector<Sphere>& found) const {
+  void sample(const FloodGrid::Frontier& frontier, const Vector3d& start, double apart,
+              std::vector<Sphere>& found) const {
     const Pushed here = pushed(frontier, start, found);
     const bool is_found = here.sphere.radius > 0.0;
     if (is_found) found.push_back(here.sphere);
@@ -145,7 +145,7 @@ class SnugSpheres {
     for (int k = 0; k < 8; ++k) {
       const Vector3d aside((k & 1) != 0 ? apart : -apart, (k & 2) != 0 ? apart : -apart,
                            (k & 4) != 0 ? apart : -apart);
-      look(frontier, start + aside, 0.5 * apart, found);
+      sample(frontier, start + aside, 0.5 * apart, found);
     }
   }
 

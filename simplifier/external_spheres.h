@@ -28,7 +28,8 @@ using Progress = std::function<void(double share, const char* what)>;
 // What the first stage simplifies away.
 struct ExternalOptions {
   ExternalPlacement placement = ExternalPlacement::kReachable;
-  // D, the diameter of the smallest thing that will meet the model (the paper's min_ext_size).
+  // D, the diameter of the smallest object to be checked against the model (the paper's
+  // min_ext_size).
   double min_external_diameter = 0.0;
   // t: everything holds for M grown by this much.
   double padding = 0.0;
@@ -46,7 +47,7 @@ struct ExternalOptions {
   // sphere can be moved from outside that may change its size on the way, and at every point x of
   // the way of its centre has a radius of rho(x) at least: d / 2 where x lies in a zone of its own
   // d (the least of them), D / 2 elsewhere. Zones also make the grid finer, by halvings of its
-  // step, as their d and max error ask for.
+  // step, as their d and max error require.
   std::vector<Zone> zones = {};
   // Adds such zones along sharp concave edges of the mesh (concave_edges.h).
   bool keep_concave_edges = false;

@@ -33,7 +33,7 @@ class Sampler {
     if (depth > 0.0) found_.push_back({point, depth});
   }
 
-  // Looks at the middle of every piece with edges up to the spacing, but for those so deep in a
+  // Examines the middle of every piece with edges up to the spacing, but for those so deep in a
   // sphere that all of the piece is in it.
   void add_triangle(const SurfacePiece& triangle) {
     pieces_.assign(1, triangle);

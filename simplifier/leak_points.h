@@ -18,7 +18,7 @@ struct LeakPoint {
   double depth = 0.0;                               // positive: no sphere is nearer to `point`
 };
 
-// How closely leaks are looked for.
+// How closely leaks are searched for.
 struct LeakPointOptions {
   // How far the samples are apart and how far those returned, as shares of the diagonal of the
   // mesh's box; positive.
@@ -29,7 +29,7 @@ struct LeakPointOptions {
 
 // Where the surface of a mesh is outside of all spheres, the deepest point first: for showing where
 // to look. Every point returned is a leak. That none is returned proves nothing, since only samples
-// are looked at: certify() proves. Without any sphere there is no depth to tell, and nothing is
+// are examined: certify() proves. Without any sphere there is no depth to tell, and nothing is
 // returned. Equal input gives equal output. Throws Error for a mesh that validate() refuses,
 // spheres that are not usable, and options out of range.
 std::vector<LeakPoint> leak_points(const TriangleMesh& mesh, std::span<const Sphere> spheres,

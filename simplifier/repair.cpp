@@ -29,7 +29,7 @@ using Eigen::Vector3d;
 using internal::SolidCells;
 
 // Shares of max_error.
-constexpr double kCells = 0.7;         // half diagonal of the cells looked at first
+constexpr double kCells = 0.7;         // half diagonal of the cells examined first
 constexpr double kLeakReserve = 0.02;  // about a point that is found open
 
 // Of points found open, after which all spheres that could matter about them grow fully.
@@ -92,7 +92,7 @@ std::vector<Sphere> inflated_spheres(const Clearance& clearance, const MeshDista
     bool more = false;
     for (const auto* points : {&leaks.in_solid, &leaks.pinched}) {
       for (const Vector3d& p : *points) {
-        // What was asked for is not enough here: several spheres meet at the point.
+        // What was requested is not enough here: several spheres meet at the point.
         more = inflation.require(p, kLeakReserve * max_error) ||
                inflation.grow_fully_about(p, spacing) || more;
       }

@@ -20,7 +20,7 @@ namespace spherule {
 namespace {
 
 constexpr double kDefaultError = 0.01;    // of the box diagonal
-constexpr double kDefaultDiameter = 4.0;  // of E: 90-degree edges ask for spheres of radius 2 E
+constexpr double kDefaultDiameter = 4.0;  // of E: 90-degree edges need spheres of radius 2 E
 constexpr double kResolutionOfError = 0.005;
 
 double box_diagonal(const TriangleMesh& mesh) {
@@ -57,7 +57,7 @@ void check_options(const SimplifyOptions& options) {
   if (options.seed > kLargest) throw Error("seed", "must be below 2^63");
 }
 
-// Fills in E and the levels, the coarsest first and E last, where levels are asked for.
+// Fills in E and the levels, the coarsest first and E last, where levels are requested.
 void complete_levels(SimplifyOptions& options) {
   if (options.levels.empty()) return;
   options.levels = check_levels(options.levels);

@@ -30,7 +30,7 @@ struct Stage2Method {
       {};
 };
 
-// What is asked of simplify().
+// The options of simplify().
 struct SimplifyOptions {
   // E: how far the result may protrude from the simplified solid; 0 chooses 1 % of the box
   // diagonal.
@@ -38,7 +38,7 @@ struct SimplifyOptions {
   // Errors of levels of detail to fit above the cover (levels.h), in any order; the finest is E:
   // with a max_error of 0 it becomes that, else it must not be below it.
   std::vector<double> levels = {};
-  // D: diameter of the smallest thing that will meet the model; 0 chooses 4 E.
+  // D: diameter of the smallest object to be checked against the model; 0 chooses 4 E.
   double min_external_diameter = 0.0;
   // How much wider than D a way may be and still be filled, as a share of D, at most
   // (ExternalOptions::tightness).
@@ -101,7 +101,7 @@ SphereCover cover_solid(const TriangleMesh& mesh, const ExternalSpheres& externa
                         const SimplifyOptions& options);
 
 // What was promised and is not proved, as a sentence: that the spheres cover, and, where no least
-// radius was asked for, that they protrude from the simplified solid by at most E, in a zone by at
+// radius was requested, that they protrude from the simplified solid by at most E, in a zone by at
 // most its own, and the spheres of a level by at most that of the level. Empty where all is proved.
 std::string broken_promises(const Simplification& simplification);
 

@@ -239,7 +239,7 @@ class Exchange {
     tangent_centers(spheres, [this](const Vector3d& center) { consider(center); });
   }
 
-  // Most centres lose to the best so far before all spheres have been looked at.
+  // Most centres lose to the best so far before all spheres have been examined.
   void consider(const Vector3d& center) {
     double radius = (added_.center - center).norm() + added_.radius;
     for (std::size_t i = 0; i < basis_.size && radius < best_radius_; ++i) {

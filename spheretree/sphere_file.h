@@ -22,7 +22,7 @@ struct CertificateRecord {
   // Proved bounds on the largest distance from a point of the solid to the union of the spheres.
   double uncovered_depth_lower = 0.0;
   double uncovered_depth_upper = 0.0;
-  // Proved upper bounds on the protrusion; absent where it was not asked for.
+  // Proved upper bounds on the protrusion; absent where it was not requested.
   std::optional<double> protrusion_over_simplified_max = std::nullopt;
   std::optional<double> protrusion_over_mesh_max = std::nullopt;
   // The first of these for the points of the spheres in each zone of the options; empty without.

@@ -3,9 +3,9 @@
 
 // The queries of FCL under FCL's names, answered by spherule. A program that uses fcl::collide()
 // goes on with its objects, transforms, requests and results; it gives the objects the geometry
-// that sphere_model() makes of each model, and writes spherule::fcl_api for fcl where it asks.
+// that sphere_model() makes of each model, and writes spherule::fcl_api for fcl where it is called.
 //
-// What is asked for and not supported is an Error or does not compile. It is never "free".
+// What is requested and not supported is an Error or does not compile. It is never "free".
 //
 // Where the answers mean more, or other, than FCL's:
 // - A result is of the last call only: collide() clears it first. FCL adds to what is there.
@@ -13,7 +13,7 @@
 // models
 //   are surfaces.
 // - None of the functions reads what requests say of FCL's solvers (gjk_*, cached_gjk_guess).
-// A transform is checked when it is asked about, see from_fcl(). Errors name the argument.
+// A transform is checked when it is queried, see from_fcl(). Errors name the argument.
 
 #include "adapters/fcl/conversions.h"
 #include "adapters/fcl/part_query.h"
@@ -163,7 +163,7 @@ Motion motion(const fcl::Transform3<S>& begin, const fcl::Transform3<S>& end,
 // the one sphere's centre to the other's, or the normal of the first triangle.
 //
 // Throws Error for a missing object, a geometry without spheres, a transform that is none, no
-// contacts (num_max_contacts of 0) and costs asked for.
+// contacts (num_max_contacts of 0) and costs requested.
 template <class S>
 std::size_t collide(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S>& tf1,
                     const fcl::CollisionGeometry<S>* o2, const fcl::Transform3<S>& tf2,
@@ -188,7 +188,7 @@ std::size_t collide(const fcl::CollisionObject<S>* o1, const fcl::CollisionObjec
 // nearest points those of these two. rel_err is not used.
 //
 // Throws Error as collide() does, for an abs_err that is negative or not finite, and if the signed
-// distance is asked for.
+// distance is requested.
 template <class S>
 S distance(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S>& tf1,
            const fcl::CollisionGeometry<S>* o2, const fcl::Transform3<S>& tf2,

@@ -16,10 +16,10 @@
 namespace spherule::fcl_api {
 
 // The pose of a transform of either precision: the rotation nearest to its matrix, up to rounding,
-// and its translation. What is asked of the pose is answered for that rotation, from which an entry
-// of the matrix differs by at most 1e-6. Throws Error for numbers that are not finite, a matrix
-// that is no rotation to within 1e-6 an entry (of R^T R), a reflection, and a translation beyond
-// kMaxCoordinate.
+// and its translation. What is queried of the pose is answered for that rotation, from which an
+// entry of the matrix differs by at most 1e-6. Throws Error for numbers that are not finite, a
+// matrix that is no rotation to within 1e-6 an entry (of R^T R), a reflection, and a translation
+// beyond kMaxCoordinate.
 template <class S>
 Pose from_fcl(const fcl::Transform3<S>& world_from_body) {
   return Pose::from_isometry(world_from_body.template cast<double>());

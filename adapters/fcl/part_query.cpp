@@ -58,9 +58,9 @@ Triangle placed_triangle(const PlacedPart& placed, std::int32_t index) {
   return triangle;
 }
 
-// A point of two triangles that touch, up to rounding: where an edge of one meets the plane of the
-// other, or a corner, whichever is nearest to the other triangle. (Two in one plane that share no
-// corner: a point between the two.)
+// A point of two triangles that touch, up to rounding: where an edge of one intersects the plane of
+// the other, or a corner, whichever is nearest to the other triangle. (Two in one plane that share
+// no corner: a point between the two.)
 Eigen::Vector3d common_point(const Triangle& a, const Triangle& b) {
   Eigen::Vector3d best = a[0];
   double least = std::numeric_limits<double>::infinity();
@@ -108,13 +108,13 @@ std::vector<PartContact> triangle_contacts(const PlacedPart& a, const PlacedPart
   const CoveredMesh& mesh_a = *a.part.mesh;
   const CoveredMesh& mesh_b = *b.part.mesh;
   std::vector<PartContact> found;
-  std::set<SpherePair> asked;
+  std::set<SpherePair> queried;
   std::set<std::pair<std::int32_t, std::int32_t>> taken;
   for (std::size_t limit = 8;; limit *= 8) {
     const CollisionResult spheres = collide(*a.part.spheres, a.world_from_part, *b.part.spheres,
                                             b.world_from_part, {.max_pairs = limit});
     for (const SpherePair& pair : spheres.pairs) {
-      if (!asked.insert(pair).second) continue;
+      if (!queried.insert(pair).second) continue;
       const std::optional<TrianglePair> triangles =
           touching_triangles(mesh_a, pair.a, a.world_from_part, mesh_b, pair.b, b.world_from_part);
       if (!triangles || !taken.emplace(triangles->a, triangles->b).second) continue;

@@ -23,11 +23,11 @@ struct PlacedPart {
 
 // In double.
 struct PartContact {
-  // Two triangles that touch, or two spheres where no triangles are asked; kNone for a body that
+  // Two triangles that touch, or two spheres where no triangles are queried; kNone for a body that
   // lies inside the other without touching its triangles.
   std::intptr_t b1 = kNone;
   std::intptr_t b2 = kNone;
-  // Only if details are asked for.
+  // Only if details are requested.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   double depth = 0.0;

@@ -34,7 +34,7 @@ struct CoveredPart {
 };
 
 // Covers a mesh: simplify() and the tree. Throws Error as these do, and with the subject "cover" if
-// what was asked for is not proved (broken_promises()).
+// what was requested is not proved (broken_promises()).
 CoveredPart cover_part(const TriangleMesh& mesh, const ModelOptions& options = {});
 
 // A covered part as geometry of FCL: its objects and managers of the broad phase hold it as any
@@ -45,7 +45,7 @@ CoveredPart cover_part(const TriangleMesh& mesh, const ModelOptions& options = {
 // counts.
 //
 // FCL's own collide() and distance() do not know spheres and would answer "free" for lack of a
-// function. So getObjectType(), which they ask first, throws Error.
+// function. So getObjectType(), which they call first, throws Error.
 template <class S>
 class SphereModel final : public fcl::CollisionGeometry<S> {
  public:
@@ -60,7 +60,7 @@ class SphereModel final : public fcl::CollisionGeometry<S> {
   explicit SphereModel(std::shared_ptr<const SphereTree> spheres)
       : SphereModel(CoveredPart{.spheres = std::move(spheres)}) {}
 
-  // What the queries of spherule::fcl_api ask.
+  // What the queries of spherule::fcl_api use.
   const CoveredPart& part() const { return part_; }
 
   // Done when made: FCL calls it for every object.
@@ -68,7 +68,8 @@ class SphereModel final : public fcl::CollisionGeometry<S> {
 
   // Throws Error: with it FCL's own queries would take the model for free.
   fcl::OBJECT_TYPE getObjectType() const override {
-    throw Error("sphere model", "FCL's own queries do not know it; ask those of spherule::fcl_api");
+    throw Error("sphere model",
+                "FCL's own queries do not know it; query those of spherule::fcl_api");
   }
 
  private:

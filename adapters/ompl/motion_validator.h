@@ -59,7 +59,7 @@ class MotionValidator : public ompl::base::MotionValidator {
     return states_.checker().check_edge(from, to, scratch, request);
   }
 
-  // What is proved ends before `free_until`, and a state is rounded: so it is asked for itself, and
+  // What is proved ends before `free_until`, and a state is rounded: so it is checked itself, and
   // one before it if it is not free.
   double last_valid(const ompl::base::State* s1, const ompl::base::State* s2, double free_until,
                     ompl::base::State* state) const {

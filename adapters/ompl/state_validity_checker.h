@@ -34,7 +34,7 @@ class StateValidityChecker : public ompl::base::StateValidityChecker {
   }
 
   // A lower bound of the gap, in metres of the robot's world and not in the measure of the space,
-  // to the nearest contact; 0 where there is one. Bounds of the space are not asked. Infinite if
+  // to the nearest contact; 0 where there is one. Bounds of the space are not queried. Infinite if
   // nothing is tested.
   double clearance(const ompl::base::State* state) const override {
     const RobotStates::Loan loan(states_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What does a configuration of a batch cost, over how many threads? The weld program of the work
-// cell, in its order and in a random one, of which the first so many configurations are asked for.
+// cell, in its order and in a random one, of which the first so many configurations are requested.
 // The spheres are those around the triangles, cut small: more than fitted ones, and there at once.
 // Counters: time a configuration (of the clock on the wall), the share that collides, spheres.
 

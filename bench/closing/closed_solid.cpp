@@ -183,7 +183,7 @@ bool ClosedSolid::passes(const Vector3d& a, double at_a, const Vector3d& b, doub
 
 void ClosedSolid::spread_free(std::vector<std::size_t>& waiting) {
   const double least = rho_ * (1.0 + kRounding);
-  std::vector<std::pair<std::size_t, std::size_t>> doubtful;
+  std::vector<std::pair<std::size_t, std::size_t>> uncertain;
   while (!waiting.empty()) {
     while (!waiting.empty()) {
       const std::size_t node = waiting.back();
@@ -194,12 +194,12 @@ void ClosedSolid::spread_free(std::vector<std::size_t>& waiting) {
           free_[other] = 1;
           waiting.push_back(other);
         } else {
-          doubtful.emplace_back(node, other);
+          uncertain.emplace_back(node, other);
         }
       });
     }
-    // Those to what is reached by now need no look.
-    for (const auto& [node, other] : doubtful) {
+    // Those to what is reached by now need no test.
+    for (const auto& [node, other] : uncertain) {
       if (free_[other] != 0 ||
           !passes(grid_.point(node), distance_[node], grid_.point(other), distance_[other], 0)) {
         continue;
@@ -207,7 +207,7 @@ void ClosedSolid::spread_free(std::vector<std::size_t>& waiting) {
       free_[other] = 1;
       waiting.push_back(other);
     }
-    doubtful.clear();
+    uncertain.clear();
   }
 }
 

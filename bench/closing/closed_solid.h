@@ -9,10 +9,10 @@
 
 namespace spherule::closing {
 
-// The solid C closed at a diameter d: what no open sphere of radius rho = d / 2 meets that gets
-// from far away to where it is without meeting the mesh in its inside. Known from both sides on the
-// nodes of a grid of step h, from the distance of the mesh at nodes alone. With e half the diagonal
-// of a node's cube:
+// The solid C closed at a diameter d: what no open sphere of radius rho = d / 2 intersects that
+// gets from far away to where it is without meeting the mesh in its inside. Known from both sides
+// on the nodes of a grid of step h, from the distance of the mesh at nodes alone. With e half the
+// diagonal of a node's cube:
 //  - nodes are *free* that a sphere of radius rho provably reaches: from node to node where the
 //    distances are at least rho on the straight way. It gets to all of the sphere that touches the
 //    mesh, too;
@@ -40,7 +40,7 @@ class ClosedSolid {
   // Distances where they are within e below rho to 2 e above; else a bound that is beyond that.
   void measure();
   void measure_cube(const Index& low, int edge, double limit);
-  // Whether a cube around a point meets one that is possible, or is not all in the grid.
+  // Whether a cube around a point intersects one that is possible, or is not all in the grid.
   bool touches_possible(const Eigen::Vector3d& p, double edge) const;
   void spread_possible(std::vector<std::size_t>& waiting, const ClosedSolid* coarse);
   void spread_free(std::vector<std::size_t>& waiting);

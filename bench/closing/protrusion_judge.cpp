@@ -82,7 +82,7 @@ class Judge {
         spheres_(spheres),
         options_(options),
         field_(protrusions(solid, spheres)),
-        looked_at_(solid.grid().size()) {
+        examined_(solid.grid().size()) {
     const std::size_t node = place_of_greatest(field_.lower);
     result_.lower = field_.lower[node];
     result_.lower_at = solid.grid().point(node);
@@ -91,10 +91,9 @@ class Judge {
 
   JudgedProtrusion operator()() {
     std::size_t worst = place_of_greatest(field_.upper);
-    for (int look = 0; look < options_.looks; ++look) {
-      if (looked_at_[worst] != 0 || field_.upper[worst] <= result_.lower + options_.tolerance)
-        break;
-      look_at(worst);
+    for (int round = 0; round < options_.rounds; ++round) {
+      if (examined_[worst] != 0 || field_.upper[worst] <= result_.lower + options_.tolerance) break;
+      examine(worst);
       worst = place_of_greatest(field_.upper);
     }
     result_.upper = std::max(static_cast<double>(field_.upper[worst]), result_.lower);
@@ -104,11 +103,11 @@ class Judge {
 
  private:
   // Bounds for all cubes near that one, from a finer grid that reaches to all that matters there.
-  void look_at(std::size_t worst) {
+  void examine(std::size_t worst) {
     const Grid& grid = solid_.grid();
     const int near = std::max(4, static_cast<int>(solid_.rho() / grid.step / 4.0));
     const int half = near + static_cast<int>((solid_.rho() + field_.upper[worst]) / grid.step) + 4;
-    const double most = std::cbrt(static_cast<double>(options_.most_nodes_of_look));
+    const double most = std::cbrt(static_cast<double>(options_.most_nodes_examined));
     const int pieces = std::clamp(static_cast<int>(most / (2.0 * half)), 2, 8);
     const Index center = grid.index(worst);
     const ClosedSolid part(solid_, center, half, pieces);
@@ -150,7 +149,7 @@ class Judge {
           const Index i{center[0] + x, center[1] + y, center[2] + z};
           if (!grid.contains(i)) continue;
           field_.upper[grid.at(i)] = std::min(field_.upper[grid.at(i)], upper[grid.at(i)]);
-          looked_at_[grid.at(i)] = 1;
+          examined_[grid.at(i)] = 1;
         }
       }
     }
@@ -160,7 +159,7 @@ class Judge {
   std::span<const Sphere> spheres_;
   JudgeOptions options_;
   Field field_;
-  std::vector<char> looked_at_;
+  std::vector<char> examined_;
   JudgedProtrusion result_;
 };
 

@@ -11,16 +11,16 @@
 
 namespace spherule::closing {
 
-// How closely the judge looks.
+// How closely the judge examines.
 struct JudgeOptions {
   double step = 0.0;  // of the grid; 0: a 32nd of the diameter
   // The step becomes larger, so that the grid has no more nodes.
   std::size_t most_nodes = 20'000'000;
-  // Places at which spheres may protrude most, looked at again with steps down to an eighth, and
+  // Places at which spheres may protrude most, examined again with steps down to an eighth, and
   // the nodes of each of these grids.
-  int looks = 24;
-  std::size_t most_nodes_of_look = 3'000'000;
-  // No further look is taken at what is known this closely.
+  int rounds = 24;
+  std::size_t most_nodes_examined = 3'000'000;
+  // No further round is spent on what is known this closely.
   double tolerance = 0.0;
 };
 

@@ -243,7 +243,7 @@ bool touches_behind_root(const Spheres& body, const Placement& at, const Sphere&
   return any && waiting.flush();
 }
 
-// A bit for every obstacle that the body has to be looked at against.
+// A bit for every obstacle that the body has to be examined against.
 inline std::uint32_t near_obstacles(const Problem& problem, const Body& body, const Sphere& root) {
   if (!problem.spheres_in_front) return body.against;
   std::uint32_t near = 0;

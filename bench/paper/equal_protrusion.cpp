@@ -26,7 +26,7 @@ constexpr double kAim = 0.985;
 // there at any.
 constexpr double kFinest = 0.1;
 
-// Looks for the largest setting whose protrusion keeps to a limit, which it nearly reaches.
+// Searches for the largest setting whose protrusion keeps to a limit, which it nearly reaches.
 class SettingSearch {
  public:
   explicit SettingSearch(double limit) : limit_(limit), setting_(limit) {}

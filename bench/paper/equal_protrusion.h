@@ -26,7 +26,7 @@ struct CountEntry {
   // of their protrusion over |M|, and what they had to grow by to cover it.
   double protrusion = 0.0;
   double inflation = 0.0;
-  double setting = 0.0;  // the error that the method was asked for
+  double setting = 0.0;  // the error that the method was given
   double seconds = 0.0;  // of making them, without the proof
 };
 

@@ -80,7 +80,7 @@ void write_table1(const std::vector<Table1Row>& rows, std::ostream& out) {
   const std::size_t queries = rows.empty() ? 0 : rows.front().whole.queries;
   out << "<h2>Table I</h2>\n<p>" << queries
       << " configurations of a weld program; missed and extra are against the original solids. Up "
-         "to the decomposition FCL asks; then robot and torch are meshes and the pipes are "
+         "to the decomposition FCL queries; then robot and torch are meshes and the pipes are "
          "spheres; "
          "at last all is in spheres. The ratio is of times, to the first row.</p>\n";
   Table table(out, {"method", "complexity", "collisions", "missed", "extra", "ms", "ratio",
@@ -135,7 +135,7 @@ void write_figure_4(const std::vector<FitCourse>& courses, std::ostream& out) {
 void write_claims(const std::vector<ClaimRow>& rows, std::ostream& out) {
   out << "<h2>What the paper says without a figure</h2>\n<p>Spheres with stage 1 and with a size "
          "so "
-         "small that nothing vanishes; and how much faster than FCL on the meshes they are asked "
+         "small that nothing vanishes; and how much faster than FCL on the meshes they are queried "
          "about a rod nearby.</p>\n";
   Table table(out,
               {"shape", "holes", "triangles", "with stage 1", "without", "FCL's time over ours"});
@@ -166,7 +166,7 @@ void write_counts(const std::vector<CountRow>& rows, std::ostream& out) {
 }
 
 void write_trees(const std::vector<TreeRow>& rows, std::ostream& out) {
-  out << "<h2>Trees for the same traversal</h2>\n<p>The pipe, asked about a rod in random places "
+  out << "<h2>Trees for the same traversal</h2>\n<p>The pipe, queried with a rod in random places "
          "nearby: the tree as its method has it, and ours over the same leaves.</p>\n";
   Table table(out,
               {"method", "leaves", "nodes", "node tests", "ns", "ours: nodes", "node tests", "ns"});

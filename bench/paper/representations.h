@@ -28,7 +28,7 @@ struct Representation {
 };
 
 // The rows of table I, of a fitted workload: the original meshes first; then the workpiece
-// decimated to half, its hull and a convex decomposition, all asked by FCL; packed, voxelised and
+// decimated to half, its hull and a convex decomposition, all queried by FCL; packed, voxelised and
 // in bounding spheres, by the paper's loop and by ours, against robot and torch as meshes; then all
 // in spheres. Packing and voxels stand there as the paper has them and once more so that they
 // cover.

@@ -13,7 +13,7 @@ namespace spherule {
 // A way to make spheres of a mesh that is told how fine they are to be.
 struct SphereMethod {
   std::string name;
-  // `error` is what the method is asked to err by at most, in the unit of the mesh: the smaller,
+  // `error` is what the method may err by at most, in the unit of the mesh: the smaller,
   // the more spheres. What the method makes of it is its own business.
   std::function<std::vector<Sphere>(const TriangleMesh& mesh, double error)> make;
 };

@@ -9,11 +9,11 @@ namespace spherule {
 PathCheck check_path(const std::vector<Configuration>& path, const ContactTest& in_contact,
                      double step) {
   PathCheck result;
-  const auto look = [&](const Configuration& at) {
+  const auto test = [&](const Configuration& at) {
     ++result.configurations;
     result.contacts += in_contact(at) ? 1 : 0;
   };
-  if (!path.empty()) look(path.front());
+  if (!path.empty()) test(path.front());
   Configuration at;
   for (std::size_t i = 1; i < path.size(); ++i) {
     double most = 0.0;
@@ -27,7 +27,7 @@ PathCheck check_path(const std::vector<Configuration>& path, const ContactTest& 
       for (std::size_t k = 0; k < at.size(); ++k) {
         at[k] = (1.0 - t) * path[i - 1][k] + t * path[i][k];
       }
-      look(at);
+      test(at);
     }
   }
   return result;

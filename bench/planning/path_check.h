@@ -9,11 +9,11 @@
 namespace spherule {
 
 struct PathCheck {
-  std::size_t configurations = 0;  // looked at
+  std::size_t configurations = 0;  // examined
   std::size_t contacts = 0;        // of these, in contact
 };
 
-// Asks an engine about configurations on a path of straight motions in joint space, its corners
+// Queries an engine about configurations on a path of straight motions in joint space, its corners
 // included, no joint moving by more than `step` radians from one to the next.
 PathCheck check_path(const std::vector<Configuration>& path, const ContactTest& in_contact,
                      double step);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An example: a motion of the IRB 4400 with its weld torch, from a seam of the pipes to the home
-// position, planned by OMPL with motions that are proved free, and looked at again by FCL on the
+// position, planned by OMPL with motions that are proved free, and examined again by FCL on the
 // meshes. In the cell of bench/scenes, or with the real robot and torch where SPHERULE_MODELS names
 // a folder of models.
 //   spherule_plan_motion [--out DIR] [--effort N]

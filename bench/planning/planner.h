@@ -12,7 +12,7 @@
 
 namespace spherule {
 
-// What a planner asks whether states and motions are valid.
+// What a planner queries whether states and motions are valid.
 enum class Validity {
   kProved,   // RobotChecker, motions proved free at every point
   kSampled,  // RobotChecker, at steps of the motion
@@ -20,7 +20,7 @@ enum class Validity {
 };
 std::string name_of(Validity validity);
 
-// Both engines answer for the same cell. `checker` is asked for the first two, `meshes` for the
+// Both engines answer for the same cell. `checker` is used for the first two, `meshes` for the
 // third.
 struct PlanningEngines {
   const RobotChecker& checker;
@@ -39,7 +39,7 @@ enum class PlanEnd { kSolved, kEndsRefused, kIterations, kSeconds };
 struct Plan {
   PlanEnd end = PlanEnd::kEndsRefused;  // start or goal is not valid
   double seconds = 0.0;                 // of the processor, of the search alone
-  std::size_t state_checks = 0;         // configurations asked for singly
+  std::size_t state_checks = 0;         // configurations requested singly
   std::size_t motion_checks = 0;
   std::vector<Configuration> path = {};  // from start to goal if it is solved, otherwise empty
 

@@ -40,7 +40,7 @@ void ProblemStudy::add(const ProblemStudy& other) {
     const ProblemRow& more = other.rows[i];
     rows[i].plans.insert(rows[i].plans.end(), more.plans.begin(), more.plans.end());
     rows[i].contacts.insert(rows[i].contacts.end(), more.contacts.begin(), more.contacts.end());
-    rows[i].looked_at += more.looked_at;
+    rows[i].tested += more.tested;
   }
 }
 
@@ -66,7 +66,7 @@ ProblemStudy study_problems(const PlanningEngines& engines, const ContactTest& j
       row.plans.push_back(plan(engines, row.validity, problems[i], one));
       const PathCheck found = check_path(row.plans.back().path, judge, recheck_step);
       row.contacts.push_back(found.contacts);
-      row.looked_at += found.configurations;
+      row.tested += found.configurations;
     }
   }
   return study;

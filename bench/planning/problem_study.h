@@ -13,7 +13,7 @@ struct ProblemRow {
   Validity validity = Validity::kProved;
   std::vector<Plan> plans = {};            // of each problem
   std::vector<std::size_t> contacts = {};  // on each path, for FCL on the meshes in double
-  std::size_t looked_at = 0;               // configurations of all paths, for these contacts
+  std::size_t tested = 0;                  // configurations of all paths, for these contacts
 
   std::size_t ended(PlanEnd end) const;
   std::size_t paths_in_contact() const;
@@ -38,7 +38,7 @@ struct ProblemStudy {
   void add(const ProblemStudy& other);
 };
 
-// Plans all problems with each way of checking, the same seed for the same problem, and looks at
+// Plans all problems with each way of checking, the same seed for the same problem, and examines
 // every path again by `judge` at steps of `recheck_step` radians (check_path()).
 ProblemStudy study_problems(const PlanningEngines& engines, const ContactTest& judge,
                             const std::vector<PlanningProblem>& problems,

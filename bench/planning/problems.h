@@ -16,13 +16,13 @@ struct PlanningProblem {
 };
 
 // Whether its ends are free and the straight motion between them is not, at configurations that are
-// asked about.
+// queried.
 bool needs_a_plan(const PlanningProblem& problem, const ContactTest& in_contact);
 
 // What the robot does between welds: the first, third, ... leads from one of the `places` to the
 // home position (the program's first), the others to another of the places. These are drawn; the
 // ends are free for `meshes` and the straight motion between them is not, at configurations that it
-// is asked about. Always the same. Throws Error if hardly any two ends are so.
+// is queried. Always the same. Throws Error if hardly any two ends are so.
 std::vector<PlanningProblem> make_problems(const Workload& workload, Checker& meshes,
                                            std::span<const ArmPositions> places, std::size_t count);
 

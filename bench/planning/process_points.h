@@ -11,7 +11,7 @@ namespace spherule {
 
 // The first part of the paper's planning: for points along the three seams of the pipes, with the
 // wire's end a few millimetres off the metal, every turn of the torch about the wire and every
-// posture of the robot is looked at.
+// posture of the robot is examined.
 struct ProcessPoints {
   std::size_t points = 0;
   std::size_t angles = 0;

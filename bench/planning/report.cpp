@@ -40,7 +40,7 @@ Json to_json(const ProblemRow& row, const ProblemRow& meshes) {
             {"state_checks", totals.state_checks},
             {"motion_checks", totals.motion_checks},
             {"paths_in_contact", row.paths_in_contact()},
-            {"configurations_looked_at", row.looked_at}};
+            {"configurations_tested", row.tested}};
   const ProblemComparison with = compare(row, meshes);
   json["with_fcl"] = {{"both_solve", with.both},
                       {"only_fcl", with.mesh_only},
@@ -85,7 +85,7 @@ Json to_json(const ProcessStudy& study) {
 
 void print_table(const ProblemStudy& study) {
   std::printf(
-      "\n%zu problems, RRTConnect; steps of sampled motions %g rad, of the second look %g\n",
+      "\n%zu problems, RRTConnect; steps of sampled motions %g rad, of the second check %g\n",
       study.rows.back().plans.size(), study.options.step, study.recheck_step);
   std::printf("%-18s %6s %7s %6s %6s %9s %8s %10s %8s %9s\n", "states and motions", "solved",
               "refused", "iter.", "time", "median ms", "total s", "states", "motions", "contacts");

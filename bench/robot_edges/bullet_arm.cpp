@@ -116,7 +116,7 @@ std::unique_ptr<Placed> placed_mesh(const TriangleMesh& mesh, BulletLinks links,
   return std::make_unique<Placed>(std::move(shape), std::move(triangles));
 }
 
-// Keeps the obstacles whose boxes are met.
+// Keeps the obstacles whose boxes are touched.
 class Candidates : public btDbvt::ICollide {
  public:
   using ICollide::Process;
@@ -187,14 +187,14 @@ bool BulletArm::collides(std::span<const double> configuration) {
   for (std::size_t i = 0; i < in.links.size(); ++i) {
     if (in.links[i]) in.links[i]->place(in.world_from_link[i]);
   }
-  const auto meets = [&](const auto& pair) {
+  const auto intersects = [&](const auto& pair) {
     Placed& a = *in.links[pair.first];
     Placed& b = *in.links[pair.second];
     return Intersect(a.box(), b.box()) && in.touch(a.object(), b.object());
   };
   return std::any_of(in.tested.moving.begin(), in.tested.moving.end(),
                      [&](std::size_t link) { return in.touches_obstacle(*in.links[link]); }) ||
-         std::any_of(in.tested.pairs.begin(), in.tested.pairs.end(), meets);
+         std::any_of(in.tested.pairs.begin(), in.tested.pairs.end(), intersects);
 }
 
 }  // namespace spherule

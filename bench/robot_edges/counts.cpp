@@ -18,7 +18,7 @@ void Counts::judge(const EdgeResult& result, const EdgeResult& of_meshes, const 
   missed += is_free && in_contact ? 1 : 0;
   extra += !is_free && !in_contact ? 1 : 0;
   own_missed += collides && !sampled.spheres ? 1 : 0;
-  looks += result.configurations;
+  evaluations += result.configurations;
   for (std::size_t i = 0; i < peers.size(); ++i) {
     const bool met = sampled.peers[i] != 0;
     peers[i].missed += in_contact && !met ? 1 : 0;
@@ -40,7 +40,7 @@ void Counts::add(const Counts& other) {
   missed += other.missed;
   extra += other.extra;
   own_missed += other.own_missed;
-  looks += other.looks;
+  evaluations += other.evaluations;
   confirmed_proved += other.confirmed_proved;
   confirmed_unknown += other.confirmed_unknown;
   confirmed_missed += other.confirmed_missed;
@@ -82,7 +82,7 @@ void Counts::print_verdicts(const char* name) const {
 void Counts::print_times_head() const {
   std::printf(
       "\nproof: us an edge, mean and median; times as long as that, in all and median\n"
-      "| scene   | looks | proof | confirmed | own sampled |");
+      "| scene   | evaluations | proof | confirmed | own sampled |");
   for (const PeerCounts& peer : peers) std::printf(" %s |", peer.name.c_str());
   std::printf("\n|---|---|---|---|---|");
   for (std::size_t i = 0; i < peers.size(); ++i) std::printf("---|");
@@ -91,7 +91,7 @@ void Counts::print_times_head() const {
 
 void Counts::print_times(const char* name) const {
   std::printf("| %-7s | %4.1f | %6.2f %6.2f |", name,
-              static_cast<double>(looks) / static_cast<double>(edges), proof.mean_us(),
+              static_cast<double>(evaluations) / static_cast<double>(edges), proof.mean_us(),
               proof.median_us());
   const auto print = [&](const Times& times) {
     std::printf(" %5.1f %5.1f |", times.over(proof), times.median_over(proof));

@@ -39,8 +39,8 @@ struct Counts {
   std::size_t confirmed_unknown = 0;
   std::size_t confirmed_missed = 0;
   std::size_t confirmed_extra = 0;
-  std::size_t own_missed = 0;  // spheres that meet, but not at usual steps
-  std::size_t looks = 0;       // configurations that the proofs looked at
+  std::size_t own_missed = 0;   // spheres that meet, but not at usual steps
+  std::size_t evaluations = 0;  // configurations that the proofs examined
   Times proof, confirmed, own;
   std::vector<PeerCounts> peers{};
 

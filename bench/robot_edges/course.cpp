@@ -13,7 +13,7 @@
 namespace spherule {
 namespace {
 
-// The largest step of a joint between configurations that a planner looks at (MoveIt: 0.05), and
+// The largest step of a joint between configurations that a planner examines (MoveIt: 0.05), and
 // that the truth is taken at, in radians.
 constexpr double kUsualStep = 0.05;
 constexpr double kFineStep = 0.002;
@@ -22,7 +22,7 @@ constexpr double kFineStep = 0.002;
 constexpr std::size_t kRun = 64;
 constexpr int kRounds = 3;
 
-bool meets(ArmChecker& arm, const std::vector<Configuration>& all) {
+bool intersects(ArmChecker& arm, const std::vector<Configuration>& all) {
   return std::any_of(all.begin(), all.end(),
                      [&](const Configuration& at) { return arm.collides(at); });
 }
@@ -70,10 +70,10 @@ Counts Course::measure(std::span<const Edge> edges) {
     std::vector<EdgeResult> results(last - first);
     std::vector<EdgeResult> confirmed(last - first);
     std::vector<Met> met(last - first, {.peers = std::vector<std::uint8_t>(peers_.size())});
-    const auto time_all = [&](Times& times, auto ask) {
+    const auto time_all = [&](Times& times, auto query) {
       for (std::size_t i = first; i < last; ++i) {
         const auto start = Clock::now();
-        ask(i - first);
+        query(i - first);
         times.take(i, nanoseconds(Clock::now() - start));
       }
     };
@@ -92,13 +92,15 @@ Counts Course::measure(std::span<const Edge> edges) {
                                       [&](const Configuration& at) { return is_free(at); });
       });
       for (std::size_t k = 0; k < peers_.size(); ++k) {
-        time_all(counts.peers[k].times,
-                 [&](std::size_t i) { met[i].peers[k] = meets(*peers_[k], usual[i]) ? 1 : 0; });
+        time_all(counts.peers[k].times, [&](std::size_t i) {
+          met[i].peers[k] = intersects(*peers_[k], usual[i]) ? 1 : 0;
+        });
       }
     }
     for (std::size_t i = first; i < last; ++i) {
       const Met& sampled = met[i - first];
-      const bool in_contact = sampled.peers[0] != 0 || meets(obb_, samples(edges[i], kFineStep));
+      const bool in_contact =
+          sampled.peers[0] != 0 || intersects(obb_, samples(edges[i], kFineStep));
       counts.judge(results[i - first], confirmed[i - first], sampled, in_contact);
     }
   }

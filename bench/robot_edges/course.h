@@ -18,7 +18,7 @@
 
 namespace spherule {
 
-// What is asked of one scene.
+// What is queried of one scene.
 class Course {
  public:
   // Keeps referring to both.

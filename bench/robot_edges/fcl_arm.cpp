@@ -58,7 +58,7 @@ struct FclArm::Parts {
   const RobotModel& robot;
   TestedLinks tested;
   std::vector<std::unique_ptr<FclModel<fcl::OBBRSSd>>> links{};
-  std::vector<Geometry> geometries{};             // of these, with the volumes that are asked for
+  std::vector<Geometry> geometries{};             // of these, with the volumes that are requested
   std::vector<std::optional<FclSolid>> solids{};  // of links with meshes, with their insides
   std::vector<FclObstacle> obstacles{};
   fcl::DynamicAABBTreeCollisionManagerd tree{};  // of many obstacles, otherwise empty

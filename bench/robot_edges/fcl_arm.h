@@ -15,8 +15,8 @@ enum class FclVolume { kObb, kObbRss };
 // The arm's meshes in a scene, and against each other where this is not allowed, by FCL in
 // double, with a test of boxes along the world's axes in front (of many obstacles: behind FCL's
 // dynamic AABB tree of them). What tells a link inside another
-// one or inside the scene's mesh is not asked; primitives are solid to FCL, and so are the spheres
-// about the points of a cloud.
+// one or inside the scene's mesh is not queried; primitives are solid to FCL, and so are the
+// spheres about the points of a cloud.
 class FclArm : public ArmChecker {
  public:
   FclArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene, FclVolume volume);

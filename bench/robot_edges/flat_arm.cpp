@@ -47,9 +47,9 @@ bool FlatArm::any_within(const Spheres& spheres, const Eigen::Vector3d& center, 
   return found != 0;
 }
 
-bool FlatArm::meets_obstacles(const Spheres& placed, const Sphere& around) const {
+bool FlatArm::touches_obstacles(const Spheres& placed, const Sphere& around) const {
   for (const PlacedPrimitive& obstacle : scene_.obstacles) {
-    const bool meets = std::visit(
+    const bool intersects = std::visit(
         [&](const auto& shape) {
           const auto field = internal::field_of(shape);
           const Eigen::Matrix3d rotation = obstacle.world_from_primitive.matrix().transpose();
@@ -65,7 +65,7 @@ bool FlatArm::meets_obstacles(const Spheres& placed, const Sphere& around) const
           return found;
         },
         obstacle.primitive);
-    if (meets) return true;
+    if (intersects) return true;
   }
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
     const Eigen::Vector3d point(cloud_.x[i], cloud_.y[i], cloud_.z[i]);
@@ -92,7 +92,7 @@ bool FlatArm::collides(std::span<const double> configuration) {
     around_[k] = {r * links_[k].around.center + t, links_[k].around.radius};
   }
   for (std::size_t k = links_.size(); k-- > 0;) {
-    if (links_[k].moves && meets_obstacles(placed_[k], around_[k])) return true;
+    if (links_[k].moves && touches_obstacles(placed_[k], around_[k])) return true;
   }
   for (const auto& [a, b] : pairs_) {
     const double reach = around_[a].radius + around_[b].radius;

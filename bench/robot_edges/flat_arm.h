@@ -14,7 +14,7 @@ namespace spherule {
 
 // The arm's spheres without a hierarchy: all of each link against all obstacles, and all pairs of
 // two links', behind a test of the spheres around links (and, for the points of a cloud, of each
-// point). Double precision, in loops that compilers vectorise. Solid meshes are not asked.
+// point). Double precision, in loops that compilers vectorise. Solid meshes are not queried.
 class FlatArm {
  public:
   FlatArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene);
@@ -37,7 +37,7 @@ class FlatArm {
   };
 
   static bool any_within(const Spheres& spheres, const Eigen::Vector3d& center, double radius);
-  bool meets_obstacles(const Spheres& placed, const Sphere& around) const;
+  bool touches_obstacles(const Spheres& placed, const Sphere& around) const;
 
   const RobotModel& robot_;
   const ArmScene& scene_;

@@ -2,7 +2,7 @@
 
 // Motions of a Panda planned in the scenes of spherule_robot_edges, by OMPL's RRTConnect: with
 // motions that RobotChecker proves, that it samples, and that FCL samples on the meshes. Every path
-// is looked at again by FCL. Prints how many are solved, how fast, and how many paths are in
+// is examined again by FCL. Prints how many are solved, how fast, and how many paths are in
 // contact.
 //   SPHERULE_MODELS=DIR spherule_arm_planning [PROBLEMS [STEP [RADIUS | SPHERIZED.urdf]]]
 
@@ -42,7 +42,7 @@ ProblemStudy study_scene(const Arm& arm, const AllowedCollisions& allowed, const
 void print_head(const PlanOptions& options) {
   std::printf(
       "RRTConnect; motions sampled every %g rad (length of the vector of joint positions), paths "
-      "looked at again every %g rad\n"
+      "examined again every %g rad\n"
       "proved / sampled / by FCL; times as long as the proved ones: of problems that both solve, "
       "median and sums\n"
       "| scene | problems | solved | paths in contact | median ms | sampled, times | FCL, times "

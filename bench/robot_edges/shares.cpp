@@ -67,7 +67,7 @@ std::vector<Costs> costs_of(std::span<const RobotChecker> checkers, const Questi
   std::vector<std::vector<double>> path(checkers.size()), anywhere(path), edges(path);
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t i = 0; i < checkers.size(); ++i) {
-      const auto ask = [&](std::vector<double>& times, const auto& all, auto one) {
+      const auto query = [&](std::vector<double>& times, const auto& all, auto one) {
         const auto start = Clock::now();
         for (const auto& question : all) one(question);
         times.push_back(nanoseconds(Clock::now() - start) / static_cast<double>(all.size()));
@@ -75,9 +75,9 @@ std::vector<Costs> costs_of(std::span<const RobotChecker> checkers, const Questi
       const auto check = [&](const Configuration& at) {
         return checkers[i].check_config(at, scratches[i]);
       };
-      ask(path[i], questions.path, check);
-      ask(anywhere[i], questions.anywhere, check);
-      ask(edges[i], questions.edges, [&](const Edge& edge) {
+      query(path[i], questions.path, check);
+      query(anywhere[i], questions.anywhere, check);
+      query(edges[i], questions.edges, [&](const Edge& edge) {
         return checkers[i].check_edge(edge.from, edge.to, scratches[i]);
       });
     }

@@ -59,7 +59,7 @@ ArmScene scene_of_points(std::size_t count) {
     const Eigen::Vector3d point =
         surface_point(static_cast<int>(i % kBodies), std::acos(direction.z()),
                       std::atan2(direction.y(), direction.x()));
-    // In single precision, as sensors give it and FCL is asked with.
+    // In single precision, as sensors give it and FCL is queried with.
     scene.cloud.push_back(point.cast<float>().cast<double>());
   }
   return scene;

@@ -7,7 +7,7 @@
 
 namespace spherule {
 
-// Each makes at least so many cases from a seed, asks, judges, and counts in the report.
+// Each makes at least so many cases from a seed, queries, judges, and counts in the report.
 
 // Relative poses of two trees: collides(), collide(), within(), PairCache.
 void check_poses(std::uint64_t poses, std::uint64_t seed, ScaleReport& report);

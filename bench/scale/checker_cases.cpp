@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kConfigurations = 251;  // of a scene: no whole number of lanes
 
 // Anywhere, on paths, and around where contact begins, at gaps of all orders of magnitude.
-AskedConfigurations make_configurations(CheckerScene& scene, SceneRandom& random) {
-  AskedConfigurations made;
+QueriedConfigurations make_configurations(CheckerScene& scene, SceneRandom& random) {
+  QueriedConfigurations made;
   std::vector<double> last = scene.anywhere(random);
   std::optional<CheckerScene::Border> border;
   while (made.truth.size() < kConfigurations) {
@@ -59,16 +59,16 @@ void check_checker_configurations(std::uint64_t configurations, std::uint64_t se
     if (scene.pair_count() == 0) continue;
     // Few of those that touch everywhere or nowhere.
     if (!scene.find_border(random) && !random.chance(0.1)) continue;
-    const AskedConfigurations asked = make_configurations(scene, random);
+    const QueriedConfigurations queried = make_configurations(scene, random);
     const auto judge = [&](Tally& tally, std::size_t i, bool is_free) {
-      tally.count(is_free ? Verdict::kFree : Verdict::kCollision, asked.is_near[i] != 0);
-      if (is_free != (asked.truth[i] != 0)) return;
+      tally.count(is_free ? Verdict::kFree : Verdict::kCollision, queried.is_near[i] != 0);
+      if (is_free != (queried.truth[i] != 0)) return;
       is_free ? ++tally.missed : ++tally.extra;
       if (!is_free) ++tally.beyond;
       report.failure(tally, std::string(is_free ? "missed" : "extra") + ", scene " +
                                 std::to_string(number) + ", configuration " + std::to_string(i));
     };
-    ask_rows(scene.scene(), rows, asked, judge);
+    check_rows(scene.scene(), rows, queried, judge);
     done += kConfigurations;
     report.progress("checked configurations", done, configurations);
   }

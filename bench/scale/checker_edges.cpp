@@ -87,10 +87,10 @@ class EdgeJudge {
   void run() {
     tally_.count(result_.verdict, edge_.is_near);
     const int steps = tally_.cases % kManyStepsEvery == 0 ? kManySteps : kSteps;
-    for (int i = 0; i <= steps; ++i) look(static_cast<double>(i) / steps);
-    look_around(edge_.meeting);
-    look_around(std::max(0.0, std::nextafter(result_.free_until, 0.0)));
-    if (tally_.cases % 8 == 0) look_around(nearest());
+    for (int i = 0; i <= steps; ++i) sample(static_cast<double>(i) / steps);
+    sample_around(edge_.meeting);
+    sample_around(std::max(0.0, std::nextafter(result_.free_until, 0.0)));
+    if (tally_.cases % 8 == 0) sample_around(nearest());
     if (result_.verdict == Verdict::kCollision) {
       if (!touches(result_.contact_at)) {
         ++tally_.beyond;
@@ -114,7 +114,7 @@ class EdgeJudge {
   bool is_called_free(double t) const {
     return result_.verdict == Verdict::kFree || t < result_.free_until;
   }
-  void look(double t) {
+  void sample(double t) {
     if (has_contact_ && !is_called_free(t)) return;
     if (!touches(t)) return;
     has_contact_ = true;
@@ -123,11 +123,11 @@ class EdgeJudge {
     ++tally_.missed;
     report_.failure(tally_, "contact at t = " + std::to_string(t) + ", " + place_);
   }
-  void look_around(double t) {
-    look(t);
+  void sample_around(double t) {
+    sample(t);
     for (int i = 3; i < 50; i += 4) {
-      look(std::min(1.0, t + std::ldexp(1.0, -i)));
-      look(std::max(0.0, t - std::ldexp(1.0, -i)));
+      sample(std::min(1.0, t + std::ldexp(1.0, -i)));
+      sample(std::max(0.0, t - std::ldexp(1.0, -i)));
     }
   }
   // Where the gap is least, as far as a search from the best of some places tells.

@@ -13,7 +13,7 @@
 namespace spherule {
 
 // Configurations, one behind the other, and what is known of each.
-struct AskedConfigurations {
+struct QueriedConfigurations {
   std::vector<double> positions;
   std::vector<std::uint8_t> is_near, truth;
 };
@@ -30,18 +30,18 @@ std::vector<CheckerRows> add_checker_rows(const std::string& name, ScaleReport& 
 
 // Calls judge(tally, i, is_free) for each configuration and each row.
 template <class Judge>
-void ask_rows(const RobotScene& scene, std::span<const CheckerRows> rows,
-              const AskedConfigurations& asked, const Judge& judge) {
+void check_rows(const RobotScene& scene, std::span<const CheckerRows> rows,
+                const QueriedConfigurations& queried, const Judge& judge) {
   const auto variables = static_cast<std::size_t>(scene.robot().variable_count());
-  std::vector<std::uint8_t> free(asked.truth.size());
+  std::vector<std::uint8_t> free(queried.truth.size());
   for (const CheckerRows& row : rows) {
     const RobotChecker checker = scene.snapshot({.instructions = row.set});
     RobotChecker::Scratch scratch(checker);
     for (std::size_t i = 0; i < free.size(); ++i) {
-      const std::span<const double> configuration(&asked.positions[i * variables], variables);
+      const std::span<const double> configuration(&queried.positions[i * variables], variables);
       judge(*row.single, i, checker.check_config(configuration, scratch));
     }
-    checker.check_configs(asked.positions, scratch, free);
+    checker.check_configs(queried.positions, scratch, free);
     for (std::size_t i = 0; i < free.size(); ++i) judge(*row.batch, i, free[i] != 0);
   }
 }

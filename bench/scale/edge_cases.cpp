@@ -81,7 +81,7 @@ class EdgeCheck {
       }
     };
     bool touches = false, missed = false;
-    const auto look = [&](double t) {
+    const auto sample = [&](double t) {
       go_to(t);
       if (!scene.touches(at)) return;
       touches = true;
@@ -93,13 +93,13 @@ class EdgeCheck {
       }
     };
     const int steps = tally_.cases % kManyStepsEvery == 0 ? kManySteps : kSteps;
-    for (int i = 0; i <= steps && !touches; ++i) look(static_cast<double>(i) / steps);
-    look(edge.meeting);
+    for (int i = 0; i <= steps && !touches; ++i) sample(static_cast<double>(i) / steps);
+    sample(edge.meeting);
     for (int i = 3; i < 40; i += 6) {
-      look(std::min(1.0, edge.meeting + std::ldexp(1.0, -i)));
-      look(std::max(0.0, edge.meeting - std::ldexp(1.0, -i)));
+      sample(std::min(1.0, edge.meeting + std::ldexp(1.0, -i)));
+      sample(std::max(0.0, edge.meeting - std::ldexp(1.0, -i)));
     }
-    look(std::max(0.0, std::nextafter(result.free_until, 0.0)));
+    sample(std::max(0.0, std::nextafter(result.free_until, 0.0)));
     if (result.verdict == Verdict::kCollision) check_contact(scene, at, result, go_to);
     if (result.verdict != Verdict::kFree && !touches) ++tally_.extra;
   }

@@ -114,7 +114,7 @@ void ExactOracle::Spheres::place(const PlacedSet& set) {
 bool ExactOracle::within(const PlacedSet& a, const PlacedSet& b, double clearance) {
   a_.place(a);
   b_.place(b);
-  std::vector<std::array<std::size_t, 2>> doubtful;
+  std::vector<std::array<std::size_t, 2>> uncertain;
   for (std::size_t i = 0; i < a_.x.size(); ++i) {
     for (std::size_t j = 0; j < b_.x.size(); ++j) {
       const double x = a_.x[i] - b_.x[j], y = a_.y[i] - b_.y[j], z = a_.z[i] - b_.z[j];
@@ -124,11 +124,11 @@ bool ExactOracle::within(const PlacedSet& a, const PlacedSet& b, double clearanc
       const double far = limit + error, near = limit - error;
       if (squared > far * far) continue;
       if (near > 0.0 && squared < near * near) return true;
-      doubtful.push_back({i, j});
+      uncertain.push_back({i, j});
     }
   }
   std::vector<std::array<std::size_t, 2>> open;
-  for (const auto& [i, j] : doubtful) {
+  for (const auto& [i, j] : uncertain) {
     const GapBounds bounds =
         pair_gap(a.spheres[i], a.world_from_set, b.spheres[j], b.world_from_set);
     const long double error = kClearanceError<long double> * clearance;

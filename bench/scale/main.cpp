@@ -16,7 +16,8 @@ namespace {
 constexpr const char* kUsage =
     "usage: spherule_scale [--poses N] [--motions N] [--distances N] [--checked N] [--seed S]\n"
     "                      [--out FILE]\n"
-    "Asks the collision queries of N cases each (10000000 poses, 1000000 motions and distances),\n"
+    "Runs the collision queries of N cases each (10000000 poses, 1000000 motions and "
+    "distances),\n"
     "a third of them near contact, and judges the answers by an exact oracle. A tenth as many\n"
     "robot configurations and edges come with the poses and motions; `checked` are configurations\n"
     "of a RobotChecker (1000000), with a tenth as many edges. FILE gets the table, too.\n"

@@ -58,8 +58,8 @@ class PoseCheck {
     PairCache cache(scene.a(), scene.b());
     for (int i = 0; i < kPosesOfAScene; ++i) {
       const auto [poses, is_near] = make_poses(scene, random, 0.0);
-      ask(scene, poses, is_near, cache, random);
-      if (i % 4 == 0) ask_within(scene, random);
+      query(scene, poses, is_near, cache, random);
+      if (i % 4 == 0) check_within(scene, random);
     }
   }
 
@@ -78,8 +78,8 @@ class PoseCheck {
     }
   }
 
-  void ask(const ScenePair& scene, const PosePair& poses, bool is_near, PairCache& cache,
-           SceneRandom& random) {
+  void query(const ScenePair& scene, const PosePair& poses, bool is_near, PairCache& cache,
+             SceneRandom& random) {
     const Pose& to_a = poses.world_from_a;
     const Pose& to_b = poses.world_from_b;
     const PlacedSet a{scene.a().spheres(), to_a}, b{scene.b().spheres(), to_b};
@@ -88,9 +88,9 @@ class PoseCheck {
     const bool said = collides(scene.a(), to_a, scene.b(), to_b);
     judge(collides_, a, b, verdict_of(said), truth, is_near, 0.0, slack);
 
-    ask_cache(scene, poses, is_near, cache);
+    check_cache(scene, poses, is_near, cache);
     if (random.chance(0.2)) {
-      ask_cache(scene, {to_a, nudged(to_b, random, scene.size())}, false, cache);
+      check_cache(scene, {to_a, nudged(to_b, random, scene.size())}, false, cache);
     }
     if (random.chance(0.2)) approach(scene, random, cache);
 
@@ -119,15 +119,15 @@ class PoseCheck {
     const double gap = random.magnitude(1e-9, 1.0) * scene.size();
     const auto start = scene.at_gap(random, gap);
     if (!start) return;
-    ask_cache(scene, *start, false, cache);
+    check_cache(scene, *start, false, cache);
     const Pose& to_b = start->world_from_b;
     const double way = gap - random.small_gap();
     const Pose end(to_b.rotation(), to_b.translation() - way * start->way);
-    ask_cache(scene, {start->world_from_a, end}, true, cache);
+    check_cache(scene, {start->world_from_a, end}, true, cache);
   }
 
   // The cache has to answer as collides() does.
-  void ask_cache(const ScenePair& scene, const PosePair& poses, bool is_near, PairCache& cache) {
+  void check_cache(const ScenePair& scene, const PosePair& poses, bool is_near, PairCache& cache) {
     const Pose& to_a = poses.world_from_a;
     const Pose& to_b = poses.world_from_b;
     const PlacedSet a{scene.a().spheres(), to_a}, b{scene.b().spheres(), to_b};
@@ -140,7 +140,7 @@ class PoseCheck {
     }
   }
 
-  void ask_within(const ScenePair& scene, SceneRandom& random) {
+  void check_within(const ScenePair& scene, SceneRandom& random) {
     const double clearance = random.chance(0.1) ? 0.0 : random.magnitude(1e-12, 1.0) * scene.size();
     const auto [poses, is_near] = make_poses(scene, random, clearance);
     const Pose& to_a = poses.world_from_a;
@@ -210,7 +210,7 @@ void check_distances(std::uint64_t distances, std::uint64_t seed, ScaleReport& r
                   : result.lower > 0.0 ? Verdict::kFree
                                        : Verdict::kUnknown,
                   is_near);
-      // Where the bounds of the oracle leave a doubt, its exact test does not.
+      // Where the bounds of the oracle are uncertain, its exact test is not.
       const bool is_lower_right =
           result.lower <= least || (result.lower <= most && !oracle.within(a, b, result.lower));
       const bool is_upper_right =

@@ -14,8 +14,8 @@ constexpr std::size_t kConfigurations = 256;  // of a scene
 constexpr double kNear = 0.6;                 // of these, some find no obstacle in their way
 
 // As on a path or shuffled.
-AskedConfigurations make_configurations(ScaleRobot& scene, SceneRandom& random) {
-  AskedConfigurations made;
+QueriedConfigurations make_configurations(ScaleRobot& scene, SceneRandom& random) {
+  QueriedConfigurations made;
   const bool is_path = random.chance(0.5);
   std::vector<double> last = scene.anywhere(random);
   for (std::size_t i = 0; i < kConfigurations; ++i) {
@@ -41,15 +41,15 @@ void check_configurations(std::uint64_t configurations, std::uint64_t seed, Scal
   std::vector<std::uint8_t> first;
   for (std::uint64_t done = 0; done < configurations; done += kConfigurations) {
     ScaleRobot scene(random);
-    const AskedConfigurations asked = make_configurations(scene, random);
+    const QueriedConfigurations queried = make_configurations(scene, random);
     const auto variables = static_cast<std::size_t>(scene.robot().variable_count());
     const auto judge = [&](Tally& tally, std::size_t i, bool is_free) {
-      const std::span<const double> configuration(&asked.positions[i * variables], variables);
-      tally.count(is_free ? Verdict::kFree : Verdict::kCollision, asked.is_near[i] != 0);
-      if (is_free && asked.truth[i] != 0) {
+      const std::span<const double> configuration(&queried.positions[i * variables], variables);
+      tally.count(is_free ? Verdict::kFree : Verdict::kCollision, queried.is_near[i] != 0);
+      if (is_free && queried.truth[i] != 0) {
         ++tally.missed;
         report.failure(tally, "missed at case " + std::to_string(tally.cases));
-      } else if (!is_free && asked.truth[i] == 0) {
+      } else if (!is_free && queried.truth[i] == 0) {
         tally.count_extra(scene.gap(configuration).lower, scene.slack(configuration));
       }
       // One set of instructions must not answer differently from another.
@@ -61,7 +61,7 @@ void check_configurations(std::uint64_t configurations, std::uint64_t seed, Scal
       }
     };
     first.clear();
-    ask_rows(scene.scene(), rows, asked, judge);
+    check_rows(scene.scene(), rows, queried, judge);
     report.progress("configurations", done, configurations);
   }
 }

@@ -187,7 +187,7 @@ class SweepCheck {
     const auto track_b = b.course.track(b.tree.spheres());
     MotionOracle oracle(track_a, track_b);
     bool touches = false, missed = false;
-    const auto look = [&](double t) {
+    const auto sample = [&](double t) {
       const auto contact = oracle.at(t, request.clearance);
       tally.uncertain += contact == MotionOracle::Contact::kUncertain && is_called_free(t) ? 1 : 0;
       if (contact != MotionOracle::Contact::kYes) return;
@@ -198,14 +198,14 @@ class SweepCheck {
       }
     };
     const int steps = motions() % kManyStepsEvery == 0 ? kManySteps : kSteps;
-    for (int i = 0; i <= steps && !touches; ++i) look(static_cast<double>(i) / steps);
+    for (int i = 0; i <= steps && !touches; ++i) sample(static_cast<double>(i) / steps);
     // Where it is known to be near, and about it, and at the end of what is called free.
-    look(meeting);
+    sample(meeting);
     for (int i = 3; i < 40; i += 3) {
-      look(std::min(1.0, meeting + std::ldexp(1.0, -i)));
-      look(std::max(0.0, meeting - std::ldexp(1.0, -i)));
+      sample(std::min(1.0, meeting + std::ldexp(1.0, -i)));
+      sample(std::max(0.0, meeting - std::ldexp(1.0, -i)));
     }
-    look(result.free_until);
+    sample(result.free_until);
 
     for (const double t : {meeting, random.unit(), result.free_until}) {
       if (is_called_free(t) &&

@@ -54,7 +54,7 @@ void ScaleReport::failure(const Tally& tally, const std::string& what) {
 void ScaleReport::print(std::FILE* file) const {
   std::fprintf(file, "%-26s %10s %10s %10s %10s %9s %7s %8s %11s %7s %8s\n", "question", "cases",
                "near", "hits", "free", "unknown", "missed", "extra", "worst slack", "beyond",
-               "in doubt");
+               "uncertain");
   for (const Tally& t : tallies_) {
     const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
     std::fprintf(file, "%-26s %10llu %10llu %10llu %10llu %9llu %7llu %8llu %11.3f %7llu %8llu\n",

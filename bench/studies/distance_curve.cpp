@@ -180,7 +180,7 @@ class Contest {
   std::vector<NamedPairEngine> engines_;
 };
 
-// Times what is asked of the bodies, distance by distance.
+// Times what is queried of the bodies, distance by distance.
 class Curve {
  public:
   Curve(const Part& moving, const Part& standing)
@@ -245,7 +245,7 @@ class Curve {
   ConfirmedPair confirmed_;
   std::vector<PairEngine*> colliding_;
   std::vector<PairEngine*> measuring_;
-  volatile double answer_ = 0.0;  // what is asked for must happen though nobody looks at it
+  volatile double answer_ = 0.0;  // what is requested must happen though nobody examines it
 };
 
 }  // namespace

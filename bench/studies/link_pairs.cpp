@@ -105,9 +105,9 @@ void print_judged(const Robot& robot, const LinkPairs& pairs, int postures) {
       touching += within(*robot.solids[a], poses[a], *robot.solids[b], poses[b], 0.0) ? 1 : 0;
     }
   }
-  const std::size_t asked = std::max<std::size_t>(drawn.size() * pairs.pairs().size(), 1);
+  const std::size_t queried = std::max<std::size_t>(drawn.size() * pairs.pairs().size(), 1);
   std::printf("%zu of %zu queries proved, %.0f ns each; judged by the meshes: %zu, touching: %zu\n",
-              proved, asked, 1e9 * query / static_cast<double>(asked), judged, touching);
+              proved, queried, 1e9 * query / static_cast<double>(queried), judged, touching);
 }
 
 // Of free postures, so many does a cover refuse: with nothing proved, without the pairs that never

@@ -20,7 +20,7 @@ struct StudyOptions {
 
 // The workload with more spheres over the same meshes (refined_cover.h). Times are of a check.
 struct SizeRow {
-  std::size_t factor = 1;      // asked for
+  std::size_t factor = 1;      // requested
   std::size_t spheres = 0;     // all parts together
   double single_ns = 0.0;      // one configuration a call, in path order
   double shuffled_ns = 0.0;    // the same in a random order

@@ -26,11 +26,11 @@ std::vector<double> time_in_turns(std::span<const std::unique_ptr<Checker>> chec
   for (int round = -1; round < rounds; ++round) {
     for (std::size_t run = 0; run < runs; ++run) {
       const std::size_t first = run * kRun;
-      const auto asked =
+      const auto queried =
           configurations.subspan(first, std::min(kRun, configurations.size() - first));
       for (std::size_t i = 0; i < checkers.size(); ++i) {
         const auto start = Clock::now();
-        checkers[i]->check(asked, {verdicts.data(), asked.size()});
+        checkers[i]->check(queried, {verdicts.data(), queried.size()});
         const double time = nanoseconds(Clock::now() - start);
         if (round >= 0) least[i][run] = std::min(least[i][run], time);
       }

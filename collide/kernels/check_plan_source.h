@@ -28,7 +28,7 @@ struct PlanSource {
     std::shared_ptr<const SearchTrees> trees{};
     Pose frame_from_trees{};
     // Contacts of its spheres are for the caller to confirm: none is certain, and what is not apart
-    // all along a part of a motion is asked for.
+    // all along a part of a motion is requested.
     bool is_confirmed = false;
   };
 

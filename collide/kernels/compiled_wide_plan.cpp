@@ -61,15 +61,15 @@ CompiledWidePlan::CompiledWidePlan(const PlanSource& source, const CompiledPlan<
            pair_tests_.data()};
 }
 
-// Each pair is looked for from one of its sides. A body is compared with many others at a time, so
-// that few bodies should do this: whichever has most pairs that are left takes them all, what never
-// touches last.
+// Each pair is searched for from one of its sides. A body is compared with many others at a time,
+// so that few bodies should do this: whichever has most pairs that are left takes them all, what
+// never touches last.
 void CompiledWidePlan::compile_partners(const CheckPlan<float>& plan, std::size_t bodies) {
   const auto pairs = static_cast<std::size_t>(plan.pair_count);
   const auto side = [&](std::size_t pair, int k) {
     return static_cast<std::size_t>(k == 0 ? plan.pairs[pair].first : plan.pairs[pair].second);
   };
-  std::vector<int> from(pairs, -1);  // which side looks for the other
+  std::vector<int> from(pairs, -1);  // which side searches for the other
   for (const std::size_t end : {static_cast<std::size_t>(plan.first_never), pairs}) {
     while (true) {
       std::vector<std::size_t> counts(bodies, 0);

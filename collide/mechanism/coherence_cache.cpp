@@ -13,14 +13,14 @@ namespace {
 // A configuration is near the one before if no point has moved by more than this part of how far
 // the bodies reach.
 constexpr double kNearStep = 0.125;
-// What clearance is looked for: a bit more than the last one that was found, twice as much where
-// that was for few steps; after a look that fails less, as long as it lasts for some steps.
+// What clearance is searched for: a bit more than the last one that was found, twice as much where
+// that was for few steps; after a test that fails less, as long as it lasts for some steps.
 constexpr double kMostSteps = 1024.0;
 constexpr double kFewestSteps = 2.0;
 constexpr double kFirstSteps = 8.0;
 constexpr double kMore = 1.25;
 constexpr float kLess = 0.5F;
-constexpr int kLooks = 2;
+constexpr int kMostTests = 2;
 
 // The way starts anew beyond 2^10 near steps: every addition errs by less than 2^-42 near steps,
 // which kStepRest, a part of every step, covers. So do the sums that it is compared with.
@@ -83,11 +83,11 @@ bool CoherenceCache::check(const Kernels& kernels, const KernelProblem& problem,
                            const double* configuration, const KernelScratch& scratch,
                            ConfirmContact confirm, void* context) {
   struct Asking {
-    explicit Asking(bool& flag) : is_asking(flag) { is_asking = true; }
-    ~Asking() { is_asking = false; }
-    bool& is_asking;
+    explicit Asking(bool& flag) : is_querying(flag) { is_querying = true; }
+    ~Asking() { is_querying = false; }
+    bool& is_querying;
   };
-  const Asking asking(is_asking_);
+  const Asking asking(is_querying_);
   return kernels.check(problem, configuration, scratch, confirm, context);
 }
 
@@ -153,22 +153,22 @@ bool CoherenceCache::grow_due(const Kernels& kernels, const KernelProblem& probl
     Body& body = bodies_[static_cast<std::size_t>(index)];
     KernelFinding finding = KernelFinding::kNear;
     const float few = static_cast<float>(kFewestSteps * body.step);
-    int looks = 0;
+    int tests = 0;
     for (float inflation = body.wanted; inflation > 0.0F; inflation *= kLess) {
-      if (inflation < few || looks == kLooks) break;
-      finding = look(kernels, problem, index, inflation, scratch);
-      ++looks;
+      if (inflation < few || tests == kMostTests) break;
+      finding = test(kernels, problem, index, inflation, scratch);
+      ++tests;
       if (finding == KernelFinding::kTouch) return true;
       if (finding == KernelFinding::kNear) continue;
       place(problem, index, configuration, scratch,
             static_cast<double>(inflation) * kInflationDown);
       body.ambition =
-          looks == 1 ? static_cast<double>(inflation) * kMore : static_cast<double>(inflation);
+          tests == 1 ? static_cast<double>(inflation) * kMore : static_cast<double>(inflation);
       break;
     }
     if (finding == KernelFinding::kApart) continue;
-    if (looks > 0) body.ambition = static_cast<double>(kLess * body.wanted);
-    if (looks == 0) body.ambition = kFirstSteps * body.step;
+    if (tests > 0) body.ambition = static_cast<double>(kLess * body.wanted);
+    if (tests == 0) body.ambition = kFirstSteps * body.step;
     due_[left++] = index;
   }
   due_.resize(left);
@@ -211,7 +211,7 @@ bool CoherenceCache::grow_along(const Kernels& kernels, const KernelProblem& pro
   const double needed = moved * (1.0 + 1e-5);  // above what kInflationDown takes
   const double wanted = std::clamp(body.ambition, needed, std::max(needed, near_step_));
   for (const double inflation : {wanted, needed}) {
-    if (look(kernels, problem, index, static_cast<float>(inflation), scratch) ==
+    if (test(kernels, problem, index, static_cast<float>(inflation), scratch) ==
         KernelFinding::kApart) {
       place(problem, index, middle, scratch, inflation * kInflationDown);
       const bool is_more = inflation > needed;
@@ -224,13 +224,13 @@ bool CoherenceCache::grow_along(const Kernels& kernels, const KernelProblem& pro
   return false;
 }
 
-KernelFinding CoherenceCache::look(const Kernels& kernels, const KernelProblem& problem,
+KernelFinding CoherenceCache::test(const Kernels& kernels, const KernelProblem& problem,
                                    std::int32_t body, float inflation,
                                    const KernelScratch& scratch) {
   for (std::int32_t i = 0; i < problem.pair_count; ++i) {
     if (problem.pairs[i].body != body) continue;
     const KernelFinding finding =
-        kernels.look(problem, problem.pairs[i], inflation, scratch, &never, nullptr);
+        kernels.test(problem, problem.pairs[i], inflation, scratch, &never, nullptr);
     if (finding != KernelFinding::kApart) return finding;
   }
   return KernelFinding::kApart;

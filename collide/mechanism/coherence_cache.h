@@ -17,7 +17,7 @@ namespace spherule::internal {
 //
 // Free. A body, grown by g, was apart from all that it is tested against. Wherever no point of it
 // can have moved by more than g, it is apart ungrown, whatever the poses within the error that the
-// spheres allow for. Bodies that are near to nothing need not even be asked how far they have
+// spheres allow for. Bodies that are near to nothing need not even be tested for how far they have
 // moved: the way of all their points since is at most the sum of |change| times the farthest that
 // any point can be from the joint.
 //
@@ -46,14 +46,14 @@ class CoherenceCache {
                                     const double* from, const double* to, const double* middle,
                                     const KernelScratch& scratch);
 
-  // A sphere on a frame, in its coordinates, that touches for the configuration that was asked
+  // A sphere on a frame, in its coordinates, that touches for the configuration that was queried
   // last, and wherever none of its points has moved by more than `depth` from there. Ignored unless
   // is_following().
   void remember_contact(std::int32_t frame, const Sphere& sphere, double depth,
                         const KernelScratch& scratch);
   // Whether that is heard: while collides() confirms, if the last configurations were near each
   // other.
-  bool is_following() const { return is_following_ && is_asking_; }
+  bool is_following() const { return is_following_ && is_querying_; }
 
  private:
   struct Body {
@@ -61,10 +61,10 @@ class CoherenceCache {
 
     MovedSphere sphere;
     double clearance = -1.0;   // of the body where the sphere was placed; negative: none is known
-    double free_until = -1.0;  // the length of the way up to which it is free without a look
+    double free_until = -1.0;  // the length of the way up to which it is free without a test
     double placed_at = -1.0;   // the query for which it was placed; negative: it was not
     double step = 0.0;         // how far it moves from one query to the next
-    double ambition = 0.0;     // the clearance to look for; 0 before the first
+    double ambition = 0.0;     // the clearance to search for; 0 before the first
     float wanted = 0.0F;       // the same, in this query
   };
 
@@ -78,7 +78,7 @@ class CoherenceCache {
   bool grow_along(const Kernels& kernels, const KernelProblem& problem, std::int32_t index,
                   const double* from, const double* to, const double* middle,
                   const KernelScratch& scratch);
-  static KernelFinding look(const Kernels& kernels, const KernelProblem& problem, std::int32_t body,
+  static KernelFinding test(const Kernels& kernels, const KernelProblem& problem, std::int32_t body,
                             float inflation, const KernelScratch& scratch);
   void place(const KernelProblem& problem, std::int32_t index, const double* configuration,
              const KernelScratch& scratch, double clearance);
@@ -91,7 +91,7 @@ class CoherenceCache {
   double queries_ = 0.0;
   bool was_near_ = false;
   bool is_following_ = false;
-  bool is_asking_ = false;
+  bool is_querying_ = false;
   bool knows_ = false;
   MovedSphere contact_;
   double depth_ = -1.0;

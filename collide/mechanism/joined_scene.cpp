@@ -39,9 +39,9 @@ JoinedScene::JoinedScene(std::span<const MechanismBody> all_bodies,
         *all_obstacles[i].tree, all_obstacles[i].root_from_tree);
   }
 
-  std::vector<std::vector<int>> meets(all_bodies.size());  // groups, in the order of the pairs
+  std::vector<std::vector<int>> intersects(all_bodies.size());  // groups, in the order of the pairs
   for (const MechanismPair& pair : all_pairs) {
-    std::vector<int>& groups = meets[static_cast<std::size_t>(pair.body)];
+    std::vector<int>& groups = intersects[static_cast<std::size_t>(pair.body)];
     const int group = group_of_obstacle[static_cast<std::size_t>(pair.obstacle)];
     if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
   }
@@ -52,10 +52,10 @@ JoinedScene::JoinedScene(std::span<const MechanismBody> all_bodies,
     if (std::exchange(is_added[body], 1) != 0) continue;
     const int frame = all_bodies[body].frame;
     const auto [group, is_new] =
-        body_groups.emplace(std::pair(frame, meets[body]), static_cast<int>(bodies.size()));
+        body_groups.emplace(std::pair(frame, intersects[body]), static_cast<int>(bodies.size()));
     if (is_new) {
       bodies.push_back({.frame = frame});
-      for (const int obstacle : meets[body]) pairs.push_back({group->second, obstacle});
+      for (const int obstacle : intersects[body]) pairs.push_back({group->second, obstacle});
     }
     add(bodies[static_cast<std::size_t>(group->second)], pair.body, *all_bodies[body].tree,
         all_bodies[body].frame_from_tree);

@@ -200,8 +200,8 @@ class BlockPair {
     if (near == 0) return 0;
     const float sure = limit - margin_;
     unsigned hits = sure > 0.0F ? at_most(squared, sure * sure) & near : 0U;
-    for (unsigned doubtful = near & ~hits; doubtful != 0; doubtful &= doubtful - 1) {
-      const int lane = __builtin_ctz(doubtful);
+    for (unsigned uncertain = near & ~hits; uncertain != 0; uncertain &= uncertain - 1) {
+      const int lane = __builtin_ctz(uncertain);
       if (confirm_(context_, lane, pair_, leaves.body, leaves.obstacle)) hits |= 1U << lane;
     }
     return hits;

@@ -179,7 +179,7 @@ struct Kernels {
   // What there is between the pair's sides with the body grown, as placed: nothing; two leaves
   // that touch as they are, ungrown, for sure or confirmed; or neither. Ends at the first two
   // leaves that are not apart.
-  KernelFinding (*look)(const KernelProblem& problem, KernelPair pair, float inflation,
+  KernelFinding (*test)(const KernelProblem& problem, KernelPair pair, float inflation,
                         const KernelScratch& scratch, ConfirmContact confirm, void* context);
 };
 

@@ -100,7 +100,7 @@ class InflatedContact {
   bool touch_ = false;
 };
 
-KernelFinding look(const KernelProblem& problem, KernelPair pair, float inflation,
+KernelFinding test(const KernelProblem& problem, KernelPair pair, float inflation,
                    const KernelScratch& scratch, ConfirmContact confirm, void* context) {
   const KernelBody& body = problem.bodies[pair.body];
   const KernelObstacle& obstacle = problem.obstacles[pair.obstacle];
@@ -117,7 +117,7 @@ KernelFinding look(const KernelProblem& problem, KernelPair pair, float inflatio
   return leaves.touch() ? KernelFinding::kTouch : KernelFinding::kNear;
 }
 
-constexpr Kernels kKernels = {&check, &check_block, &place, &look};
+constexpr Kernels kKernels = {&check, &check_block, &place, &test};
 
 }  // namespace
 }  // namespace spherule::internal::SPHERULE_KERNEL

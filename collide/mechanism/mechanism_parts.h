@@ -55,10 +55,10 @@ struct MechanismCheck::Scratch::Memory {
   std::optional<internal::CoherenceCache> motion;
 };
 
-// Asks for the spheres of joined sets as the caller knows them.
+// Reports the spheres of joined sets as the caller knows them.
 struct MechanismCheck::Translator {
   const internal::JoinedScene& scene;
-  Ask ask;
+  ConfirmFunction confirm_function;
   void* context;
 
   static bool confirm(void* translator, std::int32_t lane, internal::KernelPair pair,
@@ -69,7 +69,8 @@ struct MechanismCheck::Translator {
     const internal::SphereOrigin& obstacle =
         in.scene.obstacles[static_cast<std::size_t>(pair.obstacle)]
             .origins[static_cast<std::size_t>(obstacle_sphere)];
-    return in.ask(in.context, lane, {{body.part, obstacle.part}, body.sphere, obstacle.sphere});
+    return in.confirm_function(in.context, lane,
+                               {{body.part, obstacle.part}, body.sphere, obstacle.sphere});
   }
 };
 

@@ -76,7 +76,7 @@ double MovedSphere::way(const double* const (&ends)[kEnds]) const {
       }
       size = std::max(size, std::abs(change));
     }
-    // From the tip: a turn meets the ways of itself, half, and of all beyond it.
+    // From the tip: a rotation intersects the ways of itself, half, and of all beyond it.
     const double way = size * joint.reach;
     if (!joint.prismatic) second += size * (0.5 * way + ways);
     ways += way;

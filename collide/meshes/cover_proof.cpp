@@ -74,12 +74,13 @@ class Sharing {
   const Vector3d& open_point() const { return open_point_; }
 
  private:
-  // Pieces for each sphere that meets the triangle, and halvings of one piece: see share_out().
+  // Pieces for each sphere that intersects the triangle, and halvings of one piece: see
+  // share_out().
   static constexpr std::size_t kPieces = 4096;
   static constexpr int kDepth = 80;
 
-  // Whether the spheres cover the piece, whose corners may be off by `error`; those that may meet
-  // it are candidates_ from `first` on.
+  // Whether the spheres cover the piece, whose corners may be off by `error`; those that may
+  // intersect it are candidates_ from `first` on.
   bool share(const Triangle& piece, std::size_t first, int depth, double error) {
     const std::size_t end = candidates_.size();
     const std::int32_t owner = smallest_sphere_around(piece, first, error);

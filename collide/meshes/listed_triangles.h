@@ -18,7 +18,7 @@ namespace spherule::internal {
 // the two frames: x = Ra x' + d / 2 and y = Rb y' - d / 2, so that X - Y is the offset of
 // relative_pose.h. The products err by 65.2 u |x'| and 65.2 u |y'|, the rounding of d by u |d|, the
 // two sums by u (|x'| + |y'| + |d|): 66.2 u (|x'| + |y'|) + 2 u |d| < 68 u S. Every corner lies in
-// a sphere of its cover, so that |x'| + |y'| + |d| <= S. That is what triangle_contact() asks for,
+// a sphere of its cover, so that |x'| + |y'| + |d| <= S. That is what triangle_contact() requires,
 // with pad = leaf_pad().
 //
 // Images of points in the other mesh's frame err by less than 136 u S, and differences from the
@@ -37,7 +37,7 @@ class ListedTriangles {
                   const Pose& world_from_b, const RelativePose& pose);
 
   // Two triangles that touch or, at least, are not proved to be apart: under spheres that were
-  // asked for, or, if there are none, none under these have a point in common within both spheres.
+  // requested, or, if there are none, none under these have a point in common within both spheres.
   std::optional<TrianglePair> touching(std::int32_t sphere_a, std::int32_t sphere_b) const;
 
   // As triangle_depth() says.

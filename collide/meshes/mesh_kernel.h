@@ -81,8 +81,8 @@ struct MeshSpheres {
 // A sphere and a triangle that single precision cannot tell apart: whether they touch.
 using ConfirmTriangle = bool (*)(void* context, std::int32_t sphere, std::int32_t triangle);
 
-// True if a sphere meets a triangle for sure, a corner being inside by `margin` at least, or is
-// confirmed to; false if none does.
+// True if a sphere intersects a triangle for sure, a corner being inside by `margin` at least, or
+// is confirmed to; false if none does.
 using MeshKernel = bool (*)(const MeshView& mesh, const MeshSpheres& spheres, float margin,
                             MeshTasks& tasks, ConfirmTriangle confirm, void* context);
 

@@ -10,7 +10,7 @@
 namespace spherule::internal {
 
 MeshKernel avx2_mesh_kernel() {
-  return &mesh_avx2::meets;
+  return &mesh_avx2::intersects;
 }
 
 }  // namespace spherule::internal

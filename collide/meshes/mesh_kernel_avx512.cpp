@@ -10,7 +10,7 @@
 namespace spherule::internal {
 
 MeshKernel avx512_mesh_kernel() {
-  return &mesh_avx512::meets;
+  return &mesh_avx512::intersects;
 }
 
 }  // namespace spherule::internal

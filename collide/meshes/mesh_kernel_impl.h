@@ -257,8 +257,8 @@ class MeshSearch {
   void* context_;
 };
 
-bool meets(const MeshView& mesh, const MeshSpheres& spheres, float margin, MeshTasks& tasks,
-           ConfirmTriangle confirm, void* context) {
+bool intersects(const MeshView& mesh, const MeshSpheres& spheres, float margin, MeshTasks& tasks,
+                ConfirmTriangle confirm, void* context) {
   return MeshSearch(mesh, spheres, margin, tasks, confirm, context).run(spheres.root);
 }
 

@@ -10,7 +10,7 @@
 namespace spherule::internal {
 
 MeshKernel portable_mesh_kernel() {
-  return &mesh_portable::meets;
+  return &mesh_portable::intersects;
 }
 
 }  // namespace spherule::internal

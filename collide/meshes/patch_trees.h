@@ -57,13 +57,13 @@ inline unsigned overlaps(const PatchNode& node, const PatchBox& box) {
   for (int k = 0; k < 3; ++k) {
     const __m128 center = _mm_set1_ps(box.center[k]);
     const __m128 half = _mm_set1_ps(box.half[k]);
-    const auto meets = [&](int first) {
+    const auto intersects = [&](int first) {
       const __m128 gap = _mm_sub_ps(_mm_load_ps(node.center[k] + first), center);
       const __m128 limit = _mm_add_ps(_mm_load_ps(node.half[k] + first), half);
       return _mm_cmple_ps(_mm_andnot_ps(sign, gap), limit);
     };
-    low = _mm_and_ps(low, meets(0));
-    high = _mm_and_ps(high, meets(4));
+    low = _mm_and_ps(low, intersects(0));
+    high = _mm_and_ps(high, intersects(4));
   }
   return static_cast<unsigned>(_mm_movemask_ps(low) | _mm_movemask_ps(high) << 4);
 #else

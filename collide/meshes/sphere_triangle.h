@@ -29,7 +29,7 @@ namespace spherule::internal {
 //     Both are below 2^-48 S < 2^-25 d.
 //   plane: the normal, from two edges of at most L, errs by less than 8 u L^2 and is at least 2^-24
 //     L^2 long: e < 2^-26 d.
-// Axes whose squares might underflow are not asked: with L as it is they are none of these.
+// Axes whose squares might underflow are not queried: with L as it is they are none of these.
 bool are_apart(const Eigen::Vector3d& p, const std::array<Eigen::Vector3d, 3>& triangle,
                double reach);
 

@@ -17,9 +17,9 @@ namespace spherule::internal {
 // Leaf test of a sphere against a triangle, in the triangle's frame.
 //
 // The image p of the sphere's centre errs by less than 136 u S (relative_pose.h), and `lower`
-// bounds the distance from p to the triangle. So a sphere of radius r that meets the triangle has
-// lower <= r + 136 u S, and the pad of 144 u S covers the rounding of the sum. Conversely a hit has
-// an exact gap of at most 144 u S + 136 u S + (upper - lower): the last term is the width of
+// bounds the distance from p to the triangle. So a sphere of radius r that intersects the triangle
+// has lower <= r + 136 u S, and the pad of 144 u S covers the rounding of the sum. Conversely a hit
+// has an exact gap of at most 144 u S + 136 u S + (upper - lower): the last term is the width of
 // the interval that point_triangle_distance() returns.
 //
 // That is more than the node tests are proved to keep, so the spheres themselves must touch
@@ -28,7 +28,7 @@ namespace spherule::internal {
 //
 // The last term has no bound that could be relied on. are_apart() has one, so that filters in
 // single precision never find apart what is accepted here: it loses no contact with r + 136 u S and
-// the 8 u S that it asks for, and 160 u S covers the rounding of the sum.
+// the 8 u S that it requires, and 160 u S covers the rounding of the sum.
 //
 // A clearance c adds c (1 + 32 u) to both pads: S + c takes the place of S, of whose 8 u c and of
 // the roundings of the sum, 2 u c, it leaves nothing over.

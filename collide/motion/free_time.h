@@ -24,15 +24,15 @@ struct Limits {
   }
 };
 
-// What one look at two placed trees has found.
-struct Look {
+// What one evaluation of two placed trees has found.
+struct Evaluation {
   bool complete = false;  // not cut short by a limit
   bool contact = false;   // the canonical test with the clearance accepts `pair`
   SpherePair pair;
   // Every pair of spheres stays farther apart than the clearance for this long, whichever way time
-  // goes: what was asked for, or a half, a quarter ... of it, or 0 if nothing is known.
+  // goes: what was requested, or a half, a quarter ... of it, or 0 if nothing is known.
   double free_time = 0.0;
-  // The pair of leaves that shortened the time last, worth a try in the next look.
+  // The pair of leaves that shortened the time last, worth a try in the next evaluation.
   std::optional<NodePair> decisive;
 };
 
@@ -43,7 +43,7 @@ struct Look {
 //   double free_time(center_a, center_b, gap)     for two leaves: in this time they do not use up
 //                                                 the gap; the bound above does by the time of
 //                                                 (1 + 96 u) times as much at the latest.
-// The time asked for is halved until no leaf has less. So it is the same in whatever order leaves
+// The time requested is halved until no leaf has less. So it is the same in whatever order leaves
 // are visited and whatever the trees above them are: a node is pruned only if all its leaves, with
 // all rounding, have at least the time known. Halves, because to narrow the time down to the exact
 // one takes up to twice as long: it means to search among all leaves of nearly the same.
@@ -65,22 +65,22 @@ class FreeTime {
         prune_(taken_ + 4.0 * pose.gap_error()),
         useful_(useful),
         limits_(limits) {
-    look_.free_time = wanted;
+    evaluation_.free_time = wanted;
   }
 
   // A pair of leaves to `try_first`, if any, only saves work.
-  Look run(std::optional<NodePair> try_first) {
+  Evaluation run(std::optional<NodePair> try_first) {
     if (!limits_.afford(try_first ? 2 : 1)) return {};
     limits_.cost.leaf_tests += a_.is_leaf(0) && b_.is_leaf(0) ? 1u : 0u;
     if (try_first) {
       ++limits_.cost.leaf_tests;
       leaves(*try_first);
     }
-    look_.complete = look_.contact ||
-                     !pose_.may_touch(a_.sphere(0), b_.sphere(0), margin(NodePair(0, 0))) ||
-                     traverse(a_, b_, pose_, *this) || look_.contact;
-    if (!look_.complete || look_.contact) look_.free_time = 0.0;
-    return look_;
+    evaluation_.complete = evaluation_.contact ||
+                           !pose_.may_touch(a_.sphere(0), b_.sphere(0), margin(NodePair(0, 0))) ||
+                           traverse(a_, b_, pose_, *this) || evaluation_.contact;
+    if (!evaluation_.complete || evaluation_.contact) evaluation_.free_time = 0.0;
+    return evaluation_;
   }
 
   bool afford(const OpenedPair& opened, const auto& leaf_pairs) {
@@ -90,31 +90,31 @@ class FreeTime {
   }
 
   double margin(NodePair pair) const {
-    if (look_.free_time == 0.0) return clearance_;
+    if (evaluation_.free_time == 0.0) return clearance_;
     const double way =
-        rate_.approach(a_.sphere(pair.index(0)), b_.sphere(pair.index(1)), look_.free_time);
+        rate_.approach(a_.sphere(pair.index(0)), b_.sphere(pair.index(1)), evaluation_.free_time);
     return way * kWayUp + prune_;
   }
 
-  bool nearest_first() const { return look_.free_time > 0.0; }
+  bool nearest_first() const { return evaluation_.free_time > 0.0; }
 
   bool leaves(NodePair pair) {
     const Sphere a = a_.sphere(pair.index(0));
     const Sphere b = b_.sphere(pair.index(1));
     if (pose_.touches(a, b, clearance_)) {
-      look_.contact = true;
-      look_.decisive = pair;
-      look_.pair = {a_.sphere_index(pair.index(0)), b_.sphere_index(pair.index(1))};
+      evaluation_.contact = true;
+      evaluation_.decisive = pair;
+      evaluation_.pair = {a_.sphere_index(pair.index(0)), b_.sphere_index(pair.index(1))};
       return false;
     }
-    if (look_.free_time == 0.0) return true;
+    if (evaluation_.free_time == 0.0) return true;
     // The factor covers the roundings of the gap and of the difference.
     const double gap = pose_.gap(a, b) * kRelativeDown - taken_;
     const double time = gap > 0.0 ? rate_.free_time(a.center, b.center, gap * kRelativeDown) : 0.0;
-    if (look_.free_time > time) look_.decisive = pair;
-    while (look_.free_time > time) {
-      look_.free_time *= 0.5;
-      if (look_.free_time < useful_) look_.free_time = 0.0;
+    if (evaluation_.free_time > time) evaluation_.decisive = pair;
+    while (evaluation_.free_time > time) {
+      evaluation_.free_time *= 0.5;
+      if (evaluation_.free_time < useful_) evaluation_.free_time = 0.0;
     }
     return true;
   }
@@ -135,7 +135,7 @@ class FreeTime {
   const double prune_;
   const double useful_;
   Limits& limits_;
-  Look look_;
+  Evaluation evaluation_;
 };
 
 }  // namespace spherule::internal

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Two looks at a pair of trees before a traversal is set up: is the root sphere of one apart from
+// Two tests of a pair of trees before a traversal is set up: is the root sphere of one apart from
 // the box around the spheres of the other, and are the two boxes apart along one of their six axes?
 // Most pairs that are a fifth of their size from each other or more end here. The nine axes that
 // are products of two edges are left out, as is usual: they separate few pairs more.
@@ -63,7 +63,7 @@ inline bool sphere_apart_from_box(const SphereTree& a, const Pose& world_from_a,
   return squared > limit * limit;
 }
 
-// The first look: the smaller sphere and the box of the other tree, since a box fits a body the
+// The first test: the smaller sphere and the box of the other tree, since a box fits a body the
 // better the longer it is.
 inline bool far_apart(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                       const Pose& world_from_b, double clearance = 0.0) {
@@ -97,8 +97,8 @@ inline double box_gap(const SphereTree& a, const SphereTree& b, const RelativePo
   return widest - (kBoxError * pose.scene_size() + kUnderflow);
 }
 
-// The second look: true only if no sphere of a comes within the clearance of one of b by the
-// canonical test. Of boxes around single spheres nothing is asked: their spheres say more.
+// The second test: true only if no sphere of a comes within the clearance of one of b by the
+// canonical test. Of boxes around single spheres nothing is queried: their spheres say more.
 inline bool boxes_apart(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
                         double clearance = 0.0) {
   if (a.is_leaf(0) && b.is_leaf(0)) return false;

@@ -19,7 +19,7 @@ class Deadline {
         end_(limited_ ? std::chrono::steady_clock::now() + limit
                       : std::chrono::steady_clock::time_point()) {}
 
-  // `tests` counts up from call to call. The first call looks at the clock, so that a limit of zero
+  // `tests` counts up from call to call. The first call reads the clock, so that a limit of zero
   // ends a query before it starts.
   bool passed(std::uint64_t tests) {
     if (!limited_ || tests < next_) return false;

@@ -12,13 +12,13 @@
 
 namespace spherule::internal {
 
-// A policy says what a search of one tree looks at:
-//   bool afford(first, count)   before the nodes first .. first + count - 1 are looked at: false
+// A policy says what a search of one tree examines:
+//   bool afford(first, count)   before the nodes first .. first + count - 1 are examined: false
 //                               ends the search;
 //   bool enters(node)           whether what is below a node (or the leaf itself) matters;
 //   bool leaf(node)             a leaf that was entered: false ends the search.
 
-// Depth-first. True if nothing is left to look at, false if the policy ended it. The stack holds at
+// Depth-first. True if nothing is left to examine, false if the policy ended it. The stack holds at
 // most depth (B - 1) + 1 entries for B children a node: opening one leaves B in its place, of which
 // all but one wait while that one is finished.
 template <class Policy>

@@ -46,8 +46,8 @@
 //
 // Clearance c >= 0. Both tests also answer whether spheres come within c: the canonical test adds
 // c (1 + 8 u) to its pad, the node test c' (1 + 32 u) for a margin c'.
-//   - never missed: D <= ra + rb + c now asks for c (1 + 8 u)(1 - u)(1 - 2.5 u) >= c (1 + 1.5 u),
-//     beside what it asked for.
+//   - never missed: D <= ra + rb + c now requires c (1 + 8 u)(1 - u)(1 - 2.5 u) >= c (1 + 1.5 u),
+//     beside what is required.
 //   - little extra: the gap is at most kSlack S + c (1 + 8 u)(1 + u)(1 + 2.5 u), hence at most
 //     kSlack S + c + 16 u c.
 //   - a node test with the margin c' keeps every pair of spheres whose gap is at most kSlack S + c'

@@ -43,8 +43,8 @@ std::vector<std::array<int, 3>> corners_by_position(const TriangleMesh& mesh) {
   return result;
 }
 
-// The winding numbers of the closed surfaces that a ray meets, as far as there is room: of those
-// with the lowest numbers from `first` on.
+// The winding numbers of the closed surfaces that a ray intersects, as far as there is room: of
+// those with the lowest numbers from `first` on.
 class WindingNumbers {
  public:
   explicit WindingNumbers(std::int32_t first) : first_(first) {}
@@ -96,7 +96,7 @@ bool count_crossings(const MeshTree& mesh, const std::vector<TriangleRole>& role
   stack[top++] = 0;
   while (top > 0) {
     const auto node = static_cast<std::size_t>(stack[--top]);
-    if (!ray.may_meet(tree.sphere(node))) continue;
+    if (!ray.may_intersect(tree.sphere(node))) continue;
     if (!tree.is_leaf(node)) {
       assert(top + static_cast<std::size_t>(tree.child_count(node)) <= stack.size());
       for (std::int32_t i = 0; i < tree.child_count(node); ++i) {

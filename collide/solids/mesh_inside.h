@@ -50,7 +50,7 @@ class MeshInside {
   // A winding number is the sum of the signed crossings of a ray with the triangles of a surface.
   // Each crossing is decided with the error of the point counted, so that the sum is that of the
   // ray from the exact point; a ray that passes an edge too near is given up for another one. One
-  // ray serves all surfaces, unless it meets more than 64. Does not allocate.
+  // ray serves all surfaces, unless it intersects more than 64. Does not allocate.
   bool contains(const MeshTree& tree, const Eigen::Vector3d& point, double error) const {
     return find(tree, point, error).value_or(true);
   }

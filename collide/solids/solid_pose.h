@@ -8,7 +8,7 @@
 // up to that. The signed distance s is no steeper than 1 and errs by 8 u (|x| + |d| + reach) where
 // the image stands: together by less than 144 u S.
 //   - Canonical test, s <= r + pad + c (1 + 32 u) for a clearance c. Never missed: exactly
-//     s <= r + c asks for pad >= 144 u S and the rounding of the three terms of the limit, 1 u of
+//     s <= r + c requires pad >= 144 u S and the rounding of the three terms of the limit, 1 u of
 //     each of the first two and 3 u of c: kLeafPad = 152 u S. Little extra: s exceeds r + c by at
 //     most (152 + 144 + 8) u S + 40 u c: kSlack = 304 u S.
 //   - Node test: the sphere of a node contains those of its leaves, so that its s - r is no larger

@@ -14,11 +14,11 @@ namespace spherule::internal {
 // for a search that rules out what is not near the solid.
 //
 // Proof. What is within growth() of a triangle is in its sphere. A point of the inside lies in the
-// root cell, which contains inside().box(). A cell whose sphere meets no triangle lies, whole, on
-// one side: it is left out only if its centre is outside. One whose sphere may meet a triangle is
-// left out if a triangle's sphere holds all of it (those of the tree's nodes hold the spheres below
-// them, so that the search for it loses none); else it is split, until it is small or there are too
-// many, and then its sphere is kept.
+// root cell, which contains inside().box(). A cell whose sphere intersects no triangle lies, whole,
+// on one side: it is left out only if its centre is outside. One whose sphere may intersect a
+// triangle is left out if a triangle's sphere holds all of it (those of the tree's nodes hold the
+// spheres below them, so that the search for it loses none); else it is split, until it is small or
+// there are too many, and then its sphere is kept.
 std::vector<Sphere> spheres_around(const SolidMesh& solid);
 
 }  // namespace spherule::internal

@@ -14,13 +14,14 @@ namespace spherule::internal {
 
 // Which spheres of a placed tree are inside a placed mesh.
 //
-// A sphere that no triangle meets lies on one side of the surface, whole; so do two of them that
-// share a point. So all below a node are outside if its sphere meets no triangle and its centre is
-// outside; and a sphere that meets no triangle is outside if it overlaps a sphere that is. Rays are
-// cast for what remains.
+// A sphere that no triangle intersects lies on one side of the surface, whole; so do two of them
+// that share a point. So all below a node are outside if its sphere intersects no triangle and its
+// centre is outside; and a sphere that intersects no triangle is outside if it overlaps a sphere
+// that is. Rays are cast for what remains.
 //
 // In the terms of relative_pose.h, a centre's image errs by at most 136 u T. MeshInside::contains()
-// is given that as 144 u T. A node's sphere of radius R meets no triangle if the image is more than
+// is given that as 144 u T. A node's sphere of radius R intersects no triangle if the image is more
+// than
 // R
 // + 160 u T from all of them, which leaves 24 u T for the roundings of the distance to the sphere
 // of a node of the mesh: 3.5 u of at most 2 T, and 2 u T of the sum.
@@ -38,10 +39,11 @@ class SpheresInside {
   bool certainly_contains(const Eigen::Vector3d& in_mesh) const;
   // True only if no point of the inside is in the sphere, which is off by error().
   bool is_outside_box(const Eigen::Vector3d& in_mesh, double radius) const;
-  // True only if no triangle meets the sphere, which is off by error().
+  // True only if no triangle intersects the sphere, which is off by error().
   bool is_clear(const Eigen::Vector3d& in_mesh, double radius) const;
 
-  // The first sphere that is inside, of a tree of whose spheres none meets a triangle; -1 if none.
+  // The first sphere that is inside, of a tree of whose spheres none intersects a triangle; -1 if
+  // none.
   std::int32_t find() const;
 
  private:

@@ -28,7 +28,7 @@ class Ray {
       : point_(point), error_(error), direction_(direction) {}
 
   // False only if it does not meet the sphere.
-  bool may_meet(const Sphere& sphere) const {
+  bool may_intersect(const Sphere& sphere) const {
     const Eigen::Vector3d c = sphere.center - point_;
     const double pad = dot_error(c.norm() * kRelativeUp) + kUnderflow;
     const double reach = sphere.radius * kRelativeUp + pad;
@@ -38,7 +38,7 @@ class Ray {
 
   // If it passes through the triangle, +1 where it comes out of the side from which the corners are
   // seen counter-clockwise and -1 where it goes in there; 0 if it passes by. Nothing where that is
-  // in doubt.
+  // uncertain.
   std::optional<int> crossing(const Triangle& triangle) const {
     const Eigen::Vector3d a = triangle[0] - point_;
     const Eigen::Vector3d b = triangle[1] - point_;

@@ -44,7 +44,7 @@ double least_overlap(double length, double scene_size) {
   return kOverlap * scene_size * scene_size * length + kUnderflow;
 }
 
-// By the axes that are needed only where the generic ones leave a doubt.
+// By the axes that are needed only where the generic ones are uncertain.
 bool specially_apart(const Triangle& a, const Triangle& b, double pad) {
   const auto apart_along = [&](const Vector3d& axis) {
     return separates(axis, gap_along(axis, a, b), pad);

@@ -49,7 +49,7 @@ enum class TriangleContact {
 // 138 u S, where L <= S is the longest; so |n - N| <= 138 u S (2 L) + 4 u L^2 + ... <= 282 u S L,
 // and the projections on N differ from those computed by that times |X - Y| <= S and 72 u |n| S
 // with |n| <= L^2 <= L S more: 354 u S^2 L. kOverlap = 400 leaves the rest. A zero axis never
-// overlaps by more than that, so degenerate triangles are at most in doubt.
+// overlaps by more than that, so degenerate triangles are at most uncertain.
 //
 // How deep. Where they overlap along all of these axes by more than a depth times the axis' length,
 // a sphere of that radius about the origin lies in the difference: a triangle that moves, rigidly
@@ -60,7 +60,7 @@ enum class TriangleContact {
 // a normal, edges by a cross product, coplanar ones by the normals of their edges in the plane, and
 // any by the direction from a corner to the nearest point of the other triangle. That direction is
 // off by some u L / gap, so where nothing else separates (corner against corner of needles, say)
-// the doubt may reach to about sqrt(u) L; elsewhere it is about a pad wide.
+// the uncertainty may reach to about sqrt(u) L; elsewhere it is about a pad wide.
 TriangleContact triangle_contact(const Triangle& a, const Triangle& b, double pad,
                                  double scene_size);
 

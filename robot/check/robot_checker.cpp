@@ -59,7 +59,7 @@ bool is_within_limits(const RobotModel& robot, std::span<const double> configura
 }
 
 // Up to this fraction a motion that starts within the limits stays there; above 1 if it does not
-// leave them. What rounding leaves in doubt at the end counts as inside it.
+// leave them. What rounding leaves uncertain at the end counts as inside it.
 double leaves_limits_at(const RobotModel& robot, std::span<const double> from,
                         std::span<const double> to) {
   double first = std::numeric_limits<double>::infinity();
@@ -99,7 +99,7 @@ void RobotChecker::require_own(const Scratch& scratch) const {
 }
 
 // Numbers that are not finite are refused where that costs nothing: by StaticTrees, and where
-// BodyPairs::in_filter_range() has been asked.
+// BodyPairs::in_filter_range() has been queried.
 bool RobotChecker::check_config(std::span<const double> configuration, Scratch& scratch) const {
   require_own(scratch);
   require_size(parts_->robot, configuration);
@@ -218,7 +218,7 @@ EdgeResult RobotChecker::check_within_limits(std::span<const double> from,
   if (end == 1.0 && request.max_configurations > 0 && parts_->standing &&
       parts_->pairs.tested() == 0) {
     using Finding = internal::StaticTrees::AlongFinding;
-    switch (parts_->standing->look_along(from, to, !request.first, *memory.standing)) {
+    switch (parts_->standing->check_along(from, to, !request.first, *memory.standing)) {
       case Finding::kFree:
         return {.verdict = Verdict::kFree, .free_until = 1.0, .configurations = 1};
       case Finding::kTouchesInTheMiddle:

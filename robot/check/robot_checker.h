@@ -27,7 +27,7 @@ struct RobotCheckerOptions {
   bool enforce_limits = false;
   InstructionSet instructions = best_instruction_set();
   // Confirmation on the triangles (opt-in). A body or an obstacle whose tree is the cover() of one
-  // of these counts as the mesh with its inside (mesh_contact.h), the padding that is asked for
+  // of these counts as the mesh with its inside (mesh_contact.h), the padding that is requested
   // around it, against all that it is tested with: a contact of its spheres counts only if the mesh
   // touches, in configurations as on motions. Free stays certain, where the spheres cover the
   // inside, too, as covers of the simplifier do; false alarms of coarse covers vanish. Bodies of
@@ -59,9 +59,9 @@ struct CheckedContact {
   CheckedBody first;   // a body
   CheckedBody second;  // another, or an obstacle
   // How much is missing, at least, for the two named spheres (or the sphere and the solid) to keep
-  // the padding that is asked for; rounded downward. Below zero only by rounding.
+  // the padding that is requested; rounded downward. Below zero only by rounding.
   double overlap_depth = 0.0;
-  double padding = 0.0;  // asked for, of both bodies and the pair together; rounded upward
+  double padding = 0.0;  // requested, of both bodies and the pair together; rounded upward
   Eigen::Vector3d world_point = Eigen::Vector3d::Zero();  // between the two, up to rounding
   // No contact: the spheres overlap, but the two bodies are proved free (RobotScene::reason()).
   bool is_proved_free = false;
@@ -91,7 +91,7 @@ struct RobotClearance {
 // Configurations and motions are evaluated in single precision with proved margins, eight side by
 // side; what these leave undecided is decided by the queries of the library in double precision:
 // verdicts of configurations are the same on every instruction set. Of motions, what is proved and
-// where a contact is found may differ by rounding and by what the scratch was asked before.
+// where a contact is found may differ by rounding and by what the scratch was queried before.
 class RobotChecker {
  public:
   // The robot that is checked.
@@ -136,7 +136,7 @@ class RobotChecker {
 
   // Whether the straight motion in joint space is free at every point of it: proved (G6), for the
   // exact motion as for the poses that forward_kinematics() computes for configurations on it.
-  // Where limits are enforced, leaving them is a contact. Unless the first contact is asked for,
+  // Where limits are enforced, leaving them is a contact. Unless the first contact is requested,
   // free_until may be 0 where one is found. Throws Error also for a position beyond
   // kLargestPosition and for a resolution that is not above zero.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
@@ -156,7 +156,7 @@ class RobotChecker {
 
   // Whether any two of the spheres and solids that are tested against each other come within
   // `clearance` (metres) of touching: never false if they do in exact arithmetic. Proofs of pairs
-  // say nothing of clearances: their spheres are asked. Throws Error, too, as require_clearance()
+  // say nothing of clearances: their spheres are queried. Throws Error, too, as require_clearance()
   // does.
   bool within(std::span<const double> configuration, double clearance, Scratch& scratch) const;
 
@@ -165,10 +165,10 @@ class RobotChecker {
   RobotClearance clearance(std::span<const double> configuration, Scratch& scratch) const;
 
   // What touches what: one contact, the deepest, for each two bodies, and each body and obstacle,
-  // that touch. Empty exactly if all are free of each other, unless what is proved free is asked
-  // for: the limits are not asked. Where a mesh confirms the contact of two bodies, the spheres are
-  // the deepest two whose triangles touch if both are meshes without padding, otherwise of all.
-  // Allocates.
+  // that touch. Empty exactly if all are free of each other, unless what is proved free is
+  // requested: the limits are not queried. Where a mesh confirms the contact of two bodies, the
+  // spheres are the deepest two whose triangles touch if both are meshes without padding, otherwise
+  // of all. Allocates.
   std::vector<CheckedContact> explain(std::span<const double> configuration, Scratch& scratch,
                                       const ExplainRequest& request = {}) const;
 

@@ -68,7 +68,7 @@ void RobotScene::require_body(std::string_view name) const {
 
 void RobotScene::require_pair(std::string_view body, std::string_view other) const {
   require_body(body);
-  if (body == other) throw Error(std::string(body), "it cannot meet itself");
+  if (body == other) throw Error(std::string(body), "it cannot collide with itself");
   if (!is_body(other) && obstacles_.find(other) == obstacles_.end()) {
     throw Error(std::string(other), "there is no link, attached object or obstacle of that name");
   }

@@ -45,7 +45,7 @@ struct Region {
   std::string name;
 };
 
-// A robot and what is around it, to be edited; snapshot() makes what is asked. Lengths in metres.
+// A robot and what is around it, to be edited; snapshot() makes what is queried. Lengths in metres.
 //
 // Names. Links, attached objects and obstacles share one space of names: a name that is taken, or
 // is not there, is an Error that says so. Links and attached objects are bodies.
@@ -118,7 +118,7 @@ class RobotScene {
   void forbid_contact(std::string_view body, std::string_view other);
   void forbid_contact(const Region& region, std::string_view other);
 
-  // What is asked, as of now: later edits do not change it. Trees and meshes are shared, not
+  // What is queried, as of now: later edits do not change it. Trees and meshes are shared, not
   // copied, but for those of bodies that have padding or regions. Throws Error for what reaches
   // too far to be computed with, a mesh of the options that is missing, and instructions that this
   // machine has not got.
@@ -148,7 +148,7 @@ class RobotScene {
   bool is_body(std::string_view name) const;
   void require_free_name(const std::string& name) const;
   void require_body(std::string_view name) const;
-  // That the two can meet: a body, and an obstacle or another body.
+  // That the two can collide: a body, and an obstacle or another body.
   void require_pair(std::string_view body, std::string_view other) const;
   void require_region(const Region& region) const;
   // The trees whose spheres a body consists of.

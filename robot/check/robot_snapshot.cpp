@@ -113,7 +113,7 @@ class RobotScene::Snapshot {
     return found == options_.meshes.end() ? nullptr : *found;
   }
 
-  // The pieces of a body, made when they are asked for first. None where no sphere is left.
+  // The pieces of a body, made when they are requested first. None where no sphere is left.
   std::vector<int> pieces_of(std::size_t body, const Regions& left_out, double padding) {
     std::vector<int> result;
     for (std::size_t tree = 0; tree < bodies_[body].trees.size(); ++tree) {

@@ -30,7 +30,7 @@ LinkDescription link_of(const std::string& name, const MeshFile& mesh) {
   return {.name = name, .visual = {}, .collision = {LinkShape{{}, Pose(), mesh}}};
 }
 
-// Makes what is asked of the robot's scene.
+// Makes what is queried from the robot's scene.
 class Preparation {
  public:
   Preparation(RobotModel robot, const SceneDescription& scene, const RobotCoverOptions& cover)

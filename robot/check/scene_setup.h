@@ -31,7 +31,7 @@ std::vector<Sphere> point_spheres(const PointsSource& source);
 struct PreparedScene {
   RobotScene scene;
   // Meshes that are open, and so are surfaces without an inside; attached meshes whose spheres
-  // protrude by more than was asked for.
+  // protrude by more than was requested.
   std::vector<std::string> warnings;
 };
 

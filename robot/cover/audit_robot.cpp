@@ -181,7 +181,7 @@ ConfigurationAudit audit_placed(const PlacedRobot& placed, std::span<const LinkP
   return result;
 }
 
-// How simplify() makes S of a mesh, and looks at its cover.
+// How simplify() makes S of a mesh, and examines its cover.
 struct SimplifiedSolid {
   SimplifiedSolid(const TriangleMesh& mesh, SimplifyOptions& lengths) {
     complete_lengths(lengths, mesh);

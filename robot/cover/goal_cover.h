@@ -12,7 +12,7 @@
 namespace spherule {
 
 // The bodies that the spheres of cover_robot() cover: the meshes of the links, of the geometry that
-// is asked for, welded as asked and each grown by the padding of its link. Throws Error as
+// is requested, welded as requested and each grown by the padding of its link. Throws Error as
 // link_bodies().
 std::vector<LinkBody> covered_bodies(const RobotDescription& robot,
                                      const RobotCoverOptions& options);

@@ -19,11 +19,11 @@ struct LinkError {
 };
 
 // Covers links with spheres, each at its own E, and returns a tree for each; equal for equal input.
-// It is asked for no link twice at once.
+// It is called for no link twice at once.
 using CoverLinks =
     std::function<std::vector<std::shared_ptr<const SphereTree>>(std::span<const LinkError>)>;
 
-// What is asked of E, link by link.
+// What is required of E, link by link.
 struct LinkErrorOptions {
   double goal = 0.01;  // the largest share of free postures that spheres may refuse, in (0, 1)
   // Between these each link gets its E, in metres; each step is finer by the fourth root of 2.

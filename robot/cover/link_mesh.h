@@ -42,7 +42,7 @@ std::span<const LinkShape> link_shapes(const LinkDescription& link, LinkGeometry
 // to t; they lie within `chord_error` of the primitive.
 //
 // Throws Error: as read_mesh(); naming the link, for a scale that is zero or not finite, a
-// primitive of unusable size, a half-space, and a chord error that is not positive or asks for
+// primitive of unusable size, a half-space, and a chord error that is not positive or requires
 // more than 1024 sides around; for coordinates beyond kMaxCoordinate.
 std::optional<TriangleMesh> link_mesh(const LinkDescription& link,
                                       const LinkMeshOptions& options = {});

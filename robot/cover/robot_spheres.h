@@ -32,7 +32,7 @@ struct RobotCoverOptions {
   // E of every link. A centimetre is what planners commonly leave as clearance anyway, and an arm
   // of human size gets a few hundred spheres.
   double max_error = 0.01;
-  // D of every link; 0 chooses 4 E, the natural ratio: 90-degree edges ask for spheres of radius 2
+  // D of every link; 0 chooses 4 E, the natural ratio: 90-degree edges need spheres of radius 2
   // E, and what is narrower than the smallest sphere of a tool made with the same E need not be
   // kept.
   double min_external_diameter = 0.0;

@@ -86,7 +86,7 @@ struct SceneDescription {
 };
 
 // Reads a scene (JSON, docs/scene-file.md). Paths in it are from the folder of the scene file; the
-// files they name are not looked at. Every key must be one that the format knows, so that a word
+// files they name are not examined. Every key must be one that the format knows, so that a word
 // that is misspelt does not place an obstacle elsewhere than it was meant.
 //
 // Throws Error, whose subject is the file and whose reason names the place in it: for a file that

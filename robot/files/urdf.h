@@ -12,7 +12,7 @@ namespace spherule {
 // Where a URDF finds its files.
 struct UrdfOptions {
   // Roots of packages: package://NAME/REST is the file REST below packages[NAME]. A package that is
-  // not given is looked for upwards from the URDF file: a folder with a package.xml of that name,
+  // not given is searched for upwards from the URDF file: a folder with a package.xml of that name,
   // or in such a folder one that is called as the package and has one.
   std::map<std::string, std::filesystem::path> packages{};
   // Whether a visual mesh that is missing is an error. Otherwise its path is what the file names.
@@ -23,7 +23,7 @@ struct UrdfOptions {
 // prismatic, mimics, and the visual and collision shapes of every link: meshes, boxes, cylinders
 // and spheres. Lengths in metres, angles in radians. Links and joints come depth first: a link,
 // then for each joint below it, in the order of the file, what hangs on it. Inertias, materials and
-// whatever else the file holds are not looked at.
+// whatever else the file holds are not examined.
 //
 // Mesh files are named package://PACKAGE/..., file://..., or by a path from the URDF file's folder;
 // they must exist, and are not read. An axis that is not given is (1, 0, 0), and a limit 0. Of a

@@ -90,7 +90,7 @@ class Reader {
     }
   }
 
-  // One level of a foam list, the finest unless another is asked for.
+  // One level of a foam list, the finest unless another is requested.
   void foam(const Json& levels, const SphereReadOptions& options, const std::string& link) {
     gathered.unless(list(levels, link).size() > options.level.value_or(0), link,
                     "has only " + std::to_string(levels.size()) + " levels");

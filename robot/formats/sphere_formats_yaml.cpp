@@ -65,7 +65,7 @@ std::map<std::string, double> read_buffers(const YamlMembers& buffers, SphereGat
   return lengths;
 }
 
-// cuRobo looks at the spheres of the links it is told to and no others.
+// cuRobo examines the spheres of the links it is told to and no others.
 void switch_off_unlisted(const YamlMembers& kinematics, SphereGatherer& gathered) {
   const auto listed = find_member(kinematics, "collision_link_names");
   if (!listed) return;

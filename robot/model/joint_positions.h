@@ -9,7 +9,7 @@
 
 namespace spherule {
 
-// From configurations to what a check made from MovingFrames is asked for, the positions of the
+// From configurations to what a check made from MovingFrames is called with, the positions of the
 // joints that move. Where no joint mimics another, both are the same numbers and nothing is done.
 class JointPositions {
  public:

@@ -121,7 +121,8 @@ void AllowedCollisions::allow_all() {
 void AllowedCollisions::forbid(std::string_view first, std::string_view second) {
   const int a = link(first);
   const int b = link(second);
-  if (a == b) throw Error("link " + names_[static_cast<std::size_t>(a)], "it cannot meet itself");
+  if (a == b)
+    throw Error("link " + names_[static_cast<std::size_t>(a)], "it cannot collide with itself");
   set(a, b, AllowedReason::kTested);
 }
 
@@ -140,8 +141,8 @@ void AllowedCollisions::require_robot(const RobotModel& robot) const {
   const std::vector<std::pair<double, double>> limits = internal::position_limits(robot);
   if (mechanism_fingerprint(robot) != mechanism_ ||
       !std::equal(limits.begin(), limits.end(), limits_.begin(), limits_.end(),
-                  [](const auto& asked, const auto& proved) {
-                    return proved.first <= asked.first && asked.second <= proved.second;
+                  [](const auto& queried, const auto& proved) {
+                    return proved.first <= queried.first && queried.second <= proved.second;
                   })) {
     throw Error("allowed collisions",
                 "pairs in them are proved for a robot with other joints or tighter limits");

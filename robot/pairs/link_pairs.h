@@ -94,7 +94,7 @@ class LinkPairs {
   int tool_link() const { return tool_link_; }
 
   // The pair of two links in either order, or null: rigidly joined, or a link without a body. Who
-  // asks often keeps it: a binary search.
+  // queries often keeps it: a binary search.
   const LinkPair* find(int first, int second) const noexcept;
 
   // Whether two links are proved free in a configuration, or on all of the straight edge between
@@ -121,7 +121,7 @@ class LinkPairs {
 // joints take all positions, but where a mimic follows one, boxes reach from -pi to pi, and the
 // pair is kUnknown even if all of that is free. Pairs with more than 16 joints between them or
 // positions beyond 100 stay kUnknown. Several bodies of a link count together. The trees of the
-// robot's links are not looked at. The proof is in internal/pair_bound.h and
+// robot's links are not examined. The proof is in internal/pair_bound.h and
 // internal/pair_search.h. Throws Error for a body without or with both shapes, a link out of range,
 // and options that are negative or not finite.
 LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Approximate convex decomposition: not conservative. The parts hold the whole surface of the mesh
 // but not always what it encloses; where the surface is concave they stick out, unbounded by the
-// concavity asked for. measure_deviation() tells by how much.
+// concavity requested. measure_deviation() tells by how much.
 #pragma once
 
 #include "mesh/triangle_mesh.h"
@@ -29,7 +29,7 @@ struct ConvexDecomposition {
   // triangles into the faces that FCL's Convex takes, beside the vertices.
   std::vector<TriangleMesh> parts;
   double volume = 0.0;      // sum of the parts'; where they overlap it counts twice
-  MeshDeviation deviation;  // of the parts together, measured; zero if not asked for
+  MeshDeviation deviation;  // of the parts together, measured; zero if not requested
 };
 
 // Shares the triangles out into parts by hierarchical clustering (Mamou and Ghorbel 2009), by HACD

@@ -23,7 +23,7 @@ struct ConvexHullOptions {
   // distances grow the mesh itself.
   double padding = 0.0;
   // How far a vertex may be moved, as a share of the extent of the vertices (and ten paddings), for
-  // the proof to succeed: triangles that are long and thin ask for more than others.
+  // the proof to succeed: triangles that are long and thin require more than others.
   double max_expansion = 1e-6;
 };
 
@@ -41,7 +41,7 @@ struct ConvexHull {
 // also all of the original and all that it encloses. qhull rounds, hence no answer of it is
 // trusted: its vertices are moved away from a point c inside, by the same share each, until every
 // input vertex lies strictly within the plane of every triangle by more than the rounding of the
-// test, and c too. A path from c to an input vertex then meets no triangle, so that both are
+// test, and c too. A path from c to an input vertex then intersects no triangle, so that both are
 // inside. The share is some 1e-15, more for long and flat hulls.
 //
 // Throws Error for a mesh that validate() refuses; for a padding that is negative or not finite;

@@ -29,7 +29,7 @@ struct Decimation {
   // The library's estimate: root of the mean square distance to the planes that met in a vertex.
   // No bound, and often far below the deviation.
   double estimated_error = 0.0;
-  MeshDeviation deviation;  // measured; zero if not asked for
+  MeshDeviation deviation;  // measured; zero if not requested
 };
 
 // Decimates by edge collapses in order of their quadric error (Garland and Heckbert 1997), by

@@ -5,8 +5,8 @@ namespace spherule {
 
 // Which cells of space a method takes.
 enum class Filling {
-  kSolid,   // those that the surface meets and those inside
-  kSurface  // those that the surface meets
+  kSolid,   // those that the surface intersects and those inside
+  kSurface  // those that the surface intersects
 };
 
 }  // namespace spherule

@@ -16,7 +16,7 @@ struct LevelSetPackingOptions {
   // No sphere is smaller; 0 chooses half a step, below which the level set tells nothing.
   double min_radius = 0.0;
   std::size_t max_spheres = 10000;
-  // Points of the inside that are looked at as centres.
+  // Points of the inside that are examined as centres.
   std::size_t candidates = 20000;
   int threads = 0;  // 0: all
 };

@@ -36,7 +36,7 @@ struct MedialSampling {
 
 // What is wanted: a number of spheres, or a protrusion.
 struct MedialAxisOptions {
-  // Wanted number of spheres; not looked at if there is a wanted protrusion.
+  // Wanted number of spheres; not examined if there is a wanted protrusion.
   std::size_t spheres = 512;
   // Wanted protrusion from the solid, in the unit of the mesh; 0: the count is what is wanted.
   double max_protrusion = 0.0;

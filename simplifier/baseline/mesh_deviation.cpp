@@ -81,10 +81,10 @@ class FarthestPoint {
       dropped_ = std::max(dropped_, bound);
       return;
     }
-    // Asked only where the answer tells much: it takes a look at every triangle.
+    // Tested only where the answer tells much: it takes a test of every triangle.
     if (distance > std::min(found_ + tolerance_ / 2.0, radius)) {
       const bool inside = solid_.is_inside(middle);
-      // A sphere about the middle that meets no surface is inside as a whole.
+      // A sphere about the middle that intersects no surface is inside as a whole.
       if (inside && distance > radius) return;
       if (!inside) found_ = std::max(found_, distance);
     }

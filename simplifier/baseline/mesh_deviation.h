@@ -13,7 +13,7 @@ struct DeviationOptions {
   // How far apart lower and upper bound may be at the end, as a share of the box diagonal of both
   // meshes; from 1e-6 to 1.
   double tolerance = 1e-3;
-  // Pieces of surface to look at in either direction before the bounds are left farther apart.
+  // Pieces of surface to examine in either direction before the bounds are left farther apart.
   std::size_t most_pieces = 100'000;
 };
 

@@ -15,7 +15,7 @@ struct OctreeSpheresOptions {
   // of the mesh. In pockets that are filled, see below, it may be more.
   double max_error = 0.0;
   Filling filling = Filling::kSolid;
-  // t: cubes that M grown by this much meets count as the surface's; vertex_error is added.
+  // t: cubes that M grown by this much intersects count as the surface's; vertex_error is added.
   double padding = 0.0;
 };
 
@@ -30,10 +30,11 @@ struct OctreeSpheres {
 // Conservative (with Filling::kSurface: of the surface M only). The sphere tree of Liu, Noborio and
 // Arimoto (1988) and of Palmer and Grimsdale, "Collision Detection for Animation using
 // Sphere-Trees" (1995): an octree over the mesh, with the sphere around every cube that is not
-// empty. A cube that M meets (as in voxelise()) is halved down to the given depth; a cube inside as
-// long as its sphere may protrude by more than those of the smallest cubes. With max_error instead
-// of a depth a cube that M meets is halved only while the bound on its sphere's protrusion, radius
-// plus (minus, if the centre is inside) the distance of the centre to M, is above E.
+// empty. A cube that M intersects (as in voxelise()) is halved down to the given depth; a cube
+// inside as long as its sphere may protrude by more than those of the smallest cubes. With
+// max_error instead of a depth a cube that M intersects is halved only while the bound on its
+// sphere's protrusion, radius plus (minus, if the centre is inside) the distance of the centre to
+// M, is above E.
 //
 // The tree serves the same traversal as any other. The sphere around a cube contains those around
 // its halves, touching them at the corners, so that no other parents are needed than the method's

@@ -31,7 +31,7 @@ void check(const SphereLevels& levels, std::size_t leaves) {
   }
 }
 
-// Encloses the children with the reserve that build_tree_from_levels() asks for.
+// Encloses the children with the reserve that build_tree_from_levels() requires.
 Sphere enclosing(const Sphere& own, std::span<const Sphere> children) {
   if (children.size() == 1 && certainly_encloses(own, children[0])) return own;
   Sphere best = enclosing_sphere(children);

@@ -27,7 +27,7 @@ struct VoxelisationOptions {
   double max_error = 0.0;
   VoxelSphere sphere = VoxelSphere::kCircumscribed;
   Filling filling = Filling::kSolid;
-  // t: voxels that M grown by this much meets count as the surface's; vertex_error is added.
+  // t: voxels that M grown by this much intersects count as the surface's; vertex_error is added.
   double padding = 0.0;
 };
 
@@ -35,21 +35,20 @@ struct VoxelisationOptions {
 struct Voxelisation {
   std::vector<Sphere> spheres;  // one a voxel, along the Morton curve
   double step = 0.0;            // edge of the voxels
-  std::size_t surface = 0;      // voxels that the surface may meet
+  std::size_t surface = 0;      // voxels that the surface may intersect
   std::size_t inside = 0;       // the others
 };
 
 // Conservative with circumscribed spheres (with Filling::kSurface: of the surface M only); with
 // inscribed ones not. A grid of cubes, so placed that the mesh stands in its middle, with a sphere
-// for every cube that M meets (supercover; by separating axes with outward rounding, so that a cube
-// that M misses by less than the rounding may count, too) and for every cube inside: what cannot be
-// reached from outside of the grid from cube to cube through faces, without a cube that M meets.
-// So pockets whose way in is hardly wider than a cube are filled.
-// The paper, sections III ("If part of the original mesh lies within a grid section, a voxel is
-// placed into that grid position otherwise it is left empty") and IV.B ("voxelised using a 5 mm
-// grid of 5 mm diameter spheres").
-// Throws Error for a mesh that validate() refuses, for options out of range, and for a step that
-// makes too many cells or spheres (2^24), with the numbers.
+// for every cube that M intersects (supercover; by separating axes with outward rounding, so that a
+// cube that M misses by less than the rounding may count, too) and for every cube inside: what
+// cannot be reached from outside of the grid from cube to cube through faces, without a cube that M
+// intersects. So pockets whose way in is hardly wider than a cube are filled. The paper, sections
+// III ("If part of the original mesh lies within a grid section, a voxel is placed into that grid
+// position otherwise it is left empty") and IV.B ("voxelised using a 5 mm grid of 5 mm diameter
+// spheres"). Throws Error for a mesh that validate() refuses, for options out of range, and for a
+// step that makes too many cells or spheres (2^24), with the numbers.
 Voxelisation voxelise(const TriangleMesh& mesh, const VoxelisationOptions& options);
 
 }  // namespace spherule

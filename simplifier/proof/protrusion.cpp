@@ -80,7 +80,7 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
       {BoxCell::around(box_of(spheres.spheres)), std::numeric_limits<double>::infinity(), false}};
   // The greatest distance met in the spheres at a point that is not known to be inside: where the
   // search for the upper bound may stop. It goes on for the lower one, whose witnesses are outside
-  // of S, while the inside of an open mesh has been looked at by then.
+  // of S, while the inside of an open mesh has been examined by then.
   double met = 0.0;
   bool is_bounded = false;
   const auto is_near = [tolerance](double upper, double lower) {

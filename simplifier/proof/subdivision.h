@@ -29,7 +29,7 @@ struct Finding {
 // deepest point met, within `finest` or kDepthTolerance of that depth, is left as it is: it changes
 // neither verdict nor depth.
 //
-// The deepest pieces are looked at first, so that a leak is soon known; what remains after
+// The deepest pieces are examined first, so that a leak is soon known; what remains after
 // kBestFirst pieces is divided into fixed blocks for the threads, so that the result does not
 // depend on their number.
 template <typename Piece, typename Examine, typename Split>

@@ -29,7 +29,7 @@ double least_radius(std::span<const Sphere> spheres) {
   return least;
 }
 
-// A sphere touches the mesh grown by the padding, or nearly: what is further need not be looked at.
+// A sphere touches the mesh grown by the padding, or nearly: what is further need not be examined.
 Vector3d contact_of(const Sphere& sphere, double padding, const MeshDistance& distance) {
   constexpr double kNearly = 1.001;
   const SurfaceDistance near = distance(sphere.center, kNearly * (sphere.radius + padding));

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Clearances are asked for to this share of the cell's half diagonal.
+// Clearances are requested to this share of the cell's half diagonal.
 constexpr double kClearanceTolerance = 0.125;
 // Steps towards S are at least this share of it.
 constexpr double kLeastStep = 1.0 / 32.0;

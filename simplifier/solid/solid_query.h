@@ -9,7 +9,7 @@
 
 #include <optional>
 
-// What the searches and proofs over cells of space ask about S; what they make of the answers is
+// What the searches and proofs over cells of space query about S; what they make of the answers is
 // theirs.
 
 namespace spherule::internal {
@@ -22,7 +22,7 @@ inline constexpr double kFinestOutside = 1.0 / 64.0;
 // spheres that close S by a hair leave none, and the next point of S may be far.
 inline constexpr double kFinestPinch = 0x1p-16;
 
-// No cell smaller than this is looked at: clearances there are mostly rounding (SphereHierarchy: 32
+// No cell smaller than this is examined: clearances there are mostly rounding (SphereHierarchy: 32
 // u times the largest coordinate, for spheres within the box), and halving no longer makes cells
 // smaller (BoxCell: 8 u).
 double least_reach(const Eigen::AlignedBox3d& box);

@@ -16,7 +16,7 @@ struct NearestSphere {
   double lower = std::numeric_limits<double>::infinity();  // bounds of the exact value
   double upper = std::numeric_limits<double>::infinity();
   std::int32_t index =
-      -1;  // a sphere that attains it, up to rounding; -1 if none is nearer than asked
+      -1;  // a sphere that attains it, up to rounding; -1 if none is nearer than requested
 };
 
 // Branch and bound over a binary hierarchy. What bounds a node is made for spheres that touch a
@@ -35,7 +35,7 @@ class SphereHierarchy {
   // tied.
   SphereHierarchy(std::span<const Sphere> spheres, std::span<const Eigen::Vector3d> contacts);
 
-  // Only values below `limit` are looked for; without one, both bounds are the limit. The search
+  // Only values below `limit` are searched for; without one, both bounds are the limit. The search
   // may be content with a sphere that is up to `tolerance` worse than the nearest: many spheres are
   // nearly tied where they line a smooth surface, and the bounds are then that far apart.
   NearestSphere nearest(const Eigen::Vector3d& point,
@@ -68,7 +68,7 @@ class SphereHierarchy {
     Sphere sphere;
     std::int32_t index;
   };
-  // How a sphere meets the surface.
+  // How a sphere intersects the surface.
   struct Touch {
     Eigen::Vector3d contact;
     Eigen::Vector3d normal;

@@ -81,7 +81,7 @@ void FloodGrid::examine_level(int level, const Progress& progress) {
 }
 
 // Cells around a surface become four times as many with every level once they are smaller than the
-// clearance that is asked for; those of zones do not.
+// clearance that is requested; those of zones do not.
 void FloodGrid::check_memory(int level) const {
   const auto begin = cells_.begin() + static_cast<std::ptrdiff_t>(level_begin_.end()[-2]);
   const auto refined = static_cast<double>(std::count_if(
@@ -144,7 +144,7 @@ void FloodGrid::classify(Entry& cell, const Eigen::Vector3d& middle,
   const int level = cell.level;
   const double reach = half_diagonal(level);
   cell.clearance = std::max(0.0, sub_down(d.lower, padding_));
-  // What no zone can change is known without looking for zones.
+  // What no zone can change is known without searching for zones.
   if (level < shape_.levels) {
     if (cell.clearance - reach >= diameter_.radius() + kLayer * shape_.step) {
       cell.state = State::kFree;

@@ -133,9 +133,9 @@ class FloodGrid {
   // Two free cells.
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
   // Unites a free cell with the free ones at its faces to which the sphere passes by passes(), and
-  // notes the others as doubtful.
+  // notes the others as uncertain.
   void connect(std::size_t cell);
-  // Unites the doubtful pairs of which one alone is reached and between which the sphere passes by
+  // Unites the uncertain pairs of which one alone is reached and between which the sphere passes by
   // bisection, as long as there are some, and marks what is reached. Those between two cells that
   // are not reached are left.
   void reach_on();

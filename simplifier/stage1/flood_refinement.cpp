@@ -8,12 +8,12 @@
 // its diagonal make the least T in it; a coarse leaf that is free is, one that is blocked is not.
 // The way of the centre to a place of R passes possible leaves alone. Points of clearance above (1
 // - 1e-9) T form an open set, in which the way can be moved off edges and corners, so that it
-// passes from leaf to leaf through faces. So each leaf that meets R belongs to the possible leaves
-// that are connected with the outside through faces of possible or reached leaves: *open* leaves.
-// Once each open leaf is reached, or lies as a whole in the sphere of a reached leaf that touches
-// it, each place of R lies in a reached leaf or in such a sphere. That sphere's centre is at most
-// half a diagonal of its leaf and a diagonal of the open one away: 2.6 h, of the coarser of the two
-// (of a coarse free cell: its sphere holds more than its leaf).
+// passes from leaf to leaf through faces. So each leaf that intersects R belongs to the possible
+// leaves that are connected with the outside through faces of possible or reached leaves: *open*
+// leaves. Once each open leaf is reached, or lies as a whole in the sphere of a reached leaf that
+// touches it, each place of R lies in a reached leaf or in such a sphere. That sphere's centre is
+// at most half a diagonal of its leaf and a diagonal of the open one away: 2.6 h, of the coarser of
+// the two (of a coarse free cell: its sphere holds more than its leaf).
 //
 // Where it is not so, those of the open leaves that are left and lie at the front of what is
 // reached are halved, with the possible leaves around them in two rings, so that what is reached
@@ -63,7 +63,7 @@ class FloodGrid::Refinement {
   const std::vector<std::size_t>& lost() {
     std::vector<char> is_first(uncertain_.size());
     tbb::parallel_for(std::size_t{0}, uncertain_.size(),
-                      [&](std::size_t k) { is_first[k] = meets_outside(uncertain_[k]) ? 1 : 0; });
+                      [&](std::size_t k) { is_first[k] = touches_outside(uncertain_[k]) ? 1 : 0; });
     std::vector<char> is_open = is_first;
     front_.clear();
     std::vector<std::size_t> waiting;
@@ -142,9 +142,9 @@ class FloodGrid::Refinement {
                        [&](std::uint32_t i) { return i == 0 || i == last; });
   }
 
-  // Whether a doubted leaf ends the cube, or shares a face with a leaf that is reached, or possible
-  // and held.
-  bool meets_outside(std::size_t cell) const {
+  // Whether an uncertain leaf ends the cube, or shares a face with a leaf that is reached, or
+  // possible and held.
+  bool touches_outside(std::size_t cell) const {
     if (is_at_boundary(cells()[cell])) return true;
     bool found = false;
     for_each_touching(cell, true, [&](std::size_t other) {
@@ -155,25 +155,25 @@ class FloodGrid::Refinement {
     return found;
   }
 
-  // Drops the doubted leaves that are none any more, and adds those from a cell on that are
+  // Drops the uncertain leaves that are none any more, and adds those from a cell on that are
   // possible and not held.
   void uncertain_from(std::size_t begin) {
     is_possible_.resize(cells().size());
     tbb::parallel_for(begin, cells().size(),
                       [&](std::size_t i) { is_possible_[i] = is_possible(cells()[i]) ? 1 : 0; });
-    std::vector<std::size_t> asked = std::move(uncertain_);
+    std::vector<std::size_t> queried = std::move(uncertain_);
     for (std::size_t i = begin; i < cells().size(); ++i) {
-      if (is_possible_[i] != 0) asked.push_back(i);
+      if (is_possible_[i] != 0) queried.push_back(i);
     }
-    std::vector<char> is_uncertain(asked.size());
-    tbb::parallel_for(std::size_t{0}, asked.size(), [&](std::size_t k) {
-      const Entry& cell = cells()[asked[k]];
+    std::vector<char> is_uncertain(queried.size());
+    tbb::parallel_for(std::size_t{0}, queried.size(), [&](std::size_t k) {
+      const Entry& cell = cells()[queried[k]];
       is_uncertain[k] =
-          cell.state != State::kRefined && !cell.reached && !is_held(asked[k]) ? 1 : 0;
+          cell.state != State::kRefined && !cell.reached && !is_held(queried[k]) ? 1 : 0;
     });
     uncertain_.clear();
-    for (std::size_t k = 0; k < asked.size(); ++k) {
-      if (is_uncertain[k] != 0) uncertain_.push_back(asked[k]);
+    for (std::size_t k = 0; k < queried.size(); ++k) {
+      if (is_uncertain[k] != 0) uncertain_.push_back(queried[k]);
     }
   }
 
@@ -292,7 +292,7 @@ double FloodGrid::tighten(double share, const Progress& progress) {
   refinement.begin(share);
   while (true) {
     if (refinement.lost().empty()) return share;
-    if (progress) progress(0.95, "looking for narrow ways");
+    if (progress) progress(0.95, "searching for narrow ways");
     if (!refinement.refine()) break;
   }
   // For how much more room it does hold.

@@ -39,7 +39,7 @@ LocalDiameter::Near LocalDiameter::near(const Vector3d& center, double reach) co
   Near result{radius_, radius_, 0};
   zones_.near(center, reach, [&](std::size_t i) {
     const ZoneShape& shape = zones_[i].shape;
-    // A zone that would change nothing need not be looked at.
+    // A zone that would change nothing need not be examined.
     if (parts_[i].radius >= result.greatest && parts_[i].halvings <= result.halvings &&
         parts_[i].radius >= result.least) {
       return reach;

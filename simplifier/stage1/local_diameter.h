@@ -15,7 +15,7 @@ namespace spherule::internal {
 // D as a function of place, as radii, and the grid steps that follow it. At a point x a sphere of
 // radius rho(x) has to have room: D / 2, or d / 2 in a zone of its own d, the least of them where
 // zones overlap. Zones are closed and convex, so a straight way between two points of one zone
-// needs no more than that zone asks for.
+// needs no more than that zone requires.
 class LocalDiameter {
  public:
   // A zone's grid step is `step` halved as often as it takes to be no longer than
@@ -23,14 +23,14 @@ class LocalDiameter {
   LocalDiameter(double diameter, double step, std::span<const Zone> zones,
                 std::span<const double> zone_steps);
 
-  // Where no zone asks for less.
+  // Where no zone requires less.
   double radius() const { return radius_; }
-  // What a zone asks for.
+  // What a zone requires.
   double radius_of(std::uint32_t zone) const { return parts_[zone].radius; }
   // Of all places.
   double least_radius() const { return least_radius_; }
 
-  // A radius with the number of the zone that asks for it, kNoZone if none does.
+  // A radius with the number of the zone that requires it, kNoZone if none does.
   struct Needed {
     double radius;
     std::uint32_t zone;
@@ -40,7 +40,7 @@ class LocalDiameter {
   // Never less than rho at the point (rounding may take it for a point beside a zone).
   Needed at(const Eigen::Vector3d& point) const { return needed(point, point); }
   // Never less than rho at any point of the straight way: of the zones that hold both ends, the
-  // least that one asks for. It is at least what at() says of either end, and just that if both
+  // least that one requires. It is at least what at() says of either end, and just that if both
   // ends need it by the same zone, or one of them by none.
   double on_way(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
     return needed(from, to).radius;

@@ -18,7 +18,7 @@ struct RandomPlacement {
 };
 
 // External spheres as in the paper's Algorithm 1, first loop: a sphere of radius `rho` at a random
-// position is dropped if it meets the mesh, else it grows in place until it touches.
+// position is dropped if it intersects the mesh, else it grows in place until it touches.
 //
 // Departures from the listing: positions are drawn from `box` grown by rho, so that spheres can sit
 // against its faces; `limit` counts attempts, since a model that fills its box would never yield

@@ -138,7 +138,7 @@ void CoverFitter::begin() {
     cells_.emplace(clearance_, distance_, local_, error_, kSpacings[spacing_]);
     if (cells_->size() >= kFewCells || spacing_ + 1 == kSpacings.size()) break;
   }
-  announce("covering: looking for places of spheres");
+  announce("covering: searching for places of spheres");
   pose({});
   first_entries_ = problem_.entries();
   solution_ = greedy_set_cover(problem_.instance());

@@ -23,7 +23,7 @@
 namespace spherule::internal {
 
 // Few spheres that cover S (docs/covering.md): a greedy set cover, mended where it leaks, is the
-// first proved answer; then rounds look for a cover of fewer spheres by local search, spread the
+// first proved answer; then rounds search for a cover of fewer spheres by local search, spread the
 // spheres to where they have the most to spare, and prove the result or learn from where it leaks.
 // Where that no longer helps, cells and rows become finer.
 class CoverFitter {
@@ -37,7 +37,7 @@ class CoverFitter {
   std::vector<Sphere> run();
 
   // After run(): that many spheres at least are in any cover that keeps to E; 0 where it was not
-  // asked for or is not known.
+  // requested or is not known.
   std::size_t lower_bound() const { return lower_bound_; }
 
   // Half diagonal of the smallest cells that are told apart, and edge of the cubes of which each
@@ -66,8 +66,8 @@ class CoverFitter {
   bool refine();
   // Makes the cells of the present spacing, and a problem of their rows and the `candidates`.
   void pose(const std::vector<Candidate>& candidates);
-  // Looks for columns that cover all rows, for the target and for an easier one side by side; true
-  // if it finds any. What it found, or came to for the easier one, is left in solution_.
+  // Searches for columns that cover all rows, for the target and for an easier one side by side;
+  // true if it finds any. What it found, or came to for the easier one, is left in solution_.
   bool search();
   // Proves solution_, or makes rows of its leaks; keeps it, mended where it leaks, if it is the
   // best.

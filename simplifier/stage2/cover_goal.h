@@ -6,7 +6,7 @@
 
 namespace spherule::internal {
 
-// How many spheres to look for: fewer by a step than are proved. The step is halved where the
+// How many spheres to search for: fewer by a step than are proved. The step is halved where the
 // search fails and doubled where it succeeds.
 class CoverGoal {
  public:

@@ -23,7 +23,7 @@ constexpr double kCube = 0.75;    // edge of the cubes that points are sorted in
 
 // Shares of a cell's half diagonal.
 constexpr double kTolerance = 0.1;  // of the clearance
-constexpr double kAhead = 2.0;      // of the step at which another contact is looked for
+constexpr double kAhead = 2.0;      // of the step at which another contact is searched for
 
 constexpr std::size_t kTasks = 512;
 constexpr std::size_t kPart = 8;  // tasks in sequence

@@ -110,7 +110,7 @@ std::vector<Vector3d> SolidCells::sample() const {
   return kept;
 }
 
-bool SolidCells::meets_solid(Cell& cell) const {
+bool SolidCells::intersects_solid(Cell& cell) const {
   const CellState state = classify(clearance_, cell.box);
   cell.classified = true;
   cell.inside = state.inside;
@@ -156,7 +156,7 @@ SolidCells::Refined SolidCells::refine(const Cell& start, const SpheresToProve& 
       result.cells.push_back(cell);
       continue;
     }
-    if (!cell.classified && !meets_solid(cell)) continue;
+    if (!cell.classified && !intersects_solid(cell)) continue;
     if (const auto leak = leak_in(cell, gap, finest)) {
       result.cells.push_back(cell);
       result.leaks.push_back(*leak);

@@ -56,8 +56,9 @@ class SolidCells {
     BoxCell box;
     bool inside = false;         // wholly in S
     bool center_inside = false;  // the centre is in S
-    bool classified = false;   // whether it meets S at all is looked up where no sphere contains it
-    std::int32_t sphere = -1;  // the nearest when it was last looked for
+    bool classified =
+        false;  // whether it intersects S at all is looked up where no sphere contains it
+    std::int32_t sphere = -1;  // the nearest when it was last searched for
   };
   struct Leak {
     Eigen::Vector3d point;
@@ -68,7 +69,7 @@ class SolidCells {
     std::vector<Leak> leaks;
   };
 
-  bool meets_solid(Cell& cell) const;
+  bool intersects_solid(Cell& cell) const;
   // Has the cells' spheres name those of another set, by the nearest centre: most cells lie in the
   // sphere that contained them the last time, or in what has become of it.
   void follow(std::span<const Sphere> spheres);

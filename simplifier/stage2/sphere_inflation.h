@@ -19,14 +19,14 @@ class SphereInflation {
   // `limits`: the largest radius of every sphere, not below its own.
   SphereInflation(std::span<const Sphere> spheres, std::vector<double> limits);
 
-  // Asks for a point to be covered with the sphere of radius `reserve` about it, or as much of that
-  // as the spheres allow. False if the radii as they are do so already.
+  // Requires a point to be covered with the sphere of radius `reserve` about it, or as much of
+  // that as the spheres allow. False if the radii as they are do so already.
   bool require(const Eigen::Vector3d& point, double reserve);
   // Grows all spheres that could come within `reach` of the point to their limits, for good. False
   // if they are there already.
   bool grow_fully_about(const Eigen::Vector3d& point, double reach);
 
-  // Finds new radii for all that was asked for: a point goes to the sphere that has to grow least
+  // Finds new radii for all that was requested: a point goes to the sphere that has to grow least
   // for it, those first that are hardest to reach; then spheres shrink to what they alone cover,
   // the ones that grew most first.
   void solve();

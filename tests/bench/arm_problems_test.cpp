@@ -70,7 +70,7 @@ TEST(ArmProblems, ArePlannedWithoutContactsByProofs) {
   both.add(study);
   EXPECT_EQ(both.rows.back().plans.size(), 12u);
   EXPECT_EQ(both.rows.back().contacts.size(), 12u);
-  EXPECT_EQ(both.rows.front().looked_at, 2 * study.rows.front().looked_at);
+  EXPECT_EQ(both.rows.front().tested, 2 * study.rows.front().tested);
 }
 
 }  // namespace

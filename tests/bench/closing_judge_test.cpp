@@ -24,8 +24,8 @@ using Eigen::Vector3d;
 JudgeOptions quick(double step) {
   return {.step = step,
           .most_nodes = 400'000,
-          .looks = 2,
-          .most_nodes_of_look = 200'000,
+          .rounds = 2,
+          .most_nodes_examined = 200'000,
           .tolerance = 0.0};
 }
 

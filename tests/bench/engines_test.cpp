@@ -76,7 +76,7 @@ TEST(Oracle, SeesABodyInsideAnother) {
   EXPECT_EQ(Oracle(cell).touching_bodies(sample)[0], 0u);
 }
 
-// What the base is bolted beside is not asked about.
+// What the base is bolted beside is not queried.
 TEST(Workload, LeavesOutTheBaseAgainstTheTable) {
   const Workload cell = make_paper_cell();
   std::size_t left_out = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What planners are given, how their paths are looked at again, and how they are compared.
+// What planners are given, how their paths are examined again, and how they are compared.
 #include "bench/fcl_mesh_checker.h"
 #include "bench/oracle.h"
 #include "bench/planning/path_check.h"
@@ -67,22 +67,22 @@ TEST(PathCheck, StepsFinelyOverEveryCorner) {
   const std::vector<Configuration> path = {
       {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}, {-0.3, 1.0, 0.2}};
   // In contact where the second joint is in a thin slab.
-  std::vector<Configuration> asked;
+  std::vector<Configuration> queried;
   const ContactTest slab = [&](std::span<const double> at) {
-    asked.emplace_back(at.begin(), at.end());
+    queried.emplace_back(at.begin(), at.end());
     return at[1] > 0.5 && at[1] < 0.502;
   };
   const PathCheck check = check_path(path, slab, 1e-3);
-  EXPECT_EQ(check.configurations, asked.size());
+  EXPECT_EQ(check.configurations, queried.size());
   EXPECT_NEAR(static_cast<double>(check.configurations), 1302.0, 2.0);
   EXPECT_GE(check.contacts, 1u);
   EXPECT_LE(check.contacts, 2u);
   for (const Configuration& corner : path) {
-    EXPECT_NE(std::find(asked.begin(), asked.end(), corner), asked.end());
+    EXPECT_NE(std::find(queried.begin(), queried.end(), corner), queried.end());
   }
-  for (std::size_t i = 1; i < asked.size(); ++i) {
-    for (std::size_t k = 0; k < asked[i].size(); ++k) {
-      EXPECT_LE(std::abs(asked[i][k] - asked[i - 1][k]), 1e-3 + 1e-12);
+  for (std::size_t i = 1; i < queried.size(); ++i) {
+    for (std::size_t k = 0; k < queried[i].size(); ++k) {
+      EXPECT_LE(std::abs(queried[i][k] - queried[i - 1][k]), 1e-3 + 1e-12);
     }
   }
   EXPECT_EQ(check_path({}, slab, 1e-3).configurations, 0u);

@@ -105,7 +105,7 @@ TEST(InverseKinematics, BringsTheFlangeToTheTarget) {
   EXPECT_FALSE(solve_inverse_kinematics(robot, Pose::from_translation({5.0, 0.0, 0.0}), reference));
 }
 
-// The oracle on a part of the program; the benchmark asks it about all of it.
+// The oracle on a part of the program; the benchmark queries it about all of it.
 TEST(Program, HasTheWantedShareOfCollisions) {
   const Workload cell = make_paper_cell();
   std::vector<ArmPositions> sample;

@@ -143,10 +143,10 @@ TEST(FclPair, EverySettingAnswersAlike) {
   }
 }
 
-// Remembers what it was asked.
+// Remembers what it was queried.
 class Recorder : public Checker {
  public:
-  explicit Recorder(std::vector<double>& asked) : asked_(asked) {}
+  explicit Recorder(std::vector<double>& queried) : asked_(queried) {}
   void check(std::span<const ArmPositions> configurations,
              std::span<std::uint8_t> verdicts) override {
     for (std::size_t i = 0; i < configurations.size(); ++i) {
@@ -166,14 +166,14 @@ TEST(Turns, EveryCheckerIsAskedEverythingInOrder) {
     configurations[i][0] = static_cast<double>(i);
     once.push_back(static_cast<double>(i));
   }
-  std::vector<double> asked[2];
+  std::vector<double> queried[2];
   std::vector<std::unique_ptr<Checker>> checkers;
-  for (auto& of_checker : asked) checkers.push_back(std::make_unique<Recorder>(of_checker));
+  for (auto& of_checker : queried) checkers.push_back(std::make_unique<Recorder>(of_checker));
   const auto times = time_in_turns(checkers, configurations, 2);
   ASSERT_EQ(times.size(), 2u);
   std::vector<double> thrice;  // two rounds and the one before
   for (int round = 0; round < 3; ++round) thrice.insert(thrice.end(), once.begin(), once.end());
-  for (const auto& of_checker : asked) EXPECT_EQ(of_checker, thrice);
+  for (const auto& of_checker : queried) EXPECT_EQ(of_checker, thrice);
   EXPECT_EQ(verdicts_of(*checkers[0], configurations), std::vector<std::uint8_t>(2500, 1));
 }
 

@@ -177,7 +177,7 @@ TEST_F(AuditRobotCommand, WhatIsOfferedForOneMeshWorks) {
   const Outcome mended = run({"audit-robot", "one.urdf", "leaks.json", "--geometry", "collision",
                               "--max-error", "0.03", "--repair", "leaks.mended.json"});
   EXPECT_EQ(mended.exit_code, 0) << mended.err;
-  // What it wrote names the link, so that it can be looked at.
+  // What it wrote names the link, so that it can be examined.
   EXPECT_EQ(run({"view", "one.urdf", "leaks.mended.json", "-o", "page.html"}).exit_code, 0);
   write("ours.json", R"({"format": "spherule-spheres", "version": 1, "options": {},
     "spheres": [{"center": [0, 0, 0], "radius": 0.09}]})");

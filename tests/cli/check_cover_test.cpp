@@ -143,13 +143,13 @@ TEST_F(CheckTest, BodiesThatAlwaysTouchGetAdvice) {
   const json pairs = json::parse(finer.out)["pairs"];
   ASSERT_EQ(pairs.size(), 1U) << pairs;
   EXPECT_EQ(pairs[0]["second"], "wall");
-  // Spheres that were given may be finer than anything that is asked for.
+  // Spheres that were given may be finer than anything that is requested.
   write("cubes.json", R"({"a": {"centers": [[0, 0, 0]], "radii": [0.087]},
                           "c": {"centers": [[0, 0, 0]], "radii": [0.087]}})");
   const std::string given = checked_with({"--spheres", "cubes.json"}).out;
   EXPECT_NE(given.find(advice), given.npos) << given;
   EXPECT_EQ(given.find("next:"), given.npos) << given;
-  // Not all the time: once apart; or only once looked at.
+  // Not all the time: once apart; or only once examined.
   for (const std::string path : {"0 0\n0 1\n", "0 0\n"}) {
     write("path.csv", path);
     const std::string other = checked_with({}).out;

@@ -109,7 +109,7 @@ TEST_F(ProgressTest, CheckShowsABarOnATerminalOnly) {
     <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
     <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
   write("cell.json", R"({"format": "spherule-scene", "version": 1})");
-  // More than are checked between two looks at the bar.
+  // More than are checked between two updates of the bar.
   std::string path;
   for (int i = 0; i < 600; ++i) path += std::to_string(i * 1e-3) + "\n";
   write("path.csv", path);

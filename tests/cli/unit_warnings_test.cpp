@@ -22,7 +22,7 @@ TEST_F(UnitWarnings, NamesTheUnitOfAnErrorThatIsTooLarge) {
   EXPECT_NE(
       outcome.err.find("spherule: warning: part.stl: the max error 20 is more than a tenth of "
                        "the part, whose largest extent is 0.4: if that is in metres and the "
-                       "error was meant in millimetres, ask for --max-error 0.02, or for "
+                       "error was meant in millimetres, use --max-error 0.02, or for "
                        "--scale 1000\n"),
       std::string::npos)
       << outcome.err;

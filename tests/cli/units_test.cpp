@@ -122,7 +122,7 @@ TEST_F(UnitsTest, TheUnitOfAToolIsHeeded) {
 TEST_F(UnitsTest, WarningsKnowTheUnit) {
   const Outcome outcome = fit("part.glb", {"--max-error", "2"});
   EXPECT_NE(outcome.err.find("both are in metres (stated by the format); if the error was meant in "
-                             "millimetres, ask for --max-error 2mm"),
+                             "millimetres, use --max-error 2mm"),
             std::string::npos)
       << outcome.err;
 }

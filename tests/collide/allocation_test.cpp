@@ -103,9 +103,9 @@ TEST(Allocation, AMechanismsCheckTakesNoMemory) {
   const MechanismCheck check(frames, bodies, obstacles, pairs, 1e-6);
   MechanismCheck::Scratch scratch(check);
   int hits = 0;
-  int asked = 0;
+  int queried = 0;
   const auto confirm = [&](const MechanismContact&) {
-    ++asked;
+    ++queried;
     return false;
   };
   const int before = allocations;
@@ -119,7 +119,7 @@ TEST(Allocation, AMechanismsCheckTakesNoMemory) {
   EXPECT_EQ(allocations, before);
   EXPECT_GT(hits, 0);
   EXPECT_LT(hits, 1000);
-  EXPECT_GT(asked, 0);
+  EXPECT_GT(queried, 0);
 }
 
 TEST(Allocation, CollidesAnswersWithoutMemoryForTheStack) {
@@ -133,7 +133,7 @@ TEST(Allocation, CollidesAnswersWithoutMemoryForTheStack) {
   const bool hit = collides(a, Pose(), b, Pose());
   const bool free = !collides(a, Pose(), b, inside);
   exhausted = false;
-  EXPECT_EQ(allocations, before + 2) << "the degenerate trees did ask for memory";
+  EXPECT_EQ(allocations, before + 2) << "the degenerate trees did require memory";
   EXPECT_TRUE(hit);
   EXPECT_TRUE(free);
 }

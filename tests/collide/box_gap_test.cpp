@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The looks at two trees before a search, where sphere and box or two boxes meet or nearly so:
+// The tests of two trees before a search, where sphere and box or two boxes meet or nearly so:
 // against exact gaps, and verdicts against the canonical test of all pairs.
 
 #include "collide/search/box_gap.h"

@@ -38,16 +38,16 @@ constexpr double kNothing = -1.0;  // for a depth: nothing is to be remembered
 class DeepContact {
  public:
   bool is_asked(double angle, double depth) {
-    int asked = 0;
+    int queried = 0;
     const auto confirm = [&](const MechanismContact&) {
-      ++asked;
+      ++queried;
       if (depth > 0.0) check_.remember_contact(0, {{1, 0, 0}, 0.1}, depth, scratch_);
       return true;
     };
     EXPECT_TRUE(check_.collides(std::array{angle}, scratch_, confirm));
     EXPECT_FALSE(check_.is_following(scratch_));
-    EXPECT_LE(asked, 1);
-    return asked > 0;
+    EXPECT_LE(queried, 1);
+    return queried > 0;
   }
 
   // Rests at zero until a contact of that depth is known.
@@ -185,7 +185,7 @@ Arm random_arm(SceneRandom& random, const Way& way, int steps) {
 TEST(CoherenceCache, SavesQuestionsAndChangesNoAnswer) {
   constexpr int kSteps = 1500;
   SceneRandom random(91);
-  int touching = 0, refused = 0, unasked = 0, asked_anew = 0, asked = 0;
+  int touching = 0, refused = 0, unasked = 0, asked_anew = 0, queried = 0;
   for (int i = 0; i < 12; ++i) {
     const Way way(random, 4);
     const Arm arm = random_arm(random, way, kSteps);
@@ -195,7 +195,7 @@ TEST(CoherenceCache, SavesQuestionsAndChangesNoAnswer) {
       for (int step = 0; step < kSteps; ++step) {
         const std::vector<double> at = way.at(step);
         int questions = 0;
-        const auto ask = [&](MechanismCheck::Scratch& remembering) {
+        const auto query = [&](MechanismCheck::Scratch& remembering) {
           questions = 0;
           return check.collides(at, remembering, [&](const MechanismContact& contact) {
             ++questions;
@@ -211,14 +211,14 @@ TEST(CoherenceCache, SavesQuestionsAndChangesNoAnswer) {
           });
         };
         MechanismCheck::Scratch anew(check);
-        const bool truth = ask(anew);
+        const bool truth = query(anew);
         const int all_questions = questions;
-        ASSERT_EQ(ask(scratch), truth) << i << " at step " << step;
+        ASSERT_EQ(query(scratch), truth) << i << " at step " << step;
         touching += truth;
         refused += !truth && all_questions > 0;
         if (!truth) continue;
         unasked += questions == 0;
-        asked += questions;
+        queried += questions;
         asked_anew += all_questions;
       }
     }
@@ -226,7 +226,7 @@ TEST(CoherenceCache, SavesQuestionsAndChangesNoAnswer) {
   EXPECT_GT(touching, 2000);
   EXPECT_GT(refused, 1000);
   EXPECT_GT(unasked, touching * 4 / 5);
-  EXPECT_LT(asked, asked_anew / 4);
+  EXPECT_LT(queried, asked_anew / 4);
 }
 
 // Kernels in double precision for bodies of one sphere, each turned about an axis of its own. They
@@ -253,7 +253,7 @@ struct PlainKernels {
     return between.norm() - static_cast<double>(body.radius) - static_cast<double>(obstacle.radius);
   }
 
-  static KernelFinding look(const KernelProblem& problem, KernelPair pair, float inflation,
+  static KernelFinding test(const KernelProblem& problem, KernelPair pair, float inflation,
                             const KernelScratch& scratch, internal::ConfirmContact, void*) {
     ++*scratch.queues.generation;
     return gap(problem, pair, scratch) > static_cast<double>(inflation) ? KernelFinding::kApart
@@ -318,7 +318,7 @@ struct Turntables {
 TEST(CoherenceCache, SavesSearchesAndOverlooksNoTouch) {
   constexpr int kSteps = 20000;
   const Kernels kernels = {&PlainKernels::check, nullptr, &PlainKernels::place,
-                           &PlainKernels::look};
+                           &PlainKernels::test};
   SceneRandom random(92);
   int touching = 0, close = 0;
   std::uint64_t searches = 0, all_searches = 0;

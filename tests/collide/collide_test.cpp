@@ -196,7 +196,8 @@ TEST(Collide, SaysUnknownWhenThereIsNoTime) {
     ASSERT_EQ(none.verdict, Verdict::kUnknown);
     ASSERT_FALSE(none.complete);
     ASSERT_EQ(none.cost.node_tests, 0u);
-    // The shortest time is over at some look at the clock, and what was found until then is true.
+    // The shortest time is over at some reading of the clock, and what was found until then is
+    // true.
     const CollisionResult full = scene.collide();
     const CollisionResult little = scene.collide({.max_time = std::chrono::nanoseconds(500)});
     ASSERT_TRUE(std::includes(full.pairs.begin(), full.pairs.end(), little.pairs.begin(),

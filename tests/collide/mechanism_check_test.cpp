@@ -22,8 +22,8 @@ namespace {
 const std::vector<MechanismFrame> kArm(1);
 
 // Whether single precision finds a sphere at the end of the arm apart from one that stands at a
-// distance of `gap` from where it is at the angle, surely in contact, or asks.
-enum class Finding { kApart, kTouch, kAsks };
+// distance of `gap` from where it is at the angle, surely in contact, or is uncertain.
+enum class Finding { kApart, kTouch, kUncertain };
 Finding find(double angle, double gap, InstructionSet set) {
   const double way = 1.0 + 0.2 + gap;
   const std::vector<MechanismBody> bodies = {{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}};
@@ -32,15 +32,15 @@ Finding find(double angle, double gap, InstructionSet set) {
   const std::vector<MechanismPair> pairs(1);
   const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0, set);
   MechanismCheck::Scratch scratch(check);
-  bool asked = false;
+  bool queried = false;
   const auto confirm = [&](const MechanismContact& contact) {
     EXPECT_EQ(contact.pair.body, 0);
     EXPECT_EQ(contact.body_sphere, 0);
-    asked = true;
+    queried = true;
     return false;
   };
   const bool hit = check.collides(std::array{angle}, scratch, confirm);
-  return asked ? Finding::kAsks : hit ? Finding::kTouch : Finding::kApart;
+  return queried ? Finding::kUncertain : hit ? Finding::kTouch : Finding::kApart;
 }
 
 // The margins are thin: micrometres for an arm of a metre, at every angle that is in range.
@@ -54,8 +54,8 @@ TEST(MechanismCheck, AsksOnlyWhereSinglePrecisionCannotTell) {
       SCOPED_TRACE(angle);
       EXPECT_EQ(find(angle, 1e-5, set), Finding::kApart);
       EXPECT_EQ(find(angle, -2e-5, set), Finding::kTouch);
-      EXPECT_EQ(find(angle, 1e-9, set), Finding::kAsks);
-      EXPECT_EQ(find(angle, -1e-9, set), Finding::kAsks);
+      EXPECT_EQ(find(angle, 1e-9, set), Finding::kUncertain);
+      EXPECT_EQ(find(angle, -1e-9, set), Finding::kUncertain);
     }
   }
 }
@@ -76,14 +76,14 @@ TEST(MechanismCheck, OffsetsThatCancelAreMindedInTheMargins) {
         {Pose(), one_sphere_tree((0.2 + gap) * direction, 0.1)}};
     const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0);
     MechanismCheck::Scratch scratch(check);
-    bool asked = false;
+    bool queried = false;
     const auto confirm = [&](const MechanismContact&) {
-      asked = true;
+      queried = true;
       return false;
     };
     const bool hit = check.collides(std::array{0.0}, scratch, confirm);
     const PlacedSphereSets exactly{{far, 0.1}, {(0.2 + gap) * direction, 0.1}, back, Pose()};
-    EXPECT_TRUE(asked || hit == exactly.overlap()) << i;
+    EXPECT_TRUE(queried || hit == exactly.overlap()) << i;
   }
 }
 
@@ -113,13 +113,13 @@ TEST(MechanismCheck, ABlockNeverFindsApartWhatTouches) {
       MechanismCheck::Scratch scratch(check);
       std::array<const double*, MechanismCheck::kBlock> block;
       block.fill(variables.data());
-      std::uint32_t asked = 0;
+      std::uint32_t queried = 0;
       const auto confirm = [&](int index, const MechanismContact&) {
-        asked |= 1U << index;
+        queried |= 1U << index;
         return false;
       };
       const MechanismCheck::BlockAnswer answer = check.collides(block, scratch, confirm);
-      EXPECT_EQ(answer.collides | asked, 0xffffU) << i;
+      EXPECT_EQ(answer.collides | queried, 0xffffU) << i;
       EXPECT_EQ(answer.out_of_range, 0U);
     }
   }

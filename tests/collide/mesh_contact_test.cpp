@@ -104,7 +104,7 @@ TriangleMesh random_mesh(SceneRandom& random, int triangles, double width) {
   return mesh;
 }
 
-// Whether any two triangles touch, exactly; only those are looked at that are not clearly apart.
+// Whether any two triangles touch, exactly; only those are examined that are not clearly apart.
 bool touch_exactly(const TriangleMesh& a, const Pose& world_from_a, const TriangleMesh& b,
                    const Pose& world_from_b) {
   const auto sphere = [](const TriangleMesh& mesh, std::size_t i, const Pose& pose) -> Sphere {

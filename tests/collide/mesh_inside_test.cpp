@@ -25,8 +25,8 @@ int sign(const Rational& x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-// Nothing if the ray from the point meets the triangle's boundary, or the point is in its plane
-// where the line passes through it.
+// Nothing if the ray from the point intersects the triangle's boundary, or the point is in its
+// plane where the line passes through it.
 std::optional<int> exact_crossing(const Vector<Rational>& point, const Vector3d& direction,
                                   const Triangle& triangle) {
   std::array<Vector<Rational>, 3> t;
@@ -53,7 +53,7 @@ std::optional<int> exact_crossing(const Vector<Rational>& point, const Vector3d&
 
 TEST(Ray, DecidesForEveryPointWithinTheError) {
   SceneRandom random(1);
-  int through = 0, by = 0, doubtful = 0;
+  int through = 0, by = 0, uncertain = 0;
   for (int i = 0; i < 6000; ++i) {
     Triangle t = {random.point(1.0), random.point(1.0), random.point(1.0)};
     if (random.whole(0, 9) == 0) t[2] = t[0] + random.uniform(0.0, 1.0) * (t[1] - t[0]);
@@ -78,14 +78,14 @@ TEST(Ray, DecidesForEveryPointWithinTheError) {
     }
     through += found && *found != 0;
     by += found && *found == 0;
-    doubtful += !found;
+    uncertain += !found;
   }
   EXPECT_GT(through, 500);
   EXPECT_GT(by, 500);
-  EXPECT_GT(doubtful, 500);
+  EXPECT_GT(uncertain, 500);
 }
 
-TEST(Ray, KeepsTheSpheresItMeets) {
+TEST(Ray, KeepsTheSpheresItIntersects) {
   SceneRandom random(2);
   int met = 0, missed = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -103,10 +103,10 @@ TEST(Ray, KeepsTheSpheresItMeets) {
     Real t = dot(to, w) / dot(w, w);
     if (t < 0) t = 0;
     const Real square = squared_distance(plus(nearest, t, w), exact<Real>(sphere.center));
-    const bool meets = square <= Real(sphere.radius) * Real(sphere.radius);
-    ASSERT_TRUE(!meets || Ray(point, 0.0, direction).may_meet(sphere)) << i;
-    met += meets;
-    missed += !Ray(point, 0.0, direction).may_meet({sphere.center, 0.9 * sphere.radius});
+    const bool intersects = square <= Real(sphere.radius) * Real(sphere.radius);
+    ASSERT_TRUE(!intersects || Ray(point, 0.0, direction).may_intersect(sphere)) << i;
+    met += intersects;
+    missed += !Ray(point, 0.0, direction).may_intersect({sphere.center, 0.9 * sphere.radius});
   }
   EXPECT_GT(met, 500);
   EXPECT_GT(missed, 2000);

@@ -55,7 +55,7 @@ Triangle random_triangle(SceneRandom& random, double size) {
   return {a, a + edge, a + random.uniform(0.0, 1.0) * edge + random.point(size * thin)};
 }
 
-// Relative gaps at which contact is asked for.
+// Relative gaps at which contact is requested.
 double random_gap(SceneRandom& random) {
   static constexpr double kGaps[] = {0.0, 1e-16, 1e-15, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3, 0.1};
   return (random.whole(0, 1) == 0 ? -1.0 : 1.0) * kGaps[random.whole(0, 9)];
@@ -72,13 +72,13 @@ TriangleMesh mesh_of(const std::vector<Triangle>& triangles) {
 }
 
 // What all pairs say.
-bool any_pair_meets(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
-                    const Pose& world_from_b) {
+bool any_pair_intersects(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
+                         const Pose& world_from_b) {
   const auto spheres = static_cast<std::int32_t>(a.spheres().size());
   const auto triangles = static_cast<std::int32_t>(b.tree().spheres().size());
   for (std::int32_t i = 0; i < spheres; ++i) {
     for (std::int32_t j = 0; j < triangles; ++j) {
-      if (meets_triangle(a, i, world_from_a, b, j, world_from_b)) return true;
+      if (intersects_triangle(a, i, world_from_a, b, j, world_from_b)) return true;
     }
   }
   return false;
@@ -107,7 +107,7 @@ TEST(MeshSearch, MissesNoContactWithOneTriangleOnAnyInstructionSet) {
     }
     const SphereTree tree = build_tree(std::span(&sphere, 1));
     const Real gap = distance - sphere.radius;
-    const bool expected = meets_triangle(tree, 0, world_from_a, mesh, 0, world_from_b);
+    const bool expected = intersects_triangle(tree, 0, world_from_a, mesh, 0, world_from_b);
     ASSERT_TRUE(expected || gap > 0) << "missed by " << gap;
     for (const InstructionSet set : instruction_sets()) {
       ASSERT_EQ(internal::collides_by(internal::mesh_kernel_for(set), tree, world_from_a, mesh,
@@ -179,7 +179,7 @@ TEST(MeshSearch, AnswersAsAllPairsDo) {
     }
     changed.radius = nearest.convert_to<double>() * (1.0 + random_gap(random));
     const SphereTree a = build_tree(spheres, {.branching = branching});
-    const bool expected = any_pair_meets(a, world_from_a, b, world_from_b);
+    const bool expected = any_pair_intersects(a, world_from_a, b, world_from_b);
     ASSERT_EQ(collides(a, world_from_a, b, world_from_b), expected);
     for (const InstructionSet set : instruction_sets()) {
       ASSERT_EQ(

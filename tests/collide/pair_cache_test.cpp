@@ -70,7 +70,7 @@ TEST(PairCache, AnswersAsCollidesDoes) {
   EXPECT_GT(hits, 5000u);
 }
 
-// Towards contact by steps that shrink with the gap, so that the memory is asked at its limit.
+// Towards contact by steps that shrink with the gap, so that the memory is queried at its limit.
 TEST(PairCache, IsNotFooledNextToContact) {
   const SphereTree sphere = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
   SceneRandom random(2);

@@ -57,7 +57,7 @@ TEST(PrimitiveTruth, AgreesWithFcl) {
   for (int kind = 0; kind < 5; ++kind) {
     SCOPED_TRACE(kind);
     int counts[2] = {};
-    int doubtful = 0;
+    int uncertain = 0;
     for (int i = 0; i < effort(3000, 300); ++i) {
       const auto drawn = random_solid(random, kind);
       const auto& solid = drawn.first;
@@ -73,7 +73,7 @@ TEST(PrimitiveTruth, AgreesWithFcl) {
       const SphereTree smaller = build_tree(std::vector<Sphere>{{center, radius - 1e-6}});
       const bool hit = ours(0.0);
       if (hit != ours(1e-6) || hit != collides(smaller, world_from_tree, solid, world_from_solid)) {
-        ++doubtful;
+        ++uncertain;
         continue;
       }
       ASSERT_EQ(hit, fcl_collides(geometry, world_from_solid, radius, world_from_tree * center))
@@ -82,7 +82,7 @@ TEST(PrimitiveTruth, AgreesWithFcl) {
     }
     EXPECT_GT(counts[0], effort(300, 30));
     EXPECT_GT(counts[1], effort(300, 30));
-    EXPECT_LT(doubtful, 10);
+    EXPECT_LT(uncertain, 10);
   }
 }
 

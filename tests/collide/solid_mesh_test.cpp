@@ -169,11 +169,11 @@ TEST(SolidMeshTest, DistanceBoundsAreNeverCrossed) {
     if (random.whole(0, 1) == 0) scene.sphere.radius *= 0.5;
     const SolidMesh solid(scene.mesh);
     const SphereTree tree = tree_of(scene.sphere);
-    const auto ask = [&](const DistanceRequest& request) {
+    const auto query = [&](const DistanceRequest& request) {
       return distance(tree, scene.world_from_sphere, solid, scene.world_from_mesh, request);
     };
     const Real exact = std::max(Real(0), scene.gap());
-    const DistanceResult result = ask({});
+    const DistanceResult result = query({});
     ASSERT_LE(result.lower, exact) << i;
     ASSERT_GE(result.upper, exact) << i;
     ASSERT_LE(result.upper - result.lower, 2.0 * scene.slack() + 1e-6 * scene.size) << i;
@@ -181,7 +181,7 @@ TEST(SolidMeshTest, DistanceBoundsAreNeverCrossed) {
          {DistanceRequest{.tolerance = 0.3 * result.upper},
           DistanceRequest{.enough = 0.25 * result.lower}, DistanceRequest{.max_node_tests = 0},
           DistanceRequest{.max_node_tests = 2}}) {
-      const DistanceResult rough = ask(request);
+      const DistanceResult rough = query(request);
       ASSERT_LE(rough.lower, exact);
       ASSERT_GE(rough.upper, exact);
     }

@@ -91,19 +91,19 @@ TEST(Sweep, AFullTurnBackToTheStartIsNoRest) {
     EXPECT_EQ(run(turning, obstacle).verdict, Verdict::kCollision);
     EXPECT_LT(gap_at(turning, obstacle, (turns > 0.0 ? 0.25 : 0.75) / std::abs(turns)), 0.0);
   }
-  // A sphere about its own centre goes nowhere: one look.
+  // A sphere about its own centre goes nowhere: one evaluation.
   const Body sphere = turning_body({{{1.0, 2.0, 3.0}, 1.0}}, Pose(), {1.0, 1.0, 0.0}, 1e4,
                                    Vector3d::Zero(), {1.0, 2.0, 3.0});
   const SweepResult result = run(sphere, still_body({{{3.0001, 2.0, 3.0}, 1.0}}));
   EXPECT_EQ(result.verdict, Verdict::kFree);
-  EXPECT_EQ(result.looks, 1u);
+  EXPECT_EQ(result.evaluations, 1u);
 }
 
 TEST(Sweep, ABodyThatTurnsWithoutHaltNeedsNoManyLooksFarAway) {
   const Body turning = turning_body(rod(), Pose(), {0.0, 0.0, 1.0}, 1e6);
   const SweepResult result = run(turning, still_body({{{4.0, 0.0, 0.0}, 1.0}}));
   EXPECT_EQ(result.verdict, Verdict::kFree);
-  EXPECT_EQ(result.looks, 1u);
+  EXPECT_EQ(result.evaluations, 1u);
 }
 
 TEST(Sweep, StartsOrEndsInContact) {
@@ -185,14 +185,14 @@ TEST(Sweep, BodiesThatMoveAlikeFarAwayNeedOneLook) {
     const Body b = turning_body(spheres, pose_b, Vector3d::UnitX(), 0.0, way);
     const SweepResult straight = run(a, b);
     EXPECT_EQ(straight.verdict, Verdict::kFree) << far;
-    EXPECT_EQ(straight.looks, 1u) << far;
+    EXPECT_EQ(straight.evaluations, 1u) << far;
 
     // As one rigid body, about one point.
     const Body c = turning_body(spheres, pose_a, {1.0, 2.0, 3.0}, 50.0, way);
     const Body d = turning_body(spheres, pose_b, {1.0, 2.0, 3.0}, 50.0, way, {-3.0, 0.0, 0.0});
     const SweepResult turning = run(c, d);
     EXPECT_EQ(turning.verdict, Verdict::kFree) << far;
-    EXPECT_LE(turning.looks, far > 1e6 ? 15u : 1u) << far;
+    EXPECT_LE(turning.evaluations, far > 1e6 ? 15u : 1u) << far;
     expect_true(c, d, turning, 300);
   }
 }

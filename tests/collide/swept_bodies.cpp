@@ -111,7 +111,7 @@ void expect_same(const SweepResult& one, const SweepResult& other) {
   EXPECT_EQ(one.verdict, other.verdict);
   EXPECT_EQ(one.free_until, other.free_until);
   EXPECT_EQ(one.contact_at, other.contact_at);
-  EXPECT_EQ(one.looks, other.looks);
+  EXPECT_EQ(one.evaluations, other.evaluations);
 }
 
 Body random_body(SceneRandom& random, double size) {

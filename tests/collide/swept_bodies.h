@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Moving bodies with an oracle for each, and what the tests of sweep() ask of every answer.
+// Moving bodies with an oracle for each, and what the tests of sweep() check of every answer.
 
 #include "collide/sweep.h"
 #include "tests/collide/exact_motion.h"

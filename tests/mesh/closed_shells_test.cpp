@@ -102,7 +102,7 @@ TEST(ClosedShells, TrianglesOfOpenPartsAreLeftOut) {
   EXPECT_TRUE(shells.contain(Vector3d(2.5, 2.51, 2.52)));
 }
 
-// Work, not time: a ray meets few of the boxes of a large mesh.
+// Work, not time: a ray intersects few of the boxes of a large mesh.
 TEST(ClosedShells, ARayVisitsFewTriangles) {
   const TriangleMesh mesh = icosphere(effort(6, 4));
   const MeshDistance distance(mesh);

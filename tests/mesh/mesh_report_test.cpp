@@ -240,7 +240,7 @@ TEST(Describe, MentionsEverythingUnusual) {
   EXPECT_EQ(open.find("volume"), open.find("volume, only"));
   const std::string worst = describe(mesh_report(test::with_degenerates(test::with_duplicates(
       test::joined(test::inverted(test::cube_mesh()), test::klein_bottle(8, 8))))));
-  for (const char* word : {"without area", "there before", "more than two", "meet without"}) {
+  for (const char* word : {"without area", "there before", "more than two", "intersect without"}) {
     EXPECT_NE(worst.find(word), std::string::npos) << word << " in " << worst;
   }
 }

@@ -33,8 +33,8 @@ double reach(const Triangle& t) {
 }
 
 struct Tally {
-  int apart = 0, touching = 0, doubtful = 0;
-  double widest_uncertainty = 0.0;  // distance in doubt, as a share of the scene
+  int apart = 0, touching = 0, uncertain = 0;
+  double widest_uncertainty = 0.0;  // distance uncertain, as a share of the scene
 };
 
 // Judges every scene in both orders.
@@ -58,7 +58,7 @@ Tally judge(int count, std::uint64_t seed, const std::function<Scene(SceneRandom
         ++tally.touching;
         break;
       case TriangleContact::kUncertain:
-        ++tally.doubtful;
+        ++tally.uncertain;
         tally.widest_uncertainty = std::max(tally.widest_uncertainty, gap / size);
     }
   }
@@ -100,7 +100,7 @@ TEST(TrianglePair, RandomOnesAreDecidedForSure) {
   });
   EXPECT_GT(tally.apart, effort(1000, 200));
   EXPECT_GT(tally.touching, effort(300, 60));
-  EXPECT_EQ(tally.doubtful, 0);
+  EXPECT_EQ(tally.uncertain, 0);
 }
 
 TEST(TrianglePair, CornerAgainstFace) {
@@ -110,7 +110,7 @@ TEST(TrianglePair, CornerAgainstFace) {
   });
   EXPECT_GT(tally.apart, effort(100, 20));
   EXPECT_GT(tally.touching, effort(300, 60));
-  EXPECT_GT(tally.doubtful, effort(100, 20));
+  EXPECT_GT(tally.uncertain, effort(100, 20));
   EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
@@ -121,7 +121,7 @@ TEST(TrianglePair, EdgeAgainstEdge) {
   });
   EXPECT_GT(tally.apart, effort(100, 20));
   EXPECT_GT(tally.touching, effort(300, 60));
-  EXPECT_GT(tally.doubtful, effort(100, 20));
+  EXPECT_GT(tally.uncertain, effort(100, 20));
   EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
@@ -132,7 +132,7 @@ TEST(TrianglePair, CornerAgainstCornerOrEdge) {
     return {a, brought(b, b[0], to, random)};
   });
   EXPECT_GT(tally.apart, effort(500, 100));
-  EXPECT_GT(tally.doubtful, effort(100, 20));
+  EXPECT_GT(tally.uncertain, effort(100, 20));
   EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
@@ -153,7 +153,7 @@ TEST(TrianglePair, InOnePlane) {
     return {triangle(), moved(triangle(), shift)};
   });
   EXPECT_GT(tally.apart, effort(500, 100));
-  EXPECT_GT(tally.doubtful, effort(500, 100));
+  EXPECT_GT(tally.uncertain, effort(500, 100));
   EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
@@ -168,7 +168,7 @@ TEST(TrianglePair, NeedlesSegmentsAndPoints) {
       return {a, brought(b, from, to, random)};
     });
     EXPECT_GT(tally.apart, effort(200, 40)) << width;
-    EXPECT_GT(tally.doubtful, effort(50, 10)) << width;
+    EXPECT_GT(tally.uncertain, effort(50, 10)) << width;
     EXPECT_LT(tally.widest_uncertainty, 1e-9) << width;
   }
 }
@@ -180,7 +180,7 @@ TEST(TrianglePair, SmallFarFromTheOrigin) {
     return {a, brought(b, b[0], point_of(a, random), random)};
   });
   EXPECT_GT(tally.apart, effort(50, 10));
-  EXPECT_GT(tally.doubtful, effort(500, 100));
+  EXPECT_GT(tally.uncertain, effort(500, 100));
   EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 

@@ -84,7 +84,7 @@ TEST(Bodies, WhatIsNotBegunWhenStoppedIsNotCovered) {
   EXPECT_FALSE(sphere_file(bodies, fits, std::vector<double>(3, 1.0)).certificate->covered);
 }
 
-// The first answer asks for the stop: on one thread that body is all there is.
+// The first answer queries the stop: on one thread that body is all there is.
 TEST(Bodies, AStopKeepsWhatIsProved) {
   const std::vector<Body> bodies = bracket_and_copy();
   std::stop_source stop;

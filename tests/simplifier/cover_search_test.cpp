@@ -131,7 +131,7 @@ TEST(CoverSearch, NothingToCoverIsCovered) {
   EXPECT_TRUE(search.best_columns().empty());
 }
 
-// Rows that are not asked for may stay open; weights are those given, and grow.
+// Rows that are not requested may stay open; weights are those given, and grow.
 TEST(CoverSearch, KnowsOnlyItsRowsAndTheirWeights) {
   SetCoverInstance instance{3, {{0}, {1}, {2}}};
   const std::vector<Rows> columns_of = {{0}, {1}, {2}};

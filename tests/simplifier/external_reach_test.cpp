@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Whether a sphere of radius rho meets nothing on the straight way, at points so close together
-// that the clearance between two of them is known.
+// Whether a sphere of radius rho intersects nothing on the straight way, at points so close
+// together that the clearance between two of them is known.
 bool passes(const TriangleMesh& mesh, const Vector3d& from, const Vector3d& to, double rho) {
   const double length = (to - from).norm();
   double at = 0.0;
@@ -121,7 +121,7 @@ TEST(ExternalReach, TheFarPartOfADuctIsOpenOnlyWhereTheWayThereIsWide) {
 }
 
 // A tool of spheres of diameter at least D and room for the grid, in a position that it reaches
-// from outside, meets S by no more than that room, unless it meets M.
+// from outside, intersects S by no more than that room, unless it intersects M.
 TEST(ExternalReach, NothingIsLostForToolsOfTheLeastDiameter) {
   Random random(61);
   int tried = 0;

@@ -204,7 +204,7 @@ TEST(ExternalSpheres, TellOfTheirProgressAndKeepToTheThreadsTheyAreGiven) {
   }
 }
 
-// Before the two finest levels are looked at, of which each has about four times the cells of the
+// Before the two finest levels are examined, of which each has about four times the cells of the
 // one before.
 TEST(ExternalSpheres, TooManyCellsAreForeseenAndTheReasonSaysWhatToChoose) {
   if (kSanitized) GTEST_SKIP() << "some million distances";

@@ -118,8 +118,8 @@ TEST(Levels, TheFinestIsTheErrorOfTheCover) {
   const TriangleMesh mesh = cube_mesh();
   constexpr double kFine = kSanitized ? 0.35 : 0.1;
   constexpr double kCoarse = 2.0 * kFine;
-  const auto levels = [&](double max_error, std::vector<double> asked) {
-    return simplify(mesh, {.max_error = max_error, .levels = std::move(asked), .effort = 0});
+  const auto levels = [&](double max_error, std::vector<double> queried) {
+    return simplify(mesh, {.max_error = max_error, .levels = std::move(queried), .effort = 0});
   };
   for (const auto& result :
        {levels(kFine, {kCoarse}), levels(0.0, {kFine, kCoarse}), levels(kFine, {kCoarse, kFine})}) {

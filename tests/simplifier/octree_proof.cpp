@@ -32,7 +32,7 @@ bool clip(Cube& cube, const Eigen::AlignedBox3d& box) {
   return true;
 }
 
-enum class Relation { kApart, kMeets, kInside };
+enum class Relation { kApart, kIntersects, kInside };
 
 // How a cube lies to a sphere: surely apart from the closed one, surely inside of the open one, or
 // neither.
@@ -50,7 +50,7 @@ Relation relation(const Cube& cube, const Sphere& sphere) {
   }
   const Real radius = sphere.radius;
   if (furthest * (1.0L + kSlack) < radius * radius) return Relation::kInside;
-  return nearest * (1.0L - kSlack) > radius * radius ? Relation::kApart : Relation::kMeets;
+  return nearest * (1.0L - kSlack) > radius * radius ? Relation::kApart : Relation::kIntersects;
 }
 
 // The spheres that meet the cube; true if one of them holds it.
@@ -58,7 +58,7 @@ bool select(const Cube& cube, std::span<const Sphere> from, std::vector<Sphere>&
   for (const Sphere& sphere : from) {
     const Relation found = relation(cube, sphere);
     if (found == Relation::kInside) return true;
-    if (found == Relation::kMeets) meeting.push_back(sphere);
+    if (found == Relation::kIntersects) meeting.push_back(sphere);
   }
   return false;
 }

@@ -3,7 +3,7 @@
 
 // A proof of coverage that shares no code with the simplifier and nothing with its method but the
 // definition of S: an octree of cubes with exact corners, every sphere tried on every cube that it
-// meets, in long double with an explicit error. Slow and short.
+// intersects, in long double with an explicit error. Slow and short.
 
 #include "simplifier/external_spheres.h"
 #include "spheretree/sphere.h"
@@ -27,7 +27,7 @@ struct OctreeProof {
   std::size_t cubes = 0;
 };
 
-// Cubes are split `max_depth` times at most, at most 40; no more than `max_cubes` are looked at.
+// Cubes are split `max_depth` times at most, at most 40; no more than `max_cubes` are examined.
 OctreeProof prove_by_octree(const ExternalSpheres& external, std::span<const Sphere> spheres,
                             int max_depth = 32, std::size_t max_cubes = 20'000'000);
 

@@ -48,8 +48,8 @@ ExternalSpheres pinched(double depth) {
   return external;
 }
 
-// Where the solid is empty by less than the search looks for uncovered points of it, a sphere would
-// protrude by the whole way to the solid.
+// Where the solid is empty by less than the search resolves uncovered points of it, a sphere
+// would protrude by the whole way to the solid.
 TEST_P(Protrusion, NoSphereStandsWhereExternalSpheresOnlyJustCloseTheSolid) {
   const TriangleMesh mesh = box_mesh({0.2, 0.2, 3.8}, {0.8, 0.8, 4});
   for (const double depth : {1e-3, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6}) {

@@ -51,7 +51,7 @@ TriangleMesh chamber(double width, double length) {
   return mesh;
 }
 
-// Grids of other steps, and what is asked of them.
+// Grids of other steps, and what is queried of them.
 ExternalOptions options_for(double step, double tightness) {
   ExternalOptions options;
   options.min_external_diameter = kDiameter;

@@ -193,11 +193,11 @@ TEST(Tool, DIsTheDiameterOfItsSmallestSphere) {
 
 // "Nothing is lost by simplifying, for the right tool" (docs/guarantee.md). Let h be the grid step.
 // A tool whose every sphere (c, r), r >= rho, keeps a room of m = 1.733 h > 2 sqrt(3)/2 h beyond r
-// all the way in meets nothing of S, not even by the scallops: take a point p of the sphere and c'
-// between c and p, p within rho of c', where the room is still rho + m. As m is more than the 1.367
-// h that the flood asks for, the grid reaches the cell of c'. If that is a node x, |x - c'| <=
-// 0.867 h, then d(x) >= rho + m - 0.867 h > rho + 0.866 h >= |p - x|; if it is a coarse cell of
-// half diagonal g, then d(x) >= rho + g + 1.2 h > |p - x|. So p lies in the sphere kept for that
+// all the way in intersects nothing of S, not even by the scallops: take a point p of the sphere
+// and c' between c and p, p within rho of c', where the room is still rho + m. As m is more than
+// the 1.367 h that the flood requires, the grid reaches the cell of c'. If that is a node x, |x -
+// c'| <= 0.867 h, then d(x) >= rho + m - 0.867 h > rho + 0.866 h >= |p - x|; if it is a coarse cell
+// of half diagonal g, then d(x) >= rho + g + 1.2 h > |p - x|. So p lies in the sphere kept for that
 // cell, which is open, and not in S.
 class Walk {
  public:

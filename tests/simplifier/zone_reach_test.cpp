@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Zones of their own D: what gets in where, and that nothing ever meets the mesh.
+// Zones of their own D: what gets in where, and that nothing ever intersects the mesh.
 #include "simplifier/concave_edges.h"
 #include "simplifier/external_spheres.h"
 #include "spheretree/error.h"
@@ -45,7 +45,7 @@ ExternalSpheres placed(const TriangleMesh& mesh, std::vector<Zone> zones, double
   return place_external_spheres(mesh, options);
 }
 
-// Brute force: no sphere meets the mesh, and each is as large as its place asks for.
+// Brute force: no sphere intersects the mesh, and each is as large as its place requires.
 void expect_true_spheres(const TriangleMesh& mesh, const ExternalSpheres& external,
                          const std::vector<Zone>& zones) {
   bool some_small = false;
@@ -226,7 +226,7 @@ TEST(ConcaveEdges, TheDiameterHasALeastShare) {
   EXPECT_EQ(*zones[0].min_external_diameter, 8.0);
 }
 
-// Edges whose triangles contradict each other, and those of three: in doubt they count.
+// Edges whose triangles contradict each other, and those of three: uncertain they count.
 TEST(ConcaveEdges, InDoubtAnEdgeCounts) {
   TriangleMesh mesh = notch(1.5);
   std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
@@ -236,7 +236,7 @@ TEST(ConcaveEdges, InDoubtAnEdgeCounts) {
 }
 
 // The fillet that is left in the corner: wide with D, at most E / 2 and the grid's share with the
-// zone; and no sphere meets the mesh.
+// zone; and no sphere intersects the mesh.
 TEST(ConcaveEdges, TheCornerIsKept) {
   TriangleMesh bracket = l_bracket();
   for (Vector3d& v : bracket.vertices) v *= 20.0;

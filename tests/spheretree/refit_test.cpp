@@ -208,7 +208,7 @@ TEST(Refit, AShiftGivesTheTreeThatWouldBeBuilt) {
 }
 
 // Spheres as tight as a new tree's where neighbours stay neighbours; a tree that is valid but
-// useless would fail here. Stirring shows in what the comment says to look at.
+// useless would fail here. Stirring shows in what the comment says to examine.
 TEST(Refit, IsAsTightAsANewTreeWhileNeighboursStayTogether) {
   Random random(25);
   std::vector<Sphere> spheres;

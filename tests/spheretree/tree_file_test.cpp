@@ -138,7 +138,7 @@ TEST_F(TreeFile, NamesTheReason) {
   refused_for(kSphereCount, std::uint64_t{49}, "does not exist");
   refused_for(kSphereCount, std::uint64_t{51}, "has no leaf");
   refused_for(kNodeCount, std::uint64_t{3}, "too long");
-  // No memory is asked for on the word of a forged count.
+  // No memory is requested on the word of a forged count.
   for (const std::uint64_t count : {std::uint64_t{1} << 31U, std::uint64_t{1} << 58U,
                                     std::uint64_t{1} << 61U, ~std::uint64_t{0}}) {
     refused_for(kNodeCount, count, "cut short");

@@ -80,10 +80,11 @@ std::string check_own_include(const Room& room, std::string_view target) {
            std::string(included->folder);
   }
   const std::string_view library = library_of(target);
-  const bool looks_inside = room.folder == "tests" || room.folder == "bench" ||
-                            room.folder == "simplifier/baseline" || room.folder == "simplifier/cad";
+  const bool sees_internals = room.folder == "tests" || room.folder == "bench" ||
+                              room.folder == "simplifier/baseline" ||
+                              room.folder == "simplifier/cad";
   if (library != library_of(room.folder) && target.find("/internal/") != std::string_view::npos &&
-      !looks_inside) {
+      !sees_internals) {
     return "is private to " + std::string(library);
   }
   return {};

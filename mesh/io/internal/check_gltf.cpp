@@ -100,10 +100,10 @@ class Checker {
     if (required == root_.end()) return;
     for (const Json& entry : *required) {
       const std::string name = entry.is_string() ? entry.get<std::string>() : "?";
-      const bool looks_only = name.starts_with("KHR_materials_") ||
-                              name.starts_with("KHR_texture_") || name.starts_with("KHR_lights_") ||
-                              name.starts_with("EXT_texture_");
-      if (!looks_only) fail("it requires the extension " + name + ", which is not supported");
+      const bool appearance_only =
+          name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
+          name.starts_with("KHR_lights_") || name.starts_with("EXT_texture_");
+      if (!appearance_only) fail("it requires the extension " + name + ", which is not supported");
     }
   }
 

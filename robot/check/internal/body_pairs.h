@@ -33,7 +33,7 @@ inline double padding_sum(double first, double second) {
 }
 
 // Spheres on a link that are tested as one: a tree of a link or an attached object, or some of its
-// spheres, grown by the padding that is asked for.
+// spheres, grown by the padding that is requested.
 struct CheckedPiece {
   std::shared_ptr<const SphereTree> tree;
   int link = 0;                         // that carries it
@@ -71,7 +71,7 @@ struct PairContact {
 
 class BodyPairs {
  public:
-  // Only the first `tested` pairs are asked by any_touches() and check_edge(). Indices must be in
+  // Only the first `tested` pairs are queried by any_touches() and check_edge(). Indices must be in
   // range. Throws Error for what reaches beyond kMaxCoordinate.
   BodyPairs(RobotModel robot, const Pose& world_from_root, std::vector<CheckedPiece> pieces,
             std::vector<PlacedShape> obstacles, std::vector<CheckedPair> pairs, std::size_t tested);
@@ -117,7 +117,7 @@ class BodyPairs {
   }
 
   // Never false if the two are within the clearance of each other in exact arithmetic or, where no
-  // mesh is asked, the canonical test finds them so.
+  // mesh is queried, the canonical test finds them so.
   bool is_near(std::size_t pair, double clearance, const Memory& memory) const;
 
   // A lower bound of the exact gap of the spheres of a pair, found at once; -infinity if there is

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// FreeBoxes of few variables as cells for the kernels, which ask a cell in a fraction of the time
+// FreeBoxes of few variables as cells for the kernels, which query a cell in a fraction of the time
 // that a search in the tree of boxes takes.
 
 #include "collide/kernels/free_cells.h"

@@ -41,7 +41,7 @@ void LaneCheck::find_never_ranges() {
   }
 }
 
-// Ranges are intervals: on a straight motion it is enough to ask for both ends.
+// Ranges are intervals: on a straight motion it is enough to test both ends.
 bool LaneCheck::never_touch(std::span<const double> configuration) const {
   return std::all_of(never_ranges_.begin(), never_ranges_.end(), [&](const Range& range) {
     const double value = configuration[range.variable];
@@ -51,7 +51,7 @@ bool LaneCheck::never_touch(std::span<const double> configuration) const {
 
 // Pairs that no joint moves: of static ones the canonical poses are always the same. Those that
 // move together are apart in all configurations if they are in one by far more than rounding; the
-// others are asked for each.
+// others are tested one by one.
 void LaneCheck::decide_fixed_pairs(std::span<const std::size_t> pairs) {
   // Of both bodies, in both configurations, with the slack of the canonical test: 4.
   constexpr double kFar = 8.0;

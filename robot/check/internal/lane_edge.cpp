@@ -20,7 +20,7 @@
 namespace spherule::internal {
 namespace {
 
-// Where so many parts are given up, no contact is looked for behind the first of them any more.
+// Where so many parts are given up, no contact is searched for behind the first of them any more.
 constexpr int kMostGivenUp = 32;
 // Single precision gives up what is inflated by no more than this many times the error of centres.
 constexpr double kUndecided = 4.0;
@@ -314,7 +314,7 @@ class LaneCheck::Edge {
   }
 
   // Those of the lanes in whose parts a test is not proved apart: of several at once, as far as one
-  // clearance serves them, which is cheaper than to ask for each.
+  // clearance serves them, which is cheaper than to test each.
   template <class Real>
   unsigned near_lanes(const CompiledPlan<Real>& plan, std::int32_t test, unsigned lanes,
                       double speed) {

@@ -90,8 +90,8 @@ void StaticTrees::touch(std::span<const double> configurations, Memory& memory,
         check_->collides(block, memory.check_, [&](int index, const MechanismContact& contact) {
           bool is_placed = std::exchange(placed, index) == index;
           memory.unconfirmed_.clear();
-          const std::size_t asked = std::min(first + static_cast<std::size_t>(index), last);
-          const bool touch = touches(configuration(asked), contact, is_placed, memory);
+          const std::size_t queried = std::min(first + static_cast<std::size_t>(index), last);
+          const bool touch = touches(configuration(queried), contact, is_placed, memory);
           if (!memory.unconfirmed_.empty()) unconfirmed |= 1U << index;
           return touch;
         });
@@ -108,14 +108,14 @@ void StaticTrees::touch(std::span<const double> configurations, Memory& memory,
   }
 }
 
-StaticTrees::AlongFinding StaticTrees::look_along(std::span<const double> from,
-                                                  std::span<const double> to, bool asks_for_contact,
-                                                  Memory& memory) const {
+StaticTrees::AlongFinding StaticTrees::check_along(std::span<const double> from,
+                                                   std::span<const double> to, bool needs_contact,
+                                                   Memory& memory) const {
   if (always_) return AlongFinding::kUndecided;
   const std::optional<bool> is_free = check_->is_free_along(
       positions_.of(from, memory.room_, 0), positions_.of(to, memory.room_, 1), memory.check_);
   if (is_free.value_or(false)) return AlongFinding::kFree;
-  if (!is_free || !asks_for_contact) return AlongFinding::kUndecided;
+  if (!is_free || !needs_contact) return AlongFinding::kUndecided;
   memory.middle_.resize(from.size());
   for (std::size_t i = 0; i < from.size(); ++i) memory.middle_[i] = 0.5 * from[i] + 0.5 * to[i];
   return touch(memory.middle_, memory) ? AlongFinding::kTouchesInTheMiddle
@@ -180,7 +180,7 @@ StaticTrees::Finding StaticTrees::find(const MechanismContact& contact, Memory& 
 
 // A robot that touches often did so a moment ago, by the same triangles or by others near to them.
 // What is not proved by the former alone is left to the test of the spheres, or to the contact that
-// is asked about.
+// is queried.
 bool StaticTrees::still_touches(const Touch& touch, Memory& memory) const {
   if (check_->is_following(memory.check_)) {
     const double depth = depth_of(touch, memory);
@@ -203,7 +203,7 @@ double StaticTrees::depth_of(const Touch& touch, const Memory& memory) const {
 }
 
 // The poses of forward_kinematics() are within pose_error() of those of the exact mechanism, now
-// and wherever the memory is asked for; as much again covers the sphere's.
+// and wherever the memory is requested; as much again covers the sphere's.
 void StaticTrees::remember(const Touch& touch, double depth, Memory& memory) const {
   if (depth <= 3.0 * pairs_.pose_error()) return;
   const Body& body = body_of(touch.contact.pair);

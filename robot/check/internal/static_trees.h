@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Configurations against sphere trees that stand still: what a RobotChecker asks a MechanismCheck,
-// whose memory of the last configurations makes a path fast.
+// Configurations against sphere trees that stand still: what a RobotChecker queries a
+// MechanismCheck, whose memory of the last configurations makes a path fast.
 
 #include "collide/instruction_set.h"
 #include "collide/mechanism_check.h"
@@ -63,12 +63,12 @@ class StaticTrees {
              std::span<std::uint8_t> verdicts) const;
 
   // Of a straight motion from one configuration to another: whether it is free, as RobotChecker
-  // says of check_edge(), or (if that is asked for) touches in its middle. Fast for the motions of
+  // says of check_edge(), or (if that is requested) touches in its middle. Fast for the motions of
   // a path, one after the other; undecided where that is not known soon. Both ends must be
   // BodyPairs::in_filter_range().
   enum class AlongFinding { kFree, kTouchesInTheMiddle, kUndecided };
-  AlongFinding look_along(std::span<const double> from, std::span<const double> to,
-                          bool asks_for_contact, Memory& memory) const;
+  AlongFinding check_along(std::span<const double> from, std::span<const double> to,
+                           bool needs_contact, Memory& memory) const;
 
  private:
   // A piece that variables move, with its mesh, if that is known.

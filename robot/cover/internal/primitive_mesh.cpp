@@ -64,7 +64,7 @@ int sides_for(double radius, SpecificationKind kind, double chord_error,
   }
   std::ostringstream reason;
   reason << "a radius of " << radius << " with a chord error of " << chord_error
-         << " asks for too many triangles";
+         << " requires too many triangles";
   throw Error(subject, reason.str());
 }
 

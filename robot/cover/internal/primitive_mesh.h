@@ -17,7 +17,7 @@ namespace spherule::internal {
 // angles by square roots, so that they are the same on every machine.
 //
 // Throws Error, naming `subject`, for a half-space, sizes that require_primitive() refuses, a
-// chord error that is not positive, and one that asks for more than 1024 sides.
+// chord error that is not positive, and one that requires more than 1024 sides.
 TriangleMesh mesh_around(const Primitive& primitive, double chord_error,
                          const std::string& subject);
 

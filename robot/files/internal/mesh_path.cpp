@@ -19,7 +19,7 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-// One that cannot be read is the root of nothing that is looked for.
+// One that cannot be read is the root of nothing that is searched for.
 bool is_package(const fs::path& folder, const std::string& name) {
   const fs::path manifest = folder / "package.xml";
   if (!is_file(manifest)) return false;

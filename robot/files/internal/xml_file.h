@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// XML files, read strictly: what is asked for is there and is what it has to be, or an Error names
+// XML files, read strictly: what is requested is there and is what it has to be, or an Error names
 // the file, the line and the element.
 
 #include <Eigen/Core>
@@ -39,7 +39,7 @@ class XmlElement {
   // An attribute that may be missing, or is needed and not empty: text in UTF-8.
   std::optional<std::string> attribute(std::string_view name) const;
   std::string needed(std::string_view name) const;
-  // Finite numbers between white space: any number of them, or as many as asked for. Nothing where
+  // Finite numbers between white space: any number of them, or as many as requested. Nothing where
   // the attribute is missing, unless it is needed.
   std::optional<std::vector<double>> numbers(std::string_view name) const;
   std::optional<std::vector<double>> numbers(std::string_view name, std::size_t count) const;

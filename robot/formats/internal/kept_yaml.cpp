@@ -121,7 +121,7 @@ class KeptYaml {
   }
 
  private:
-  // Links with spheres are to be looked at.
+  // Links with spheres are to be examined.
   void add_names() {
     if (places_.names.empty()) return;
     const auto place = place_at(document_, places_.names, gathered_);

@@ -79,7 +79,8 @@ struct IgnoredLinks {
   std::vector<std::string> others{};
   std::vector<std::string> reasons{};
 };
-// The first one of a pair is the one that comes first in `order`: cuRobo looks for it there only.
+// The first one of a pair is the one that comes first in `order`: cuRobo searches for it there
+// only.
 std::vector<IgnoredLinks> ignored_links(std::span<const DisabledPair> pairs,
                                         const std::vector<std::string>& order);
 // "first: [a, b]", and "# REASON: a, b" for the end of the line.

@@ -22,7 +22,7 @@ struct YamlPlace {
 };
 
 // Collects changes to a text and makes them all. What the changes take for granted of the text (a
-// key at the start of its line, a text that is written without escapes) is looked at; where it is
+// key at the start of its line, a text that is written without escapes) is examined; where it is
 // not so, is_possible() is false from then on. Whoever uses the result reads it again.
 class YamlEdit {
  public:

@@ -19,11 +19,11 @@ enum class Joined {
 };
 
 // Whether two links follow each other along the joints: no link between them has spheres.
-// `has_spheres` is asked for indices of links.
+// `has_spheres` is called with indices of links.
 bool are_neighbours(const RobotModel& robot, int first, int second,
                     const std::function<bool(int)>& has_spheres);
 
-// How two links hang together; `has_spheres` is asked for indices of links between them.
+// How two links hang together; `has_spheres` is called with indices of links between them.
 Joined how_joined(const RobotModel& robot, int first, int second,
                   const std::function<bool(int)>& has_spheres);
 

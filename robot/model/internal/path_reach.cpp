@@ -9,7 +9,7 @@
 // and o_k a point of that. With the joint's position x_k,
 //     dp / dx_k = z_k x (p - o_k), or z_k for a shift;
 //     d2p / dx_j dx_k = z_j x (dp / dx_k) for j >= k if joint j turns, otherwise 0,
-// because joint j, nearer to the one who looks, turns all of what k does. Neither is longer than
+// because joint j, nearer to the observer, turns all of what k does. Neither is longer than
 // r_k, the distance of p from the axis of k, or 1 for a shift. So the speed of p is at most the sum
 // of w_k r_k, and its acceleration at most the sum over k of
 //     w_k r_k (w_k t_k + 2 (w_(k+1) t_(k+1) + ... + w_s t_s)),

@@ -6,7 +6,7 @@
 
 namespace spherule::internal {
 
-// How many threads an option asks for, of which 0 means all.
+// How many threads an option requires, of which 0 means all.
 std::size_t thread_count(int threads);
 
 // Calls `work(worker, piece)` once for each piece 0, 1, ... piece_count - 1, on up to worker_count

@@ -129,7 +129,7 @@ class Builder {
 };
 
 // Whether no corner stands before the plane of a triangle by more than kConvexDefect.
-bool looks_convex(const std::vector<Element>& elements, const std::vector<Vector3d>& hull) {
+bool seems_convex(const std::vector<Element>& elements, const std::vector<Vector3d>& hull) {
   return std::all_of(elements.begin(), elements.end(), [&](const Element& element) {
     const Vector3d normal =
         (element.corners[1] - element.corners[0]).cross(element.corners[2] - element.corners[0]);
@@ -175,7 +175,7 @@ LinkPieces make_link_pieces(std::span<const LinkBody> bodies) {
     }
   }
   make_unique(result.hull);
-  result.is_convex = looks_convex(elements, result.hull);
+  result.is_convex = seems_convex(elements, result.hull);
   Builder(std::move(elements), result).build();
   return result;
 }

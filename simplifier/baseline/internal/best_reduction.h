@@ -8,7 +8,7 @@
 
 namespace spherule::internal {
 
-// Whether `a` meets the goal better: with a wanted count, by protruding less; else by keeping to
+// Whether `a` fulfils the goal better: with a wanted count, by protruding less; else by keeping to
 // the protrusion, and then by fewer spheres.
 bool is_better(const std::vector<FittedSphere>& a, const std::vector<FittedSphere>& b,
                const ReductionGoal& goal);

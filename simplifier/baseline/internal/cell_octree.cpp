@@ -122,7 +122,7 @@ void CellOctree::refine(std::uint32_t cell, const std::vector<Triangle>& triangl
     const Vector3d middle = center(cells_[part]);
     std::vector<std::uint32_t> here;
     std::copy_if(near.begin(), near.end(), std::back_inserter(here),
-                 [&](std::uint32_t t) { return may_meet(triangles[t], middle, half); });
+                 [&](std::uint32_t t) { return may_intersect(triangles[t], middle, half); });
     if (!here.empty()) refine(part, triangles, here);
   }
 }
@@ -147,7 +147,7 @@ bool CellOctree::has_center_inside(const Cell& cell) const {
 }
 
 void CellOctree::flood() {
-  // A face is looked at from the cell that is not the coarser one.
+  // A face is examined from the cell that is not the coarser one.
   const auto around = static_cast<std::uint32_t>(cells_.size());
   DisjointSets sets(cells_.size() + 1);
   for (std::uint32_t i = 0; i < around; ++i) {

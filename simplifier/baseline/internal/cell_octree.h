@@ -56,7 +56,7 @@ class CellOctree {
   // As computed, off by a few units in the last place of the largest coordinate.
   Eigen::Vector3d center(const Cell& cell) const;
   // Radius of a sphere about the computed centre that contains the exact cube, and with the reserve
-  // that SphereTree asks for the spheres of its eight halves: in exact arithmetic these touch it
+  // that SphereTree requires of the spheres of its eight halves: in exact arithmetic these touch it
   // from inside at the corners, so that an octree is a layered hierarchy but for rounding.
   double circumscribed(int level) const;
   // Whether the centre of a refined cell lies in a free cell that counts as inside.

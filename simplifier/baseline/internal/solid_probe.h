@@ -5,7 +5,7 @@
 
 namespace spherule::internal {
 
-// What the methods that work with medial spheres ask about a solid, in plain double: it serves
+// What the methods that work with medial spheres query about a solid, in plain double: it serves
 // searches, never a proof. Safe to share between threads.
 class SolidProbe {
  public:

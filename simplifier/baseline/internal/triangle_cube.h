@@ -34,7 +34,7 @@ inline bool separates(const Eigen::Vector3d& axis, const Triangle& corners, doub
 // touching. Separating axes of Akenine-Moeller, "Fast 3D Triangle-Box Overlap Testing" (2001). An
 // axis that has been rounded is another axis, and a plane across it separates just as well, so that
 // only the projections need a margin.
-inline bool may_meet(const Triangle& triangle, const Eigen::Vector3d& center, double half) {
+inline bool may_intersect(const Triangle& triangle, const Eigen::Vector3d& center, double half) {
   using Eigen::Vector3d;
   const Triangle at = {triangle[0] - center, triangle[1] - center, triangle[2] - center};
   const Triangle edges = {at[1] - at[0], at[2] - at[1], at[0] - at[2]};

@@ -45,7 +45,7 @@ class BezierGrid {
     Eigen::Vector3d center;
     double radius;
   };
-  // Which spans an interval meets, and which knots lie inside of it; knot 0 is the seam.
+  // Which spans an interval intersects, and which knots lie inside of it; knot 0 is the seam.
   struct Reach {
     std::vector<std::size_t> spans;
     std::vector<std::size_t> knots;

@@ -39,9 +39,9 @@ std::shared_ptr<api::SphereModel<S>> row_of_spheres(int count) {
 }
 
 template <class Ask>
-std::string subject_of(const Ask& ask) {
+std::string subject_of(const Ask& query) {
   try {
-    ask();
+    query();
   } catch (const Error& error) {
     return error.subject();
   }
@@ -240,8 +240,8 @@ TEST(FclQueries, WhatCannotBeAnsweredIsAnError) {
   EXPECT_EQ(subject_of([&] { api::collide<double>(&object, nullptr, request, result); }), "o2");
 
   api::DistanceResultd distance;
-  const auto distance_with = [&](const api::DistanceRequestd& asked) {
-    return subject_of([&] { api::distance(&object, &object, asked, distance); });
+  const auto distance_with = [&](const api::DistanceRequestd& queried) {
+    return subject_of([&] { api::distance(&object, &object, queried, distance); });
   };
   EXPECT_EQ(distance_with(api::DistanceRequestd(true, true)), "enable_signed_distance");
   EXPECT_EQ(distance_with(api::DistanceRequestd(true, false, 0.0, -1.0)), "abs_err");

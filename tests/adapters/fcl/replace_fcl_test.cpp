@@ -70,8 +70,8 @@ double bound_of(std::size_t model) {
 
 TEST(ReplaceFcl, NoCollisionIsMissedAndExtrasAreNear) {
   const Scene scene = make_scene(false, test::effort(30, 4), 1);
-  const auto with_fcl = ask_pairs_fcl(scene.models, scene.pairs, true);
-  const auto with_spheres = ask_pairs_spherule(scene.models, scene.pairs, true);
+  const auto with_fcl = query_pairs_fcl(scene.models, scene.pairs, true);
+  const auto with_spheres = query_pairs_spherule(scene.models, scene.pairs, true);
   std::size_t collisions = 0, missed = 0, extra = 0, inside = 0;
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
     const PlacedPair& pair = scene.pairs[i];
@@ -105,8 +105,8 @@ TEST(ReplaceFcl, NoCollisionIsMissedAndExtrasAreNear) {
 // Confirmed on the triangles, the verdict is FCL's or that one is inside the other.
 TEST(ReplaceFcl, ConfirmedVerdictsAreFcls) {
   const Scene scene = make_scene(true, test::effort(30, 4), 2);
-  const auto with_fcl = ask_pairs_fcl(scene.models, scene.pairs, false);
-  const auto ours = ask_pairs_spherule(scene.models, scene.pairs, false);
+  const auto with_fcl = query_pairs_fcl(scene.models, scene.pairs, false);
+  const auto ours = query_pairs_spherule(scene.models, scene.pairs, false);
   std::size_t different = 0, collisions = 0;
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
     const bool expected = with_fcl[i].object_collides || touches(scene, scene.pairs[i]);
@@ -136,8 +136,8 @@ TEST(ReplaceFcl, AllManagersFindWhatBruteForceFinds) {
     if (i % 4 == 0) tf.linear().setIdentity();  // FCL makes the boxes of these in another way
     objects.push_back({random.index(models.size()), tf});
   }
-  const auto by_fcl = ask_managers_fcl(managers, models, objects);
-  const auto by_spheres = ask_managers_spherule(managers, models, objects);
+  const auto by_fcl = query_managers_fcl(managers, models, objects);
+  const auto by_spheres = query_managers_spherule(managers, models, objects);
   for (std::size_t i = 1; i < managers.size(); ++i) {
     EXPECT_EQ(by_fcl[i], by_fcl[0]) << managers[i];
     EXPECT_EQ(by_spheres[i], by_spheres[0]) << managers[i];

@@ -25,16 +25,16 @@ struct PlacedPair {
 };
 
 struct PairAnswer {
-  bool geometry_collides = false;  // asked with geometries and transforms
-  bool object_collides = false;    // asked with objects
-  double distance = 0.0;           // asked for only where the objects do not collide
+  bool geometry_collides = false;  // queried with geometries and transforms
+  bool object_collides = false;    // queried with objects
+  double distance = 0.0;           // requested only where the objects do not collide
 };
 
-// The same program twice: its answers by FCL and by spherule. `distances`: also ask for these.
-std::vector<PairAnswer> ask_pairs_fcl(const std::vector<ProgramModel>& models,
-                                      const std::vector<PlacedPair>& pairs, bool distances);
-std::vector<PairAnswer> ask_pairs_spherule(const std::vector<ProgramModel>& models,
-                                           const std::vector<PlacedPair>& pairs, bool distances);
+// The same program twice: its answers by FCL and by spherule. `distances`: also require these.
+std::vector<PairAnswer> query_pairs_fcl(const std::vector<ProgramModel>& models,
+                                        const std::vector<PlacedPair>& pairs, bool distances);
+std::vector<PairAnswer> query_pairs_spherule(const std::vector<ProgramModel>& models,
+                                             const std::vector<PlacedPair>& pairs, bool distances);
 
 // The pairs of objects that collide, by their index, each with the smaller one first: as found with
 // each manager of these names.
@@ -43,11 +43,11 @@ struct PlacedModel {
   std::size_t model = 0;
   fcl::Transform3d tf;
 };
-std::vector<ObjectPairs> ask_managers_fcl(const std::vector<std::string>& managers,
-                                          const std::vector<ProgramModel>& models,
-                                          const std::vector<PlacedModel>& objects);
-std::vector<ObjectPairs> ask_managers_spherule(const std::vector<std::string>& managers,
-                                               const std::vector<ProgramModel>& models,
-                                               const std::vector<PlacedModel>& objects);
+std::vector<ObjectPairs> query_managers_fcl(const std::vector<std::string>& managers,
+                                            const std::vector<ProgramModel>& models,
+                                            const std::vector<PlacedModel>& objects);
+std::vector<ObjectPairs> query_managers_spherule(const std::vector<std::string>& managers,
+                                                 const std::vector<ProgramModel>& models,
+                                                 const std::vector<PlacedModel>& objects);
 
 }  // namespace spherule::test

@@ -75,7 +75,7 @@ struct Planning {
 
   double gap(const ob::State* state) const { return planar_arm_gap(configuration(state)); }
 
-  // The smallest fraction of so many at which the arm meets the wall, above 1 if none does.
+  // The smallest fraction of so many at which the arm intersects the wall, above 1 if none does.
   double first_contact(const ob::State* s1, const ob::State* s2, int steps) const {
     ob::ScopedState<> at(information->getStateSpace());
     for (int i = 0; i <= steps; ++i) {
@@ -188,7 +188,7 @@ TEST(OmplMotions, OutOfBoundsOrInContactIsNotValid) {
   EXPECT_EQ(planning.configuration(last.get()), planning.configuration(touching.get()));
 }
 
-// Below and above the wall; every point of what the planner finds is looked at.
+// Below and above the wall; every point of what the planner finds is examined.
 TEST(OmplPlanning, FindsAWayThroughTheGap) {
   ompl::RNG::setSeed(1);
   const Planning planning;
@@ -224,7 +224,7 @@ TEST(OmplThreads, AnswerAsOne) {
     std::vector<double> clearance;
     bool operator==(const Answers&) const = default;
   };
-  const auto ask = [&] {
+  const auto query = [&] {
     Answers answers;
     for (std::size_t i = 0; i < states.size(); ++i) {
       const ob::State* s1 = states[i].get();
@@ -235,7 +235,7 @@ TEST(OmplThreads, AnswerAsOne) {
     }
     return answers;
   };
-  const Answers expected = ask();
+  const Answers expected = query();
   planning.motions->resetMotionCounter();
   constexpr std::size_t kThreads = 4;
   const auto rounds = static_cast<std::size_t>(test::effort(20, 3));
@@ -245,7 +245,7 @@ TEST(OmplThreads, AnswerAsOne) {
   for (std::size_t& mine : equal) {
     threads.emplace_back([&] {
       together.arrive_and_wait();
-      for (std::size_t round = 0; round < rounds; ++round) mine += ask() == expected;
+      for (std::size_t round = 0; round < rounds; ++round) mine += query() == expected;
     });
   }
   for (std::thread& thread : threads) thread.join();

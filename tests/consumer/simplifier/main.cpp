@@ -2,7 +2,7 @@
 #include <iostream>
 #include <spherule/simplifier/simplify.h>
 
-// Covers a cube of side 100 and asks for the proof.
+// Covers a cube of side 100 and requires the proof.
 int main() {
   spherule::TriangleMesh cube;
   for (int corner = 0; corner < 8; ++corner) {

@@ -20,7 +20,7 @@
 namespace spherule::test {
 namespace {
 
-// Asks a checker of every instruction set for one configuration; returns the exact answer.
+// Queries a checker of every instruction set for one configuration; returns the exact answer.
 bool expect_answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
                    const std::vector<double>& configuration, ObstacleOptions options) {
   const bool expected = answer(robot, obstacles, configuration, options);

@@ -39,7 +39,7 @@ TEST(RobotCheckerAllocation, WarmQueriesAllocateNothing) {
   std::vector<std::uint8_t> free(points.size());
   int collisions = 0;
   int proved = 0;
-  const auto ask = [&] {
+  const auto query = [&] {
     for (std::size_t i = 1; i < points.size(); ++i) {
       collisions += checker.check_config(points[i], scratch) ? 0 : 1;
       const EdgeResult edge = checker.check_edge(points[i - 1], points[i], scratch,
@@ -48,9 +48,9 @@ TEST(RobotCheckerAllocation, WarmQueriesAllocateNothing) {
     }
     checker.check_configs(all, scratch, free);
   };
-  ask();
+  query();
   const int before = allocations;
-  ask();
+  query();
   EXPECT_EQ(allocations, before);
   EXPECT_GT(collisions, 0);
   EXPECT_LT(collisions, 2 * static_cast<int>(points.size()) - 4);

@@ -111,13 +111,13 @@ TEST(RobotCheckerEdge, ATurningBladeMeetsAPlate) {
     const double angle = random.uniform(-3.0, 3.0);
     const double size = std::pow(10.0, random.uniform(-5.0, -2.0));
     const double radius = random.uniform(0.2, 5.0);
-    const bool meets = random.whole(0, 1) == 0;
+    const bool intersects = random.whole(0, 1) == 0;
     RobotModel robot("base");
     robot.add_link("left", "base", {.type = JointType::kContinuous});
     robot.add_link("right", "base", {.type = JointType::kContinuous});
     robot.attach("left", one_sphere_tree({radius, 0, 0}, size));
     robot.attach("right", one_sphere_tree({radius * std::cos(angle), radius * std::sin(angle),
-                                           meets ? 1.2 * size : 2.4 * size + 2e-4},
+                                           intersects ? 1.2 * size : 2.4 * size + 2e-4},
                                           size));
     const RobotChecker checker = RobotScene(robot).snapshot();
     RobotChecker::Scratch scratch(checker);
@@ -126,9 +126,9 @@ TEST(RobotCheckerEdge, ATurningBladeMeetsAPlate) {
     const Configuration from = {0.0, random.uniform(0.3, 2.9)};
     const Configuration to = {together, from[1] + together + (i % 2 == 0 ? 6.3 : -6.3)};
     const EdgeResult result = checker.check_edge(from, to, scratch, {.first = true});
-    EXPECT_EQ(result.verdict == Verdict::kFree, !meets) << size << ' ' << radius;
+    EXPECT_EQ(result.verdict == Verdict::kFree, !intersects) << size << ' ' << radius;
     expect_so(checker, from, to, result, effort(500, 100));
-    if (!meets) continue;
+    if (!intersects) continue;
     // The right one is at angle + q1 - q0 as seen from the left one: met at 0 or a whole turn.
     const double way = i % 2 == 0 ? 6.3 : -6.3;
     double at = -(angle + from[1]);
@@ -140,7 +140,7 @@ TEST(RobotCheckerEdge, ATurningBladeMeetsAPlate) {
   }
 }
 
-// What moves both of two links does not move one against the other: looked at once.
+// What moves both of two links does not move one against the other: examined once.
 TEST(RobotCheckerEdge, OnlyJointsBetweenTheTwoCount) {
   RobotModel robot("base");
   const Joint turning{.type = JointType::kContinuous, .axis = {1, 2, 3}};

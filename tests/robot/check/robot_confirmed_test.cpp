@@ -164,7 +164,7 @@ TEST(RobotConfirmed, ConfigurationsAreJudgedOnTheMeshes) {
   int hits = 0, free = 0, alarms = 0;
   for (int i = 0; i < effort(60, 6); ++i) {
     const ConfirmedScene scene(random);
-    std::vector<double> asked;
+    std::vector<double> queried;
     std::vector<std::uint8_t> expected;
     const RobotChecker spheres = scene.checker(best_instruction_set(), false);
     RobotChecker::Scratch sphere_scratch(spheres);
@@ -173,7 +173,7 @@ TEST(RobotConfirmed, ConfigurationsAreJudgedOnTheMeshes) {
           random_configuration(random, scene.robot(), k == 0 ? 200.0 : 3.2);
       const double gap = scene.gap(at);
       if (std::abs(gap) < kUnclear) continue;
-      asked.insert(asked.end(), at.begin(), at.end());
+      queried.insert(queried.end(), at.begin(), at.end());
       expected.push_back(gap > 0.0 ? 1 : 0);
       (gap > 0.0 ? free : hits) += 1;
       alarms += gap > 0.0 && !spheres.check_config(at, sphere_scratch);
@@ -183,10 +183,10 @@ TEST(RobotConfirmed, ConfigurationsAreJudgedOnTheMeshes) {
       const RobotChecker checker = scene.checker(set);
       RobotChecker::Scratch scratch(checker);
       std::vector<std::uint8_t> many(expected.size());
-      checker.check_configs(asked, scratch, many);
+      checker.check_configs(queried, scratch, many);
       EXPECT_EQ(many, expected) << i;
       for (std::size_t k = 0; k < expected.size(); ++k) {
-        const auto at = std::span(asked).subspan(k * variables, variables);
+        const auto at = std::span(queried).subspan(k * variables, variables);
         ASSERT_EQ(checker.check_config(at, scratch), expected[k] != 0) << i << ' ' << k;
         ASSERT_EQ(checker.explain(at, scratch).empty(), expected[k] != 0) << i << ' ' << k;
         ASSERT_LE(checker.clearance(at, scratch).lower, std::max(0.0, scene.gap(at)) + kUnclear);

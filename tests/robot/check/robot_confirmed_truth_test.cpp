@@ -184,7 +184,7 @@ TEST(RobotConfirmedTruth, ConfigurationsAgreeWithFcl) {
     const RobotChecker checker = scene.checker(best_instruction_set(), true);
     const RobotChecker spheres = scene.checker(best_instruction_set(), false);
     RobotChecker::Scratch scratch(checker), sphere_scratch(spheres);
-    std::vector<double> asked;
+    std::vector<double> queried;
     std::vector<std::uint8_t> expected;
     for (int k = 0; k < 40; ++k) {
       const std::vector<double> at = random_configuration(random, scene.robot(), 1.5);
@@ -193,13 +193,13 @@ TEST(RobotConfirmedTruth, ConfigurationsAgreeWithFcl) {
       const bool is_free = gap > 0.0;
       ASSERT_EQ(checker.check_config(at, scratch), is_free) << i << ' ' << k << ' ' << gap;
       ASSERT_EQ(checker.explain(at, scratch).empty(), is_free) << i << ' ' << k << ' ' << gap;
-      asked.insert(asked.end(), at.begin(), at.end());
+      queried.insert(queried.end(), at.begin(), at.end());
       expected.push_back(is_free ? 1 : 0);
       ++counts[is_free];
       alarms += is_free && !spheres.check_config(at, sphere_scratch);
     }
     std::vector<std::uint8_t> many(expected.size());
-    checker.check_configs(asked, scratch, many);
+    checker.check_configs(queried, scratch, many);
     EXPECT_EQ(many, expected) << i;
   }
   EXPECT_GT(counts[0], effort(300, 20));

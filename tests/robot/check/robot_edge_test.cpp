@@ -133,11 +133,11 @@ TEST(RobotEdge, NothingIsPassedThrough) {
     const std::vector<double> to = {angle + after};
     const EdgeRequest request{.resolution = 1e-4, .first = i % 2 == 0};
     const EdgeResult result = checker.check_edge(from, to, scratch, request);
-    const bool meets = beside < 1e-3 + size;
-    EXPECT_EQ(result.verdict == Verdict::kFree, !meets) << i << ' ' << size;
-    EXPECT_LE(result.free_until, meets ? before / (before + after) : 1.0);
+    const bool intersects = beside < 1e-3 + size;
+    EXPECT_EQ(result.verdict == Verdict::kFree, !intersects) << i << ' ' << size;
+    EXPECT_LE(result.free_until, intersects ? before / (before + after) : 1.0);
     expect_true(checker, from, to, result, 100);
-    if (meets && request.first) {
+    if (intersects && request.first) {
       const double turns = std::floor(before / (2.0 * 3.14159265358979323846));
       const double met = (before - turns * 2.0 * 3.14159265358979323846) / (before + after);
       EXPECT_NEAR(result.free_until, met, 1e-3 / (before + after)) << "the first of many turns";

@@ -57,7 +57,7 @@ double overlap(const SphereTree& a, const Pose& world_from_a, const SphereTree& 
 }
 
 // By link and obstacle, where they collide: the deepest overlap of two spheres that touch and,
-// where meshes are asked, under which triangles touch, if there are any.
+// where meshes are queried, under which triangles touch, if there are any.
 using Depths = std::map<std::pair<std::size_t, std::size_t>, double>;
 
 Depths expected_depths(const Scene& scene, std::span<const double> configuration) {
@@ -107,7 +107,7 @@ struct Count {
   int inside = 0;
 };
 
-// Asks for all contacts of a configuration and for the first few.
+// Queries all contacts of a configuration and the first few.
 void expect_explained(const Scene& scene, const ObstacleChecker& checker,
                       std::span<const double> configuration, RobotChecker::Scratch& scratch,
                       Count& count) {

@@ -175,7 +175,7 @@ TEST(RobotMesh, AnswersAsMeshesAmongSpheresDoOnEveryInstructionSet) {
 }
 
 // Along paths, with steps of any size, stops and jumps, what is remembered changes no answer:
-// neither of those before, nor of a block or a motion that was asked for in between.
+// neither of those before, nor of a block or a motion that was requested in between.
 TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
   SceneRandom random(63);
   int hits = 0;

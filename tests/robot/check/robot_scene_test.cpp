@@ -75,7 +75,7 @@ TEST(RobotScene, ObstaclesComeMoveAndGo) {
   EXPECT_FALSE(before.free(1.0, 0.6)) << "a snapshot does not change";
 }
 
-// What was an obstacle moves with the robot, and meets what the robot alone would pass.
+// What was an obstacle moves with the robot, and intersects what the robot alone would pass.
 TEST(RobotScene, AnObstacleIsPickedUp) {
   RobotScene scene(welder());
   const auto part = one_sphere_tree({0, 0, 0}, 0.1);
@@ -88,8 +88,8 @@ TEST(RobotScene, AnObstacleIsPickedUp) {
   scene.attach("part", "slide", part, Pose::from_translation({0.4, 0, 0}));
   EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
   EXPECT_FALSE(Asked(scene).free(1.0, 0.8));
-  Asked asked(scene);
-  const auto told = asked.checker.explain(Configuration{1.0, 0.8}, asked.scratch);
+  Asked queried(scene);
+  const auto told = queried.checker.explain(Configuration{1.0, 0.8}, queried.scratch);
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told[0].first.kind, CheckedBody::Kind::kAttached);
   EXPECT_EQ(told[0].first.name, "part");
@@ -107,9 +107,10 @@ TEST(RobotScene, PaddingKeepsApart) {
   EXPECT_TRUE(Asked(scene).free(1.0, 0.38));
   scene.set_padding("slide", "post", 0.01);
   EXPECT_FALSE(Asked(scene).free(1.0, 0.38)) << "both count";
-  Asked asked(scene);
-  EXPECT_NEAR(asked.checker.clearance(Configuration{1.0, 0.3}, asked.scratch).lower, 0.075, 1e-9);
-  const auto told = asked.checker.explain(Configuration{1.0, 0.38}, asked.scratch);
+  Asked queried(scene);
+  EXPECT_NEAR(queried.checker.clearance(Configuration{1.0, 0.3}, queried.scratch).lower, 0.075,
+              1e-9);
+  const auto told = queried.checker.explain(Configuration{1.0, 0.38}, queried.scratch);
   ASSERT_EQ(told.size(), 1U);
   EXPECT_NEAR(told[0].overlap_depth, 0.005, 1e-9);
   EXPECT_NEAR(told[0].padding, 0.025, 1e-12);
@@ -143,8 +144,8 @@ TEST(RobotScene, OnlyARegionMayTouch) {
     EXPECT_FALSE(Asked(scene).free(1.0, 0.6)) << "the wire";
     EXPECT_FALSE(Asked(scene).free(1.0, 0.7)) << "the nozzle";
     EXPECT_FALSE(Asked(scene).free(0.5, 0.5)) << "the clamp";
-    Asked asked(scene);
-    const auto told = asked.checker.explain(Configuration{1.0, 0.6}, asked.scratch);
+    Asked queried(scene);
+    const auto told = queried.checker.explain(Configuration{1.0, 0.6}, queried.scratch);
     ASSERT_EQ(told.size(), 1U);
     EXPECT_EQ(told[0].first.name, "slide");
     EXPECT_EQ(told[0].first.sphere, 3) << "as the link's tree numbers it";
@@ -174,7 +175,8 @@ TEST(RobotScene, RegionsOfToolsAndLinks) {
   RobotScene scene(welder());
   scene.attach("gripper", "slide", row({{{0.6, 0, 0}, 0.02}, {{0.7, 0, 0}, 0.02}}),
                Pose::from_translation({0, 0, -0.1}));
-  // At the lift of 0.1 the gripper is level with the base, which it meets coming from the left.
+  // At the lift of 0.1 the gripper is level with the base, which it intersects coming from the
+  // left.
   EXPECT_TRUE(Asked(scene).free(0.1, -1.0));
   EXPECT_FALSE(Asked(scene).free(0.1, -0.7));
   scene.define_region({"gripper", "jaw"}, std::vector<BodySphere>{{0, 1}});
@@ -341,10 +343,10 @@ TEST(RobotScene, PaddingsAddUpToNoLess) {
   scene.add("board", Primitive(Box{{1, 1, 1}}));
   scene.set_padding("slide", 1.0);
   scene.set_padding("slide", "board", 1e-17);
-  const Asked asked(scene);
-  RobotChecker::Scratch scratch(asked.checker);
+  const Asked queried(scene);
+  RobotChecker::Scratch scratch(queried.checker);
   bool is_found = false;
-  for (const CheckedContact& contact : asked.checker.explain(Configuration{0.0, 0.0}, scratch)) {
+  for (const CheckedContact& contact : queried.checker.explain(Configuration{0.0, 0.0}, scratch)) {
     if (contact.first.name != "slide" || contact.second.name != "board") continue;
     is_found = true;
     EXPECT_GT(contact.padding, 1.0);

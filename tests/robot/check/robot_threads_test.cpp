@@ -98,7 +98,7 @@ ObstacleChecker slide() {
   return ObstacleChecker(robot, {{one_sphere_tree({1, 0, 0}, 0.05), Pose()}});
 }
 
-// What is thrown is what one thread would meet first, whichever thread meets which first.
+// What is thrown is what one thread would meet first, whichever thread comes to which first.
 TEST(RobotThreads, ErrorsAreThoseOfOneThread) {
   const ObstacleChecker checker = slide();
   constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();

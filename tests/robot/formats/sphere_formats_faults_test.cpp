@@ -220,7 +220,7 @@ TEST_F(SphereFormatFaults, CuroboSwitchesSpheresOff) {
       "      a: [{center: [0, 0, 0], radius: -10}, {center: [0, 0, 0], radius: 0.0}, "
       "{center: [1, 0, 0], radius: 1}]\n      b: [{center: [0, 0, 0], radius: 1}]\n      c:\n";
   const RobotSpheres read_spheres = read(text).spheres;
-  EXPECT_EQ(read_spheres.switched_off, 3u);  // b is none of the links that cuRobo looks at
+  EXPECT_EQ(read_spheres.switched_off, 3u);  // b is none of the links that cuRobo examines
   ASSERT_EQ(read_spheres.links.size(), 3u);
   EXPECT_EQ(read_spheres.links[0].spheres.size(), 1u);
   EXPECT_TRUE(read_spheres.links[1].spheres.empty());

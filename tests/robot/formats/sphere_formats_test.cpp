@@ -144,7 +144,7 @@ TEST_F(SphereFormats, CuroboHasWhatItsUsersNeed) {
   for (const char* part :
        {"robot_cfg:\n  kinematics:\n", "urdf_path: ", "base_link: base\n", "ee_link: bare\n",
         "collision_link_names: [base, arm]\n", "      bare: []\n",
-        // cuRobo looks for a pair under the link that comes first.
+        // cuRobo searches for a pair under the link that comes first.
         "self_collision_ignore:\n      base: [arm]  # Adjacent: arm\n",
         "collision_sphere_buffer: 0.0\n", "joint_names: [\"joint 1\", \"yes\", \"j#3\"]\n",
         "retract_config: [0.5, -1.3, 0.0]\n"}) {

@@ -57,7 +57,7 @@ void compare_with_kdl(bool branching) {
   SceneRandom random(1);
   for (int i = 0; i < 100; ++i) {
     const RobotModel robot = random_robot(random, random.whole(1, 12), branching);
-    if (robot.variable_count() == 0) continue;  // KDL asks for a position even then
+    if (robot.variable_count() == 0) continue;  // KDL requires a position even then
     // A copy of a KDL tree numbers its joints depth-first, whatever the numbers of the original,
     // and the solver keeps a copy; a copy of a copy keeps the numbers.
     const KDL::Tree original = kdl_tree(robot);

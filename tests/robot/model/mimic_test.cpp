@@ -260,8 +260,8 @@ TEST(Mimic, FastFollowersDoNotPassThrough) {
   }
 }
 
-// In the middle of the motion the arm touches by so little that single precision asks: for the
-// configuration there, of which the arm's position comes first among the positions.
+// In the middle of the motion the arm touches by so little that single precision is uncertain: for
+// the configuration there, of which the arm's position comes first among the positions.
 TEST(Mimic, DoubtsOnEdgesAreSettledWhereTheyAre) {
   SceneRandom random(88);
   for (int i = 0; i < effort(100, 20); ++i) {

@@ -19,8 +19,8 @@ inline ExactPoint exact(const Eigen::Vector3d& p) {
 
 // Whether the closed triangle and the closed cube of half the edge `half` have a point in common,
 // in rational arithmetic: the triangle is clipped at the six faces in turn.
-inline bool exactly_meets(const std::array<Eigen::Vector3d, 3>& triangle, const ExactPoint& center,
-                          const Rational& half) {
+inline bool exactly_intersects(const std::array<Eigen::Vector3d, 3>& triangle,
+                               const ExactPoint& center, const Rational& half) {
   std::vector<ExactPoint> polygon = {exact(triangle[0]), exact(triangle[1]), exact(triangle[2])};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (const int side : {-1, 1}) {

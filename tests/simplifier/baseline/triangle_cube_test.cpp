@@ -29,19 +29,20 @@ Tally compare(int cases, const std::function<Triangle()>& make, const Vector3d& 
   Tally tally;
   for (int i = 0; i < cases; ++i) {
     const Triangle triangle = make();
-    const bool exact_answer = exactly_meets(triangle, exact(center), Rational(half));
-    const bool answer = internal::may_meet(triangle, center, half);
+    const bool exact_answer = exactly_intersects(triangle, exact(center), Rational(half));
+    const bool answer = internal::may_intersect(triangle, center, half);
     ++(exact_answer ? tally.meet : tally.apart);
     EXPECT_TRUE(answer || !exact_answer) << i;
     if (answer && !exact_answer) {
       ++tally.only_possibly;
-      EXPECT_TRUE(exactly_meets(triangle, exact(center), Rational(half) + Rational(slack))) << i;
+      EXPECT_TRUE(exactly_intersects(triangle, exact(center), Rational(half) + Rational(slack)))
+          << i;
     }
   }
   return tally;
 }
 
-TEST(TriangleMeetsCube, AgreesWithRationalClipping) {
+TEST(TriangleIntersectsCube, AgreesWithRationalClipping) {
   Random random(1);
   const Eigen::AlignedBox3d field(Vector3d::Constant(-2.5), Vector3d::Constant(2.5));
   const Tally tally = compare(
@@ -56,7 +57,7 @@ TEST(TriangleMeetsCube, AgreesWithRationalClipping) {
 
 // Coordinates on a coarse lattice: corners and edges on faces, edges and corners of the cube,
 // triangles that are segments or points.
-TEST(TriangleMeetsCube, TouchingAndDegenerate) {
+TEST(TriangleIntersectsCube, TouchingAndDegenerate) {
   Random random(2);
   const auto lattice = [&] {
     Vector3d p;
@@ -74,7 +75,7 @@ TEST(TriangleMeetsCube, TouchingAndDegenerate) {
 }
 
 // Moved so that the cube is touched in one point, give or take some units in the last place.
-TEST(TriangleMeetsCube, WithinRoundingOfTouching) {
+TEST(TriangleIntersectsCube, WithinRoundingOfTouching) {
   Random random(3);
   const Eigen::AlignedBox3d field(Vector3d::Constant(-3.0), Vector3d::Constant(3.0));
   for (const double offset : {0.0, 1e3, 1e9}) {
@@ -102,7 +103,7 @@ TEST(TriangleMeetsCube, WithinRoundingOfTouching) {
   }
 }
 
-TEST(TriangleMeetsCube, NeedlesAndGiants) {
+TEST(TriangleIntersectsCube, NeedlesAndGiants) {
   Random random(4);
   for (const double length : {1e3, 1e8}) {
     const Tally tally = compare(

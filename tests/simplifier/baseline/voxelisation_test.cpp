@@ -47,8 +47,8 @@ TriangleMesh on_lattice(TriangleMesh mesh) {
   return mesh;
 }
 
-// The voxels of the surface are those that a triangle meets in rational arithmetic.
-TEST(Voxelise, FindsTheCubesThatTheSurfaceMeets) {
+// The voxels of the surface are those that a triangle intersects in rational arithmetic.
+TEST(Voxelise, FindsTheCubesThatTheSurfaceIntersects) {
   for (const std::string name : {"cube", "l bracket", "thin sheet", "needles", "soup"}) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = on_lattice(name == "cube"         ? cube_mesh()
@@ -68,21 +68,21 @@ TEST(Voxelise, FindsTheCubesThatTheSurfaceMeets) {
       for (int y = static_cast<int>(range.min().y()) - 1; y <= range.max().y() + 1; ++y) {
         for (int z = static_cast<int>(range.min().z()) - 1; z <= range.max().z() + 1; ++z) {
           const Vector3d center = first + 0.125 * Vector3d(x, y, z);
-          const auto meets = [&](const Rational& half) {
+          const auto intersects = [&](const Rational& half) {
             return std::any_of(mesh.triangles.begin(), mesh.triangles.end(),
                                [&](const Eigen::Vector3i& t) {
                                  const auto v = [&](int k) {
                                    return mesh.vertices[static_cast<std::size_t>(t[k])];
                                  };
-                                 return exactly_meets({v(0), v(1), v(2)}, exact(center), half);
+                                 return exactly_intersects({v(0), v(1), v(2)}, exact(center), half);
                                });
           };
           const bool is_found = found.count({x, y, z}) > 0;
-          const bool is_met = meets(Rational(0.0625));
+          const bool is_met = intersects(Rational(0.0625));
           EXPECT_TRUE(is_found || !is_met) << center.transpose();
           if (is_found && !is_met) {
             ++touching;
-            EXPECT_TRUE(meets(Rational(0.0625 + 1e-12))) << center.transpose();
+            EXPECT_TRUE(intersects(Rational(0.0625 + 1e-12))) << center.transpose();
           }
         }
       }

@@ -21,7 +21,7 @@ struct AssemblyPart {
 void write_assembly(const std::vector<AssemblyPart>& parts, const std::filesystem::path& path,
                     bool name_instances = false);
 
-// Boxes, no two alike, each in as many places, turned and shifted so that none meets another.
+// Boxes, no two alike, each in as many places, turned and shifted so that none intersects another.
 std::vector<AssemblyPart> box_parts(int parts, int places);
 
 }  // namespace spherule::test
