@@ -2,9 +2,9 @@
 #include "mesh/shells/closed_shells.h"
 
 #include "mesh/geometry/raw_mesh.h"
-#include "mesh/geometry/ray_crossing.h"
+#include "mesh/geometry/ray.h"
 #include "mesh/geometry/solid_angle.h"
-#include "mesh/shells/disjoint_sets.h"
+#include "mesh/shells/mesh_shells.h"
 
 #include <algorithm>
 #include <array>
@@ -23,64 +23,19 @@ const std::array<Eigen::Vector3d, 4> kDirections{
     Eigen::Vector3d(0.4517, 0.6293, 0.6323), Eigen::Vector3d(-0.7411, 0.3079, 0.5966),
     Eigen::Vector3d(0.5381, -0.8114, 0.2281), Eigen::Vector3d(-0.2893, -0.4729, -0.8323)};
 
-// An edge of a triangle; it runs from `low` to `high` or back.
-struct EdgeUse {
-  int low, high;
-  std::uint32_t triangle;
-  bool forward;
-
-  bool is_along(const EdgeUse& other) const { return low == other.low && high == other.high; }
-};
-
-// Sorted by edge. A triangle with a repeated corner runs along an edge and back: it has no winding
-// number and is left out.
-std::vector<EdgeUse> edge_uses(const TriangleMesh& mesh) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * mesh.triangles.size());
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Eigen::Vector3i& t = mesh.triangles[i];
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    for (int k = 0; k < 3; ++k) {
-      const int from = t[k], to = t[(k + 1) % 3];
-      uses.push_back(
-          {std::min(from, to), std::max(from, to), static_cast<std::uint32_t>(i), from < to});
-    }
-  }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-    return a.low < b.low || (a.low == b.low && a.high < b.high);
-  });
-  return uses;
-}
-
 }  // namespace
 
-ClosedShells::ClosedShells(const TriangleMesh& input, const MeshDistance& distance)
-    : distance_(distance), shell_of_(input.triangles.size(), kOpen) {
-  const TriangleMesh mesh = weld(input);
-  const std::vector<EdgeUse> uses = edge_uses(mesh);
-  DisjointSets parts(mesh.triangles.size());
-  std::vector<std::uint32_t> unbalanced;  // a triangle at each such edge
-  for (std::size_t i = 0; i < uses.size();) {
-    const EdgeUse& first = uses[i];
-    int balance = 0;
-    for (; i < uses.size() && uses[i].is_along(first); ++i) {
-      parts.unite(first.triangle, uses[i].triangle);
-      balance += uses[i].forward ? 1 : -1;
-    }
-    if (balance != 0) unbalanced.push_back(first.triangle);
-  }
-  is_mesh_closed_ = unbalanced.empty();
-  std::vector<char> is_open(mesh.triangles.size(), 0);  // of the roots
-  for (const std::uint32_t triangle : unbalanced) is_open[parts.find(triangle)] = 1;
-
-  std::vector<std::int32_t> shell_of_root(mesh.triangles.size(), kOpen);
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const std::uint32_t root = parts.find(static_cast<std::uint32_t>(i));
-    if (is_open[root] != 0) continue;
-    if (shell_of_root[root] == kOpen) {
-      shell_of_root[root] = static_cast<std::int32_t>(shell_count_++);
-    }
-    shell_of_[i] = shell_of_root[root];
+ClosedShells::ClosedShells(const TriangleMesh& mesh, const MeshDistance& distance)
+    : distance_(distance), shell_of_(mesh.triangles.size(), kOpen) {
+  const TriangleMesh welded = weld(mesh);
+  std::vector<std::array<int, 3>> triangles;
+  triangles.reserve(welded.triangles.size());
+  for (const Eigen::Vector3i& t : welded.triangles) triangles.push_back({t[0], t[1], t[2]});
+  const MeshShells found = find_shells(triangles, welded.vertices);
+  is_mesh_closed_ = found.are_balanced;
+  for (std::size_t i = 0; i < shell_of_.size(); ++i) {
+    shell_of_[i] = found.roles[i].shell;
+    shell_count_ = std::max(shell_count_, static_cast<std::size_t>(shell_of_[i] + 1));
   }
 }
 
@@ -104,16 +59,15 @@ ClosedShells::Windings ClosedShells::windings(const Eigen::Vector3d& point) cons
 
 std::optional<ClosedShells::Windings> ClosedShells::count_along(
     const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const {
+  const Ray ray(point, 0.0, direction);
   Windings crossings;
   const bool is_certain =
       distance_.visit_ray(point, direction, [&](const MeshDistance::Corners& t) {
         const std::int32_t shell = shell_of_[static_cast<std::size_t>(t.triangle)];
         if (shell == kOpen) return true;
-        const RayCrossing crossing = ray_crossing(direction, t.a - point, t.b - point, t.c - point);
-        if (crossing == RayCrossing::kUncertain) return false;
-        if (crossing == RayCrossing::kFromBehind) crossings.emplace_back(shell, 1);
-        if (crossing == RayCrossing::kFromFront) crossings.emplace_back(shell, -1);
-        return true;
+        const std::optional<int> crossing = ray.crossing({t.a, t.b, t.c});
+        if (crossing.value_or(0) != 0) crossings.emplace_back(shell, *crossing);
+        return crossing.has_value();
       });
   if (!is_certain) return std::nullopt;
   std::sort(crossings.begin(), crossings.end());

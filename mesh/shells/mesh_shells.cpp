@@ -75,6 +75,7 @@ class ShellFinder {
 
   MeshShells run() {
     MeshShells result;
+    result.are_balanced = are_balanced_;
     result.roles.resize(triangles_.size());
     std::vector<std::int32_t> of_shell(triangles_.size(), -1), of_patch = of_shell,
                                                                of_cell(2 * triangles_.size(), -1);
@@ -167,7 +168,9 @@ class ShellFinder {
   void weigh_shell(std::span<const EdgeUse> uses) {
     int sum = 0;
     for (const EdgeUse& use : uses) sum += use.turn;
-    if (sum != 0) is_open_shell_[shell_of(uses[0].triangle)] = 1;
+    if (sum == 0) return;
+    is_open_shell_[shell_of(uses[0].triangle)] = 1;
+    are_balanced_ = false;
   }
 
   // Those of an edge that do not repeat another triangle.
@@ -245,6 +248,7 @@ class ShellFinder {
   // whether some are left if those are taken away in pairs; whether more than two meet at an edge.
   std::vector<char> cancels_, remains_, has_junction_;
   std::vector<char> is_open_shell_, is_open_patch_;
+  bool are_balanced_ = true;
 };
 
 }  // namespace

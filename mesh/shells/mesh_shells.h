@@ -47,6 +47,8 @@ struct MeshShells {
   // Whether all triangles with three different corners are of a closed surface; of those that
   // are turned both ways, of a patch or cell.
   bool are_closed = true;
+  // Whether every edge is passed as often in one direction as in the other: all shells are closed.
+  bool are_balanced = true;
 };
 
 // Of triangles with numbered corners and where these lie. Those with equal corners have no role.
