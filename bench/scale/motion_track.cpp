@@ -54,7 +54,7 @@ void MotionTrack<Number>::add_spheres(std::span<const Sphere> spheres, const Pos
     const Point p = point<Number>(sphere.center);
     const Point from = turned(start.rotation(), Point{p[0] - c[0], p[1] - c[1], p[2] - c[2]});
     const Number along = dot(axis, from);
-    Sphere tracked{};
+    TrackedSphere tracked{};
     for (std::size_t k = 0; k < 3; ++k) {
       tracked.base[k] = anchor[k] + along * axis[k];
       tracked.arm[k] = from[k] - along * axis[k];

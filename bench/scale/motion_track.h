@@ -45,7 +45,7 @@ class MotionTrack {
   template <class Other>
   friend class MotionTrack;
 
-  struct Sphere {
+  struct TrackedSphere {
     Point base, arm, side;
     double radius;
     double extent;
@@ -57,7 +57,7 @@ class MotionTrack {
                    const Eigen::Vector3d& reference, double extent);
   void set_errors();
 
-  std::vector<Sphere> spheres_;
+  std::vector<TrackedSphere> spheres_;
   Point way_{};
   Number angle_ = 0;
 };
@@ -88,7 +88,7 @@ template <class Number>
 void MotionTrack<Number>::set_errors() {
   using std::abs;
   const Number share = 128 * std::numeric_limits<Number>::epsilon() * (1 + abs(angle_));
-  for (Sphere& sphere : spheres_) sphere.error = share * static_cast<Number>(sphere.extent);
+  for (TrackedSphere& sphere : spheres_) sphere.error = share * static_cast<Number>(sphere.extent);
 }
 
 template <class Number>
@@ -96,7 +96,7 @@ void MotionTrack<Number>::place(double t, std::vector<Point>& centers) const {
   const Number at = t, c = std::cos(at * angle_), s = std::sin(at * angle_);
   centers.resize(spheres_.size());
   for (std::size_t i = 0; i < spheres_.size(); ++i) {
-    const Sphere& sphere = spheres_[i];
+    const TrackedSphere& sphere = spheres_[i];
     for (std::size_t k = 0; k < 3; ++k) {
       centers[i][k] = sphere.base[k] + at * way_[k] + (c * sphere.arm[k] + s * sphere.side[k]);
     }

@@ -140,10 +140,10 @@ TEST_F(RobotTest, WritesEveryFormatSoThatItReadsBack) {
   for (const char* file : {"arm_1.srdf", "arm_1.curobo.yml", "arm_1.xrdf"}) {
     EXPECT_EQ(ignored(read_back(file)), neighbours) << file;
   }
-  for (const auto& [link, spheres] : links) {
+  for (const auto& [link, of_link] : links) {
     const SphereTree tree = load_tree(folder_ / "out" / ("arm_1." + link + ".tree"));
     EXPECT_TRUE(check(tree).valid);
-    EXPECT_EQ(std::vector(tree.spheres().begin(), tree.spheres().end()), spheres);
+    EXPECT_EQ(std::vector(tree.spheres().begin(), tree.spheres().end()), of_link);
   }
 
   // The spherized URDF is a robot: the same joints, spheres only.
@@ -153,9 +153,8 @@ TEST_F(RobotTest, WritesEveryFormatSoThatItReadsBack) {
   ASSERT_EQ(spherized.links.size(), robot.links.size());
   EXPECT_EQ(spherized.model.variable_count(), 2);
   for (const LinkDescription& link : spherized.links) {
-    const auto spheres = links.find(link.name);
-    EXPECT_EQ(link.collision.size(), spheres == links.end() ? 0 : spheres->second.size())
-        << link.name;
+    const auto found = links.find(link.name);
+    EXPECT_EQ(link.collision.size(), found == links.end() ? 0 : found->second.size()) << link.name;
   }
 
   // The exact primitives, and the exact meshes, which are boxes.
@@ -193,19 +192,19 @@ TEST_F(RobotTest, TellsInTableJsonAndReportWhatIsProved) {
   const SpheresOfLinks links = by_link(read_back("arm_1.spheres.json"));
   std::size_t count = 0;
   for (const json& link : summary.at("links")) {
-    const auto spheres = links.find(link.at("link"));
-    if (spheres == links.end()) {
+    const auto found = links.find(link.at("link"));
+    if (found == links.end()) {
       EXPECT_EQ(link.at("sphere_count"), 0);
       EXPECT_FALSE(link.contains("certificate"));
       continue;
     }
-    EXPECT_EQ(link.at("sphere_count"), spheres->second.size());
+    EXPECT_EQ(link.at("sphere_count"), found->second.size());
     const json& certificate = link.at("certificate");
     EXPECT_EQ(certificate.at("covered"), true);
     EXPECT_EQ(certificate.at("uncovered_depth").at(1), 0.0);
     EXPECT_LE(certificate.at("protrusion_over_simplified_max"), 0.06 * (1 + 1e-9));
     EXPECT_EQ(link.at("options").at("min-external"), 0.24);
-    count += spheres->second.size();
+    count += found->second.size();
   }
   EXPECT_EQ(summary.at("total").at("sphere_count"), count);
 

@@ -92,8 +92,8 @@ ObjectPairs colliding_pairs(const fcl::BroadPhaseCollisionManagerd& manager,
 
 }  // namespace
 
-std::vector<PairAnswer> PROGRAM(ask_pairs)(const std::vector<ProgramModel>& models,
-                                           const std::vector<PlacedPair>& pairs, bool distances) {
+std::vector<PairAnswer> PROGRAM(query_pairs)(const std::vector<ProgramModel>& models,
+                                             const std::vector<PlacedPair>& pairs, bool distances) {
   const auto geometries = make_geometries(models);
   std::vector<PairAnswer> answers;
   for (const PlacedPair& pair : pairs) {
@@ -117,9 +117,9 @@ std::vector<PairAnswer> PROGRAM(ask_pairs)(const std::vector<ProgramModel>& mode
   return answers;
 }
 
-std::vector<ObjectPairs> PROGRAM(ask_managers)(const std::vector<std::string>& names,
-                                               const std::vector<ProgramModel>& models,
-                                               const std::vector<PlacedModel>& placed) {
+std::vector<ObjectPairs> PROGRAM(query_managers)(const std::vector<std::string>& names,
+                                                 const std::vector<ProgramModel>& models,
+                                                 const std::vector<PlacedModel>& placed) {
   const auto geometries = make_geometries(models);
   std::vector<api::CollisionObjectd> objects;
   for (const PlacedModel& p : placed) objects.emplace_back(geometries[p.model], p.tf);
