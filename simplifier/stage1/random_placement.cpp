@@ -2,12 +2,14 @@
 #include "simplifier/stage1/random_placement.h"
 
 #include "simplifier/support/random.h"
+#include "spheretree/median_split.h"
 #include "spheretree/rounding.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace spherule::internal {
 namespace {
@@ -53,15 +55,10 @@ class Waiting {
       nodes_[self].max_radius = std::max(nodes_[self].max_radius, spheres_[i].radius);
     }
     if (end - begin <= 8) return self;
-    int axis = 0;
-    nodes_[self].centers.sizes().maxCoeff(&axis);
-    const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [&](std::size_t i) {
-      return spheres_.begin() + static_cast<std::ptrdiff_t>(i);
-    };
-    std::nth_element(at(begin), at(middle), at(end), [axis](const Sphere& s, const Sphere& t) {
-      return s.center[axis] < t.center[axis];
-    });
+    const Eigen::Index axis = internal::longest_axis(nodes_[self].centers);
+    const std::size_t middle =
+        begin + internal::split_at_median(std::span(spheres_).subspan(begin, end - begin),
+                                          [axis](const Sphere& s) { return s.center[axis]; });
     build(begin, middle);
     const std::size_t right = build(middle, end);
     nodes_[self].right = right;
