@@ -85,7 +85,7 @@ const std::vector<Room>& rooms() {
         {"qhull", "simplifier/baseline/internal/voronoi.cpp"},
         {"bullet", "simplifier/baseline/convex_decomposition.cpp"}}},
       {"simplifier/cad",
-       kSimplifier,
+       joined({kSimplifier, {"mesh/parsing"}}),
        {"Eigen"},
        {{"opencascade", "simplifier/cad/internal/cad_assembly.cpp"},
         {"opencascade", "simplifier/cad/internal/cad_entities.cpp"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/geometry/raw_mesh.h"
+#include "mesh/io/internal/mesh_readers.h"
 #include "mesh/io/internal/placed_part.h"
 #include "mesh/io/internal/xml_events.h"
 #include "mesh/io/internal/zip_member.h"
