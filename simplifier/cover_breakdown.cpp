@@ -8,10 +8,10 @@
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/local_error.h"
 #include "simplifier/stage2/solid_cells.h"
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/thread_limit.h"
 
 #include <Eigen/Geometry>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -104,7 +104,7 @@ Points boundary_points(const internal::SolidCells& cells, const internal::Cleara
                        double max_error) {
   const Points sample = cells.sample();
   std::vector<char> outer(sample.size());
-  tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t i) {
+  internal::parallel_for(0, sample.size(), [&](std::size_t i) {
     outer[i] = clearance(sample[i]).lower <= kOnBoundary * max_error ? 1 : 0;
   });
   Points points;
@@ -119,7 +119,7 @@ std::vector<char> alone_at(const Points& points, std::span<const Sphere> spheres
                            double max_error) {
   const internal::PointGrid grid(points, kCube * max_error);
   std::vector<std::vector<std::uint32_t>> held(spheres.size());
-  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+  internal::parallel_for(0, spheres.size(), [&](std::size_t i) {
     grid.find(spheres[i].center, spheres[i].radius, held[i]);
   });
   std::vector<std::uint32_t> times(points.size(), 0);
@@ -162,7 +162,7 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
       alone_at(boundary_points(cells, clearance, max_error), spheres, max_error);
   CoverBreakdown result;
   result.roles.resize(spheres.size());
-  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+  internal::parallel_for(0, spheres.size(), [&](std::size_t i) {
     SphereRole& role = result.roles[i];
     if (at_edge[i] != 0) {
       role = SphereRole::kEdge;

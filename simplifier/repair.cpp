@@ -10,12 +10,11 @@
 #include "simplifier/stage2/local_error.h"
 #include "simplifier/stage2/solid_cells.h"
 #include "simplifier/stage2/sphere_inflation.h"
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/thread_limit.h"
 #include "simplifier/support/usable_spheres.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -55,7 +54,7 @@ double median(std::vector<double> values) {
 std::vector<double> limits_of(const internal::Clearance& clearance, const MeshDistance& distance,
                               std::span<const Sphere> spheres, const internal::LocalError& error) {
   std::vector<double> limits(spheres.size());
-  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+  internal::parallel_for(0, spheres.size(), [&](std::size_t i) {
     const Vector3d& c = spheres[i].center;
     const double depth = clearance(c).lower;
     const double allowed = error.allowance(c, std::max(0.0, depth));

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/solid/clearance.h"
 
+#include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <limits>
@@ -38,7 +37,7 @@ Vector3d contact_of(const Sphere& sphere, double padding, const MeshDistance& di
 
 std::vector<Vector3d> contacts_of(const ExternalSpheres& external, const MeshDistance& distance) {
   std::vector<Vector3d> contacts(external.spheres.size());
-  tbb::parallel_for(std::size_t{0}, contacts.size(), [&](std::size_t i) {
+  parallel_for(0, contacts.size(), [&](std::size_t i) {
     contacts[i] = contact_of(external.spheres[i], external.padding, distance);
   });
   return contacts;

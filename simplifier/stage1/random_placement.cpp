@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage1/random_placement.h"
 
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/random.h"
 #include "spheretree/median_split.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -106,8 +105,8 @@ RandomPlacement place_random(const MeshDistance& distance, double padding, doubl
   Random random(options.seed);
   std::vector<Sphere> tried(options.limit);
   for (Sphere& s : tried) s.center = random.in(field);
-  tbb::parallel_for(std::size_t{0}, tried.size(),
-                    [&](std::size_t i) { tried[i].radius = clearance(tried[i].center); });
+  parallel_for(0, tried.size(),
+               [&](std::size_t i) { tried[i].radius = clearance(tried[i].center); });
   std::erase_if(tried, [&](const Sphere& s) { return s.radius < rho; });
   report(0.6);
 
@@ -129,8 +128,7 @@ RandomPlacement place_random(const MeshDistance& distance, double padding, doubl
     return passes(s, exit, rho);
   };
   std::vector<char> first(tried.size());
-  tbb::parallel_for(std::size_t{0}, tried.size(),
-                    [&](std::size_t i) { first[i] = leaves(tried[i]) ? 1 : 0; });
+  parallel_for(0, tried.size(), [&](std::size_t i) { first[i] = leaves(tried[i]) ? 1 : 0; });
   report(0.9);
 
   RandomPlacement result;
