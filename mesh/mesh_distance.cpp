@@ -64,6 +64,7 @@ void MeshDistance::build(std::int32_t begin, std::int32_t end) {
 }
 
 SurfaceDistance MeshDistance::operator()(const Vector3d& point, double limit) const {
+  internal::require_content(!nodes_.empty(), "MeshDistance");
   SurfaceDistance best;
   best.lower = limit;
   double reach = limit;                                // nearest upper bound so far
@@ -124,6 +125,7 @@ bool MeshDistance::may_intersect(const Node& node, const Vector3d& point,
 }
 
 double MeshDistance::winding_number(const Vector3d& point) const {
+  internal::require_content(!nodes_.empty(), "MeshDistance");
   double angle = 0.0;
   for (const Corners& t : corners_) {
     angle += internal::solid_angle(t.a - point, t.b - point, t.c - point);
