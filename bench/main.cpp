@@ -6,6 +6,7 @@
 #include "bench/methods.h"
 #include "bench/oracle.h"
 #include "bench/placed_cell.h"
+#include "bench/program.h"
 #include "bench/real_models.h"
 #include "bench/report.h"
 #include "bench/scene_files.h"
@@ -13,8 +14,6 @@
 #include "spheretree/error.h"
 
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -83,8 +82,8 @@ int bench(const Arguments& arguments) {
   std::filesystem::create_directories(arguments.out);
   std::vector<WorkloadResult> results;
   results.push_back(run(make_paper_cell(), arguments));
-  if (const char* models = std::getenv("SPHERULE_MODELS"); models != nullptr && *models != '\0') {
-    results.push_back(run(make_real_cell(models), arguments));
+  if (const auto models = models_folder()) {
+    results.push_back(run(make_real_cell(*models), arguments));
   }
   write_results(results, arguments.out);
   for (const WorkloadResult& result : results) {
@@ -111,10 +110,6 @@ int bench(const Arguments& arguments) {
 }  // namespace spherule
 
 int main(int count, char** values) {
-  try {
-    return spherule::bench(spherule::parse(count, values));
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "spherule_bench: %s\n", error.what());
-    return 1;
-  }
+  return spherule::run_program("spherule_bench",
+                               [&] { return spherule::bench(spherule::parse(count, values)); });
 }

@@ -107,6 +107,12 @@ std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, boo
   return steps;
 }
 
+bool has_shrinking_buffers(const RobotSpheres& spheres) {
+  return spheres.collision_buffer < 0.0 ||
+         std::any_of(spheres.collision_buffers.begin(), spheres.collision_buffers.end(),
+                     [](const auto& buffer) { return buffer.second < 0.0; });
+}
+
 int audit(const AuditRobotArguments& arguments) {
   const bool mend = !arguments.repaired.empty();
   check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses,
@@ -121,10 +127,7 @@ int audit(const AuditRobotArguments& arguments) {
                           .repair = std::nullopt,
                           .pairs = std::nullopt};
   const RobotSpheres& spheres = report.file.spheres;
-  const bool is_shrunk =
-      spheres.collision_buffer < 0.0 ||
-      std::any_of(spheres.collision_buffers.begin(), spheres.collision_buffers.end(),
-                  [](const auto& buffer) { return buffer.second < 0.0; });
+  const bool is_shrunk = has_shrinking_buffers(spheres);
   if (mend) check_repair(arguments, report.file, is_shrunk);
   RobotAuditOptions options{.geometry = geometry,
                             .min_external_diameter = arguments.min_external.value_or(0.0),
@@ -173,6 +176,35 @@ int audit(const AuditRobotArguments& arguments) {
   return kNo;
 }
 
+void add_inputs(CLI::App& command, AuditRobotArguments& arguments) {
+  command.add_option("urdf", arguments.urdf, "The robot, with its meshes")
+      ->required()
+      ->type_name(kFile);
+  command
+      .add_option("spheres", arguments.spheres,
+                  "Its spheres: spherized URDF, SRDF, cuRobo yml, XRDF, or JSON of foam, MorphIt, "
+                  "ballpark or spherule; told apart by content")
+      ->required()
+      ->type_name(kFile);
+  add_geometry_option(command, "Which of the robot's geometries is to be covered",
+                      arguments.geometry);
+  add_package_option(command, arguments.packages);
+  command
+      .add_option("--poses", arguments.poses,
+                  "Configurations (CSV) in which spheres of other links may cover too; the "
+                  "exit code is then about these")
+      ->type_name(kFile);
+  command
+      .add_option("--srdf", arguments.pairs.srdf,
+                  "The robot's SRDF: tell the pairs of links apart, and judge those it disables")
+      ->type_name(kFile);
+  command
+      .add_option("--pairs", arguments.pairs.pairs,
+                  "What is proved of the pairs of links (NAME.pairs of robot, covered without "
+                  "padding): tell them apart by it; without it --srdf proves them first")
+      ->type_name(kFile);
+}
+
 }  // namespace
 
 void add_audit_robot(CLI::App& app, int& exit_code) {
@@ -180,32 +212,7 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
       "audit-robot",
       "Prove whether a file's spheres cover a robot, link by link; exit 0 covered, 1 leaks");
   auto arguments = std::make_shared<AuditRobotArguments>();
-  command->add_option("urdf", arguments->urdf, "The robot, with its meshes")
-      ->required()
-      ->type_name(kFile);
-  command
-      ->add_option("spheres", arguments->spheres,
-                   "Its spheres: spherized URDF, SRDF, cuRobo yml, XRDF, or JSON of foam, MorphIt, "
-                   "ballpark or spherule; told apart by content")
-      ->required()
-      ->type_name(kFile);
-  add_geometry_option(*command, "Which of the robot's geometries is to be covered",
-                      arguments->geometry);
-  add_package_option(*command, arguments->packages);
-  command
-      ->add_option("--poses", arguments->poses,
-                   "Configurations (CSV) in which spheres of other links may cover too; the "
-                   "exit code is then about these")
-      ->type_name(kFile);
-  command
-      ->add_option("--srdf", arguments->pairs.srdf,
-                   "The robot's SRDF: tell the pairs of links apart, and judge those it disables")
-      ->type_name(kFile);
-  command
-      ->add_option("--pairs", arguments->pairs.pairs,
-                   "What is proved of the pairs of links (NAME.pairs of robot, covered without "
-                   "padding): tell them apart by it; without it --srdf proves them first")
-      ->type_name(kFile);
+  add_inputs(*command, *arguments);
   command->add_option("--link", arguments->link,
                       "Whose spheres they are, if the file names no link");
   command->add_option("--level", arguments->level,

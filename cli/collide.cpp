@@ -7,12 +7,12 @@
 #include "cli/json.h"
 #include "collide/distance.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -37,14 +37,11 @@ Pose parse_pose(const std::optional<std::string>& given, const std::string& opti
   if (!given) return {};
   std::string text = *given;
   std::replace(text.begin(), text.end(), ',', ' ');
-  std::istringstream stream(text);
   std::vector<double> numbers;
-  for (std::string word; stream >> word;) {
-    const char* end = word.data() + word.size();
-    double value = 0.0;
-    const auto [stop, fault] = std::from_chars(word.data(), end, value);
-    if (fault != std::errc() || stop != end) throw Error(option, "'" + word + "' is not a number");
-    numbers.push_back(value);
+  for (const std::string_view word : internal::words_of(text)) {
+    const std::optional<double> value = internal::finite_number(word);
+    if (!value) throw Error(option, internal::in_quotes(word) + " is not a number");
+    numbers.push_back(*value);
   }
   if (numbers.size() != 7) {
     throw Error(option,

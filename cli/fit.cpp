@@ -97,6 +97,48 @@ std::string describe_lower_bound(const SphereCover& cover) {
          " spheres\n";
 }
 
+void print_reading(const std::string& file, const ModelFile& model, const ModelReadOptions& options,
+                   ModelUnit& unit, const MeshReport& report) {
+  if (model.cad) {
+    note_cad_unit(model.cad->stated_unit, unit);
+    std::cout << describe(*model.cad);
+  }
+  std::cout << describe(unit) << describe(report) << std::endl;
+  if (report.boundary_edges == 0 || model.cad || options.weld > 0.0) return;
+  std::cerr << "spherule: if rounding has left cracks in " << file << ", --weld "
+            << kCrack * report.box.diagonal().norm() << " shuts them\n";
+}
+
+void write_trees(const FitArguments& arguments, const TriangleMesh& mesh,
+                 const Simplification& result) {
+  std::optional<SphereTree> tree;
+  if (!arguments.tree.empty() || !arguments.view.empty()) tree = sphere_tree(result);
+  if (!arguments.tree.empty()) save_tree(*tree, arguments.tree);
+  if (!arguments.view.empty()) write_view(arguments, mesh, result, tree);
+}
+
+void print_result(const Simplification& result, const std::optional<CoverBreakdown>& breakdown,
+                  bool is_cad) {
+  std::cout << "options: max error " << result.options.max_error << ", min external diameter "
+            << result.options.min_external_diameter << ", padding " << result.external.padding
+            << (is_cad ? " (chord error and rounding" : " (rounding") << " of the file included)\n"
+            << "external spheres: " << result.external.spheres.size();
+  if (result.options.external == ExternalPlacement::kReachable) {
+    std::cout << ", ways into the part that are wider than " << result.options.min_external_diameter
+              << " by " << result.external.closing_slack << " stay open (proved)";
+  }
+  std::cout << "\n";
+  if (result.options.keep_concave_edges) {
+    std::cout << "zones along sharp concave edges: " << result.external.concave_edges.size()
+              << "\n";
+  }
+  std::cout << "spheres: " << result.cover.spheres.size() << "\n"
+            << describe(result.certificate, "the simplified solid") << describe(result.levels)
+            << (breakdown ? describe(*breakdown) : "") << describe_lower_bound(result.cover)
+            << "seconds: external " << result.times.external << ", cover " << result.times.cover
+            << ", levels " << result.times.levels << ", certify " << result.times.certify << "\n";
+}
+
 // Fails (kNo) if a promise about the spheres is not proved; the files are written nevertheless and
 // say so.
 int fit(FitArguments& arguments) {
@@ -116,15 +158,7 @@ int fit(FitArguments& arguments) {
   const TriangleMesh& mesh = model.mesh;
   const MeshReport report = mesh_report(mesh);
   reading.clear();
-  if (model.cad) {
-    note_cad_unit(model.cad->stated_unit, unit);
-    std::cout << describe(*model.cad);
-  }
-  std::cout << describe(unit) << describe(report) << std::endl;
-  if (report.boundary_edges > 0 && !model.cad && read_options.weld == 0.0) {
-    std::cerr << "spherule: if rounding has left cracks in " << file << ", --weld "
-              << kCrack * report.box.diagonal().norm() << " shuts them\n";
-  }
+  print_reading(file, model, read_options, unit, report);
 
   warn(file, length_warnings(report, options, unit));
   StopOnInterruption interruption;
@@ -154,31 +188,10 @@ int fit(FitArguments& arguments) {
                             fit_report({file, mesh, model.cad, unit.scale, report}, unit, result,
                                        *breakdown, arguments.report_content));
     }
-    std::optional<SphereTree> tree;
-    if (!arguments.tree.empty() || !arguments.view.empty()) tree = sphere_tree(result);
-    if (!arguments.tree.empty()) save_tree(*tree, arguments.tree);
-    if (!arguments.view.empty()) write_view(arguments, mesh, result, tree);
+    write_trees(arguments, mesh, result);
   });
 
-  std::cout << "options: max error " << result.options.max_error << ", min external diameter "
-            << result.options.min_external_diameter << ", padding " << result.external.padding
-            << (model.cad ? " (chord error and rounding" : " (rounding")
-            << " of the file included)\n"
-            << "external spheres: " << result.external.spheres.size();
-  if (result.options.external == ExternalPlacement::kReachable) {
-    std::cout << ", ways into the part that are wider than " << result.options.min_external_diameter
-              << " by " << result.external.closing_slack << " stay open (proved)";
-  }
-  std::cout << "\n";
-  if (options.keep_concave_edges) {
-    std::cout << "zones along sharp concave edges: " << result.external.concave_edges.size()
-              << "\n";
-  }
-  std::cout << "spheres: " << result.cover.spheres.size() << "\n"
-            << describe(result.certificate, "the simplified solid") << describe(result.levels)
-            << (breakdown ? describe(*breakdown) : "") << describe_lower_bound(result.cover)
-            << "seconds: external " << result.times.external << ", cover " << result.times.cover
-            << ", levels " << result.times.levels << ", certify " << result.times.certify << "\n";
+  print_result(result, breakdown, model.cad.has_value());
   warn_of_thin_parts(arguments, mesh, result);
   warn(file, volume_warnings(result));
   const std::string broken = broken_promises(result);

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/fit_options.h"
 
-#include "cli/check_number.h"
 #include "cli/command_specification.h"
+#include "cli/search_options.h"
 #include "simplifier/zones.h"
 #include "spheretree/sphere_file.h"
 
 #include <CLI/CLI.hpp>
 
-#include <cstdint>
-#include <limits>
-
 namespace spherule {
 
-void add_fit_options(CLI::App& command, FitArguments& arguments) {
-  SimplifyOptions& options = arguments.options;
+namespace {
+
+void add_model_options(CLI::App& command, FitArguments& arguments) {
   LengthOptions& lengths = arguments.lengths;
   command
       .add_option("mesh", arguments.models,
@@ -36,6 +34,11 @@ void add_fit_options(CLI::App& command, FitArguments& arguments) {
   lengths.add(command, "--chord-error", arguments.reading.chord_error,
               "STEP and IGES: how far the part may be from its triangles; what is proved of it "
               "is added to the padding (default: a two-thousandth of the box diagonal)");
+}
+
+void add_promise_options(CLI::App& command, FitArguments& arguments) {
+  SimplifyOptions& options = arguments.options;
+  LengthOptions& lengths = arguments.lengths;
   auto* diameter =
       lengths.add(command, "--min-external", options.min_external_diameter,
                   "D, diameter of the smallest object to be checked against the model (default: 4 "
@@ -62,6 +65,10 @@ void add_fit_options(CLI::App& command, FitArguments& arguments) {
               "E, how far the spheres may protrude (default: 1 % of the box diagonal)");
   lengths.add(command, "--padding", options.padding, "Grow the mesh by this much");
   lengths.add(command, "--min-radius", options.min_radius, "No sphere is smaller than this");
+}
+
+void add_method_options(CLI::App& command, FitArguments& arguments) {
+  SimplifyOptions& options = arguments.options;
   command
       .add_option("--method", arguments.method,
                   "How the inside is covered: cover (fewest spheres), paper (the paper's loop), "
@@ -74,46 +81,41 @@ void add_fit_options(CLI::App& command, FitArguments& arguments) {
   command
       .add_option("--external-limit", options.external_limit, "Attempts of the random placement")
       ->check(CLI::NonNegativeNumber);
-  lengths.add(command, "--min-internal", options.min_internal_diameter,
-              "Diameter at which paper and packing seed a sphere (default: E / 2)");
+  arguments.lengths.add(command, "--min-internal", options.min_internal_diameter,
+                        "Diameter at which paper and packing seed a sphere (default: E / 2)");
   command
       .add_option("--levels", arguments.levels,
                   "Fit coarser levels of detail too and join all in one tree; the "
                   "finest is E")
       ->type_name("E1,E2,...");
-  // Without the check CLI11 takes -1 for the largest number; files store 63 bits.
-  command.add_option("--seed", options.seed, "Seed of everything random")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
-  auto* effort = command.add_option(
-      "--effort", options.effort,
-      "Rounds of searching for fewer spheres than at first, with cover; 0: none");
-  effort->check(CLI::NonNegativeNumber);
-  command
-      .add_option_function<double>(
-          "--seconds",
-          [&options](double seconds) {
-            options.seconds = seconds;
-            options.effort = std::numeric_limits<int>::max();
-          },
-          "With cover: search for fewer spheres for so long, less where it no longer finds any; "
-          "the "
-          "result then depends on the machine")
-      ->check(CLI::PositiveNumber)
-      ->check(check_not_negative)
-      ->excludes(effort);
-  command.add_option("--threads", options.threads, "Threads, 0: all; the result is the same")
-      ->check(CLI::NonNegativeNumber);
+  add_search_options(
+      command, {options.seed, options.effort, options.seconds, options.threads},
+      "Rounds of searching for fewer spheres than at first, with cover; 0: none",
+      "With cover: search for fewer spheres for so long, less where it no longer finds any; the "
+      "result then depends on the machine");
+}
+
+void add_output_options(CLI::App& command, FitArguments& arguments) {
   command
       .add_option("--report", arguments.report,
                   "Where the report goes (JSON): the mesh, where the spheres go, history, times")
       ->type_name(kFile);
   add_external_spheres_flag(command, arguments.report_content);
-  command.add_flag("--lower-bound", options.lower_bound,
+  command.add_flag("--lower-bound", arguments.options.lower_bound,
                    "Prove, too, how few spheres any cover must have (with cover); takes several "
                    "times as long as the first answer");
   command.add_option("--tree", arguments.tree, "Where the sphere tree goes")->type_name(kFile);
   command.add_option("--view", arguments.view, "Where a page to examine goes (HTML)")
       ->type_name(kFile);
+}
+
+}  // namespace
+
+void add_fit_options(CLI::App& command, FitArguments& arguments) {
+  add_model_options(command, arguments);
+  add_promise_options(command, arguments);
+  add_method_options(command, arguments);
+  add_output_options(command, arguments);
 }
 
 SimplifyOptions fit_options(FitArguments& arguments, const LengthContext& context) {

@@ -5,18 +5,20 @@
 #include "cli/interruption.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
+#include <cstdint>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -83,12 +85,11 @@ std::string today() {
   const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
   std::time_t now = std::time(nullptr);
   if (epoch != nullptr) {
-    const std::string_view seconds = epoch;
-    const char* end = seconds.data() + seconds.size();
-    const auto [stop, fault] = std::from_chars(seconds.data(), end, now);
-    if (fault != std::errc() || stop != end) {
-      throw Error("SOURCE_DATE_EPOCH", "'" + std::string(seconds) + "' is no number of seconds");
+    const std::optional<std::int64_t> seconds = internal::whole_number(epoch);
+    if (!seconds) {
+      throw Error("SOURCE_DATE_EPOCH", internal::in_quotes(epoch) + " is no number of seconds");
     }
+    now = static_cast<std::time_t>(*seconds);
   }
   const std::tm* day = std::gmtime(&now);
   if (day == nullptr) throw Error("SOURCE_DATE_EPOCH", "is not in a year that can be written");

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/check_number.h"
 #include "cli/command.h"
 #include "cli/command_specification.h"
 #include "cli/false_alarm_report.h"
@@ -11,6 +10,7 @@
 #include "cli/pair_report.h"
 #include "cli/progress.h"
 #include "cli/report_content.h"
+#include "cli/robot_arguments.h"
 #include "cli/robot_false_alarms.h"
 #include "cli/robot_files.h"
 #include "cli/robot_options.h"
@@ -21,7 +21,6 @@
 #include "robot/files/urdf.h"
 #include "robot/model/link_spheres.h"
 #include "robot/pairs/ignored_pairs.h"
-#include "simplifier/simplify.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 
@@ -29,10 +28,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -42,25 +39,6 @@ namespace spherule {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct RobotArguments {
-  std::string urdf;
-  std::string folder;
-  std::string geometry = geometry_names().front();
-  std::vector<std::string> packages;
-  std::vector<std::string> links;
-  std::vector<std::string> formats = robot_format_names();
-  std::string srdf;
-  std::string curobo;
-  std::string xrdf;
-  std::string tool_link;
-  bool json = false;
-  bool has_max_error = false;
-  ReportContent report_content = ReportContent::kNoExternalSpheres;
-  FalseAlarmArguments false_alarms;
-  RobotCoverOptions options;
-  LengthOptions lengths;
-};
 
 RobotFilePlan plan_of(const RobotArguments& arguments) {
   RobotFilePlan plan{.folder = arguments.folder,
@@ -183,6 +161,60 @@ bool keeps_promises(const std::string& urdf, const MeasuredCover& result) {
   return open.empty() && is_reached;
 }
 
+void require_proofs_of_pairs(const RobotArguments& arguments, const RobotFilePlan& plan) {
+  const bool wants_pairs =
+      std::find(plan.formats.begin(), plan.formats.end(), kPairsFormat) != plan.formats.end();
+  if (wants_pairs && plan.formats.size() < robot_format_names().size() &&
+      arguments.false_alarms.proofs == name_of(PairProofs::kNone)) {
+    throw Error("--format pairs", "nothing is proved of pairs with --proofs none");
+  }
+}
+
+// With the pairs that need no test.
+RobotSpheres spheres_to_write(const RobotDescription& robot, const MeasuredCover& measured,
+                              const std::vector<DisabledPair>& disabled,
+                              const SrdfJudgement& judgement) {
+  RobotSpheres spheres = robot_spheres(robot, measured.cover);
+  if (measured.pairs != nullptr) {
+    add_missing_pairs(pairs_proved_never(robot.model, *measured.pairs), robot.model,
+                      spheres.self_collision_ignore);
+  }
+  add_missing_pairs(without_refuted_reasons(disabled, judgement), robot.model,
+                    spheres.self_collision_ignore);
+  return spheres;
+}
+
+Json summary_of(const std::string& urdf, const RobotModel& model, const MeasuredCover& measured,
+                double seconds, const std::vector<PostureContact>& contacts,
+                const SrdfJudgement& judgement) {
+  Json summary = robot_summary(urdf, measured.cover, seconds);
+  if (measured.pairs != nullptr) {
+    summary["link_pairs"] = pair_summary(*measured.pairs, model, measured.pair_seconds);
+  }
+  summary["false_alarms"] = false_alarm_summary(measured, model);
+  summary["posture_contacts"] = to_json(contacts);
+  if (!judgement.pairs.empty()) summary["disabled_pairs"] = Json::array();
+  for (const JudgedPair& judged : judgement.pairs) {
+    summary["disabled_pairs"].push_back(to_json(judged, model));
+  }
+  return summary;
+}
+
+void print_warnings(const RobotCover& cover, const std::vector<std::string>& wrong_pairs,
+                    const std::vector<PostureContact>& contacts) {
+  for (const LinkCover& link : cover.links) {
+    for (const std::string& warning : link.warnings) {
+      std::cerr << "spherule: warning: link " << link.link << ": " << warning << "\n";
+    }
+  }
+  for (const std::string& warning : wrong_pairs) {
+    std::cerr << "spherule: warning: " << warning << "\n";
+  }
+  for (const PostureContact& contact : contacts) {
+    std::cerr << "spherule: warning: " << describe(contact) << "\n";
+  }
+}
+
 // Fails (kNo), naming the links, if something promised of a link is not proved, or if the share of
 // false alarms that is requested is not reached; the files are written nevertheless and say so.
 int cover_links(const RobotArguments& arguments) {
@@ -191,12 +223,7 @@ int cover_links(const RobotArguments& arguments) {
   options.geometry = geometry_named(arguments.geometry);
   options.links = link_options(arguments.links);
   RobotFilePlan plan = plan_of(arguments);
-  const bool wants_pairs =
-      std::find(plan.formats.begin(), plan.formats.end(), kPairsFormat) != plan.formats.end();
-  if (wants_pairs && plan.formats.size() < robot_format_names().size() &&
-      arguments.false_alarms.proofs == name_of(PairProofs::kNone)) {
-    throw Error("--format pairs", "nothing is proved of pairs with --proofs none");
-  }
+  require_proofs_of_pairs(arguments, plan);
   const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
   if (!plan.tool_link.empty() && robot.model.find_link(plan.tool_link) < 0) {
     throw Error("--tool-link", "the robot has no link '" + plan.tool_link + "'");
@@ -225,25 +252,11 @@ int cover_links(const RobotArguments& arguments) {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   SrdfJudgement judgement;
   if (measured.pairs != nullptr) judgement = judge_srdf(robot.model, semantics, *measured.pairs);
-  RobotSpheres spheres = robot_spheres(robot, result);
-  if (measured.pairs != nullptr) {
-    add_missing_pairs(pairs_proved_never(robot.model, *measured.pairs), robot.model,
-                      spheres.self_collision_ignore);
-  }
-  add_missing_pairs(without_refuted_reasons(disabled, judgement), robot.model,
-                    spheres.self_collision_ignore);
+  const RobotSpheres spheres = spheres_to_write(robot, measured, disabled, judgement);
   const std::vector<PostureContact> contacts =
       contacts_in_postures(robot, semantics, spheres, measured);
-  Json summary = robot_summary(arguments.urdf, result, seconds.count());
-  if (measured.pairs != nullptr) {
-    summary["link_pairs"] = pair_summary(*measured.pairs, robot.model, measured.pair_seconds);
-  }
-  summary["false_alarms"] = false_alarm_summary(measured, robot.model);
-  summary["posture_contacts"] = to_json(contacts);
-  if (!judgement.pairs.empty()) summary["disabled_pairs"] = Json::array();
-  for (const JudgedPair& judged : judgement.pairs) {
-    summary["disabled_pairs"].push_back(to_json(judged, robot.model));
-  }
+  const Json summary =
+      summary_of(arguments.urdf, robot.model, measured, seconds.count(), contacts, judgement);
   write_uninterrupted([&] {
     write_robot_files(plan, robot, spheres, measured.pairs.get());
     write_file_atomically(plan.report(robot),
@@ -253,44 +266,9 @@ int cover_links(const RobotArguments& arguments) {
   std::cout << (arguments.json ? to_text(summary)
                                : robot_table(result, seconds.count()) + describe_pairs(measured) +
                                      describe_false_alarms(measured, robot.model));
-  for (const LinkCover& link : result.links) {
-    for (const std::string& warning : link.warnings) {
-      std::cerr << "spherule: warning: link " << link.link << ": " << warning << "\n";
-    }
-  }
-  for (const std::string& warning : wrong_pairs(judgement, robot.model)) {
-    std::cerr << "spherule: warning: " << warning << "\n";
-  }
-  for (const PostureContact& contact : contacts) {
-    std::cerr << "spherule: warning: " << describe(contact) << "\n";
-  }
+  print_warnings(result, wrong_pairs(judgement, robot.model), contacts);
   if (!arguments.json) std::cout << describe(next_steps(arguments, plan.all(robot, links)));
   return keeps_promises(arguments.urdf, measured) ? kYes : kNo;
-}
-
-void add_search_options(CLI::App& command, const std::shared_ptr<RobotArguments>& arguments) {
-  RobotCoverOptions& options = arguments->options;
-  // Files store 63 bits.
-  command.add_option("--seed", options.seed, "Seed of everything random")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
-  auto* effort = command.add_option("--effort", options.effort,
-                                    "Rounds of searching for fewer spheres than at first, for each "
-                                    "link; 0: none");
-  effort->check(CLI::NonNegativeNumber);
-  command
-      .add_option_function<double>(
-          "--seconds",
-          [arguments](double seconds) {
-            arguments->options.seconds = seconds;
-            arguments->options.effort = std::numeric_limits<int>::max();
-          },
-          "Search for fewer spheres for so long, for each link; the result then depends on the "
-          "machine")
-      ->check(CLI::PositiveNumber)
-      ->check(check_not_negative)
-      ->excludes(effort);
-  command.add_option("--threads", options.threads, "Threads, 0: all; the result is the same")
-      ->check(CLI::NonNegativeNumber);
 }
 
 }  // namespace
@@ -299,70 +277,7 @@ void add_robot(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("robot", "Cover every link of a robot with spheres, with a proof");
   auto arguments = std::make_shared<RobotArguments>();
-  RobotCoverOptions& options = arguments->options;
-  command->add_option("urdf", arguments->urdf, "The robot (URDF)")->required()->type_name(kFile);
-  command
-      ->add_option("-o,--output", arguments->folder,
-                   "Folder for what is written; it is made if it is not there")
-      ->required()
-      ->type_name(kFolder);
-  const CLI::Option* const max_error = arguments->lengths.add_positive(
-      *command, "--max-error", options.max_error,
-      "E in metres, how far the spheres may protrude (default: 0.01)");
-  arguments->lengths.add(*command, "--min-external", options.min_external_diameter,
-                         "D in metres, diameter of the smallest object to be checked against the "
-                         "robot (default: 4 E)");
-  command
-      ->add_option("--tightness", options.tightness,
-                   "How much wider than D a way into a link may be and still be filled, as a share "
-                   "of D (default: 0.03)")
-      ->check(CLI::Range(0.001, ExternalOptions::kNoTightness));
-  arguments->lengths.add(*command, "--padding", options.padding,
-                         "Grow every link by so many metres");
-  arguments->lengths.add(*command, "--weld", options.weld,
-                         "Join vertices that are no further apart, in metres, so that cracks which "
-                         "rounding has left do not open meshes; added to the padding");
-  add_geometry_option(*command, "What is covered: collision (default) or visual geometry",
-                      arguments->geometry);
-  add_package_option(*command, arguments->packages);
-  command
-      ->add_option(
-          "--link", arguments->links,
-          "What is other for one link, of max-error=E,min-external=D,padding=T,zones=FILE; "
-          "may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("NAME:max-error=E,...");
-  command
-      ->add_option("--format", arguments->formats,
-                   "What is written, with commas between (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember(robot_format_names()));
-  command
-      ->add_option("--srdf", arguments->srdf,
-                   "The robot's SRDF: its disabled pairs are ignored; all but its spheres is kept, "
-                   "and pairs that need no test are added")
-      ->type_name(kFile);
-  command
-      ->add_option("--curobo", arguments->curobo,
-                   "The robot's cuRobo file, of which all but the spheres is kept; pairs that need "
-                   "no test are added")
-      ->type_name(kFile);
-  command
-      ->add_option(
-          "--xrdf", arguments->xrdf,
-          "The robot's XRDF, of which all but the spheres is kept; pairs that need no test "
-          "are added")
-      ->type_name(kFile);
-  command
-      ->add_option("--tool-link", arguments->tool_link,
-                   "The tool's link in new cuRobo and XRDF files (default: where the chain of "
-                   "joints ends or branches)")
-      ->type_name("LINK");
-  add_false_alarm_options(*command, arguments->false_alarms);
-  add_search_options(*command, arguments);
-  add_external_spheres_flag(*command, arguments->report_content);
-  command->add_flag("--json", arguments->json, "Print the summary as JSON, lengths in metres");
+  add_robot_options(*command, *arguments);
   command->footer(to_text(
       {.text = "Lengths are in metres, as in the URDF, or have a unit of their own (5mm). Writes "
                "NAME.spheres.urdf, NAME.srdf, NAME.curobo.yml, NAME.xrdf, NAME.foam.json, "
@@ -378,9 +293,9 @@ void add_robot(CLI::App& app, int& exit_code) {
                     "hand:max-error=5mm",
                     "spherule robot robot.urdf -o spheres --package parts=../parts --srdf "
                     "robot.srdf"}}));
-  command->callback([arguments, max_error, &exit_code] {
+  command->callback([arguments, command, &exit_code] {
     arguments->lengths.convert(metres());
-    arguments->has_max_error = max_error->count() > 0;
+    arguments->has_max_error = command->count("--max-error") > 0;
     exit_code = cover_links(*arguments);
   });
 }

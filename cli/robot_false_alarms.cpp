@@ -4,16 +4,18 @@
 #include "cli/command_specification.h"
 #include "robot/model/link_spheres.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <system_error>
 
 namespace spherule {
@@ -46,14 +48,13 @@ std::string check_share(const std::string& text) {
 
 double share_of(const std::string& text) {
   const bool is_percent = text.ends_with('%');
-  const char* const end = text.data() + text.size() - (is_percent ? 1 : 0);
-  double value = 0.0;
-  const auto [stop, fault] = std::from_chars(text.data(), end, value);
-  if (is_percent) value /= 100.0;
-  if (fault != std::errc() || stop != end || !(value > 0.0 && value < 1.0)) {
-    throw Error("'" + text + "'", "is no share between 0 and 1, as 1% or 0.01");
+  const std::optional<double> value =
+      internal::finite_number(std::string_view(text).substr(0, text.size() - (is_percent ? 1 : 0)));
+  const double share = value.value_or(0.0) / (is_percent ? 100.0 : 1.0);
+  if (!(share > 0.0 && share < 1.0)) {
+    throw Error(internal::in_quotes(text), "is no share between 0 and 1, as 1% or 0.01");
   }
-  return value;
+  return share;
 }
 
 void add_false_alarm_options(CLI::App& command, FalseAlarmArguments& arguments) {

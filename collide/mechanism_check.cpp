@@ -19,8 +19,8 @@ int filled_up(int count) {
 }  // namespace
 
 MechanismCheck::~MechanismCheck() = default;
-MechanismCheck::MechanismCheck(MechanismCheck&&) noexcept = default;
-MechanismCheck& MechanismCheck::operator=(MechanismCheck&&) noexcept = default;
+MechanismCheck::MechanismCheck(const MechanismCheck&) noexcept = default;
+MechanismCheck& MechanismCheck::operator=(const MechanismCheck&) noexcept = default;
 
 MechanismCheck::Scratch::Scratch(const MechanismCheck& check)
     : memory_(std::make_unique<Memory>()) {

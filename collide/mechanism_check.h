@@ -70,10 +70,12 @@ class MechanismCheck {
                  double pose_error, InstructionSet instructions = best_instruction_set(),
                  bool always_exact = false);
   ~MechanismCheck();
-  MechanismCheck(MechanismCheck&&) noexcept;
-  MechanismCheck& operator=(MechanismCheck&&) noexcept;
+  // Copies share what is held, and so do one and what was moved from it.
+  MechanismCheck(const MechanismCheck&) noexcept;
+  MechanismCheck& operator=(const MechanismCheck&) noexcept;
 
-  // What a query writes to: made for one check; with that of another one every query throws Error.
+  // What a query writes to: made for one check and its copies; with that of another one, or
+  // one whose content was moved away, every query throws Error.
   class Scratch {
    public:
     // For this check.

@@ -62,17 +62,19 @@ class FindTriangles {
 }  // namespace
 
 CoveredMesh::CoveredMesh(const TriangleMesh& mesh, std::shared_ptr<const SphereTree> cover)
-    : cover_(not_null(std::move(cover))), solid_(mesh, 0.0) {
+    : cover_(not_null(std::move(cover))), solid_(mesh, 0.0), patches_(share_out()) {}
+
+std::shared_ptr<const internal::PatchTrees> CoveredMesh::share_out() {
   const std::size_t spheres = cover_->spheres().size();
   const std::vector<internal::Patch> patches =
       internal::share_out(solid_.mesh(), cover_->spheres());
-  patches_ = std::make_shared<const internal::PatchTrees>(patches, cover_->spheres());
   first_.assign(spheres + 1, 0);
   for (const internal::Patch& patch : patches) {
     ++first_[static_cast<std::size_t>(patch.sphere) + 1];
     triangles_.push_back(patch.triangle);
   }
   for (std::size_t i = 0; i < spheres; ++i) first_[i + 1] += first_[i];
+  return std::make_shared<const internal::PatchTrees>(patches, cover_->spheres());
 }
 
 bool collides(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,

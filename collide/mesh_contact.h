@@ -9,6 +9,7 @@
 #include "collide/mesh_tree.h"
 #include "collide/solid_mesh.h"
 #include "mesh/triangle_mesh.h"
+#include "spheretree/moved_from.h"
 
 #include <cstdint>
 #include <limits>
@@ -35,6 +36,8 @@ class PatchTrees;
 // rooms on both sides of a wall. A part with a boundary, or which cannot be turned alike, has no
 // inside: what lies within such a one without touching it is free. So is what only several parts
 // enclose that share no edges, as halves that are not welded do.
+//
+// One whose content was moved to another is as a SphereTree like that.
 class CoveredMesh {
  public:
   // Proves that the spheres cover every triangle, and throws Error, naming one, where that fails.
@@ -63,11 +66,14 @@ class CoveredMesh {
   const internal::PatchTrees& patches() const { return *patches_; }
 
  private:
-  std::shared_ptr<const SphereTree> cover_;
+  // Lists the triangles under each sphere.
+  std::shared_ptr<const internal::PatchTrees> share_out();
+
+  internal::SharedContent<SphereTree> cover_;
   SolidMesh solid_;
   std::vector<std::int32_t> first_;  // of each sphere in triangles_, and the end
   std::vector<std::int32_t> triangles_;
-  std::shared_ptr<const internal::PatchTrees> patches_;
+  internal::SharedContent<internal::PatchTrees> patches_;
 };
 
 // A triangle of each of two meshes.

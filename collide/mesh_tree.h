@@ -4,10 +4,10 @@
 #include "collide/collide.h"
 #include "collide/distance.h"
 #include "mesh/triangle_mesh.h"
+#include "spheretree/moved_from.h"
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace spherule {
@@ -18,6 +18,7 @@ class PackedMesh;
 
 // A sphere tree whose leaves are triangles: every leaf sphere encloses one triangle. Immutable. The
 // mesh is judged as stored: its vertex_error, the distance to the file's mesh, is not added to it.
+// One whose content was moved to another is as a SphereTree like that.
 class MeshTree {
  public:
   // Throws Error for a mesh that validate() refuses.
@@ -35,7 +36,7 @@ class MeshTree {
  private:
   std::vector<std::array<Eigen::Vector3d, 3>> triangles_;
   SphereTree tree_;  // sphere i is the sphere of triangle i
-  std::shared_ptr<const internal::PackedMesh> packed_;
+  internal::SharedContent<internal::PackedMesh> packed_;
 };
 
 // Whether a set of spheres and the surface of a mesh meet, triangles in the place of the second

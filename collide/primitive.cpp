@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/primitive.h"
 
+#include "collide/search/conclusion.h"
 #include "collide/search/deadline.h"
 #include "collide/search/one_tree.h"
 #include "collide/search/sphere_space.h"
@@ -206,14 +207,7 @@ CollisionResult collide(const SphereTree& tree, const Pose& world_from_tree, con
     CollisionResult result;
     CollectSpheres query(tree, pose, request, result);
     result.complete = internal::search_tree(tree, query);
-    std::sort(result.pairs.begin(), result.pairs.end());
-    if (query.found()) {
-      result.verdict = Verdict::kCollision;
-    } else if (result.complete) {
-      result.verdict = Verdict::kFree;
-      result.distance_lower_bound =
-          std::max(0.0, query.smallest_gap() * kRelativeDown - pose.gap_error());
-    }
+    internal::conclude(query, pose, result);
     return result;
   });
 }

@@ -6,9 +6,9 @@
 #include "collide/mesh_tree.h"
 #include "collide/solid_contact.h"
 #include "mesh/triangle_mesh.h"
+#include "spheretree/moved_from.h"
 #include "spheretree/pose.h"
 
-#include <memory>
 #include <optional>
 
 namespace spherule {
@@ -25,7 +25,7 @@ class MeshInside;
 // TriangleMesh::vertex_error. Each surface is judged by itself: overlapping ones take nothing from
 // each other, whichever way they are turned, and a sealed hollow is inside, as is what it holds.
 // A part with a boundary, or which cannot be turned alike, has no inside, and what lies within it
-// without touching it is free.
+// without touching it is free. One whose content was moved to another is as a SphereTree like that.
 class SolidMesh {
  public:
   // Throws Error for a mesh that validate() refuses.
@@ -47,7 +47,7 @@ class SolidMesh {
 
   MeshTree mesh_;
   double inflation_;
-  std::shared_ptr<const internal::MeshInside> inside_;
+  internal::SharedContent<internal::MeshInside> inside_;
 };
 
 // Whether a set of spheres and a solid, rigidly placed, overlap.

@@ -3,12 +3,14 @@
 
 #include "mesh/geometry/solid_angle.h"
 #include "mesh/point_triangle.h"
+#include "spheretree/median_split.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 namespace spherule {
@@ -42,29 +44,27 @@ MeshDistance::MeshDistance(const TriangleMesh& mesh) {
 void MeshDistance::build(std::int32_t begin, std::int32_t end) {
   Eigen::AlignedBox3d box;
   Eigen::AlignedBox3d centroids;
-  for (auto i = begin; i < end; ++i) {
-    const Corners& t = corners_[static_cast<std::size_t>(i)];
+  const auto part = std::span(corners_).subspan(static_cast<std::size_t>(begin),
+                                                static_cast<std::size_t>(end - begin));
+  for (const Corners& t : part) {
     box.extend(t.a).extend(t.b).extend(t.c);
     centroids.extend(Vector3d(t.a + t.b + t.c));
   }
   const std::size_t self = nodes_.size();
   nodes_.push_back({box.min(), box.max(), -1, begin, end});
   if (end - begin <= kLeafSize) return;
-  int axis = 0;
-  centroids.sizes().maxCoeff(&axis);
-  const std::int32_t middle = begin + (end - begin) / 2;
-  std::nth_element(corners_.begin() + begin, corners_.begin() + middle, corners_.begin() + end,
-                   [axis](const Corners& s, const Corners& t) {
-                     const double left = s.a[axis] + s.b[axis] + s.c[axis];
-                     const double right = t.a[axis] + t.b[axis] + t.c[axis];
-                     return left < right || (left == right && s.triangle < t.triangle);
-                   });
+  const Eigen::Index axis = internal::longest_axis(centroids);
+  const std::int32_t middle =
+      begin + static_cast<std::int32_t>(internal::split_at_median(part, [axis](const Corners& t) {
+        return std::pair(t.a[axis] + t.b[axis] + t.c[axis], t.triangle);
+      }));
   build(begin, middle);
   nodes_[self].right = static_cast<std::int32_t>(nodes_.size());
   build(middle, end);
 }
 
 SurfaceDistance MeshDistance::operator()(const Vector3d& point, double limit) const {
+  internal::require_content(!nodes_.empty(), "MeshDistance");
   SurfaceDistance best;
   best.lower = limit;
   double reach = limit;                                // nearest upper bound so far
@@ -125,6 +125,7 @@ bool MeshDistance::may_intersect(const Node& node, const Vector3d& point,
 }
 
 double MeshDistance::winding_number(const Vector3d& point) const {
+  internal::require_content(!nodes_.empty(), "MeshDistance");
   double angle = 0.0;
   for (const Corners& t : corners_) {
     angle += internal::solid_angle(t.a - point, t.b - point, t.c - point);

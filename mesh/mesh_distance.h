@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/triangle_mesh.h"
+#include "spheretree/moved_from.h"
 
 #include <Eigen/Geometry>
 
@@ -26,7 +27,8 @@ struct SurfaceDistance {
 // simplifier rest on it, so every answer is an interval that contains the exact distance: the
 // bounds of mesh/point_triangle.h for the triangles examined, and for the boxes that were
 // skipped that they are no nearer than the answer. Usually upper - lower is below 1e-14 of the
-// distance to the corners of the nearest triangle. Thread-safe after construction.
+// distance to the corners of the nearest triangle. Thread-safe after construction. Queries of one
+// whose content was moved to another throw Error.
 class MeshDistance {
  public:
   // Keeps a copy of the corners. The mesh must have passed validate() (mesh/triangle_mesh.h).
@@ -57,6 +59,7 @@ class MeshDistance {
   // Calls visit(corners) for every triangle.
   template <typename Visit>
   void visit_all(Visit visit) const {
+    internal::require_content(!nodes_.empty(), "MeshDistance");
     for (const Corners& t : corners_) visit(t);
   }
 
@@ -90,6 +93,7 @@ class MeshDistance {
 template <typename Visit>
 bool MeshDistance::visit_ray(const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                              Visit visit) const {
+  internal::require_content(!nodes_.empty(), "MeshDistance");
   std::array<std::int32_t, kStackSize> stack;
   std::size_t size = 0;
   stack[size++] = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/mesh_report.h"
 
-#include "mesh/geometry/raw_mesh.h"
 #include "mesh/geometry/self_intersection.h"
+#include "mesh/geometry/weld.h"
 
 #include <algorithm>
 #include <array>

@@ -92,7 +92,7 @@ void bound_by_solid(internal::CoverageProof& surface, const internal::CoveragePr
 }
 
 Certificate proved(const TriangleMesh& mesh, const MeshDistance& distance,
-                   const ExternalSpheres& external, const Clearance& clearance,
+                   const ExternalSpheres& external, const internal::Clearance& clearance,
                    std::span<const Sphere> spheres, const CertifyOptions& options) {
   const double diagonal = distance.box().diagonal().norm();
   const internal::SphereHierarchy hierarchy(spheres);
@@ -157,16 +157,16 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
   if (options.external != nullptr) {
-    return internal::certify(mesh, distance, Clearance(*options.external, distance), spheres,
-                             options);
+    return internal::certify(mesh, distance, internal::Clearance(*options.external, distance),
+                             spheres, options);
   }
   const ExternalSpheres own = flood_closely(mesh, distance, options.padding);
   // The fine flood makes too many external spheres for finding their contacts to pay.
-  return proved(mesh, distance, own, Clearance(own), spheres, options);
+  return proved(mesh, distance, own, internal::Clearance(own), spheres, options);
 }
 
 Certificate internal::certify(const TriangleMesh& mesh, const MeshDistance& distance,
-                              const Clearance& clearance, std::span<const Sphere> spheres,
+                              const internal::Clearance& clearance, std::span<const Sphere> spheres,
                               const CertifyOptions& options) {
   check_options(spheres, options);
   const ThreadLimit threads(options.threads);

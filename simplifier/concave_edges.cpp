@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/concave_edges.h"
 
-#include "mesh/geometry/raw_mesh.h"
+#include "mesh/geometry/weld.h"
 
 #include <algorithm>
 #include <array>

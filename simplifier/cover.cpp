@@ -18,16 +18,16 @@ SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
   internal::check_options(options);
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
-  return internal::cover(mesh, distance, Clearance(external, distance), options);
+  return internal::cover(mesh, distance, internal::Clearance(external, distance), options);
 }
 
 SphereCover internal::cover(const TriangleMesh& mesh, const MeshDistance& distance,
-                            const Clearance& clearance, const CoverOptions& options) {
+                            const internal::Clearance& clearance, const CoverOptions& options) {
   check_options(options);
   const ThreadLimit threads(options.threads);
   if (options.method == CoverMethod::kPaper) {
     refuse_error_zones(options, "paper");
-    return place_internal_spheres(mesh, distance, clearance, options);
+    return internal::place_internal_spheres(mesh, distance, clearance, options);
   }
   SphereCover result;
   CoverFitter fitter(clearance, distance, options);

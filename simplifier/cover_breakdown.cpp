@@ -8,10 +8,10 @@
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/local_error.h"
 #include "simplifier/stage2/solid_cells.h"
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/thread_limit.h"
 
 #include <Eigen/Geometry>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -73,7 +73,7 @@ std::vector<Edge> edges_of(const TriangleMesh& mesh) {
 
 // Points of sharp convex edges, at most one per cube of the spacing.
 // `beyond_by`: how far beyond such an edge S must have ended.
-Points edge_points(const TriangleMesh& mesh, const Clearance& clearance, double max_error,
+Points edge_points(const TriangleMesh& mesh, const internal::Clearance& clearance, double max_error,
                    double beyond_by) {
   const double spacing = kEdgeSpacing * max_error;
   Points points;
@@ -100,11 +100,11 @@ Points edge_points(const TriangleMesh& mesh, const Clearance& clearance, double 
   return points;
 }
 
-Points boundary_points(const internal::SolidCells& cells, const Clearance& clearance,
+Points boundary_points(const internal::SolidCells& cells, const internal::Clearance& clearance,
                        double max_error) {
   const Points sample = cells.sample();
   std::vector<char> outer(sample.size());
-  tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t i) {
+  internal::parallel_for(0, sample.size(), [&](std::size_t i) {
     outer[i] = clearance(sample[i]).lower <= kOnBoundary * max_error ? 1 : 0;
   });
   Points points;
@@ -119,7 +119,7 @@ std::vector<char> alone_at(const Points& points, std::span<const Sphere> spheres
                            double max_error) {
   const internal::PointGrid grid(points, kCube * max_error);
   std::vector<std::vector<std::uint32_t>> held(spheres.size());
-  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+  internal::parallel_for(0, spheres.size(), [&](std::size_t i) {
     grid.find(spheres[i].center, spheres[i].radius, held[i]);
   });
   std::vector<std::uint32_t> times(points.size(), 0);
@@ -133,8 +133,8 @@ std::vector<char> alone_at(const Points& points, std::span<const Sphere> spheres
   return alone;
 }
 
-bool is_thin_at(const Clearance& clearance, const Vector3d& center, double max_error) {
-  const ClearanceAt at = clearance(center);
+bool is_thin_at(const internal::Clearance& clearance, const Vector3d& center, double max_error) {
+  const internal::ClearanceAt at = clearance(center);
   if (at.lower > kThinReach * max_error) return false;
   for (const double reach : {0.25, 0.5, 0.75, 1.0}) {
     const Vector3d other = center + reach * kThinReach * max_error * at.away;
@@ -151,7 +151,7 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
   internal::check_max_error(max_error);
   const internal::ThreadLimit limit(threads);
   const MeshDistance distance(mesh);
-  const Clearance clearance(external, distance);
+  const internal::Clearance clearance(external, distance);
   const internal::LocalError error(max_error, {});
   const internal::SolidCells cells(clearance, distance, error, max_error, kCells, 1.0);
   // S holds M grown by the padding, and of that the box has the corners.
@@ -162,7 +162,7 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
       alone_at(boundary_points(cells, clearance, max_error), spheres, max_error);
   CoverBreakdown result;
   result.roles.resize(spheres.size());
-  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+  internal::parallel_for(0, spheres.size(), [&](std::size_t i) {
     SphereRole& role = result.roles[i];
     if (at_edge[i] != 0) {
       role = SphereRole::kEdge;
@@ -186,7 +186,7 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
 std::size_t spheres_in_thin_parts(const ExternalSpheres& external, std::span<const Sphere> spheres,
                                   double max_error) {
   internal::check_max_error(max_error);
-  const Clearance clearance(external);
+  const internal::Clearance clearance(external);
   return static_cast<std::size_t>(std::ranges::count_if(
       spheres, [&](const Sphere& sphere) { return clearance(sphere.center).upper < max_error; }));
 }

@@ -10,11 +10,10 @@
 #include "simplifier/stage1/local_diameter.h"
 #include "simplifier/stage1/random_placement.h"
 #include "simplifier/stage1/sphere_way.h"
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/thread_limit.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -231,8 +230,7 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
   const std::vector<FloodGrid::Frontier> frontier = grid.frontier();
   std::vector<std::vector<Sphere>> snug(frontier.size());
   const SnugSpheres place(distance, result.padding, diameter, result.spheres);
-  tbb::parallel_for(std::size_t{0}, frontier.size(),
-                    [&](std::size_t i) { snug[i] = place(frontier[i]); });
+  internal::parallel_for(0, frontier.size(), [&](std::size_t i) { snug[i] = place(frontier[i]); });
   for (const std::vector<Sphere>& spheres : snug) {
     result.spheres.insert(result.spheres.end(), spheres.begin(), spheres.end());
   }

@@ -45,12 +45,12 @@ std::vector<CoverLevel> fit_levels(const TriangleMesh& mesh, const ExternalSpher
   if (check_levels(max_errors).empty()) return {};
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
-  return internal::fit_levels(distance, Clearance(external, distance), spheres, max_errors,
-                              options);
+  return internal::fit_levels(distance, internal::Clearance(external, distance), spheres,
+                              max_errors, options);
 }
 
 std::vector<CoverLevel> internal::fit_levels(const MeshDistance& distance,
-                                             const Clearance& clearance,
+                                             const internal::Clearance& clearance,
                                              std::span<const Sphere> spheres,
                                              std::span<const double> max_errors,
                                              const CoverOptions& options) {

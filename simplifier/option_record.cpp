@@ -2,10 +2,12 @@
 #include "simplifier/simplify.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
+#include "spheretree/text.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -156,13 +158,11 @@ std::vector<double> levels_named(const std::string& text) {
   std::string_view rest = text;
   for (;;) {
     const std::string_view number = rest.substr(0, rest.find(','));
-    double level = 0.0;
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), level);
-    if (error != std::errc{} || end != number.data() + number.size() ||
-        !is_usable_coordinate(level)) {
-      throw Error("levels", "'" + std::string(number) + "' is not a number");
+    const std::optional<double> level = internal::finite_number(number);
+    if (!level || !is_usable_coordinate(*level)) {
+      throw Error("levels", internal::in_quotes(number) + " is not a number");
     }
-    levels.push_back(level);
+    levels.push_back(*level);
     if (number.size() == rest.size()) return levels;
     rest.remove_prefix(number.size() + 1);
   }

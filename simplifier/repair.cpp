@@ -10,12 +10,11 @@
 #include "simplifier/stage2/local_error.h"
 #include "simplifier/stage2/solid_cells.h"
 #include "simplifier/stage2/sphere_inflation.h"
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/thread_limit.h"
 #include "simplifier/support/usable_spheres.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -52,10 +51,10 @@ double median(std::vector<double> values) {
 
 // The largest radius of each sphere with which it protrudes by at most `max_error`, as certified
 // (protrusion.h); its own if that is larger.
-std::vector<double> limits_of(const Clearance& clearance, const MeshDistance& distance,
+std::vector<double> limits_of(const internal::Clearance& clearance, const MeshDistance& distance,
                               std::span<const Sphere> spheres, const internal::LocalError& error) {
   std::vector<double> limits(spheres.size());
-  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+  internal::parallel_for(0, spheres.size(), [&](std::size_t i) {
     const Vector3d& c = spheres[i].center;
     const double depth = clearance(c).lower;
     const double allowed = error.allowance(c, std::max(0.0, depth));
@@ -72,8 +71,8 @@ std::vector<Sphere> joined(std::vector<Sphere> spheres, const std::vector<Sphere
 }
 
 // Radii with which the spheres cover S together with those `added`, which they do at their limits.
-std::vector<Sphere> inflated_spheres(const Clearance& clearance, const MeshDistance& distance,
-                                     std::span<const Sphere> spheres,
+std::vector<Sphere> inflated_spheres(const internal::Clearance& clearance,
+                                     const MeshDistance& distance, std::span<const Sphere> spheres,
                                      const std::vector<Sphere>& limit,
                                      const std::vector<Sphere>& added, double max_error,
                                      const internal::LocalError& error) {
@@ -111,7 +110,7 @@ Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
   check(spheres, options);
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
-  const Clearance clearance(external, distance);
+  const internal::Clearance clearance(external, distance);
   Repair result;
   const std::vector<double> before = internal::protrusions_over_solid(clearance, distance, spheres);
   result.protrusion_before = internal::greatest(before);

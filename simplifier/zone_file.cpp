@@ -2,6 +2,7 @@
 #include "simplifier/zones.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/parse_json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -9,7 +10,6 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
-#include <set>
 
 namespace spherule {
 namespace {
@@ -130,29 +130,9 @@ struct WriteShape {
   }
 };
 
-// The parser would keep the last of two equal keys without a word.
 Json parsed(std::string_view text, const std::string& subject) {
-  std::vector<std::set<std::string>> keys;
-  std::string duplicate;
-  const auto watch = [&](int depth, Json::parse_event_t event, const Json& value) {
-    const auto level = static_cast<std::size_t>(depth);
-    if (event == Json::parse_event_t::object_start) {
-      keys.resize(level + 1);
-      keys[level].clear();
-    } else if (event == Json::parse_event_t::key) {
-      const auto& key = value.get_ref<const std::string&>();
-      if (!keys[level - 1].insert(key).second && duplicate.empty()) duplicate = key;
-    }
-    return true;
-  };
-  Json document;
-  try {
-    document = Json::parse(text, watch);
-  } catch (const Json::exception& error) {
-    throw Error(subject, std::string("is not JSON: ") + error.what());
-  }
-  if (!duplicate.empty()) throw Error(subject, "the key \"" + duplicate + "\" appears twice");
-  return document;
+  return internal::parse_json<Json>(
+      text, [&](const std::string& reason) { throw Error(subject, reason); });
 }
 
 }  // namespace

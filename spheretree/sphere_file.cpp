@@ -2,9 +2,9 @@
 #include "spheretree/sphere_file.h"
 
 #include "spheretree/atomic_file.h"
-#include "spheretree/duplicate_keys.h"
 #include "spheretree/error.h"
 #include "spheretree/internal/file_content.h"
+#include "spheretree/parse_json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -118,21 +118,6 @@ ordered_json written(const BodyRecord& body, const Refusal& refuse) {
 }
 
 // --- reading ---
-
-json parsed(std::string_view text, const Refusal& refuse) {
-  DuplicateKeys<json> keys;
-  json document;
-  try {
-    document = json::parse(text, [&keys](int depth, json::parse_event_t event, json& part) {
-      keys.see(depth, event, part);
-      return true;
-    });
-  } catch (const json::exception& error) {
-    refuse(std::string("is not JSON: ") + error.what());
-  }
-  refuse.unless(keys.duplicate().empty(), "the key " + keys.duplicate() + " appears twice");
-  return document;
-}
 
 const json& member(const json& object, const char* key, const std::string& where,
                    const Refusal& refuse) {
@@ -325,7 +310,7 @@ std::string internal::encode_spheres(const SphereFile& file, const std::string& 
 
 SphereFile internal::decode_spheres(std::string_view text, const std::string& name) {
   const Refusal refuse(name);
-  const json document = parsed(text, refuse);
+  const json document = internal::parse_json<json>(text, refuse);
   refuse.unless(document.is_object(), "is not an object");
   const auto format = document.find("format");
   refuse.unless(format != document.end() && *format == kFormat,

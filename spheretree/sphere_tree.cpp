@@ -3,6 +3,7 @@
 
 #include "spheretree/check.h"
 #include "spheretree/error.h"
+#include "spheretree/moved_from.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -20,7 +21,27 @@ SphereTree::SphereTree(SphereTreeData data) : data_(std::move(data)) {
   measure();
 }
 
+SphereTree::SphereTree(SphereTree&& other) noexcept
+    : data_(std::exchange(other.data_, {})),
+      depth_(other.depth_),
+      branching_(other.branching_),
+      root_(other.root_),
+      reach_(std::exchange(other.reach_, std::numeric_limits<double>::infinity())),
+      box_(other.box_) {}
+
+SphereTree& SphereTree::operator=(SphereTree&& other) noexcept {
+  if (this == &other) return *this;
+  data_ = std::exchange(other.data_, {});
+  depth_ = other.depth_;
+  branching_ = other.branching_;
+  root_ = other.root_;
+  reach_ = std::exchange(other.reach_, std::numeric_limits<double>::infinity());
+  box_ = other.box_;
+  return *this;
+}
+
 void SphereTree::measure() {
+  root_ = sphere(0);
   reach_ = 0.0;
   // Rounding keeps the order, so the least of the rounded numbers is the least one, rounded.
   Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity());
@@ -41,6 +62,7 @@ void SphereTree::measure() {
 
 std::vector<Sphere> SphereTree::level(int level) const {
   assert(level >= 0);
+  internal::require_content(node_count() > 0, "SphereTree");
   std::vector<Sphere> spheres;
   // Breadth-first order: the nodes at one distance from the root are consecutive.
   std::size_t begin = 0;

@@ -38,17 +38,26 @@ struct AxisAlignedBox {
 //  arithmetic
 //     (hence, by induction, every sphere below it);
 //  5. no inner node has more than kMaxBranching children.
+//
+// A tree whose content was moved to another has no nodes: queries of it throw Error, or end the
+// program with its message where they are noexcept.
 class SphereTree {
  public:
   static constexpr int kMaxBranching = 16;
 
   // Makes the tree that `data` describes. Throws Error, naming the node, if an invariant fails.
   explicit SphereTree(SphereTreeData data);
+  SphereTree(const SphereTree&) = default;
+  SphereTree(SphereTree&& other) noexcept;
+  SphereTree& operator=(const SphereTree&) = default;
+  SphereTree& operator=(SphereTree&& other) noexcept;
 
   // The spheres of the leaves as they were given, and the number of all nodes.
   std::span<const Sphere> spheres() const { return data_.spheres; }
   std::size_t node_count() const { return data_.radius.size(); }
 
+  // The sphere of node 0.
+  const Sphere& root() const { return root_; }
   // Of one node: its sphere, and its children, which stand side by side from the first on.
   Sphere sphere(std::size_t node) const {
     return {{data_.x[node], data_.y[node], data_.z[node]}, data_.radius[node]};
@@ -81,12 +90,13 @@ class SphereTree {
  private:
   friend SphereTree refit(SphereTree tree, std::span<const Sphere> moved);
 
-  void measure();  // what is of the spheres alone
+  void measure();  // the root, and what is of the spheres alone
 
   SphereTreeData data_;
   int depth_ = 0;
   int branching_ = 0;
-  double reach_ = 0.0;
+  Sphere root_;
+  double reach_ = 0.0;  // infinite once the content was moved away: then nothing is far apart
   AxisAlignedBox box_;
 };
 

@@ -4,17 +4,17 @@
 // grids of so many steps a diameter. Of models and spheres as named (the scale is the file's);
 // without any, of those of SPHERULE_MODELS, whose spheres are fitted here, at D and at D + slack.
 #include "bench/closing/protrusion_judge.h"
+#include "bench/program.h"
 #include "mesh/io/mesh_io.h"
 #include "simplifier/simplify.h"
 #include "spheretree/error.h"
+#include "spheretree/sphere.h"
 #include "spheretree/sphere_file.h"
 
 #include <Eigen/Geometry>
 
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -116,17 +116,12 @@ void judge_files(const char* model, const char* spheres, double diameter, int st
 }
 
 int run(int argc, char** argv) {
-  const int steps = argc > 1 ? std::atoi(argv[1]) : 32;
-  if (steps < 4 || (argc - 2) % 3 > 0) {
-    throw Error("spherule_closing", "[STEPS [MODEL SPHERES.json DIAMETER]...]");
-  }
-  if (argc <= 2) {
-    const char* models = std::getenv("SPHERULE_MODELS");
-    if (models == nullptr) throw Error("SPHERULE_MODELS", "is not set");
-    judge_models(models, steps);
-  }
+  if ((argc - 2) % 3 > 0) throw Error("usage", "[STEPS [MODEL SPHERES.json DIAMETER]...]");
+  const int steps = argc > 1 ? static_cast<int>(count_argument("STEPS", argv[1], 4)) : 32;
+  if (argc <= 2) judge_models(needed_models_folder(), steps);
   for (int i = 2; i + 2 < argc; i += 3) {
-    judge_files(argv[i], argv[i + 1], std::atof(argv[i + 2]), steps);
+    const double diameter = number_argument("DIAMETER", argv[i + 2], 0.0, kMaxCoordinate);
+    judge_files(argv[i], argv[i + 1], diameter, steps);
   }
   return 0;
 }
@@ -135,10 +130,5 @@ int run(int argc, char** argv) {
 }  // namespace spherule
 
 int main(int argc, char** argv) {
-  try {
-    return spherule::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  return spherule::run_program("spherule_closing", [&] { return spherule::run(argc, argv); });
 }

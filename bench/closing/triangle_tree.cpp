@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/closing/triangle_tree.h"
 
+#include "spheretree/median_split.h"
+
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace spherule::closing {
@@ -51,18 +54,14 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
       for (const Vector3d& corner : triangles_[i]) nodes_[n].box.extend(corner);
     }
     if (end - begin <= kLeaf) continue;
-    int axis = 0;
-    nodes_[n].box.sizes().maxCoeff(&axis);
-    const auto middle = static_cast<std::ptrdiff_t>((begin + end) / 2);
-    const auto first = triangles_.begin();
-    std::nth_element(
-        first + static_cast<std::ptrdiff_t>(begin), first + middle,
-        first + static_cast<std::ptrdiff_t>(end), [&](const Triangle& a, const Triangle& b) {
-          return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis];
-        });
+    const Eigen::Index axis = internal::longest_axis(nodes_[n].box);
+    const std::size_t middle =
+        begin + internal::split_at_median(
+                    std::span(triangles_).subspan(begin, end - begin),
+                    [axis](const Triangle& t) { return t[0][axis] + t[1][axis] + t[2][axis]; });
     nodes_[n].children = nodes_.size();
-    nodes_.push_back({.box = {}, .begin = begin, .end = static_cast<std::size_t>(middle)});
-    nodes_.push_back({.box = {}, .begin = static_cast<std::size_t>(middle), .end = end});
+    nodes_.push_back({.box = {}, .begin = begin, .end = middle});
+    nodes_.push_back({.box = {}, .begin = middle, .end = end});
   }
 }
 

@@ -4,11 +4,10 @@
 #include "bench/paper/page.h"
 #include "bench/paper/pictures.h"
 #include "bench/paper/report.h"
+#include "bench/program.h"
 #include "spheretree/error.h"
 
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -20,8 +19,8 @@ namespace {
 // Our own and, where SPHERULE_MODELS says where they are, real ones.
 std::vector<NamedMesh> all_parts() {
   std::vector<NamedMesh> parts = own_parts();
-  if (const char* models = std::getenv("SPHERULE_MODELS"); models != nullptr && *models != '\0') {
-    for (NamedMesh& part : real_parts(models)) parts.push_back(std::move(part));
+  if (const auto models = models_folder()) {
+    for (NamedMesh& part : real_parts(*models)) parts.push_back(std::move(part));
   }
   return parts;
 }
@@ -95,10 +94,6 @@ int run(const std::filesystem::path& out) {
 }  // namespace spherule
 
 int main(int count, char** values) {
-  try {
-    return spherule::run(spherule::parse(count, values));
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "spherule_paper: %s\n", error.what());
-    return 1;
-  }
+  return spherule::run_program("spherule_paper",
+                               [&] { return spherule::run(spherule::parse(count, values)); });
 }

@@ -11,6 +11,7 @@
 #include "bench/planning/planner.h"
 #include "bench/planning/planning_cell.h"
 #include "bench/planning/process_points.h"
+#include "bench/program.h"
 #include "bench/real_models.h"
 #include "bench/scenes/torch.h"
 #include "bench/tree_checker.h"
@@ -18,10 +19,10 @@
 #include "spheretree/error.h"
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 namespace spherule {
@@ -50,9 +51,9 @@ struct Example {
 };
 
 Example make_example() {
-  const char* const models = std::getenv("SPHERULE_MODELS");
-  if (models == nullptr || *models == '\0') return {make_paper_cell(), flange_from_wire()};
-  return {make_real_cell(models), real_flange_from_wire(models)};
+  const std::optional<std::filesystem::path> models = models_folder();
+  if (!models) return {make_paper_cell(), flange_from_wire()};
+  return {make_real_cell(*models), real_flange_from_wire(*models)};
 }
 
 void run(const PlanningArguments& arguments) {

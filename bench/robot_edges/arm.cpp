@@ -6,10 +6,12 @@
 #include "robot/files/urdf.h"
 #include "spheretree/build.h"
 #include "spheretree/enclosing_sphere.h"
+#include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <array>
-#include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -102,15 +104,16 @@ std::vector<Sphere> spheres_around(const TriangleMesh& mesh, double radius) {
 }
 
 Arm make_panda(const std::filesystem::path& models, const std::string& cover) {
-  const double radius = std::atof(cover.c_str());
-  if (!(radius > 0.0)) {
+  const std::optional<double> radius = internal::finite_number(cover);
+  if (radius && !(*radius > 0.0)) throw Error(cover, "is not a radius");
+  if (!radius) {
     const RobotDescription spheres = read_urdf(cover);
     return make_arm(models, [&](std::size_t link, const TriangleMesh&) {
       return spheres_of(spheres.links.at(link));
     });
   }
   return make_arm(
-      models, [&](std::size_t, const TriangleMesh& mesh) { return spheres_around(mesh, radius); });
+      models, [&](std::size_t, const TriangleMesh& mesh) { return spheres_around(mesh, *radius); });
 }
 
 AllowedCollisions joined_contacts(const Arm& arm) {

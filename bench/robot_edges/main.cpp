@@ -8,6 +8,7 @@
 //   SPHERULE_MODELS=DIR spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]...]
 
 #include "bench/clock.h"
+#include "bench/program.h"
 #include "bench/robot_edges/arm.h"
 #include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/counts.h"
@@ -21,8 +22,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -85,7 +84,7 @@ void measure_configurations(const Arm& arm, const AllowedCollisions& allowed,
   }
 }
 
-void run(std::span<const Arm> arms, std::size_t edges) {
+void measure(std::span<const Arm> arms, std::size_t edges) {
   const Arm& arm = arms.front();
   const AllowedCollisions allowed = allowed_contacts(arm);
   std::printf("%zu triangles, %zu spheres\n", arm.triangles, arm.spheres);
@@ -102,30 +101,21 @@ void run(std::span<const Arm> arms, std::size_t edges) {
   if (arms.size() > 1) measure_sizes(arms, allowed);
 }
 
+int run(int argc, char** argv) {
+  const std::filesystem::path models = needed_models_folder();
+  const std::int64_t edges =
+      argc > 1 ? count_argument("EDGES", argv[1], 30, 1'000'000'000) : 10'000;
+  std::vector<std::string> covers(argv + std::min(argc, 2), argv + argc);
+  if (covers.empty()) covers = {"0.02"};
+  std::vector<Arm> arms;
+  for (const std::string& cover : covers) arms.push_back(make_panda(models, cover));
+  measure(arms, static_cast<std::size_t>(edges));
+  return 0;
+}
+
 }  // namespace
 }  // namespace spherule
 
 int main(int argc, char** argv) {
-  const char* const models = std::getenv("SPHERULE_MODELS");
-  if (models == nullptr || *models == '\0') {
-    std::fprintf(stderr, "SPHERULE_MODELS does not name a folder of models\n");
-    return 2;
-  }
-  const double edges = argc > 1 ? std::atof(argv[1]) : 10000.0;
-  if (!(edges >= 30.0 && edges <= 1e9)) {
-    std::fprintf(stderr, "usage: spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]...]\n");
-    return 2;
-  }
-  try {
-    using namespace spherule;
-    std::vector<std::string> covers(argv + std::min(argc, 2), argv + argc);
-    if (covers.empty()) covers = {"0.02"};
-    std::vector<Arm> arms;
-    for (const std::string& cover : covers) arms.push_back(make_panda(models, cover));
-    run(arms, static_cast<std::size_t>(edges));
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
-  }
-  return 0;
+  return spherule::run_program("spherule_robot_edges", [&] { return spherule::run(argc, argv); });
 }

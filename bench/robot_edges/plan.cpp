@@ -7,6 +7,7 @@
 //   SPHERULE_MODELS=DIR spherule_arm_planning [PROBLEMS [STEP [RADIUS | SPHERIZED.urdf]]]
 
 #include "bench/planning/problem_study.h"
+#include "bench/program.h"
 #include "bench/robot_edges/arm.h"
 #include "bench/robot_edges/arm_problems.h"
 #include "bench/robot_edges/arm_scenes.h"
@@ -15,8 +16,6 @@
 #include "spheretree/error.h"
 
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <ompl/util/Console.h>
 #include <span>
 #include <string>
@@ -67,7 +66,7 @@ void print_row(const char* name, const ProblemStudy& study) {
   std::fflush(stdout);
 }
 
-void run(const Arm& arm, std::size_t problems, const PlanOptions& options) {
+void study(const Arm& arm, std::size_t problems, const PlanOptions& options) {
   const AllowedCollisions allowed = allowed_contacts(arm);
   std::vector<ArmScene> scenes = primitive_scenes();
   for (ArmScene& scene : larger_scenes()) scenes.push_back(std::move(scene));
@@ -87,31 +86,21 @@ void run(const Arm& arm, std::size_t problems, const PlanOptions& options) {
   }
 }
 
+int run(int argc, char** argv) {
+  if (argc > 4) throw Error("usage", "[PROBLEMS [STEP [RADIUS | SPHERIZED.urdf]]]");
+  const std::filesystem::path models = needed_models_folder();
+  const std::int64_t problems = argc > 1 ? count_argument("PROBLEMS", argv[1], 1, 1'000'000) : 200;
+  PlanOptions options;
+  if (argc > 2) options.step = number_argument("STEP", argv[2], 1e-6, 10.0);
+  ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
+  study(make_panda(models, argc > 3 ? argv[3] : "0.01"), static_cast<std::size_t>(problems),
+        options);
+  return 0;
+}
+
 }  // namespace
 }  // namespace spherule
 
 int main(int argc, char** argv) {
-  using namespace spherule;
-  const char* const models = std::getenv("SPHERULE_MODELS");
-  if (models == nullptr || *models == '\0') {
-    std::fprintf(stderr, "SPHERULE_MODELS does not name a folder of models\n");
-    return 2;
-  }
-  const double problems = argc > 1 ? std::atof(argv[1]) : 200.0;
-  PlanOptions options;
-  if (argc > 2) options.step = std::atof(argv[2]);
-  if (argc > 4 || !(problems >= 1.0 && problems <= 1e6) || !(options.step > 0.0)) {
-    std::fprintf(stderr,
-                 "usage: spherule_arm_planning [PROBLEMS [STEP [RADIUS | SPHERIZED.urdf]]]\n");
-    return 2;
-  }
-  try {
-    ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
-    run(make_panda(models, argc > 3 ? argv[3] : "0.01"), static_cast<std::size_t>(problems),
-        options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
-  return 0;
+  return spherule::run_program("spherule_arm_planning", [&] { return spherule::run(argc, argv); });
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Are the answers right, in many millions of cases, against an exact oracle? See bench/README.md.
+#include "bench/program.h"
 #include "bench/scale/cases.h"
 #include "spheretree/error.h"
 
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <memory>
 #include <string>
 
@@ -33,14 +32,6 @@ struct Arguments {
   bool help = false;
 };
 
-std::uint64_t number(const std::string& option, const std::string& text) {
-  std::uint64_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end) throw Error(option, "needs a whole number");
-  return value;
-}
-
 Arguments parse(int count, char** values) {
   Arguments arguments;
   for (int i = 1; i < count; ++i) {
@@ -52,15 +43,15 @@ Arguments parse(int count, char** values) {
     if (i + 1 == count) throw Error(option, "unknown option, or its value is lacking");
     const std::string value = values[++i];
     if (option == "--poses") {
-      arguments.poses = number(option, value);
+      arguments.poses = static_cast<std::uint64_t>(count_argument(option, value, 0, INT64_MAX));
     } else if (option == "--motions") {
-      arguments.motions = number(option, value);
+      arguments.motions = static_cast<std::uint64_t>(count_argument(option, value, 0, INT64_MAX));
     } else if (option == "--distances") {
-      arguments.distances = number(option, value);
+      arguments.distances = static_cast<std::uint64_t>(count_argument(option, value, 0, INT64_MAX));
     } else if (option == "--checked") {
-      arguments.checked = number(option, value);
+      arguments.checked = static_cast<std::uint64_t>(count_argument(option, value, 0, INT64_MAX));
     } else if (option == "--seed") {
-      arguments.seed = number(option, value);
+      arguments.seed = static_cast<std::uint64_t>(count_argument(option, value, 0, INT64_MAX));
     } else if (option == "--out") {
       arguments.out = value;
     } else {
@@ -102,10 +93,6 @@ int run(const Arguments& arguments) {
 }  // namespace spherule
 
 int main(int count, char** values) {
-  try {
-    return spherule::run(spherule::parse(count, values));
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "spherule_scale: %s\n", error.what());
-    return 1;
-  }
+  return spherule::run_program("spherule_scale",
+                               [&] { return spherule::run(spherule::parse(count, values)); });
 }

@@ -3,6 +3,7 @@
 // robot's links, and the share of its free postures that covers refuse without and with the proofs.
 #include "robot/pairs/link_pairs.h"
 
+#include "bench/program.h"
 #include "collide/solid_within.h"
 #include "robot/cover/false_alarms.h"
 #include "robot/cover/link_bodies.h"
@@ -18,8 +19,6 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <memory>
 #include <random>
 #include <string>
@@ -139,15 +138,15 @@ void print_postures(const Robot& robot, const LinkPairs& pairs, int postures,
 }
 
 int run(int argc, char** argv) {
-  if (argc < 4) throw Error("spherule_link_pairs", "ROBOT.urdf BOXES POSTURES [COVER...]");
+  if (argc < 4) throw Error("usage", "ROBOT.urdf BOXES POSTURES [COVER...]");
+  const auto boxes = static_cast<std::size_t>(count_argument("BOXES", argv[2], 1));
+  const int postures = static_cast<int>(count_argument("POSTURES", argv[3], 0));
   const Robot robot = read_robot(argv[1]);
   const Clock::time_point start = Clock::now();
-  const LinkPairs pairs =
-      prove_link_pairs(robot.description.model, robot.bodies,
-                       {.boxes = static_cast<std::size_t>(std::max(std::atoi(argv[2]), 1))});
+  const LinkPairs pairs = prove_link_pairs(robot.description.model, robot.bodies, {.boxes = boxes});
   print_pairs(robot.description.model, pairs, seconds_since(start));
-  print_judged(robot, pairs, std::atoi(argv[3]));
-  for (int i = 4; i < argc; ++i) print_postures(robot, pairs, std::atoi(argv[3]), argv[i]);
+  print_judged(robot, pairs, postures);
+  for (int i = 4; i < argc; ++i) print_postures(robot, pairs, postures, argv[i]);
   return 0;
 }
 
@@ -155,10 +154,5 @@ int run(int argc, char** argv) {
 }  // namespace spherule
 
 int main(int argc, char** argv) {
-  try {
-    return spherule::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  return spherule::run_program("spherule_link_pairs", [&] { return spherule::run(argc, argv); });
 }

@@ -2,6 +2,7 @@
 #include "bench/studies/refined_cover.h"
 
 #include "spheretree/error.h"
+#include "spheretree/median_split.h"
 
 #include <Eigen/Geometry>
 
@@ -11,6 +12,7 @@
 #include <cstdint>
 #include <numeric>
 #include <queue>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -152,14 +154,11 @@ struct Group {
 std::array<Group, 2> split(const Group& group) {
   Eigen::AlignedBox3d box;
   for (const Piece& piece : group.pieces) box.extend(piece.center());
-  Eigen::Index axis = 0;
-  box.sizes().maxCoeff(&axis);
-  const auto half = static_cast<std::ptrdiff_t>(group.pieces.size() / 2);
-  std::nth_element(
-      group.pieces.begin(), group.pieces.begin() + half, group.pieces.end(),
-      [axis](const Piece& a, const Piece& b) { return a.center()[axis] < b.center()[axis]; });
-  const auto first = group.pieces.first(static_cast<std::size_t>(half));
-  const auto rest = group.pieces.subspan(static_cast<std::size_t>(half));
+  const Eigen::Index axis = internal::longest_axis(box);
+  const std::size_t half = internal::split_at_median(
+      group.pieces, [axis](const Piece& piece) { return piece.center()[axis]; });
+  const auto first = group.pieces.first(half);
+  const auto rest = group.pieces.subspan(half);
   return {Group{sphere_around(first, group.outer), group.outer, first},
           Group{sphere_around(rest, group.outer), group.outer, rest}};
 }

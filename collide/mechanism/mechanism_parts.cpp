@@ -6,6 +6,7 @@
 #include "collide/search/single_precision.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
+#include "spheretree/moved_from.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -49,8 +50,12 @@ void check_input(std::span<const MechanismFrame> frames, std::span<const Mechani
   internal::check_frames(frames);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     internal::check_body(i, bodies[i].frame, frames.size(), bodies[i].tree != nullptr);
+    internal::require_content(bodies[i].tree->node_count() > 0, "SphereTree");
   }
   internal::check_obstacles(obstacles);
+  for (const MechanismObstacle& obstacle : obstacles) {
+    internal::require_content(obstacle.tree->node_count() > 0, "SphereTree");
+  }
   internal::check_pairs(pairs, bodies.size(), obstacles.size());
   internal::check_pose_error(pose_error);
 }

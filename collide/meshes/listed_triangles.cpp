@@ -4,6 +4,7 @@
 #include "collide/search/single_precision.h"
 #include "collide/solids/mesh_inside.h"
 #include "mesh/geometry/separating_axis.h"
+#include "spheretree/moved_from.h"
 
 #include <Eigen/Geometry>
 
@@ -189,7 +190,11 @@ ListedTriangles::ListedTriangles(const CoveredMesh& a, const Pose& world_from_a,
               0.5 * (world_from_b.translation() - world_from_a.translation()), pose.b_from_a()}},
       scene_size_(pose.scene_size()),
       corner_pad_(pose.leaf_pad()),
-      image_pad_(kImagePad * pose.scene_size() + kUnderflow) {}
+      image_pad_(kImagePad * pose.scene_size() + kUnderflow) {
+  for (const Side& side : sides_) {
+    require_content(side.mesh.mesh().tree().node_count() > 0, "CoveredMesh");
+  }
+}
 
 Triangle ListedTriangles::Side::placed(std::int32_t triangle) const {
   const Triangle& corners = mesh.mesh().triangle(triangle);

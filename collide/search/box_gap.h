@@ -41,7 +41,7 @@ inline bool sphere_apart_from_box(const SphereTree& a, const Pose& world_from_a,
                                   const SphereTree& b, const Pose& world_from_b, double clearance) {
   const double* ra = world_from_a.matrix().data();  // column by column
   const double* rb = world_from_b.matrix().data();
-  const Sphere sphere = a.sphere(0);
+  const Sphere& sphere = a.root();
   const double x = sphere.center.x(), y = sphere.center.y(), z = sphere.center.z();
   const Eigen::Vector3d& ta = world_from_a.translation();
   const Eigen::Vector3d& tb = world_from_b.translation();
@@ -67,7 +67,7 @@ inline bool sphere_apart_from_box(const SphereTree& a, const Pose& world_from_a,
 // better the longer it is.
 inline bool far_apart(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                       const Pose& world_from_b, double clearance = 0.0) {
-  const bool a_is_sphere = a.data().radius[0] <= b.data().radius[0];
+  const bool a_is_sphere = a.root().radius <= b.root().radius;
   return sphere_apart_from_box(a_is_sphere ? a : b, a_is_sphere ? world_from_a : world_from_b,
                                a_is_sphere ? b : a, a_is_sphere ? world_from_b : world_from_a,
                                clearance);

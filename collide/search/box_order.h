@@ -3,6 +3,8 @@
 
 // How trees of boxes share out what they are built over.
 
+#include "spheretree/median_split.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -24,8 +26,7 @@ Eigen::AlignedBox3d box_around(std::span<Part> parts, const BoxOf& box_of) {
 template <class Part, class BoxOf, class NumberOf>
 void sort_along_longest_side(std::span<Part> parts, const BoxOf& box_of,
                              const NumberOf& number_of) {
-  Eigen::Index axis = 0;
-  box_around(parts, box_of).sizes().maxCoeff(&axis);
+  const Eigen::Index axis = longest_axis(box_around(parts, box_of));
   const auto key = [&](const Part& part) {
     const Eigen::AlignedBox3d& box = box_of(part);
     return std::pair(box.min()[axis] + box.max()[axis], number_of(part));

@@ -9,6 +9,7 @@
 
 #include "collide/collide.h"
 #include "collide/search/box_gap.h"
+#include "collide/search/conclusion.h"
 #include "collide/search/deadline.h"
 #include "collide/search/traversal.h"
 
@@ -135,14 +136,7 @@ CollisionResult all_pairs(const SphereTree& a, const SphereTree& b, const Relati
     query.pruned(std::max(pose.gap(a.sphere(0), b.sphere(0)), box_gap(a, b, pose)));
     result.complete = true;
   }
-  std::sort(result.pairs.begin(), result.pairs.end());
-  if (query.found()) {
-    result.verdict = Verdict::kCollision;
-  } else if (result.complete) {
-    result.verdict = Verdict::kFree;
-    result.distance_lower_bound =
-        std::max(0.0, query.smallest_gap() * kRelativeDown - pose.gap_error());
-  }
+  conclude(query, pose, result);
   return result;
 }
 

@@ -58,6 +58,7 @@
 // absolute term kUnderflow = 2^-530 in every pad is far above the first (a few dozen products) and
 // gives s^2 >= 2^-1060, far above the few 2^-1075 lost in d2.
 
+#include "spheretree/moved_from.h"
 #include "spheretree/pose.h"
 #include "spheretree/rounding.h"
 #include "spheretree/sphere_tree.h"
@@ -94,7 +95,8 @@ struct FrameChange {
 // How far from the origin of its frame any sphere of a layered tree reaches, those of nodes
 // included.
 inline double node_reach(const SphereTree& tree) {
-  const Sphere root = tree.sphere(0);
+  require_content(tree.node_count() > 0, "SphereTree");
+  const Sphere& root = tree.root();
   const double of_root =
       (std::abs(root.center.x()) + std::abs(root.center.y()) + std::abs(root.center.z())) +
       root.radius;

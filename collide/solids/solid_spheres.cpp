@@ -5,6 +5,7 @@
 #include "collide/solids/mesh_inside.h"
 #include "collide/solids/spheres_inside.h"
 #include "spheretree/build.h"
+#include "spheretree/moved_from.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -64,6 +65,7 @@ bool is_held(const SolidMesh& solid, const Sphere& sphere) {
 }  // namespace
 
 std::vector<Sphere> spheres_around(const SolidMesh& solid) {
+  require_content(solid.mesh().tree().node_count() > 0, "SolidMesh");
   std::vector<Sphere> spheres;
   double sum = 0.0;
   for (const Sphere& sphere : solid.mesh().tree().spheres()) {

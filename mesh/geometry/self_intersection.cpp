@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/geometry/self_intersection.h"
 
+#include "spheretree/median_split.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <span>
 #include <vector>
 
 namespace spherule::internal {
@@ -63,15 +66,10 @@ class BoxTree {
     }
     nodes_[index].box = box;
     if (end - begin <= kLeafTriangles) return index;
-    int axis = 0;
-    centers.sizes().maxCoeff(&axis);
-    const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [this](std::size_t i) {
-      return order_.begin() + static_cast<std::ptrdiff_t>(i);
-    };
-    std::nth_element(at(begin), at(middle), at(end), [&](std::size_t a, std::size_t b) {
-      return boxes_[a].center()[axis] < boxes_[b].center()[axis];
-    });
+    const Eigen::Index axis = longest_axis(centers);
+    const std::size_t middle =
+        begin + split_at_median(std::span(order_).subspan(begin, end - begin),
+                                [&](std::size_t i) { return boxes_[i].center()[axis]; });
     build(begin, middle);
     const std::size_t second = build(middle, end);
     nodes_[index].second = second;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/io/length_unit.h"
 
-#include "mesh/geometry/raw_mesh.h"
+#include "mesh/io/internal/mesh_readers.h"
 #include "mesh/io/internal/scene_file.h"
 #include "mesh/io/mesh_io.h"
+#include "mesh/parsing/input_file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/io/mesh_io.h"
 
-#include "mesh/geometry/raw_mesh.h"
+#include "mesh/geometry/vertex_rounding.h"
+#include "mesh/geometry/weld.h"
+#include "mesh/io/internal/mesh_readers.h"
 #include "mesh/io/internal/scene_file.h"
 #include "mesh/io/internal/weld_within.h"
 #include "mesh/mesh_report.h"
+#include "mesh/parsing/input_file.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/shells/closed_shells.h"
 
-#include "mesh/geometry/raw_mesh.h"
 #include "mesh/geometry/ray.h"
 #include "mesh/geometry/solid_angle.h"
+#include "mesh/geometry/weld.h"
 #include "mesh/shells/mesh_shells.h"
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #include "robot/pairs/internal/proof_scope.h"
 #include "robot/pairs/link_pairs.h"
 #include "spheretree/error.h"
+#include "spheretree/moved_from.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -86,8 +87,11 @@ void RobotScene::add(std::string name, ObstacleShape shape, const Pose& world_fr
     require_primitive(*primitive, name);
   } else if (const auto* tree = std::get_if<std::shared_ptr<const SphereTree>>(&shape)) {
     if (!*tree) throw Error(name, "the tree is missing");
-  } else if (!std::get<std::shared_ptr<const SolidMesh>>(shape)) {
-    throw Error(name, "the mesh is missing");
+    internal::require_content((*tree)->node_count() > 0, "SphereTree");
+  } else {
+    const auto& solid = std::get<std::shared_ptr<const SolidMesh>>(shape);
+    if (!solid) throw Error(name, "the mesh is missing");
+    internal::require_content(solid->mesh().tree().node_count() > 0, "SolidMesh");
   }
   obstacles_.emplace(std::move(name), Obstacle{std::move(shape), world_from_shape});
 }
@@ -118,6 +122,7 @@ void RobotScene::attach(std::string name, std::string_view link,
   require_free_name(name);
   if (robot_.find_link(link) < 0) throw Error("link " + std::string(link), "there is no such link");
   if (!tree) throw Error(name, "the tree is missing");
+  internal::require_content(tree->node_count() > 0, "SphereTree");
   attached_.emplace(std::move(name),
                     Attached{std::string(link), std::move(tree), link_from_object});
 }

@@ -6,6 +6,7 @@
 #include "robot/pairs/link_pairs.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
+#include "spheretree/moved_from.h"
 #include "spheretree/refit.h"
 #include "spheretree/rounding.h"
 
@@ -223,6 +224,7 @@ class RobotScene::Snapshot {
 };
 
 RobotChecker RobotScene::snapshot(const RobotCheckerOptions& options) const {
+  internal::require_content(!robot_.links().empty(), "RobotScene");
   if (std::find(options.meshes.begin(), options.meshes.end(), nullptr) != options.meshes.end()) {
     throw Error("robot checker", "a mesh is missing");
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/point_cloud_file.h"
 
-#include "robot/files/internal/format_text.h"
-#include "robot/files/internal/ply_points.h"
+#include "mesh/parsing/ply_data.h"
 #include "robot/files/internal/text_lines.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
+#include "spheretree/text.h"
 
 #include <algorithm>
 #include <array>
@@ -42,12 +42,29 @@ std::vector<Vector3d> text_points(std::string_view text, const std::string& file
     if (lines.words().size() < 3) refuse("has no x, y and z");
     Vector3d point;
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::optional<double> number = internal::number_of(lines.words()[k]);
-      if (!number) refuse(internal::quoted(lines.words()[k]) + " is not a finite number");
+      const std::optional<double> number = internal::finite_number(lines.words()[k]);
+      if (!number) refuse(internal::in_quotes(lines.words()[k]) + " is not a finite number");
       point[static_cast<Eigen::Index>(k)] = *number;
     }
     points.push_back(point);
   }
+  return points;
+}
+
+// The vertices, by their properties x, y and z; other properties and elements are passed over.
+std::vector<Vector3d> ply_points(internal::PlyData& data) {
+  std::vector<Vector3d> points;
+  bool has_vertices = false;
+  for (const internal::PlyElement& element : data.elements()) {
+    if (element.name != "vertex") {
+      data.skip(element);
+      continue;
+    }
+    has_vertices = true;
+    points = data.read_points(element);
+  }
+  data.expect_end();
+  if (!has_vertices) throw Error(data.subject(), "it has no vertices");
   return points;
 }
 
@@ -72,9 +89,9 @@ PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale)
   PointCloudFile cloud;
   bool is_rounded = true;
   if (is_ply) {
-    internal::PlyPoints read = internal::read_ply_points(content, file);
-    cloud.points = std::move(read.points);
-    is_rounded = read.is_text;
+    internal::PlyData data(content, file);
+    cloud.points = ply_points(data);
+    is_rounded = data.is_text();
   } else {
     cloud.points = text_points(content, file);
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/scene_file.h"
 
-#include "robot/files/internal/text_lines.h"
 #include "spheretree/atomic_file.h"
-#include "spheretree/duplicate_keys.h"
 #include "spheretree/error.h"
+#include "spheretree/parse_json.h"
+#include "spheretree/text.h"
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
@@ -43,13 +43,13 @@ class Value {
     unless(json_.is_object(), "is not an object");
     for (const auto& [key, value] : json_.items()) {
       unless(std::find(keys.begin(), keys.end(), key) != keys.end(),
-             "the key " + internal::quoted(key) + " is not known here");
+             "the key " + internal::in_quotes(key) + " is not known here");
     }
   }
   bool has(const char* key) const { return json_.contains(key); }
   Value at(const char* key) const {
     const auto found = json_.find(key);
-    if (found == json_.end()) refuse(internal::quoted(key) + " is missing");
+    if (found == json_.end()) refuse(internal::in_quotes(key) + " is missing");
     return Value(*found, place_.empty() ? key : place_ + ", " + key, file_);
   }
   // The elements of a list, of which each is called `what` and its number; none if it is not there.
@@ -64,7 +64,7 @@ class Value {
   }
   // The same place with the name of what stands there.
   Value named(const std::string& name) const {
-    return Value(json_, place_ + " " + internal::quoted(name), file_);
+    return Value(json_, place_ + " " + internal::in_quotes(name), file_);
   }
 
   std::string text() const {
@@ -171,7 +171,7 @@ class SceneReader {
     value.unless(value.has("name"), "\"name\" is missing");
     const std::string name = value.at("name").name();
     value.unless(names_.insert(name).second,
-                 "the name " + internal::quoted(name) + " is there twice");
+                 "the name " + internal::in_quotes(name) + " is there twice");
     return name;
   }
 
@@ -183,7 +183,7 @@ class SceneReader {
       all += (all.empty() ? "" : ", ") + std::string(key);
       if (!object.has(key)) continue;
       object.unless(found.empty(),
-                    "has both " + internal::quoted(found) + " and " + internal::quoted(key));
+                    "has both " + internal::in_quotes(found) + " and " + internal::in_quotes(key));
       found = key;
     }
     object.unless(!found.empty(), "has no shape: one of " + all);
@@ -290,8 +290,8 @@ class SceneReader {
     sphere.require_keys({"center", "radius"});
     region.around = {sphere.at("center").numbers<3>(), sphere.at("radius").positive()};
     value.unless(regions_.insert({region.body, region.name}).second,
-                 "the region " + internal::quoted(region.name) + " of " +
-                     internal::quoted(region.body) + " is there twice");
+                 "the region " + internal::in_quotes(region.name) + " of " +
+                     internal::in_quotes(region.body) + " is there twice");
     scene_.regions.push_back(std::move(region));
   }
 
@@ -300,9 +300,9 @@ class SceneReader {
     SceneContact contact{value.at("body").name(), {}, value.at("other").name()};
     if (value.has("region")) {
       contact.region = value.at("region").name();
-      value.unless(
-          regions_.contains({contact.body, contact.region}),
-          internal::quoted(contact.body) + " has no region " + internal::quoted(contact.region));
+      value.unless(regions_.contains({contact.body, contact.region}),
+                   internal::in_quotes(contact.body) + " has no region " +
+                       internal::in_quotes(contact.region));
     }
     scene_.allowed_contacts.push_back(std::move(contact));
   }
@@ -312,7 +312,7 @@ class SceneReader {
     ScenePadding padding{value.at("body").name(), {}, value.at("distance").not_negative()};
     if (value.has("other")) padding.other = value.at("other").name();
     value.unless(padded_.insert(std::minmax(padding.body, padding.other)).second,
-                 "the padding of " + internal::quoted(padding.body) + " is given twice");
+                 "the padding of " + internal::in_quotes(padding.body) + " is given twice");
     scene_.padding.push_back(std::move(padding));
   }
 
@@ -326,19 +326,8 @@ class SceneReader {
 };
 
 Json parsed(const std::string& text, const std::string& file) {
-  DuplicateKeys<Json> keys;
-  Json document;
-  try {
-    document = Json::parse(text, [&keys](int depth, Json::parse_event_t event, Json& part) {
-      keys.see(depth, event, part);
-      return true;
-    });
-  } catch (const Json::exception& error) {
-    throw Error(file, std::string("is not JSON: ") + error.what());
-  }
-  if (!keys.duplicate().empty()) {
-    throw Error(file, "the key " + keys.duplicate() + " is there twice");
-  }
+  Json document = internal::parse_json<Json>(
+      text, [&](const std::string& reason) { throw Error(file, reason); });
   if (!document.is_object()) throw Error(file, "is not an object");
   return document;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/trajectory_file.h"
 
-#include "robot/files/internal/format_text.h"
 #include "robot/files/internal/text_lines.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <algorithm>
 #include <optional>
@@ -47,7 +47,7 @@ class Reader {
 
   static bool is_header(const std::vector<std::string_view>& words) {
     return std::any_of(words.begin(), words.end(), [](std::string_view word) {
-      return !word.empty() && !internal::number_of(word) && !is_no_finite_number(word);
+      return !word.empty() && !internal::finite_number(word) && !is_no_finite_number(word);
     });
   }
   // "nan" in the first line is a faulty configuration, not a joint of that name.
@@ -75,11 +75,12 @@ class Reader {
   int variable_of(std::string_view word) const {
     const std::string name(word);
     const int index = robot_.find_joint(name);
-    if (index < 0) refuse("the robot has no joint " + internal::quoted(name));
+    if (index < 0) refuse("the robot has no joint " + internal::in_quotes(name));
     const Joint& joint = robot_.joints()[static_cast<std::size_t>(index)];
-    if (!joint.moves()) refuse("joint " + internal::quoted(name) + " is fixed and has no position");
+    if (!joint.moves())
+      refuse("joint " + internal::in_quotes(name) + " is fixed and has no position");
     if (joint.mimics >= 0)
-      refuse("joint " + internal::quoted(name) + " mimics another; leave it out");
+      refuse("joint " + internal::in_quotes(name) + " mimics another; leave it out");
     return joint.variable;
   }
 
@@ -92,13 +93,13 @@ class Reader {
       }
       columns_.push_back(variable_of(word));
       char& there = seen[static_cast<std::size_t>(columns_.back())];
-      if (there != 0) refuse("joint " + internal::quoted(word) + " is there twice");
+      if (there != 0) refuse("joint " + internal::in_quotes(word) + " is there twice");
       there = 1;
     }
     const auto missing = std::find(seen.begin(), seen.end(), 0);
     if (missing == seen.end()) return;
     const auto variable = static_cast<std::size_t>(missing - seen.begin());
-    refuse("joint " + internal::quoted(name_of_variable(variable)) + " is missing");
+    refuse("joint " + internal::in_quotes(name_of_variable(variable)) + " is missing");
   }
 
   void number_columns() {
@@ -113,8 +114,8 @@ class Reader {
     const std::size_t at = trajectory_.positions.size();
     trajectory_.positions.resize(at + trajectory_.width);
     for (std::size_t i = 0; i < words.size(); ++i) {
-      const std::optional<double> number = internal::number_of(words[i]);
-      if (!number) refuse(internal::quoted(words[i]) + " is not a finite number");
+      const std::optional<double> number = internal::finite_number(words[i]);
+      if (!number) refuse(internal::in_quotes(words[i]) + " is not a finite number");
       if (columns_[i] == kPassedOver) continue;
       trajectory_.positions[at + static_cast<std::size_t>(columns_[i])] = *number;
     }

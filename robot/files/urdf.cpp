@@ -5,6 +5,7 @@
 #include "robot/files/internal/urdf_tree.h"
 #include "robot/files/internal/xml_file.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <cmath>
 #include <string>
@@ -62,7 +63,7 @@ JointType type_of(const XmlElement& joint) {
   if (type == "planar" || type == "floating") {
     joint.refuse("planar and floating joints cannot be modelled");
   }
-  joint.refuse("it has no known type but " + internal::name_in_quotes(type));
+  joint.refuse("it has no known type but " + internal::in_quotes(type));
 }
 
 Joint joint_of(const XmlElement& element) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/formats/internal/sphere_documents.h"
-#include "spheretree/duplicate_keys.h"
 #include "spheretree/error.h"
+#include "spheretree/parse_json.h"
 #include "spheretree/sphere_file.h"
 
 #include <nlohmann/json.hpp>
@@ -19,18 +19,7 @@ constexpr std::uint64_t kVersion = 1;
 constexpr const char* kOneMeshFormat = "spherule-spheres";
 
 Json parsed(std::string_view text, const SphereGatherer& gathered) {
-  DuplicateKeys<Json> keys;
-  Json document;
-  try {
-    document = Json::parse(text, [&keys](int depth, Json::parse_event_t event, Json& part) {
-      keys.see(depth, event, part);
-      return true;
-    });
-  } catch (const Json::exception& error) {
-    gathered.refuse({}, std::string("is not JSON: ") + error.what());
-  }
-  gathered.unless(keys.duplicate().empty(), {}, "the key " + keys.duplicate() + " is there twice");
-  return document;
+  return parse_json<Json>(text, [&](const std::string& reason) { gathered.refuse({}, reason); });
 }
 
 // Reads values, and says of those that are of another type where they are.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/files/internal/format_text.h"
 #include "robot/formats/internal/sphere_documents.h"
 #include "robot/formats/internal/yaml_nodes.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <optional>
 #include <set>
@@ -19,7 +19,7 @@ using YAML::Node;
 // A quoted number is a text to every reader of YAML.
 double number(const Node& node, const std::string& what, const SphereGatherer& gathered) {
   std::optional<double> value;
-  if (node.IsScalar() && node.Tag() != "!") value = number_of(node.Scalar());
+  if (node.IsScalar() && node.Tag() != "!") value = finite_number(node.Scalar());
   if (!value) gathered.refuse(place_of(node), what + " is not a number");
   return *value;
 }

@@ -3,6 +3,7 @@
 
 #include "collide/kernels/check_cache.h"
 #include "spheretree/error.h"
+#include "spheretree/moved_from.h"
 
 #include <cmath>
 #include <numbers>
@@ -133,6 +134,7 @@ void RobotModel::attach(std::string_view link, std::shared_ptr<const SphereTree>
   const int index = find_link(link);
   if (index < 0) throw Error("link " + std::string(link), "there is no such link");
   if (!tree) throw Error("link " + std::string(link), "the tree to attach is null");
+  internal::require_content(tree->node_count() > 0, "SphereTree");
   links_[static_cast<std::size_t>(index)].trees.push_back(std::move(tree));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "spheretree/moved_from.h"
 #include "spheretree/pose.h"
 #include "spheretree/sphere_tree.h"
 
@@ -100,7 +101,10 @@ class RobotModel {
   int find_joint(std::string_view name) const;
 
   // For checkers: what they compute from the robot. Copies of a model share it.
-  internal::CheckCache& check_cache() const { return *check_cache_; }
+  internal::CheckCache& check_cache() const {
+    internal::require_content(check_cache_ != nullptr, "RobotModel");
+    return *check_cache_;
+  }
 
  private:
   // What a joint was told to follow.

@@ -3,6 +3,7 @@
 
 #include "robot/model/robot_model.h"
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -85,6 +86,8 @@ class AllowedCollisions {
 
  private:
   std::size_t index(int first, int second) const noexcept {
+    assert(first >= 0 && first < static_cast<int>(names_.size()) && second >= 0 &&
+           second < static_cast<int>(names_.size()));
     return static_cast<std::size_t>(first) * names_.size() + static_cast<std::size_t>(second);
   }
   int link(std::string_view name) const;

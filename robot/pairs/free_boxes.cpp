@@ -2,6 +2,7 @@
 #include "robot/pairs/free_boxes.h"
 
 #include "spheretree/error.h"
+#include "spheretree/moved_from.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +104,7 @@ FreeBoxes::FreeBoxes(std::vector<Variable> variables, std::string_view nodes)
 // They may be beyond the ranges by so much.
 bool FreeBoxes::take(std::span<const double> configuration, double beyond, const Values* turns,
                      Values& values, Values& turns_taken) const noexcept {
+  if (nodes_.empty()) return false;
   for (std::size_t i = 0; i < variables_.size(); ++i) {
     const Variable& variable = variables_[i];
     const auto index = static_cast<std::size_t>(variable.index);
@@ -189,6 +191,7 @@ bool FreeBoxes::edge_is_free(std::size_t index, const Values& from, const Values
 void FreeBoxes::for_each_leaf(
     const std::function<void(bool is_free, std::span<const double> lower,
                              std::span<const double> upper)>& visit) const {
+  internal::require_content(!nodes_.empty(), "FreeBoxes");
   Values lower{};
   Values upper{};
   for (std::size_t i = 0; i < variables_.size(); ++i) {

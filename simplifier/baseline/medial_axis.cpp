@@ -7,12 +7,11 @@
 #include "simplifier/baseline/internal/sampling_checks.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
 #include "simplifier/baseline/internal/surface_samples.h"
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/thread_limit.h"
 #include "spheretree/enclosing_sphere.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -169,7 +168,7 @@ SphereLevels medial_axis_tree(const TriangleMesh& mesh, const MedialTreeOptions&
                        options.sampling.error_factor;
     sampled.axis.refine({aim, kSpheresPerChild * wanted, options.sampling.max_sites});
     std::vector<std::vector<FittedSphere>> children(level.size());
-    tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
+    internal::parallel_for(0, level.size(), [&](std::size_t i) {
       const std::vector<MedialSphere> near = spheres_near(sampled, level[i]);
       children[i] = internal::reduce({sampled.probe, sampled.samples, level[i].points, near, aim},
                                      {.count = branching}, options.reduction)

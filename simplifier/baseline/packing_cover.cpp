@@ -4,9 +4,8 @@
 #include "simplifier/baseline/internal/simplified_solid.h"
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/inscribed_spheres.h"
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/thread_limit.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -30,7 +29,7 @@ std::vector<Candidate> candidates_of(const std::vector<Vector3d>& points,
                                      std::size_t& seeds_rejected) {
   std::vector<Candidate> candidates(points.size());
   std::atomic<std::size_t> rejected = 0;
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+  internal::parallel_for(0, points.size(), [&](std::size_t i) {
     std::size_t here = 0;
     candidates[i] = {points[i], grow(points[i], here)};
     rejected += here;

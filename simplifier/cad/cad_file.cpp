@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cad/cad_file.h"
 
-#include "mesh/geometry/raw_mesh.h"
+#include "mesh/geometry/vertex_rounding.h"
+#include "mesh/geometry/weld.h"
+#include "mesh/parsing/input_file.h"
 #include "simplifier/cad/internal/cad_shape.h"
 #include "simplifier/cad/internal/surface_deviation.h"
 #include "spheretree/error.h"

@@ -4,9 +4,8 @@
 #include "mesh/geometry/mesh_box.h"
 #include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/medial_ascent.h"
+#include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <limits>
@@ -46,7 +45,7 @@ bool below(const Cell& a, const Cell& b) {
 std::vector<double> protrusions_over_solid(const Clearance& clearance, const MeshDistance& distance,
                                            std::span<const Sphere> spheres) {
   std::vector<double> each(spheres.size());
-  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+  parallel_for(0, spheres.size(), [&](std::size_t i) {
     const Sphere& sphere = spheres[i];
     const double d = clearance(sphere.center).lower;
     each[i] = d >= 0.0 ? sub_up(sphere.radius, d)

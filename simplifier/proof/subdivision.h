@@ -2,9 +2,8 @@
 #pragma once
 
 #include "simplifier/proof/proof.h"
+#include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -106,7 +105,7 @@ class Subdivision {
   void prove_in_blocks(const std::vector<Open>& open, State& state) const {
     std::vector<State> states(std::min(kBlocks, open.size()));
     for (State& s : states) s.seen = state.seen;
-    tbb::parallel_for(std::size_t{0}, states.size(), [&](std::size_t block) {
+    parallel_for(0, states.size(), [&](std::size_t block) {
       std::vector<Piece> waiting;
       std::vector<Piece> parts;
       for (std::size_t i = block; i < open.size(); i += states.size()) {

@@ -2,10 +2,10 @@
 #include "simplifier/proof/volume_ratio.h"
 
 #include "mesh/geometry/mesh_box.h"
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/random.h"
 
 #include <Eigen/Geometry>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -108,7 +108,7 @@ struct Lines {
   template <typename Cross>
   std::vector<double> lengths_inside(Cross add_crossings) const {
     std::vector<double> lengths(places.size());
-    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+    parallel_for(0, places.size(), [&](std::size_t i) {
       std::vector<Crossing> crossings;
       add_crossings(axes, places[i], crossings);
       lengths[i] = length_inside(crossings);
@@ -176,7 +176,7 @@ EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh, const ExternalS
   const double low = box.min()[axes.along];
   const double high = box.max()[axes.along];
   std::vector<double> filled(lines.places.size());
-  tbb::parallel_for(std::size_t{0}, lines.count, [&](std::size_t row) {
+  parallel_for(0, lines.count, [&](std::size_t row) {
     // External spheres and |M| are disjoint: one or the other changes the winding number.
     std::vector<std::vector<Crossing>> crossings(lines.count);
     const auto of = [&](std::size_t place) -> std::vector<Crossing>& {

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/solid/clearance.h"
 
+#include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <limits>
 #include <span>
 #include <utility>
 
-namespace spherule {
+namespace spherule::internal {
 
 using Eigen::Vector3d;
 
@@ -38,7 +37,7 @@ Vector3d contact_of(const Sphere& sphere, double padding, const MeshDistance& di
 
 std::vector<Vector3d> contacts_of(const ExternalSpheres& external, const MeshDistance& distance) {
   std::vector<Vector3d> contacts(external.spheres.size());
-  tbb::parallel_for(std::size_t{0}, contacts.size(), [&](std::size_t i) {
+  parallel_for(0, contacts.size(), [&](std::size_t i) {
     contacts[i] = contact_of(external.spheres[i], external.padding, distance);
   });
   return contacts;
@@ -47,13 +46,12 @@ std::vector<Vector3d> contacts_of(const ExternalSpheres& external, const MeshDis
 }  // namespace
 
 Clearance::Clearance(const ExternalSpheres& external)
-    : Clearance(external, internal::SphereHierarchy(external.spheres)) {}
+    : Clearance(external, SphereHierarchy(external.spheres)) {}
 
 Clearance::Clearance(const ExternalSpheres& external, const MeshDistance& distance)
-    : Clearance(external,
-                internal::SphereHierarchy(external.spheres, contacts_of(external, distance))) {}
+    : Clearance(external, SphereHierarchy(external.spheres, contacts_of(external, distance))) {}
 
-Clearance::Clearance(const ExternalSpheres& external, internal::SphereHierarchy spheres)
+Clearance::Clearance(const ExternalSpheres& external, SphereHierarchy spheres)
     : centers_(centers_of(external.spheres)),
       spheres_(std::move(spheres)),
       box_(external.box),
@@ -78,8 +76,7 @@ ClearanceAt Clearance::operator()(const Vector3d& point, double tolerance, doubl
   // The difference of two doubles is rounded to zero only if they are equal.
   result.lower = nearest == 0.0 ? 0.0 : next_down(nearest);
   result.upper = nearest == 0.0 ? 0.0 : next_up(nearest);
-  const internal::NearestSphere sphere =
-      spheres_.nearest(point, std::min(nearest, limit), tolerance);
+  const NearestSphere sphere = spheres_.nearest(point, std::min(nearest, limit), tolerance);
   if (sphere.index < 0) {
     if (!spheres_.empty()) result.lower = std::min(result.lower, sphere.lower);
     return result;
@@ -92,4 +89,4 @@ ClearanceAt Clearance::operator()(const Vector3d& point, double tolerance, doubl
   return result;
 }
 
-}  // namespace spherule
+}  // namespace spherule::internal

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace spherule {
+namespace spherule::internal {
 
 // Clearance of a point to the outside of S: the least gap to an external sphere or to a face of the
 // box. Not negative exactly for the points of S, where it is the distance to the outside of S.
@@ -41,12 +41,12 @@ class Clearance {
   double least_external() const { return least_external_; }
 
  private:
-  Clearance(const ExternalSpheres& external, internal::SphereHierarchy spheres);
+  Clearance(const ExternalSpheres& external, SphereHierarchy spheres);
 
   std::vector<Eigen::Vector3d> centers_;
-  internal::SphereHierarchy spheres_;
+  SphereHierarchy spheres_;
   Eigen::AlignedBox3d box_;
   double least_external_;
 };
 
-}  // namespace spherule
+}  // namespace spherule::internal

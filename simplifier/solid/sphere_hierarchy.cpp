@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/solid/sphere_hierarchy.h"
 
+#include "spheretree/median_split.h"
 #include "spheretree/rounding.h"
 
 #include <Eigen/Geometry>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace spherule::internal {
@@ -108,13 +110,11 @@ void SphereHierarchy::build(std::size_t self, const std::vector<Touch>& touches)
   for (const Entry& e : spheres_of(node)) spread += (key(e).array() - mean).square();
   Eigen::Index widest = 0;
   spread.maxCoeff(&widest);
-  const std::int32_t middle = begin + (end - begin) / 2;
-  std::nth_element(spheres_.begin() + begin, spheres_.begin() + middle, spheres_.begin() + end,
-                   [&](const Entry& a, const Entry& b) {
-                     const double ka = key(a)[widest];
-                     const double kb = key(b)[widest];
-                     return ka < kb || (ka == kb && a.index < b.index);
-                   });
+  const auto part = std::span(spheres_).subspan(static_cast<std::size_t>(begin),
+                                                static_cast<std::size_t>(end - begin));
+  const std::int32_t middle =
+      begin + static_cast<std::int32_t>(split_at_median(
+                  part, [&](const Entry& e) { return std::pair(key(e)[widest], e.index); }));
   const std::size_t children = nodes_.size();
   node.children = static_cast<std::int32_t>(children);
   nodes_.push_back({.begin = begin, .end = middle});

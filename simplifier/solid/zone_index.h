@@ -2,6 +2,7 @@
 #pragma once
 
 #include "simplifier/zones.h"
+#include "spheretree/median_split.h"
 #include "spheretree/rounding.h"
 
 #include <Eigen/Geometry>
@@ -87,8 +88,7 @@ class ZoneIndex {
       nodes_[self].zone = order_[static_cast<std::size_t>(begin)];
       return;
     }
-    int axis = 0;
-    nodes_[self].box.sizes().maxCoeff(&axis);
+    const Eigen::Index axis = longest_axis(nodes_[self].box);
     const auto middle = begin + (end - begin) / 2;
     std::stable_sort(order_.begin() + begin, order_.begin() + end,
                      [&](std::size_t a, std::size_t b) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage1/flood_grid.h"
 
+#include "simplifier/support/parallel.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -173,7 +172,8 @@ void FloodGrid::classify(Entry& cell, const Eigen::Vector3d& middle,
 
 void FloodGrid::examine(std::size_t begin, std::size_t end) {
   // Children of one cell: what is near to one is not much further from the others.
-  tbb::parallel_for(begin, end, std::size_t{8}, [&](std::size_t first) {
+  parallel_for(0, (end - begin + 7) / 8, [&](std::size_t family) {
+    const std::size_t first = begin + 8 * family;
     double limit = std::numeric_limits<double>::infinity();
     double gap = 0.0;
     for (std::size_t i = first; i < std::min(first + 8, end); ++i) {
@@ -292,7 +292,7 @@ void FloodGrid::reach_on() {
       return first || second;
     });
     passes.assign(tried.size(), 0);
-    tbb::parallel_for(std::size_t{0}, tried.size(), [&](std::size_t i) {
+    parallel_for(0, tried.size(), [&](std::size_t i) {
       passes[i] = passes_by_bisection(cells_[tried[i].first], cells_[tried[i].second]) ? 1 : 0;
     });
     for (std::size_t i = 0; i < tried.size(); ++i) {
@@ -331,7 +331,7 @@ bool FloodGrid::lies_in_neighbour(const Entry& node) const {
 
 std::vector<FloodGrid::Cell> FloodGrid::reached_cells_that_count() const {
   std::vector<char> counts(cells_.size());
-  tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t i) {
+  parallel_for(0, cells_.size(), [&](std::size_t i) {
     counts[i] = cells_[i].reached && !(cells_[i].finest && lies_in_neighbour(cells_[i])) ? 1 : 0;
   });
   std::vector<Cell> result;

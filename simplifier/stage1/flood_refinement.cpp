@@ -23,9 +23,8 @@
 // larger s is stated for which no open leaf is left, at most that of the grid as it is.
 
 #include "simplifier/stage1/flood_grid.h"
+#include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -62,8 +61,8 @@ class FloodGrid::Refinement {
   // may be named so, never fewer. What is not open never will be, and is not possible from now on.
   const std::vector<std::size_t>& lost() {
     std::vector<char> is_first(uncertain_.size());
-    tbb::parallel_for(std::size_t{0}, uncertain_.size(),
-                      [&](std::size_t k) { is_first[k] = touches_outside(uncertain_[k]) ? 1 : 0; });
+    parallel_for(0, uncertain_.size(),
+                 [&](std::size_t k) { is_first[k] = touches_outside(uncertain_[k]) ? 1 : 0; });
     std::vector<char> is_open = is_first;
     front_.clear();
     std::vector<std::size_t> waiting;
@@ -159,14 +158,14 @@ class FloodGrid::Refinement {
   // possible and not held.
   void uncertain_from(std::size_t begin) {
     is_possible_.resize(cells().size());
-    tbb::parallel_for(begin, cells().size(),
-                      [&](std::size_t i) { is_possible_[i] = is_possible(cells()[i]) ? 1 : 0; });
+    parallel_for(begin, cells().size(),
+                 [&](std::size_t i) { is_possible_[i] = is_possible(cells()[i]) ? 1 : 0; });
     std::vector<std::size_t> queried = std::move(uncertain_);
     for (std::size_t i = begin; i < cells().size(); ++i) {
       if (is_possible_[i] != 0) queried.push_back(i);
     }
     std::vector<char> is_uncertain(queried.size());
-    tbb::parallel_for(std::size_t{0}, queried.size(), [&](std::size_t k) {
+    parallel_for(0, queried.size(), [&](std::size_t k) {
       const Entry& cell = cells()[queried[k]];
       is_uncertain[k] =
           cell.state != State::kRefined && !cell.reached && !is_held(queried[k]) ? 1 : 0;

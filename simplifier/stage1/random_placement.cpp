@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage1/random_placement.h"
 
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/random.h"
+#include "spheretree/median_split.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace spherule::internal {
 namespace {
@@ -53,15 +54,10 @@ class Waiting {
       nodes_[self].max_radius = std::max(nodes_[self].max_radius, spheres_[i].radius);
     }
     if (end - begin <= 8) return self;
-    int axis = 0;
-    nodes_[self].centers.sizes().maxCoeff(&axis);
-    const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [&](std::size_t i) {
-      return spheres_.begin() + static_cast<std::ptrdiff_t>(i);
-    };
-    std::nth_element(at(begin), at(middle), at(end), [axis](const Sphere& s, const Sphere& t) {
-      return s.center[axis] < t.center[axis];
-    });
+    const Eigen::Index axis = internal::longest_axis(nodes_[self].centers);
+    const std::size_t middle =
+        begin + internal::split_at_median(std::span(spheres_).subspan(begin, end - begin),
+                                          [axis](const Sphere& s) { return s.center[axis]; });
     build(begin, middle);
     const std::size_t right = build(middle, end);
     nodes_[self].right = right;
@@ -109,8 +105,8 @@ RandomPlacement place_random(const MeshDistance& distance, double padding, doubl
   Random random(options.seed);
   std::vector<Sphere> tried(options.limit);
   for (Sphere& s : tried) s.center = random.in(field);
-  tbb::parallel_for(std::size_t{0}, tried.size(),
-                    [&](std::size_t i) { tried[i].radius = clearance(tried[i].center); });
+  parallel_for(0, tried.size(),
+               [&](std::size_t i) { tried[i].radius = clearance(tried[i].center); });
   std::erase_if(tried, [&](const Sphere& s) { return s.radius < rho; });
   report(0.6);
 
@@ -132,8 +128,7 @@ RandomPlacement place_random(const MeshDistance& distance, double padding, doubl
     return passes(s, exit, rho);
   };
   std::vector<char> first(tried.size());
-  tbb::parallel_for(std::size_t{0}, tried.size(),
-                    [&](std::size_t i) { first[i] = leaves(tried[i]) ? 1 : 0; });
+  parallel_for(0, tried.size(), [&](std::size_t i) { first[i] = leaves(tried[i]) ? 1 : 0; });
   report(0.9);
 
   RandomPlacement result;

@@ -3,8 +3,7 @@
 
 #include "simplifier/stage2/fractional_packing.h"
 #include "simplifier/stage2/heaviest_spheres.h"
-
-#include <tbb/parallel_for.h>
+#include "simplifier/support/parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -58,8 +57,7 @@ std::size_t cover_bound(const CoverBoundInput& input) {
   const HeaviestSpheres spheres(input.clearance, input.max_error, points);
   FractionalPacking packing(points.size());
   std::vector<FractionalPacking::Set> sets(input.centers.size());
-  tbb::parallel_for(std::size_t{0}, sets.size(),
-                    [&](std::size_t i) { sets[i] = spheres.held_by(input.centers[i]); });
+  parallel_for(0, sets.size(), [&](std::size_t i) { sets[i] = spheres.held_by(input.centers[i]); });
   packing.add(std::move(sets));
   double best = 1.0;
   for (std::size_t round = 0; round < kRounds.size(); ++round) {

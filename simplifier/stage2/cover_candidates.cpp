@@ -4,9 +4,8 @@
 #include "simplifier/solid/cube.h"
 #include "simplifier/solid/medial_ascent.h"
 #include "simplifier/stage2/surface_extent.h"
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/random.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -71,7 +70,7 @@ std::vector<Candidate> candidates_from(const Clearance& clearance,
                                        std::span<const Eigen::Vector3d> points, double max_error,
                                        std::uint64_t seed, const LocalError& local) {
   std::vector<std::vector<Candidate>> each(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+  parallel_for(0, points.size(), [&](std::size_t i) {
     Random random(seed + 0x9e3779b97f4a7c15U * (i + 1));
     const double error = max_error * local.scale(points[i]);
     const double depth = random.between(0.2, 1.5) * error;

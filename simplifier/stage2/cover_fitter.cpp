@@ -6,9 +6,8 @@
 #include "simplifier/stage2/cover_moves.h"
 #include "simplifier/stage2/lazy_cover_search.h"
 #include "simplifier/stage2/surface_extent.h"
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/random.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -217,7 +216,7 @@ bool CoverFitter::search() {
   const std::stop_callback quit(options_.stop, [&] { unneeded[0] = unneeded[1] = true; });
   const std::uint64_t entries_per_row = problem_.entries() / problem_.rows().size();
   const std::uint64_t work = kWork * entries_per_row * known_.rows.size();
-  tbb::parallel_for(std::size_t{0}, searches.size(), [&](std::size_t i) {
+  parallel_for(0, searches.size(), [&](std::size_t i) {
     searches[i].emplace(problem_.instance(), problem_.columns_of(), known_, solution_);
     covers[i] = searches[i]->reach(targets[i], work, options_.seed + seeds_used_ + i, unneeded[i]);
     if (i == 0 && covers[0]) unneeded[1] = true;
@@ -297,7 +296,7 @@ void CoverFitter::add_rows(CoverProblem& problem, const Points& points,
                            const Surroundings& surroundings, const Points& starts) {
   const std::size_t first = problem.rows().size();
   std::vector<CoverProblem::Row> rows(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+  parallel_for(0, points.size(), [&](std::size_t i) {
     const Vector3d& p = points[i];
     const double error = error_ * local_.scale(p);
     const ClearanceAt at = clearance_(p, kTolerance * error);

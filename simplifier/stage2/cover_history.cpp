@@ -2,9 +2,8 @@
 #include "simplifier/stage2/cover_history.h"
 
 #include "mesh/shells/closed_shells.h"
+#include "simplifier/support/parallel.h"
 #include "simplifier/support/random.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +57,7 @@ CoverHistory::CoverHistory(const TriangleMesh& mesh, const MeshDistance& distanc
   for (Vector3d& p : points) p = random.in(field);
   const ClosedShells shells(mesh, distance);
   std::vector<char> inside(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+  parallel_for(0, points.size(), [&](std::size_t i) {
     const bool is_inside = shells.is_mesh_closed()
                                ? shells.winding_number(points[i]) != 0
                                : std::abs(distance.winding_number(points[i])) > 0.5;

@@ -2,8 +2,7 @@
 #include "simplifier/stage2/cover_moves.h"
 
 #include "simplifier/stage2/cover_shift.h"
-
-#include <tbb/parallel_for.h>
+#include "simplifier/support/parallel.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -38,7 +37,7 @@ bool differs(const Candidate& a, const Candidate& b) {
 void spread(const Clearance& clearance, CoverProblem& problem, Columns& solution) {
   const auto exclusive = exclusive_rows(problem, solution);
   std::vector<Candidate> shifted(solution.size());
-  tbb::parallel_for(std::size_t{0}, solution.size(), [&](std::size_t i) {
+  parallel_for(0, solution.size(), [&](std::size_t i) {
     shifted[i] = shift(clearance, problem, problem.candidate(solution[i]), exclusive[i]);
   });
   Columns replacement(solution);
@@ -69,7 +68,7 @@ std::vector<Candidate> reach_for(const Clearance& clearance, const CoverProblem&
                                  const Columns& solution, std::span<const std::uint32_t> open) {
   const auto exclusive = exclusive_rows(problem, solution);
   std::vector<std::vector<Candidate>> found(open.size());
-  tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t k) {
+  parallel_for(0, open.size(), [&](std::size_t k) {
     std::vector<std::pair<double, std::size_t>> near;
     for (std::size_t i = 0; i < solution.size(); ++i) {
       near.emplace_back(-problem.margin(problem.candidate(solution[i]), problem.rows()[open[k]]),

@@ -2,9 +2,8 @@
 #include "simplifier/stage2/cover_problem.h"
 
 #include "mesh/geometry/point_grid.h"
+#include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <utility>
@@ -97,7 +96,7 @@ void CoverProblem::cover_rows(std::size_t first_column, std::size_t first_row) {
   const PointGrid grid(points, kCube * max_error_);
   std::vector<std::size_t> known(candidates_.size());
   for (std::size_t c = first_column; c < known.size(); ++c) known[c] = instance_.columns[c].size();
-  tbb::parallel_for(first_column, candidates_.size(), [&](std::size_t c) {
+  parallel_for(first_column, candidates_.size(), [&](std::size_t c) {
     const Candidate& candidate = candidates_[c];
     std::vector<std::uint32_t> near;
     const double reach = radius(candidate);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/fractional_packing.h"
 
-#include <tbb/parallel_for.h>
+#include "simplifier/support/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr double kLargestBalance = 10.0;
 // For each list the sum of the values that it names.
 Values sums(const std::vector<FractionalPacking::Set>& lists, const Values& values) {
   Values result(lists.size());
-  tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
+  parallel_for(0, lists.size(), [&](std::size_t i) {
     double sum = 0.0;
     for (const std::uint32_t k : lists[i]) sum += values[k];
     result[i] = sum;
@@ -61,14 +61,14 @@ Values FractionalPacking::covered_by(const Values& cover) const {
 
 void FractionalPacking::step(Values& extrapolated) {
   const Values load = loads(now_.weights);
-  tbb::parallel_for(std::size_t{0}, load.size(), [&](std::size_t s) {
+  parallel_for(0, load.size(), [&](std::size_t s) {
     const double size = balance_ * static_cast<double>(points_of_[s].size());
     const double next = std::max(0.0, now_.cover[s] - (1.0 - load[s]) / size);
     extrapolated[s] = 2.0 * next - now_.cover[s];
     now_.cover[s] = next;
   });
   const Values covered = covered_by(extrapolated);
-  tbb::parallel_for(std::size_t{0}, covered.size(), [&](std::size_t p) {
+  parallel_for(0, covered.size(), [&](std::size_t p) {
     if (sets_of_[p].empty()) return;
     const double size = balance_ / static_cast<double>(sets_of_[p].size());
     now_.weights[p] = std::max(0.0, now_.weights[p] + size * (1.0 - covered[p]));
@@ -112,7 +112,7 @@ Values FractionalPacking::weights() const {
   Values weights = now_.weights;
   for (int i = 0; i < 2; ++i) {
     const Values load = loads(weights);
-    tbb::parallel_for(std::size_t{0}, weights.size(), [&](std::size_t p) {
+    parallel_for(0, weights.size(), [&](std::size_t p) {
       double heaviest = 0.0;
       for (const std::uint32_t s : sets_of_[p]) heaviest = std::max(heaviest, load[s]);
       weights[p] = heaviest > 0.0 ? weights[p] / heaviest : 0.0;

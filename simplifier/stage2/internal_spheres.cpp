@@ -8,36 +8,36 @@
 #include <algorithm>
 #include <optional>
 
-namespace spherule {
+namespace spherule::internal {
 
 SphereCover place_internal_spheres(const TriangleMesh& mesh, const MeshDistance& distance,
                                    const Clearance& clearance, const CoverOptions& options) {
-  internal::check_resolved(clearance, options.max_error, internal::kErrorTolerance);
-  std::optional<internal::CoverHistory> history;
+  check_resolved(clearance, options.max_error, kErrorTolerance);
+  std::optional<CoverHistory> history;
   if (options.history) {
     history.emplace(mesh, distance, clearance.box(), options.max_error, options.seed);
   }
-  internal::SphereSet spheres;
+  SphereSet spheres;
   SphereCover result;
   const auto note = [&](double lower, double upper) {
     if (!history || spheres.spheres().empty()) return;
-    CoverHistoryEntry entry = history->entry(upper + internal::kProofMargin * options.max_error);
+    CoverHistoryEntry entry = history->entry(upper + kProofMargin * options.max_error);
     entry.max_error_lower = lower;
     entry.max_error_upper = upper;
     result.history.push_back(entry);
   };
-  internal::fill_gaps(clearance, distance, options, spheres, result.seeds_rejected,
-                      [&](const internal::UncoveredSearch::Peak& peak, const Sphere& sphere) {
-                        note(peak.lower, peak.upper);
-                        if (history) history->add(sphere);
-                      });
+  fill_gaps(clearance, distance, options, spheres, result.seeds_rejected,
+            [&](const UncoveredSearch::Peak& peak, const Sphere& sphere) {
+              note(peak.lower, peak.upper);
+              if (history) history->add(sphere);
+            });
   // The search ends as soon as no error exceeds the limit; how large it is, the proof finds out.
-  const internal::CoverageProof remaining =
-      internal::remaining_error(clearance, distance, spheres.spheres(), options.max_error);
-  const double error = std::min(internal::kLoopLimit * options.max_error, remaining.upper);
+  const CoverageProof remaining =
+      remaining_error(clearance, distance, spheres.spheres(), options.max_error);
+  const double error = std::min(kLoopLimit * options.max_error, remaining.upper);
   note(remaining.lower, error);
-  internal::inflate(result, spheres.spheres(), error, options);
+  inflate(result, spheres.spheres(), error, options);
   return result;
 }
 
-}  // namespace spherule
+}  // namespace spherule::internal

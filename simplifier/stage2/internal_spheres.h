@@ -5,7 +5,7 @@
 #include "simplifier/cover.h"
 #include "simplifier/solid/clearance.h"
 
-namespace spherule {
+namespace spherule::internal {
 
 // Stage 2 as the paper has it (Algorithm 1, second loop): a sphere is seeded at the point of S that
 // is furthest from the spheres so far, grown and moved until it touches the outside in two or more
@@ -21,4 +21,4 @@ namespace spherule {
 SphereCover place_internal_spheres(const TriangleMesh& mesh, const MeshDistance& distance,
                                    const Clearance& clearance, const CoverOptions& options);
 
-}  // namespace spherule
+}  // namespace spherule::internal

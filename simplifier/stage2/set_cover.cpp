@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <queue>
 
-namespace spherule {
+namespace spherule::internal {
 namespace {
 
 // Drops the columns whose rows are all covered by others that are kept.
@@ -74,4 +74,4 @@ std::vector<std::uint32_t> open_rows(const SetCoverInstance& instance,
   return open;
 }
 
-}  // namespace spherule
+}  // namespace spherule::internal

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace spherule {
+namespace spherule::internal {
 
 // Unicost set cover: rows 0 .. row_count - 1 are to be covered by few of the columns, each a set of
 // rows. Knows no geometry.
@@ -24,4 +24,4 @@ std::vector<std::size_t> greedy_set_cover(const SetCoverInstance& instance);
 std::vector<std::uint32_t> open_rows(const SetCoverInstance& instance,
                                      const std::vector<std::size_t>& columns);
 
-}  // namespace spherule
+}  // namespace spherule::internal

@@ -3,9 +3,8 @@
 
 #include "simplifier/solid/cube.h"
 #include "simplifier/solid/solid_query.h"
+#include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <set>
@@ -51,7 +50,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
   std::vector<Step> steps;
   while (!level.empty()) {
     steps.assign(level.size(), Step::kDrop);
-    tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
+    parallel_for(0, level.size(), [&](std::size_t i) {
       Cell& cell = level[i];
       const double reach = cell.box.reach();
       const ClearanceAt at = clearance_(cell.box.center, 0.125 * reach, 4.0 * reach);
@@ -79,7 +78,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
 std::vector<Vector3d> SolidCells::sample() const {
   std::vector<Vector3d> points(cells_.size());
   std::vector<char> usable(cells_.size());
-  tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t i) {
+  parallel_for(0, cells_.size(), [&](std::size_t i) {
     points[i] = cells_[i].box.center;
     usable[i] = 1;
     if (cells_[i].inside) return;
@@ -174,7 +173,7 @@ void SolidCells::follow(std::span<const Sphere> spheres) {
   for (Sphere& center : centers) center.radius = 0.0;
   const SphereHierarchy hierarchy(centers);
   std::vector<std::int32_t> number(spheres_before_.size());
-  tbb::parallel_for(std::size_t{0}, number.size(), [&](std::size_t i) {
+  parallel_for(0, number.size(), [&](std::size_t i) {
     number[i] = hierarchy.nearest(spheres_before_[i].center).index;
   });
   for (Cell& cell : cells_) {
@@ -187,8 +186,8 @@ SolidCells::Leaks SolidCells::find_leaks(const SpheresToProve& spheres, double f
                                          double spacing) {
   follow(spheres.spheres);
   std::vector<Refined> refined(cells_.size());
-  tbb::parallel_for(std::size_t{0}, cells_.size(),
-                    [&](std::size_t i) { refined[i] = refine(cells_[i], spheres, finest); });
+  parallel_for(0, cells_.size(),
+               [&](std::size_t i) { refined[i] = refine(cells_[i], spheres, finest); });
   cells_.clear();
   Leaks thinned;
   std::set<GradedCube> taken;

@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <tbb/global_control.h>
-
-#include <cstddef>
+#include <memory>
 
 namespace spherule::internal {
 
 // While it lives, parallel loops use at most `threads` threads; 0 leaves the limit as it is.
 class ThreadLimit {
  public:
-  explicit ThreadLimit(int threads)
-      : control_(tbb::global_control::max_allowed_parallelism,
-                 threads > 0 ? static_cast<std::size_t>(threads)
-                             : tbb::global_control::active_value(
-                                   tbb::global_control::max_allowed_parallelism)) {}
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
 
  private:
-  tbb::global_control control_;
+  struct Control;
+  std::unique_ptr<const Control> control_;
 };
 
 }  // namespace spherule::internal

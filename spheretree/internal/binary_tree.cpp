@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/internal/binary_tree.h"
 
+#include "spheretree/median_split.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace spherule::internal {
@@ -172,13 +175,8 @@ class Splitter {
   }
 
   static std::size_t split_at_median(std::span<Item> items, Eigen::Index axis) {
-    const std::size_t half = items.size() / 2;
-    std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(),
-                     [axis](const Item& a, const Item& b) {
-                       return std::pair(a.center[axis], a.sphere) <
-                              std::pair(b.center[axis], b.sphere);
-                     });
-    return half;
+    return internal::split_at_median(
+        items, [axis](const Item& item) { return std::pair(item.center[axis], item.sphere); });
   }
 
   int max_cheapest_depth_;

@@ -177,6 +177,11 @@ TEST_F(Formats, Ply) {
   EXPECT_TRUE(refused("ply", replaced(good, "ascii", "utf8"), "not a PLY format"));
   EXPECT_TRUE(refused("ply", replaced(good, "end_header", "comment"), "header is broken"));
   EXPECT_TRUE(refused("ply", replaced(good, "element face 12", "element face 0"), "more data"));
+  EXPECT_TRUE(refused("ply", replaced(good, "3 0 2 3", "3 0 2"), "face 0 has too few numbers"));
+  EXPECT_TRUE(
+      refused("ply", replaced(good, "3 0 2 3", "3 0 2 3 1"), "face 0 has too many numbers"));
+  EXPECT_TRUE(refused("ply", replaced(good, "ascii 1.0", "ascii 1.1"), "version 1.0"));
+  EXPECT_TRUE(refused("ply", replaced(good, "float y", "float x"), "'x' is there twice"));
   const std::string binary = test::ply_bytes(cube_, test::PlyForm::kLittleEndian, true);
   EXPECT_TRUE(refused("ply", binary.substr(0, binary.size() - 1), "cut short"));
   EXPECT_TRUE(refused("ply", binary + "x", "more data"));

@@ -19,6 +19,8 @@ namespace spherule::test {
 namespace {
 
 using Eigen::Vector3d;
+using internal::Clearance;
+using internal::ClearanceAt;
 using internal::NearestSphere;
 using internal::SphereHierarchy;
 

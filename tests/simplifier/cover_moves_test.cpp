@@ -21,7 +21,10 @@ namespace {
 
 using Eigen::Vector3d;
 using internal::Candidate;
+using internal::Clearance;
 using internal::CoverProblem;
+using internal::greedy_set_cover;
+using internal::open_rows;
 
 constexpr double kError = 0.1;
 

@@ -17,7 +17,9 @@ namespace spherule::test {
 namespace {
 
 using internal::CoverSearch;
+using internal::greedy_set_cover;
 using internal::LazyCoverSearch;
+using internal::SetCoverInstance;
 const std::atomic<bool> kNeeded{false};
 
 using Rows = std::vector<std::uint32_t>;

@@ -15,6 +15,8 @@
 namespace spherule::test {
 namespace {
 
+using internal::greedy_set_cover;
+using internal::SetCoverInstance;
 using Indices = std::vector<std::size_t>;
 
 SetCoverInstance instance_of(std::size_t row_count,

@@ -14,6 +14,8 @@ namespace {
 using Eigen::Vector3d;
 using internal::cap_width;
 using internal::cap_width_at;
+using internal::Clearance;
+using internal::ClearanceAt;
 using internal::inside_radius;
 using internal::touched_by;
 

@@ -35,15 +35,16 @@ const std::vector<Room>& rooms() {
       joined({{"spheretree", "mesh", "mesh/io", "simplifier", "collide"},
               kRobot,
               {"simplifier/baseline", "simplifier/cad", "adapters/fcl", "adapters/ompl"}});
-  static const Names kAll = joined({kPublic, kSimplifier, kCollide, {"bench"}});
+  static const Names kAll = joined({kPublic, kSimplifier, kCollide, {"mesh/parsing", "bench"}});
   static const std::vector<Room> kRooms = {
       {"spheretree", {}, {"Eigen"}, {{"nlohmann", "spheretree/sphere_file.cpp"}}},
 
       {"mesh", kMesh, {"Eigen"}},
       {"mesh/geometry", {"spheretree", "mesh"}, {"Eigen"}, {}, true},
       {"mesh/shells", {"spheretree", "mesh", "mesh/geometry"}, {"Eigen"}, {}, true},
+      {"mesh/parsing", {"spheretree"}, {"Eigen"}, {}, true},
       {"mesh/io",
-       {"spheretree", "mesh", "mesh/geometry"},
+       {"spheretree", "mesh", "mesh/geometry", "mesh/parsing"},
        {"Eigen"},
        {{"assimp", "mesh/io/internal/scene_file.cpp"},
         {"assimp", "mesh/io/internal/check_collada.cpp"},
@@ -84,7 +85,7 @@ const std::vector<Room>& rooms() {
         {"qhull", "simplifier/baseline/internal/voronoi.cpp"},
         {"bullet", "simplifier/baseline/convex_decomposition.cpp"}}},
       {"simplifier/cad",
-       kSimplifier,
+       joined({kSimplifier, {"mesh/parsing"}}),
        {"Eigen"},
        {{"opencascade", "simplifier/cad/internal/cad_assembly.cpp"},
         {"opencascade", "simplifier/cad/internal/cad_entities.cpp"},
@@ -112,7 +113,7 @@ const std::vector<Room>& rooms() {
 
       {"robot/model", {"spheretree", "collide", "collide/kernels"}, {"Eigen"}},
       {"robot/files",
-       {"spheretree", "collide", "robot/model"},
+       {"spheretree", "mesh/parsing", "collide", "robot/model"},
        {"Eigen"},
        {{"nlohmann", "robot/files/scene_file.cpp"},
         {"tinyxml2", "robot/files/internal/xml_file.cpp"}}},

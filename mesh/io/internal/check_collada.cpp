@@ -2,12 +2,13 @@
 #include "mesh/io/internal/scene_file.h"
 #include "mesh/io/internal/xml_events.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <assimp/fast_atof.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <optional>
 #include <string>
 
 namespace spherule::internal {
@@ -28,17 +29,13 @@ void check_decimals(std::string_view text, const std::string& subject) {
     const std::size_t end = std::min(text.find_first_of(kSeparators, begin), text.size());
     at = end;
     const std::string token(text.substr(begin, end - begin));
-    double value = 0.0;
-    const auto parsed = std::from_chars(token.data(), token.data() + token.size(), value);
-    if (parsed.ptr != token.data() + token.size() || parsed.ec != std::errc() ||
-        !std::isfinite(value) || token.empty()) {
-      continue;
-    }
+    const std::optional<double> value = finite_number(token);
+    if (!value) continue;
     ai_real read = 0;
     Assimp::fast_atoreal_move<ai_real, UnreadableNumber>(token.c_str(), read);
     // Below the normal floats the error is absolute and far below any model's size.
-    const double error = std::abs(static_cast<double>(read) - value);
-    if (!(error <= kDecimalError * std::abs(value) + 0x1p-100) && std::abs(value) <= 0x1p127) {
+    const double error = std::abs(static_cast<double>(read) - *value);
+    if (!(error <= kDecimalError * std::abs(*value) + 0x1p-100) && std::abs(*value) <= 0x1p127) {
       throw Error(subject, "the number " + token.substr(0, 60) + " cannot be read exactly enough");
     }
   }
@@ -79,9 +76,8 @@ class UnitFinder : public XmlHandler {
     if (name.starts_with("library_")) throw Done();
     if (name != "unit") return;
     const std::string_view text = attributes.find("meter").value_or("1");
-    double size = 0.0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), size);
-    if (fault == std::errc() && end == text.data() + text.size() && size > 0.0) metres = size;
+    const double size = finite_number(text).value_or(0.0);
+    if (size > 0.0) metres = size;
     throw Done();
   }
   void close() override {}

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/io/internal/placed_part.h"
 
-#include "mesh/geometry/raw_mesh.h"
+#include "mesh/geometry/vertex_rounding.h"
+#include "mesh/io/internal/mesh_readers.h"
 
 #include <Eigen/Eigenvalues>
 

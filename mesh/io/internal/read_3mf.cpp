@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/geometry/raw_mesh.h"
+#include "mesh/io/internal/mesh_readers.h"
 #include "mesh/io/internal/placed_part.h"
-#include "mesh/io/internal/text_scanner.h"
 #include "mesh/io/internal/xml_events.h"
 #include "mesh/io/internal/zip_member.h"
 #include "mesh/io/length_unit.h"
+#include "mesh/parsing/text_scanner.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
+#include "spheretree/text.h"
 
 #include <algorithm>
 #include <array>

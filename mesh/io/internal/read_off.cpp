@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/geometry/raw_mesh.h"
-#include "mesh/io/internal/text_scanner.h"
+#include "mesh/geometry/vertex_rounding.h"
+#include "mesh/io/internal/mesh_readers.h"
+#include "mesh/parsing/text_scanner.h"
 #include "spheretree/rounding.h"
 
 #include <vector>

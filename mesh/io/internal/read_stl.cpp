@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/geometry/raw_mesh.h"
-#include "mesh/io/internal/text_scanner.h"
+#include "mesh/geometry/vertex_rounding.h"
+#include "mesh/io/internal/mesh_readers.h"
+#include "mesh/parsing/text_scanner.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
+#include "spheretree/text.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/io/internal/scene_file.h"
 
-#include "mesh/geometry/raw_mesh.h"
+#include "mesh/io/internal/mesh_readers.h"
 #include "mesh/io/internal/placed_part.h"
 #include "spheretree/error.h"
 

@@ -3,7 +3,7 @@
 
 #include "mesh/geometry/mesh_box.h"
 #include "mesh/geometry/point_grid.h"
-#include "mesh/geometry/raw_mesh.h"
+#include "mesh/geometry/weld.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>

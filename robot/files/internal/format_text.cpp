@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/internal/format_text.h"
 
+#include "spheretree/text.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 
 namespace spherule::internal {
 namespace {
-
-constexpr std::string_view kSpace = " \t\r\n";
 
 // The code point that starts at `text` (which is not empty) and its length; a length of 0 where the
 // bytes are not UTF-8.
@@ -62,26 +61,14 @@ bool is_plain(std::string_view text) {
 
 }  // namespace
 
-std::optional<double> number_of(std::string_view text) {
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [rest, fault] = std::from_chars(text.data(), end, value);
-  if (fault != std::errc() || rest != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 std::optional<std::vector<double>> numbers_of(std::string_view text) {
   std::vector<double> numbers;
-  while (true) {
-    text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
-    if (text.empty()) return numbers;
-    const std::size_t length = std::min(text.find_first_of(kSpace), text.size());
-    const auto number = number_of(text.substr(0, length));
+  for (const std::string_view word : words_of(text)) {
+    const std::optional<double> number = finite_number(word);
     if (!number) return std::nullopt;
     numbers.push_back(*number);
-    text.remove_prefix(length);
   }
+  return numbers;
 }
 
 std::optional<Eigen::Vector3d> vector_of(std::string_view text) {

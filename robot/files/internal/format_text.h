@@ -12,10 +12,6 @@
 
 namespace spherule::internal {
 
-// The value of a text that is one decimal number and nothing else, with or without an exponent; the
-// nearest double. Nothing for other texts, infinities and what a double cannot hold.
-std::optional<double> number_of(std::string_view text);
-
 // The numbers of a text, apart by white space; nothing if a part of it is no number.
 std::optional<std::vector<double>> numbers_of(std::string_view text);
 

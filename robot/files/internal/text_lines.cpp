@@ -47,11 +47,4 @@ bool TextLines::next() {
   return false;
 }
 
-std::string quoted(std::string_view word) {
-  std::string result(1, '"');
-  result += word;
-  result += '"';
-  return result;
-}
-
 }  // namespace spherule::internal

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,8 +27,5 @@ class TextLines {
   std::size_t number_ = 0;
   std::vector<std::string_view> words_;
 };
-
-// In quotes, for messages.
-std::string quoted(std::string_view word);
 
 }  // namespace spherule::internal

@@ -3,40 +3,14 @@
 
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <tinyxml2.h>
 
 namespace spherule::internal {
 namespace {
-
-constexpr std::string_view kSpace = " \t\r\n";
-constexpr std::size_t kQuotedLength = 60;
-
-std::vector<std::string_view> words_of(std::string_view text) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = text.find_first_not_of(kSpace); at != std::string_view::npos;) {
-    const std::size_t end = std::min(text.find_first_of(kSpace, at), text.size());
-    words.push_back(text.substr(at, end - at));
-    at = text.find_first_not_of(kSpace, end);
-  }
-  return words;
-}
-
-// Independent of the locale.
-std::optional<double> number_of(std::string_view word) {
-  if (word.starts_with('+')) {
-    word.remove_prefix(1);
-    if (word.starts_with('-')) return {};
-  }
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  const bool is_whole = end == word.data() + word.size() && error == std::errc();
-  return is_whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
 
 // By the lengths of its sequences; forms that are too long and surrogates do no harm here.
 bool is_utf8(std::string_view text) {
@@ -112,8 +86,8 @@ std::optional<std::vector<double>> XmlElement::numbers(std::string_view name) co
   if (!text) return {};
   std::vector<double> result;
   for (const std::string_view word : words_of(*text)) {
-    const auto number = number_of(word);
-    if (!number) refuse(std::string(name) + ": " + name_in_quotes(word) + " is no finite number");
+    const auto number = finite_number(word);
+    if (!number) refuse(std::string(name) + ": " + in_quotes(word) + " is no finite number");
     result.push_back(*number);
   }
   return result;
@@ -160,7 +134,7 @@ Eigen::Vector3d XmlElement::needed_vector(std::string_view name) const {
 void XmlElement::require_attributes(std::initializer_list<std::string_view> known) const {
   for (const auto* a = element_->FirstAttribute(); a != nullptr; a = a->Next()) {
     if (std::find(known.begin(), known.end(), a->Name()) == known.end()) {
-      refuse("it has an attribute " + name_in_quotes(a->Name()) + " of unknown meaning");
+      refuse("it has an attribute " + in_quotes(a->Name()) + " of unknown meaning");
     }
   }
 }
@@ -173,7 +147,7 @@ void XmlElement::refuse(const std::string& reason) const {
     const bool is_root = node->Parent()->ToDocument() != nullptr;
     const char* const name = around && !is_root ? around->Attribute("name") : nullptr;
     if (name == nullptr || *name == '\0') continue;
-    place += std::string(around->Name()) + " " + name_in_quotes(name) + ": ";
+    place += std::string(around->Name()) + " " + in_quotes(name) + ": ";
     break;
   }
   throw Error(*file_, place + "<" + element_->Name() + ">: " + reason);
@@ -198,12 +172,6 @@ XmlFile::~XmlFile() = default;
 
 XmlElement XmlFile::root() const {
   return {*document_->RootElement(), name_};
-}
-
-std::string name_in_quotes(std::string_view text) {
-  std::string result("'");
-  result.append(text.substr(0, kQuotedLength));
-  return result.append(text.size() > kQuotedLength ? "...'" : "'");
 }
 
 std::string xml_escaped(std::string_view text) {

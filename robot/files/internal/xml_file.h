@@ -73,9 +73,6 @@ class XmlFile {
   std::unique_ptr<tinyxml2::XMLDocument> document_;
 };
 
-// For messages; what is long is cut.
-std::string name_in_quotes(std::string_view text);
-
 // As text, or as the value of an attribute.
 std::string xml_escaped(std::string_view text);
 

@@ -3,12 +3,14 @@
 
 #include "collide/solid_within.h"
 #include "collide/within.h"
+#include "spheretree/median_split.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -108,15 +110,10 @@ class Builder {
       pieces_.points.insert(pieces_.points.end(), points.begin(), points.end());
     }
     if (count == 1) return;
-    Eigen::Index axis = 0;
-    (high - low).maxCoeff(&axis);
-    const std::size_t middle = (first + last) / 2;
-    const auto at = [&](std::size_t i) {
-      return elements_.begin() + static_cast<std::ptrdiff_t>(i);
-    };
-    std::nth_element(at(first), at(middle), at(last), [&](const Element& a, const Element& b) {
-      return a.middle[axis] < b.middle[axis];
-    });
+    const Eigen::Index axis = longest_axis({low, high});
+    const std::size_t middle =
+        first + split_at_median(std::span(elements_).subspan(first, count),
+                                [axis](const Element& element) { return element.middle[axis]; });
     const std::size_t child = pieces_.nodes.size();
     pieces_.nodes[node].first_child = static_cast<std::int32_t>(child);
     pieces_.nodes.resize(child + 2);

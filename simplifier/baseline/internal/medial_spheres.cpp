@@ -3,8 +3,7 @@
 
 #include "simplifier/baseline/internal/voronoi.h"
 #include "simplifier/solid/sphere_hierarchy.h"
-
-#include <tbb/parallel_for.h>
+#include "simplifier/support/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +56,7 @@ void MedialAxis::watch(std::span<const Vector3d> watched) {
 void MedialAxis::find_spheres() {
   const std::vector<VoronoiVertex> vertices = voronoi_vertices(sites_);
   std::vector<MedialSphere> all(vertices.size());
-  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t i) {
+  parallel_for(0, vertices.size(), [&](std::size_t i) {
     const VoronoiVertex& v = vertices[i];
     all[i] = {{v.point, v.radius}, probe_.clearance(v.point)};
   });
@@ -79,8 +78,8 @@ bool MedialAxis::add_sites(const MedialGoal& goal) {
   for (const MedialSphere& s : spheres_) spheres.push_back(s.sphere);
   const SphereHierarchy hierarchy(spheres);
   std::vector<double> gaps(watched_.size());
-  tbb::parallel_for(std::size_t{0}, watched_.size(),
-                    [&](std::size_t i) { gaps[i] = hierarchy.nearest(watched_[i]).upper; });
+  parallel_for(0, watched_.size(),
+               [&](std::size_t i) { gaps[i] = hierarchy.nearest(watched_[i]).upper; });
   for (std::size_t i = 0; i < watched_.size(); ++i) {
     if (!is_site_[i] && gaps[i] > goal.max_protrusion) wishes.push_back({gaps[i], watched_[i], i});
   }

@@ -2,10 +2,12 @@
 #include "simplifier/baseline/internal/mesh_probe.h"
 
 #include "mesh/geometry/solid_angle.h"
+#include "spheretree/median_split.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace spherule::internal {
 namespace {
@@ -32,26 +34,23 @@ void MeshProbe::build(std::int32_t begin, std::int32_t end) {
   node.begin = begin;
   node.end = end;
   Eigen::AlignedBox3d box;
-  for (std::int32_t i = begin; i < end; ++i) {
-    const Corners& t = corners_[static_cast<std::size_t>(i)];
+  const auto part = std::span(corners_).subspan(static_cast<std::size_t>(begin),
+                                                static_cast<std::size_t>(end - begin));
+  for (const Corners& t : part) {
     for (const Vector3d& p : {t.a, t.b, t.c}) box.extend(p);
     node.area += 0.5 * (t.b - t.a).cross(t.c - t.a);
   }
   node.center = box.center();
-  for (std::int32_t i = begin; i < end; ++i) {
-    const Corners& t = corners_[static_cast<std::size_t>(i)];
+  for (const Corners& t : part) {
     for (const Vector3d& p : {t.a, t.b, t.c}) {
       node.reach = std::max(node.reach, (p - node.center).norm());
     }
   }
   nodes_.push_back(node);
   if (end - begin <= kLeafSize) return;
-  Eigen::Index axis = 0;
-  box.sizes().maxCoeff(&axis);
+  const Eigen::Index axis = longest_axis(box);
   const auto key = [axis](const Corners& t) { return t.a[axis] + t.b[axis] + t.c[axis]; };
-  const std::int32_t middle = begin + (end - begin) / 2;
-  std::nth_element(corners_.begin() + begin, corners_.begin() + middle, corners_.begin() + end,
-                   [&](const Corners& a, const Corners& b) { return key(a) < key(b); });
+  const std::int32_t middle = begin + static_cast<std::int32_t>(split_at_median(part, key));
   build(begin, middle);
   nodes_[self].right = static_cast<std::int32_t>(nodes_.size());
   build(middle, end);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/reduction_graph.h"
 
+#include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -41,7 +40,7 @@ template <class SphereAt>
 std::vector<Nearest> nearest_spheres(const ReductionTask& task, std::size_t count,
                                      const SphereAt& sphere_at) {
   std::vector<Nearest> nearest(task.points.size());
-  tbb::parallel_for(std::size_t{0}, nearest.size(), [&](std::size_t k) {
+  parallel_for(0, nearest.size(), [&](std::size_t k) {
     nearest[k] = nearest_of(task.samples[task.points[k]], count, sphere_at);
   });
   return nearest;

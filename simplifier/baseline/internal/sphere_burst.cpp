@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/reduction_graph.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
+#include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <map>
@@ -91,7 +90,7 @@ class Burster {
   void evaluate(const std::set<std::uint32_t>& changed) {
     const std::vector<std::uint32_t> spheres(changed.begin(), changed.end());
     std::vector<double> protrusions(spheres.size());
-    tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t k) {
+    parallel_for(0, spheres.size(), [&](std::size_t k) {
       double largest = -std::numeric_limits<double>::infinity();
       for (const auto& [j, part] : heirs_of(spheres[k])) {
         largest = std::max(largest, part.radius - graph_[j].clearance);

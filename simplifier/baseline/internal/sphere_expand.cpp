@@ -2,9 +2,8 @@
 #include "mesh/geometry/point_grid.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
 #include "simplifier/stage2/set_cover.h"
+#include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +34,7 @@ class Expander {
       spheres.push_back({{s.sphere.center, s.clearance + stand_off}, s.clearance, {}, -1});
     }
     SetCoverInstance cover{points_.size(), std::vector<std::vector<std::uint32_t>>(spheres.size())};
-    tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+    parallel_for(0, spheres.size(), [&](std::size_t i) {
       const Sphere& sphere = spheres[i].sphere;
       grid_->find(sphere.center, sphere.radius, cover.columns[i]);
       std::erase_if(cover.columns[i],

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/reduction_graph.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
+#include "simplifier/support/parallel.h"
 #include "spheretree/enclosing_sphere.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <iterator>
@@ -99,8 +98,8 @@ class Merger {
 
   void evaluate(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
     std::vector<Merging> found(pairs.size());
-    tbb::parallel_for(std::size_t{0}, pairs.size(),
-                      [&](std::size_t k) { found[k] = merging(pairs[k].first, pairs[k].second); });
+    parallel_for(0, pairs.size(),
+                 [&](std::size_t k) { found[k] = merging(pairs[k].first, pairs[k].second); });
     for (const Merging& m : found) queue_.push(m);
   }
 

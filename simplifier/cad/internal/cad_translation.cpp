@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cad/internal/cad_translation.h"
 
-#include "mesh/geometry/raw_mesh.h"
+#include "mesh/parsing/input_file.h"
 #include "simplifier/cad/internal/cad_assembly.h"
 #include "simplifier/cad/internal/cad_entities.h"
 #include "spheretree/error.h"

@@ -105,6 +105,12 @@ std::shared_ptr<const CoveredMesh> random_body(SceneRandom& random, double size)
   return covered_surface(mesh);
 }
 
+bool is_untested(const ObstacleOptions& options, std::size_t link, std::size_t obstacle) {
+  return std::any_of(options.untested.begin(), options.untested.end(), [&](const auto& pair) {
+    return static_cast<std::size_t>(pair.link) == link && pair.obstacle == obstacle;
+  });
+}
+
 // One side of every pair is a mesh, the other one spheres: those of the obstacles, but for every
 // fifth robot.
 TEST(RobotMesh, AnswersAsMeshesAmongSpheresDoOnEveryInstructionSet) {
@@ -138,11 +144,6 @@ TEST(RobotMesh, AnswersAsMeshesAmongSpheresDoOnEveryInstructionSet) {
       options.untested.push_back({0, 0});
       options.untested.push_back({static_cast<int>(robot.links().size()) - 1, 0});
     }
-    const auto is_untested = [&](std::size_t link, std::size_t obstacle) {
-      return std::any_of(options.untested.begin(), options.untested.end(), [&](const auto& pair) {
-        return static_cast<std::size_t>(pair.link) == link && pair.obstacle == obstacle;
-      });
-    };
     std::vector<double> path;
     std::vector<std::uint8_t> expected;
     for (int k = 0; k < 40; ++k) {
@@ -156,7 +157,7 @@ TEST(RobotMesh, AnswersAsMeshesAmongSpheresDoOnEveryInstructionSet) {
       for (const auto& [link, mesh] : bodies) {
         for (std::size_t o = 0; o < obstacles.size(); ++o) {
           const auto& [tree, world_from_tree] = obstacles[o];
-          if (is_untested(link, o)) continue;
+          if (is_untested(options, link, o)) continue;
           if (!collides(mesh->cover(), poses[link], *tree, world_from_tree)) continue;
           spheres = true;
           hit = hit || (others[o] ? collides(mesh->cover(), poses[link], others[o]->solid(),
@@ -172,6 +173,36 @@ TEST(RobotMesh, AnswersAsMeshesAmongSpheresDoOnEveryInstructionSet) {
   EXPECT_GT(hits, effort(400, 80));
   EXPECT_GT(removed, effort(50, 10));
   EXPECT_GT(free, effort(400, 80));
+}
+
+using Meshes = std::vector<std::shared_ptr<const CoveredMesh>>;
+
+// Of all, of the robot alone, of the two obstacles alone, which are the last, of none.
+Meshes some_of(const Meshes& meshes, int which) {
+  Meshes some;
+  if (which < 2) some.assign(meshes.begin(), meshes.end() - 2);
+  if (which % 2 == 0) some.insert(some.end(), meshes.end() - 2, meshes.end());
+  return some;
+}
+
+// Sometimes another query: of a block, a motion, or a clearance.
+void query_in_between(SceneRandom& random, const ObstacleChecker& checker,
+                      const std::vector<double>& at, const std::vector<double>& elsewhere,
+                      RobotChecker::Scratch& scratch) {
+  std::uint8_t verdict = 0;
+  switch (random.whole(0, 40)) {
+    case 0:
+      checker.collides(elsewhere, scratch, std::span(&verdict, 1));
+      break;
+    case 1:
+      checker.check_edge(elsewhere, at, scratch, {.resolution = 0.05});
+      break;
+    case 2:
+      checker.within(at, random.uniform(0.0, 0.1), scratch);
+      break;
+    default:
+      break;
+  }
 }
 
 // Along paths, with steps of any size, stops and jumps, what is remembered changes no answer:
@@ -209,11 +240,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
       for (std::size_t v = 0; v < result.size(); ++v) result[v] += home[v];
       return result;
     };
-    // Of all, of the robot alone, of the obstacles alone, of none.
-    const auto first_of_obstacles = meshes.end() - 2;
-    if (i % 4 < 2) options.meshes.assign(meshes.begin(), first_of_obstacles);
-    if (i % 4 % 2 == 0)
-      options.meshes.insert(options.meshes.end(), first_of_obstacles, meshes.end());
+    options.meshes = some_of(meshes, i % 4);
     const ObstacleChecker checker(robot, obstacles, options);
     RobotChecker::Scratch remembers(checker);
     std::vector<double> at = near_home();
@@ -230,21 +257,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
       RobotChecker::Scratch fresh(checker);
       const bool expected = checker.collides(at, fresh);
       ASSERT_EQ(checker.collides(at, remembers), expected) << i << ' ' << k;
-      const std::vector<double> elsewhere = near_home();
-      std::uint8_t verdict = 0;
-      switch (random.whole(0, 40)) {
-        case 0:
-          checker.collides(elsewhere, remembers, std::span(&verdict, 1));
-          break;
-        case 1:
-          checker.check_edge(elsewhere, at, remembers, {.resolution = 0.05});
-          break;
-        case 2:
-          checker.within(at, random.uniform(0.0, 0.1), remembers);
-          break;
-        default:
-          break;
-      }
+      query_in_between(random, checker, at, near_home(), remembers);
       (expected ? hits : free) += 1;
       changes += k > 0 && before != expected;
       before = expected;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace spherule::test {
 namespace {
@@ -87,6 +88,42 @@ std::optional<long double> OracleScene::gap(std::span<const double> configuratio
   return least;
 }
 
+namespace {
+
+// What a scene is told of two bodies, and so the oracle; nothing if they may touch.
+std::optional<OraclePair> random_pair(SceneRandom& random, RobotScene& scene,
+                                      const OracleScene& oracle, std::size_t k, std::size_t i) {
+  const OracleBody& first = oracle.bodies[k];
+  const OracleBody& second = oracle.bodies[i];
+  OraclePair pair{k, i, 0.0L, {}};
+  if (random.whole(0, 7) == 0) {
+    pair.padding = random.uniform(0.0, 0.03);
+    const bool swapped = second.link >= 0 && random.whole(0, 1) == 0;
+    scene.set_padding(swapped ? second.name : first.name, swapped ? first.name : second.name,
+                      static_cast<double>(pair.padding));
+  }
+  if (random.whole(0, 7) == 0) {
+    scene.allow_contact(first.name, second.name);
+    if (random.whole(0, 1) == 0) return std::nullopt;
+    scene.forbid_contact(first.name, second.name);
+  }
+  if (random.whole(0, 3) == 0 && !first.trees.empty()) {
+    for (std::size_t tree = 0; tree < first.trees.size(); ++tree) {
+      for (std::size_t s = 0; s < first.trees[tree].size(); ++s) {
+        if (random.whole(0, 3) == 0) pair.left_out.push_back({tree, static_cast<int>(s)});
+      }
+    }
+    if (!pair.left_out.empty()) {
+      const Region region{first.name, "for " + second.name};
+      scene.define_region(region, pair.left_out);
+      scene.allow_contact(region, second.name);
+    }
+  }
+  return pair;
+}
+
+}  // namespace
+
 RandomScene random_scene(SceneRandom& random) {
   const RobotModel robot = random_robot_with_trees(random, 0.4);
   const Pose world_from_root = random.whole(0, 1) == 0 ? Pose() : random.pose(3.0);
@@ -135,31 +172,8 @@ RandomScene random_scene(SceneRandom& random) {
           continue;
         }
       }
-      OraclePair pair{k, i, 0.0L, {}};
-      if (random.whole(0, 7) == 0) {
-        pair.padding = random.uniform(0.0, 0.03);
-        const bool swapped = second.link >= 0 && random.whole(0, 1) == 0;
-        scene.set_padding(swapped ? second.name : first.name, swapped ? first.name : second.name,
-                          static_cast<double>(pair.padding));
-      }
-      if (random.whole(0, 7) == 0) {
-        scene.allow_contact(first.name, second.name);
-        if (random.whole(0, 1) == 0) continue;
-        scene.forbid_contact(first.name, second.name);
-      }
-      if (random.whole(0, 3) == 0 && !first.trees.empty()) {
-        for (std::size_t tree = 0; tree < first.trees.size(); ++tree) {
-          for (std::size_t s = 0; s < first.trees[tree].size(); ++s) {
-            if (random.whole(0, 3) == 0) pair.left_out.push_back({tree, static_cast<int>(s)});
-          }
-        }
-        if (!pair.left_out.empty()) {
-          const Region region{first.name, "for " + second.name};
-          scene.define_region(region, pair.left_out);
-          scene.allow_contact(region, second.name);
-        }
-      }
-      oracle.pairs.push_back(std::move(pair));
+      std::optional<OraclePair> pair = random_pair(random, scene, oracle, k, i);
+      if (pair) oracle.pairs.push_back(*std::move(pair));
     }
   }
   return result;

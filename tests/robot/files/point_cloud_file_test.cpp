@@ -170,7 +170,7 @@ TEST_F(PointCloudFileTest, PlyInBytes) {
 TEST_F(PointCloudFileTest, Refuses) {
   EXPECT_EQ(fault("a.xyz", "# nothing\n"), "it has no points");
   EXPECT_EQ(fault("a.xyz", "1 2 3\n\n1 2\n"), "line 3: has no x, y and z");
-  EXPECT_EQ(fault("a.xyz", "1 2 nan\n"), "line 1: \"nan\" is not a finite number");
+  EXPECT_EQ(fault("a.xyz", "1 2 nan\n"), "line 1: 'nan' is not a finite number");
   EXPECT_EQ(fault("a.xyz", "1 2 3\n1 2e15 3\n"), "point 1 is beyond 1e15 or not finite");
   EXPECT_NE(fault("a.stl", "1 2 3\n"), "none");
   EXPECT_NE(fault("a.xyz", "1 2 3\n", 0.0), "none");
@@ -178,31 +178,43 @@ TEST_F(PointCloudFileTest, Refuses) {
     EXPECT_EQ(fault("a.xyz", "0 0 0\n", scale), "the scale is not a number from 1e-300 to 1e15");
   }
   EXPECT_NE(fault("a.xyz", "1 2 3\n", std::nan("")), "none");
+  EXPECT_THROW(read_point_cloud(folder_.path() / "none.ply"), Error);
+}
+
+TEST_F(PointCloudFileTest, RefusesPly) {
   const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\n";
   const std::string axes = "property float x\nproperty float y\n";
-  EXPECT_EQ(fault("a.ply", head + axes + "end_header\n1 2\n"), "its vertices have no z");
-  EXPECT_EQ(fault("a.ply", head + "end_header\n"), "its element vertex has no properties");
+  const std::string lacking = "line 6: the vertices lack one of x, y and z";
+  EXPECT_EQ(fault("a.ply", head + axes + "end_header\n1 2\n"), lacking);
   EXPECT_EQ(fault("a.ply", head + axes + "property list uchar float z\nend_header\n1 2 1 3\n"),
-            "its vertices have no z");
-  EXPECT_EQ(fault("a.ply", head + axes + "property float z\nend_header\n1 2\n"),
-            "vertex 0 has too few numbers");
-  EXPECT_EQ(fault("a.ply", head + axes + "property float z\nend_header\n1 2 x\n"),
-            "line 8: \"x\" is not a finite number");
-  for (const std::string property : {"quad x", "list quad int x", "list int quad x", "int"}) {
-    EXPECT_EQ(fault("a.ply", head + "property " + property + "\nend_header\n"),
-              "line 4: is no line of a PLY header");
-  }
-  for (const std::string line : {"element face -1", "element face 2e12", "element face x",
-                                 "property int x", "format ascii 2.0", "format other 1.0"}) {
-    EXPECT_EQ(fault("a.ply", "ply\n" + line + "\nend_header\n"),
-              "line 2: is no line of a PLY header");
-  }
+            "line 7: the vertices lack one of x, y and z");
+  EXPECT_EQ(fault("a.ply", head + "end_header\n"),
+            "line 4: the element 'vertex' has no properties");
+  const std::string whole = head + axes + "property float z\nend_header\n";
+  EXPECT_EQ(fault("a.ply", whole + "1 2\n3\n"), "line 8: vertex 0 has too few numbers");
+  EXPECT_EQ(fault("a.ply", whole + "1 2 3 4\n"), "line 8: vertex 0 has too many numbers");
+  EXPECT_EQ(fault("a.ply", whole + "1 2 3\n4 5 6\n"), "line 9: more data than the header says");
+  EXPECT_EQ(fault("a.ply", whole + "1 2 x\n"), "line 8: 'x' is not a finite number");
+  const auto header_fault = [&](const std::string& line) {
+    return fault("a.ply", head + axes + line + "\nend_header\n");
+  };
+  EXPECT_EQ(header_fault("property quad x"), "line 6: 'quad' is not a type of number");
+  EXPECT_EQ(header_fault("property list quad int z"), "line 6: 'quad' is not a type of number");
+  EXPECT_EQ(header_fault("property list float int z"), "line 6: a list of fractional length");
+  EXPECT_EQ(header_fault("property int"), "line 6: a property without a name");
+  EXPECT_EQ(header_fault("property int z z"), "line 6: 'z' where the line should end");
+  EXPECT_EQ(header_fault("property int y"), "line 6: the property 'y' is there twice");
+  EXPECT_EQ(header_fault("element vertex 1"), "line 6: the element 'vertex' is there twice");
+  EXPECT_EQ(header_fault("element face -1"), "line 6: the file cannot hold -1 items of 'face'");
+  EXPECT_EQ(header_fault("element face 1.0"), "line 6: '1.0' is not a whole number");
+  EXPECT_EQ(header_fault("format ascii 2.0"), "line 6: '2.0' is not version 1.0 of the format");
+  EXPECT_EQ(header_fault("format other 1.0"), "line 6: 'other' is not a PLY format");
+  EXPECT_EQ(fault("a.ply", "ply\nproperty int x\nend_header\n"), "line 2: a property of nothing");
   EXPECT_EQ(fault("a.ply", "ply\nelement face 0\nproperty int x\nend_header\n"),
-            "its header has no format");
+            "line 4: the header names no format");
   EXPECT_EQ(fault("a.ply", "ply\nformat ascii 1.0\nelement face 0\nproperty int x\nend_header\n"),
             "it has no vertices");
-  EXPECT_EQ(fault("a.ply", "plx\n"), "it does not begin with \"ply\"");
-  EXPECT_THROW(read_point_cloud(folder_.path() / "none.ply"), Error);
+  EXPECT_EQ(fault("a.ply", "plx\n"), "line 1: not a PLY file: it does not begin with 'ply'");
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ TEST_F(SphereFormatFaults, Json) {
   expect_refusal("{\"a\": {\"centers\": [[0, 0, \"x\"]], \"radii\": [1]}}", "is not a number");
   expect_refusal("{\"a\": {\"BiggesetSphere\": [0, 0, 0, 1], \"SubSpheres\": [1]}}",
                  "not an object");
-  expect_refusal("{\"a\": {\"centers\": []}, \"a\": {}}", "the key \"a\" is there twice");
+  expect_refusal("{\"a\": {\"centers\": []}, \"a\": {}}", "the key \"a\" appears twice");
   const std::string own = "{\"format\": \"spherule-robot-spheres\", \"version\": ";
   expect_refusal(own + "0}", "not a positive integer");
   expect_refusal(own + "2}", "has format version 2");

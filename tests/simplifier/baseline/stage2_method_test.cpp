@@ -32,6 +32,7 @@ namespace spherule::test {
 namespace {
 
 using Eigen::Vector3d;
+using internal::Clearance;
 
 class Stage2OfBaselines : public testing::TestWithParam<Stage2Method> {
  protected:

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/io/internal/text_scanner.h"
+#include "mesh/parsing/text_scanner.h"
 
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <utility>
 
 namespace spherule::internal {
@@ -19,13 +18,6 @@ bool is_space(char c) {
 }
 
 }  // namespace
-
-std::string in_quotes(std::string_view text) {
-  std::string result = "'";
-  result.append(text.substr(0, 40));
-  result.append("'");
-  return result;
-}
 
 TextScanner::TextScanner(std::string_view text, std::string subject, char comment)
     : text_(text), subject_(std::move(subject)), comment_(comment) {
@@ -67,29 +59,20 @@ void TextScanner::skip_line() {
   while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;
 }
 
+void TextScanner::expect_line_end() {
+  const std::string_view token = token_on_line();
+  if (!token.empty()) fail(in_quotes(token) + " where the line should end");
+}
+
 double TextScanner::number() {
   return number(token());
 }
 
 double TextScanner::number(std::string_view token) const {
-  if (token.empty()) fail("the file ends where a number should stand");
-  std::string_view digits = token;
-  if (digits.front() == '+') digits.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (end != digits.data() + digits.size() || error == std::errc::invalid_argument) {
-    fail(in_quotes(token) + " is not a number");
-  }
-  // Out of range is reported for numbers that are too large and for numbers next to zero.
-  if (error == std::errc::result_out_of_range) {
-    const std::size_t exponent = digits.find_first_of("eE");
-    if (exponent != std::string_view::npos && digits.substr(exponent + 1).starts_with('-')) {
-      return 0.0;
-    }
-    fail(in_quotes(token) + " is too large");
-  }
-  if (!std::isfinite(value)) fail(in_quotes(token) + " is not a finite number");
-  return value;
+  if (token.empty()) fail("a number is missing");
+  const std::optional<double> value = finite_number(token);
+  if (!value) fail(in_quotes(token) + " is not a finite number");
+  return *value;
 }
 
 std::int64_t TextScanner::integer() {
@@ -97,13 +80,10 @@ std::int64_t TextScanner::integer() {
 }
 
 std::int64_t TextScanner::integer(std::string_view token) const {
-  if (token.empty()) fail("the file ends where a whole number should stand");
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
-  if (end != token.data() + token.size() || error != std::errc()) {
-    fail(in_quotes(token) + " is not a whole number");
-  }
-  return value;
+  if (token.empty()) fail("a whole number is missing");
+  const std::optional<std::int64_t> value = whole_number(token);
+  if (!value) fail(in_quotes(token) + " is not a whole number");
+  return *value;
 }
 
 void TextScanner::fail(const std::string& reason) const {

@@ -8,9 +8,6 @@
 
 namespace spherule::internal {
 
-// The text between quotation marks for a message, at most its first 40 characters.
-std::string in_quotes(std::string_view text);
-
 // Splits the text of a mesh file into tokens at white space. Every fault is an Error that names the
 // file and the line. Does not depend on the locale.
 class TextScanner {
@@ -23,6 +20,8 @@ class TextScanner {
   // The next token of this line; empty at its end. A lone backslash continues the line.
   std::string_view token_on_line();
   void skip_line();
+  // Fails if there is anything left on this line.
+  void expect_line_end();
 
   // The next token as a number; the nearest double, so that the error is at most 2^-53 of it. Not
   // a number, not finite and the end of the text are errors.

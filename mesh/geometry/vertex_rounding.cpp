@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/geometry/vertex_rounding.h"
+
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace spherule::internal {
+
+double largest_coordinate(const TriangleMesh& mesh) {
+  double largest = 0.0;
+  for (const Eigen::Vector3d& v : mesh.vertices) {
+    for (const double x : {v.x(), v.y(), v.z()}) {
+      if (std::isnan(x)) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, std::abs(x));
+    }
+  }
+  return largest;
+}
+
+double rounding_distance(double largest, double relative) {
+  constexpr double kRootOfThree = 1.7320508075688774;  // rounded up
+  return kRootOfThree * largest * relative * (1.0 + 0x1p-50);
+}
+
+void check_scale(double scale) {
+  if (!(scale > 0.0) || !std::isfinite(scale)) {
+    throw Error("scale", "must be a positive finite number, not " + std::to_string(scale));
+  }
+}
+
+void apply_scale(TriangleMesh& mesh, double scale) {
+  if (scale == 1.0) return;
+  for (Eigen::Vector3d& v : mesh.vertices) v *= scale;
+  mesh.vertex_error = add_up(mul_up(mesh.vertex_error, scale),
+                             rounding_distance(largest_coordinate(mesh), 2.0 * kUnitRoundoff));
+}
+
+}  // namespace spherule::internal

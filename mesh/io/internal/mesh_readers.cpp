@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/io/internal/mesh_readers.h"
+
+#include "spheretree/error.h"
+
+#include <limits>
+
+namespace spherule::internal {
+
+void add_polygon(TriangleMesh& mesh, std::span<const std::int64_t> corners,
+                 std::size_t vertex_count, const std::string& subject) {
+  if (vertex_count > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    throw Error(subject, "more than 2^31 vertices");
+  }
+  for (const std::int64_t corner : corners) {
+    if (corner < 0 || static_cast<std::uint64_t>(corner) >= vertex_count) {
+      throw Error(subject, "a face refers to vertex " + std::to_string(corner) + " (from 0) of " +
+                               std::to_string(vertex_count));
+    }
+  }
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    mesh.triangles.emplace_back(static_cast<int>(corners[0]), static_cast<int>(corners[i - 1]),
+                                static_cast<int>(corners[i]));
+  }
+}
+
+}  // namespace spherule::internal

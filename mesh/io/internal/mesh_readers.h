@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mesh/triangle_mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+// The readers of the single formats, and what they share. Each turns the bytes of a file into a
+// mesh in the unit of the file, vertices as they stand in it and not welded, with `vertex_error`
+// set; numbers need not be in range yet. `subject` names the file in an Error.
+
+namespace spherule::internal {
+
+TriangleMesh read_3mf(std::string_view bytes, const std::string& subject);
+TriangleMesh read_stl(std::string_view bytes, const std::string& subject);
+TriangleMesh read_obj(std::string_view bytes, const std::string& subject);
+TriangleMesh read_off(std::string_view bytes, const std::string& subject);
+TriangleMesh read_ply(std::string_view bytes, const std::string& subject);
+
+// The size in micrometres of the unit that a 3MF file states. Throws Error.
+double unit_of_3mf(std::string_view bytes, const std::string& subject);
+
+// Appends the polygon as a fan about its first corner. The winding number of a fan is that of the
+// polygon, so a planar polygon that is not convex is covered too. Points and lines (fewer than
+// three corners) are no surface and are left out. Throws Error for an index that is not below
+// `vertex_count`.
+void add_polygon(TriangleMesh& mesh, std::span<const std::int64_t> corners,
+                 std::size_t vertex_count, const std::string& subject);
+
+}  // namespace spherule::internal

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/support/parallel.h"
+
+#include "simplifier/support/thread_limit.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+namespace spherule::internal {
+
+void run_in_parts(std::size_t begin, std::size_t end, const void* work,
+                  void (*call)(const void* work, std::size_t first, std::size_t last)) {
+  if (begin >= end) return;
+  using Range = tbb::blocked_range<std::size_t>;
+  tbb::parallel_for(Range(begin, end),
+                    [&](const Range& part) { call(work, part.begin(), part.end()); });
+}
+
+struct ThreadLimit::Control {
+  explicit Control(std::size_t threads)
+      : control(tbb::global_control::max_allowed_parallelism, threads) {}
+
+  tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(int threads)
+    : control_(std::make_unique<Control>(
+          threads > 0
+              ? static_cast<std::size_t>(threads)
+              : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))) {}
+
+ThreadLimit::~ThreadLimit() = default;
+
+}  // namespace spherule::internal

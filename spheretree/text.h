@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// What all readers of text share: numbers, words, and quotes for messages. Does not depend on the
+// locale.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spherule::internal {
+
+// The value of a text that is one decimal number and nothing else, with or without an exponent; the
+// nearest double. Nothing for other texts, infinities and what is out of the range of a double,
+// next to zero, too.
+std::optional<double> finite_number(std::string_view text);
+
+// The same for a whole number, in digits only, with a minus sign where it is negative.
+std::optional<std::int64_t> whole_number(std::string_view text);
+
+// The words of a text, apart by blanks, tabs and ends of lines.
+std::vector<std::string_view> words_of(std::string_view text);
+
+// A text in quotes for a message; of a long one the first 60 characters.
+std::string in_quotes(std::string_view text);
+
+}  // namespace spherule::internal

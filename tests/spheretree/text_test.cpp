@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/text.h"
+
+#include "spheretree/median_split.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+using internal::finite_number;
+using internal::whole_number;
+
+TEST(Text, FiniteNumber) {
+  EXPECT_EQ(finite_number("1"), 1.0);
+  EXPECT_EQ(finite_number("+.5"), 0.5);
+  EXPECT_EQ(finite_number("-2.5e-3"), -2.5e-3);
+  EXPECT_EQ(finite_number("0.1"), 0.1);
+  EXPECT_EQ(finite_number("4.9406564584124654e-324"), 0x1p-1074);
+  EXPECT_EQ(finite_number("1.7976931348623157e308"), 0x1.fffffffffffffp1023);
+  const char* const faults[] = {"",    " 1",  "1 ",   "1,5",      "0x1",   "1e",     "--1",
+                                "+-1", "+",   "1e+-", "one",      "1e999", "-1e999", "1e-999",
+                                "nan", "inf", "-inf", "infinity", "1f",    "1..",    "1\n"};
+  for (const std::string text : faults) EXPECT_FALSE(finite_number(text)) << text;
+}
+
+TEST(Text, WholeNumber) {
+  EXPECT_EQ(whole_number("0"), 0);
+  EXPECT_EQ(whole_number("-12"), -12);
+  EXPECT_EQ(whole_number("9223372036854775807"), INT64_MAX);
+  for (const std::string text : {"", "9223372036854775808", "1.0", "1e3", "+1", " 1", "1 ", "x"}) {
+    EXPECT_FALSE(whole_number(text)) << text;
+  }
+}
+
+TEST(Text, WordsAndQuotes) {
+  using Words = std::vector<std::string_view>;
+  EXPECT_EQ(internal::words_of(" one\ttwo\r\n\nthree"), (Words{"one", "two", "three"}));
+  EXPECT_EQ(internal::words_of(" \t\n"), Words());
+  EXPECT_EQ(internal::in_quotes("a b"), "'a b'");
+  EXPECT_EQ(internal::in_quotes(std::string(60, 'x')), "'" + std::string(60, 'x') + "'");
+  EXPECT_EQ(internal::in_quotes(std::string(61, 'x')), "'" + std::string(60, 'x') + "...'");
+}
+
+// Against sorted numbers: the halves hold the same ones.
+TEST(MedianSplit, HalvesAreThoseOfTheOrder) {
+  std::mt19937 bits(3);
+  for (std::size_t count = 1; count < 40; ++count) {
+    std::vector<int> items(count);
+    for (int& item : items) item = static_cast<int>(bits() % 1000);
+    std::vector<int> sorted = items;
+    std::sort(sorted.begin(), sorted.end(), std::greater<>());
+    const std::size_t half =
+        internal::split_at_median(std::span(items), [](int item) { return -item; });
+    ASSERT_EQ(half, count / 2);
+    std::sort(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), std::greater<>());
+    std::sort(items.begin() + static_cast<std::ptrdiff_t>(half), items.end(), std::greater<>());
+    ASSERT_EQ(items, sorted);
+  }
+  const Eigen::AlignedBox3d cube(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
+  EXPECT_EQ(internal::longest_axis(cube), 0);
+  EXPECT_EQ(internal::longest_axis({Eigen::Vector3d::Zero(), Eigen::Vector3d(1.0, 2.0, 3.0)}), 2);
+}
+
+}  // namespace
+}  // namespace spherule::test
