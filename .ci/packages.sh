@@ -12,7 +12,7 @@ need_build_tools() {
 
 # Libraries and command without the adapters. Boost is for OpenVDB's headers.
 need_libraries() {
-  packages+=(libeigen3-dev libassimp-dev libexpat1-dev zlib1g-dev libtbb-dev nlohmann-json3-dev
+  packages+=(libeigen3-dev libexpat1-dev zlib1g-dev libtbb-dev nlohmann-json3-dev
     libcli11-dev libbullet-extras-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev libqhull-dev
     libtinyxml2-dev libyaml-cpp-dev libjs-three libocct-data-exchange-dev
     libocct-modeling-algorithms-dev)
@@ -24,9 +24,9 @@ need_adapters() {
     libboost-system-dev)
 }
 
-# Bullet is a peer of the benchmarks; its verdicts are tested. KDL and urdfdom are oracles.
+# Bullet is a peer of the benchmarks; its verdicts are tested. Assimp, KDL and urdfdom are oracles.
 need_tests() {
-  packages+=(libgtest-dev libgmp-dev libmpfr-dev liborocos-kdl-dev liburdfdom-dev libbullet-dev)
+  packages+=(libassimp-dev libgtest-dev libgmp-dev libmpfr-dev liborocos-kdl-dev liburdfdom-dev libbullet-dev)
 }
 
 need_benchmarks() {

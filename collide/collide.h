@@ -50,7 +50,8 @@ struct CollisionResult {
   QueryCost cost;
 };
 
-// Whether two sets of spheres, rigidly placed, overlap.
+// Whether two sets of spheres, rigidly placed, overlap: by simultaneous traversal of both trees
+// (Gottschalk, Lin and Manocha, "OBBTree", 1996).
 //
 // G4: if two spheres overlap (touching included) in exact arithmetic under exactly the given poses,
 // the answer is true. G5: if it is true, the exact gap of the two sets is at most

@@ -49,9 +49,12 @@ struct SweepResult {
 // the times do not change if the bodies are exchanged, nor with the shape of the trees, unless a
 // limit cuts the search short.
 //
-// How: what is apart by more at the middle of an interval than it can approach until its ends is
-// apart throughout; else the part for which the gap suffices is cut out, and the rest is divided,
-// from left to right. Allocates no more than collides().
+// How (adaptive bisection with motion bounds: Schwarzer, Saha and Latombe, "Adaptive dynamic
+// collision checking for single and multiple articulated robots in complex environments", 2005; in
+// the manner of conservative advancement, Mirtich, 1996): what is apart by more at the middle of an
+// interval than it can approach until its ends is apart throughout; else the part for which the gap
+// suffices is cut out, and the rest is divided, from left to right. Allocates no more than
+// collides().
 //
 // Throws Error for a clearance or a resolution that cannot be used.
 SweepResult sweep(const SphereTree& a, const Motion& motion_a, const SphereTree& b,

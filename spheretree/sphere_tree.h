@@ -25,7 +25,9 @@ struct AxisAlignedBox {
   Eigen::Vector3d half_size = Eigen::Vector3d::Zero();
 };
 
-// Bounding sphere hierarchy over a set of spheres; immutable, so threads may share it freely.
+// Bounding sphere hierarchy over a set of spheres (Quinlan, "Efficient distance computation between
+// non-convex objects", 1994; Hubbard, "Approximating polyhedra with spheres for time-critical
+// collision detection", 1996); immutable, so threads may share it freely.
 //
 // Invariants, verified by check() (spheretree/check.h) whenever a tree is made from data, and kept
 // by refit():
@@ -34,9 +36,9 @@ struct AxisAlignedBox {
 //     breadth-first order: the children of the inner nodes, in the order of their parents, number
 //     the nodes from 1 on without gap, so there are no cycles;
 //  3. every sphere is the sphere of exactly one leaf, bit for bit;
-//  4. layered: the sphere of every inner node encloses the spheres of its children in exact
-//  arithmetic
-//     (hence, by induction, every sphere below it);
+//  4. layered (Agarwal, Guibas, Nguyen, Russel and Zhang, "Collision detection for deforming
+//     necklaces", 2004): the sphere of every inner node encloses the spheres of its children in
+//     exact arithmetic (hence, by induction, every sphere below it);
 //  5. no inner node has more than kMaxBranching children.
 //
 // A tree whose content was moved to another has no nodes: queries of it throw Error, or end the

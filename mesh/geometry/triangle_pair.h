@@ -29,8 +29,10 @@ enum class TriangleContact {
   kUncertain,  // neither
 };
 
-// Contact of two placed triangles, which may be degenerate (needles, segments, points), both in one
-// frame. Swapping them does not change the answer.
+// A filtered predicate (Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
+// geometric predicates", 1997): rounding is bounded in advance, and what it leaves open is reported
+// as uncertain. Contact of two placed triangles, which may be degenerate (needles, segments,
+// points), both in one frame. Swapping them does not change the answer.
 //
 // The triangles that are judged are the exact ones. With corners X of one and Y of the other, x and
 // y as given here, u = 2^-53 and S = scene_size, the caller sees to it that

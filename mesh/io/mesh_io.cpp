@@ -30,9 +30,8 @@ TriangleMesh read_by_extension(const std::filesystem::path& path) {
   if (extension == "ply") return internal::read_ply(bytes, subject);
   if (extension == "off") return internal::read_off(bytes, subject);
   if (extension == "3mf") return internal::read_3mf(bytes, subject);
-  if (extension == "dae" || extension == "gltf" || extension == "glb") {
-    return internal::read_scene(path, bytes, extension);
-  }
+  if (extension == "dae") return internal::read_collada(bytes, subject);
+  if (extension == "gltf" || extension == "glb") return internal::read_gltf(bytes, path);
   if (is_cad_file(path)) throw Error(subject, "is a CAD file, not a mesh (read_cad() reads it)");
   throw Error(subject, "not a mesh format that can be read (STL, OBJ, PLY, OFF, DAE, 3MF, glTF)");
 }

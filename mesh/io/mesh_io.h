@@ -24,13 +24,14 @@ struct MeshReadOptions {
 // are left out. A DAE file comes out in metres, times `scale` (its own <unit> is applied), with the
 // axes as they stand in it (<up_axis> is ignored, as the tools of ROS do); the other formats come
 // out in their own numbers times `scale` (a 3MF file in its own unit, of which the default is the
-// millimetre). What a 3MF file shows must be meshes: extensions of the format that it requires, or
-// that add other shapes, are refused.
+// millimetre). Skins and morph weights of DAE and glTF are placed as the file states them; what
+// would be shown in another way than the format specifies is refused, and so is a file that shows
+// more than 2^25 vertices and triangles or 2^18 nodes (scene_file.h). What a 3MF file shows must be
+// meshes: extensions of the format that it requires, or that add other shapes, are refused.
 //
 // `vertex_error` bounds what reading cost: nothing for binary STL and PLY and for glTF without node
 // transforms; 2^-53 of the largest coordinate for numbers in text, which are read as doubles, and
-// some 2^-50 of it where 3MF transforms them; some 2^-21 of it for DAE, whose reader works in
-// 32-bit floats, and for the node transforms of glTF; and the rounding of the scale (per
+// some 2^-45 of it where 3MF, DAE and glTF transform them; and the rounding of the scale (per
 // coordinate; the bound itself is of the distance); and `weld`.
 //
 // Throws Error, naming file and reason: no such file, not a mesh, cut short, no triangles, a

@@ -55,23 +55,6 @@ std::string buffer_of(const TriangleMesh& mesh) {
   return bytes;
 }
 
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string result;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      const bool padding = i + k > bytes.size();
-      result += padding ? '=' : kDigits[word >> (18 - 6 * k) & 63];
-    }
-  }
-  return result;
-}
-
 std::string gltf_json(const TriangleMesh& mesh, const Eigen::Vector3d& translation,
                       const std::string& uri) {
   Eigen::Vector3d low = mesh.vertices.front(), high = low;
@@ -247,6 +230,23 @@ std::string ply_bytes(const TriangleMesh& mesh, PlyForm form, bool doubles) {
     for (int k = 0; k < 3; ++k) append(out, t[k], big);
   }
   return out;
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string result;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      const bool padding = i + k > bytes.size();
+      result += padding ? '=' : kDigits[word >> (18 - 6 * k) & 63];
+    }
+  }
+  return result;
 }
 
 std::string dae_text(const TriangleMesh& mesh, const Eigen::Matrix4d& matrix,

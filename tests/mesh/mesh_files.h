@@ -29,6 +29,7 @@ std::string dae_text(const TriangleMesh& mesh, const Eigen::Matrix4d& matrix,
 // translation.
 std::string gltf_text(const TriangleMesh& mesh, const Eigen::Vector3d& translation);
 std::string glb_bytes(const TriangleMesh& mesh, const Eigen::Vector3d& translation);
+std::string base64(const std::string& bytes);
 
 // How an archive holds its files: as they are, or deflated with the sizes in ZIP64 records.
 enum class Zip { kStored, kDeflated64 };

@@ -46,10 +46,9 @@ const std::vector<Room>& rooms() {
       {"mesh/io",
        {"spheretree", "mesh", "mesh/geometry", "mesh/parsing"},
        {"Eigen"},
-       {{"assimp", "mesh/io/internal/scene_file.cpp"},
-        {"assimp", "mesh/io/internal/check_collada.cpp"},
-        {"expat", "mesh/io/internal/xml_events.cpp"},
-        {"nlohmann", "mesh/io/internal/check_gltf.cpp"},
+       {{"expat", "mesh/io/internal/xml_events.cpp"},
+        {"nlohmann", "mesh/io/internal/gltf_document.h"},
+        {"tinyxml2", "mesh/io/internal/collada_document.h"},
         {"zlib", "mesh/io/internal/zip_member.cpp"}}},
 
       {"simplifier", kSimplifier, {"Eigen", "tbb"}, {{"nlohmann", "simplifier/zone_file.cpp"}}},

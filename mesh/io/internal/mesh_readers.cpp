@@ -12,6 +12,10 @@ void add_polygon(TriangleMesh& mesh, std::span<const std::int64_t> corners,
   if (vertex_count > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     throw Error(subject, "more than 2^31 vertices");
   }
+  if (corners.size() / 4 > vertex_count) {
+    throw Error(subject, "a face of " + std::to_string(corners.size()) + " corners, with " +
+                             std::to_string(vertex_count) + " vertices");
+  }
   for (const std::int64_t corner : corners) {
     if (corner < 0 || static_cast<std::uint64_t>(corner) >= vertex_count) {
       throw Error(subject, "a face refers to vertex " + std::to_string(corner) + " (from 0) of " +

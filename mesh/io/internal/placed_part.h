@@ -5,8 +5,10 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 // Meshes that a file shows under transforms.
 
@@ -18,10 +20,35 @@ struct Affine {
 };
 
 // Moves the mesh by the last transform of the chain, then by the one before, up to the first, and
-// sets its `vertex_error`. The coordinates are off by at most `coordinate_error` of the largest,
-// and the entries of a transform by at most `entry_error` of its norms.
+// adds to its `vertex_error`. The coordinates are off by at most that and `coordinate_error` of the
+// largest, and the entries of a transform by at most `entry_error` of its norms.
 void place(TriangleMesh& part, std::span<const Affine> chain, double coordinate_error,
            double entry_error);
+
+// What a vertex weighs in a joint that moves it.
+struct JointWeight {
+  std::size_t vertex = 0;
+  double weight = 0.0;
+};
+
+// A mesh whose vertices are moved by joints: each goes to the weighted sum of where its joints take
+// it.
+class SkinnedPart {
+ public:
+  // The mesh at rest, with its `vertex_error`.
+  SkinnedPart(const TriangleMesh& rest, double entry_error);
+
+  // A joint moves the vertices that weigh in it by the chain of transforms, as place() does.
+  void add(std::span<const Affine> chain, std::span<const JointWeight> weights);
+
+  TriangleMesh take();
+
+ private:
+  const TriangleMesh& rest_;
+  double entry_error_;
+  std::vector<Eigen::Vector3d> sum_;
+  std::vector<double> error_;  // of each vertex
+};
 
 // Adds the triangles of the part to the mesh.
 void append(TriangleMesh& mesh, const TriangleMesh& part, const std::string& subject);

@@ -8,40 +8,41 @@
 #include <string>
 #include <string_view>
 
-// The formats that are scene graphs (COLLADA, glTF) are read by assimp.
+// The formats that are scene graphs: COLLADA and glTF.
 
 namespace spherule::internal {
 
-// Reads the scene of the file, whose content is `bytes` and whose lower-case extension is
-// `extension` ("dae", "gltf" or "glb"): every mesh under the transforms of each node that
-// shows it. COLLADA files come out in metres (their own <unit> applied) with the axes as they stand
-// in the file (<up_axis> is ignored, as the tools of ROS do); the others come out in their own
-// numbers. Bones and morphs stay at rest.
+// Read the scene of the file, whose content is `bytes`: every mesh under the transforms of each
+// node that shows it, skins and morph weights as the file states them. What would be shown in
+// another way than the format specifies is refused. Numbers are read as doubles; `vertex_error`
+// charges their rounding and that of the transforms, some 2^-45 of the coordinates. Throw Error.
 //
-// The reader works in 32-bit floats; `vertex_error` charges
-//  - for text, kDecimalError of the largest coordinate: assimp rounds the whole part, the fraction,
-//    their sum and the power of ten each to a float;
-//  - for every node transform that is not the identity, kTransformError of the sizes it handles;
-//  - the rounding of the product in double.
-TriangleMesh read_scene(const std::filesystem::path& path, std::string_view bytes,
-                        const std::string& extension);
-
-// Relative error of a decimal number as read by assimp: up to three roundings of a float and a
-// power of ten of two more.
-inline constexpr double kDecimalError = 8.0 * 0x1p-24;
-
-// Throws Error if assimp would misread the COLLADA text without a word, or never come back: a
-// number that it does not read to within kDecimalError (it drops digits beyond the 15th decimal,
-// and whole parts of 20 digits wrap around or become zero), or an index that is not a whole number.
-void check_collada(std::string_view text, const std::string& subject);
+// COLLADA files come out in metres (their own <unit> applied) with the axes as they stand in the
+// file (<up_axis> is ignored, as the tools of ROS do); glTF files in their own numbers.
+TriangleMesh read_collada(std::string_view bytes, const std::string& subject);
+TriangleMesh read_gltf(std::string_view bytes, const std::filesystem::path& path);
 
 // The size in metres that a COLLADA text states of its unit; 1 where it states none.
 double collada_unit(std::string_view text, const std::string& subject);
 
-// Throws Error if the glTF or GLB file holds something that assimp reads wrongly without a word or
-// falls over: positions that are not 32-bit floats (it copies their bytes), compressed meshes,
-// sparse accessors, nodes in a loop. Returns the number of triangles of the meshes shown, each
-// counted once: assimp drops those whose corners are out of range, so it must find as many.
-std::size_t check_gltf(std::string_view bytes, const std::string& subject);
+// What a scene may cost: a small file can show its meshes any number of times.
+class SceneBudget {
+ public:
+  explicit SceneBudget(const std::string& subject) : subject_(subject) {}
+
+  // Before a mesh is shown under so many transforms. Throws Error beyond 2^25 vertices and
+  // triangles together, and 2^29 vertices times transforms.
+  void take(const TriangleMesh& mesh, std::size_t transforms);
+  // Throws Error for more than 512 transforms of one node and those above it.
+  void check_depth(std::size_t transforms) const;
+  // A node of the scene. Throws Error beyond 2^18.
+  void take_node();
+
+ private:
+  const std::string& subject_;
+  std::size_t shown_ = 0;
+  std::size_t moved_ = 0;
+  std::size_t nodes_ = 0;
+};
 
 }  // namespace spherule::internal

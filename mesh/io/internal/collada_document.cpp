@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/io/internal/collada_document.h"
+
+#include "spheretree/error.h"
+#include "spheretree/text.h"
+
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+using Element = ColladaDocument::Element;
+
+// Elements may be written with the prefix of the namespace.
+std::string_view local_name(const Element& element) {
+  const std::string_view name = element.Name();
+  return name.substr(name.rfind(':') + 1);
+}
+
+}  // namespace
+
+ColladaDocument::ColladaDocument(std::string_view text, const std::string& subject)
+    : subject_(subject), document_(true, tinyxml2::PRESERVE_WHITESPACE) {
+  const tinyxml2::XMLError fault = document_.Parse(text.data(), text.size());
+  if (fault == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) {
+    throw Error(subject_, "not a mesh: XML elements are nested too deep");
+  }
+  if (fault != tinyxml2::XML_SUCCESS) {
+    throw Error(subject_, "line " + std::to_string(document_.ErrorLineNum()) +
+                              ": not a mesh: " + document_.ErrorName());
+  }
+  root_ = document_.RootElement();
+  if (root_ == nullptr || local_name(*root_) != "COLLADA") {
+    throw Error(subject_, "not a mesh: not COLLADA");
+  }
+  index(*root_);
+}
+
+void ColladaDocument::index(const Element& element) {
+  for (const Element* at = element.FirstChildElement(); at != nullptr;
+       at = at->NextSiblingElement()) {
+    if (local_name(*at) != at->Name()) fail(*at, "a namespace prefix is not supported");
+    if (const char* id = at->Attribute("id")) {
+      const auto [it, is_new] = ids_.try_emplace({at->Name(), id}, at);
+      if (!is_new) it->second = nullptr;
+    }
+    index(*at);
+  }
+}
+
+const Element& ColladaDocument::referred(const char* name, const Element& from,
+                                         const char* attribute) const {
+  const std::string reference = text_attribute(from, attribute);
+  if (!reference.starts_with('#')) {
+    fail(from, "refers to " + in_quotes(reference) + ", which is not in this file");
+  }
+  return with_id(name, reference.substr(1), from);
+}
+
+const Element& ColladaDocument::with_id(const char* name, const std::string& id,
+                                        const Element& from) const {
+  const auto it = ids_.find({name, id});
+  if (it == ids_.end()) {
+    fail(from, "refers to the " + std::string(name) + " " + in_quotes(id) + ", which is not there");
+  }
+  if (it->second == nullptr) {
+    fail(from, "refers to the " + std::string(name) + " " + in_quotes(id) +
+                   ", which is there several times");
+  }
+  return *it->second;
+}
+
+const Element& ColladaDocument::child(const Element& parent, const char* name) const {
+  const Element* const found = parent.FirstChildElement(name);
+  if (found == nullptr) fail(parent, "has no <" + std::string(name) + ">");
+  if (found->NextSiblingElement(name) != nullptr) {
+    fail(parent, "has more than one <" + std::string(name) + ">");
+  }
+  return *found;
+}
+
+std::string ColladaDocument::text_attribute(const Element& element, const char* name) const {
+  const char* const text = element.Attribute(name);
+  if (text == nullptr) fail(element, "has no attribute " + in_quotes(name));
+  return text;
+}
+
+std::size_t ColladaDocument::whole_attribute(const Element& element, const char* name,
+                                             std::size_t absent) const {
+  const char* const text = element.Attribute(name);
+  if (text == nullptr) return absent;
+  const std::optional<std::int64_t> value = whole_number(text);
+  if (!value || *value < 0 || *value > std::numeric_limits<std::uint32_t>::max()) {
+    fail(element, "the attribute " + in_quotes(name) + " is not a whole number below 2^32");
+  }
+  return static_cast<std::size_t>(*value);
+}
+
+std::string_view ColladaDocument::text(const Element& element) const {
+  const tinyxml2::XMLNode* const content = element.FirstChild();
+  if (content == nullptr) return {};
+  if (content->ToText() == nullptr || content->NextSibling() != nullptr) {
+    fail(element, "holds something between its numbers");
+  }
+  return content->Value();
+}
+
+std::vector<double> ColladaDocument::numbers(const Element& element) const {
+  std::vector<double> result;
+  for (const std::string_view word : words_of(text(element))) {
+    const std::optional<double> value = finite_number(word);
+    if (!value) fail(element, in_quotes(word) + " is not a finite number");
+    result.push_back(*value);
+  }
+  return result;
+}
+
+std::vector<std::int64_t> ColladaDocument::whole_numbers(const Element& element) const {
+  std::vector<std::int64_t> result;
+  for (const std::string_view word : words_of(text(element))) {
+    const std::optional<std::int64_t> value = whole_number(word);
+    if (!value) fail(element, in_quotes(word) + " is not a whole number");
+    result.push_back(*value);
+  }
+  return result;
+}
+
+std::vector<std::string> ColladaDocument::words(const Element& element) const {
+  const std::vector<std::string_view> found = words_of(text(element));
+  return {found.begin(), found.end()};
+}
+
+void ColladaDocument::fail(const Element& element, const std::string& reason) const {
+  throw Error(subject_, "line " + std::to_string(element.GetLineNum()) + ": <" +
+                            std::string(element.Name()) + "> " + reason);
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <tinyxml2.h>
+#include <vector>
+
+// The XML of a COLLADA file (Khronos, "COLLADA - Digital Asset Schema Release 1.5.0"), with checked
+// access.
+
+namespace spherule::internal {
+
+class ColladaDocument {
+ public:
+  using Element = tinyxml2::XMLElement;
+
+  // `subject` names the file in an Error and has to outlive the document. Throws Error if the text
+  // is not well-formed XML, or is not COLLADA.
+  ColladaDocument(std::string_view text, const std::string& subject);
+
+  const Element& root() const { return *root_; }
+
+  // The element of this name whose id a reference "#id" names. Throws Error if there is none or
+  // more than one, and for a reference into another file.
+  const Element& referred(const char* name, const Element& from, const char* attribute) const;
+  const Element& with_id(const char* name, const std::string& id, const Element& from) const;
+
+  // The only child of this name, which has to be there.
+  const Element& child(const Element& parent, const char* name) const;
+  std::string text_attribute(const Element& element, const char* name) const;
+  // A whole number that is not negative, `absent` if there is no such attribute.
+  std::size_t whole_attribute(const Element& element, const char* name, std::size_t absent) const;
+
+  // What stands in an element: nothing but white space between.
+  std::vector<double> numbers(const Element& element) const;
+  std::vector<std::int64_t> whole_numbers(const Element& element) const;
+  std::vector<std::string> words(const Element& element) const;
+
+  // Throws Error with the line of the element.
+  [[noreturn]] void fail(const Element& element, const std::string& reason) const;
+
+ private:
+  void index(const Element& element);
+  std::string_view text(const Element& element) const;
+
+  const std::string& subject_;
+  tinyxml2::XMLDocument document_;
+  const Element* root_ = nullptr;
+  // By name and id; null if several elements share them.
+  std::map<std::pair<std::string, std::string>, const Element*> ids_;
+};
+
+}  // namespace spherule::internal

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/io/internal/collada_nodes.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Element = ColladaDocument::Element;
+
+Affine transform_of(const ColladaDocument& document, const Element& element) {
+  const std::string_view name = element.Name();
+  const std::vector<double> numbers = document.numbers(element);
+  const std::size_t needed = name == "matrix" ? 16 : name == "rotate" ? 4 : 3;
+  if (numbers.size() != needed) {
+    document.fail(element, "has " + std::to_string(numbers.size()) + " numbers, not " +
+                               std::to_string(needed));
+  }
+  if (name == "matrix") return collada_matrix(document, element, numbers);
+  const Vector3d vector(numbers[0], numbers[1], numbers[2]);
+  if (name == "translate") return {Matrix3d::Identity(), vector};
+  if (name == "scale") return {Matrix3d(vector.asDiagonal()), Vector3d::Zero()};
+  const double degrees = std::fmod(numbers[3], 360.0);  // exact
+  if (degrees == 0.0) return {Matrix3d::Identity(), Vector3d::Zero()};
+  const Vector3d axis = vector.stableNormalized();
+  if (!(std::abs(axis.norm() - 1.0) < 1e-9)) document.fail(element, "has no axis");
+  const Eigen::AngleAxisd turn(degrees * (std::numbers::pi / 180.0), axis);
+  return {turn.toRotationMatrix(), Vector3d::Zero()};
+}
+
+}  // namespace
+
+std::vector<Affine> collada_transforms(const ColladaDocument& document, const Element& node) {
+  std::vector<Affine> result;
+  for (const Element* at = node.FirstChildElement(); at != nullptr; at = at->NextSiblingElement()) {
+    const std::string_view name = at->Name();
+    if (name == "skew" || name == "lookat") document.fail(*at, "is not supported");
+    if (name != "matrix" && name != "rotate" && name != "translate" && name != "scale") continue;
+    const Affine made = transform_of(document, *at);
+    if (made.linear != Matrix3d::Identity() || !made.offset.isZero(0.0)) result.push_back(made);
+  }
+  return result;
+}
+
+Affine collada_matrix(const ColladaDocument& document, const Element& element,
+                      const std::vector<double>& entries) {
+  if (entries.size() != 16) document.fail(element, "has not 16 numbers");
+  if (entries[12] != 0.0 || entries[13] != 0.0 || entries[14] != 0.0 || entries[15] != 1.0) {
+    document.fail(element, "is a transform that is not affine and finite");
+  }
+  Affine result;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      result.linear(row, column) = entries[static_cast<std::size_t>(4 * row + column)];
+    }
+    result.offset[row] = entries[static_cast<std::size_t>(4 * row + 3)];
+  }
+  return result;
+}
+
+}  // namespace spherule::internal

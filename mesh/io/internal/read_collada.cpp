@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/io/internal/collada_document.h"
+#include "mesh/io/internal/collada_geometry.h"
+#include "mesh/io/internal/collada_nodes.h"
+#include "mesh/io/internal/collada_skin.h"
+#include "mesh/io/internal/placed_part.h"
+#include "mesh/io/internal/scene_file.h"
+#include "spheretree/text.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace spherule::internal {
+namespace {
+
+using Element = ColladaDocument::Element;
+
+class ColladaReader {
+ public:
+  ColladaReader(std::string_view bytes, const std::string& subject)
+      : subject_(subject), document_(bytes, subject), budget_(subject) {}
+
+  TriangleMesh run() {
+    scene_ = &shown_scene();
+    const double unit = metres(document_);
+    if (unit != 1.0) {
+      chain_.push_back(
+          {Eigen::Matrix3d(unit * Eigen::Matrix3d::Identity()), Eigen::Vector3d::Zero()});
+    }
+    root_chain_ = chain_;
+    visit_children(*scene_);
+    return std::move(result_);
+  }
+
+  // What the file states of its unit.
+  static double metres(const ColladaDocument& document) {
+    const Element* const asset = document.root().FirstChildElement("asset");
+    const Element* const unit = asset == nullptr ? nullptr : asset->FirstChildElement("unit");
+    const char* const text = unit == nullptr ? nullptr : unit->Attribute("meter");
+    if (text == nullptr) return 1.0;
+    const double size = finite_number(text).value_or(0.0);
+    if (!(size > 0.0 && size <= 1e15)) document.fail(*unit, "states no usable size in metres");
+    return size;
+  }
+
+ private:
+  const Element& shown_scene() const {
+    if (const Element* const scene = document_.root().FirstChildElement("scene")) {
+      return document_.referred("visual_scene", document_.child(*scene, "instance_visual_scene"),
+                                "url");
+    }
+    const Element* const library = document_.root().FirstChildElement("library_visual_scenes");
+    if (library == nullptr) document_.fail(document_.root(), "names no scene to show");
+    return document_.child(*library, "visual_scene");
+  }
+
+  void visit_children(const Element& parent) {
+    for (const Element* at = parent.FirstChildElement(); at != nullptr;
+         at = at->NextSiblingElement()) {
+      const std::string_view name = at->Name();
+      if (name == "node") {
+        visit(*at);
+      } else if (name == "instance_node") {
+        const Element& node = document_.referred("node", *at, "url");
+        if (std::find(open_.begin(), open_.end(), &node) != open_.end()) {
+          document_.fail(*at, "shows a node within itself");
+        }
+        visit(node);
+      } else if (name == "instance_geometry") {
+        TriangleMesh part = mesh_of(document_.referred("geometry", *at, "url"));
+        budget_.take(part, chain_.size());
+        place(part, chain_, 0.0, kColladaEntryError);
+        append(result_, part, subject_);
+      } else if (name == "instance_controller") {
+        show_controller(*at);
+      }
+    }
+  }
+
+  void visit(const Element& node) {
+    budget_.take_node();
+    const std::size_t before = chain_.size();
+    for (const Affine& transform : collada_transforms(document_, node)) {
+      chain_.push_back(transform);
+    }
+    budget_.check_depth(chain_.size());
+    open_.push_back(&node);
+    budget_.check_depth(open_.size());
+    visit_children(node);
+    open_.pop_back();
+    chain_.erase(chain_.begin() + static_cast<std::ptrdiff_t>(before), chain_.end());
+  }
+
+  // Parsed once however often it is shown.
+  const TriangleMesh& mesh_of(const Element& geometry) {
+    const auto [it, is_new] = meshes_.try_emplace(&geometry);
+    if (is_new) it->second = collada_mesh(document_, geometry, subject_);
+    return it->second;
+  }
+
+  void show_controller(const Element& instance) {
+    const Element& controller = document_.referred("controller", instance, "url");
+    const Element* const skin = controller.FirstChildElement("skin");
+    if (skin == nullptr) {
+      document_.fail(controller, "is no skin: morphs are not supported");
+    }
+    const TriangleMesh& rest = mesh_of(document_.referred("geometry", *skin, "source"));
+    const ColladaSkin bound = collada_skin(document_, *skin, rest.vertices.size());
+    SkinnedPart part(rest, kColladaEntryError);
+    for (std::size_t j = 0; j <= bound.joints.size(); ++j) {
+      if (bound.weights[j].empty()) continue;
+      std::vector<Affine> chain = root_chain_;
+      if (j < bound.joints.size()) {
+        chain = chain_of_joint(joint_of(bound, j, instance), instance);
+        chain.push_back(bound.inverse_bind[j]);
+      }
+      chain.push_back(bound.bind_shape);
+      budget_.take(rest, chain.size());
+      part.add(chain, bound.weights[j]);
+    }
+    append(result_, part.take(), subject_);
+  }
+
+  const Element& joint_of(const ColladaSkin& skin, std::size_t j, const Element& instance) const {
+    if (skin.are_ids) return document_.with_id("node", skin.joints[j], instance);
+    for (const Element* at = instance.FirstChildElement("skeleton"); at != nullptr;
+         at = at->NextSiblingElement("skeleton")) {
+      const std::string id = document_.words(*at).empty() ? "" : document_.words(*at).front();
+      if (!id.starts_with('#')) document_.fail(*at, "names no node of this file");
+      const Element& root = document_.with_id("node", id.substr(1), *at);
+      if (const Element* const found = with_sid(root, skin.joints[j])) return *found;
+    }
+    document_.fail(instance, "has no skeleton with the joint " + skin.joints[j]);
+  }
+
+  static const Element* with_sid(const Element& node, const std::string& sid) {
+    const char* const own = node.Attribute("sid");
+    if (own != nullptr && own == sid) return &node;
+    for (const Element* at = node.FirstChildElement("node"); at != nullptr;
+         at = at->NextSiblingElement("node")) {
+      if (const Element* const found = with_sid(*at, sid)) return found;
+    }
+    return nullptr;
+  }
+
+  std::vector<Affine> chain_of_joint(const Element& joint, const Element& instance) const {
+    std::vector<Affine> upward;
+    const tinyxml2::XMLElement* at = &joint;
+    for (; at != nullptr && at != scene_;
+         at = at->Parent() == nullptr ? nullptr : at->Parent()->ToElement()) {
+      const std::vector<Affine> own = collada_transforms(document_, *at);
+      upward.insert(upward.end(), own.rbegin(), own.rend());
+    }
+    if (at == nullptr) document_.fail(instance, "has a joint that is not in the scene shown");
+    budget_.check_depth(upward.size());
+    std::vector<Affine> chain = root_chain_;
+    chain.insert(chain.end(), upward.rbegin(), upward.rend());
+    return chain;
+  }
+
+  const std::string& subject_;
+  ColladaDocument document_;
+  SceneBudget budget_;
+  const Element* scene_ = nullptr;
+  std::vector<const Element*> open_;  // nodes
+  std::vector<Affine> chain_;
+  std::vector<Affine> root_chain_;
+  std::map<const Element*, TriangleMesh> meshes_;
+  TriangleMesh result_;
+};
+
+}  // namespace
+
+TriangleMesh read_collada(std::string_view bytes, const std::string& subject) {
+  return ColladaReader(bytes, subject).run();
+}
+
+double collada_unit(std::string_view text, const std::string& subject) {
+  return ColladaReader::metres(ColladaDocument(text, subject));
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// COLLADA and glTF: what they show and where, against assimp and by hand, and files that are broken
+// or made to do harm.
+#include "mesh/io/mesh_io.h"
+#include "mesh/mesh_report.h"
+#include "spheretree/error.h"
+#include "tests/mesh/mesh_files.h"
+#include "tests/mesh/scene_files.h"
+#include "tests/support/random.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/zoo.h"
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/scene.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+class SceneFormats : public ::testing::Test {
+ protected:
+  TriangleMesh read(const std::string& extension, std::string_view bytes) {
+    return read_mesh(dir_.write("part." + extension, bytes));
+  }
+  AlignedBox3d box(const std::string& extension, std::string_view bytes) {
+    return mesh_report(read(extension, bytes)).box;
+  }
+  ::testing::AssertionResult refused(const std::string& extension, std::string_view bytes,
+                                     const std::string& why) {
+    try {
+      read(extension, bytes);
+    } catch (const Error& e) {
+      const std::string message = e.what();
+      if (message.find(why) != std::string::npos) return ::testing::AssertionSuccess();
+      return ::testing::AssertionFailure() << "'" << message << "' lacks '" << why << "'";
+    }
+    return ::testing::AssertionFailure() << "was read";
+  }
+
+  test::TempDir dir_;
+  TriangleMesh cube_ = test::cube_mesh();
+};
+
+TEST_F(SceneFormats, Collada) {
+  const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();
+  const std::string good = test::dae_text(cube_, identity);
+  EXPECT_TRUE(mesh_report(read("dae", good)).closed);
+  // Shown twice, once moved.
+  const std::string twice =
+      replaced(good, "</visual_scene>",
+               "<node><translate>5 0 0</translate><instance_geometry url=\"#g\"/></node>"
+               "</visual_scene>");
+  EXPECT_EQ(mesh_report(read("dae", twice)).components, 2u);
+  EXPECT_TRUE(refused("dae", replaced(good, "<p>0 2 3", "<p>0 2 99"), "dae"));
+  EXPECT_TRUE(refused("dae", replaced(good, "\">0 0 0 1 0", "\">nan 0 0 1 0"), "not a finite"));
+  EXPECT_TRUE(refused("dae", replaced(good, "\">0 0 0 1 0", "\">1e999 0 0 1 0"), "not a finite"));
+  EXPECT_TRUE(refused("dae", replaced(good, "\">0 0 0 1 0", "\">1e30 0 0 1 0"), "beyond 1e15"));
+  EXPECT_TRUE(refused("dae", replaced(good, "<p>0 2 3", "<p>0 2 3."), "not a whole number"));
+  EXPECT_TRUE(refused("dae", replaced(good, "<p>0 2 3", "<p>0 -2 3"), "vertex -2"));
+  EXPECT_TRUE(refused("dae", replaced(good, "<p>0 2 3", "<p>0 4294967298 3"), "4294967298"));
+  EXPECT_TRUE(refused("dae", replaced(good, "<p>0 2 3", "<p>0 <b/>2 3"), "between its numbers"));
+  EXPECT_TRUE(refused("dae", replaced(good, "<p>0 2 3", "<p>0 2"), "count of triangles"));
+  EXPECT_TRUE(refused("dae", good.substr(0, good.size() / 2), "not a mesh"));
+  EXPECT_TRUE(refused("dae", "<html/>", "not COLLADA"));
+  EXPECT_TRUE(
+      refused("dae", replaced(good, "<instance_geometry url=\"#g\"/>", ""), "no triangles"));
+  EXPECT_TRUE(refused("dae", replaced(good, "url=\"#g\"", "url=\"other.dae#g\""), "in this file"));
+  EXPECT_TRUE(refused("dae", replaced(good, "url=\"#g\"", "url=\"#h\""), "not there"));
+  Eigen::Matrix4d projective = identity;
+  projective(3, 0) = 0.5;
+  EXPECT_TRUE(refused("dae", test::dae_text(cube_, projective), "affine"));
+}
+
+// Numbers become the nearest doubles.
+TEST_F(SceneFormats, ColladaIsReadInDoublePrecision) {
+  const std::string text = replaced(test::dae_text(cube_, Eigen::Matrix4d::Identity()),
+                                    "\">0 0 0 1 0", "\">0.1234567890123456789 0 0 1 0");
+  const TriangleMesh mesh = read("dae", text);
+  const auto is_exact = [](const Vector3d& v) { return v.x() == 0.1234567890123456789; };
+  EXPECT_TRUE(std::ranges::any_of(mesh.vertices, is_exact));
+  EXPECT_LT(mesh.vertex_error, 1e-15);
+}
+
+TEST_F(SceneFormats, ColladaAccessorsStayWithinTheirArrays) {
+  const std::string good = test::dae_text(cube_, Eigen::Matrix4d::Identity());
+  const std::string accessor = "count=\"8\" stride=\"3\"";
+  for (const char* broken :
+       {"count=\"8\" stride=\"4\"", "count=\"9\" stride=\"3\"",
+        "count=\"8\" stride=\"3\" offset=\"1\"", "count=\"8\" stride=\"4294967295\"",
+        "count=\"8\" stride=\"3\" offset=\"4294967290\"", "count=\"4294967295\" stride=\"3\"",
+        "count=\"8\" stride=\"2\"", "count=\"8\" stride=\"0\""}) {
+    EXPECT_TRUE(refused("dae", replaced(good, accessor, broken), "reaches beyond")) << broken;
+  }
+  EXPECT_TRUE(
+      refused("dae", replaced(good, accessor, "count=\"-8\" stride=\"3\""), "whole number"));
+  EXPECT_TRUE(refused("dae", replaced(good, "count=\"24\"", "count=\"23\""), "as many numbers"));
+}
+
+// A node that shows a node that shows ... each twice: 2^60 cubes from sixty nodes.
+TEST_F(SceneFormats, ColladaNodesEndSomewhere) {
+  const std::string good = test::dae_text(cube_, Eigen::Matrix4d::Identity());
+  std::string bomb = "<library_nodes>";
+  for (int i = 0; i < 60; ++i) {
+    const std::string next = "<instance_node url=\"#n" + std::to_string(i + 1) + "\"/>";
+    bomb += "<node id=\"n" + std::to_string(i) + "\">" + next + next + "</node>";
+  }
+  bomb += "<node id=\"n60\"/></library_nodes><library_visual_scenes>";
+  const std::string shown = "<instance_node url=\"#n0\"/><instance_geometry";
+  EXPECT_TRUE(refused(
+      "dae", replaced(replaced(good, "<library_visual_scenes>", bomb), "<instance_geometry", shown),
+      "more than 2^18 nodes"));
+  const std::string cycle =
+      "<library_nodes><node id=\"a\"><node id=\"b\"><instance_node url=\"#a\"/></node></node>"
+      "</library_nodes><library_visual_scenes>";
+  EXPECT_TRUE(
+      refused("dae",
+              replaced(replaced(good, "<library_visual_scenes>", cycle), "<instance_geometry",
+                       "<instance_node url=\"#a\"/><instance_geometry"),
+              "within itself"));
+  std::string deep, shut;
+  for (int i = 0; i < 20000; ++i) {
+    deep += "<node>";
+    shut += "</node>";
+  }
+  EXPECT_TRUE(refused("dae",
+                      replaced(good, "<instance_geometry url=\"#g\"/>",
+                               deep + "<instance_geometry url=\"#g\"/>" + shut),
+                      "too deep"));
+}
+
+TEST_F(SceneFormats, ColladaRefusesWhatItCannotPlace) {
+  const std::string good = test::dae_text(cube_, Eigen::Matrix4d::Identity());
+  for (const char* transform :
+       {"<skew>45 0 1 0 1 0 0</skew>", "<lookat>0 0 0 1 0 0 0 1 0</lookat>"}) {
+    EXPECT_TRUE(refused(
+        "dae", replaced(good, "<instance_geometry", std::string(transform) + "<instance_geometry"),
+        "not supported"));
+  }
+  for (const char* shape : {"brep", "convex_mesh"}) {
+    const std::string name = shape;
+    EXPECT_TRUE(refused("dae", replaced(good, "<mesh>", "<" + name + "/><mesh>"), "not supported"));
+  }
+}
+
+TEST_F(SceneFormats, ColladaSkinsFollowTheirJoints) {
+  const std::string good = test::skinned_dae(cube_);
+  // Bound 50 along x, the joint at 7 along z.
+  const AlignedBox3d found = box("dae", good);
+  EXPECT_EQ(found.min(), Vector3d(50, 0, 7));
+  EXPECT_EQ(found.max(), Vector3d(51, 1, 8));
+  EXPECT_TRUE(refused("dae", replaced(good, ">J<", ">K<"), "the joint K"));
+  EXPECT_TRUE(refused("dae", replaced(good, "<v>0 0", "<v>1 0"), "out of range"));
+  EXPECT_TRUE(refused("dae", replaced(good, "<v>0 0", "<v>0"), "fewer indices"));
+  EXPECT_TRUE(refused("dae", replaced(good, "count=\"1\">1<", "count=\"1\">0.5<"), "add up to 1"));
+  EXPECT_TRUE(refused("dae", replaced(good, "<vcount>1", "<vcount>-1"), "fewer indices"));
+  const std::string morph =
+      "<controller id=\"c\"><morph source=\"#g\"/></controller></library_controllers>";
+  const std::size_t begin = good.find("<controller"), end = good.find("</library_controllers>");
+  EXPECT_TRUE(refused("dae", good.substr(0, begin) + morph + good.substr(end + 22), "morphs"));
+}
+
+TEST_F(SceneFormats, Gltf) {
+  const Vector3d shift(1, 2, 3);
+  const std::string good = test::gltf_text(cube_, shift);
+  EXPECT_EQ(box("gltf", good).min(), Vector3d(2, 4, 6));
+  EXPECT_TRUE(refused("gltf", replaced(good, "5126", "5123"), "of the type"));
+  EXPECT_TRUE(refused("gltf", replaced(good, "VEC3", "VEC2"), "of the type"));
+  EXPECT_TRUE(refused("gltf", replaced(good, "\"count\":8", "\"count\":7"), "vertex 7"));
+  EXPECT_TRUE(refused("gltf", replaced(good, "\"count\":8", "\"count\":9"), "beyond its buffer"));
+  EXPECT_TRUE(refused("gltf", replaced(good, "\"count\":36", "\"count\":35"), "incomplete"));
+  EXPECT_TRUE(refused("gltf", replaced(good, "\"count\":36", "\"count\":3600"), "beyond"));
+  EXPECT_TRUE(refused("gltf", replaced(good, "\"count\":36", "\"count\":-3"), "whole number"));
+  EXPECT_TRUE(refused("gltf", replaced(good, "[1]", "[0]"), "two parents"));
+  EXPECT_TRUE(refused("gltf", replaced(good, "[1]", "[7]"), "not there"));
+  EXPECT_TRUE(refused("gltf", replaced(good, "\"2.0\"", "\"1.0\""), "version 2"));
+  EXPECT_TRUE(refused("gltf",
+                      replaced(good, "\"scene\":0",
+                               "\"scene\":0,\"extensionsRequired\":[\"KHR_draco_"
+                               "mesh_compression\"]"),
+                      "requires the extension"));
+  // Buffers outside the folder are not opened.
+  for (const char* elsewhere : {"../", "/etc/", "file:///etc/", "%2e%2e/", "https://a/"}) {
+    EXPECT_TRUE(refused("gltf", replaced(good, "data:application/octet-stream;base64,", elsewhere),
+                        "in its folder"))
+        << elsewhere;
+  }
+  EXPECT_TRUE(refused("gltf", replaced(good, "base64,", "base64,*"), "not base64"));
+  EXPECT_TRUE(refused("gltf", replaced(good, "\"buffer\":0,\"byteOffset\":0", "\"buffer\":9"),
+                      "not there"));
+  for (const char* place : {"\"byteOffset\":1", "\"byteOffset\":18446744073709551615",
+                            "\"byteStride\":13,\"byteOffset\":0", "\"byteStride\":4"}) {
+    EXPECT_TRUE(refused("gltf", replaced(good, "\"byteOffset\":0", place), "str") ||
+                refused("gltf", replaced(good, "\"byteOffset\":0", place), "beyond") ||
+                read("gltf", replaced(good, "\"byteOffset\":0", place)).triangles.size() == 12)
+        << place;
+  }
+
+  const std::string glb = test::glb_bytes(cube_, shift);
+  EXPECT_EQ(box("glb", glb).min(), Vector3d(2, 4, 6));
+  EXPECT_TRUE(refused("glb", glb.substr(0, glb.size() - 1), "cut short"));
+  EXPECT_TRUE(refused("glb", glb.substr(0, 15), "cut short"));
+}
+
+TEST_F(SceneFormats, GltfSkinsAndMorphTargetsArePlacedAsTheFileSays) {
+  const std::string skin = test::skinned_gltf(cube_);
+  // The joint stands at 100 along x; the node's own transform counts for nothing.
+  EXPECT_EQ(box("gltf", skin).min(), Vector3d(100, 0, 0));
+  EXPECT_TRUE(refused("gltf", replaced(skin, "\"joints\":[1]", "\"joints\":[9]"), "not there"));
+  EXPECT_TRUE(refused("gltf", replaced(skin, "\"joints\":[1]", "\"joints\":[]"), "out of range"));
+  EXPECT_TRUE(refused("gltf", replaced(skin, "\"nodes\":[0,1]", "\"nodes\":[0]"), "the scene"));
+  EXPECT_TRUE(refused("gltf", replaced(skin, "\"JOINTS_0\":2,", ""), "without joints"));
+
+  const std::string morph = test::morphed_gltf(cube_);
+  EXPECT_EQ(box("gltf", morph).min(), Vector3d(50, 0, 0));
+  EXPECT_EQ(box("gltf", replaced(morph, "[1.0]", "[0.5]")).min(), Vector3d(25, 0, 0));
+  EXPECT_EQ(box("gltf", replaced(morph, "\"mesh\":0", "\"mesh\":0,\"weights\":[2]")).min(),
+            Vector3d(100, 0, 0));
+  EXPECT_TRUE(refused("gltf", replaced(morph, "[1.0]", "[1,1]"), "as many weights"));
+}
+
+TEST_F(SceneFormats, GltfNodesMayBeDeep) {
+  std::string nodes = "\"nodes\":[";
+  constexpr int kDepth = 20000;
+  for (int i = 0; i < kDepth; ++i) nodes += "{\"children\":[" + std::to_string(i + 1) + "]},";
+  const std::string good = test::gltf_text(cube_, Vector3d::Zero());
+  const std::size_t begin = good.find("\"nodes\":[{"), end = good.find("\"meshes\"");
+  EXPECT_EQ(read("gltf", good.substr(0, begin) + nodes + "{\"mesh\":0}]," + good.substr(end))
+                .triangles.size(),
+            12u);
+  std::string moved = nodes;
+  for (std::size_t at = 0; (at = moved.find("{\"ch", at)) != std::string::npos; at += 4) {
+    moved.insert(at + 1, "\"translation\":[1,0,0],");
+  }
+  EXPECT_TRUE(refused("gltf", good.substr(0, begin) + moved + "{\"mesh\":0}]," + good.substr(end),
+                      "512 transforms"));
+}
+
+// The vertices of all triangles in an order of their own.
+std::vector<Vector3d> corners_of(const TriangleMesh& mesh) {
+  std::vector<Vector3d> corners;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    for (const int corner : t) corners.push_back(mesh.vertices[static_cast<std::size_t>(corner)]);
+  }
+  return corners;
+}
+
+std::vector<Vector3d> corners_by_assimp(const std::string& file) {
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* const scene = importer.ReadFile(file, 0);
+  if (scene == nullptr) throw Error(file, importer.GetErrorString());
+  std::vector<Vector3d> corners;
+  const std::function<void(const aiNode&, const aiMatrix4x4&)> visit = [&](const aiNode& node,
+                                                                           const aiMatrix4x4& to) {
+    const aiMatrix4x4 here = to * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const aiMesh& mesh = *scene->mMeshes[node.mMeshes[i]];
+      for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+        for (unsigned k = 0; k < mesh.mFaces[f].mNumIndices; ++k) {
+          const aiVector3D v = here * mesh.mVertices[mesh.mFaces[f].mIndices[k]];
+          corners.emplace_back(v.x, v.y, v.z);
+        }
+      }
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], here);
+  };
+  visit(*scene->mRootNode, aiMatrix4x4());
+  return corners;
+}
+
+// As far as single precision goes; each library has its own order of nodes.
+void expect_same(std::vector<Vector3d> a, std::vector<Vector3d> b) {
+  ASSERT_EQ(a.size(), b.size());
+  double size = 0.0;
+  for (const Vector3d& v : a) size = std::max(size, v.norm());
+  std::size_t found = 0;
+  for (const Vector3d& v : a) {
+    const auto near =
+        std::ranges::find_if(b, [&](const Vector3d& w) { return (v - w).norm() <= 1e-5 * size; });
+    if (near == b.end()) continue;
+    ++found;
+    b.erase(near);
+  }
+  EXPECT_EQ(found, a.size());
+}
+
+TEST_F(SceneFormats, RandomScenesAreThoseOfAssimp) {
+  test::Random random(5);
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    for (const bool is_collada : {true, false}) {
+      const std::string bytes =
+          is_collada ? test::random_dae(cube_, random) : test::random_gltf(cube_, random);
+      const auto path = dir_.write(is_collada ? "a.dae" : "a.gltf", bytes);
+      expect_same(corners_of(read_mesh(path)), corners_by_assimp(path.string()));
+      if (HasFailure()) return;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spherule
