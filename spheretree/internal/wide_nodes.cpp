@@ -30,7 +30,7 @@ float WideNodes::cost(std::int32_t node, int slots) const {
 }
 
 void WideNodes::choose(std::int32_t node, double largest_radius) {
-  const auto [left, right] = std::pair(at(node).left, at(node).right);
+  const std::int32_t left = at(node).left, right = at(node).right;
   const double size = largest_radius > 0.0 ? at(node).sphere.radius / largest_radius : 0.0;
   const auto split = [&](int slots) {
     std::pair best(std::numeric_limits<float>::infinity(), 0);
