@@ -10,6 +10,16 @@ need_build_tools() {
   command -v ninja >/dev/null || command -v make >/dev/null || packages+=(ninja-build)
 }
 
+# clang with its sanitizers, as far as no other compiler is asked for.
+need_clang() {
+  [ -n "${CXX:-}" ] || packages+=(clang libclang-rt-14-dev llvm)
+}
+
+# What the presets of developers link with: programs of this size take seconds less each.
+need_linker() {
+  packages+=(lld)
+}
+
 # Libraries and command without the adapters. Boost is for OpenVDB's headers.
 need_libraries() {
   packages+=(libeigen3-dev libexpat1-dev zlib1g-dev libtbb-dev nlohmann-json3-dev

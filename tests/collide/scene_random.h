@@ -30,7 +30,11 @@ class SceneRandom {
     return {uniform(-1.0, 1.0) * length, uniform(-1.0, 1.0) * length, uniform(-1.0, 1.0) * length,
             uniform(0.1, 1.0) * length};
   }
-  Pose pose(double size) { return Pose(quaternion(), point(size)); }
+  // Drawn one after the other: compilers evaluate arguments in orders of their own.
+  Pose pose(double size) {
+    const Eigen::Vector3d place = point(size);
+    return Pose(quaternion(), place);
+  }
 
  private:
   std::mt19937_64 engine_;

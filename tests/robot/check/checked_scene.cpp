@@ -53,7 +53,9 @@ std::shared_ptr<const SphereTree> random_tree(SceneRandom& random, double size) 
 }
 
 RobotModel random_robot_with_trees(SceneRandom& random, double size) {
-  RobotModel robot = random_robot(random, random.whole(1, 8), random.whole(0, 1) == 1);
+  // One after the other, as the order in which arguments are evaluated is the compiler's.
+  const bool branching = random.whole(0, 1) == 1;
+  RobotModel robot = random_robot(random, random.whole(1, 8), branching);
   for (std::size_t link = 0; link < robot.links().size(); ++link) {
     for (int i = random.whole(0, 2); i > 0; --i) {
       robot.attach(robot.links()[link].name, random_tree(random, size));

@@ -62,7 +62,7 @@ class ConfirmedScene {
       const std::string& name = robot_.links()[link].name;
       if (bodies_[link].padding > 0.0) scene_.set_padding(name, bodies_[link].padding);
     }
-    const auto place = [&] { return Pose(random.quaternion(), random.point(1.2)); };
+    const auto place = [&] { return random.pose(1.2); };
     for (int k = 0; k < 4; ++k) {
       const Pose pose = place();
       const Thing thing = random_thing(random, k == 0 ? 1.5 : 0.3);  // one that holds bodies

@@ -61,7 +61,7 @@ class VoxelScene {
     attached_ = random_shape(random, 0.04);
     scene_.attach("object", names_.back(), attached_.tree(), at_last_);
     for (int k = 0; k < 4; ++k) {
-      const Pose pose(random.quaternion(), random.point(1.0));
+      const Pose pose = random.pose(1.0);
       Shape shape = random_shape(random, k == 0 ? 0.6 : 0.08);  // one holds bodies
       const std::string name = "obstacle " + std::to_string(k);
       if (k == 3 && shape.voxels) {
@@ -147,7 +147,7 @@ class VoxelScene {
       Joint joint;
       joint.name = "joint " + std::to_string(i);
       joint.type = random.whole(0, 3) == 0 ? JointType::kPrismatic : JointType::kRevolute;
-      joint.parent_from_joint = Pose(random.quaternion(), random.point(0.4));
+      joint.parent_from_joint = random.pose(0.4);
       joint.axis = random.point(1.0);
       joint.lower = -100.0;
       joint.upper = 100.0;
@@ -270,7 +270,7 @@ TEST(RobotConfirmedTruth, WhatIsInsideTouches) {
         robot.attach("link", cover_of((is_inside ? small : large).covered()));
         RobotScene scene(robot);
         scene.set_padding("link", padding);
-        scene.add("shape", shape, Pose(random.quaternion(), random.point(0.1)));
+        scene.add("shape", shape, random.pose(0.1));
         const RobotChecker checker = scene.snapshot({.meshes = {small.covered(), large.covered()}});
         RobotChecker::Scratch scratch(checker);
         const std::vector<double> from = {0.0}, to = {3.0};

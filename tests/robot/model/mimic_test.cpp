@@ -156,7 +156,8 @@ TEST(Mimic, MeshesAmongSpheresAreJudgedAsThePairsAre) {
   int hits = 0;
   int all = 0;
   for (int i = 0; i < effort(100, 40); ++i) {
-    RobotModel robot = random_robot(random, random.whole(1, 8), random.whole(0, 1) == 1);
+    const bool branching = random.whole(0, 1) == 1;
+    RobotModel robot = random_robot(random, random.whole(1, 8), branching);
     for (const Link& link : std::vector<Link>(robot.links())) {
       robot.attach(link.name, cover_of(mesh));
     }
