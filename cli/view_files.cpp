@@ -165,7 +165,9 @@ std::vector<ViewItem> sampled_leaks(const std::vector<ViewItem>& items) {
         for (const ViewPart& surface : other.parts) {
           const auto* mesh = std::get_if<TriangleMesh>(&surface.content);
           if (mesh == nullptr || surface.link != part.link) continue;
-          leaks.parts.push_back({leak_points(*mesh, spheres), part.link});
+          ViewPart& found_here = leaks.parts.emplace_back();
+          found_here.content = leak_points(*mesh, spheres);
+          found_here.link = part.link;
         }
       }
     }
