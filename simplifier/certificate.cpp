@@ -157,11 +157,10 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
   if (options.external != nullptr) {
-    return internal::certify(mesh, distance, internal::Clearance(*options.external, distance),
-                             spheres, options);
+    return internal::certify(mesh, distance, internal::Clearance(*options.external), spheres,
+                             options);
   }
   const ExternalSpheres own = flood_closely(mesh, distance, options.padding);
-  // The fine flood makes too many external spheres for finding their contacts to pay.
   return proved(mesh, distance, own, internal::Clearance(own), spheres, options);
 }
 

@@ -18,7 +18,7 @@ SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
   internal::check_options(options);
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
-  return internal::cover(mesh, distance, internal::Clearance(external, distance), options);
+  return internal::cover(mesh, distance, internal::Clearance(external), options);
 }
 
 SphereCover internal::cover(const TriangleMesh& mesh, const MeshDistance& distance,

@@ -151,7 +151,7 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
   internal::check_max_error(max_error);
   const internal::ThreadLimit limit(threads);
   const MeshDistance distance(mesh);
-  const internal::Clearance clearance(external, distance);
+  const internal::Clearance clearance(external);
   const internal::LocalError error(max_error, {});
   const internal::SolidCells cells(clearance, distance, error, max_error, kCells, 1.0);
   // S holds M grown by the padding, and of that the box has the corners.

@@ -45,8 +45,8 @@ std::vector<CoverLevel> fit_levels(const TriangleMesh& mesh, const ExternalSpher
   if (check_levels(max_errors).empty()) return {};
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
-  return internal::fit_levels(distance, internal::Clearance(external, distance), spheres,
-                              max_errors, options);
+  return internal::fit_levels(distance, internal::Clearance(external), spheres, max_errors,
+                              options);
 }
 
 std::vector<CoverLevel> internal::fit_levels(const MeshDistance& distance,

@@ -110,7 +110,7 @@ Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
   check(spheres, options);
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
-  const internal::Clearance clearance(external, distance);
+  const internal::Clearance clearance(external);
   Repair result;
   const std::vector<double> before = internal::protrusions_over_solid(clearance, distance, spheres);
   result.protrusion_before = internal::greatest(before);

@@ -126,7 +126,7 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   result.times.external = external_time.seconds();
 
   const Stopwatch cover_time;
-  const internal::Clearance clearance(result.external, distance);
+  const internal::Clearance clearance(result.external);
   result.cover = used.stage2_method
                      ? cover_solid(mesh, result.external, used)
                      : internal::cover(mesh, distance, clearance, cover_options(used));

@@ -29,9 +29,15 @@ struct BoxCell {
   // Every point of the cell is within this of the centre.
   double reach() const { return norm_upper(half); }
 
-  std::array<BoxCell, 2> halves() const {
+  // The axis across which halves() are cut, at the centre; the lower one is the first.
+  int longest() const {
     int axis = 0;
     half.maxCoeff(&axis);
+    return axis;
+  }
+
+  std::array<BoxCell, 2> halves() const {
+    const int axis = longest();
     BoxCell low = *this;
     low.half[axis] =
         0.5 * half[axis] * (1.0 + 1e-12) + 2.0 * kUnitRoundoff * std::abs(center[axis]);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/mesh_distance.h"
 #include "simplifier/external_spheres.h"
-#include "simplifier/solid/sphere_hierarchy.h"
+#include "simplifier/solid/nearest_cells.h"
 
 #include <Eigen/Geometry>
 
 #include <limits>
-#include <vector>
+#include <memory>
 
 namespace spherule::internal {
 
@@ -27,9 +26,6 @@ struct ClearanceAt {
 class Clearance {
  public:
   explicit Clearance(const ExternalSpheres& external);
-  // The same answers, within the tolerance: `distance`, to the mesh that the external spheres
-  // touch, makes them faster.
-  Clearance(const ExternalSpheres& external, const MeshDistance& distance);
 
   // With a tolerance the bounds may be that far apart; with a limit, clearances beyond it are not
   // told apart (`lower` is then at most the limit). Both make the search much faster.
@@ -41,10 +37,8 @@ class Clearance {
   double least_external() const { return least_external_; }
 
  private:
-  Clearance(const ExternalSpheres& external, SphereHierarchy spheres);
-
-  std::vector<Eigen::Vector3d> centers_;
-  SphereHierarchy spheres_;
+  // Of the external spheres; copies share them.
+  std::shared_ptr<const NearestCells> cells_;
   Eigen::AlignedBox3d box_;
   double least_external_;
 };

@@ -42,7 +42,7 @@ SimplifiedSolid::SimplifiedSolid(const TriangleMesh& mesh, const ExternalSpheres
                                  const CoverOptions& options, const std::string& method)
     : max_error(options.max_error),
       distance(checked(mesh, options, method)),
-      clearance(external, distance),
+      clearance(external),
       everywhere(max_error, {}),
       cells(checked(clearance, max_error), distance, everywhere, max_error, kCells) {}
 

@@ -254,7 +254,7 @@ TEST(SimplifiedProbe, TellsTheClearanceInS) {
   const TriangleMesh mesh = l_bracket();
   const ExternalSpheres external = externals_of(mesh, {});
   const MeshDistance distance(mesh);
-  const Clearance clearance(external, distance);
+  const Clearance clearance(external);
   constexpr double kTolerance = 1e-3;
   const internal::SimplifiedProbe probe(clearance, distance, kTolerance);
   const auto judged = [&](const Vector3d& p) {

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/solid/box_cell.h"
+#include "simplifier/solid/nearest_sphere.h"
+#include "simplifier/solid/sphere_hierarchy.h"
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace spherule::internal {
+
+// The nearest sphere from short lists: cells of a box, halved where queries come, list every sphere
+// that is nearest to some point of the cell, as LeastGap computes it, and few others. The list of a
+// cell is gathered from a hierarchy of the spheres or, where its parent has one, from that. Faster
+// than a search where many queries come to a cell.
+//
+// Safe to share between threads. The answers do not depend on which cells were made before.
+class NearestCells {
+ public:
+  // Cells take up to `memory` bytes in all, beside that of the whole box; where that is used up,
+  // lists stay as long as they are, and those that are missing are made for each query again.
+  NearestCells(std::vector<Sphere> spheres, const Eigen::AlignedBox3d& box,
+               std::size_t memory = kMemory);
+  ~NearestCells();
+
+  // What SphereHierarchy::nearest() answers without a tolerance, except where that is queried, with
+  // the tolerance: for points outside of the box, and where too many spheres are tied for a list.
+  // Which points these are depends on spheres and box only.
+  NearestSphere nearest(const Eigen::Vector3d& point, double limit, double tolerance) const;
+
+  const std::vector<Sphere>& spheres() const { return spheres_; }
+  // Bytes that cells take, beside that of the whole box.
+  std::size_t memory_used() const { return used_.load(std::memory_order_relaxed); }
+
+  static constexpr std::size_t kMemory = std::size_t{1} << 26;
+
+ private:
+  struct Cell;
+
+  // A half that cannot be kept stands in `passing`, and so do those that are made from it.
+  const Cell& make_half(const Cell& cell, std::size_t side, std::unique_ptr<Cell>& passing) const;
+  void fill(Cell& cell, const Cell* parent) const;
+  // A sphere that is nearest to the middle of a cell, or nearly; -1 if there is none.
+  std::int32_t nearest_at(const BoxCell& box, const Cell* parent) const;
+
+  std::vector<Sphere> spheres_;
+  SphereHierarchy hierarchy_;
+  Eigen::AlignedBox3d box_;
+  int first_listed_ = 0;  // halvings before the first lists
+  std::size_t memory_;
+  std::unique_ptr<Cell> root_;
+  mutable std::atomic<std::size_t> used_{0};  // bytes
+};
+
+}  // namespace spherule::internal
