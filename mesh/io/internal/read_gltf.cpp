@@ -243,11 +243,11 @@ class GltfReader {
       return;
     }
     for (std::size_t i = 2; i < corners.size(); ++i) {
-      if (mode == kTriangleFan) {
-        add(corners[0], corners[i - 1], corners[i]);
-      } else {
+      if (mode == kTriangleStrip) {
         const std::size_t turned = i % 2;  // every second triangle of a strip is turned over
         add(corners[i - 2 + turned], corners[i - 1 - turned], corners[i]);
+      } else {
+        add(corners[0], corners[i - 1], corners[i]);
       }
     }
   }
