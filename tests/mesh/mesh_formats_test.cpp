@@ -111,6 +111,14 @@ TEST_F(Formats, ObjIndices) {
   EXPECT_EQ(read("obj", vertices + "f 1/7/9 2//9 3/7\n").triangles.size(), 1u);
   EXPECT_EQ(read("obj", "f 1 2 3\n" + vertices).triangles.size(), 1u);  // used before it is named
   EXPECT_EQ(read("obj", vertices + "f 1 2 \\\n 3 4\n").triangles.size(), 2u);
+  // A polygon comes by each vertex a few times at most.
+  const auto face_of = [](int corners) {
+    std::string text = "f";
+    for (int i = 0; i < corners; ++i) text += ' ' + std::to_string(1 + i % 4);
+    return text + '\n';
+  };
+  EXPECT_EQ(read("obj", vertices + face_of(19)).triangles.size(), 17u);
+  EXPECT_TRUE(refused("obj", vertices + face_of(20), "a face of 20 corners, with 4 vertices"));
   EXPECT_TRUE(refused("obj", vertices + "f 1 2 5\n", "vertex 4 (from 0) of 4"));
   EXPECT_TRUE(refused("obj", vertices + "f 1 2 0\n", "vertex 0; the first one is 1"));
   EXPECT_TRUE(refused("obj", vertices + "f 1 2 -5\n", "vertex -1"));
