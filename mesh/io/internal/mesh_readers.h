@@ -27,7 +27,8 @@ double unit_of_3mf(std::string_view bytes, const std::string& subject);
 // Appends the polygon as a fan about its first corner. The winding number of a fan is that of the
 // polygon, so a planar polygon that is not convex is covered too. Points and lines (fewer than
 // three corners) are no surface and are left out. Throws Error for an index that is not below
-// `vertex_count`.
+// `vertex_count`, and for more corners than four times as many: no polygon comes by its vertices
+// that often, even where bridges lead to its holes.
 void add_polygon(TriangleMesh& mesh, std::span<const std::int64_t> corners,
                  std::size_t vertex_count, const std::string& subject);
 
