@@ -15,11 +15,6 @@ need_clang() {
   [ -n "${CXX:-}" ] || packages+=(clang libclang-rt-14-dev llvm)
 }
 
-# What the presets of developers link with: programs of this size take seconds less each.
-need_linker() {
-  packages+=(lld)
-}
-
 # Libraries and command without the adapters. Boost is for OpenVDB's headers.
 need_libraries() {
   packages+=(libeigen3-dev libexpat1-dev zlib1g-dev libtbb-dev nlohmann-json3-dev

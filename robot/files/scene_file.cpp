@@ -168,7 +168,7 @@ class SceneReader {
 
   // The name, which no other body or obstacle has.
   std::string take_name(const Value& value) {
-    value.unless(value.has("name"), "\"name\" is missing");
+    value.unless(value.has("name"), "'name' is missing");
     const std::string name = value.at("name").name();
     value.unless(names_.insert(name).second,
                  "the name " + internal::in_quotes(name) + " is there twice");

@@ -143,7 +143,7 @@ const std::vector<Room>& rooms() {
       {"tests",
        kAll,
        {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "ompl", "tbb",
-        "tinyxml2", "urdfdom", "zlib", "opencascade"}},
+        "tinyxml2", "urdfdom", "zlib", "opencascade", "assimp"}},
       // Users of the installed package: they see the library from outside.
       {"tests/consumer", {}, {"Eigen", "fcl", "ompl", "spherule"}},
   };

@@ -152,7 +152,7 @@ TEST_F(SceneFileTest, RefusesFaultyObstacles) {
                "attached object 0: the name 'a' is there twice");
   expect_fault(obstacle(R"("pose": {})"), "obstacle 0 'table': has no shape: one of mesh");
   expect_fault(obstacle(R"("half_space": {}, "ball": {"radius": 1})"), "has both");
-  expect_fault(obstacle(R"("ball": {"radius": -1})"), "'table', sphere: the radius");
+  expect_fault(obstacle(R"("ball": {"radius": -1})"), "'table', ball: the radius");
   expect_fault(obstacle(R"("ball": {"radius": 1e16})"), "is beyond 1e15");
   expect_fault(obstacle(R"("ball": {"radius": "1"})"), "is not a number");
   expect_fault(obstacle(R"("ball": {"radius": 1, "length": 2})"), "the key 'length'");
