@@ -10,11 +10,6 @@ need_build_tools() {
   command -v ninja >/dev/null || command -v make >/dev/null || packages+=(ninja-build)
 }
 
-# clang with its sanitizers, as far as no other compiler is asked for.
-need_clang() {
-  [ -n "${CXX:-}" ] || packages+=(clang libclang-rt-14-dev llvm)
-}
-
 # Libraries and command without the adapters. Boost is for OpenVDB's headers.
 need_libraries() {
   packages+=(libeigen3-dev libexpat1-dev zlib1g-dev libtbb-dev nlohmann-json3-dev
