@@ -121,7 +121,7 @@ Pose read_pose(const Value& object) {
   const Vector3d position =
       pose.has("position") ? pose.at("position").numbers<3>() : Vector3d(Vector3d::Zero());
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
-  pose.unless(!(pose.has("quaternion") && pose.has("rpy")), "has both \"quaternion\" and \"rpy\"");
+  pose.unless(!(pose.has("quaternion") && pose.has("rpy")), "has both 'quaternion' and 'rpy'");
   if (pose.has("quaternion")) {
     const Eigen::Vector4d q = pose.at("quaternion").numbers<4>();
     pose.at("quaternion").unless(q.norm() > 1e-9, "is zero");
@@ -142,7 +142,7 @@ class SceneReader {
 
   SceneDescription read() {
     root_.unless(root_.has("format") && root_.at("format").text() == kFormat,
-                 "is no scene: \"format\" is not \"spherule-scene\"");
+                 "is no scene: 'format' is not 'spherule-scene'");
     root_.at("version").unless(root_.at("version").whole() == kVersion,
                                "is not 1, the version that this program reads");
     root_.require_keys({"format", "version", "robot", "obstacles", "attached", "regions",
@@ -276,7 +276,7 @@ class SceneReader {
       object.shape = read_spheres<decltype(object.shape)>(key, shape);
     }
     if (value.has("max_error")) {
-      value.unless(key == "mesh", "\"max_error\" is for meshes");
+      value.unless(key == "mesh", "'max_error' is for meshes");
       object.max_error = value.at("max_error").positive();
     }
     object.link_from_object = read_pose(value);
