@@ -49,7 +49,7 @@ class CoveredMesh {
   // What it was made of.
   const SphereTree& cover() const { return *cover_; }
   const MeshTree& mesh() const { return solid_.mesh(); }
-  // The mesh with its inside, as stored: growth() is 0.
+  // The mesh with its inside, as stored: inflation() is 0.
   const SolidMesh& solid() const { return solid_; }
   // Those that a sphere of cover().spheres() stands for, at least in part, sorted. Every point of
   // a triangle lies in a sphere under which the triangle is listed.

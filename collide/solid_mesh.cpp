@@ -55,11 +55,11 @@ class PointGaps {
 
 // Of all spheres that may touch the solid, the one that is deepest in it.
 //
-// A point of the solid's boundary is at most growth() from the surface, so that a sphere whose
-// centre is inside has to move by its radius, growth() and the centre's distance from the surface,
-// and one whose centre is not by the radius and growth() less that distance. The distance is that
-// of the centre's image, off by error(); what NearestFirst adds for its own roundings is counted
-// in.
+// A point of the solid's boundary is at most inflation() from the surface, so that a sphere whose
+// centre is inside has to move by its radius, inflation() and the centre's distance from the
+// surface, and one whose centre is not by the radius and inflation() less that distance. The
+// distance is that of the centre's image, off by error(); what NearestFirst adds for its own
+// roundings is counted in.
 class FindDeepest {
  public:
   FindDeepest(const SphereTree& tree, const SolidMesh& solid, const SpheresInside& spheres)

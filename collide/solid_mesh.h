@@ -19,13 +19,14 @@ class MeshInside;
 
 // A mesh with its inside, as an obstacle. Immutable; threads may share it.
 //
-// The solid is the closed set of the points within growth() of a triangle or of the inside, which
-// is that of CoveredMesh (mesh_contact.h): the points about which the winding number of a closed
-// surface is not zero. It contains the mesh of the file and its inside, because growth() is
-// TriangleMesh::vertex_error. Each surface is judged by itself: overlapping ones take nothing from
-// each other, whichever way they are turned, and a sealed hollow is inside, as is what it holds.
-// A part with a boundary, or which cannot be turned alike, has no inside, and what lies within it
-// without touching it is free. One whose content was moved to another is as a SphereTree like that.
+// The solid is the closed set of the points within inflation() of a triangle or of the inside,
+// which is that of CoveredMesh (mesh_contact.h): the points about which the winding number of a
+// closed surface is not zero. It contains the mesh of the file and its inside, because inflation()
+// is TriangleMesh::vertex_error. Each surface is judged by itself: overlapping ones take nothing
+// from each other, whichever way they are turned, and a sealed hollow is inside, as is what it
+// holds. A part with a boundary, or which cannot be turned alike, has no inside, and what lies
+// within it without touching it is free. One whose content was moved to another is as a SphereTree
+// like that.
 class SolidMesh {
  public:
   // Throws Error for a mesh that validate() refuses.
@@ -54,7 +55,7 @@ class SolidMesh {
 //
 // G4: if a sphere and the solid have a point in common in exact arithmetic under exactly the given
 // poses, the answer is true; so a sphere wholly inside collides, whatever shell it is in. G5: as
-// for collides() of a MeshTree (mesh_tree.h), with growth() beside the radius; a point that is
+// for collides() of a MeshTree (mesh_tree.h), with inflation() beside the radius; a point that is
 // nearer to the surface than rounding tells counts as inside. Allocates as collides() of two trees
 // does.
 bool collides(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,

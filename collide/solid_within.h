@@ -8,7 +8,7 @@
 namespace spherule {
 
 // Whether two meshes with their insides, rigidly placed, come within a clearance of each other; of
-// 0 whether they have a point in common. growth() of both counts.
+// 0 whether they have a point in common. inflation() of both counts.
 //
 // Never false if the exact distance under exactly the given poses is at most the clearance. If it
 // is true, the exact one is larger by rounding only: some units in the last place of the scene, and
