@@ -98,7 +98,8 @@ struct NearestCells::Cell {
     for (const std::atomic<const Cell*>& half : halves) delete half.load();
   }
 
-  // Whether a query should go on to a half that has not been made.
+  // Whether a query should go on to a half that has not been made. To shorten lists, only half of
+  // the memory is used: lists that are missing cost each query more.
   bool is_to_be_halved(bool is_room_left) const {
     if (depth == kDeepest) return false;
     if (!listed) return true;
@@ -131,7 +132,7 @@ NearestSphere NearestCells::nearest(const Vector3d& point, double limit, double 
     const int axis = cell->box.longest();
     const std::size_t side = point[axis] < cell->box.center[axis] ? 0 : 1;
     const Cell* half = cell->halves[side].load(std::memory_order_acquire);
-    if (half == nullptr && !cell->is_to_be_halved(memory_used() < memory_)) break;
+    if (half == nullptr && !cell->is_to_be_halved(memory_used() < memory_ / 2)) break;
     cell = half != nullptr ? half : &make_half(*cell, side, passing);
   }
   if (!cell->listed) return hierarchy_.nearest(point, limit, tolerance);
