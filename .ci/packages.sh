@@ -26,7 +26,8 @@ need_adapters() {
 
 # Bullet is a peer of the benchmarks; its verdicts are tested. Assimp, KDL and urdfdom are oracles.
 need_tests() {
-  packages+=(libassimp-dev libgtest-dev libgmp-dev libmpfr-dev liborocos-kdl-dev liburdfdom-dev libbullet-dev)
+  packages+=(libassimp-dev libgtest-dev libgmp-dev libmpfr-dev liborocos-kdl-dev liburdfdom-dev
+    libbullet-dev)
 }
 
 need_benchmarks() {

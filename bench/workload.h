@@ -34,8 +34,9 @@ struct Obstacle {
   Pose world_from_part;
 };
 
-// What is queried of every engine: for each configuration of the program, does any body touch an
-// obstacle? Bodies are tested in their order, the torch first, because it is what usually touches.
+// The query that every engine answers: for each configuration of the program, does any body touch
+// an obstacle? Bodies are tested in their order, the torch first, because it is what usually
+// touches.
 struct Workload {
   std::string name;
   RobotModel robot;

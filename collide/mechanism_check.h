@@ -51,7 +51,7 @@ struct MechanismContact {
 
 // Bodies of a jointed mechanism against obstacles that stand still, in single precision: a fast
 // test before an exact one. For each configuration it finds either that no two spheres of a pair
-// touch, or that some do, for sure; where rounding leaves that uncertain it queries.
+// touch, or that some do, for sure; where rounding leaves that uncertain it calls `confirm`.
 //
 // Proof in mechanism/mechanism_parts.cpp. Exactness is meant with respect to any poses of the
 // bodies that are within `pose_error` of those of the exact mechanism: the largest distance of a

@@ -136,7 +136,7 @@ void write_claims(const std::vector<ClaimRow>& rows, std::ostream& out) {
   out << "<h2>What the paper says without a figure</h2>\n<p>Spheres with stage 1 and with a size "
          "so "
          "small that nothing vanishes; and how much faster than FCL on the meshes they are queried "
-         "about a rod nearby.</p>\n";
+         "with a rod nearby.</p>\n";
   Table table(out,
               {"shape", "holes", "triangles", "with stage 1", "without", "FCL's time over ours"});
   for (const ClaimRow& row : rows) {

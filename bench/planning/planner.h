@@ -12,7 +12,7 @@
 
 namespace spherule {
 
-// What a planner queries whether states and motions are valid.
+// What tells a planner whether states and motions are valid.
 enum class Validity {
   kProved,   // RobotChecker, motions proved free at every point
   kSampled,  // RobotChecker, at steps of the motion

@@ -9,7 +9,7 @@ namespace spherule {
 // True if `checker` finds a collision.
 bool collides(Checker& checker, const ArmPositions& positions);
 
-// The same for who queries about any robot's configurations. Keeps referring to it.
+// The same for the configurations of any robot. Keeps referring to it.
 ContactTest contact_test(Checker& checker);
 
 }  // namespace spherule

@@ -18,7 +18,7 @@
 
 namespace spherule {
 
-// What is queried of one scene.
+// The queries in one scene.
 class Course {
  public:
   // Keeps referring to both.

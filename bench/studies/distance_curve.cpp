@@ -180,7 +180,7 @@ class Contest {
   std::vector<NamedPairEngine> engines_;
 };
 
-// Times what is queried of the bodies, distance by distance.
+// Times the queries on the bodies, distance by distance.
 class Curve {
  public:
   Curve(const Part& moving, const Part& standing)

@@ -29,7 +29,7 @@ class NearestCells {
                std::size_t memory = kMemory);
   ~NearestCells();
 
-  // What SphereHierarchy::nearest() answers without a tolerance, except where that is queried, with
+  // What SphereHierarchy::nearest() answers without a tolerance, except where that is called, with
   // the tolerance: for points outside of the box, and where too many spheres are tied for a list.
   // Which points these are depends on spheres and box only.
   NearestSphere nearest(const Eigen::Vector3d& point, double limit, double tolerance) const;

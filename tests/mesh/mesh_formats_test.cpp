@@ -4,7 +4,7 @@
 #include "mesh/mesh_report.h"
 #include "spheretree/error.h"
 #include "tests/mesh/mesh_files.h"
-#include "tests/support/temp_dir.h"
+#include "tests/mesh/read_files.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
@@ -17,36 +17,12 @@
 namespace spherule {
 namespace {
 
-class Formats : public ::testing::Test {
+class Formats : public test::ReadFiles {
  protected:
-  TriangleMesh read(const std::string& extension, std::string_view bytes) {
-    return read_mesh(dir_.write("part." + extension, bytes));
-  }
-  // The message of the error that reading throws.
-  std::string error(const std::string& extension, std::string_view bytes) {
-    try {
-      read(extension, bytes);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
-  }
-  ::testing::AssertionResult refused(const std::string& extension, std::string_view bytes,
-                                     const std::string& why) {
-    const std::string message = error(extension, bytes);
-    if (message.find(why) != std::string::npos) return ::testing::AssertionSuccess();
-    return ::testing::AssertionFailure() << "'" << message << "' lacks '" << why << "'";
-  }
-
-  test::TempDir dir_;
   TriangleMesh cube_ = test::cube_mesh();
 };
 
-std::string replaced(std::string text, std::string_view from, std::string_view to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
+using test::replaced;
 
 TEST_F(Formats, BinaryStlOfWrongSize) {
   const std::string good = test::binary_stl(cube_);

@@ -5,9 +5,9 @@
 #include "mesh/mesh_report.h"
 #include "spheretree/error.h"
 #include "tests/mesh/mesh_files.h"
+#include "tests/mesh/read_files.h"
 #include "tests/mesh/scene_files.h"
 #include "tests/support/random.h"
-#include "tests/support/temp_dir.h"
 #include "tests/support/zoo.h"
 
 #include <assimp/Importer.hpp>
@@ -26,35 +26,16 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-std::string replaced(std::string text, std::string_view from, std::string_view to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
-
-class SceneFormats : public ::testing::Test {
+class SceneFormats : public test::ReadFiles {
  protected:
-  TriangleMesh read(const std::string& extension, std::string_view bytes) {
-    return read_mesh(dir_.write("part." + extension, bytes));
-  }
   AlignedBox3d box(const std::string& extension, std::string_view bytes) {
     return mesh_report(read(extension, bytes)).box;
   }
-  ::testing::AssertionResult refused(const std::string& extension, std::string_view bytes,
-                                     const std::string& why) {
-    try {
-      read(extension, bytes);
-    } catch (const Error& e) {
-      const std::string message = e.what();
-      if (message.find(why) != std::string::npos) return ::testing::AssertionSuccess();
-      return ::testing::AssertionFailure() << "'" << message << "' lacks '" << why << "'";
-    }
-    return ::testing::AssertionFailure() << "was read";
-  }
 
-  test::TempDir dir_;
   TriangleMesh cube_ = test::cube_mesh();
 };
+
+using test::replaced;
 
 TEST_F(SceneFormats, Collada) {
   const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();

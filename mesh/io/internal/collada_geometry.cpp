@@ -6,6 +6,7 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -137,11 +138,8 @@ class MeshReader {
 
   void strip(const std::vector<std::int64_t>& corners, bool is_fan) {
     for (std::size_t i = 2; i < corners.size(); ++i) {
-      const std::size_t turned = i % 2;  // every second triangle of a strip is turned over
-      const std::int64_t triangle[3] = {is_fan ? corners[0] : corners[i - 2 + turned],
-                                        is_fan ? corners[i - 1] : corners[i - 1 - turned],
-                                        corners[i]};
-      polygon(triangle);
+      polygon(is_fan ? std::array{corners[0], corners[i - 1], corners[i]}
+                     : strip_triangle(corners, i));
     }
   }
 

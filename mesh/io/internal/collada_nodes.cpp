@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string_view>
 
 namespace spherule::internal {
@@ -49,19 +50,12 @@ std::vector<Affine> collada_transforms(const ColladaDocument& document, const El
 }
 
 Affine collada_matrix(const ColladaDocument& document, const Element& element,
-                      const std::vector<double>& entries) {
+                      std::span<const double> entries) {
   if (entries.size() != 16) document.fail(element, "has not 16 numbers");
-  if (entries[12] != 0.0 || entries[13] != 0.0 || entries[14] != 0.0 || entries[15] != 1.0) {
-    document.fail(element, "is a transform that is not affine and finite");
-  }
-  Affine result;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      result.linear(row, column) = entries[static_cast<std::size_t>(4 * row + column)];
-    }
-    result.offset[row] = entries[static_cast<std::size_t>(4 * row + 3)];
-  }
-  return result;
+  const std::optional<Affine> result =
+      affine_from(Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(entries.data()));
+  if (!result) document.fail(element, "is a transform that is not affine and finite");
+  return *result;
 }
 
 }  // namespace spherule::internal

@@ -4,7 +4,7 @@
 #include "mesh/io/internal/collada_document.h"
 #include "mesh/io/internal/placed_part.h"
 
-#include <string>
+#include <span>
 #include <vector>
 
 namespace spherule::internal {
@@ -21,6 +21,6 @@ std::vector<Affine> collada_transforms(const ColladaDocument& document,
 
 // A matrix of sixteen numbers, row by row.
 Affine collada_matrix(const ColladaDocument& document, const ColladaDocument::Element& element,
-                      const std::vector<double>& entries);
+                      std::span<const double> entries);
 
 }  // namespace spherule::internal

@@ -7,14 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 namespace spherule::internal {
 namespace {
 
 using Element = ColladaDocument::Element;
-
-// Weights of a vertex have to add up to 1 within this.
-constexpr double kWeightTolerance = 1e-3;
 
 const Element& needed_input(const ColladaDocument& document, const Element& parent,
                             const char* semantic) {
@@ -37,9 +35,8 @@ void read_joints(const ColladaDocument& document, const Element& skin, ColladaSk
     document.fail(joints, "has not as many matrices as joints");
   }
   for (std::size_t j = 0; j < values.count(); ++j) {
-    const auto first = values.numbers.begin() + static_cast<std::ptrdiff_t>(16 * j);
     result.inverse_bind.push_back(
-        collada_matrix(document, matrices, std::vector<double>(first, first + 16)));
+        collada_matrix(document, matrices, std::span(values.numbers).subspan(16 * j, 16)));
   }
 }
 

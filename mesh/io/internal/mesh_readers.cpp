@@ -28,4 +28,9 @@ void add_polygon(TriangleMesh& mesh, std::span<const std::int64_t> corners,
   }
 }
 
+std::array<std::int64_t, 3> strip_triangle(std::span<const std::int64_t> strip, std::size_t last) {
+  const std::size_t turned = last % 2;
+  return {strip[last - 2 + turned], strip[last - 1 - turned], strip[last]};
+}
+
 }  // namespace spherule::internal

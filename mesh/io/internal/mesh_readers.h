@@ -3,6 +3,7 @@
 
 #include "mesh/triangle_mesh.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,5 +32,9 @@ double unit_of_3mf(std::string_view bytes, const std::string& subject);
 // that often, even where bridges lead to its holes.
 void add_polygon(TriangleMesh& mesh, std::span<const std::int64_t> corners,
                  std::size_t vertex_count, const std::string& subject);
+
+// The triangle of a strip that ends at corner `last`, from 2 on: with the two corners before it,
+// every second one turned over, so that all are turned alike.
+std::array<std::int64_t, 3> strip_triangle(std::span<const std::int64_t> strip, std::size_t last);
 
 }  // namespace spherule::internal

@@ -10,9 +10,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 namespace spherule::internal {
+
+std::optional<Affine> affine_from(const Eigen::Matrix4d& matrix) {
+  const bool is_affine = matrix.row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
+  if (!is_affine || !matrix.allFinite()) return std::nullopt;
+  return Affine{matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
+}
 
 // With a point p of size s, off by e, and a matrix (A, t), off by d relative to its norms, A p + t
 // has a size of at most |A| s + |t| and is off by at most |A| e + d (|A| (s + e) + |t|); 2^-50 of
@@ -33,14 +38,8 @@ void place(TriangleMesh& part, std::span<const Affine> chain, double coordinate_
 }
 
 SkinnedPart::SkinnedPart(const TriangleMesh& rest, double entry_error)
-    : rest_(rest),
-      entry_error_(entry_error),
-      sum_(rest.vertices.size(), Eigen::Vector3d::Zero()),
-      error_(rest.vertices.size(), 0.0) {}
+    : rest_(rest), entry_error_(entry_error), sums_(rest.vertices.size()) {}
 
-// The weight errs by a decimal's rounding, and so does the product; the additions err by one
-// rounding each of what is summed so far, which later terms are charged for with the first ones: of
-// n terms no product passes through more than n. 2^-46 holds 64 of them.
 void SkinnedPart::add(std::span<const Affine> chain, std::span<const JointWeight> weights) {
   TriangleMesh moved;
   moved.vertices.reserve(weights.size());
@@ -48,19 +47,28 @@ void SkinnedPart::add(std::span<const Affine> chain, std::span<const JointWeight
   moved.vertex_error = rest_.vertex_error;
   place(moved, chain, 0.0, entry_error_);
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    const auto [vertex, weight] = weights[i];
     const Eigen::Vector3d& to = moved.vertices[i];
-    sum_[vertex] += weight * to;
-    error_[vertex] += weight * (moved.vertex_error + 0x1p-46 * to.norm()) * (1.0 + 0x1p-40);
+    Sum& sum = sums_[weights[i].vertex];
+    sum.position += weights[i].weight * to;
+    sum.size += weights[i].weight * to.norm();
+    sum.error += weights[i].weight * moved.vertex_error;
+    ++sum.terms;
   }
 }
 
+// Of n terms each errs by the rounding of its weight, a decimal, and of the product, and passes
+// through at most n additions: together less than (n + 3) u of the sizes of all, u = 2^-53. Twice
+// that holds the rounding of these sums of sizes and errors, too.
 TriangleMesh SkinnedPart::take() {
   TriangleMesh result;
-  result.vertices = std::move(sum_);
   result.triangles = rest_.triangles;
-  for (const double error : error_) {
-    result.vertex_error = std::max(result.vertex_error, error * (1.0 + 0x1p-40));
+  result.vertices.reserve(sums_.size());
+  for (const Sum& sum : sums_) {
+    const double terms = static_cast<double>(sum.terms) + 3.0;
+    const double upward = 1.0 + terms * 0x1p-52;
+    result.vertices.push_back(sum.position);
+    result.vertex_error =
+        std::max(result.vertex_error, (sum.error + terms * 0x1p-52 * sum.size) * upward);
   }
   return result;
 }

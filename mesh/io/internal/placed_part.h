@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@ struct Affine {
   Eigen::Vector3d offset;
 };
 
+// The transform of a matrix for column vectors; nothing if it is not affine or not finite.
+std::optional<Affine> affine_from(const Eigen::Matrix4d& matrix);
+
 // Moves the mesh by the last transform of the chain, then by the one before, up to the first, and
 // adds to its `vertex_error`. The coordinates are off by at most that and `coordinate_error` of the
 // largest, and the entries of a transform by at most `entry_error` of its norms.
@@ -30,6 +34,9 @@ struct JointWeight {
   std::size_t vertex = 0;
   double weight = 0.0;
 };
+
+// The weights of a vertex have to add up to 1 within this.
+inline constexpr double kWeightTolerance = 1e-3;
 
 // A mesh whose vertices are moved by joints: each goes to the weighted sum of where its joints take
 // it.
@@ -46,8 +53,13 @@ class SkinnedPart {
  private:
   const TriangleMesh& rest_;
   double entry_error_;
-  std::vector<Eigen::Vector3d> sum_;
-  std::vector<double> error_;  // of each vertex
+  struct Sum {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    double size = 0.0;   // of all terms, added up
+    double error = 0.0;  // of where joints take it, weighted
+    int terms = 0;
+  };
+  std::vector<Sum> sums_;  // of each vertex
 };
 
 // Adds the triangles of the part to the mesh.

@@ -10,9 +10,11 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -28,8 +30,6 @@ constexpr std::uint64_t kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;
 constexpr std::size_t kNone = ~std::size_t{0};
 // Of decimal numbers, and of the few products and the square root that make a matrix of them.
 constexpr double kEntryError = 0x1p-50;
-// Weights of a vertex have to add up to 1 within this.
-constexpr double kWeightTolerance = 1e-3;
 
 // A mesh as its accessors give it, with the weights of its morph targets applied.
 struct Primitive {
@@ -58,7 +58,7 @@ class GltfReader {
       const Json& entry = document_.item("nodes", node);
       const std::optional<std::uint64_t> mesh = document_.index(entry, "mesh");
       if (!mesh) continue;
-      for (Primitive& primitive : primitives(document_.item("meshes", *mesh), entry)) {
+      for (Primitive primitive : primitives_of(*mesh, entry)) {
         if (const auto skin = document_.index(entry, "skin")) {
           bend(primitive, document_.item("skins", *skin));
         } else {
@@ -94,12 +94,12 @@ class GltfReader {
                      std::vector<std::size_t>& open) {
     const std::vector<std::uint64_t> children = document_.indices(entry, key);
     for (std::size_t i = children.size(); i-- > 0;) {
-      document_.item("nodes", children[i]);
+      const Json& child_entry = document_.item("nodes", children[i]);
       const auto child = static_cast<std::size_t>(children[i]);
       Node& node = nodes_[child];
       if (node.is_shown) document_.fail("a node has two parents");
       node.is_shown = true;
-      node.transform = transform_of(document_.item("nodes", child));
+      node.transform = transform_of(child_entry);
       node.moved_by = node.transform || parent == kNone ? child : nodes_[parent].moved_by;
       node.parent = parent;
       open.push_back(child);
@@ -146,22 +146,23 @@ class GltfReader {
   // Column by column.
   Affine affine_of(std::span<const double> entries) const {
     if (entries.size() != 16) document_.fail("a matrix that has not 16 numbers");
-    if (entries[3] != 0.0 || entries[7] != 0.0 || entries[11] != 0.0 || entries[15] != 1.0) {
-      document_.fail("a node transform that is not affine and finite");
-    }
-    Affine result;
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) {
-        result.linear(row, column) = entries[static_cast<std::size_t>(4 * column + row)];
-      }
-      result.offset[row] = entries[static_cast<std::size_t>(12 + row)];
-    }
-    return result;
+    const std::optional<Affine> result =
+        affine_from(Eigen::Map<const Eigen::Matrix4d>(entries.data()));
+    if (!result) document_.fail("a node transform that is not affine and finite");
+    return *result;
   }
 
-  std::vector<Primitive> primitives(const Json& mesh, const Json& node) {
-    std::vector<double> weights = document_.numbers(node, "weights");
-    if (weights.empty()) weights = document_.numbers(mesh, "weights");
+  // Read once however often it is shown, but for nodes with weights of their own.
+  const std::vector<Primitive>& primitives_of(std::uint64_t index, const Json& node) {
+    const Json& mesh = document_.item("meshes", index);
+    const std::vector<double> weights = document_.numbers(node, "weights");
+    if (!weights.empty()) return morphed_ = read_primitives(mesh, weights);
+    const auto [it, is_new] = meshes_.try_emplace(index);
+    if (is_new) it->second = read_primitives(mesh, document_.numbers(mesh, "weights"));
+    return it->second;
+  }
+
+  std::vector<Primitive> read_primitives(const Json& mesh, std::span<const double> weights) {
     std::vector<Primitive> result;
     for (const Json& primitive : document_.list(mesh, "primitives")) {
       const std::uint64_t mode = document_.whole(primitive, "mode", kTriangles);
@@ -232,23 +233,13 @@ class GltfReader {
     if (corners.size() < 3 || (mode == kTriangles && corners.size() % 3 != 0)) {
       document_.fail("an incomplete triangle");
     }
-    const auto add = [&](std::int64_t a, std::int64_t b, std::int64_t c) {
-      const std::int64_t triangle[3] = {a, b, c};
+    const std::size_t step = mode == kTriangles ? 3 : 1;
+    for (std::size_t i = 2; i < corners.size(); i += step) {
+      const std::array<std::int64_t, 3> triangle =
+          mode == kTriangleStrip
+              ? strip_triangle(corners, i)
+              : std::array{corners[mode == kTriangles ? i - 2 : 0], corners[i - 1], corners[i]};
       add_polygon(mesh, triangle, mesh.vertices.size(), subject_);
-    };
-    if (mode == kTriangles) {
-      for (std::size_t i = 0; i < corners.size(); i += 3) {
-        add(corners[i], corners[i + 1], corners[i + 2]);
-      }
-      return;
-    }
-    for (std::size_t i = 2; i < corners.size(); ++i) {
-      if (mode == kTriangleStrip) {
-        const std::size_t turned = i % 2;  // every second triangle of a strip is turned over
-        add(corners[i - 2 + turned], corners[i - 1 - turned], corners[i]);
-      } else {
-        add(corners[0], corners[i - 1], corners[i]);
-      }
     }
   }
 
@@ -321,6 +312,8 @@ class GltfReader {
   SceneBudget budget_;
   std::vector<std::size_t> shown_;
   std::vector<Node> nodes_;
+  std::map<std::uint64_t, std::vector<Primitive>> meshes_;
+  std::vector<Primitive> morphed_;  // of the node shown last that has weights
   TriangleMesh result_;
 };
 

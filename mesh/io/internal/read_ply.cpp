@@ -6,13 +6,13 @@
 #include "spheretree/text.h"
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 namespace spherule::internal {
 namespace {
 
-// A strip makes a triangle of each corner and the two before it, turned over every second time; -1
-// begins a new strip.
+// The triangles of strips; -1 begins a new one.
 void add_strip(const std::vector<std::int64_t>& strip, const PlyData& data,
                std::vector<std::vector<std::int64_t>>& faces) {
   std::size_t begin = 0;
@@ -22,8 +22,8 @@ void add_strip(const std::vector<std::int64_t>& strip, const PlyData& data,
     } else if (strip[i] < 0) {
       data.fail("a strip refers to a negative vertex");
     } else if (i >= begin + 2) {
-      const bool turned = (i - begin) % 2 == 1;
-      faces.push_back({strip[turned ? i - 1 : i - 2], strip[turned ? i - 2 : i - 1], strip[i]});
+      const auto triangle = strip_triangle(std::span(strip).subspan(begin), i - begin);
+      faces.emplace_back(triangle.begin(), triangle.end());
     }
   }
 }
