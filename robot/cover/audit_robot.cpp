@@ -20,8 +20,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kSharePoints = 20000;
-// Of E: how closely curved primitives are tessellated, as cover_robot() does it.
-constexpr double kChordErrorOfError = 1.0 / 16.0;
 // Up to which positions kinematics_error_bound() holds.
 constexpr double kLargestPosition = 100.0;
 
