@@ -198,6 +198,16 @@ struct SimplifiedSolid {
   CertifyOptions certify_options;
 };
 
+// What `work` makes; an Error says of which link it is.
+template <typename Work>
+auto of_link(const std::string& link, Work work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error("link '" + link + "', " + error.subject(), error.reason());
+  }
+}
+
 Certificate audited(const LinkParts& part, const LinkDescription& link,
                     const RobotAuditOptions& options) {
   Certificate certificate = certify(*part.mesh, part.spheres, {.threads = options.threads});
@@ -262,7 +272,8 @@ RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSphere
     report(options.progress, part.index, steps, part.link);
     LinkAudit audit{part.link, part.spheres.size(), std::nullopt, 0.0};
     if (part.mesh) {
-      audit.certificate = audited(part, robot.links[part.index], options);
+      audit.certificate =
+          of_link(part.link, [&] { return audited(part, robot.links[part.index], options); });
       if (!audit.certificate->covered) {
         audit.uncovered_share = uncovered_share(*part.mesh, part.spheres);
         result.links_covered = false;
@@ -290,7 +301,7 @@ RobotRepair repair_robot(const RobotDescription& robot, std::span<const LinkSphe
   for (const LinkParts& part : parts) {
     report(options.progress, part.index, parts.size(), part.link);
     if (!part.mesh) continue;
-    result.links.push_back(repaired(part, options));
+    result.links.push_back(of_link(part.link, [&] { return repaired(part, options); }));
     const std::vector<Sphere>& mended = result.links.back().repair.spheres;
     const auto there =
         std::find_if(result.spheres.begin(), result.spheres.end(),
