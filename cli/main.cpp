@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/memory_reserve.h"
 #include "cli/usage_error.h"
 #include "spheretree/error.h"
 
@@ -81,5 +82,6 @@ int run_guarded(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Beyond a limit of file sizes a write is an error then, which names the file.
   std::signal(SIGXFSZ, SIG_IGN);
+  spherule::keep_memory_reserve();
   return spherule::run_guarded(argc, argv);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/cli/command_test_support.h"
+#include "tests/support/effort.h"
 
 #include <chrono>
 #include <signal.h>
@@ -48,19 +49,65 @@ TEST_F(OutputTest, PlacesAreCheckedBeforeTheWork) {
   EXPECT_EQ(files(), Files{"box.stl"});
 }
 
+// While it lives, this process and those that it starts have a limit of `amount`.
+class Limited {
+ public:
+  Limited(int resource, rlim_t amount) : resource_(resource) {
+    EXPECT_EQ(::getrlimit(kind(), &old_), 0);
+    struct rlimit limit = old_;
+    limit.rlim_cur = amount;
+    EXPECT_EQ(::setrlimit(kind(), &limit), 0);
+  }
+  Limited(const Limited&) = delete;
+  Limited& operator=(const Limited&) = delete;
+  ~Limited() { EXPECT_EQ(::setrlimit(kind(), &old_), 0); }
+
+ private:
+  __rlimit_resource kind() const { return static_cast<__rlimit_resource>(resource_); }
+
+  int resource_;
+  struct rlimit old_ = {};
+};
+
 TEST_F(OutputTest, ALimitOfFileSizesIsAnError) {
   write("out.tree", "precious");
   std::vector<std::array<double, 4>> many;
   for (int i = 0; i < 2000; ++i) many.push_back({1.0 * i, 0.0, 0.0, 1.0});
   write_spheres("many.json", many);
-  struct rlimit limit = {};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
-  struct rlimit small = limit;
-  small.rlim_cur = 4096;
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  expect_refusal({"tree", "many.json", "-o", "out.tree"}, "out.tree: cannot be written: ");
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  {
+    const Limited file_size(RLIMIT_FSIZE, 4096);
+    expect_refusal({"tree", "many.json", "-o", "out.tree"}, "out.tree: cannot be written: ");
+  }
   EXPECT_EQ(read("out.tree"), "precious");
+  EXPECT_EQ(files(), (Files{"box.stl", "many.json", "out.tree"}));
+}
+
+// At whatever allocation the memory ends, also among those that destructors make.
+TEST_F(OutputTest, RunningOutOfMemoryIsAnError) {
+  if (test::kSanitized) GTEST_SKIP() << "the address sanitizer needs all of the address space";
+  std::vector<std::array<double, 4>> many;
+  for (int i = 0; i < 20000; ++i) many.push_back({1.0 * i, 0.0, 0.0, 1.0});
+  write_spheres("many.json", many);
+  constexpr rlim_t kMegabyte = 1U << 20U;
+  // Libraries that are loaded do not always say what they lack.
+  rlim_t megabytes = 64;
+  for (;; ++megabytes) {
+    const Limited memory(RLIMIT_AS, megabytes * kMegabyte);
+    if (run({"--version"}).exit_code == 0) break;
+  }
+  int refused = 0;
+  for (bool done = false; !done; ++megabytes) {
+    write("out.tree", "precious");
+    const Limited memory(RLIMIT_AS, megabytes * kMegabyte);
+    const Outcome outcome = run({"tree", "many.json", "-o", "out.tree"});
+    done = outcome.exit_code == 0;
+    if (done) break;
+    ++refused;
+    ASSERT_EQ(outcome.exit_code, 2) << megabytes << " MB: " << outcome.err;
+    EXPECT_EQ(outcome.err, "spherule: out of memory\n");
+    EXPECT_EQ(read("out.tree"), "precious");
+  }
+  EXPECT_GT(refused, 2);
   EXPECT_EQ(files(), (Files{"box.stl", "many.json", "out.tree"}));
 }
 

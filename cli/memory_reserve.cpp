@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/memory_reserve.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <sys/resource.h>
+
+namespace spherule {
+namespace {
+
+constexpr std::size_t kMostReserve = std::size_t{64} << 20U;
+constexpr std::size_t kLeastReserve = std::size_t{1} << 20U;
+constexpr std::size_t kShareOfLimit = 32;
+
+std::atomic<void*> reserve = nullptr;
+
+[[noreturn]] void give_back_and_throw() {
+  std::free(reserve.exchange(nullptr));
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void keep_memory_reserve() {
+  std::size_t size = kMostReserve;
+  struct rlimit limit = {};
+  if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+    size = std::clamp(static_cast<std::size_t>(limit.rlim_cur) / kShareOfLimit, kLeastReserve,
+                      kMostReserve);
+  }
+  reserve = std::malloc(size);
+  std::set_new_handler(give_back_and_throw);
+}
+
+}  // namespace spherule

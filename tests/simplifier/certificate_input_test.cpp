@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What certify() refuses, and what it does not come to an end with unless it does.
+#include "simplifier/certificate.h"
+#include "spheretree/error.h"
+#include "tests/simplifier/fitting.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const Eigen::Vector3d kMiddle = Eigen::Vector3d::Constant(0.5);
+
+std::string refused(const std::vector<Sphere>& spheres, const CertifyOptions& options = {},
+                    const TriangleMesh& mesh = cube_mesh()) {
+  try {
+    certify(mesh, spheres, options);
+  } catch (const Error& error) {
+    return error.subject();
+  }
+  return "accepted";
+}
+
+TEST(Certificate, BadSpheresAndOptionsAreRefusedByName) {
+  const Sphere good{kMiddle, 1.0};
+  for (const Sphere& bad :
+       {Sphere{kMiddle, kNan}, Sphere{kMiddle, -1e-9}, Sphere{kMiddle, kInfinity},
+        Sphere{{0, kNan, 0}, 1.0}, Sphere{{kInfinity, 0, 0}, 1.0}, Sphere{kMiddle, 1e300}}) {
+    EXPECT_EQ(refused({good, bad}), "sphere 1");
+  }
+  for (const double bad : {-1.0, kNan, kInfinity, 2.0}) {
+    EXPECT_EQ(refused({good}, {.resolution = bad}), "resolution");
+    EXPECT_EQ(refused({good}, {.protrusion_tolerance = bad}), "protrusion tolerance");
+  }
+  EXPECT_EQ(refused({good}, {.resolution = 0.0}), "resolution");
+  for (const double bad : {-1.0, kNan, kInfinity}) {
+    EXPECT_EQ(refused({good}, {.padding = bad}), "padding");
+  }
+  EXPECT_EQ(refused({good}, {}, {}), "mesh");
+}
+
+// The gap to a sphere that grazes the mesh is known to the rounding of its radius only; halving
+// pieces of less never ends.
+TEST(Certificate, SpheresOfFarLargerSizeAreRefusedOrExaminedInFewPieces) {
+  const auto grazing = [](double radius) { return Sphere{{radius + 0.5, 0.5, 0.5}, radius}; };
+  EXPECT_EQ(refused({{kMiddle, 1.0}, grazing(1e15)}), "sphere 1");
+  EXPECT_EQ(refused({grazing(0x1p24)}), "sphere 0");
+  const ExternalSpheres box =
+      place_external_spheres(cube_mesh(), {.placement = ExternalPlacement::kNone});
+  CertifyOptions options;
+  options.external = &box;
+  options.protrusion_tolerance = 0.0;
+  const Certificate leak = certify(cube_mesh(), std::vector{grazing(0x1p22)}, options);
+  EXPECT_LE(leak.uncovered_depth.lower, 0.5 + 1e-7);  // of the corners at x = 0
+  EXPECT_GE(leak.uncovered_depth.upper, 0.5);
+  EXPECT_LE(leak.uncovered_depth.upper, 0.52);
+  EXPECT_LT(leak.pieces + leak.cells, 500'000U);
+  // One that has nothing to do with the mesh does not hide that others cover it.
+  EXPECT_TRUE(
+      certify(cube_mesh(), std::vector{Sphere{kMiddle, 0.9}, grazing(0x1p22)}, options).covered);
+}
+
+}  // namespace
+}  // namespace spherule::test
