@@ -12,7 +12,7 @@ namespace spherule {
 namespace {
 
 constexpr std::size_t kMostReserve = std::size_t{64} << 20U;
-constexpr std::size_t kLeastReserve = std::size_t{1} << 20U;
+constexpr std::size_t kLeastReserve = std::size_t{1} << 16U;
 constexpr std::size_t kShareOfLimit = 32;
 
 std::atomic<void*> reserve = nullptr;
@@ -31,7 +31,9 @@ void keep_memory_reserve() {
     size = std::clamp(static_cast<std::size_t>(limit.rlim_cur) / kShareOfLimit, kLeastReserve,
                       kMostReserve);
   }
-  reserve = std::malloc(size);
+  void* memory = std::malloc(size);
+  while (memory == nullptr && size > kLeastReserve) memory = std::malloc(size /= 2);
+  reserve = memory;
   std::set_new_handler(give_back_and_throw);
 }
 

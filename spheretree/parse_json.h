@@ -5,20 +5,48 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace spherule::internal {
 
-// The document of a JSON text; Json is nlohmann::json or its like. What is no JSON is refused, and
-// so is a key that an object holds twice, of which nlohmann's parser would silently keep the last:
-// `refuse(reason)` has to throw.
+inline constexpr int kDeepestJson = 200;
+
+// A JSON document that is destroyed without memory being allocated: nlohmann's own destructor lists
+// the elements of arrays and objects first, and ends the process where there is no memory for that.
+template <class Json>
+class JsonDocument {
+ public:
+  explicit JsonDocument(Json root) : root_(std::move(root)) {}
+  JsonDocument(JsonDocument&&) noexcept = default;
+  JsonDocument& operator=(JsonDocument&&) = delete;
+  ~JsonDocument() { dismantle(root_); }
+
+  const Json& root() const { return root_; }
+
+ private:
+  // From the leaves to the root, at most kDeepestJson deep.
+  static void dismantle(Json& value) {
+    if (value.is_structured()) {
+      for (Json& part : value) dismantle(part);
+      value.clear();
+    }
+  }
+
+  Json root_;
+};
+
+// The document of a JSON text; Json is nlohmann::json or its like. What is no JSON is refused, so is
+// what is nested deeper than kDeepestJson, and a key that an object holds twice, of which nlohmann's
+// parser would silently keep the last: `refuse(reason)` has to throw.
 template <class Json, class Refuse>
-Json parse_json(std::string_view text, const Refuse& refuse) {
+JsonDocument<Json> parse_json(std::string_view text, const Refuse& refuse) {
   using Event = typename Json::parse_event_t;
   std::vector<std::set<std::string>> keys;  // of the object at each depth
   std::string duplicate;
   const auto watch = [&](int depth, Event event, const Json& parsed) {
     const auto level = static_cast<std::size_t>(depth);
+    if (depth > kDeepestJson) refuse("is nested too deeply");
     if (event == Event::object_start) {
       keys.resize(level + 1);
       keys[level].clear();
@@ -35,7 +63,7 @@ Json parse_json(std::string_view text, const Refuse& refuse) {
     refuse(std::string("is not JSON: ") + error.what());
   }
   if (!duplicate.empty()) refuse("the key " + duplicate + " appears twice");
-  return document;
+  return JsonDocument<Json>(std::move(document));
 }
 
 }  // namespace spherule::internal

@@ -325,18 +325,18 @@ class SceneReader {
   SceneDescription scene_;
 };
 
-Json parsed(const std::string& text, const std::string& file) {
-  Json document = internal::parse_json<Json>(
+internal::JsonDocument<Json> parsed(const std::string& text, const std::string& file) {
+  auto document = internal::parse_json<Json>(
       text, [&](const std::string& reason) { throw Error(file, reason); });
-  if (!document.is_object()) throw Error(file, "is not an object");
+  if (!document.root().is_object()) throw Error(file, "is not an object");
   return document;
 }
 
 }  // namespace
 
 SceneDescription read_scene(const fs::path& path) {
-  const Json document = parsed(read_file(path), path.string());
-  return SceneReader(path, document).read();
+  const internal::JsonDocument<Json> document = parsed(read_file(path), path.string());
+  return SceneReader(path, document.root()).read();
 }
 
 }  // namespace spherule

@@ -159,7 +159,7 @@ TEST_F(SphereFiles, RefusesWhatIsNotThisFormat) {
   for (const std::string text : {"", "hello", "{", "{\"format\":", "[1,2", "{} {}", "\xff\xfe"}) {
     expect_refused(text, "is not JSON");
   }
-  expect_refused(std::string(1000000, '['), "is not JSON");
+  expect_refused(std::string(1000000, '['), "is nested too deeply");
   expect_refused(text_with(kGood) + "x", "is not JSON");
   expect_refused("[]", "is not an object");
   expect_refused("{}", "is not of format");
