@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Turns the comments of a header into those that Doxygen reads; the lines keep their numbers. A
 # comment stands for the declaration below it and, above a function, for those that follow without an
-# empty line between. One with an empty line below it is about several and stands for none.
+# empty line between, but for special members of a class. One with an empty line below it is about several and stands for none.
 
 function escaped(text) {
   gsub(/\\/, "\\\\", text)
@@ -29,6 +29,20 @@ function flush_comment(marker,   i) {
 # Whether code starts a function that the comment above the one before it stands for, too.
 function declares(code) {
   return code ~ /\(/ && code !~ /^ *(#|\}|\)|friend |static_assert)/
+}
+
+# What a special member of a class is, "" for other code: no comment of another function suits it.
+function special(code,   name, argument) {
+  if (code ~ /^ *(virtual )?~/) return "Destructor."
+  if (code ~ /\) = delete;/) return "Deleted."
+  if (code ~ /operator=\(/) return code ~ /&&/ ? "Move assignment." : "Copy assignment."
+  name = code
+  sub(/^ */, "", name)
+  argument = substr(name, index(name, "(") + 1)
+  name = substr(name, 1, index(name, "(") - 1)
+  sub(/^const /, "", argument)
+  if (index(argument, name "&") != 1) return ""
+  return index(argument, name "&&") == 1 ? "Move constructor." : "Copy constructor."
 }
 
 /^ *\/\// && body == 0 {
@@ -60,8 +74,8 @@ function declares(code) {
   code = $0
   note = ""
   trailing = 0
-  # "://" is part of an address.
-  if (body == 0 && match(code, /[;,{})] +\/\/ /)) {
+  # "://" is part of an address; what ends a namespace is named by its comment.
+  if (body == 0 && code !~ /^} / && match(code, /[;,{})] +\/\/ /)) {
     at = RSTART + RLENGTH - 3
     trailing = at
     note = "///<" escaped(substr(code, at + 2))
@@ -81,7 +95,9 @@ function declares(code) {
     flush_comment("///")
   } else if (!continued && shared != "" && note == "" && declares(code)) {
     match(code, /^ */)
-    code = substr(code, 1, RLENGTH) "/**" shared " */ " substr(code, RLENGTH + 1)
+    about = special(code)
+    about = about == "" ? shared : " " about
+    code = substr(code, 1, RLENGTH) "/**" about " */ " substr(code, RLENGTH + 1)
   }
   is_scope = code ~ /(^| )(struct|class|enum|union|namespace) (alignas\([0-9]+\) )?[^;()]*\{ *$/ || code ~ /^extern "C"/
   if (change > 0 && !is_scope) body = change

@@ -65,6 +65,7 @@ class MeshDistance {
 
   // Box of the vertices that triangles use.
   const Eigen::AlignedBox3d& box() const { return box_; }
+  // Of the mesh.
   std::size_t triangle_count() const { return corners_.size(); }
 
  private:

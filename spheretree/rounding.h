@@ -14,12 +14,33 @@
 // three of those is below 2^-536. Hence |computed - exact| <= 3.5 u exact + 2^-536, up to terms of
 // order u^2, and the factor 1 +- 8 u with the absolute term kUnderflow covers both with room to
 // spare (the multiplication and the addition that apply them cost 2 u).
+//
+// Flush to zero: a program that is linked with -ffast-math or -Ofast may start with subnormal
+// numbers read and written as zero, in all its code. Each operation may then lose 2^-1022 more.
+// Where a distance is zero or at least 2^-460 that stays far below the factor 1 +- 8 u: the three
+// differences lose 2^-1022 each, a radicand of at least 2^-920 loses 3 * 2^-1022. Sums and
+// differences (add_up and so on) are exact before they are rounded unless they are subnormal.
+//
+// Fast-math: in a source compiled with it, a compiler takes NaN for impossible and changes the
+// order of operations. Such a source gets no inline functions but calls to those of
+// spheretree/ieee.cpp, of the same names in a namespace of their own, so that a linker cannot take
+// the one for the other.
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0) || \
+    defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)
+// Defined where a source is compiled with -ffast-math, which -Ofast includes, or with a part of it
+// alone: -ffinite-math-only, -fassociative-math or -freciprocal-math.
+//
+// Clang does not tell of the last two. They change no result below, as they need others beside
+// them to reorder sums, and nothing is divided.
+#define SPHERULE_FAST_MATH
+#endif
 
 namespace spherule {
 
@@ -34,6 +55,27 @@ inline constexpr double kUnderflow = 0x1p-530;
 
 inline constexpr double kRelativeUp = 1.0 + 8.0 * kUnitRoundoff;
 inline constexpr double kRelativeDown = 1.0 - 8.0 * kUnitRoundoff;
+
+#ifdef SPHERULE_FAST_MATH
+
+// Described below.
+inline namespace ieee {
+double next_up(double x);
+double next_down(double x);
+double add_up(double a, double b);
+double add_down(double a, double b);
+double sub_up(double a, double b);
+double sub_down(double a, double b);
+double mul_up(double a, double b);
+double norm_upper(const Eigen::Vector3d& v);
+double norm_lower(const Eigen::Vector3d& v);
+double distance_upper(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+double distance_lower(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+bool is_usable_coordinate(double x);
+bool is_usable_point(const Eigen::Vector3d& p);
+}  // namespace ieee
+
+#else
 
 // The neighbouring double above, and below.
 inline double next_up(double x) {
@@ -83,5 +125,7 @@ inline bool is_usable_coordinate(double x) {
 inline bool is_usable_point(const Eigen::Vector3d& p) {
   return is_usable_coordinate(p.x()) && is_usable_coordinate(p.y()) && is_usable_coordinate(p.z());
 }
+
+#endif  // SPHERULE_FAST_MATH
 
 }  // namespace spherule

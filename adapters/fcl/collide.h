@@ -173,6 +173,7 @@ std::size_t collide(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S
   return result.numContacts();
 }
 
+// The same of two objects, where they stand.
 template <class S>
 std::size_t collide(const fcl::CollisionObject<S>* o1, const fcl::CollisionObject<S>* o2,
                     const fcl::CollisionRequest<S>& request, fcl::CollisionResult<S>& result) {
@@ -214,6 +215,7 @@ S distance(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S>& tf1,
   return result.min_distance;
 }
 
+// The same of two objects, where they stand.
 template <class S>
 S distance(const fcl::CollisionObject<S>* o1, const fcl::CollisionObject<S>* o2,
            const fcl::DistanceRequest<S>& request, fcl::DistanceResult<S>& result) {
@@ -258,6 +260,7 @@ S continuousCollide(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S
   return result.time_of_contact;
 }
 
+// The same of two objects, from where they stand.
 template <class S>
 S continuousCollide(const fcl::CollisionObject<S>* o1, const fcl::Transform3<S>& tf1_end,
                     const fcl::CollisionObject<S>* o2, const fcl::Transform3<S>& tf2_end,

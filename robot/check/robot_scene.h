@@ -90,16 +90,20 @@ class RobotScene {
   // Throws Error for a name that is taken or empty, a missing tree or mesh, or a primitive that
   // require_primitive() refuses.
   void add(std::string name, ObstacleShape shape, const Pose& world_from_shape = {});
+  // Throws Error for an unknown obstacle.
   void move(std::string_view obstacle, const Pose& world_from_shape);
-  // Forgets the contacts and paddings that name it, too.
+  // Forgets the contacts and paddings that name it, too. Throws Error for an unknown obstacle.
   void remove(std::string_view obstacle);
+  // Their names, in alphabetical order.
   std::vector<std::string> obstacles() const;
 
   // Spheres that move with a link. Throws Error as add() does, and for an unknown link.
   void attach(std::string name, std::string_view link, std::shared_ptr<const SphereTree> tree,
               const Pose& link_from_object = {});
-  // Forgets the contacts, paddings and regions that name it, too.
+  // Forgets the contacts, paddings and regions that name it, too. Throws Error for an unknown
+  // object.
   void detach(std::string_view object);
+  // The names of what is attached, in alphabetical order.
   std::vector<std::string> attached() const;
 
   // Every sphere of the body grows by so much. At least 0, otherwise Error; 0 at first.

@@ -91,9 +91,11 @@ class RobotModel {
   // In the order in which they were added, the root link first.
   const std::vector<Link>& links() const { return links_; }
   const std::vector<Joint>& joints() const { return joints_; }
+  // How many numbers a configuration has.
   int variable_count() const { return static_cast<int>(variable_joints_.size()); }
   // The joint whose position each number of a configuration is, by its index.
   const std::vector<int>& variable_joints() const { return variable_joints_; }
+  // Whether a joint mimics another.
   bool has_mimics() const { return has_mimics_; }
 
   // Index of a link or a joint, or -1; joints without a name are not found.

@@ -44,12 +44,12 @@ class AllowedCollisions {
   // The links, in the order of their indices.
   const std::vector<std::string>& link_names() const { return names_; }
 
-  // What is allowed already keeps its reason. Throws Error for names that are no links, or indices
-  // out of range.
+  // What is allowed already keeps its reason. Throws Error for names that are no links, indices out
+  // of range, and the reason of a pair that is tested.
   void allow(std::string_view first, std::string_view second);
+  void allow(int first, int second, AllowedReason reason);
   // The pairs that an SRDF disables. Throws Error for names that are no links, before any is taken.
   void allow(std::span<const std::pair<std::string, std::string>> pairs);
-  void allow(int first, int second, AllowedReason reason);
   // The pairs that are proved never to touch, as kProvedNever: beyond the limits of the joints, or
   // with padding, they are not tested either. A scene that is given the proofs
   // (RobotScene::set_link_pairs()) tests them there. Throws Error for proofs of other links, joints
@@ -67,6 +67,7 @@ class AllowedCollisions {
   }
   // Throws Error for names that are no links.
   bool allows(std::string_view first, std::string_view second) const;
+  // Why it is allowed, or kTested. Indices of links, in range.
   AllowedReason reason(int first, int second) const noexcept {
     return reasons_[index(first, second)];
   }

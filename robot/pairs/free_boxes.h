@@ -72,7 +72,9 @@ class FreeBoxes {
 
   // The bytes it was made of, halves of equal leaves joined.
   const std::string& nodes() const { return bytes_; }
+  // What the boxes are of, in the order of their intervals.
   const std::vector<Variable>& variables() const { return variables_; }
+  // Leaves, and boxes that are halved.
   std::size_t node_count() const { return nodes_.size(); }
   // Whether any box is free, and the whole box of the ranges.
   bool has_free_box() const { return bytes_[0] != static_cast<char>(kNotProved); }

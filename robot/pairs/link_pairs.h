@@ -75,6 +75,7 @@ struct LinkPairOptions {
 // Immutable; threads may share it.
 class LinkPairs {
  public:
+  // No pairs, of no robot.
   LinkPairs() = default;
   // Pairs in the order of their indices, each once, first before second, and the fingerprints of
   // what they hold for. Where they are of a tool, `tool_link` is the link that carries it, and one
@@ -87,7 +88,7 @@ class LinkPairs {
   const std::vector<LinkPair>& pairs() const { return pairs_; }
   // Of the robot that they were proved for.
   std::size_t link_count() const { return link_count_; }
-  // The fingerprints of that robot and its bodies.
+  // The fingerprints of that robot, and of its bodies.
   std::uint64_t mechanism() const { return mechanism_; }
   std::uint64_t bodies() const { return bodies_; }
   // The link for which a tool that it carries stands alone (prove_attached_pairs()); -1: none.

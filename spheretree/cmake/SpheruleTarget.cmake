@@ -17,11 +17,27 @@ file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/spherule SY
 # headers is valid with and without contraction.
 function(spherule_compile_settings target kind)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -ffp-contract=off
+  # A -ffast-math among the flags of a whole build (CMAKE_CXX_FLAGS) is taken back.
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion
+                         -fno-fast-math -ffp-contract=off
                          $<$<BOOL:${SPHERULE_STRICT}>:-Werror>)
   if(SPHERULE_PRECOMPILE AND NOT ("${SPHERULE_PRECOMPILE}" STREQUAL "PROGRAMS" AND "${kind}" STREQUAL "library"))
     spherule_precompile(${target} ${kind})
   endif()
+endfunction()
+
+# A shared library exports what exports.map.in says, takes its own functions rather than a program's
+# copy of them, and leaves nothing undefined.
+configure_file(${CMAKE_CURRENT_LIST_DIR}/exports.map.in ${PROJECT_BINARY_DIR}/exports.map @ONLY)
+function(spherule_shared_settings target)
+  # Before 1.0 a minor version may change the binary interface.
+  set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION}
+                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+                        INSTALL_RPATH "$ORIGIN"
+                        LINK_DEPENDS ${PROJECT_BINARY_DIR}/exports.map)
+  target_link_options(${target} PRIVATE LINKER:--version-script=${PROJECT_BINARY_DIR}/exports.map
+                      LINKER:-Bsymbolic-functions LINKER:-z,defs)
+  set_property(GLOBAL APPEND PROPERTY SPHERULE_SHARED_LIBRARIES ${target})
 endfunction()
 
 # Declares the library spherule::NAME from HEADERS (public), SOURCES (everything else; a library of
@@ -36,11 +52,10 @@ function(spherule_library name)
     set(scope PUBLIC)
     add_library(${target} ${ARG_SOURCES} ${ARG_APART})
     set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-    # Before 1.0 a minor version may change the binary interface.
-    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON
-                          VERSION ${PROJECT_VERSION}
-                          SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-                          INSTALL_RPATH "$ORIGIN")
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    if(BUILD_SHARED_LIBS)
+      spherule_shared_settings(${target})
+    endif()
     spherule_compile_settings(${target} library)
   else()
     set(scope INTERFACE)
@@ -68,5 +83,9 @@ function(spherule_library name)
     install(EXPORT spherule-${name} NAMESPACE spherule:: FILE spherule-${name}.cmake
             DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/spherule)
     cmake_language(EVAL CODE "cmake_language(DEFER CALL spherule_pkgconfig ${name})")
+    if(SPHERULE_TESTS AND ARG_SOURCES AND NOT BUILD_SHARED_LIBS)
+      include(SpheruleSharedTwin)
+      cmake_language(EVAL CODE "cmake_language(DEFER CALL spherule_shared_twin ${name})")
+    endif()
   endif()
 endfunction()
