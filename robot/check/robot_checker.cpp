@@ -184,18 +184,25 @@ void RobotChecker::check_configs(std::span<const double> configurations,
       });
 }
 
+void RobotChecker::require_end_of_edge(std::span<const double> configuration) const {
+  require_size(parts_->robot, configuration);
+  if (parts_->pairs.in_filter_range(configuration)) return;
+  require_finite(configuration);
+  throw Error("edge",
+              "a joint's position is beyond " + std::to_string(kLargestPosition) + " in magnitude");
+}
+
 EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<const double> to,
                                     Scratch& scratch, const EdgeRequest& request) const {
   require_own(scratch);
-  for (const std::span<const double> end : {from, to}) {
-    require_size(parts_->robot, end);
-    if (!parts_->pairs.in_filter_range(end)) {
-      require_finite(end);
-      throw Error("edge", "a joint's position is beyond " + std::to_string(kLargestPosition) +
-                              " in magnitude");
-    }
-  }
+  require_end_of_edge(from);
+  require_end_of_edge(to);
   require_resolution(request.resolution);
+  if (request.continuous == ContinuousMotion::kShortest) {
+    parts_->shortest.require();
+    to = parts_->shortest.end_of(from, to, scratch.memory_->motion_end);
+    require_end_of_edge(to);
+  }
   if (!parts_->enforces_limits) return check_within_limits(from, to, 1.0, scratch, request);
   if (!is_within_limits(parts_->robot, from)) {
     return {.verdict = Verdict::kCollision, .contact_at = 0.0};
@@ -256,8 +263,10 @@ std::vector<EdgeResult> RobotChecker::check_edges(std::span<const double> from,
 }
 
 double RobotChecker::measure_edge(std::span<const double> from, std::span<const double> to,
-                                  Scratch& scratch, double resolution) const {
-  return check_edge(from, to, scratch, {.resolution = resolution, .first = true}).free_until;
+                                  Scratch& scratch, double resolution,
+                                  ContinuousMotion continuous) const {
+  const EdgeRequest request{.resolution = resolution, .first = true, .continuous = continuous};
+  return check_edge(from, to, scratch, request).free_until;
 }
 
 }  // namespace spherule
