@@ -14,8 +14,8 @@
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
+#include "cli/trajectory_input.h"
 #include "cli/view_robot.h"
-#include "robot/files/trajectory_file.h"
 #include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
 #include "spheretree/error.h"
@@ -39,7 +39,7 @@ struct AuditRobotArguments {
   std::string spheres;
   std::string geometry = geometry_names().front();
   std::vector<std::string> packages;
-  std::string poses;
+  TrajectoryArguments poses;
   std::string link;
   std::optional<std::size_t> level;
   std::string repaired;
@@ -50,11 +50,12 @@ struct AuditRobotArguments {
   bool json = false;
 };
 
-std::vector<std::vector<double>> configurations_of(const std::string& file,
+std::vector<std::vector<double>> configurations_of(const TrajectoryArguments& arguments,
                                                    const RobotModel& model) {
   std::vector<std::vector<double>> configurations;
-  if (file.empty()) return configurations;
-  const Trajectory trajectory = read_trajectory(file, model);
+  if (arguments.file.empty()) return configurations;
+  const Trajectory trajectory = read_configurations(arguments, model).trajectory;
+  require_provable(model, arguments, trajectory);
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const auto positions = trajectory.configuration(i);
     configurations.emplace_back(positions.begin(), positions.end());
@@ -93,7 +94,7 @@ std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, boo
     view.insert(view.end(), {"--leaks", "-o", beside(arguments.spheres, ".html")});
     steps.push_back({std::move(view), "see where they leak"});
   }
-  if (is_mendable && arguments.poses.empty()) {
+  if (is_mendable && arguments.poses.file.empty()) {
     std::vector<std::string> mend = {"audit-robot", arguments.urdf, arguments.spheres};
     repeat_robot_options(arguments.geometry, arguments.packages, mend);
     repeat("--link", arguments.link, mend);
@@ -115,7 +116,7 @@ bool has_shrinking_buffers(const RobotSpheres& spheres) {
 
 int audit(const AuditRobotArguments& arguments) {
   const bool mend = !arguments.repaired.empty();
-  check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses,
+  check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses.file,
                                        arguments.pairs.srdf, arguments.pairs.pairs});
   const LinkGeometry geometry = geometry_named(arguments.geometry);
   const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
@@ -168,7 +169,8 @@ int audit(const AuditRobotArguments& arguments) {
                : kNo;
   }
   const RobotAudit& result = report.audit;
-  if (arguments.poses.empty() ? result.links_covered : result.configurations_covered) return kYes;
+  if (arguments.poses.file.empty() ? result.links_covered : result.configurations_covered)
+    return kYes;
   if (!arguments.json) {
     const bool is_mendable = is_written(report.file.format) && !is_shrunk;
     std::cout << describe(steps_after_leak(arguments, given.names_links, is_mendable));
@@ -190,10 +192,12 @@ void add_inputs(CLI::App& command, AuditRobotArguments& arguments) {
                       arguments.geometry);
   add_package_option(command, arguments.packages);
   command
-      .add_option("--poses", arguments.poses,
+      .add_option("--poses", arguments.poses.file,
                   "Configurations (CSV) in which spheres of other links may cover too; the "
                   "exit code is then about these")
       ->type_name(kFile);
+  add_degrees_flag(command, "Angles of --poses are in degrees, lengths in metres", arguments.poses)
+      ->needs("--poses");
   command
       .add_option("--srdf", arguments.pairs.srdf,
                   "The robot's SRDF: tell the pairs of links apart, and judge those it disables")

@@ -42,6 +42,8 @@ class ShortestMotion {
   // not bring the other back.
   void require() const;
 
+  // Whether the robot has a continuous joint that a number of a configuration stands for.
+  bool has_turns() const { return has_turns_; }
   // Whether the number of a configuration is the position of a continuous joint.
   bool turns(std::size_t variable) const {
     return variable < turns_.size() && turns_[variable] != 0;
