@@ -5,8 +5,10 @@
 #include "cli/command.h"
 #include "cli/command_specification.h"
 #include "cli/help.h"
+#include "cli/in_file.h"
 #include "cli/interruption.h"
 #include "cli/length_options.h"
+#include "cli/message.h"
 #include "cli/next_step.h"
 #include "cli/output.h"
 #include "cli/pair_kinds.h"
@@ -16,7 +18,6 @@
 #include "cli/sphere_input.h"
 #include "cli/trajectory_input.h"
 #include "cli/view_robot.h"
-#include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
 #include "spheretree/error.h"
 
@@ -44,6 +45,7 @@ struct AuditRobotArguments {
   std::optional<std::size_t> level;
   std::string repaired;
   PairSources pairs;
+  bool ignores_unknown_links = false;
   std::optional<double> max_error;
   LengthOptions lengths;
   std::optional<double> min_external;
@@ -119,7 +121,7 @@ int audit(const AuditRobotArguments& arguments) {
   check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses.file,
                                        arguments.pairs.srdf, arguments.pairs.pairs});
   const LinkGeometry geometry = geometry_named(arguments.geometry);
-  const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
+  const RobotDescription robot = read_robot(arguments.urdf, arguments.packages, geometry);
   SphereInput given = read_spheres_of(robot, geometry, arguments.spheres,
                                       {.link = arguments.link, .level = arguments.level});
   RobotAuditReport report{.file = std::move(given.file),
@@ -128,6 +130,7 @@ int audit(const AuditRobotArguments& arguments) {
                           .repair = std::nullopt,
                           .pairs = std::nullopt};
   const RobotSpheres& spheres = report.file.spheres;
+  require_known_links(robot.model, arguments.spheres, spheres, arguments.ignores_unknown_links);
   const bool is_shrunk = has_shrinking_buffers(spheres);
   if (mend) check_repair(arguments, report.file, is_shrunk);
   RobotAuditOptions options{.geometry = geometry,
@@ -137,13 +140,14 @@ int audit(const AuditRobotArguments& arguments) {
   {
     ProgressBar bar;
     options.progress = bar.callback();
-    report.audit = audit_robot(robot, shrunk_by_buffers(spheres), options);
-    if (mend) {
+    in_file(arguments.urdf, [&] {
+      report.audit = audit_robot(robot, shrunk_by_buffers(spheres), options);
+      if (!mend) return;
       report.repair = repair_robot(robot, spheres.links,
                                    {.geometry = geometry,
                                     .max_error = arguments.max_error.value_or(0.0),
                                     .progress = options.progress});
-    }
+    });
   }
   if (!arguments.pairs.is_empty()) {
     report.pairs = pair_kinds(robot, spheres, geometry, arguments.pairs, true);
@@ -154,12 +158,11 @@ int audit(const AuditRobotArguments& arguments) {
   std::cout << (arguments.json ? to_text(audit_json(report)) : audit_table(report));
   if (report.pairs) {
     for (const std::string& warning : wrong_pairs(report.pairs->judgement, robot.model)) {
-      std::cerr << "spherule: warning: " << warning << "\n";
+      warn(warning);
     }
   }
   if (is_shrunk) {
-    std::cerr << "spherule: " << arguments.spheres
-              << ": spheres were certified as its buffers below 0 shrink them\n";
+    tell(arguments.spheres + ": spheres were certified as its buffers below 0 shrink them");
   }
   if (mend) {
     const std::vector<LinkRepair>& links = report.repair->links;
@@ -188,6 +191,7 @@ void add_inputs(CLI::App& command, AuditRobotArguments& arguments) {
                   "ballpark or spherule; told apart by content")
       ->required()
       ->type_name(kFile);
+  add_unknown_links_flag(command, arguments.ignores_unknown_links);
   add_geometry_option(command, "Which of the robot's geometries is to be covered",
                       arguments.geometry);
   add_package_option(command, arguments.packages);

@@ -4,11 +4,13 @@
 #include "cli/command.h"
 #include "cli/command_specification.h"
 #include "cli/help.h"
+#include "cli/in_file.h"
 #include "cli/length_options.h"
 #include "cli/message.h"
 #include "cli/next_step.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
+#include "cli/sphere_input.h"
 #include "cli/trajectory_check.h"
 #include "cli/trajectory_input.h"
 #include "robot/check/robot_checker.h"
@@ -51,6 +53,7 @@ struct CheckArguments {
   LengthOptions lengths;
   bool edges = false;
   bool enforces_limits = false;
+  bool ignores_unknown_links = false;
   bool json = false;
 
   ContinuousMotion motion() const {
@@ -146,10 +149,17 @@ PreparedScene prepare(SphereRobot robot, const SceneDescription& scene, RobotCov
   return prepared;
 }
 
+// With --spheres no mesh is needed, unless proofs are about meshes.
+RobotDescription read_checked_robot(const CheckArguments& arguments, LinkGeometry geometry) {
+  if (arguments.spheres.empty()) return read_robot(arguments.urdf, arguments.packages, geometry);
+  const std::vector<LinkGeometry> needed(arguments.pairs.empty() ? 0 : 1, geometry);
+  return read_urdf(arguments.urdf, urdf_options(arguments.packages, needed));
+}
+
 int check(const CheckArguments& arguments) {
   RobotCoverOptions options = arguments.cover;
   options.geometry = geometry_named(arguments.geometry);
-  const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
+  const RobotDescription robot = read_checked_robot(arguments, options.geometry);
   const SceneDescription scene = read_scene(arguments.scene);
   const TrajectoryInput input = read_configurations(arguments.trajectory, robot.model);
   const bool has_motions = arguments.edges && input.trajectory.size() > 1;
@@ -166,9 +176,11 @@ int check(const CheckArguments& arguments) {
 
   SphereRobot spheres = arguments.spheres.empty()
                             ? cover_sphere_robot(arguments.urdf, robot, options)
-                            : read_sphere_robot(arguments.spheres, robot, options.geometry);
+                            : read_sphere_robot(arguments.spheres, robot, options.geometry,
+                                                arguments.ignores_unknown_links);
   const bool is_whole = spheres.is_whole;
-  PreparedScene prepared = prepare(std::move(spheres), scene, options);
+  PreparedScene prepared =
+      in_file(arguments.scene, [&] { return prepare(std::move(spheres), scene, options); });
   std::shared_ptr<const LinkPairs> proofs;
   if (!arguments.pairs.empty()) {
     proofs = std::make_shared<const LinkPairs>(
@@ -176,7 +188,7 @@ int check(const CheckArguments& arguments) {
     prepared.scene.set_link_pairs(proofs);
   }
 
-  const RobotChecker checker = prepared.scene.snapshot();
+  const RobotChecker checker = in_file(arguments.scene, [&] { return prepared.scene.snapshot(); });
   ProgressBar bar;
   const TrajectoryCheckOptions how{
       .has_proofs = proofs != nullptr,
@@ -237,6 +249,7 @@ void add_check(CLI::App& app, int& exit_code) {
                    "Spheres of the robot, in any format that audit-robot reads (default: cover "
                    "the robot first)")
       ->type_name(kFile);
+  add_unknown_links_flag(*command, arguments->ignores_unknown_links);
   command
       ->add_option("--pairs", arguments->pairs,
                    "What is proved of the pairs of the robot's links (NAME.pairs of robot, covered "
@@ -263,7 +276,7 @@ void add_check(CLI::App& app, int& exit_code) {
                .examples = {"spherule check robot.urdf cell.json path.csv",
                             "spherule check robot.urdf cell.json path.csv --edges --spheres "
                             "robot.spheres.json --json",
-                            "spherule check robot.urdf cell.json taught.csv --degrees "
+                            "spherule check robot.urdf cell.json path.csv --degrees "
                             "--enforce-limits --edges --continuous shortest"}}));
   command->callback([arguments, &exit_code] {
     arguments->lengths.convert(metres());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_spheres.h"
 
+#include "cli/in_file.h"
 #include "cli/message.h"
 #include "cli/progress.h"
 #include "cli/sphere_input.h"
@@ -30,11 +31,17 @@ bool has_no_bare_links(const RobotDescription& robot, const RobotModel& model,
 }  // namespace
 
 SphereRobot read_sphere_robot(const std::string& file, const RobotDescription& robot,
-                              LinkGeometry geometry) {
+                              LinkGeometry geometry, bool ignores_unknown_links) {
   SphereFormatFile spheres = read_robot_spheres(file);
   // In which frame they are nobody says, and here nothing proves that they cover.
   if (is_of_one_mesh(spheres)) throw Error(file, kNameItsLink);
   RobotSpheres read = std::move(spheres.spheres);
+  require_known_links(robot.model, file, read, ignores_unknown_links);
+  const auto is_unknown = [&](const std::string& link) { return robot.model.find_link(link) < 0; };
+  std::erase_if(read.links, [&](const LinkSpheres& link) { return is_unknown(link.link); });
+  std::erase_if(read.self_collision_ignore, [&](const DisabledPair& pair) {
+    return is_unknown(pair.link_a) || is_unknown(pair.link_b);
+  });
   const auto warn_of = [&](std::size_t count, const char* what) {
     if (count > 0) warn(file + ": " + std::to_string(count) + what);
   };
@@ -45,7 +52,8 @@ SphereRobot read_sphere_robot(const std::string& file, const RobotDescription& r
       !read.self_collision_buffer.empty()) {
     warn(file + ": its buffers are not added; name them as padding in the scene");
   }
-  SphereRobot result{with_spheres(robot.model, read.links), std::move(read.self_collision_ignore)};
+  SphereRobot result{in_file(file, [&] { return with_spheres(robot.model, read.links); }),
+                     std::move(read.self_collision_ignore)};
   result.is_whole = has_no_bare_links(robot, result.model, geometry) && read.other_shapes == 0;
   return result;
 }
@@ -55,7 +63,7 @@ SphereRobot cover_sphere_robot(const std::string& urdf, const RobotDescription& 
   const RobotCover covered = [&] {
     ProgressBar bar;
     options.progress = bar.callback();
-    return cover_robot(robot, options);
+    return in_file(urdf, [&] { return cover_robot(robot, options); });
   }();
   std::vector<LinkSpheres> spheres;
   for (const LinkCover& link : covered.links) {

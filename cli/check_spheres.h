@@ -18,10 +18,11 @@ struct SphereRobot {
   bool is_whole = true;  // every shape that was read stands in spheres
 };
 
-// The spheres of a file. Warns of what in it is not checked. Throws Error as read_robot_spheres(),
-// and for spheres of one mesh, whose link is not known.
+// The spheres of a file. Warns of what in it is not checked. Pairs of links that the robot has not
+// got are passed over. Throws Error as read_robot_spheres() and require_known_links(), and for
+// spheres of one mesh, whose link is not known.
 SphereRobot read_sphere_robot(const std::string& file, const RobotDescription& robot,
-                              LinkGeometry geometry);
+                              LinkGeometry geometry, bool ignores_unknown_links);
 
 // Those that cover the robot; `urdf` is what errors name. Throws Error as cover_robot(), and where
 // a link is not proved to be covered.

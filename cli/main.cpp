@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/message.h"
 #include "cli/usage_error.h"
 #include "spheretree/error.h"
 
@@ -15,7 +16,7 @@ namespace spherule {
 namespace {
 
 int bad_input(const std::string& message) {
-  std::cerr << "spherule: " << message << '\n';
+  tell(message);
   return kBadInput;
 }
 

@@ -240,7 +240,7 @@ TEST_F(CheckTest, RefusesBadInput) {
   refused("none.stl");
   write("cell.json", wall_and(""));
   write("slider.json", R"({"arm": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
-  refused("the robot has no such link");
+  refused("slider.json: has spheres of 1 link that the robot has not got: 'arm'");
   expect_refusal({"check", "none.urdf", "cell.json", "path.csv"}, "none.urdf");
   expect_refusal({"check", "slider.urdf"}, "scene");
 }
