@@ -30,6 +30,11 @@ need_tests() {
     libbullet-dev)
 }
 
+# The sanitized build is clang's.
+need_sanitizers() {
+  packages+=(clang libclang-rt-14-dev)
+}
+
 need_benchmarks() {
   packages+=(libbenchmark-dev libbullet-dev)
 }

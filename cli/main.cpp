@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -79,5 +80,7 @@ int run_guarded(int argc, char** argv) {
 }  // namespace spherule
 
 int main(int argc, char** argv) {
+  // Beyond a limit of file sizes a write is an error then, which names the file.
+  std::signal(SIGXFSZ, SIG_IGN);
   return spherule::run_guarded(argc, argv);
 }

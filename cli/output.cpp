@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/output.h"
 
+#include "cli/interruption.h"
+#include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 
 #include <set>
@@ -31,6 +33,7 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
     if (!fs::is_directory(folder, error))
       throw Error(output.string(), "no such folder; make it first");
     if (fs::is_directory(output, error)) throw Error(output.string(), "is a folder");
+    write_uninterrupted([&] { check_writable(output); });
     if (!taken.insert(place_of(output)).second) {
       throw Error(output.string(), "is named twice, as input or output");
     }

@@ -8,6 +8,8 @@
 #include "spheretree/error.h"
 #include "spheretree/tree_file.h"
 
+#include <climits>
+
 #include <algorithm>
 #include <cstdlib>
 #include <optional>
@@ -139,6 +141,11 @@ std::vector<fs::path> RobotFilePlan::all(const RobotDescription& robot,
     }
   }
   files.push_back(report(robot));
+  for (const fs::path& file : files) {
+    if (file.filename().string().size() > NAME_MAX) {
+      throw Error(file.string(), "cannot be written: the name is too long");
+    }
+  }
   return files;
 }
 

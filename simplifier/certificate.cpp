@@ -31,6 +31,12 @@ using Eigen::Vector3d;
 
 // Of the largest coordinate.
 constexpr double kLeastResolution = 0x1p-40;
+// Of how far the spheres reach from the origin: the gap to the nearest is known to 2^-49 of that
+// (LeastGap), and pieces below it would be halved without end.
+constexpr double kRoundingOfGaps = 0x1p-47;
+// Spheres that reach further, in terms of the largest coordinate of M and S, leave nothing to be
+// proved: 2^-24 of that coordinate remains of the resolution.
+constexpr double kFurthestReach = 0x1p24;
 // Without external spheres, |M| is what a sphere of this share of the box diagonal cannot reach.
 constexpr double kPointFlood = 1.0 / 128.0;
 
@@ -91,16 +97,30 @@ void bound_by_solid(internal::CoverageProof& surface, const internal::CoveragePr
   }
 }
 
+// How far the furthest sphere reaches from the origin.
+double checked_reach(std::span<const Sphere> spheres, double largest_coordinate) {
+  double reach = 0.0;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    reach = std::max(reach, norm_upper(spheres[i].center) + spheres[i].radius);
+    if (reach > kFurthestReach * largest_coordinate) {
+      throw Error("sphere " + std::to_string(i),
+                  "reaches more than 16 million times as far as the mesh: another unit?");
+    }
+  }
+  return reach;
+}
+
 Certificate proved(const TriangleMesh& mesh, const MeshDistance& distance,
                    const ExternalSpheres& external, const internal::Clearance& clearance,
                    std::span<const Sphere> spheres, const CertifyOptions& options) {
   const double diagonal = distance.box().diagonal().norm();
-  const internal::SphereHierarchy hierarchy(spheres);
-  const internal::SpheresToProve to_prove{spheres, hierarchy};
   const double largest = std::max(internal::largest_coordinate(distance.box()),
                                   internal::largest_coordinate(external.box));
-  const double finest =
-      std::max({options.resolution * diagonal, kLeastResolution * largest, kUnderflow});
+  const double reach = checked_reach(spheres, largest);
+  const double finest = std::max({options.resolution * diagonal, kLeastResolution * largest,
+                                  kRoundingOfGaps * reach, kUnderflow});
+  const internal::SphereHierarchy hierarchy(spheres);
+  const internal::SpheresToProve to_prove{spheres, hierarchy};
 
   Certificate result;
   result.sphere_count = spheres.size();

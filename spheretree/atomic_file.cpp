@@ -3,10 +3,14 @@
 
 #include "spheretree/error.h"
 
+#include <climits>
+
 #include <array>
 #include <cerrno>
 #include <cstdio>
 #include <fcntl.h>
+#include <optional>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -42,15 +46,6 @@ class Descriptor {
   int value_;
 };
 
-// Removes the file unless it was renamed.
-struct Temporary {
-  std::string name;
-
-  ~Temporary() {
-    if (!name.empty()) ::unlink(name.c_str());
-  }
-};
-
 // The permissions that a newly created file gets. The mask can only be read by setting it; files
 // made by other threads in between would get stricter permissions, not looser ones.
 mode_t default_permissions() {
@@ -73,27 +68,105 @@ fs::path followed(const fs::path& path) {
   return target;
 }
 
-}  // namespace
+// What a path names: the file that is to be replaced, or the place of a new one.
+struct Target {
+  fs::path path;
+  bool exists = false;
+};
 
-void write_file_atomically(const fs::path& path, std::string_view bytes) {
+Target target_of(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     throw Error(path.string(), "exists and is not a regular file");
   }
-  const bool replaces = fs::exists(status);
-  const fs::path target = replaces ? fs::canonical(path, error) : followed(path);
-  if (replaces && error) throw Error(path.string(), "cannot be resolved: " + error.message());
-  if (!target.has_filename()) throw Error(path.string(), "names no file");
+  Target target{.path = {}, .exists = fs::exists(status)};
+  target.path = target.exists ? fs::canonical(path, error) : followed(path);
+  if (target.exists && error) throw Error(path.string(), "cannot be resolved: " + error.message());
+  if (!target.path.has_filename()) throw Error(path.string(), "names no file");
+  if (target.path.filename().string().size() > NAME_MAX) {
+    throw Error(path.string(), "cannot be written: the name is too long");
+  }
+  return target;
+}
 
-  const std::string pattern = std::string(".").append(target.filename().string()).append(".XXXXXX");
-  std::string name = (target.parent_path() / pattern).string();
-  Descriptor file(::mkstemp(name.data()));
-  if (file.get() < 0) fail(path, "cannot be written");
-  Temporary temporary{name};
+// How the names of the temporary files begin that become `target`; six characters follow. Of a name
+// of the greatest length the end is left out.
+constexpr std::size_t kRandomCharacters = 6;
+std::string temporary_prefix(const fs::path& target) {
+  const std::string mark = ".spherule-";
+  const std::size_t most = NAME_MAX - 1 - mark.size() - kRandomCharacters;
+  return std::string(".").append(target.filename().string(), 0, most).append(mark);
+}
 
+// Removes what killed processes left: temporary files that nobody has locked.
+void remove_leftovers(const fs::path& target) {
+  const std::string prefix = temporary_prefix(target);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() != prefix.size() + kRandomCharacters || !name.starts_with(prefix)) continue;
+    const Descriptor file(
+        ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (file.get() >= 0 && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) {
+      ::unlink(entry.path().c_str());
+    }
+  }
+}
+
+// A new, locked file beside `target`, removed unless it is renamed.
+class TemporaryFile {
+ public:
+  // Errors name `path`, which led to the target.
+  TemporaryFile(const fs::path& target, const fs::path& path) {
+    remove_leftovers(target);
+    const std::string name = temporary_prefix(target) + std::string(kRandomCharacters, 'X');
+    for (;;) {
+      name_ = (target.parent_path() / name).string();
+      file_.emplace(::mkstemp(name_.data()));
+      if (file_->get() < 0) fail(path, "cannot be written");
+      // Between the two calls another process may have taken it for left behind, and removed it. A
+      // file system without locks has none of that.
+      struct stat status = {};
+      if (::flock(file_->get(), LOCK_EX) != 0 || ::fstat(file_->get(), &status) != 0 ||
+          status.st_nlink > 0) {
+        return;
+      }
+    }
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!renamed_) ::unlink(name_.c_str());
+  }
+
+  Descriptor& file() { return *file_; }
+
+  bool rename_to(const fs::path& target) {
+    renamed_ = std::rename(name_.c_str(), target.c_str()) == 0;
+    return renamed_;
+  }
+
+ private:
+  std::string name_;
+  std::optional<Descriptor> file_;
+  bool renamed_ = false;
+};
+
+}  // namespace
+
+void check_writable(const fs::path& path) {
+  const Target target = target_of(path);
+  const TemporaryFile temporary(target.path, path);
+}
+
+void write_file_atomically(const fs::path& path, std::string_view bytes) {
+  const Target target = target_of(path);
+  TemporaryFile temporary(target.path, path);
+  Descriptor& file = temporary.file();
   struct stat old = {};
-  const bool keep = replaces && ::stat(target.c_str(), &old) == 0;
+  const bool keep = target.exists && ::stat(target.path.c_str(), &old) == 0;
   if (::fchmod(file.get(), keep ? old.st_mode & 07777U : default_permissions()) != 0) {
     fail(path, "cannot be written");
   }
@@ -104,8 +177,7 @@ void write_file_atomically(const fs::path& path, std::string_view bytes) {
     rest.remove_prefix(static_cast<std::size_t>(written));
   }
   if (::fsync(file.get()) != 0 || !file.close()) fail(path, "cannot be written");
-  if (std::rename(name.c_str(), target.c_str()) != 0) fail(path, "cannot be written");
-  temporary.name.clear();
+  if (!temporary.rename_to(target.path)) fail(path, "cannot be written");
 }
 
 std::string read_file(const fs::path& path) {

@@ -11,8 +11,16 @@ namespace spherule {
 // new file in the same folder, flushed to the disk, and renamed over `path`. On failure the new
 // file is removed. A symbolic link is followed, also to a file that is not there yet. What exists
 // and is not a regular file is refused. A process that is killed between the two steps leaves a
-// file named like ".NAME.Ab12Cd", never a half-written `path`. Throws Error naming the file.
+// file named like ".NAME.spherule-Ab12Cd", never a half-written `path`; the next call for `path`
+// removes it (the file of a process that runs is locked by flock() and stays). Throws Error naming
+// the file. Where a limit of file sizes is set, the signal SIGXFSZ ends the process unless it is
+// ignored; then that is an Error, too.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+// Throws the Error that write_file_atomically() would throw before its first byte: for a folder
+// that is missing or cannot be written to, a name that is too long, what is not a regular file. To
+// be called before long work; leaves no trace but the removal of what killed processes left.
+void check_writable(const std::filesystem::path& path);
 
 // All bytes of a file (regular, or a pipe up to its end). Throws Error naming the file.
 std::string read_file(const std::filesystem::path& path);

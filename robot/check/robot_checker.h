@@ -95,7 +95,9 @@ struct RobotClearance {
 // where a contact is found may differ by rounding and by what the scratch was queried before.
 class RobotChecker {
  public:
+  // Copies share what the first one holds.
   RobotChecker(const RobotChecker&) noexcept = default;
+  // As the copy constructor.
   RobotChecker& operator=(const RobotChecker&) noexcept = default;
 
   // The robot that is checked.

@@ -20,8 +20,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kSharePoints = 20000;
-// Of E: how closely curved primitives are tessellated, as cover_robot() does it.
-constexpr double kChordErrorOfError = 1.0 / 16.0;
 // Up to which positions kinematics_error_bound() holds.
 constexpr double kLargestPosition = 100.0;
 
@@ -200,6 +198,16 @@ struct SimplifiedSolid {
   CertifyOptions certify_options;
 };
 
+// What `work` makes; an Error says of which link it is.
+template <typename Work>
+auto of_link(const std::string& link, Work work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error("link '" + link + "', " + error.subject(), error.reason());
+  }
+}
+
 Certificate audited(const LinkParts& part, const LinkDescription& link,
                     const RobotAuditOptions& options) {
   Certificate certificate = certify(*part.mesh, part.spheres, {.threads = options.threads});
@@ -264,7 +272,8 @@ RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSphere
     report(options.progress, part.index, steps, part.link);
     LinkAudit audit{part.link, part.spheres.size(), std::nullopt, 0.0};
     if (part.mesh) {
-      audit.certificate = audited(part, robot.links[part.index], options);
+      audit.certificate =
+          of_link(part.link, [&] { return audited(part, robot.links[part.index], options); });
       if (!audit.certificate->covered) {
         audit.uncovered_share = uncovered_share(*part.mesh, part.spheres);
         result.links_covered = false;
@@ -292,7 +301,7 @@ RobotRepair repair_robot(const RobotDescription& robot, std::span<const LinkSphe
   for (const LinkParts& part : parts) {
     report(options.progress, part.index, parts.size(), part.link);
     if (!part.mesh) continue;
-    result.links.push_back(repaired(part, options));
+    result.links.push_back(of_link(part.link, [&] { return repaired(part, options); }));
     const std::vector<Sphere>& mended = result.links.back().repair.spheres;
     const auto there =
         std::find_if(result.spheres.begin(), result.spheres.end(),

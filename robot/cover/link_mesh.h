@@ -15,6 +15,9 @@ enum class LinkGeometry {
   kVisual      // mostly the exact shape
 };
 
+// Of E: how closely cover_robot() and audit_robot() tessellate curved primitives.
+inline constexpr double kChordErrorOfError = 1.0 / 16.0;
+
 // How the shapes of a link become one mesh.
 struct LinkMeshOptions {
   LinkGeometry geometry = LinkGeometry::kCollision;

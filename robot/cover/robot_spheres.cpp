@@ -19,7 +19,6 @@
 namespace spherule {
 namespace {
 
-constexpr double kChordErrorOfError = 1.0 / 16.0;
 // Nobody wants the hundred million spheres that such a link requires.
 constexpr double kMostErrorsAcross = 1e4;
 constexpr double kMostMetresAcross = 100.0;

@@ -89,9 +89,9 @@ void read_curobo(const YamlMembers& root, const fs::path& path, SphereGatherer& 
   if (!spheres) gathered.refuse({}, "has no \"collision_spheres\" and is no XRDF");
   if (spheres->IsScalar()) {
     const fs::path side = path.parent_path() / spheres->Scalar();
-    SphereGatherer beside(side.string());
-    const YamlMembers there =
-        yaml_members(yaml_document(read_file(side), beside), "the file", beside);
+    const std::string text = read_file(side);
+    SphereGatherer beside(side.string(), text.size());
+    const YamlMembers there = yaml_members(yaml_document(text, beside), "the file", beside);
     const auto found = find_member(there, "collision_spheres");
     if (!found) beside.refuse({}, "has no \"collision_spheres\"");
     read_spheres(*found, beside);
@@ -139,7 +139,7 @@ void read_xrdf(const YamlMembers& root, SphereGatherer& gathered) {
 }  // namespace
 
 SphereFormatFile read_sphere_yaml(std::string_view text, const fs::path& path) {
-  SphereGatherer gathered(path.string());
+  SphereGatherer gathered(path.string(), text.size());
   const YamlMembers root = yaml_members(yaml_document(text, gathered), "the file", gathered);
   const auto format = find_member(root, "format");
   const bool xrdf = format && format->IsScalar() && format->Scalar() == "xrdf";

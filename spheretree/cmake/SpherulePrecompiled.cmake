@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Headers of others that most sources include, compiled once, and the sources of a program or a test
-# joined to few (option SPHERULE_PRECOMPILE). Both hide a missing include, so the strict build goes
+# Headers of others that most sources include, compiled once, and the sources of a target
+# joined to few (option SPHERULE_PRECOMPILE). Both hide a missing include, so the build of ci goes
 # without them where users read the sources' headers: in the libraries. GCC lets sources share such a
 # header only where they have the same code model and the same macros that it looks at, hence one for
 # each KIND: library, program, test. What defines objects in each source stays out (CLI11).
@@ -31,16 +31,18 @@ function(spherule_declare_precompiled kind)
   endif()
 endfunction()
 
-# Lets the sources of TARGET use the precompiled headers of KIND. Those of programs and tests are also
-# joined: they share the code of templates. Sources of a target that have local names in common are
-# kept apart (SKIP_UNITY_BUILD_INCLUSION).
+# Lets the sources of TARGET use the precompiled headers of KIND, and joins them: they share the code
+# of templates. Sources of a target that have local names in common are kept apart
+# (SKIP_UNITY_BUILD_INCLUSION).
 function(spherule_precompile target kind)
   if(NOT TARGET spherule_precompiled_${kind})
     spherule_declare_precompiled(${kind})
   endif()
   target_precompile_headers(${target} REUSE_FROM spherule_precompiled_${kind})
-  if(NOT kind STREQUAL library)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON)
+  if(kind STREQUAL library)
+    # A local name of one source hides that of a header which only another one includes.
+    target_compile_options(${target} PRIVATE -Wno-shadow)
   endif()
   if(kind STREQUAL test)
     # What Boost::headers defines, so that tests without it have the same macros.

@@ -25,15 +25,17 @@ function(spherule_compile_settings target kind)
 endfunction()
 
 # Declares the library spherule::NAME from HEADERS (public), SOURCES (everything else; a library of
-# headers has none) and LINKS (public dependencies), and installs it as the component NAME of the
+# headers has none), APART (sources that have local names in common with others: not joined with
+# them, SPHERULE_PRECOMPILE) and LINKS (public dependencies), and installs it as the component NAME of the
 # package. Headers are reached as "spheretree/sphere.h" from inside the repository and as
 # <spherule/spheretree/sphere.h> by users.
 function(spherule_library name)
-  cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES;APART;LINKS" ${ARGN})
   set(target spherule_${name})
   if(ARG_SOURCES)
     set(scope PUBLIC)
-    add_library(${target} ${ARG_SOURCES})
+    add_library(${target} ${ARG_SOURCES} ${ARG_APART})
+    set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     # Before 1.0 a minor version may change the binary interface.
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON
                           VERSION ${PROJECT_VERSION}

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <signal.h>
+#include <sys/resource.h>
 #include <thread>
 
 namespace spherule {
@@ -42,7 +43,25 @@ TEST_F(OutputTest, PlacesAreCheckedBeforeTheWork) {
   expect_refusal(with({"-o", "box.stl"}), "box.stl: is named twice");
   expect_refusal(with({"-o", "out.json", "--tree", "./out.json"}), "out.json: is named twice");
   expect_refusal(with({"-o", "."}), "is a folder");
+  expect_refusal(with({"-o", "/dev/full"}), "/dev/full: exists and is not a regular file");
+  expect_refusal(with({"-o", std::string(256, 'n')}), "the name is too long");
   EXPECT_EQ(files(), Files{"box.stl"});
+}
+
+TEST_F(OutputTest, ALimitOfFileSizesIsAnError) {
+  write("out.tree", "precious");
+  std::vector<std::array<double, 4>> many;
+  for (int i = 0; i < 2000; ++i) many.push_back({1.0 * i, 0.0, 0.0, 1.0});
+  write_spheres("many.json", many);
+  struct rlimit limit = {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+  struct rlimit small = limit;
+  small.rlim_cur = 4096;
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  expect_refusal({"tree", "many.json", "-o", "out.tree"}, "out.tree: cannot be written: ");
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  EXPECT_EQ(read("out.tree"), "precious");
+  EXPECT_EQ(files(), (Files{"box.stl", "many.json", "out.tree"}));
 }
 
 TEST_F(OutputTest, SuccessReplacesTheOlderFileAndLeavesNothingBeside) {

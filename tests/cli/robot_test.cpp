@@ -317,6 +317,14 @@ TEST_F(RobotTest, BadInputIsRefusedBeforeTheWork) {
                  "no/where: no such folder");
   expect_refusal({"robot", "arm.urdf", "-o", "lug.stl", "--package", "parts=parts"},
                  "lug.stl: is not a folder");
+  const std::string name(300, 'n');
+  write("long.urdf", "<robot name=\"r\"><link name=\"" + name +
+                         "\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision>"
+                         "</link></robot>");
+  for (const char* folder : {"out", "."}) {
+    expect_refusal({"robot", "long.urdf", "-o", folder, "--max-error", "0.001"},
+                   name + ".tree: cannot be written: the name is too long");
+  }
   refuse({"--padding", "-1"}, "--padding: must be finite");
   refuse({"--min-external", "nan"}, "--min-external: must be finite");
   refuse({"--geometry", "both"}, "--geometry");
@@ -342,7 +350,7 @@ TEST_F(RobotTest, BadInputIsRefusedBeforeTheWork) {
   refuse({"--seconds", "1"}, "--seconds");
   refuse({"--threads", "-1"}, "--threads");
   refuse({"--seed", "-1"}, "--seed");
-  EXPECT_EQ(files(), (std::vector<std::string>{"arm.urdf", "lug.stl", "parts"}));
+  EXPECT_EQ(files(), (std::vector<std::string>{"arm.urdf", "long.urdf", "lug.stl", "parts"}));
 
   // In millimetres.
   write("big.urdf", R"(<robot name="big"><link name="base"><collision><geometry>

@@ -74,7 +74,7 @@ TEST_F(ViewRobotTest, JointsAsTheFileSays) {
     if (joint < 0) {
       EXPECT_EQ(link.at("name"), "base");
     } else {
-      EXPECT_EQ(joints[joint].at("parent"), joint == 0 ? 0 : 1);
+      EXPECT_EQ(joints[static_cast<std::size_t>(joint)].at("parent"), joint == 0 ? 0 : 1);
     }
   }
 }

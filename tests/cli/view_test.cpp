@@ -69,7 +69,7 @@ TEST_F(ViewTest, LeaksOfAnAudit) {
   const auto numbers = floats_of(leaks.at("parts").at(0).at("levels").at(0));
   ASSERT_EQ(numbers.size(), 4 * (certificate.at("leaks").size() + 1));
   EXPECT_NEAR(numbers[3], deepest, 0.01);
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     const double place = certificate.at("deepest_leak").at(axis);
     EXPECT_NEAR(numbers[axis] + scene.at("middle").at(axis).get<double>(), place, 1e-5);
   }

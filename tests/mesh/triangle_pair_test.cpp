@@ -162,7 +162,7 @@ TEST(TrianglePair, NeedlesSegmentsAndPoints) {
     const Tally tally = judge(effort(1000, 250), 6, [width](SceneRandom& random) -> Scene {
       const Triangle a = random.whole(0, 1) == 0 ? needle(random, width) : random_triangle(random);
       Triangle b = needle(random, width);
-      if (random.whole(0, 4) == 0) b = {b[0], b[0], b[random.whole(0, 1)]};
+      if (random.whole(0, 4) == 0) b = {b[0], b[0], random.whole(0, 1) == 0 ? b[0] : b[1]};
       const Vector3d from = random.whole(0, 1) == 0 ? b[0] : point_of(b, random);
       const Vector3d to = random.whole(0, 1) == 0 ? a[1] : point_of(a, random);
       return {a, brought(b, from, to, random)};

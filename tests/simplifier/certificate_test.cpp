@@ -295,6 +295,26 @@ TEST(Certificate, BadSpheresAndOptionsAreRefusedByName) {
   EXPECT_EQ(refused({good}, {}, {}), "mesh");
 }
 
+// The gap to a sphere that grazes the mesh is known to the rounding of its radius only; halving
+// pieces of less never ends.
+TEST(Certificate, SpheresOfFarLargerSizeAreRefusedOrExaminedInFewPieces) {
+  const auto grazing = [](double radius) { return Sphere{{radius + 0.5, 0.5, 0.5}, radius}; };
+  EXPECT_EQ(refused({{kMiddle, 1.0}, grazing(1e15)}), "sphere 1");
+  EXPECT_EQ(refused({grazing(0x1p24)}), "sphere 0");
+  const ExternalSpheres box = box_of(cube_mesh());
+  CertifyOptions options;
+  options.external = &box;
+  options.protrusion_tolerance = 0.0;
+  const Certificate leak = certify(cube_mesh(), std::vector{grazing(0x1p22)}, options);
+  EXPECT_LE(leak.uncovered_depth.lower, 0.5);
+  EXPECT_GE(leak.uncovered_depth.upper, 0.5);
+  EXPECT_LE(leak.uncovered_depth.upper, 0.52);
+  EXPECT_LT(leak.pieces + leak.cells, 500'000U);
+  // One that has nothing to do with the mesh does not hide that others cover it.
+  EXPECT_TRUE(
+      certify(cube_mesh(), std::vector{Sphere{kMiddle, 0.9}, grazing(0x1p22)}, options).covered);
+}
+
 // A cube whose corners eight external spheres take: what remains is furthest from the middle where
 // two of them and a face of the cube meet, at (1/2, y, 0) with 1/4 + y^2 = R^2.
 TEST(Certificate, TheDepthOfALeakInACurvedSolidIsExact) {

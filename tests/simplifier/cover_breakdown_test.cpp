@@ -59,7 +59,7 @@ TEST(CoverBreakdown, APlateIsThin) {
   const Fit fitted = fit(mesh, {}, {.max_error = 0.03});
   const CoverBreakdown found = breakdown_of(mesh, fitted);
   const std::size_t count = fitted.cover.spheres.size();
-  EXPECT_GT(found.thin, kSanitized ? 2 * count / 5 : count / 2);
+  EXPECT_GT(found.thin, kSanitized ? count / 3 : count / 2);
   EXPECT_GT(found.edges, 0U);
   EXPECT_EQ(found.faces, 0U);
 }

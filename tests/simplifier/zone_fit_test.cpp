@@ -98,7 +98,7 @@ TEST(ZoneFit, NoPointOfASphereInAZoneIsFurtherFromTheSolidThanTheZoneAllows) {
     // The judge is not blind: without zones the error is E there too.
     EXPECT_GT(
         judge_zone(zone, coarse.cover.spheres, coarse.external, *zone.max_error, random).beyond,
-        effort(20, 5))
+        effort(20, 2))
         << i;
   }
   // G1 and G2 as ever.

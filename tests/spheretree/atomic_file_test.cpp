@@ -4,8 +4,12 @@
 #include "tests/spheretree/temporary_folder.h"
 
 #include <csignal>
+#include <fcntl.h>
+#include <fstream>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace spherule::test {
 namespace {
@@ -68,16 +72,41 @@ TEST_F(AtomicFile, RefusesLinksThatLeadNowhere) {
 TEST_F(AtomicFile, AFailureLeavesNothingBehindAndTheOldFileAsItWas) {
   fs::create_directory(path("folder"));
   for (const fs::path& bad : {path("folder"), path("missing/file"), path("folder/"), fs::path(),
-                              path(std::string(255, 'n'))}) {
+                              path(std::string(256, 'n'))}) {
     const std::string error = error_of([&] { write_file_atomically(bad, "x"); });
     EXPECT_TRUE(error.starts_with(bad.string() + ": ")) << error;
     EXPECT_FALSE(error.empty());
+    EXPECT_EQ(error_of([&] { check_writable(bad); }), error);
   }
   EXPECT_EQ(files_in_folder(), 1U);
   EXPECT_TRUE(fs::is_empty(path("folder")));
   // A device is not replaced by a file.
   EXPECT_NE(error_of([] { write_file_atomically("/dev/null", "x"); }), "");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(AtomicFile, WhatKilledProcessesLeftIsRemovedAndNothingElse) {
+  const std::string longest(255, 'n');
+  for (const std::string& name : {std::string("file"), longest}) {
+    const std::string start = "." + name.substr(0, 238) + ".spherule-";
+    for (const char* end : {"abcdef", "locked", "short"}) std::ofstream(path(start + end));
+    std::ofstream(path("." + name.substr(0, 238) + ".backup"));
+    fs::create_directory(path(start + "folder"));
+    const int used = ::open(path(start + "locked").c_str(), O_RDONLY | O_CLOEXEC);
+    ASSERT_EQ(::flock(used, LOCK_EX), 0);
+    check_writable(path(name));
+    EXPECT_FALSE(fs::exists(path(name)));
+    EXPECT_FALSE(fs::exists(path(start + "abcdef")));
+    EXPECT_EQ(files_in_folder(), 4U);
+    ::close(used);
+    write_file_atomically(path(name), "x");
+    EXPECT_EQ(bytes_of(path(name)), "x");
+    EXPECT_FALSE(fs::exists(path(start + "locked")));
+    EXPECT_EQ(files_in_folder(), 4U);
+    for (const fs::directory_entry& entry : fs::directory_iterator(path("."))) {
+      fs::remove_all(entry.path());
+    }
+  }
 }
 
 TEST_F(AtomicFile, AFullDiskIsReportedAndTheOldFileStays) {

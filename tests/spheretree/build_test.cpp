@@ -65,7 +65,7 @@ TEST(BuildTree, EveryFamilyGivesAValidTree) {
 
 // In rational numbers; tight to some units in the last place of the numbers it is made from.
 TEST(BuildTree, TheBoxHoldsTheSpheresTightly) {
-  for (const std::size_t count : {1, 2, 7, 300}) {
+  for (const std::size_t count : {1U, 2U, 7U, 300U}) {
     for (const Family& family : sphere_families(count, count + 3)) {
       SCOPED_TRACE(family.name);
       const SphereTree tree = build_tree(family.spheres);

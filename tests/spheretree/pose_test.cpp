@@ -41,17 +41,17 @@ Point exact_map(const Pose& pose, const Point& p) {
   const Point v = {Real(q.x()), Real(q.y()), Real(q.z())};
   const Real norm2 = w * w + v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   Point inner = cross(v, p);
-  for (int i = 0; i < 3; ++i) inner[i] += w * p[i];
+  for (std::size_t i = 0; i < 3; ++i) inner[i] += w * p[i];
   const Point outer = cross(v, inner);
   const Point t = point(pose.translation());
   Point result;
-  for (int i = 0; i < 3; ++i) result[i] = p[i] + 2 * outer[i] / norm2 + t[i];
+  for (std::size_t i = 0; i < 3; ++i) result[i] = p[i] + 2 * outer[i] / norm2 + t[i];
   return result;
 }
 
 double distance(const Point& a, const Point& b) {
   Real sum = 0;
-  for (int i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  for (std::size_t i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
   return static_cast<double>(sqrt(sum));
 }
 
@@ -92,7 +92,8 @@ TEST(Pose, MatrixEntriesAreWithinTheStatedError) {
     for (int column = 0; column < 3; ++column) {
       const Point exact = exact_map(pose, point(Vector3d::Unit(column)));
       for (int row = 0; row < 3; ++row) {
-        const Real difference = Real(pose.matrix()(row, column)) - exact[row];
+        const Real difference =
+            Real(pose.matrix()(row, column)) - exact[static_cast<std::size_t>(row)];
         worst = std::max(worst, std::abs(static_cast<double>(difference)));
       }
     }

@@ -55,7 +55,7 @@ TEST(Crc64, HasTheCheckValueOfTheCatalogue) {
 }
 
 TEST_F(TreeFile, RoundTripKeepsEveryBit) {
-  for (const std::size_t count : {1, 2, 7, 300}) {
+  for (const std::size_t count : {1U, 2U, 7U, 300U}) {
     for (const Family& family : sphere_families(count, 12)) {
       for (const int branching : {2, 8, 16}) {
         SCOPED_TRACE(family.name);

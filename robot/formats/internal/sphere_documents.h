@@ -6,7 +6,9 @@
 
 #include "robot/formats/sphere_formats.h"
 
+#include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <span>
 #include <string>
@@ -20,7 +22,11 @@ namespace spherule::internal {
 // ("line 7", "link arm, sphere 2"); an Error names the file, then the place.
 class SphereGatherer {
  public:
-  explicit SphereGatherer(std::string file) : file_(std::move(file)) {}
+  // Of a file of so many bytes: more spheres than that are aliases of each other, which a reader
+  // would not come to an end with.
+  explicit SphereGatherer(std::string file,
+                          std::size_t bytes = std::numeric_limits<std::size_t>::max())
+      : file_(std::move(file)), left_(bytes) {}
 
   [[noreturn]] void refuse(const std::string& place, const std::string& reason) const;
   void unless(bool good, const std::string& place, const std::string& reason) const {
@@ -39,6 +45,7 @@ class SphereGatherer {
 
  private:
   std::string file_;
+  std::size_t left_;  // how many spheres may still come
   std::set<std::string> links_;
   std::set<std::pair<std::string, std::string>> ignored_;
 };

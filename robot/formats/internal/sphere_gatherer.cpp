@@ -19,6 +19,8 @@ void SphereGatherer::begin_link(const std::string& name, const std::string& plac
 }
 
 void SphereGatherer::add(const Eigen::Vector3d& center, double radius, const std::string& place) {
+  unless(left_ > 0, place, "aliases make more spheres than the file has characters");
+  --left_;
   if (radius <= 0.0) {
     ++spheres.switched_off;
     return;

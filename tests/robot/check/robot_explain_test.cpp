@@ -151,7 +151,7 @@ void expect_explained(const Scene& scene, const ObstacleChecker& checker,
       count.inside += do_triangles ? 0 : 1;
     }
   }
-  for (const std::size_t limit : {0, 1, 2}) {
+  for (const std::size_t limit : {0U, 1U, 2U}) {
     const std::vector<CheckedContact> some =
         checker.explain(configuration, scratch, {.max_contacts = limit});
     ASSERT_EQ(some.size(), std::min(limit, contacts.size()));

@@ -78,7 +78,7 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
       std::vector<std::uint8_t> expected(size);
       checker.collides(configurations, scratch, expected);
       for (const std::uint8_t verdict : expected) (verdict == 1 ? hits : free) += 1;
-      for (const std::size_t threads : {1, 2, 3, 7}) {
+      for (const std::size_t threads : {1U, 2U, 3U, 7U}) {
         std::vector<std::uint8_t> verdicts(size, 2);
         checker.collides(configurations, std::span(seven).first(threads), verdicts);
         ASSERT_EQ(verdicts, expected) << i << ' ' << size << ' ' << threads;
@@ -129,7 +129,7 @@ TEST(RobotThreads, ErrorsAreThoseOfOneThread) {
       const std::string expected = error_of(bad, 0);
       EXPECT_NE(expected, "");
       errors.insert(expected);
-      for (const std::size_t threads : {1, 2, 3, 7}) {
+      for (const std::size_t threads : {1U, 2U, 3U, 7U}) {
         EXPECT_EQ(error_of(bad, threads), expected) << first << ' ' << threads;
       }
     }
@@ -169,8 +169,8 @@ TEST(RobotThreads, RefusesTheScratchOfAnother) {
 }
 
 TEST(SharedWork, DoesEachPieceOnceAndLetsNoTwoShareAWorker) {
-  for (const std::size_t pieces : {0, 1, 2, 5, 1000}) {
-    for (const std::size_t workers : {1, 2, 3, 7}) {
+  for (const std::size_t pieces : {0U, 1U, 2U, 5U, 1000U}) {
+    for (const std::size_t workers : {1U, 2U, 3U, 7U}) {
       std::vector<std::atomic<int>> done(pieces);
       std::vector<std::atomic<int>> busy(workers);
       std::atomic<bool> shared = false;

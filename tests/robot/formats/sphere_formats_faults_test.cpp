@@ -325,6 +325,26 @@ TEST_F(SphereFormatFaults, MutatedFiles) {
   }
 }
 
+// Some thousand lines of aliases are as many million spheres.
+TEST_F(SphereFormatFaults, AliasesThatMultiplySpheresAreRefused) {
+  const auto aliases = [](int spheres, int links) {
+    std::string text = "s: &s\n";
+    for (int i = 0; i < spheres; ++i) text += "  - {center: [0, 0, 0], radius: 1}\n";
+    text += "collision_spheres:\n";
+    for (int i = 0; i < links; ++i) text += "  l" + std::to_string(i) + ": *s\n";
+    return text;
+  };
+  EXPECT_EQ(read(aliases(20, 10)).spheres.links.size(), 10U);
+  try {
+    read(aliases(2000, 2000));
+    ADD_FAILURE() << "read";
+  } catch (const Error& error) {
+    EXPECT_NE(error.reason().find("aliases make more spheres than the file has characters"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(SphereFormatFaults, DeepNesting) {
   for (const char* part : {"[", "{\"a\":", "a: [", "<robot>", "- "}) {
     std::string text;

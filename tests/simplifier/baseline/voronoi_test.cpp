@@ -45,7 +45,7 @@ void expect_empty_and_touching(const std::vector<Vector3d>& sites, double tolera
 }
 
 TEST(Voronoi, SpheresAreEmptyAndTouchFourSites) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const std::vector<Vector3d> sites = random_sites(300, seed);
     EXPECT_GT(voronoi_vertices(sites).size(), 1000U);
     expect_empty_and_touching(sites, 1e-8);
@@ -87,7 +87,7 @@ std::vector<std::array<std::uint32_t, 4>> all_empty_spheres(const std::vector<Ve
 }
 
 TEST(Voronoi, FindsEveryEmptySphereInTheBox) {
-  for (const std::uint64_t seed : {4, 5, 6}) {
+  for (const std::uint64_t seed : {4U, 5U, 6U}) {
     const std::vector<Vector3d> sites = random_sites(24, seed);
     std::vector<std::array<std::uint32_t, 4>> found;
     for (const VoronoiVertex& v : voronoi_vertices(sites)) found.push_back(v.sites);
