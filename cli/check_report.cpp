@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <iomanip>
 #include <iterator>
-#include <numbers>
 #include <sstream>
 
 namespace spherule {
@@ -48,7 +47,7 @@ const char* name_of(ContinuousMotion continuous) {
 std::string angle_text(double radians, bool in_degrees) {
   std::ostringstream text;
   if (in_degrees) {
-    text << radians * (180.0 / std::numbers::pi) << " degrees";
+    text << radians / kRadiansPerDegree << " degrees";
   } else {
     text << radians << " rad";
   }

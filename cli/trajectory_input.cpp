@@ -9,7 +9,6 @@
 
 #include <cmath>
 #include <iomanip>
-#include <numbers>
 #include <sstream>
 #include <utility>
 
@@ -56,7 +55,7 @@ void require_provable(const RobotModel& robot, const TrajectoryArguments& argume
 }
 
 std::string describe(const OutsideLimits& outside, std::size_t configurations, bool in_degrees) {
-  const double scale = outside.turns && in_degrees ? 180.0 / std::numbers::pi : 1.0;
+  const double scale = outside.turns && in_degrees ? 1.0 / kRadiansPerDegree : 1.0;
   const char* const unit = !outside.turns ? " m" : in_degrees ? " degrees" : " rad";
   const bool is_above = outside.position > outside.upper;
   const double limit = is_above ? outside.upper : outside.lower;

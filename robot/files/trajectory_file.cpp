@@ -7,7 +7,6 @@
 #include "spheretree/text.h"
 
 #include <algorithm>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,7 +16,6 @@ namespace {
 
 constexpr std::string_view kTime = "time";
 constexpr int kPassedOver = -1;
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 class Reader {
  public:

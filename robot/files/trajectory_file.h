@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct Trajectory {
 
 // In which the numbers of joints that turn are given.
 enum class AngleUnit { kRadians, kDegrees };
+inline constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 // Reads a trajectory: text with a configuration on each line, numbers in radians and metres that
 // are separated by commas, semicolons or blanks. If the first line has a word that is no number, it

@@ -12,20 +12,19 @@
 namespace spherule {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 // Limits are given in few digits, too, and degrees that are rounded may be beyond them.
-constexpr double kRounded = 1e-2;
+constexpr double kLimitRounding = 1e-2;
 
 // Whose position a number of a configuration is.
-const Joint& joint_of(const RobotModel& robot, std::size_t variable) {
+const Joint& leader_of(const RobotModel& robot, std::size_t variable) {
   return robot.joints()[static_cast<std::size_t>(robot.variable_joints()[variable])];
 }
 
 // Continuous joints make a few turns at most.
 bool is_plausible(const Joint& joint, double angle, double turns) {
-  if (!has_limits(joint)) return std::abs(angle) <= turns * kTurn;
-  return joint.lower - kRounded <= angle && angle <= joint.upper + kRounded;
+  if (!has_limits(joint)) return std::abs(angle) <= turns * kWholeTurn;
+  return joint.lower - kLimitRounding <= angle && angle <= joint.upper + kLimitRounding;
 }
 
 // Motions of which a continuous joint's `counts(step, shorter)`.
@@ -37,7 +36,7 @@ TurningMotions turning_motions(const RobotModel& robot, const Trajectory& trajec
     const std::span<const double> from = trajectory.configuration(i);
     const std::span<const double> to = trajectory.configuration(i + 1);
     for (std::size_t k = 0; k < trajectory.width; ++k) {
-      const Joint& joint = joint_of(robot, k);
+      const Joint& joint = leader_of(robot, k);
       if (joint.type != JointType::kContinuous) continue;
       const double step = to[k] - from[k];
       const double shorter = nearest_turn(from[k], to[k]) - from[k];
@@ -80,11 +79,11 @@ DegreesGuess guess_degrees(const RobotModel& robot, const Trajectory& trajectory
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const std::span<const double> configuration = trajectory.configuration(i);
     for (std::size_t k = 0; k < trajectory.width; ++k) {
-      const Joint& joint = joint_of(robot, k);
+      const Joint& joint = leader_of(robot, k);
       const double value = configuration[k];
       if (!joint.turns() || value == 0.0) continue;
       ++guess.angles;
-      is_large = is_large || std::abs(value) > kTurn;
+      is_large = is_large || std::abs(value) > kWholeTurn;
       fits = fits && is_plausible(joint, value * kRadiansPerDegree, 2.0);
       if (is_plausible(joint, value, 1.0) || ++guess.beyond > 1) continue;
       guess.line = trajectory.lines[i];
