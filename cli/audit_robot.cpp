@@ -5,8 +5,10 @@
 #include "cli/command.h"
 #include "cli/command_specification.h"
 #include "cli/help.h"
+#include "cli/in_file.h"
 #include "cli/interruption.h"
 #include "cli/length_options.h"
+#include "cli/message.h"
 #include "cli/next_step.h"
 #include "cli/output.h"
 #include "cli/pair_kinds.h"
@@ -14,9 +16,8 @@
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
+#include "cli/trajectory_input.h"
 #include "cli/view_robot.h"
-#include "robot/files/trajectory_file.h"
-#include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
 #include "spheretree/error.h"
 
@@ -39,22 +40,24 @@ struct AuditRobotArguments {
   std::string spheres;
   std::string geometry = geometry_names().front();
   std::vector<std::string> packages;
-  std::string poses;
+  TrajectoryArguments poses;
   std::string link;
   std::optional<std::size_t> level;
   std::string repaired;
   PairSources pairs;
+  bool ignores_unknown_links = false;
   std::optional<double> max_error;
   LengthOptions lengths;
   std::optional<double> min_external;
   bool json = false;
 };
 
-std::vector<std::vector<double>> configurations_of(const std::string& file,
+std::vector<std::vector<double>> configurations_of(const TrajectoryArguments& arguments,
                                                    const RobotModel& model) {
   std::vector<std::vector<double>> configurations;
-  if (file.empty()) return configurations;
-  const Trajectory trajectory = read_trajectory(file, model);
+  if (arguments.file.empty()) return configurations;
+  const Trajectory trajectory = read_configurations(arguments, model).trajectory;
+  require_provable(model, arguments, trajectory);
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const auto positions = trajectory.configuration(i);
     configurations.emplace_back(positions.begin(), positions.end());
@@ -93,7 +96,7 @@ std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, boo
     view.insert(view.end(), {"--leaks", "-o", beside(arguments.spheres, ".html")});
     steps.push_back({std::move(view), "see where they leak"});
   }
-  if (is_mendable && arguments.poses.empty()) {
+  if (is_mendable && arguments.poses.file.empty()) {
     std::vector<std::string> mend = {"audit-robot", arguments.urdf, arguments.spheres};
     repeat_robot_options(arguments.geometry, arguments.packages, mend);
     repeat("--link", arguments.link, mend);
@@ -115,10 +118,10 @@ bool has_shrinking_buffers(const RobotSpheres& spheres) {
 
 int audit(const AuditRobotArguments& arguments) {
   const bool mend = !arguments.repaired.empty();
-  check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses,
+  check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses.file,
                                        arguments.pairs.srdf, arguments.pairs.pairs});
   const LinkGeometry geometry = geometry_named(arguments.geometry);
-  const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
+  const RobotDescription robot = read_robot(arguments.urdf, arguments.packages, geometry);
   SphereInput given = read_spheres_of(robot, geometry, arguments.spheres,
                                       {.link = arguments.link, .level = arguments.level});
   RobotAuditReport report{.file = std::move(given.file),
@@ -127,6 +130,7 @@ int audit(const AuditRobotArguments& arguments) {
                           .repair = std::nullopt,
                           .pairs = std::nullopt};
   const RobotSpheres& spheres = report.file.spheres;
+  require_known_links(robot.model, arguments.spheres, spheres, arguments.ignores_unknown_links);
   const bool is_shrunk = has_shrinking_buffers(spheres);
   if (mend) check_repair(arguments, report.file, is_shrunk);
   RobotAuditOptions options{.geometry = geometry,
@@ -136,13 +140,14 @@ int audit(const AuditRobotArguments& arguments) {
   {
     ProgressBar bar;
     options.progress = bar.callback();
-    report.audit = audit_robot(robot, shrunk_by_buffers(spheres), options);
-    if (mend) {
+    in_file(arguments.urdf, [&] {
+      report.audit = audit_robot(robot, shrunk_by_buffers(spheres), options);
+      if (!mend) return;
       report.repair = repair_robot(robot, spheres.links,
                                    {.geometry = geometry,
                                     .max_error = arguments.max_error.value_or(0.0),
                                     .progress = options.progress});
-    }
+    });
   }
   if (!arguments.pairs.is_empty()) {
     report.pairs = pair_kinds(robot, spheres, geometry, arguments.pairs, true);
@@ -153,12 +158,11 @@ int audit(const AuditRobotArguments& arguments) {
   std::cout << (arguments.json ? to_text(audit_json(report)) : audit_table(report));
   if (report.pairs) {
     for (const std::string& warning : wrong_pairs(report.pairs->judgement, robot.model)) {
-      std::cerr << "spherule: warning: " << warning << "\n";
+      warn(warning);
     }
   }
   if (is_shrunk) {
-    std::cerr << "spherule: " << arguments.spheres
-              << ": spheres were certified as its buffers below 0 shrink them\n";
+    tell(arguments.spheres + ": spheres were certified as its buffers below 0 shrink them");
   }
   if (mend) {
     const std::vector<LinkRepair>& links = report.repair->links;
@@ -168,7 +172,8 @@ int audit(const AuditRobotArguments& arguments) {
                : kNo;
   }
   const RobotAudit& result = report.audit;
-  if (arguments.poses.empty() ? result.links_covered : result.configurations_covered) return kYes;
+  if (arguments.poses.file.empty() ? result.links_covered : result.configurations_covered)
+    return kYes;
   if (!arguments.json) {
     const bool is_mendable = is_written(report.file.format) && !is_shrunk;
     std::cout << describe(steps_after_leak(arguments, given.names_links, is_mendable));
@@ -186,14 +191,17 @@ void add_inputs(CLI::App& command, AuditRobotArguments& arguments) {
                   "ballpark or spherule; told apart by content")
       ->required()
       ->type_name(kFile);
+  add_unknown_links_flag(command, arguments.ignores_unknown_links);
   add_geometry_option(command, "Which of the robot's geometries is to be covered",
                       arguments.geometry);
   add_package_option(command, arguments.packages);
   command
-      .add_option("--poses", arguments.poses,
+      .add_option("--poses", arguments.poses.file,
                   "Configurations (CSV) in which spheres of other links may cover too; the "
                   "exit code is then about these")
       ->type_name(kFile);
+  add_degrees_flag(command, "Angles of --poses are in degrees, lengths in metres", arguments.poses)
+      ->needs("--poses");
   command
       .add_option("--srdf", arguments.pairs.srdf,
                   "The robot's SRDF: tell the pairs of links apart, and judge those it disables")

@@ -3,6 +3,7 @@
 
 #include "cli/command.h"
 #include "cli/interruption.h"
+#include "cli/message.h"
 #include "cli/output.h"
 #include "cli/print.h"
 #include "cli/progress.h"
@@ -96,8 +97,8 @@ int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
   });
   print(arguments, figures, result, {{"method", making}, {"certify", certifying}});
   if (result.certificate.covered) return kYes;
-  std::cerr << "spherule: " << arguments.output << ": the spheres are not proved to cover"
-            << (arguments.conservative ? "" : "; --conservative grows them") << "\n";
+  tell(arguments.output + ": the spheres are not proved to cover" +
+       (arguments.conservative ? "" : "; --conservative grows them"));
   return kNo;
 }
 

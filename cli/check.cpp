@@ -1,233 +1,108 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_report.h"
+#include "cli/check_spheres.h"
 #include "cli/command.h"
 #include "cli/command_specification.h"
 #include "cli/help.h"
+#include "cli/in_file.h"
 #include "cli/length_options.h"
+#include "cli/message.h"
 #include "cli/next_step.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
+#include "cli/trajectory_check.h"
+#include "cli/trajectory_input.h"
 #include "robot/check/robot_checker.h"
 #include "robot/check/scene_setup.h"
 #include "robot/cover/goal_cover.h"
-#include "robot/files/trajectory_file.h"
 #include "robot/files/urdf.h"
-#include "robot/formats/sphere_formats.h"
-#include "robot/model/link_spheres.h"
+#include "robot/model/shortest_motion.h"
 #include "robot/pairs/link_pairs_file.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <iostream>
 #include <memory>
 #include <span>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 namespace spherule {
 namespace {
 
+// What --continuous takes.
+constexpr const char* kAsGiven = "as-given";
+constexpr const char* kShortest = "shortest";
+
 struct CheckArguments {
   std::string urdf;
   std::string scene;
-  std::string trajectory;
+  TrajectoryArguments trajectory;
   std::string spheres;
   std::string pairs;
   std::string geometry = geometry_names().front();
   std::vector<std::string> packages;
   RobotCoverOptions cover;
   double resolution = EdgeRequest{}.resolution;
+  std::string continuous = kAsGiven;
   LengthOptions lengths;
   bool edges = false;
+  bool enforces_limits = false;
+  bool ignores_unknown_links = false;
   bool json = false;
+
+  ContinuousMotion motion() const {
+    return continuous == kAsGiven ? ContinuousMotion::kAsGiven : ContinuousMotion::kShortest;
+  }
 };
 
-void warn(const std::string& what) {
-  std::cerr << "spherule: warning: " << what << "\n";
+// The same trajectory with each configuration where the motion to it ends.
+Trajectory ends_of_motions(const RobotModel& robot, const Trajectory& trajectory) {
+  const ShortestMotion shortest(robot);
+  Trajectory ends = trajectory;
+  std::vector<double> room;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const std::span<const double> end =
+        shortest.end_of(trajectory.configuration(i - 1), trajectory.configuration(i), room);
+    std::copy(end.begin(), end.end(),
+              ends.positions.begin() + static_cast<std::ptrdiff_t>(i * trajectory.width));
+  }
+  return ends;
 }
 
-// What a robot is made of for this check, and pairs of links that its spheres' file leaves out.
-struct SphereRobot {
-  RobotModel model;
-  std::vector<DisabledPair> ignored;
-  bool is_whole = true;  // every shape that was read stands in spheres
-};
-
-// Whether there are none: links that have a shape and no sphere, which would be free everywhere.
-bool has_no_bare_links(const RobotDescription& robot, const RobotModel& model,
-                       LinkGeometry geometry) {
-  bool none = true;
-  for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    if (model.links()[i].trees.empty() && !link_shapes(robot.links[i], geometry).empty()) {
-      warn("link " + robot.links[i].name + " has a shape but no spheres: it is not checked");
-      none = false;
-    }
+// Which motions of continuous joints are proved, before that is done.
+void review_turns(const CheckArguments& arguments, const RobotModel& robot,
+                  const Trajectory& trajectory, CheckReport& report) {
+  const ShortestMotion shortest(robot);
+  if (!shortest.has_turns()) return;
+  report.continuous = arguments.motion();
+  report.turning = more_than_half_a_turn(robot, trajectory);
+  const std::string& file = arguments.trajectory.file;
+  if (report.continuous == ContinuousMotion::kAsGiven) {
+    if (report.turning.count == 0) return;
+    warn(file + ": " + describe(report.turning, arguments.trajectory.is_in_degrees) +
+         "; that way is proved: OMPL and many controllers go the shorter one, which "
+         "--continuous shortest proves");
+    return;
   }
-  return none;
+  try {
+    shortest.require();
+  } catch (const Error& error) {
+    throw Error(arguments.urdf, error.what());
+  }
+  const TurningMotions half = half_a_turn(robot, trajectory);
+  if (half.count == 0) return;
+  warn(file + ": of " + std::to_string(half.count) + (half.count == 1 ? " motion" : " motions") +
+       " no way is clearly the shorter one, because a continuous joint turns by half a turn, the "
+       "first from line " +
+       std::to_string(half.line) + " to line " + std::to_string(half.to_line) + ": joint " +
+       half.joint + "; a controller may go the other way than what is proved");
 }
-
-SphereRobot read_spheres(const CheckArguments& arguments, const RobotDescription& robot) {
-  SphereFormatFile file = read_robot_spheres(arguments.spheres);
-  // In which frame they are nobody says, and here nothing proves that they cover.
-  if (is_of_one_mesh(file)) throw Error(arguments.spheres, kNameItsLink);
-  RobotSpheres read = std::move(file.spheres);
-  const auto warn_of = [&](std::size_t count, const char* what) {
-    if (count > 0) warn(arguments.spheres + ": " + std::to_string(count) + what);
-  };
-  warn_of(read.other_shapes, " shapes are no spheres: they are not checked");
-  warn_of(read.switched_off, " spheres are switched off: they are not checked");
-  warn_of(read.self_collision_ignore.size(), " pairs of links are not tested against each other");
-  if (read.collision_buffer != 0.0 || !read.collision_buffers.empty() ||
-      !read.self_collision_buffer.empty()) {
-    warn(arguments.spheres + ": its buffers are not added; name them as padding in the scene");
-  }
-  return {with_spheres(robot.model, read.links), std::move(read.self_collision_ignore),
-          read.other_shapes == 0};
-}
-
-SphereRobot cover(const CheckArguments& arguments, const RobotDescription& robot,
-                  RobotCoverOptions options) {
-  const RobotCover covered = [&] {
-    ProgressBar bar;
-    options.progress = bar.callback();
-    return cover_robot(robot, options);
-  }();
-  std::vector<LinkSpheres> spheres;
-  for (const LinkCover& link : covered.links) {
-    if (link.fit && !link.fit->certificate.covered) {
-      throw Error(arguments.urdf,
-                  "link " + link.link + ": its spheres are not proved to cover all of it");
-    }
-    for (const std::string& warning : link.warnings) warn("link " + link.link + ": " + warning);
-    spheres.push_back({link.link, link.spheres});
-  }
-  return {with_spheres(robot.model, spheres), {}, true};
-}
-
-// Motions are proved for positions up to that, in radians and metres.
-constexpr double kLargestPosition = 100.0;
-
-void require_provable(const Trajectory& trajectory, const std::string& file) {
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    for (const double position : trajectory.configuration(i)) {
-      if (std::abs(position) <= kLargestPosition) continue;
-      throw Error(file, "line " + std::to_string(trajectory.lines[i]) +
-                            ": a position beyond 100, of which no motion is proved");
-    }
-  }
-}
-
-class TrajectoryCheck {
- public:
-  // Where `has_proofs`, pairs that these alone keep apart are counted, too.
-  TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory, bool has_proofs,
-                  int threads, Progress progress)
-      : checker_(checker),
-        trajectory_(trajectory),
-        has_proofs_(has_proofs),
-        progress_(std::move(progress)) {
-    const unsigned count = threads > 0 ? static_cast<unsigned>(threads)
-                                       : std::max(1u, std::thread::hardware_concurrency());
-    for (unsigned i = 0; i < count; ++i) scratches_.emplace_back(checker);
-    report_.configurations = trajectory.size();
-  }
-
-  CheckReport configurations() && {
-    std::vector<std::uint8_t> free(trajectory_.size());
-    const std::span all(trajectory_.positions);
-    in_blocks(free.size(), [&](std::size_t first, std::size_t count) {
-      checker_.check_configs(all.subspan(first * trajectory_.width, count * trajectory_.width),
-                             scratches_, std::span(free).subspan(first, count));
-    });
-    count_proved_free();
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      if (free[i] != 0) continue;
-      ++report_.colliding;
-      explain(trajectory_.configuration(i), {.line = trajectory_.lines[i]});
-    }
-    return std::move(report_);
-  }
-
-  CheckReport motions(double resolution) && {
-    const std::size_t count = trajectory_.size() - 1;
-    const std::span all(trajectory_.positions);
-    const std::size_t width = trajectory_.width;
-    std::vector<EdgeResult> results;
-    in_blocks(count, [&](std::size_t first, std::size_t edges) {
-      const std::vector<EdgeResult> some =
-          checker_.check_edges(all.subspan(first * width, edges * width),
-                               all.subspan((first + 1) * width, edges * width), scratches_,
-                               {.resolution = resolution, .first = true});
-      results.insert(results.end(), some.begin(), some.end());
-    });
-    report_.motions = count;
-    count_proved_free();
-    for (std::size_t i = 0; i < count; ++i) {
-      TrajectoryPoint at{.line = trajectory_.lines[i], .to_line = trajectory_.lines[i + 1]};
-      if (results[i].verdict == Verdict::kCollision) {
-        ++report_.colliding;
-        at.fraction = results[i].contact_at;
-        explain(between(i, at.fraction), at);
-      } else if (results[i].verdict == Verdict::kUnknown) {
-        at.fraction = results[i].free_until;
-        report_.not_proved.push_back(at);
-      }
-    }
-    return std::move(report_);
-  }
-
- private:
-  // So many at a time that the bar moves and the threads have enough to do.
-  template <typename Check>
-  void in_blocks(std::size_t count, Check check) const {
-    const std::size_t block = std::max<std::size_t>(count / 50, 256);
-    for (std::size_t first = 0; first < count; first += block) {
-      if (progress_) {
-        progress_(static_cast<double>(first) / static_cast<double>(count), "checking");
-      }
-      check(first, std::min(block, count - first));
-    }
-  }
-
-  std::vector<double> between(std::size_t index, double fraction) const {
-    const std::span<const double> from = trajectory_.configuration(index);
-    const std::span<const double> to = trajectory_.configuration(index + 1);
-    std::vector<double> result(from.begin(), from.end());
-    for (std::size_t k = 0; k < result.size(); ++k) result[k] += fraction * (to[k] - from[k]);
-    return result;
-  }
-
-  void count_proved_free() {
-    constexpr std::size_t kMost = 10000;  // enough to see which pairs they are
-    if (!has_proofs_) return;
-    report_.explained = std::min(kMost, trajectory_.size());
-    for (std::size_t i = 0; i < report_.explained; ++i) {
-      for (const CheckedContact& contact : checker_.explain(
-               trajectory_.configuration(i), scratches_.front(), {.proved_free = true})) {
-        if (contact.is_proved_free) report_.add({{.line = trajectory_.lines[i]}, contact});
-      }
-    }
-  }
-
-  void explain(std::span<const double> configuration, const TrajectoryPoint& at) {
-    for (const CheckedContact& contact : checker_.explain(configuration, scratches_.front())) {
-      report_.add({at, contact});
-    }
-  }
-
-  const RobotChecker& checker_;
-  const Trajectory& trajectory_;
-  bool has_proofs_;
-  Progress progress_;
-  std::vector<RobotChecker::Scratch> scratches_;
-  CheckReport report_;
-};
 
 // Where bodies of the robot touch all the time: what to do about it, for a person.
 std::string advice(const CheckArguments& arguments, const CheckReport& report) {
@@ -241,8 +116,14 @@ std::string advice(const CheckArguments& arguments, const CheckReport& report) {
   text += "where they may, name them under \"allowed_contacts\" in " + arguments.scene + "\n";
   if (!arguments.spheres.empty()) return text;  // how coarse they are is not known
   const CheckArguments defaults;
-  std::vector<std::string> finer = {"check", arguments.urdf, arguments.scene, arguments.trajectory};
+  std::vector<std::string> finer = {"check", arguments.urdf, arguments.scene,
+                                    arguments.trajectory.file};
   if (arguments.edges) finer.push_back("--edges");
+  if (arguments.continuous != defaults.continuous) {
+    repeat("--continuous", arguments.continuous, finer);
+  }
+  if (arguments.trajectory.is_in_degrees) finer.push_back("--degrees");
+  if (arguments.enforces_limits) finer.push_back("--enforce-limits");
   if (arguments.resolution != defaults.resolution) {
     repeat("--resolution", arguments.resolution, finer);
   }
@@ -255,27 +136,51 @@ std::string advice(const CheckArguments& arguments, const CheckReport& report) {
   return text + describe({{std::move(finer), "finer spheres may part them"}});
 }
 
-int check(const CheckArguments& arguments) {
-  RobotCoverOptions options = arguments.cover;
-  options.geometry = geometry_named(arguments.geometry);
-  const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
-  const SceneDescription scene = read_scene(arguments.scene);
-  const Trajectory trajectory = read_trajectory(arguments.trajectory, robot.model);
-  if (arguments.edges) require_provable(trajectory, arguments.trajectory);
-  require_resolution(arguments.resolution);
-
-  SphereRobot spheres =
-      arguments.spheres.empty() ? cover(arguments, robot, options) : read_spheres(arguments, robot);
-  const bool is_whole =
-      has_no_bare_links(robot, spheres.model, options.geometry) && spheres.is_whole;
+// What stands around the robot, and what is ignored.
+PreparedScene prepare(SphereRobot robot, const SceneDescription& scene, RobotCoverOptions options) {
   ProgressBar bar;
   options.progress = bar.callback();
-  PreparedScene prepared = prepare_scene(std::move(spheres.model), scene, options);
+  PreparedScene prepared = prepare_scene(std::move(robot.model), scene, options);
   bar.clear();
   for (const std::string& warning : prepared.warnings) warn(warning);
   AllowedCollisions allowed = prepared.scene.allowed_collisions();
-  for (const DisabledPair& pair : spheres.ignored) allowed.allow(pair.link_a, pair.link_b);
+  for (const DisabledPair& pair : robot.ignored) allowed.allow(pair.link_a, pair.link_b);
   prepared.scene.set_allowed_collisions(std::move(allowed));
+  return prepared;
+}
+
+// With --spheres no mesh is needed, unless proofs are about meshes.
+RobotDescription read_checked_robot(const CheckArguments& arguments, LinkGeometry geometry) {
+  if (arguments.spheres.empty()) return read_robot(arguments.urdf, arguments.packages, geometry);
+  const std::vector<LinkGeometry> needed(arguments.pairs.empty() ? 0 : 1, geometry);
+  return read_urdf(arguments.urdf, urdf_options(arguments.packages, needed));
+}
+
+int check(const CheckArguments& arguments) {
+  RobotCoverOptions options = arguments.cover;
+  options.geometry = geometry_named(arguments.geometry);
+  const RobotDescription robot = read_checked_robot(arguments, options.geometry);
+  const SceneDescription scene = read_scene(arguments.scene);
+  const TrajectoryInput input = read_configurations(arguments.trajectory, robot.model);
+  const bool has_motions = arguments.edges && input.trajectory.size() > 1;
+  CheckReport seen;
+  if (arguments.edges) {
+    require_provable(robot.model, arguments.trajectory, input.trajectory);
+    if (has_motions) review_turns(arguments, robot.model, input.trajectory, seen);
+    if (arguments.motion() == ContinuousMotion::kShortest) {
+      require_provable(robot.model, arguments.trajectory,
+                       ends_of_motions(robot.model, input.trajectory));
+    }
+  }
+  require_resolution(arguments.resolution);
+
+  SphereRobot spheres = arguments.spheres.empty()
+                            ? cover_sphere_robot(arguments.urdf, robot, options)
+                            : read_sphere_robot(arguments.spheres, robot, options.geometry,
+                                                arguments.ignores_unknown_links);
+  const bool is_whole = spheres.is_whole;
+  PreparedScene prepared =
+      in_file(arguments.scene, [&] { return prepare(std::move(spheres), scene, options); });
   std::shared_ptr<const LinkPairs> proofs;
   if (!arguments.pairs.empty()) {
     proofs = std::make_shared<const LinkPairs>(
@@ -283,14 +188,22 @@ int check(const CheckArguments& arguments) {
     prepared.scene.set_link_pairs(proofs);
   }
 
-  const RobotChecker checker = prepared.scene.snapshot();
-  TrajectoryCheck trajectory_check(checker, trajectory, proofs != nullptr, options.threads,
-                                   bar.callback());
-  CheckReport report = arguments.edges && trajectory.size() > 1
-                           ? std::move(trajectory_check).motions(arguments.resolution)
-                           : std::move(trajectory_check).configurations();
+  const RobotChecker checker = in_file(arguments.scene, [&] { return prepared.scene.snapshot(); });
+  ProgressBar bar;
+  const TrajectoryCheckOptions how{
+      .has_proofs = proofs != nullptr,
+      .threads = options.threads,
+      .progress = bar.callback(),
+      .edge = {.resolution = arguments.resolution, .continuous = arguments.motion()}};
+  CheckReport report = has_motions ? check_motions(checker, input.trajectory, how)
+                                   : check_configurations(checker, input.trajectory, how);
   bar.clear();
   report.is_whole = is_whole;
+  report.continuous = seen.continuous;
+  report.turning = seen.turning;
+  report.outside = input.outside;
+  report.enforces_limits = arguments.enforces_limits;
+  report.is_in_degrees = arguments.trajectory.is_in_degrees;
   if (proofs != nullptr) {
     const RobotModel& model = checker.robot();
     report.tell_kinds(model, pair_statuses(model, prepared.scene.allowed_collisions(), proofs));
@@ -312,12 +225,22 @@ void add_check(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name(kFile);
   command
-      ->add_option("trajectory", arguments->trajectory,
+      ->add_option("trajectory", arguments->trajectory.file,
                    "Configurations, one a line, with or without a line of joint names")
       ->required()
       ->type_name(kFile);
   command->add_flag("--edges", arguments->edges,
                     "Prove every motion from one configuration to the next");
+  command
+      ->add_option("--continuous", arguments->continuous,
+                   "With --edges: the way that continuous joints turn from one configuration to "
+                   "the next: as-given, straight from number to number (default), or shortest, by "
+                   "at most half a turn, as OMPL's SO2 goes")
+      ->check(CLI::IsMember({kAsGiven, kShortest}));
+  add_degrees_flag(*command, "Angles of the trajectory are in degrees, lengths in metres",
+                   arguments->trajectory);
+  command->add_flag("--enforce-limits", arguments->enforces_limits,
+                    "Configurations outside the joint limits are not free (default: a warning)");
   arguments->lengths.add(
       *command, "--resolution", arguments->resolution,
       "With --edges: how closely motions are examined, in metres (default 1e-4)");
@@ -326,6 +249,7 @@ void add_check(CLI::App& app, int& exit_code) {
                    "Spheres of the robot, in any format that audit-robot reads (default: cover "
                    "the robot first)")
       ->type_name(kFile);
+  add_unknown_links_flag(*command, arguments->ignores_unknown_links);
   command
       ->add_option("--pairs", arguments->pairs,
                    "What is proved of the pairs of the robot's links (NAME.pairs of robot, covered "
@@ -347,10 +271,13 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_flag("--json", arguments->json, "Print the result as JSON");
   command->footer(
       to_text({.text = "",
-               .exit_codes = "0 free; 1 a collision, not proved, or a link without spheres",
+               .exit_codes = "0 free; 1 a collision, not proved, a link without spheres, or with "
+                             "--enforce-limits a configuration outside the joint limits",
                .examples = {"spherule check robot.urdf cell.json path.csv",
                             "spherule check robot.urdf cell.json path.csv --edges --spheres "
-                            "robot.spheres.json --json"}}));
+                            "robot.spheres.json --json",
+                            "spherule check robot.urdf cell.json path.csv --degrees "
+                            "--enforce-limits --edges --continuous shortest"}}));
   command->callback([arguments, &exit_code] {
     arguments->lengths.convert(metres());
     exit_code = check(*arguments);

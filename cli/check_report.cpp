@@ -3,6 +3,7 @@
 
 #include "cli/json.h"
 #include "cli/print.h"
+#include "cli/trajectory_input.h"
 #include "cli/units.h"
 
 #include <algorithm>
@@ -34,7 +35,62 @@ const TouchingPair* deepest(const CheckReport& report) {
 }
 
 const char* verdict_of(const CheckReport& report) {
-  return report.colliding > 0 ? "collision" : report.is_free() ? "free" : "not proved";
+  if (report.colliding > 0) return "collision";
+  if (report.is_out_of_bounds()) return "outside limits";
+  return report.is_free() ? "free" : "not proved";
+}
+
+const char* name_of(ContinuousMotion continuous) {
+  return continuous == ContinuousMotion::kAsGiven ? "as-given" : "shortest";
+}
+
+std::string angle_text(double radians, bool in_degrees) {
+  std::ostringstream text;
+  if (in_degrees) {
+    text << radians / kRadiansPerDegree << " degrees";
+  } else {
+    text << radians << " rad";
+  }
+  return text.str();
+}
+
+// Which motions of continuous joints were proved.
+void put_continuous(std::ostream& out, const CheckReport& report) {
+  if (!report.continuous) return;
+  const TurningMotions& turning = report.turning;
+  out << "continuous joints turn "
+      << (report.continuous == ContinuousMotion::kAsGiven
+              ? "as given, straight from number to number"
+              : "the shorter way, by at most half a turn");
+  if (turning.count > 0) {
+    out << "; " << describe(turning, report.is_in_degrees);
+    if (report.continuous == ContinuousMotion::kShortest) {
+      out << " as given, here by " << angle_text(turning.shorter, report.is_in_degrees);
+    }
+  }
+  out << "\n";
+}
+
+Json to_json(const OutsideLimits& outside, bool enforced) {
+  Json json{{"outside", outside.count}, {"enforced", enforced}, {"first", nullptr}};
+  if (outside.count == 0) return json;
+  json["first"] = {{"line", outside.line},
+                   {"joint", outside.joint},
+                   {"position", spherule::to_json(outside.position)},
+                   {"lower", spherule::to_json(outside.lower)},
+                   {"upper", spherule::to_json(outside.upper)}};
+  return json;
+}
+
+Json to_json(const TurningMotions& turning) {
+  Json json{{"count", turning.count}, {"first", nullptr}};
+  if (turning.count == 0) return json;
+  json["first"] = {{"line", turning.line},
+                   {"to_line", turning.to_line},
+                   {"joint", turning.joint},
+                   {"step", spherule::to_json(turning.step)},
+                   {"shorter", spherule::to_json(turning.shorter)}};
+  return json;
 }
 
 Json to_json(const CheckedBody& body) {
@@ -168,6 +224,15 @@ std::vector<TouchingPair> always_touching(const CheckReport& report) {
   return result;
 }
 
+std::string describe(const TurningMotions& turning, bool in_degrees) {
+  std::ostringstream text;
+  text << turning.count << (turning.count == 1 ? " motion turns" : " motions turn")
+       << " a continuous joint by more than half a turn, the first from line " << turning.line
+       << " to line " << turning.to_line << ": joint " << turning.joint << " by "
+       << angle_text(turning.step, in_degrees);
+  return text.str();
+}
+
 std::string check_table(const CheckReport& report) {
   std::ostringstream text;
   text << verdict_of(report) << ": " << report.configurations << " configurations";
@@ -176,6 +241,10 @@ std::string check_table(const CheckReport& report) {
          << report.not_proved.size() << " are not proved free\n";
   } else {
     text << ", " << report.colliding << " of them collide\n";
+  }
+  put_continuous(text, report);
+  if (report.is_out_of_bounds()) {
+    text << describe(report.outside, report.configurations, report.is_in_degrees) << "\n";
   }
   if (!report.pairs.empty()) {
     const bool has_kinds = std::any_of(report.pairs.begin(), report.pairs.end(),
@@ -205,6 +274,11 @@ std::string check_table(const CheckReport& report) {
 std::string check_json(const CheckReport& report) {
   Json json{{"verdict", verdict_of(report)}, {"configurations", report.configurations}};
   if (report.motions) json["motions"] = *report.motions;
+  if (report.continuous) {
+    json["continuous"] = name_of(*report.continuous);
+    json["more_than_half_a_turn"] = to_json(report.turning);
+  }
+  json["limits"] = to_json(report.outside, report.enforces_limits);
   json["colliding"] = report.colliding;
   const TouchingPair* worst = deepest(report);
   json["first_contact"] = worst ? to_json(report.pairs.front().first) : Json(nullptr);

@@ -3,6 +3,7 @@
 
 #include "robot/check/pair_status.h"
 #include "robot/check/robot_checker.h"
+#include "robot/files/trajectory_review.h"
 
 #include <cstddef>
 #include <optional>
@@ -45,7 +46,17 @@ struct CheckReport {
 
   bool is_whole = true;  // no part of the robot was left out
 
-  bool is_free() const { return colliding == 0 && not_proved.empty() && is_whole; }
+  // Of motions of a robot with continuous joints: which way these turn, and where that matters.
+  std::optional<ContinuousMotion> continuous{};
+  TurningMotions turning{};
+  OutsideLimits outside{};
+  bool enforces_limits = false;
+  bool is_in_degrees = false;  // what people are told
+
+  bool is_out_of_bounds() const { return enforces_limits && outside.count > 0; }
+  bool is_free() const {
+    return colliding == 0 && not_proved.empty() && is_whole && !is_out_of_bounds();
+  }
   // Where it belongs.
   void add(const FoundContact& found);
   // Says of the pairs of links of what kind they are.
@@ -55,6 +66,9 @@ struct CheckReport {
 // Pairs of the robot's own bodies that touch in every configuration, or at the start of every
 // motion, of two or more: their spheres may be too coarse, or they are meant to touch.
 std::vector<TouchingPair> always_touching(const CheckReport& report);
+
+// "2 motions turn a continuous joint by more than half a turn, the first from line 1 to ...".
+std::string describe(const TurningMotions& turning, bool in_degrees);
 
 // For a person, a few lines and a table, and as JSON.
 std::string check_table(const CheckReport& report);

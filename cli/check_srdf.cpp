@@ -3,12 +3,12 @@
 #include "cli/command.h"
 #include "cli/command_specification.h"
 #include "cli/help.h"
+#include "cli/in_file.h"
 #include "cli/pair_report.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "cli/units.h"
 #include "robot/cover/link_bodies.h"
-#include "robot/files/urdf.h"
 #include "robot/pairs/srdf_judgement.h"
 #include "spheretree/error.h"
 
@@ -107,13 +107,14 @@ Json judgement_json(const SrdfJudgement& judgement, const RobotModel& robot) {
 }
 
 int check_srdf(const CheckSrdfArguments& arguments) {
-  const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
+  const LinkGeometry geometry = geometry_named(arguments.geometry);
+  const RobotDescription robot = read_robot(arguments.urdf, arguments.packages, geometry);
   const SemanticDescription semantics = read_srdf(arguments.srdf);
   if (semantics.disabled_pairs.empty()) {
     throw Error(arguments.srdf, "it disables no pair of links: is it an SRDF?");
   }
   const std::vector<LinkBody> bodies =
-      link_bodies(robot, {.geometry = geometry_named(arguments.geometry)});
+      in_file(arguments.urdf, [&] { return link_bodies(robot, {.geometry = geometry}); });
   const LinkPairs proofs = [&] {
     ProgressBar bar;
     LinkPairOptions options = arguments.options;

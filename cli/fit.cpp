@@ -5,6 +5,7 @@
 #include "cli/fit_report.h"
 #include "cli/help.h"
 #include "cli/interruption.h"
+#include "cli/message.h"
 #include "cli/model_file.h"
 #include "cli/next_step.h"
 #include "cli/output.h"
@@ -23,6 +24,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,10 +48,8 @@ void write_view(const FitArguments& arguments, const TriangleMesh& mesh,
   write_file_atomically(arguments.view, make_view_page(scene));
 }
 
-void warn(const std::string& file, const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) {
-    std::cerr << "spherule: warning: " << file << ": " << warning << "\n";
-  }
+void warn_each(const std::string& file, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) warn(file + ": " + warning);
 }
 
 // Spheres suit thin walls badly: there the count goes with the area, however thin they are.
@@ -60,11 +60,13 @@ void warn_of_thin_parts(const FitArguments& arguments, const TriangleMesh& mesh,
   const double max_error = result.options.max_error;
   const std::size_t thin = spheres_in_thin_parts(result.external, result.cover.spheres, max_error);
   if (2 * thin <= count) return;
-  std::cerr << "spherule: warning: " << arguments.models.front() << ": " << thin << " of " << count
-            << " spheres stand where the part is thinner than 2 E, and the mesh has only "
-            << mesh.triangles.size()
-            << " triangles: spheres suit thin parts badly. Far fewer would do with --max-error "
-            << 2.0 * max_error << "\n";
+  std::ostringstream text;
+  text << arguments.models.front() << ": " << thin << " of " << count
+       << " spheres stand where the part is thinner than 2 E, and the mesh has only "
+       << mesh.triangles.size()
+       << " triangles: spheres suit thin parts badly. Far fewer would do with --max-error "
+       << 2.0 * max_error;
+  warn(text.str());
 }
 
 std::vector<NextStep> next_steps(const FitArguments& arguments, bool is_covered) {
@@ -105,8 +107,10 @@ void print_reading(const std::string& file, const ModelFile& model, const ModelR
   }
   std::cout << describe(unit) << describe(report) << std::endl;
   if (report.boundary_edges == 0 || model.cad || options.weld > 0.0) return;
-  std::cerr << "spherule: if rounding has left cracks in " << file << ", --weld "
-            << kCrack * report.box.diagonal().norm() << " shuts them\n";
+  std::ostringstream text;
+  text << "if rounding has left cracks in " << file << ", --weld "
+       << kCrack * report.box.diagonal().norm() << " shuts them";
+  tell(text.str());
 }
 
 void write_trees(const FitArguments& arguments, const TriangleMesh& mesh,
@@ -160,7 +164,7 @@ int fit(FitArguments& arguments) {
   reading.clear();
   print_reading(file, model, read_options, unit, report);
 
-  warn(file, length_warnings(report, options, unit));
+  warn_each(file, length_warnings(report, options, unit));
   StopOnInterruption interruption;
   options.on_proved = [&](std::size_t) { interruption.have_answer(); };
   options.stop = interruption.token();
@@ -193,11 +197,11 @@ int fit(FitArguments& arguments) {
 
   print_result(result, breakdown, model.cad.has_value());
   warn_of_thin_parts(arguments, mesh, result);
-  warn(file, volume_warnings(result));
+  warn_each(file, volume_warnings(result));
   const std::string broken = broken_promises(result);
   std::cout << describe(next_steps(arguments, result.certificate.covered));
   if (broken.empty()) return model.cad && !model.cad->proved ? kNo : kYes;
-  std::cerr << "spherule: " << arguments.spheres << ": " << broken << "\n";
+  tell(arguments.spheres + ": " + broken);
   return kNo;
 }
 

@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/fit_report.h"
 #include "cli/interruption.h"
+#include "cli/message.h"
 #include "cli/model_bodies.h"
 #include "cli/next_step.h"
 #include "cli/output.h"
@@ -44,8 +45,9 @@ std::vector<std::optional<MeshReport>> reports_of(const ModelBodies& model) {
 }
 
 // What of lengths looks wrong for the bodies together, and which are open.
-void warn(const ModelBodies& model, const std::vector<std::optional<MeshReport>>& reports,
-          const SimplifyOptions& options, const ModelUnit& unit, const std::string& name) {
+void warn_of_bodies(const ModelBodies& model, const std::vector<std::optional<MeshReport>>& reports,
+                    const SimplifyOptions& options, const ModelUnit& unit,
+                    const std::string& name) {
   MeshReport all;
   std::size_t open = 0;
   std::string first_open;
@@ -56,12 +58,12 @@ void warn(const ModelBodies& model, const std::vector<std::optional<MeshReport>>
     if (open++ == 0) first_open = model.bodies[i].name;
   }
   for (const std::string& warning : length_warnings(all, options, unit)) {
-    std::cerr << "spherule: warning: " << name << ": " << warning << "\n";
+    warn(name + ": " + warning);
   }
   if (open > 0) {
-    std::cerr << "spherule: " << open << (open == 1 ? " body is" : " bodies are")
-              << " not closed: only the surface is certain (" << first_open
-              << (open > 1 ? " is the first" : "") << ")\n";
+    tell(std::to_string(open) + (open == 1 ? " body is" : " bodies are") +
+         " not closed: only the surface is certain (" + first_open +
+         (open > 1 ? " is the first" : "") + ")");
   }
 }
 
@@ -180,7 +182,7 @@ int fit_bodies(FitArguments& arguments) {
   bar.clear();
   if (model.cad.front()) note_cad_unit(model.cad.front()->stated_unit, units.front());
   std::cout << describe(units.front()) << std::flush;
-  warn(model, reports, options, units.front(), arguments.models.front());
+  warn_of_bodies(model, reports, options, units.front(), arguments.models.front());
 
   StopOnInterruption interruption;
   options.on_proved = [&](std::size_t) { interruption.have_answer(); };
@@ -209,8 +211,7 @@ int fit_bodies(FitArguments& arguments) {
     is_proved = is_proved && !(model.cad[i] && !model.cad[i]->proved);
     if (fits[i].broken.empty()) continue;
     is_proved = false;
-    std::cerr << "spherule: " << arguments.spheres << ": " << model.bodies[i].name << ": "
-              << fits[i].broken << "\n";
+    tell(arguments.spheres + ": " + model.bodies[i].name + ": " + fits[i].broken);
   }
   return is_proved ? kYes : kNo;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/interruption.h"
 
+#include "cli/message.h"
+
 #include <array>
 #include <atomic>
 #include <csignal>
@@ -89,8 +91,7 @@ StopOnInterruption::StopOnInterruption() {
     if (stop_state.signal_number == 0) return;
     // Below a progress bar, where there may be one.
     if (isatty(STDERR_FILENO) == 1) std::cerr << "\n";
-    std::cerr << "spherule: interrupted: what is proved so far will be written; interrupt again "
-                 "to end at once\n";
+    tell("interrupted: what is proved so far will be written; interrupt again to end at once");
     source_.request_stop();
   });
   stop_handler.emplace(request_stop);

@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/memory_reserve.h"
+#include "cli/message.h"
 #include "cli/usage_error.h"
 #include "spheretree/error.h"
 
@@ -17,7 +18,7 @@ namespace spherule {
 namespace {
 
 int bad_input(const std::string& message) {
-  std::cerr << "spherule: " << message << '\n';
+  tell(message);
   return kBadInput;
 }
 

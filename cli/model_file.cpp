@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/model_file.h"
 
+#include "cli/message.h"
 #include "mesh/io/length_unit.h"
 #include "mesh/io/mesh_io.h"
 #include "spheretree/error.h"
 
 #include <cmath>
 #include <cstdint>
-#include <iostream>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -19,10 +19,9 @@ namespace {
 #ifdef SPHERULE_HAS_CAD
 void warn_of_unproved(const std::string& subject, const CadPart& part) {
   if (part.proved) return;
-  std::cerr << "spherule: warning: " << subject << ": the chord error is measured, not proved, on "
-            << part.unproved.size() << " of " << part.faces
-            << " faces: " << part.unproved.front().name << ": " << part.unproved.front().reason
-            << "\n";
+  warn(subject + ": the chord error is measured, not proved, on " +
+       std::to_string(part.unproved.size()) + " of " + std::to_string(part.faces) +
+       " faces: " + part.unproved.front().name + ": " + part.unproved.front().reason);
 }
 #endif
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/progress.h"
 
+#include "cli/message.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <unistd.h>
@@ -46,10 +48,11 @@ void ProgressBar::log(double share, const char* what) {
   const auto now = std::chrono::steady_clock::now();
   if (now - last_time_ < kLogInterval) return;
   last_time_ = now;
+  const std::string word = one_line(what);  // it may be the name of a link
   if (share < 0.0) {
-    std::fprintf(stderr, "spherule: progress: %s\n", what);
+    std::fprintf(stderr, "spherule: progress: %s\n", word.c_str());
   } else {
-    std::fprintf(stderr, "spherule: progress: %s (%d %%)\n", what,
+    std::fprintf(stderr, "spherule: progress: %s (%d %%)\n", word.c_str(),
                  static_cast<int>(std::min(share, 1.0) * 100.0));
   }
 }
@@ -60,8 +63,9 @@ void ProgressBar::draw(double share, const char* what) {
   drawn_ = true;
   last_what_ = what;
   last_time_ = now;
+  const std::string word = one_line(what);
   if (share < 0.0) {
-    std::fprintf(stderr, "%s%s ...", kEraseLine, what);
+    std::fprintf(stderr, "%s%s ...", kEraseLine, word.c_str());
     return;
   }
   const double done = std::min(share, 1.0);
@@ -69,7 +73,7 @@ void ProgressBar::draw(double share, const char* what) {
   const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
                           std::string(static_cast<std::size_t>(kBarWidth - full), '.');
   std::fprintf(stderr, "%s[%s] %3d%% %s", kEraseLine, bar.c_str(), static_cast<int>(done * 100.0),
-               what);
+               word.c_str());
 }
 
 }  // namespace spherule

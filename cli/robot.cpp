@@ -3,8 +3,10 @@
 #include "cli/command_specification.h"
 #include "cli/false_alarm_report.h"
 #include "cli/help.h"
+#include "cli/in_file.h"
 #include "cli/interruption.h"
 #include "cli/length_options.h"
+#include "cli/message.h"
 #include "cli/next_step.h"
 #include "cli/output.h"
 #include "cli/pair_report.h"
@@ -18,7 +20,6 @@
 #include "robot/check/named_postures.h"
 #include "robot/cover/robot_spheres.h"
 #include "robot/files/srdf.h"
-#include "robot/files/urdf.h"
 #include "robot/model/link_spheres.h"
 #include "robot/pairs/ignored_pairs.h"
 #include "spheretree/atomic_file.h"
@@ -151,13 +152,12 @@ std::string describe_pairs(const MeasuredCover& measured) {
 bool keeps_promises(const std::string& urdf, const MeasuredCover& result) {
   const std::vector<std::string> open = links_not_proved(result.cover);
   if (!open.empty()) {
-    std::cerr << "spherule: " << urdf << ": not proved for";
-    for (const std::string& link : open) std::cerr << " " << link;
-    std::cerr << "\n";
+    std::string names;
+    for (const std::string& link : open) names += " " + link;
+    tell(urdf + ": not proved for" + names);
   }
   const bool is_reached = !result.choice || result.choice->is_reached;
-  if (!is_reached)
-    std::cerr << "spherule: " << urdf << ": the share of false alarms is not reached\n";
+  if (!is_reached) tell(urdf + ": the share of false alarms is not reached");
   return open.empty() && is_reached;
 }
 
@@ -203,16 +203,10 @@ Json summary_of(const std::string& urdf, const RobotModel& model, const Measured
 void print_warnings(const RobotCover& cover, const std::vector<std::string>& wrong_pairs,
                     const std::vector<PostureContact>& contacts) {
   for (const LinkCover& link : cover.links) {
-    for (const std::string& warning : link.warnings) {
-      std::cerr << "spherule: warning: link " << link.link << ": " << warning << "\n";
-    }
+    for (const std::string& warning : link.warnings) warn("link " + link.link + ": " + warning);
   }
-  for (const std::string& warning : wrong_pairs) {
-    std::cerr << "spherule: warning: " << warning << "\n";
-  }
-  for (const PostureContact& contact : contacts) {
-    std::cerr << "spherule: warning: " << describe(contact) << "\n";
-  }
+  for (const std::string& warning : wrong_pairs) warn(warning);
+  for (const PostureContact& contact : contacts) warn(describe(contact));
 }
 
 // Fails (kNo), naming the links, if something promised of a link is not proved, or if the share of
@@ -224,12 +218,14 @@ int cover_links(const RobotArguments& arguments) {
   options.links = link_options(arguments.links);
   RobotFilePlan plan = plan_of(arguments);
   require_proofs_of_pairs(arguments, plan);
-  const RobotDescription robot = read_urdf(arguments.urdf, urdf_options(arguments.packages));
+  const RobotDescription robot = read_robot(arguments.urdf, arguments.packages, options.geometry);
   if (!plan.tool_link.empty() && robot.model.find_link(plan.tool_link) < 0) {
     throw Error("--tool-link", "the robot has no link '" + plan.tool_link + "'");
   }
   const std::vector<std::string> links = links_to_cover(robot, options.geometry);
-  check_places(arguments, plan.all(robot, links));
+  const std::vector<fs::path> outputs =
+      in_file(arguments.urdf, [&] { return plan.all(robot, links); });
+  check_places(arguments, outputs);
   rehearse_robot_files(plan, robot, links);
   SemanticDescription semantics;  // a bad file is refused in time
   if (!arguments.srdf.empty()) semantics = read_srdf(arguments.srdf);
@@ -245,7 +241,8 @@ int cover_links(const RobotArguments& arguments) {
   const MeasuredCover measured = [&] {
     ProgressBar bar;
     options.progress = bar.callback();
-    return run.cover(options, arguments.has_max_error, names_of(disabled));
+    return in_file(arguments.urdf,
+                   [&] { return run.cover(options, arguments.has_max_error, names_of(disabled)); });
   }();
   const RobotCover& result = measured.cover;
   if (measured.pairs == nullptr) std::erase(plan.formats, kPairsFormat);

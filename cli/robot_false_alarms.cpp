@@ -67,10 +67,12 @@ void add_false_alarm_options(CLI::App& command, FalseAlarmArguments& arguments) 
       ->check(check_share)
       ->type_name("SHARE");
   command
-      .add_option("--poses", arguments.poses,
+      .add_option("--poses", arguments.poses.file,
                   "Postures, one a line, in which false alarms are counted, too (as the "
                   "trajectories that check reads)")
       ->type_name(kFile);
+  add_degrees_flag(command, "Angles of --poses are in degrees, lengths in metres", arguments.poses)
+      ->needs("--poses");
   command
       .add_option("--proofs", arguments.proofs,
                   "Which proofs about pairs of links spare tests where false alarms are counted: "
@@ -87,7 +89,9 @@ void add_false_alarm_options(CLI::App& command, FalseAlarmArguments& arguments) 
 FalseAlarmRun::FalseAlarmRun(const FalseAlarmArguments& arguments, const RobotDescription& robot)
     : robot_(robot), proofs_(proofs_named(arguments.proofs)), postures_(arguments.postures) {
   if (!arguments.goal.empty()) goal_ = share_of(arguments.goal);
-  if (!arguments.poses.empty()) poses_ = read_trajectory(arguments.poses, robot.model);
+  if (!arguments.poses.file.empty()) {
+    poses_ = read_configurations(arguments.poses, robot.model).trajectory;
+  }
   if (goal_ && robot.model.variable_count() == 0) {
     throw Error("--false-alarms", "the robot has no joint that moves");
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/trajectory_input.h"
 #include "robot/cover/goal_cover.h"
-#include "robot/files/trajectory_file.h"
 
 #include <cstddef>
 #include <memory>
@@ -20,7 +20,7 @@ namespace spherule {
 // What `spherule robot` is told about false alarms.
 struct FalseAlarmArguments {
   std::string goal;  // empty: measure alone
-  std::string poses;
+  TrajectoryArguments poses;
   std::string proofs;
   std::size_t postures = 0;  // 0: the library's default, which is larger for a goal
 };

@@ -80,6 +80,15 @@ fs::path original(const RobotFilePlan& plan, SphereFormat format) {
   }
 }
 
+// The text with one folder in the place of another.
+std::string moved(std::string text, const fs::path& from, const fs::path& to) {
+  for (std::size_t at = text.find(from.string()); at != std::string::npos;
+       at = text.find(from.string(), at + to.string().size())) {
+    text.replace(at, from.string().size(), to.string());
+  }
+  return text;
+}
+
 // An empty folder that vanishes with the object.
 class ScratchFolder {
  public:
@@ -154,7 +163,12 @@ void rehearse_robot_files(const RobotFilePlan& plan, const RobotDescription& rob
     }
     spheres.links.push_back({link, {Sphere{Eigen::Vector3d::Zero(), 1.0}}});
   }
-  write_robot_files(rehearsal, robot, spheres, nullptr);
+  try {
+    write_robot_files(rehearsal, robot, spheres, nullptr);
+  } catch (const Error& error) {
+    throw Error(moved(error.subject(), folder.path(), plan.folder),
+                moved(error.reason(), folder.path(), plan.folder));
+  }
 }
 
 void write_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,

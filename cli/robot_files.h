@@ -40,7 +40,7 @@ struct RobotFilePlan {
 // Throws what write_robot_files() would throw whatever the spheres, before long work is done for
 // nothing: for a file to be kept that cannot be read, a name that a format cannot hold. It writes
 // files of one sphere a link, in which all pairs are ignored, into a folder of its own and removes
-// them.
+// them; errors name them where they are to be.
 void rehearse_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
                           const std::vector<std::string>& links);
 

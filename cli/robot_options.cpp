@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <optional>
 
 namespace spherule {
@@ -70,8 +71,13 @@ void repeat_robot_options(const std::string& geometry, const std::vector<std::st
   for (const std::string& package : packages) repeat("--package", package, words);
 }
 
-UrdfOptions urdf_options(const std::vector<std::string>& packages) {
-  UrdfOptions options;
+UrdfOptions urdf_options(const std::vector<std::string>& packages,
+                         std::span<const LinkGeometry> needed) {
+  const auto needs = [&](LinkGeometry geometry) {
+    return std::find(needed.begin(), needed.end(), geometry) != needed.end();
+  };
+  UrdfOptions options{.require_visual_meshes = needs(LinkGeometry::kVisual),
+                      .require_collision_meshes = needs(LinkGeometry::kCollision)};
   for (const std::string& text : packages) {
     const auto pair = split(text, '=');
     if (!pair) throw Error("--package", "'" + text + "' is not NAME=DIR");
@@ -80,6 +86,24 @@ UrdfOptions urdf_options(const std::vector<std::string>& packages) {
     }
   }
   return options;
+}
+
+RobotDescription read_robot(const std::string& urdf, const std::vector<std::string>& packages,
+                            LinkGeometry geometry) {
+  RobotDescription robot = read_urdf(urdf, urdf_options(packages, {&geometry, 1}));
+  const auto has_any = [&](LinkGeometry which) {
+    return std::any_of(robot.links.begin(), robot.links.end(), [&](const LinkDescription& link) {
+      return !link_shapes(link, which).empty();
+    });
+  };
+  if (has_any(geometry)) return robot;
+  const bool is_visual = geometry == LinkGeometry::kVisual;
+  const char* const other = is_visual ? "collision" : "visual";
+  const bool has_other = has_any(is_visual ? LinkGeometry::kCollision : LinkGeometry::kVisual);
+  throw Error(urdf, std::string("no link has ") + (is_visual ? "visual" : "collision") +
+                        " geometry" +
+                        (has_other ? std::string("; --geometry ") + other + " takes the other one"
+                                   : std::string()));
 }
 
 std::vector<std::string> geometry_names() {

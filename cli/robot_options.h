@@ -5,6 +5,7 @@
 #include "robot/files/urdf.h"
 
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,15 @@ void add_geometry_option(CLI::App& command, const std::string& description, std:
 void repeat_robot_options(const std::string& geometry, const std::vector<std::string>& packages,
                           std::vector<std::string>& words);
 
-// The packages of texts NAME=DIR. Throws Error for other texts and a name given twice.
-UrdfOptions urdf_options(const std::vector<std::string>& packages);
+// The packages of texts NAME=DIR, and whose meshes are needed: those of these geometries. Throws
+// Error for other texts and a name given twice.
+UrdfOptions urdf_options(const std::vector<std::string>& packages,
+                         std::span<const LinkGeometry> needed);
+
+// Reads a robot of which a command uses that geometry: meshes of the other one may be missing.
+// Throws Error as read_urdf(), and where no link has that geometry.
+RobotDescription read_robot(const std::string& urdf, const std::vector<std::string>& packages,
+                            LinkGeometry geometry);
 
 // What --geometry takes, the default first, and what it names. Error for another name.
 std::vector<std::string> geometry_names();

@@ -6,6 +6,10 @@
 
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace spherule {
 
 // What is wrong with spheres of one mesh where the link that is meant is not known.
@@ -18,6 +22,15 @@ struct SphereInput {
   SphereFormatFile file;
   bool names_links = true;  // the file does, itself
 };
+
+// Adds --ignore-unknown-links.
+void add_unknown_links_flag(CLI::App& command, bool& ignores);
+
+// Throws Error, naming the file and the links, if it has spheres of links that the robot has not
+// got, unless these are to be ignored: then it warns of them. Throws Error in any case if no link
+// of the robot has spheres there, but some other has.
+void require_known_links(const RobotModel& robot, const std::string& file,
+                         const RobotSpheres& spheres, bool ignores);
 
 // As read_robot_spheres(). Spheres of one mesh are those of the only link with such geometry.
 // Throws Error if none has it, or several.

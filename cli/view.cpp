@@ -6,6 +6,7 @@
 #include "cli/model_unit.h"
 #include "cli/output.h"
 #include "cli/robot_options.h"
+#include "cli/sphere_input.h"
 #include "cli/view_files.h"
 #include "cli/view_page.h"
 #include "cli/view_robot.h"
@@ -100,6 +101,7 @@ void add_view(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->allow_extra_args(false);
   add_package_option(*command, arguments->robot.packages);
+  add_unknown_links_flag(*command, arguments->robot.ignores_unknown_links);
 #endif
   command->footer(
       to_text({.text = "The page is one file, which any browser opens, without network or server.",

@@ -114,7 +114,7 @@ ViewItem sphere_item(const RobotDescription& robot, const RobotSpheres& spheres,
   std::size_t unknown = 0;
   for (const LinkSpheres& link : spheres.links) {
     const int index = robot.model.find_link(link.link);
-    if (index < 0) ++unknown;
+    if (index < 0 && !link.spheres.empty()) ++unknown;
     if (index >= 0 && !link.spheres.empty()) {
       item.parts.push_back({build_tree(link.spheres), index});
     }
@@ -192,7 +192,9 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
   if (urdf == files.end()) {
     throw Error(files.front(), "belongs to a robot: its URDF must be named too");
   }
-  const RobotDescription robot = read_urdf(*urdf, urdf_options(options.packages));
+  std::vector<LinkGeometry> shown;
+  for (const std::string& name : options.geometry) shown.push_back(geometry_named(name));
+  const RobotDescription robot = read_urdf(*urdf, urdf_options(options.packages, shown));
   scene.title = *urdf;
   scene.robot = json_of(robot);
   for (const std::string& name : options.geometry) {
@@ -221,6 +223,7 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
     }
     const LinkGeometry geometry = geometry_named(options.geometry.front());
     SphereInput spheres = read_spheres_of(robot, geometry, file);
+    require_known_links(robot.model, file, spheres.file.spheres, options.ignores_unknown_links);
     scene.items.push_back(sphere_item(robot, spheres.file.spheres, file));
     if (first_spheres) continue;
     first_spheres = std::move(spheres.file.spheres);

@@ -11,6 +11,7 @@ namespace spherule {
 struct RobotViewOptions {
   std::vector<std::string> packages;  // NAME=DIR
   std::vector<std::string> geometry;  // names, the first is shown at first
+  bool ignores_unknown_links = false;
 };
 
 // Whether a file is of a robot: a URDF, its spheres in any format, what is known of the pairs of
@@ -20,9 +21,9 @@ bool is_robot_file(const std::string& file);
 
 // Adds the robot of the first URDF among the files, the meshes of its links, and what the other
 // files hold for them: spheres as trees, so that the page has levels of them, and leaks; of the
-// first spheres also what is known of the pairs of links. What is said of links that the robot has
-// not is left out and counted. Throws Error, naming the file, for files without a URDF among them
-// and for spheres of which none are of a link of the robot.
+// first spheres also what is known of the pairs of links. What a report says of links that the
+// robot has not is left out and counted. Throws Error, naming the file, for files without a URDF
+// among them, for spheres of which none are of a link of the robot, and as require_known_links().
 void add_robot(const std::vector<std::string>& files, const RobotViewOptions& options,
                ViewScene& scene);
 

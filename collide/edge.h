@@ -8,6 +8,14 @@
 
 namespace spherule {
 
+// Which way a continuous joint turns on a motion from one angle to another.
+enum class ContinuousMotion {
+  // Straight from number to number: from 3 to -3 rad back by 6 rad.
+  kAsGiven,
+  // To the same posture by at most half a turn: from 3 to -3 rad on through pi, by 0.28 rad.
+  kShortest,
+};
+
 // How to check a straight motion in the space of a mechanism's variables.
 struct EdgeRequest {
   // What comes closer than about half of this, in the unit of the trees, need not be proved free.
@@ -15,6 +23,8 @@ struct EdgeRequest {
   double resolution = 1e-4;
   // Find the first contact, and prove all before it; otherwise any will do, which is faster.
   bool first = false;
+  // Of a robot with continuous joints: which of the motions between two configurations is meant.
+  ContinuousMotion continuous = ContinuousMotion::kAsGiven;
   // Evaluate no more configurations than this, with the verdict kUnknown unless a contact was
   // found.
   std::uint64_t max_configurations = std::numeric_limits<std::uint64_t>::max();

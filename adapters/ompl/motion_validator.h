@@ -16,6 +16,10 @@ namespace spherule {
 // is no step width, and setStateValidityCheckingResolution() changes nothing. What is not proved at
 // the resolution of the request is not valid. A motion whose end is out of the bounds of the space
 // is not valid. Threads may share it.
+//
+// The motion is the one of the space's interpolate(): a number of SO2 goes the shorter way, over pi
+// where that is shorter; a real number goes straight, that of a continuous joint, too: from 3 to
+// -3 rad back through 0. `continuous` of the request is not used.
 class MotionValidator : public ompl::base::MotionValidator {
  public:
   // Throws Error as RobotStates and require_resolution() do.
@@ -25,6 +29,7 @@ class MotionValidator : public ompl::base::MotionValidator {
         states_(std::move(checker), information->getStateSpace()),
         request_(request) {
     require_resolution(request.resolution);
+    request_.continuous = ContinuousMotion::kAsGiven;  // the ends are taken from the space
   }
 
   // True if the motion is proved free and its end lies within the bounds.

@@ -2,14 +2,13 @@
 #pragma once
 
 #include "robot/check/robot_checker.h"
+#include "robot/model/shortest_motion.h"
 #include "spheretree/error.h"
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <numbers>
 #include <ompl/base/SpaceInformation.h>
 #include <ompl/base/StateSpace.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
@@ -25,9 +24,10 @@ namespace spherule {
 //
 // The space is a RealVectorStateSpace, an SO2StateSpace (for a joint that turns), or a compound of
 // these and of such compounds. Their numbers, in their order, are those of a configuration. Motions
-// between states are those of these spaces: straight, and by the shorter way round in SO2. A class
-// of the user's own that overrides interpolate() is not seen as such; its motions are not those
-// that are answered for.
+// between states are those of these spaces' interpolate(): straight in real numbers, those of a
+// continuous joint included, and by the shorter way round in SO2, where half a turn goes as given.
+// A class of the user's own that overrides interpolate() is not seen as such; its motions are not
+// those that are answered for.
 class RobotStates {
  public:
   // Throws Error for a space of another kind, if it has not as many numbers as the robot has
@@ -45,7 +45,7 @@ class RobotStates {
     }
     for (const Joint& joint : checker_.robot().joints()) {
       if (!joint.moves() || turns_[static_cast<std::size_t>(joint.variable)] == 0) continue;
-      if (joint.turns() && joint.multiplier == std::trunc(joint.multiplier)) continue;
+      if (is_periodic(joint)) continue;
       throw Error("state space", "a number of SO2 moves joint " + joint.name +
                                      ", for which a turn by 2 pi is not the same pose: use a real "
                                      "one");
@@ -89,18 +89,13 @@ class RobotStates {
     append(*space_, state, configuration);
   }
 
-  // The end of a motion from `from`, such that the straight way to it is the motion's. Where that
-  // leads over the ends of SO2, the end is moved by 2 pi, rounded: the way is within 1e-15 of the
-  // motion's.
+  // The end of a motion from `from`, such that the straight way to it is the motion's: where that
+  // leads over the ends of SO2, nearest_turn(), of which checks charge the rounding.
   void read_end(const ompl::base::State* state, const std::vector<double>& from,
                 std::vector<double>& to) const {
-    constexpr double kPi = std::numbers::pi;
     read(state, to);
     for (std::size_t i = 0; i < to.size(); ++i) {
-      if (!turns_[i]) continue;
-      const double way = to[i] - from[i];
-      if (way > kPi) to[i] -= 2.0 * kPi;
-      if (way < -kPi) to[i] += 2.0 * kPi;
+      if (turns_[i] != 0) to[i] = nearest_turn(from[i], to[i]);
     }
   }
 

@@ -5,6 +5,7 @@
 #include "robot/check/internal/checker_parts.h"
 #include "robot/check/internal/configuration_batch.h"
 #include "robot/model/internal/shared_work.h"
+#include "robot/model/joint_limits.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -41,23 +42,6 @@ void require_finite(std::span<const double> configuration) {
   }
 }
 
-// Of a joint that has limits.
-double position_of(const Joint& joint, std::span<const double> configuration) {
-  return joint.multiplier * configuration[static_cast<std::size_t>(joint.variable)] + joint.offset;
-}
-
-bool has_limits(const Joint& joint) {
-  return joint.moves() && joint.type != JointType::kContinuous;
-}
-
-bool is_within_limits(const RobotModel& robot, std::span<const double> configuration) {
-  return std::all_of(robot.joints().begin(), robot.joints().end(), [&](const Joint& joint) {
-    if (!has_limits(joint)) return true;
-    const double position = position_of(joint, configuration);
-    return joint.lower <= position && position <= joint.upper;
-  });
-}
-
 // Up to this fraction a motion that starts within the limits stays there; above 1 if it does not
 // leave them. What rounding leaves uncertain at the end counts as inside it.
 double leaves_limits_at(const RobotModel& robot, std::span<const double> from,
@@ -65,8 +49,8 @@ double leaves_limits_at(const RobotModel& robot, std::span<const double> from,
   double first = std::numeric_limits<double>::infinity();
   for (const Joint& joint : robot.joints()) {
     if (!has_limits(joint)) continue;
-    const double start = position_of(joint, from);
-    const double end = position_of(joint, to);
+    const double start = joint.position(from);
+    const double end = joint.position(to);
     const double limit = end > joint.upper ? joint.upper : joint.lower;
     if (joint.lower <= end && end <= joint.upper) continue;
     const double at = (limit - start) / (end - start);
@@ -104,7 +88,8 @@ bool RobotChecker::check_config(std::span<const double> configuration, Scratch& 
   require_own(scratch);
   require_size(parts_->robot, configuration);
   if (parts_->requires_finite()) require_finite(configuration);
-  if (parts_->enforces_limits && !is_within_limits(parts_->robot, configuration)) return false;
+  if (parts_->enforces_limits && joint_outside_limits(parts_->robot, configuration) != nullptr)
+    return false;
   Scratch::Memory& memory = *scratch.memory_;
   if (parts_->standing && parts_->standing->touch(configuration, *memory.standing)) return false;
   return is_free_of_itself(configuration, scratch);
@@ -159,7 +144,8 @@ void RobotChecker::check_configs(std::span<const double> configurations, Scratch
     const bool collides = free[i] != 0;
     free[i] = 0;
     if (collides) continue;
-    if (parts_->enforces_limits && !is_within_limits(parts_->robot, configuration(i))) continue;
+    if (parts_->enforces_limits && joint_outside_limits(parts_->robot, configuration(i)) != nullptr)
+      continue;
     if (!parts_->pairs.in_filter_range(configuration(i))) {
       free[i] = is_free_of_itself(configuration(i), scratch) ? 1 : 0;
       continue;
@@ -184,20 +170,27 @@ void RobotChecker::check_configs(std::span<const double> configurations,
       });
 }
 
+void RobotChecker::require_end_of_edge(std::span<const double> configuration) const {
+  require_size(parts_->robot, configuration);
+  if (parts_->pairs.in_filter_range(configuration)) return;
+  require_finite(configuration);
+  throw Error("edge",
+              "a joint's position is beyond " + std::to_string(kLargestPosition) + " in magnitude");
+}
+
 EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<const double> to,
                                     Scratch& scratch, const EdgeRequest& request) const {
   require_own(scratch);
-  for (const std::span<const double> end : {from, to}) {
-    require_size(parts_->robot, end);
-    if (!parts_->pairs.in_filter_range(end)) {
-      require_finite(end);
-      throw Error("edge", "a joint's position is beyond " + std::to_string(kLargestPosition) +
-                              " in magnitude");
-    }
-  }
+  require_end_of_edge(from);
+  require_end_of_edge(to);
   require_resolution(request.resolution);
+  if (request.continuous == ContinuousMotion::kShortest) {
+    parts_->shortest.require();
+    to = parts_->shortest.end_of(from, to, scratch.memory_->motion_end);
+    require_end_of_edge(to);
+  }
   if (!parts_->enforces_limits) return check_within_limits(from, to, 1.0, scratch, request);
-  if (!is_within_limits(parts_->robot, from)) {
+  if (joint_outside_limits(parts_->robot, from) != nullptr) {
     return {.verdict = Verdict::kCollision, .contact_at = 0.0};
   }
   const double leaves_at = leaves_limits_at(parts_->robot, from, to);
@@ -256,8 +249,10 @@ std::vector<EdgeResult> RobotChecker::check_edges(std::span<const double> from,
 }
 
 double RobotChecker::measure_edge(std::span<const double> from, std::span<const double> to,
-                                  Scratch& scratch, double resolution) const {
-  return check_edge(from, to, scratch, {.resolution = resolution, .first = true}).free_until;
+                                  Scratch& scratch, double resolution,
+                                  ContinuousMotion continuous) const {
+  const EdgeRequest request{.resolution = resolution, .first = true, .continuous = continuous};
+  return check_edge(from, to, scratch, request).free_until;
 }
 
 }  // namespace spherule

@@ -143,9 +143,12 @@ class RobotChecker {
 
   // Whether the straight motion in joint space is free at every point of it: proved (G6), for the
   // exact motion as for the poses that forward_kinematics() computes for configurations on it.
+  // Continuous joints turn as the request says; by the shorter way, the exact motion is from `from`
+  // by at most half a turn to the posture of `to`, and ShortestMotion has the configurations on it.
   // Where limits are enforced, leaving them is a contact. Unless the first contact is requested,
   // free_until may be 0 where one is found. Throws Error also for a position beyond
-  // kLargestPosition and for a resolution that is not above zero.
+  // kLargestPosition, at the end of the shorter way too, for a resolution that is not above zero,
+  // and for the shorter way where ShortestMotion::require() does.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
                         const EdgeRequest& request = {}) const;
 
@@ -157,9 +160,11 @@ class RobotChecker {
                                       const EdgeRequest& request = {}) const;
 
   // How much of the motion is proved free: every point before this fraction is; 1 if all of it is,
-  // its end, too. At most the fraction of the first contact. `resolution` as in EdgeRequest.
+  // its end, too. At most the fraction of the first contact. `resolution` and `continuous` as in
+  // EdgeRequest.
   double measure_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
-                      double resolution = 1e-4) const;
+                      double resolution = 1e-4,
+                      ContinuousMotion continuous = ContinuousMotion::kAsGiven) const;
 
   // Whether any two of the spheres and solids that are tested against each other come within
   // `clearance` (metres) of touching: never false if they do in exact arithmetic. Proofs of pairs
@@ -185,6 +190,7 @@ class RobotChecker {
   explicit RobotChecker(std::shared_ptr<const Parts> parts);
 
   void require_own(const Scratch& scratch) const;
+  void require_end_of_edge(std::span<const double> configuration) const;
   bool is_free_of_itself(std::span<const double> configuration, Scratch& scratch) const;
   EdgeResult check_within_limits(std::span<const double> from, std::span<const double> to,
                                  double end, Scratch& scratch, const EdgeRequest& request) const;

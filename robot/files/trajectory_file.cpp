@@ -19,7 +19,13 @@ constexpr int kPassedOver = -1;
 
 class Reader {
  public:
-  Reader(std::string file, const RobotModel& robot) : file_(std::move(file)), robot_(robot) {}
+  Reader(std::string file, const RobotModel& robot, AngleUnit angles)
+      : file_(std::move(file)), robot_(robot) {
+    for (const int joint : robot.variable_joints()) {
+      const bool turns = robot.joints()[static_cast<std::size_t>(joint)].turns();
+      is_in_degrees_.push_back(turns && angles == AngleUnit::kDegrees ? 1 : 0);
+    }
+  }
 
   Trajectory read(std::string_view text) {
     trajectory_.width = static_cast<std::size_t>(robot_.variable_count());
@@ -117,14 +123,17 @@ class Reader {
       const std::optional<double> number = internal::finite_number(words[i]);
       if (!number) refuse(internal::in_quotes(words[i]) + " is not a finite number");
       if (columns_[i] == kPassedOver) continue;
-      trajectory_.positions[at + static_cast<std::size_t>(columns_[i])] = *number;
+      const auto variable = static_cast<std::size_t>(columns_[i]);
+      trajectory_.positions[at + variable] =
+          is_in_degrees_[variable] != 0 ? *number * kRadiansPerDegree : *number;
     }
     trajectory_.lines.push_back(line_);
   }
 
   const std::string file_;
   const RobotModel& robot_;
-  std::vector<int> columns_;  // the variable in each, or kPassedOver
+  std::vector<char> is_in_degrees_{};  // for each variable
+  std::vector<int> columns_;           // the variable in each, or kPassedOver
   std::size_t line_ = 0;
   bool has_header_ = false;
   Trajectory trajectory_;
@@ -132,9 +141,10 @@ class Reader {
 
 }  // namespace
 
-Trajectory read_trajectory(const std::filesystem::path& path, const RobotModel& robot) {
+Trajectory read_trajectory(const std::filesystem::path& path, const RobotModel& robot,
+                           AngleUnit angles) {
   if (robot.variable_count() == 0) throw Error(path.string(), "the robot has no joint that moves");
-  return Reader(path.string(), robot).read(read_file(path));
+  return Reader(path.string(), robot, angles).read(read_file(path));
 }
 
 }  // namespace spherule

@@ -87,15 +87,15 @@ Joint joint_of(const XmlElement& element) {
 class ShapeReader {
  public:
   ShapeReader(const std::filesystem::path& path, const UrdfOptions& options)
-      : paths_(path, options), require_visual_meshes_(options.require_visual_meshes) {}
+      : paths_(path, options), options_(options) {}
 
   LinkDescription link_of(const XmlElement& link) {
     LinkDescription result{.name = link.needed("name")};
     for (const XmlElement& visual : link.children("visual")) {
-      result.visual.push_back(shape_of(visual, require_visual_meshes_));
+      result.visual.push_back(shape_of(visual, options_.require_visual_meshes));
     }
     for (const XmlElement& collision : link.children("collision")) {
-      result.collision.push_back(shape_of(collision, true));
+      result.collision.push_back(shape_of(collision, options_.require_collision_meshes));
     }
     return result;
   }
@@ -145,7 +145,7 @@ class ShapeReader {
   }
 
   internal::MeshPaths paths_;
-  bool require_visual_meshes_;
+  const UrdfOptions& options_;
 };
 
 // A fixed joint mimics nothing, whatever the element says.

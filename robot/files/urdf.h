@@ -15,8 +15,9 @@ struct UrdfOptions {
   // not given is searched for upwards from the URDF file: a folder with a package.xml of that name,
   // or in such a folder one that is called as the package and has one.
   std::map<std::string, std::filesystem::path> packages{};
-  // Whether a visual mesh that is missing is an error. Otherwise its path is what the file names.
+  // Whether a mesh that is missing is an error. Otherwise its path is what the file names.
   bool require_visual_meshes = true;
+  bool require_collision_meshes = true;
 };
 
 // Reads a robot from a URDF file (version 1.0): joints of the types fixed, revolute, continuous and
@@ -26,8 +27,8 @@ struct UrdfOptions {
 // whatever else the file holds are not examined.
 //
 // Mesh files are named package://PACKAGE/..., file://..., or by a path from the URDF file's folder;
-// they must exist, and are not read. An axis that is not given is (1, 0, 0), and a limit 0. Of a
-// fixed joint, axis, limits and mimic mean nothing.
+// they must exist, as far as the options require it, and are not read. An axis that is not given is
+// (1, 0, 0), and a limit 0. Of a fixed joint, axis, limits and mimic mean nothing.
 //
 // Throws Error, whose subject is the file and whose reason names the line where there is one: for a
 // file that cannot be read, is no URDF or needs xacro first; a number that is malformed or not

@@ -5,6 +5,7 @@
 #include "robot/formats/internal/sphere_documents.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +45,7 @@ const FormatFacts& facts(SphereFormat format) {
 
 void check_name(const std::string& name, const std::string& what, const std::string& file) {
   const std::string fault = internal::fault_of_name(name);
-  if (!fault.empty()) throw Error(file, what + " " + fault);
+  if (!fault.empty()) throw Error(file, what + ", " + internal::in_quotes(name) + ", " + fault);
 }
 
 void check_writable(const RobotSpheres& spheres, SphereFormat format, const std::string& file) {

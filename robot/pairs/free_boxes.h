@@ -26,7 +26,8 @@ class FreeBoxes {
  public:
   // With |position| <= 100 at both ends of an edge and u = 2^-53, a point (1 - t) a + t b as
   // computed errs by 3 u 200, the place where an edge crosses a plane by 8 u 400, and taking up to
-  // 16 turns off by 3e-14: together less than kTolerance, and with that less than kMargin.
+  // 16 turns off by 3e-14: together less than kTolerance, and with that, and with what the end of a
+  // motion by the shorter way is off (kTurnError), less than kMargin.
   static constexpr double kMargin = 1e-12;
   static constexpr double kTolerance = 4.7e-13;
   static constexpr std::size_t kMostVariables = 16;

@@ -55,7 +55,8 @@ TEST_F(AuditRobotCommand, Json) {
   write("leaks.yml", spheres(0.09, 0.05) +
                          "      ghost:\n      - {center: [0, 0, 0], radius: 1}\n"
                          "      - {center: [0, 0, 0], radius: -1}\n");
-  const Outcome result = run({"audit-robot", "two.urdf", "leaks.yml", "--json"});
+  const Outcome result =
+      run({"audit-robot", "two.urdf", "leaks.yml", "--json", "--ignore-unknown-links"});
   EXPECT_EQ(result.exit_code, 1) << result.err;
   const json report = json::parse(result.out);
   EXPECT_EQ(report.at("links_covered"), false);
@@ -73,7 +74,8 @@ TEST_F(AuditRobotCommand, TableSaysWhatWasLeftOut) {
   write("two.yml", spheres(0.12, 0.05) +
                        "      ghost:\n      - {center: [0, 0, 0], radius: 1}\n"
                        "      - {center: [0, 0, 0], radius: -1}\n");
-  const std::string table = run({"audit-robot", "two.urdf", "two.yml"}).out;
+  const std::string table =
+      run({"audit-robot", "two.urdf", "two.yml", "--ignore-unknown-links"}).out;
   EXPECT_NE(table.find("left out: 1 spheres that the file switches off"), table.npos) << table;
   EXPECT_NE(table.find("left out: the spheres of ghost"), table.npos) << table;
   write("two.spheres.urdf", R"(<robot name="two"><link name="base">
@@ -123,6 +125,13 @@ TEST_F(AuditRobotCommand, PosesDecide) {
   EXPECT_EQ(good.exit_code, 0) << good.err << good.out;
   const Outcome bad = run({"audit-robot", "two.urdf", "arm.json", "--poses", "bad.csv", "--json"});
   EXPECT_EQ(bad.exit_code, 1) << bad.err;
+  write("degrees.csv", "turn\n180\n");
+  const Outcome degrees =
+      run({"audit-robot", "two.urdf", "arm.json", "--poses", "degrees.csv", "--degrees"});
+  EXPECT_EQ(degrees.exit_code, 0) << degrees.err << degrees.out;
+  EXPECT_EQ(degrees.err, "");
+  const Outcome radians = run({"audit-robot", "two.urdf", "arm.json", "--poses", "degrees.csv"});
+  EXPECT_NE(radians.err.find("its angles look like degrees"), std::string::npos) << radians.err;
   const json poses = json::parse(bad.out).at("configurations");
   EXPECT_EQ(poses.at(0).at("deepest_link"), "");
   EXPECT_EQ(poses.at(1).at("deepest_link"), "base");
@@ -228,6 +237,16 @@ TEST_F(AuditRobotCommand, BadInput) {
   expect_refusal({"audit-robot", "two.urdf", "one.json"}, "the name of their link");
   expect_refusal({"audit-robot", "two.urdf", "columns.json", "--repair", "out"}, "is read only");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--poses", "poses.csv"}, "poses.csv: ");
+  write("poses.csv", "# far\n1\n-750\n");
+  const Outcome far = run({"audit-robot", "two.urdf", "good.yml", "--poses", "poses.csv"});
+  EXPECT_EQ(far.exit_code, 2);
+  EXPECT_NE(far.err.find("warning: poses.csv: 1 of 2 configurations is outside the joint limits"),
+            std::string::npos)
+      << far.err;
+  EXPECT_NE(far.err.find("\nspherule: poses.csv: line 3: joint turn is at a position beyond 100"),
+            std::string::npos)
+      << far.err;
+  expect_refusal({"audit-robot", "two.urdf", "good.yml", "--degrees"}, "--degrees");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--geometry", "other"}, "--geometry");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--max-error", "-1"}, "--max-error");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--repair", "good.yml"}, "good.yml");

@@ -227,8 +227,8 @@ TEST_F(CheckTest, RefusesBadInput) {
   refused("path.csv: line 2: has 1 numbers instead of 2");
   write("path.csv", "slide,elbow\n0,0\n");
   refused("path.csv: line 1: the robot has no joint 'elbow'");
-  write("path.csv", "0 0\n\n0 200\n");
-  expect_refusal(command({"--edges"}), "path.csv: line 3: a position beyond 100");
+  write("path.csv", "0 0\n\n0 800\n");
+  expect_refusal(command({"--edges"}), "path.csv: line 3: joint turn is at a position beyond 100");
   write("path.csv", "0 0\n");
   expect_refusal(command({"--edges", "--resolution", "0"}), "resolution");
   write("cell.json", wall_and(R"("obstacle": [])"));
@@ -240,7 +240,7 @@ TEST_F(CheckTest, RefusesBadInput) {
   refused("none.stl");
   write("cell.json", wall_and(""));
   write("slider.json", R"({"arm": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
-  refused("the robot has no such link");
+  refused("slider.json: has spheres of 1 link that the robot has not got: 'arm'");
   expect_refusal({"check", "none.urdf", "cell.json", "path.csv"}, "none.urdf");
   expect_refusal({"check", "slider.urdf"}, "scene");
 }

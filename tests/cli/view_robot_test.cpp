@@ -130,7 +130,7 @@ TEST_F(ViewRobotTest, LinksThatAreNotThereAreCounted) {
         "collision_spheres:\n"
         "  boom:\n  - center: [0.4, 0, 0]\n    radius: 0.2\n"
         "  tool:\n  - center: [0, 0, 0]\n    radius: 0.2\n");
-  const json items = scene({"arm.urdf", "more.yml"}).at("items");
+  const json items = scene({"arm.urdf", "more.yml", "--ignore-unknown-links"}).at("items");
   EXPECT_EQ(items.at(1).at("parts").size(), 1u);
   EXPECT_NE(items.at(1).at("facts").get<std::string>().find("1 link of the file left out"),
             std::string::npos);
@@ -140,8 +140,9 @@ TEST_F(ViewRobotTest, BadInput) {
   write("tool.yml", "collision_spheres:\n  tool:\n  - center: [0, 0, 0]\n    radius: 0.2\n");
   write("part.json", R"({"links": [{"link": "base", "certificate": {"covered": "yes"}}]})");
   expect_refusal({"view", "arm.yml", "-o", "page.html"}, "its URDF must be named too");
-  expect_refusal({"view", "arm.urdf", "tool.yml", "-o", "page.html"},
-                 "tool.yml: has no spheres for a link of the robot");
+  expect_refusal(
+      {"view", "arm.urdf", "tool.yml", "-o", "page.html"},
+      "tool.yml: has spheres of 1 link that the robot has not got: 'tool', and of no other");
   expect_refusal({"view", "arm.urdf", "part.json", "-o", "page.html"}, "part.json: ");
   expect_refusal({"view", "arm.urdf", "--package", "here", "-o", "page.html"}, "--package");
   EXPECT_FALSE(exists("page.html"));

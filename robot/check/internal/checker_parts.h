@@ -7,6 +7,7 @@
 #include "robot/check/internal/lane_check.h"
 #include "robot/check/internal/static_trees.h"
 #include "robot/check/robot_checker.h"
+#include "robot/model/shortest_motion.h"
 
 #include <memory>
 #include <optional>
@@ -26,6 +27,7 @@ struct RobotChecker::Parts {
         std::vector<Named> body_names, std::vector<Named> obstacle_names)
       : robot(std::move(model)),
         enforces_limits(options.enforce_limits),
+        shortest(robot),
         pairs(std::move(all)),
         lanes(pairs, options.instructions),
         bodies(std::move(body_names)),
@@ -43,6 +45,7 @@ struct RobotChecker::Parts {
 
   RobotModel robot;
   bool enforces_limits;
+  ShortestMotion shortest;
   // All pairs. Those behind pairs.tested() are of static trees: `standing` tests them in
   // configurations.
   internal::BodyPairs pairs;
@@ -60,6 +63,7 @@ struct RobotChecker::Scratch::Memory {
   internal::LaneCheck::Memory lanes;
   internal::BodyPairs::Memory pairs{};
   std::optional<internal::StaticTrees::Memory> standing{};
+  std::vector<double> motion_end{};  // of ContinuousMotion::kShortest
 };
 
 }  // namespace spherule

@@ -3,9 +3,11 @@
 
 #include "collide/mechanism_check.h"
 #include "robot/model/robot_model.h"
+#include "robot/model/shortest_motion.h"
 #include "spheretree/rounding.h"
 
 #include <cmath>
+#include <cstddef>
 
 namespace spherule::internal {
 
@@ -30,6 +32,16 @@ inline double mimic_error(const Joint& joint) {
 // 6 u (P + |o|), beside e for rounding. All together at most 2 e + u (12 P + 6 |o|) <= 8 e.
 inline double mimic_error_on_edges(const Joint& joint) {
   return 8.0 * mimic_error(joint);
+}
+
+// How far the position of a joint is, anywhere on such a motion, from where it is on the exact
+// motion whose end was computed by nearest_turn(): that moves the variable by kTurnError at most,
+// at the end, and less before. Zero where no motion may be meant so.
+inline double turn_error(const RobotModel& robot, const Joint& joint) {
+  if (!joint.moves() || !is_periodic(joint)) return 0.0;
+  const int leader = robot.variable_joints()[static_cast<std::size_t>(joint.variable)];
+  const bool leader_turns = robot.joints()[static_cast<std::size_t>(leader)].turns();
+  return leader_turns ? std::abs(joint.multiplier) * kTurnError : 0.0;
 }
 
 }  // namespace spherule::internal

@@ -52,8 +52,8 @@ MovingFrames::MovingFrames(const RobotModel& robot)
 // The error of forward_kinematics(); that of the frames' own poses, of which a link has at most
 // four compositions a joint with 80 u of the lengths involved each, and a turn of the axis, of less
 // than 40 u; and the slack of the canonical test, 152 u of the scene. All are bounded for the whole
-// robot and scene at once. Where joints mimic others, what a position may be off on a straight
-// motion turns or shifts what lies beyond.
+// robot and scene at once. Where joints mimic others, and where turns of joints are taken off,
+// what a position may be off on a straight motion turns or shifts what lies beyond.
 double moving_pose_error(const RobotModel& robot, double reach, double scene,
                          double root_distance) {
   double length = 0.0;
@@ -62,7 +62,7 @@ double moving_pose_error(const RobotModel& robot, double reach, double scene,
   for (const Joint& joint : robot.joints()) {
     length += joint.parent_from_joint.translation().norm() +
               (joint.type == JointType::kPrismatic ? kLargestPosition : 0.0);
-    (joint.turns() ? turned : shifted) += mimic_error_on_edges(joint);
+    (joint.turns() ? turned : shifted) += mimic_error_on_edges(joint) + turn_error(robot, joint);
   }
   const double all = std::max(reach + length, scene) + root_distance;
   if (!(all <= kMaxCoordinate)) throw Error("robot", "it or an obstacle reaches too far");

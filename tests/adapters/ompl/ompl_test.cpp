@@ -40,9 +40,9 @@ constexpr double kRounding = 1e-9;
 
 // With its joints in R^3, or the first in SO2.
 struct Planning {
-  explicit Planning(bool first_turns = false, const EdgeRequest& request = {}) {
+  explicit Planning(bool first_turns = false, const EdgeRequest& request = {}, double bound = 1.5) {
     ompl::msg::noOutputHandler();
-    ob::StateSpacePtr space = joints(first_turns ? 2 : 3);
+    ob::StateSpacePtr space = joints(first_turns ? 2 : 3, bound);
     if (first_turns) {
       space = std::make_shared<ob::SO2StateSpace>() + space;
     }
@@ -55,9 +55,9 @@ struct Planning {
     information->setup();
   }
 
-  static ob::StateSpacePtr joints(unsigned count) {
+  static ob::StateSpacePtr joints(unsigned count, double bound = 1.5) {
     auto space = std::make_shared<ob::RealVectorStateSpace>(count);
-    space->setBounds(-1.5, 1.5);
+    space->setBounds(-bound, bound);
     return space;
   }
 
@@ -171,6 +171,51 @@ TEST(OmplMotions, ContinuousJointsTurnTheShorterWay) {
   EXPECT_TRUE(planning.motions->checkMotion(behind.get(), beyond.get()));
   const auto left = planning.state({1.0, 0.0, 0.0}), right = planning.state({-1.0, 0.0, 0.0});
   EXPECT_FALSE(planning.motions->checkMotion(left.get(), right.get()));
+}
+
+// Of real numbers it goes straight, whatever is requested, because that is how the space moves.
+TEST(OmplMotions, RealNumbersGoStraight) {
+  const Planning planning(false, {.continuous = ContinuousMotion::kShortest}, 4.0);
+  const auto behind = planning.state({3.0, 0.0, 0.0}), beyond = planning.state({-3.0, 0.0, 0.0});
+  EXPECT_LE(planning.first_contact(behind.get(), beyond.get(), 500), 1.0);
+  EXPECT_FALSE(planning.motions->checkMotion(behind.get(), beyond.get()));
+}
+
+// The straight way between the configurations that are checked is that of OMPL's interpolate(), up
+// to whole turns and rounding: at its ends, at half a turn, and near it.
+TEST(OmplStates, MotionsAreThoseOfTheSpace) {
+  const auto space = std::make_shared<ob::SO2StateSpace>() + Planning::joints(2);
+  space->setup();
+  const RobotStates states(test::planar_arm(), space);
+  constexpr double kPi = std::numbers::pi;
+  test::Random random(7);
+  int over_the_ends = 0;
+  for (int i = 0; i < test::effort(20000, 2000); ++i) {
+    ob::ScopedState<> s1(space), s2(space), at(space);
+    Configuration q1 = random_configuration(random, kPi);
+    Configuration q2 = random_configuration(random, kPi);
+    if (i % 4 == 0) q2[0] = q1[0] - std::copysign(kPi, q1[0]) + (i % 3 - 1) * 4.5e-16;
+    if (i % 4 == 1) q1[0] = -kPi, q2[0] = i % 8 == 1 ? std::nextafter(kPi, 0.0) : 0.0;
+    s1 = q1;
+    s2 = q2;
+    Configuration from, to;
+    states.read(s1.get(), from);
+    states.read_end(s2.get(), from, to);
+    over_the_ends += to[0] != q2[0];
+    for (int k = 0; k <= 8; ++k) {
+      const double t = k / 8.0;
+      space->interpolate(s1.get(), s2.get(), t, at.get());
+      Configuration of_ompl;
+      space->copyToReals(of_ompl, at.get());
+      const double straight = from[0] + t * (to[0] - from[0]);
+      ASSERT_NEAR(std::remainder(straight - of_ompl[0], 2.0 * kPi), 0.0, 4e-15)
+          << q1[0] << ' ' << q2[0];
+      for (int j = 1; j < 3; ++j) {
+        ASSERT_NEAR(from[j] + t * (to[j] - from[j]), of_ompl[j], 1e-15);
+      }
+    }
+  }
+  EXPECT_GT(over_the_ends, test::effort(3000, 300));
 }
 
 TEST(OmplMotions, OutOfBoundsOrInContactIsNotValid) {

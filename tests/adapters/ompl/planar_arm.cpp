@@ -36,7 +36,7 @@ RobotChecker planar_arm() {
   for (int i = 0; i < kArmJoints; ++i) {
     Joint joint;
     joint.name = "joint_" + std::to_string(i);
-    joint.type = JointType::kRevolute;
+    joint.type = i == 0 ? JointType::kContinuous : JointType::kRevolute;
     joint.parent_from_joint = Pose::from_translation({i == 0 ? 0.0 : kLength, 0.0, 0.0});
     joint.lower = -std::numbers::pi;
     joint.upper = std::numbers::pi;

@@ -7,9 +7,9 @@
 
 namespace spherule::test {
 
-// Three links of 0.5 m in the plane, turning about z, made of spheres of 0.05 m, and a wall of
-// spheres along x that leaves it a gap at its base. Links meet each other only where a joint is
-// turned beyond +-1.5.
+// Three links of 0.5 m in the plane, turning about z, the first without limits, made of spheres of
+// 0.05 m, and a wall of spheres along x that leaves it a gap at its base. Links meet each other
+// only where a joint is turned beyond +-1.5.
 inline constexpr int kArmJoints = 3;
 RobotChecker planar_arm();
 

@@ -57,5 +57,22 @@ TEST(RobotCheckerAllocation, WarmQueriesAllocateNothing) {
   EXPECT_GT(proved, 0);
 }
 
+TEST(RobotCheckerAllocation, NorDoTurnsByTheShorterWay) {
+  RobotModel robot("base");
+  robot.add_link("arm", "base", {.name = "swing", .type = JointType::kContinuous});
+  robot.attach("arm", one_sphere_tree({1.0, 0.0, 0.0}, 0.01));
+  RobotScene scene(robot);
+  scene.add("post", one_sphere_tree({1.0, 0.0, 0.0}, 0.01));
+  const RobotChecker checker = scene.snapshot();
+  RobotChecker::Scratch scratch(checker);
+  const std::vector<double> from = {3.0};
+  const std::vector<double> to = {-3.0};
+  const EdgeRequest request{.continuous = ContinuousMotion::kShortest};
+  EXPECT_EQ(checker.check_edge(from, to, scratch, request).verdict, Verdict::kFree);
+  const int before = allocations;
+  EXPECT_EQ(checker.check_edge(from, to, scratch, request).verdict, Verdict::kFree);
+  EXPECT_EQ(allocations, before);
+}
+
 }  // namespace
 }  // namespace spherule::test

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,24 @@ class TrajectoryFileTest : public testing::Test {
   const TempDir folder_;
   const RobotModel robot_ = small_robot();
 };
+
+// Angles of joints that turn; lengths stay as they are, and so do columns that are passed over.
+TEST_F(TrajectoryFileTest, InDegrees) {
+  RobotModel robot = small_robot();
+  robot.add_link("link_d", "link_c",
+                 {.name = "d", .type = JointType::kPrismatic, .lower = -1.0, .upper = 1.0});
+  const auto read_degrees = [&](std::string_view text) {
+    return read_trajectory(folder_.write("path.csv", text), robot, AngleUnit::kDegrees);
+  };
+  constexpr double kPi = 3.14159265358979323846;
+  const Trajectory path = read_degrees("d time c a\n0.5 9 180 -90\n90 7 1e-3 0\n");
+  ASSERT_EQ(path.size(), 2u);
+  const std::vector<double> expected = {-kPi / 2.0, kPi, 0.5, 0.0, 1e-3 / 180.0 * kPi, 90.0};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(path.positions[i], expected[i], 4e-16 * std::abs(expected[i])) << i;
+  }
+  EXPECT_EQ(read_degrees("90 0 0\n").positions[0], kPi / 2.0);
+}
 
 TEST_F(TrajectoryFileTest, WithoutAHeader) {
   const Trajectory path = read("\xEF\xBB\xBF# a comment\n0.5, -1e-3\n\n 2;3 # end\r\n4\t5");

@@ -173,8 +173,9 @@ TEST(ReadUrdf, FindsMeshes) {
   }
 }
 
-TEST(ReadUrdf, KeepsVisualMeshesThatAreMissingIfTold) {
+TEST(ReadUrdf, KeepsMeshesThatAreMissingIfTold) {
   const UrdfOptions options{.require_visual_meshes = false};
+  const UrdfOptions other{.require_collision_meshes = false};
   const auto shape = [](const std::string& tag, const std::string& name) {
     return link_of("<" + tag + "><geometry><mesh filename='" + name + "'/></geometry></" + tag +
                    ">");
@@ -184,6 +185,9 @@ TEST(ReadUrdf, KeepsVisualMeshesThatAreMissingIfTold) {
     EXPECT_EQ(std::get<MeshFile>(robot.links[0].visual.at(0).geometry).path, fs::path(name));
     EXPECT_THROW(read_text(shape("visual", name)), Error);
     EXPECT_THROW(read_text(shape("collision", name), options), Error);
+    EXPECT_THROW(read_text(shape("visual", name), other), Error);
+    const RobotDescription seen = read_text(shape("collision", name), other);
+    EXPECT_EQ(std::get<MeshFile>(seen.links[0].collision.at(0).geometry).path, fs::path(name));
   }
 }
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace spherule {
+
+// The text on one line that a terminal shows as it is: control characters, which names of files and
+// links may hold, and what is not UTF-8 as "\n", "\t", "\r" or "\x1b".
+std::string one_line(std::string_view text);
+
+// A line of its own on standard error: "spherule: MESSAGE", and "spherule: warning: MESSAGE".
+void tell(std::string_view message);
+void warn(std::string_view message);
+
+}  // namespace spherule

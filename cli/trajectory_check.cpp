@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/trajectory_check.h"
+
+#include "robot/model/shortest_motion.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+class TrajectoryCheck {
+ public:
+  TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory,
+                  const TrajectoryCheckOptions& options)
+      : checker_(checker), trajectory_(trajectory), options_(options), shortest_(checker.robot()) {
+    const unsigned count = options.threads > 0 ? static_cast<unsigned>(options.threads)
+                                               : std::max(1u, std::thread::hardware_concurrency());
+    for (unsigned i = 0; i < count; ++i) scratches_.emplace_back(checker);
+    report_.configurations = trajectory.size();
+  }
+
+  CheckReport configurations() && {
+    std::vector<std::uint8_t> free(trajectory_.size());
+    const std::span all(trajectory_.positions);
+    in_blocks(free.size(), [&](std::size_t first, std::size_t count) {
+      checker_.check_configs(all.subspan(first * trajectory_.width, count * trajectory_.width),
+                             scratches_, std::span(free).subspan(first, count));
+    });
+    count_proved_free();
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      if (free[i] != 0) continue;
+      ++report_.colliding;
+      explain(trajectory_.configuration(i), {.line = trajectory_.lines[i]});
+    }
+    return std::move(report_);
+  }
+
+  CheckReport motions() && {
+    const std::size_t count = trajectory_.size() - 1;
+    const std::span all(trajectory_.positions);
+    const std::size_t width = trajectory_.width;
+    EdgeRequest request = options_.edge;
+    request.first = true;
+    std::vector<EdgeResult> results;
+    in_blocks(count, [&](std::size_t first, std::size_t edges) {
+      const std::vector<EdgeResult> some = checker_.check_edges(
+          all.subspan(first * width, edges * width),
+          all.subspan((first + 1) * width, edges * width), scratches_, request);
+      results.insert(results.end(), some.begin(), some.end());
+    });
+    report_.motions = count;
+    count_proved_free();
+    for (std::size_t i = 0; i < count; ++i) {
+      TrajectoryPoint at{.line = trajectory_.lines[i], .to_line = trajectory_.lines[i + 1]};
+      if (results[i].verdict == Verdict::kCollision) {
+        ++report_.colliding;
+        at.fraction = results[i].contact_at;
+        explain(between(i, at.fraction), at);
+      } else if (results[i].verdict == Verdict::kUnknown) {
+        at.fraction = results[i].free_until;
+        report_.not_proved.push_back(at);
+      }
+    }
+    return std::move(report_);
+  }
+
+ private:
+  // So many at a time that the bar moves and the threads have enough to do.
+  template <typename Check>
+  void in_blocks(std::size_t count, Check check) const {
+    const std::size_t block = std::max<std::size_t>(count / 50, 256);
+    for (std::size_t first = 0; first < count; first += block) {
+      if (options_.progress) {
+        options_.progress(static_cast<double>(first) / static_cast<double>(count), "checking");
+      }
+      check(first, std::min(block, count - first));
+    }
+  }
+
+  // On the motion that was proved.
+  std::vector<double> between(std::size_t index, double fraction) const {
+    const std::span<const double> from = trajectory_.configuration(index);
+    std::span<const double> to = trajectory_.configuration(index + 1);
+    std::vector<double> end;
+    if (options_.edge.continuous == ContinuousMotion::kShortest) {
+      to = shortest_.end_of(from, to, end);
+    }
+    std::vector<double> result;
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      result.push_back((1.0 - fraction) * from[k] + fraction * to[k]);
+    }
+    return result;
+  }
+
+  void count_proved_free() {
+    constexpr std::size_t kMost = 10000;  // enough to see which pairs they are
+    if (!options_.has_proofs) return;
+    report_.explained = std::min(kMost, trajectory_.size());
+    for (std::size_t i = 0; i < report_.explained; ++i) {
+      for (const CheckedContact& contact : checker_.explain(
+               trajectory_.configuration(i), scratches_.front(), {.proved_free = true})) {
+        if (contact.is_proved_free) report_.add({{.line = trajectory_.lines[i]}, contact});
+      }
+    }
+  }
+
+  void explain(std::span<const double> configuration, const TrajectoryPoint& at) {
+    for (const CheckedContact& contact : checker_.explain(configuration, scratches_.front())) {
+      report_.add({at, contact});
+    }
+  }
+
+  const RobotChecker& checker_;
+  const Trajectory& trajectory_;
+  const TrajectoryCheckOptions& options_;
+  const ShortestMotion shortest_;
+  std::vector<RobotChecker::Scratch> scratches_;
+  CheckReport report_;
+};
+
+}  // namespace
+
+CheckReport check_configurations(const RobotChecker& checker, const Trajectory& trajectory,
+                                 const TrajectoryCheckOptions& options) {
+  return TrajectoryCheck(checker, trajectory, options).configurations();
+}
+
+CheckReport check_motions(const RobotChecker& checker, const Trajectory& trajectory,
+                          const TrajectoryCheckOptions& options) {
+  return TrajectoryCheck(checker, trajectory, options).motions();
+}
+
+}  // namespace spherule

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/check_report.h"
+#include "robot/check/robot_checker.h"
+#include "robot/files/trajectory_file.h"
+#include "simplifier/external_spheres.h"
+
+namespace spherule {
+
+struct TrajectoryCheckOptions {
+  bool has_proofs = false;  // then pairs that these alone keep apart are counted, too
+  int threads = 0;
+  Progress progress{};
+  EdgeRequest edge{};  // of motions
+};
+
+// Every configuration, or every motion from one to the next, of which there are two at least.
+CheckReport check_configurations(const RobotChecker& checker, const Trajectory& trajectory,
+                                 const TrajectoryCheckOptions& options);
+CheckReport check_motions(const RobotChecker& checker, const Trajectory& trajectory,
+                          const TrajectoryCheckOptions& options);
+
+}  // namespace spherule

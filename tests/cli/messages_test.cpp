@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the commands for robots say on standard error: one line for each error, whatever names hold,
+// with the file in which a person has to look; and what they do not need.
+
+#include "tests/cli/command_test_support.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+std::string urdf_of(const std::string& links, const std::string& robot = "r") {
+  return "<robot name=\"" + robot + "\">" + links + "</robot>";
+}
+
+constexpr const char* kCube = R"(<geometry><box size="0.1 0.1 0.1"/></geometry>)";
+
+// A cube that slides, with a shape of its own to be seen.
+std::string sliding_cube(const std::string& visual, const std::string& collision) {
+  return urdf_of("<link name=\"base\"/><link name=\"hand\"><visual>" + visual +
+                 "</visual><collision>" + collision + R"(</collision></link>
+    <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
+      <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>)");
+}
+
+std::string mesh(const std::string& name) {
+  return "<geometry><mesh filename=\"" + name + "\"/></geometry>";
+}
+
+class MessagesTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write("empty.json", R"({"format": "spherule-scene", "version": 1})");
+    write("path.csv", "0\n1\n");
+    write("hand.json", R"({"hand": {"centers": [[0, 0, 0]], "radii": [0.1]}})");
+    write("two.json", R"({"hand": {"centers": [[0, 0, 0]], "radii": [0.1]},
+                          "ghost": {"centers": [[0, 0, 0]], "radii": [0.1]}})");
+    write("cube.urdf", sliding_cube(kCube, kCube));
+  }
+  // A refusal that shows every character of the reason, and none that moves a cursor.
+  void expect_readable(const std::vector<std::string>& arguments, const std::string& reason) {
+    expect_refusal(arguments, reason);
+    const std::string err = run(arguments).err;
+    EXPECT_TRUE(std::all_of(err.begin(), err.end() - 1, [](char c) {
+      return static_cast<unsigned char>(c) >= 0x20 && c != 0x7F;
+    })) << err;
+  }
+};
+
+TEST_F(MessagesTest, AreOneLineWhateverNamesHold) {
+  write("new\nline.stl", "nothing");
+  expect_readable({"info", "new\nline.stl"}, "spherule: new\\nline.stl: ");
+  expect_readable({"info", "bell\a\x1b[31m\r\t\x7f.stl"},
+                  "spherule: bell\\x07\\x1b[31m\\r\\t\\x7f.stl: ");
+  // Control characters of two bytes, half a character, characters written too long, half a pair;
+  // letters of two, three and four bytes.
+  expect_readable({"info", "\xc2\x9b\xe2\x82.\xc0\x80\xed\xa0\x80\xff"},
+                  "spherule: \\xc2\\x9b\\xe2\\x82.\\xc0\\x80\\xed\\xa0\\x80\\xff: ");
+  expect_readable({"info",
+                   "gr\xc3\xb6\xc3\x9f"
+                   "e \xe2\x82\xac \xf0\x9f\xa4\x96.stl"},
+                  "spherule: gr\xc3\xb6\xc3\x9f"
+                  "e \xe2\x82\xac \xf0\x9f\xa4\x96.stl: ");
+  expect_readable({"fit", "part.stl", "-o", "no\nfolder/part.json", "--max-error", "1"},
+                  "no\\nfolder/part.json: ");
+  expect_readable({"info", "part.stl", "--un\nknown"}, "--un\\nknown");
+  write("link.urdf", urdf_of("<link name=\"li&#10;nk\"><collision>" + mesh("go&#27;ne.stl") +
+                             "</collision></link>"));
+  expect_readable({"robot", "link.urdf", "-o", "out"}, "link.urdf: line 1: link 'li\\nnk': ");
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obsta\ncles": []})");
+  expect_readable({"check", "cube.urdf", "cell.json", "path.csv", "--spheres", "hand.json"},
+                  "cell.json: the key 'obsta\\ncles'");
+}
+
+TEST_F(MessagesTest, WarningsAreOneLineToo) {
+  write("cube.urdf", urdf_of("<link name=\"ba&#10;se\"><collision>" + std::string(kCube) +
+                             R"(</collision></link><link name="hand"/>
+    <joint name="slide" type="prismatic"><parent link="ba&#10;se"/><child link="hand"/>
+      <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>)"));
+  const Outcome outcome =
+      run({"check", "cube.urdf", "empty.json", "path.csv", "--spheres", "hand.json"});
+  EXPECT_EQ(outcome.err,
+            "spherule: warning: link ba\\nse has a shape but no spheres: it is not checked\n");
+}
+
+// What is wrong is in the user's files, not in those that the command tries out.
+TEST_F(MessagesTest, NameTheUsersFile) {
+  write("seen.urdf",
+        urdf_of("<link name=\"base\"><visual>" + std::string(kCube) + "</visual></link>"));
+  write("bare.urdf", urdf_of("<link name=\"base\"/>"));
+  const std::string hint = "; --geometry visual takes the other one\n";
+  expect_refusal({"robot", "seen.urdf", "-o", "out"},
+                 "spherule: seen.urdf: no link has collision geometry" + hint);
+  expect_refusal({"audit-robot", "seen.urdf", "hand.json"},
+                 "spherule: seen.urdf: no link has collision geometry" + hint);
+  write("cube.srdf", R"(<robot name="r"><disable_collisions link1="a" link2="b"/></robot>)");
+  expect_refusal({"check-srdf", "seen.urdf", "cube.srdf"},
+                 "spherule: seen.urdf: no link has collision geometry" + hint);
+  expect_refusal({"robot", "bare.urdf", "-o", "out", "--geometry", "visual"},
+                 "spherule: bare.urdf: no link has visual geometry\n");
+  write("name.urdf", urdf_of("<link name=\"ba&#10;se\"><collision>" + std::string(kCube) +
+                             "</collision></link>"));
+  expect_refusal({"robot", "name.urdf", "-o", "out", "--effort", "0"},
+                 "spherule: out/r.curobo.yml: the name of a link, 'ba\\nse', holds a control "
+                 "character\n");
+  EXPECT_FALSE(exists("out"));
+  write("robot.urdf",
+        urdf_of("<link name=\"base\"><collision>" + std::string(kCube) + "</collision></link>",
+                "a/b"));
+  expect_refusal({"robot", "robot.urdf", "-o", "out"}, "spherule: robot.urdf: ");
+  write("huge.urdf", urdf_of(R"(<link name="base"><collision><geometry><box size="1e4 1e4 1e4"/>
+    </geometry></collision></link>)"));
+  expect_refusal({"robot", "huge.urdf", "-o", "out"}, "spherule: huge.urdf: link 'base': is ");
+  write("cell.json", R"({"format": "spherule-scene", "version": 1,
+    "allowed_contacts": [{"body": "arm", "other": "hand"}]})");
+  expect_refusal({"check", "cube.urdf", "cell.json", "path.csv", "--spheres", "hand.json"},
+                 "spherule: cell.json: arm: there is no link or attached object of that name");
+  write("cell.json", R"({"format": "spherule-scene", "version": 1,
+    "attached": [{"name": "tool", "link": "gone", "spheres": {"file": "tool.json"}}]})");
+  write_spheres("tool.json", {{0.0, 0.0, 0.0, 0.1}});
+  expect_refusal({"check", "cube.urdf", "cell.json", "path.csv", "--spheres", "hand.json"},
+                 "spherule: cell.json: link gone: there is no such link");
+}
+
+// A mesh that is not used may be missing.
+TEST_F(MessagesTest, OnlyMeshesOfTheGeometryAreNeeded) {
+  const std::string missing = mesh("package://gone/hand.dae");
+  write("seen.urdf", sliding_cube(missing, kCube));
+  write("solid.urdf", sliding_cube(kCube, missing));
+  write("cube.srdf", R"(<robot name="r"><disable_collisions link1="base" link2="hand"/></robot>)");
+  const std::vector<std::vector<std::string>> commands = {
+      {"robot", "", "-o", "out", "--max-error", "0.04", "--effort", "0"},
+      {"audit-robot", "", "hand.json"},
+      {"check-srdf", "", "cube.srdf"},
+      {"check", "", "empty.json", "path.csv", "--max-error", "0.04", "--effort", "0"},
+      {"view", "", "-o", "page.html"}};
+  for (std::vector<std::string> line : commands) {
+    SCOPED_TRACE(line.front());
+    line[1] = "seen.urdf";
+    const Outcome outcome = run(line);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    line[1] = "solid.urdf";
+    expect_refusal(line, "spherule: solid.urdf: line 1: link 'hand': <mesh>: package://gone");
+    line.insert(line.end(), {"--geometry", "visual"});
+    const Outcome visual = run(line);
+    EXPECT_EQ(visual.exit_code, 0) << visual.err;
+    line[1] = "seen.urdf";
+    expect_refusal(line, "spherule: seen.urdf: line 1: link 'hand': <mesh>: package://gone");
+  }
+  expect_refusal({"view", "seen.urdf", "-o", "page.html", "--geometry", "collision,visual"},
+                 "package://gone");
+  // With spheres that are given no mesh is read at all.
+  write("none.urdf", sliding_cube(missing, missing));
+  EXPECT_EQ(
+      run({"check", "none.urdf", "empty.json", "path.csv", "--spheres", "hand.json"}).exit_code, 0);
+}
+
+TEST_F(MessagesTest, SpheresOfLinksThatAreNotThereAreRefusedOrLeftOut) {
+  const std::string what = "two.json: has spheres of 1 link that the robot has not got: 'ghost'";
+  const std::vector<std::vector<std::string>> commands = {
+      {"audit-robot", "cube.urdf", ""},
+      {"check", "cube.urdf", "empty.json", "path.csv", "--spheres", ""},
+      {"view", "cube.urdf", "-o", "page.html", ""}};
+  for (std::vector<std::string> line : commands) {
+    SCOPED_TRACE(line.front());
+    line.back() = "two.json";
+    expect_refusal(line, "spherule: " + what + "; --ignore-unknown-links leaves them out\n");
+    line.push_back("--ignore-unknown-links");
+    const Outcome outcome = run(line);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "spherule: warning: " + what + "; they are left out\n");
+    *(line.end() - 2) = "hand.json";
+    EXPECT_EQ(run(line).err, "");
+    // If all are, the file is of another robot.
+    *(line.end() - 2) = "others.json";
+    std::string others;
+    for (int i = 0; i < 8; ++i) {
+      others += (i == 0 ? "{\"link" : ", \"link") + std::to_string(i) +
+                "\": {\"centers\": [[0, 0, 0]], \"radii\": [0.1]}";
+    }
+    write("others.json", others + "}");
+    expect_refusal(line,
+                   "spherule: others.json: has spheres of 8 links that the robot has not got: "
+                   "'link0', 'link1', 'link2', 'link3', 'link4' and 3 more, and of no other\n");
+  }
+}
+
+// Links without spheres are no loss, and pairs of links that are not there need no test.
+TEST_F(MessagesTest, WhatIsNotThereAndHasNoSpheresIsNoFault) {
+  write("cube.yml",
+        "collision_spheres:\n  hand: [{center: [0, 0, 0], radius: 0.1}]\n"
+        "  ghost: [{center: [0, 0, 0], radius: -1}]\n"
+        "self_collision_ignore: {hand: [attached_object], other: [hand]}\n");
+  for (const std::vector<std::string>& line :
+       {std::vector<std::string>{"audit-robot", "cube.urdf", "cube.yml"},
+        std::vector<std::string>{"view", "cube.urdf", "cube.yml", "-o", "page.html"}}) {
+    const Outcome outcome = run(line);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+  }
+  const Outcome check =
+      run({"check", "cube.urdf", "empty.json", "path.csv", "--spheres", "cube.yml"});
+  EXPECT_EQ(check.exit_code, 0) << check.err;
+  EXPECT_EQ(check.err,
+            "spherule: warning: cube.yml: 1 spheres are switched off: they are not checked\n");
+}
+
+}  // namespace
+}  // namespace spherule
