@@ -277,7 +277,7 @@ void add_check(CLI::App& app, int& exit_code) {
                             "spherule check robot.urdf cell.json path.csv --edges --spheres "
                             "robot.spheres.json --json",
                             "spherule check robot.urdf cell.json path.csv --degrees "
-                            "--enforce-limits --edges --continuous shortest"}}));
+                            "--edges --continuous shortest"}}));
   command->callback([arguments, &exit_code] {
     arguments->lengths.convert(metres());
     exit_code = check(*arguments);
