@@ -143,10 +143,15 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
   // gets.
   if (!(result.lower > 0.0)) return result;
   const internal::RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
-  const std::int32_t inside = SpheresInside(tree, solid, pose).find();
+  const SpheresInside spheres(tree, solid, pose);
+  const std::int32_t inside = spheres.find();
   if (inside >= 0) {
-    result.lower = result.upper = 0.0;
-    result.nearest = {inside, -1};
+    result.lower = 0.0;
+    const Vector3d& center = tree.spheres()[static_cast<std::size_t>(inside)].center;
+    if (spheres.certainly_contains(spheres.in_mesh(center))) {
+      result.upper = 0.0;
+      result.nearest = {inside, -1};
+    }
   } else {
     result.lower = std::max(0.0, sub_down(result.lower, solid.inflation()));
   }

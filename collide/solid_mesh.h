@@ -66,8 +66,9 @@ bool collides(const SphereTree& tree, const Pose& world_from_tree, const SolidMe
 bool within(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
             const Pose& world_from_solid, double clearance);
 
-// Their separation distance between certified bounds, both 0 where a sphere is inside. In
-// `nearest`, `b` is the triangle, or -1 where sphere `a` is inside. The limits of the request are
+// Their separation distance between certified bounds, both 0 where a sphere is certainly inside;
+// where it is too near the surface to tell, the lower one is 0. In `nearest`, `b` is the triangle,
+// or -1 where sphere `a` is inside. The limits of the request are
 // those of the search for the nearest triangle; whether a sphere is inside is queried after it.
 DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, const SolidMesh& solid,
                         const Pose& world_from_solid, const DistanceRequest& request = {});

@@ -24,6 +24,8 @@ struct OutsideLimits {
   double lower = 0.0;
   double upper = 0.0;
 };
+
+// Compares each configuration with the limits, as numbers; none of a continuous joint is outside.
 OutsideLimits outside_limits(const RobotModel& robot, const Trajectory& trajectory);
 
 // Whether the angles of a trajectory that was read as radians look like degrees: of those that are
@@ -38,6 +40,8 @@ struct DegreesGuess {
   std::string joint{};
   double value = 0.0;
 };
+
+// Guesses as DegreesGuess says.
 DegreesGuess guess_degrees(const RobotModel& robot, const Trajectory& trajectory);
 
 // Motions from one configuration to the next on which some continuous joint that the configurations
