@@ -36,9 +36,9 @@ class JsonDocument {
   Json root_;
 };
 
-// The document of a JSON text; Json is nlohmann::json or its like. What is no JSON is refused, so is
-// what is nested deeper than kDeepestJson, and a key that an object holds twice, of which nlohmann's
-// parser would silently keep the last: `refuse(reason)` has to throw.
+// The document of a JSON text; Json is nlohmann::json or its like. What is no JSON is refused, so
+// is what is nested deeper than kDeepestJson, and a key that an object holds twice, of which
+// nlohmann's parser would silently keep the last: `refuse(reason)` has to throw.
 template <class Json, class Refuse>
 JsonDocument<Json> parse_json(std::string_view text, const Refuse& refuse) {
   using Event = typename Json::parse_event_t;
