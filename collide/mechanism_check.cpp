@@ -3,6 +3,7 @@
 
 #include "collide/mechanism/mechanism_parts.h"
 #include "spheretree/error.h"
+#include "spheretree/rounding_mode.h"
 
 #include <algorithm>
 #include <cassert>
@@ -24,6 +25,7 @@ MechanismCheck& MechanismCheck::operator=(const MechanismCheck&) noexcept = defa
 
 MechanismCheck::Scratch::Scratch(const MechanismCheck& check)
     : memory_(std::make_unique<Memory>()) {
+  require_rounding_to_nearest();
   const Parts& parts = *check.parts_;
   memory_->owner = check.parts_;
   const auto variables = static_cast<std::size_t>(filled_up(parts.problem.variable_count));

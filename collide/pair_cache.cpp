@@ -2,6 +2,7 @@
 #include "collide/pair_cache.h"
 
 #include "collide/motion/free_time.h"
+#include "spheretree/rounding_mode.h"
 
 #include <algorithm>
 #include <chrono>
@@ -36,7 +37,9 @@ struct UnitRate {
 }  // namespace
 
 PairCache::PairCache(const SphereTree& a, const SphereTree& b)
-    : a_(a), b_(b), a_moves_(a.reach() <= b.reach()), reach_(std::min(a.reach(), b.reach())) {}
+    : a_(a), b_(b), a_moves_(a.reach() <= b.reach()), reach_(std::min(a.reach(), b.reach())) {
+  require_rounding_to_nearest();
+}
 
 double PairCache::way_between(const Seen& before, const Seen& now) const {
   std::array<double, 12> change;

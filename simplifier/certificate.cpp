@@ -13,6 +13,7 @@
 #include "simplifier/support/usable_spheres.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
+#include "spheretree/rounding_mode.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -41,6 +42,7 @@ constexpr double kFurthestReach = 0x1p24;
 constexpr double kPointFlood = 1.0 / 128.0;
 
 void check_options(std::span<const Sphere> spheres, const CertifyOptions& options) {
+  require_rounding_to_nearest();
   internal::check_usable(spheres);
   if (!(options.resolution > 0.0 && options.resolution <= 1.0)) {
     throw Error("resolution", "must be above 0 and at most 1");

@@ -14,6 +14,7 @@
 #include "simplifier/support/thread_limit.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
+#include "spheretree/rounding_mode.h"
 
 #include <algorithm>
 #include <cmath>
@@ -248,6 +249,7 @@ ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalO
 ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
                                                  const MeshDistance& distance,
                                                  const ExternalOptions& options) {
+  require_rounding_to_nearest();
   check_options(options);
   const ThreadLimit threads(options.threads);
   ExternalSpheres result;

@@ -5,6 +5,7 @@
 #include "spheretree/internal/binary_tree.h"
 #include "spheretree/internal/node_spheres.h"
 #include "spheretree/internal/wide_nodes.h"
+#include "spheretree/rounding_mode.h"
 
 #include <algorithm>
 #include <string>
@@ -66,6 +67,7 @@ void check_input(std::span<const Sphere> spheres, const BuildOptions& options) {
 }  // namespace
 
 SphereTree build_tree(std::span<const Sphere> spheres, const BuildOptions& options) {
+  require_rounding_to_nearest();
   check_input(spheres, options);
   SphereTreeData data = lay_out(internal::binary_tree(spheres), spheres, options.branching);
   fit_spheres(data);

@@ -5,6 +5,7 @@
 #include "spheretree/crc64.h"
 #include "spheretree/error.h"
 #include "spheretree/internal/file_content.h"
+#include "spheretree/rounding_mode.h"
 
 #include <bit>
 #include <concepts>
@@ -137,6 +138,7 @@ std::string internal::encode_tree(const SphereTree& tree) {
 }
 
 SphereTree internal::decode_tree(std::string_view bytes, const std::string& name) {
+  require_rounding_to_nearest();
   SphereTreeData data = read_tree_data(bytes, name);
   try {
     return SphereTree(std::move(data));

@@ -7,6 +7,7 @@
 #include "robot/model/internal/shared_work.h"
 #include "robot/model/joint_limits.h"
 #include "spheretree/error.h"
+#include "spheretree/rounding_mode.h"
 
 #include <algorithm>
 #include <array>
@@ -69,6 +70,7 @@ const RobotModel& RobotChecker::robot() const {
 
 RobotChecker::Scratch::Scratch(const RobotChecker& checker)
     : memory_(std::make_unique<Memory>(checker.parts_, checker.parts_->lanes)) {
+  require_rounding_to_nearest();
   if (checker.parts_->standing) memory_->standing.emplace(*checker.parts_->standing);
 }
 RobotChecker::Scratch::~Scratch() = default;
