@@ -111,9 +111,9 @@ class KeptYaml {
     if (!edit_.is_possible()) return std::nullopt;
     std::string text = edit_.result();
     try {
-      const std::vector<Node> read = YAML::LoadAll(text);
+      const std::optional<Node> read = only_document(text);
       const std::size_t length = length_ + text.size();
-      if (read.size() == 1 && is_same_yaml(read.front(), expected_, length)) return text;
+      if (read && is_same_yaml(*read, expected_, length)) return text;
     } catch (const YAML::Exception&) {
       return std::nullopt;  // an anchor stood where the changes were made
     }

@@ -3,10 +3,49 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
+#include <yaml-cpp/eventhandler.h>
 
 namespace spherule::internal {
 
 using YAML::Node;
+
+namespace {
+
+// Counts documents. yaml-cpp 0.7 finds empty ones without end behind some tokens that are out of
+// place, such as "}" at the beginning, and LoadAll() would collect them.
+class DocumentCounter : public YAML::EventHandler {
+ public:
+  int documents() const { return documents_; }
+
+  void OnDocumentStart(const YAML::Mark&) override { ++documents_; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+ private:
+  int documents_ = 0;
+};
+
+}  // namespace
+
+std::optional<Node> only_document(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentCounter counter;
+  while (counter.documents() < 2 && parser.HandleNextDocument(counter)) {
+  }
+  if (counter.documents() != 1) return std::nullopt;
+  return YAML::Load(text);
+}
 
 std::string place_of(const Node& node) {
   return node.Mark().is_null() ? std::string() : "line " + std::to_string(node.Mark().line + 1);
@@ -14,9 +53,9 @@ std::string place_of(const Node& node) {
 
 Node yaml_document(std::string_view text, const SphereGatherer& gathered) {
   try {
-    const std::vector<Node> documents = YAML::LoadAll(std::string(text));
-    gathered.unless(documents.size() == 1, {}, "does not hold exactly one YAML document");
-    return documents.front();
+    const std::optional<Node> document = only_document(std::string(text));
+    gathered.unless(document.has_value(), {}, "does not hold exactly one YAML document");
+    return *document;
   } catch (const YAML::Exception& error) {
     gathered.refuse("line " + std::to_string(error.mark.line + 1), "is not YAML: " + error.msg);
   }

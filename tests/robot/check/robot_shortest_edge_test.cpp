@@ -140,7 +140,7 @@ TEST(RobotShortestEdge, WhatIsProvedFreeIsFree) {
     }
   }
   EXPECT_GT(free, effort(200, 25));
-  EXPECT_GT(hits, effort(80, 8));
+  EXPECT_GT(hits, effort(80, 4));
   EXPECT_GT(other_way, effort(400, 50));
 }
 

@@ -345,6 +345,13 @@ TEST_F(SphereFormatFaults, AliasesThatMultiplySpheresAreRefused) {
   }
 }
 
+// Found by fuzzing: yaml-cpp finds empty documents without end.
+TEST_F(SphereFormatFaults, TokensOutOfPlaceEndTheReading) {
+  for (const char* text : {"}", ", 0], radius: 1}\ns: &s\n", "]\n", "{}}\na: 1\n", ": }"}) {
+    EXPECT_THROW(read(text), Error) << text;
+  }
+}
+
 TEST_F(SphereFormatFaults, DeepNesting) {
   for (const char* part : {"[", "{\"a\":", "a: [", "<robot>", "- "}) {
     std::string text;
