@@ -208,8 +208,9 @@ std::vector<std::string> check_public_headers(const std::string& folder, std::st
 }
 
 std::vector<std::string> check_sources(const fs::path& root, std::size_t& files) {
-  static constexpr std::array kTop = {".ci",  "adapters", "bench",      "cli",        "collide",
-                                      "mesh", "robot",    "simplifier", "spheretree", "tests"};
+  static constexpr std::array kTop = {".ci",        "adapters",   "bench", "cli",
+                                      "collide",    "examples",   "mesh",  "robot",
+                                      "simplifier", "spheretree", "tests"};
   std::vector<std::string> problems;
   files = 0;
   std::map<std::string, std::string> libraries;  // CMakeLists.txt of each, by folder
