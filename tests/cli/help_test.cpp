@@ -147,8 +147,8 @@ TEST_F(HelpTest, ReportsSayWhatToDoNext) {
 TEST_F(HelpTest, NextStepsRepeatWhatWasGiven) {
   write_box("part.stl", {2, 0.1, 0.1});
   for (const auto& [option, value] : {std::pair("--scale", "0.1"), std::pair("--weld", "0.001")}) {
-    const Outcome fit =
-        run({"fit", "part.stl", "-o", "out.json", "--max-error", "0.2", option, value});
+    const Outcome fit = run({"fit", "part.stl", "-o", "out.json", "--max-error", "0.2", "--effort",
+                             "0", option, value});
     EXPECT_NE(fit.out.find("next: spherule tree out.json"), std::string::npos) << fit.out;
     EXPECT_EQ(fit.out.find("spherule view"), std::string::npos) << fit.out;
   }
