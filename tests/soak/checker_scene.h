@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/scale/random_scene.h"
 #include "robot/check/robot_scene.h"
+#include "tests/soak/random_scene.h"
 
 #include <memory>
 #include <optional>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/scale/random_scene.h"
 #include "collide/motion.h"
+#include "tests/soak/random_scene.h"
 
 #include <array>
 #include <cmath>

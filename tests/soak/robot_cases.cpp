@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/cases.h"
-#include "bench/scale/checker_rows.h"
-#include "bench/scale/scale_robot.h"
+#include "tests/soak/cases.h"
+#include "tests/soak/checker_rows.h"
+#include "tests/soak/soak_robot.h"
 
 #include <cstdint>
 #include <string>
@@ -14,7 +14,7 @@ constexpr std::size_t kConfigurations = 256;  // of a scene
 constexpr double kNear = 0.6;                 // of these, some find no obstacle in their way
 
 // As on a path or shuffled.
-QueriedConfigurations make_configurations(ScaleRobot& scene, SceneRandom& random) {
+QueriedConfigurations make_configurations(SoakRobot& scene, SceneRandom& random) {
   QueriedConfigurations made;
   const bool is_path = random.chance(0.5);
   std::vector<double> last = scene.anywhere(random);
@@ -35,35 +35,36 @@ QueriedConfigurations make_configurations(ScaleRobot& scene, SceneRandom& random
 
 }  // namespace
 
-void check_configurations(std::uint64_t configurations, std::uint64_t seed, ScaleReport& report) {
+std::uint64_t check_configurations(std::uint64_t configurations, std::uint64_t seed,
+                                   SoakReport& report) {
   const std::vector<CheckerRows> rows = add_checker_rows("robot", report);
   SceneRandom random(seed);
   std::vector<std::uint8_t> first;
-  for (std::uint64_t done = 0; done < configurations; done += kConfigurations) {
-    ScaleRobot scene(random);
+  std::uint64_t done = 0;
+  for (; done < configurations; done += kConfigurations) {
+    SoakRobot scene(random);
     const QueriedConfigurations queried = make_configurations(scene, random);
-    const auto variables = static_cast<std::size_t>(scene.robot().variable_count());
     const auto judge = [&](Tally& tally, std::size_t i, bool is_free) {
-      const std::span<const double> configuration(&queried.positions[i * variables], variables);
+      const std::span<const double> configuration = queried.configuration(i);
       tally.count(is_free ? Verdict::kFree : Verdict::kCollision, queried.is_near[i] != 0);
       if (is_free && queried.truth[i] != 0) {
-        ++tally.missed;
-        report.failure(tally, "missed at case " + std::to_string(tally.cases));
-      } else if (!is_free && queried.truth[i] == 0) {
-        tally.count_extra(scene.gap(configuration).lower, scene.slack(configuration));
+        report.add_fault(tally, Fault::kMissed, "configuration " + to_text(configuration));
+      } else if (!is_free && queried.truth[i] == 0 &&
+                 tally.count_extra(scene.gap(configuration).lower, scene.slack(configuration))) {
+        report.add_fault(tally, Fault::kCrossed, "slack, configuration " + to_text(configuration));
       }
       // One set of instructions must not answer differently from another.
       if (first.size() <= i) {
         first.push_back(is_free ? 1 : 0);
       } else if (is_free != (first[i] != 0)) {
-        ++tally.beyond;
-        report.failure(tally, "another answer at case " + std::to_string(tally.cases));
+        report.add_fault(tally, Fault::kOther,
+                         "another answer, configuration " + to_text(configuration));
       }
     };
     first.clear();
     check_rows(scene.scene(), rows, queried, judge);
-    report.progress("configurations", done, configurations);
   }
+  return done;
 }
 
 }  // namespace spherule

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/cases.h"
-#include "bench/scale/exact_oracle.h"
-#include "bench/scale/random_scene.h"
 #include "collide/distance.h"
 #include "collide/pair_cache.h"
 #include "collide/within.h"
+#include "tests/soak/cases.h"
+#include "tests/soak/exact_oracle.h"
+#include "tests/soak/random_scene.h"
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 namespace spherule {
 namespace {
@@ -44,9 +45,13 @@ Pose nudged(const Pose& pose, SceneRandom& random, double size) {
   return Pose(turn, pose.translation() + step * size * random.direction());
 }
 
+std::string text(const PlacedSet& a, const PlacedSet& b) {
+  return "poses " + to_text(a.world_from_set) + " and " + to_text(b.world_from_set);
+}
+
 class PoseCheck {
  public:
-  explicit PoseCheck(ScaleReport& report)
+  explicit PoseCheck(SoakReport& report)
       : report_(report),
         collides_(report.add("collides")),
         swapped_(report.add("collides, exchanged")),
@@ -69,12 +74,10 @@ class PoseCheck {
   void judge(Tally& tally, const PlacedSet& a, const PlacedSet& b, Verdict verdict, bool truth,
              bool is_near, double clearance, double slack) {
     tally.count(verdict, is_near);
-    if (verdict == Verdict::kFree && truth) {
-      ++tally.missed;
-      report_.failure(tally, "missed at case " + std::to_string(tally.cases));
-    }
-    if (verdict == Verdict::kCollision && !truth) {
-      tally.count_extra(oracle_.gap(a, b).lower - clearance, slack);
+    if (verdict == Verdict::kFree && truth) report_.add_fault(tally, Fault::kMissed, text(a, b));
+    if (verdict == Verdict::kCollision && !truth &&
+        tally.count_extra(oracle_.gap(a, b).lower - clearance, slack)) {
+      report_.add_fault(tally, Fault::kCrossed, "slack, " + text(a, b));
     }
   }
 
@@ -98,7 +101,7 @@ class PoseCheck {
     if (kind == 0) {
       const bool swapped = collides(scene.b(), to_b, scene.a(), to_a);
       judge(swapped_, a, b, verdict_of(swapped), truth, is_near, 0.0, slack);
-      swapped_.beyond += swapped != said ? 1 : 0;
+      if (swapped != said) report_.add_fault(swapped_, Fault::kOther, text(a, b));
     } else if (kind == 1) {
       CollisionRequest request{.max_pairs = 1};
       if (random.chance(0.5)) {
@@ -108,8 +111,7 @@ class PoseCheck {
       judge(limited_, a, b, result.verdict, truth, is_near, 0.0, slack);
       if (result.distance_lower_bound > 0.0 &&
           result.distance_lower_bound > oracle_.gap(a, b).upper) {
-        ++limited_.missed;
-        report_.failure(limited_, "lower bound at case " + std::to_string(limited_.cases));
+        report_.add_fault(limited_, Fault::kCrossed, "lower bound, " + text(a, b));
       }
     }
   }
@@ -135,8 +137,7 @@ class PoseCheck {
     judge(cached_, a, b, verdict_of(said), oracle_.within(a, b, 0.0), is_near, 0.0,
           collision_slack(scene.a(), to_a, scene.b(), to_b));
     if (said != collides(scene.a(), to_a, scene.b(), to_b)) {
-      ++cached_.beyond;
-      report_.failure(cached_, "another answer at case " + std::to_string(cached_.cases));
+      report_.add_fault(cached_, Fault::kOther, "another answer, " + text(a, b));
     }
   }
 
@@ -152,7 +153,7 @@ class PoseCheck {
           within_slack(scene.a(), to_a, scene.b(), to_b, clearance));
   }
 
-  ScaleReport& report_;
+  SoakReport& report_;
   ExactOracle oracle_;
   Tally& collides_;
   Tally& swapped_;
@@ -181,16 +182,16 @@ DistanceRequest random_request(SceneRandom& random, double size) {
 
 }  // namespace
 
-void check_poses(std::uint64_t poses, std::uint64_t seed, ScaleReport& report) {
+std::uint64_t check_poses(std::uint64_t poses, std::uint64_t seed, SoakReport& report) {
   SceneRandom random(seed);
   PoseCheck check(report);
   while (check.poses() < poses) {
     check.run(ScenePair(random), random);
-    report.progress("poses", check.poses(), poses);
   }
+  return check.poses();
 }
 
-void check_distances(std::uint64_t distances, std::uint64_t seed, ScaleReport& report) {
+std::uint64_t check_distances(std::uint64_t distances, std::uint64_t seed, SoakReport& report) {
   SceneRandom random(seed);
   ExactOracle oracle;
   Tally& tally = report.add("distance");
@@ -216,12 +217,11 @@ void check_distances(std::uint64_t distances, std::uint64_t seed, ScaleReport& r
       const bool is_upper_right =
           result.upper >= most || (result.upper >= least && oracle.within(a, b, result.upper));
       if (!is_lower_right || !is_upper_right) {
-        ++tally.missed;
-        report.failure(tally, "bounds crossed at case " + std::to_string(tally.cases));
+        report.add_fault(tally, Fault::kCrossed, text(a, b));
       }
     }
-    report.progress("distances", tally.cases, distances);
   }
+  return tally.cases;
 }
 
 }  // namespace spherule

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/cases.h"
-#include "bench/scale/exact_oracle.h"
-#include "bench/scale/motion_oracle.h"
-#include "bench/scale/random_scene.h"
 #include "collide/sweep.h"
 #include "collide/within.h"
 #include "spheretree/build.h"
+#include "tests/soak/cases.h"
+#include "tests/soak/exact_oracle.h"
+#include "tests/soak/motion_oracle.h"
+#include "tests/soak/random_scene.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -97,7 +98,7 @@ SphereTree thin_wall(SceneRandom& random) {
 
 class SweepCheck {
  public:
-  explicit SweepCheck(ScaleReport& report)
+  explicit SweepCheck(SoakReport& report)
       : report_(report),
         passes_(report.add("sweep")),
         clearances_(report.add("sweep, with clearance")),
@@ -150,6 +151,10 @@ class SweepCheck {
     const Course& course;
   };
 
+  static std::string text(const Motion& a, const Motion& b, double t) {
+    return ", poses " + to_text(a.pose_at(t)) + " and " + to_text(b.pose_at(t));
+  }
+
   // By how much a has to be shifted for the least gap to be `wanted` at the instant `meeting`;
   // nothing if it passes, and in all but a `share` of the cases.
   static std::optional<Vector3d> way_to_meet(const Body& a, const Body& b, double meeting,
@@ -178,9 +183,9 @@ class SweepCheck {
              (result.free_until > 0.0 && t <= result.free_until);
     };
     const auto miss = [&](const char* what, double t) {
-      ++tally.missed;
-      report_.failure(tally, std::string(what) + " at case " + std::to_string(tally.cases) +
-                                 ", t = " + std::to_string(t));
+      report_.add_fault(
+          tally, Fault::kMissed,
+          std::string(what) + ", t = " + to_text(std::span(&t, 1)) + text(motion_a, motion_b, t));
     };
 
     const auto track_a = a.course.track(a.tree.spheres());
@@ -233,12 +238,12 @@ class SweepCheck {
     const long double over = gap.lower - request.clearance;
     tally.worst_slack = std::max(tally.worst_slack, static_cast<double>(over / slack));
     if (over > slack) {
-      ++tally.beyond;
-      report_.failure(tally, "no contact at case " + std::to_string(tally.cases));
+      report_.add_fault(tally, Fault::kCrossed,
+                        "no contact" + text(motion_a, motion_b, result.contact_at));
     }
   }
 
-  ScaleReport& report_;
+  SoakReport& report_;
   ExactOracle oracle_;
   Tally& passes_;
   Tally& clearances_;
@@ -247,13 +252,13 @@ class SweepCheck {
 
 }  // namespace
 
-void check_sweeps(std::uint64_t motions, std::uint64_t seed, ScaleReport& report) {
+std::uint64_t check_sweeps(std::uint64_t motions, std::uint64_t seed, SoakReport& report) {
   SceneRandom random(seed);
   SweepCheck check(report);
   while (check.motions() < motions) {
     check.run(random);
-    report.progress("motions", check.motions(), motions);
   }
+  return check.motions();
 }
 
 }  // namespace spherule

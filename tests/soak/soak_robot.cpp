@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/scale_robot.h"
+#include "tests/soak/soak_robot.h"
 
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kSize = 0.4;
 
-std::vector<ScaleObstacle> make_obstacles(SceneRandom& random) {
-  std::vector<ScaleObstacle> obstacles;
+std::vector<SoakObstacle> make_obstacles(SceneRandom& random) {
+  std::vector<SoakObstacle> obstacles;
   for (int i = random.whole(1, 3); i > 0; --i) {
     const int count = random.chance(0.95) ? random.whole(1, 12) : random.whole(100, 300);
     obstacles.push_back({std::make_shared<const SphereTree>(random_tree(random, count, kSize)),
@@ -56,18 +56,18 @@ RobotModel make_robot(SceneRandom& random, const Eigen::Vector3d& aim,
 
 }  // namespace
 
-ScaleRobot::ScaleRobot(SceneRandom& random)
+SoakRobot::SoakRobot(SceneRandom& random)
     : obstacles_(make_obstacles(random)),
       direction_(random.direction()),
       robot_(make_robot(random,
                         obstacles_[0].world_from_tree * obstacles_[0].tree->spheres()[0].center,
                         direction_)) {
-  for (const ScaleObstacle& obstacle : obstacles_) {
+  for (const SoakObstacle& obstacle : obstacles_) {
     add_placed(obstacle.tree->spheres(), obstacle.world_from_tree, static_);
   }
 }
 
-RobotScene ScaleRobot::scene() const {
+RobotScene SoakRobot::scene() const {
   RobotScene scene(robot_);
   AllowedCollisions allowed(robot_);
   allowed.allow_all();
@@ -78,7 +78,7 @@ RobotScene ScaleRobot::scene() const {
   return scene;
 }
 
-std::vector<double> ScaleRobot::anywhere(SceneRandom& random) const {
+std::vector<double> SoakRobot::anywhere(SceneRandom& random) const {
   std::vector<double> configuration{random.between(-3.0, 3.0)};
   for (int i = 1; i < robot_.variable_count(); ++i) {
     configuration.push_back(random.between(-std::numbers::pi, std::numbers::pi));
@@ -87,11 +87,11 @@ std::vector<double> ScaleRobot::anywhere(SceneRandom& random) const {
 }
 
 template <class Use>
-bool ScaleRobot::any_pair(std::span<const double> configuration, Use use) {
+bool SoakRobot::any_pair(std::span<const double> configuration, Use use) {
   forward_kinematics(robot_, configuration, world_from_link_);
   for (std::size_t link = 0; link < robot_.links().size(); ++link) {
     for (const auto& tree : robot_.links()[link].trees) {
-      for (const ScaleObstacle& obstacle : obstacles_) {
+      for (const SoakObstacle& obstacle : obstacles_) {
         if (use(*tree, world_from_link_[link], obstacle)) return true;
       }
     }
@@ -99,7 +99,7 @@ bool ScaleRobot::any_pair(std::span<const double> configuration, Use use) {
   return false;
 }
 
-bool ScaleRobot::bring_to_gap(std::vector<double>& configuration, double gap) {
+bool SoakRobot::bring_to_gap(std::vector<double>& configuration, double gap) {
   configuration[0] = 0.0;
   forward_kinematics(robot_, configuration, world_from_link_);
   movers_.clear();
@@ -114,19 +114,19 @@ bool ScaleRobot::bring_to_gap(std::vector<double>& configuration, double gap) {
   return true;
 }
 
-bool ScaleRobot::touches(std::span<const double> configuration) {
+bool SoakRobot::touches(std::span<const double> configuration) {
   return any_pair(
-      configuration, [&](const SphereTree& tree, const Pose& pose, const ScaleObstacle& obstacle) {
+      configuration, [&](const SphereTree& tree, const Pose& pose, const SoakObstacle& obstacle) {
         return oracle_.within({tree.spheres(), pose},
                               {obstacle.tree->spheres(), obstacle.world_from_tree}, 0.0);
       });
 }
 
-GapBounds ScaleRobot::gap(std::span<const double> configuration) {
+GapBounds SoakRobot::gap(std::span<const double> configuration) {
   constexpr long double kFar = std::numeric_limits<double>::infinity();
   GapBounds least{kFar, kFar};
   any_pair(configuration,
-           [&](const SphereTree& tree, const Pose& pose, const ScaleObstacle& obstacle) {
+           [&](const SphereTree& tree, const Pose& pose, const SoakObstacle& obstacle) {
              const GapBounds gap = oracle_.gap(
                  {tree.spheres(), pose}, {obstacle.tree->spheres(), obstacle.world_from_tree});
              least.lower = std::min(least.lower, gap.lower);
@@ -136,10 +136,10 @@ GapBounds ScaleRobot::gap(std::span<const double> configuration) {
   return least;
 }
 
-double ScaleRobot::slack(std::span<const double> configuration) {
+double SoakRobot::slack(std::span<const double> configuration) {
   double largest = 0.0;
   any_pair(configuration,
-           [&](const SphereTree& tree, const Pose& pose, const ScaleObstacle& obstacle) {
+           [&](const SphereTree& tree, const Pose& pose, const SoakObstacle& obstacle) {
              largest = std::max(
                  largest, collision_slack(tree, pose, *obstacle.tree, obstacle.world_from_tree));
              return false;

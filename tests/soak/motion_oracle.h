@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/scale/motion_track.h"
+#include "tests/soak/motion_track.h"
 
 #include <array>
 #include <cstddef>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/cases.h"
-#include "bench/scale/scale_robot.h"
+#include "tests/soak/cases.h"
+#include "tests/soak/soak_robot.h"
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ bool in_filter_range(const std::vector<double>& configuration) {
   });
 }
 
-Edge make_edge(ScaleRobot& scene, SceneRandom& random) {
+Edge make_edge(SoakRobot& scene, SceneRandom& random) {
   Edge edge;
   std::vector<double> there = scene.anywhere(random);
   const std::vector<double> before = there;
@@ -46,12 +47,12 @@ Edge make_edge(ScaleRobot& scene, SceneRandom& random) {
 
 class EdgeCheck {
  public:
-  explicit EdgeCheck(ScaleReport& report) : report_(report), tally_(report.add("robot, edge")) {}
+  explicit EdgeCheck(SoakReport& report) : report_(report), tally_(report.add("robot, edge")) {}
 
   std::uint64_t edges() const { return tally_.cases; }
 
   void run(SceneRandom& random) {
-    ScaleRobot scene(random);
+    SoakRobot scene(random);
     const RobotChecker checker = scene.scene().snapshot();
     RobotChecker::Scratch scratch(checker);
     for (int i = 0; i < kEdgesOfAScene; ++i) {
@@ -69,7 +70,11 @@ class EdgeCheck {
   }
 
  private:
-  void judge(ScaleRobot& scene, const Edge& edge, const EdgeResult& result) {
+  static std::string text(const Edge& edge) {
+    return " from " + to_text(edge.from) + " to " + to_text(edge.to);
+  }
+
+  void judge(SoakRobot& scene, const Edge& edge, const EdgeResult& result) {
     tally_.count(result.verdict, edge.is_near);
     const auto is_called_free = [&](double t) {
       return result.verdict == Verdict::kFree || t < result.free_until;
@@ -87,9 +92,8 @@ class EdgeCheck {
       touches = true;
       if (is_called_free(t) && !missed) {
         missed = true;
-        ++tally_.missed;
-        report_.failure(tally_, "contact at case " + std::to_string(tally_.cases) +
-                                    ", t = " + std::to_string(t));
+        report_.add_fault(tally_, Fault::kMissed,
+                          "contact at t = " + to_text(std::span(&t, 1)) + text(edge));
       }
     };
     const int steps = tally_.cases % kManyStepsEvery == 0 ? kManySteps : kSteps;
@@ -100,37 +104,34 @@ class EdgeCheck {
       sample(std::max(0.0, edge.meeting - std::ldexp(1.0, -i)));
     }
     sample(std::max(0.0, std::nextafter(result.free_until, 0.0)));
-    if (result.verdict == Verdict::kCollision) check_contact(scene, at, result, go_to);
+    if (result.verdict == Verdict::kCollision) check_contact(scene, edge, at, result, go_to);
     if (result.verdict != Verdict::kFree && !touches) ++tally_.extra;
   }
 
   // The contact that was reported is one within the slack.
   template <class GoTo>
-  void check_contact(ScaleRobot& scene, const std::vector<double>& at, const EdgeResult& result,
-                     GoTo go_to) {
+  void check_contact(SoakRobot& scene, const Edge& edge, const std::vector<double>& at,
+                     const EdgeResult& result, GoTo go_to) {
     go_to(result.contact_at);
     const long double gap = scene.gap(at).lower;
     const double slack = scene.slack(at);
     tally_.worst_slack = std::max(tally_.worst_slack, static_cast<double>(gap / slack));
-    if (gap > slack) {
-      ++tally_.beyond;
-      report_.failure(tally_, "no contact at case " + std::to_string(tally_.cases));
-    }
+    if (gap > slack) report_.add_fault(tally_, Fault::kCrossed, "no contact" + text(edge));
   }
 
-  ScaleReport& report_;
+  SoakReport& report_;
   Tally& tally_;
 };
 
 }  // namespace
 
-void check_edges(std::uint64_t motions, std::uint64_t seed, ScaleReport& report) {
+std::uint64_t check_edges(std::uint64_t motions, std::uint64_t seed, SoakReport& report) {
   SceneRandom random(seed);
   EdgeCheck check(report);
   while (check.edges() < motions) {
     check.run(random);
-    report.progress("edges", check.edges(), motions);
   }
+  return check.edges();
 }
 
 }  // namespace spherule

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/checker_rows.h"
+#include "tests/soak/checker_rows.h"
 
 #include <utility>
 
 namespace spherule {
 
-std::vector<CheckerRows> add_checker_rows(const std::string& name, ScaleReport& report) {
+std::vector<CheckerRows> add_checker_rows(const std::string& name, SoakReport& report) {
   std::vector<CheckerRows> rows;
   for (const auto& [set, its_name] :
        {std::pair(InstructionSet::kPortable, "portable"), std::pair(InstructionSet::kAvx2, "avx2"),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/cases.h"
-#include "bench/scale/exact_oracle.h"
-#include "bench/scale/motion_track.h"
+#include "tests/soak/cases.h"
+
+#include "tests/soak/exact_oracle.h"
+#include "tests/soak/motion_track.h"
 
 #include <gtest/gtest.h>
 
@@ -12,11 +13,12 @@ namespace spherule {
 namespace {
 
 // All rows are clean, and each had both answers and cases near contact to judge.
-void expect_clean(const ScaleReport& report) {
+void expect_clean(const SoakReport& report) {
   EXPECT_FALSE(report.tallies().empty());
   for (const Tally& tally : report.tallies()) {
     EXPECT_EQ(tally.missed, 0u) << tally.question;
-    EXPECT_EQ(tally.beyond, 0u) << tally.question;
+    EXPECT_EQ(tally.crossed, 0u) << tally.question;
+    EXPECT_EQ(tally.other, 0u) << tally.question;
     EXPECT_LE(tally.worst_slack, 1.0) << tally.question;
     EXPECT_GT(tally.hits, 0u) << tally.question;
     EXPECT_GT(tally.near, tally.cases / 5) << tally.question;
@@ -27,26 +29,26 @@ void expect_clean(const ScaleReport& report) {
   }
 }
 
-TEST(Scale, PosesAreAnsweredRight) {
-  ScaleReport report(true);
+TEST(Soak, PosesAreAnsweredRight) {
+  SoakReport report;
   check_poses(20'000, 7, report);
   expect_clean(report);
 }
 
-TEST(Scale, ConfigurationsAreAnsweredRight) {
-  ScaleReport report(true);
+TEST(Soak, ConfigurationsAreAnsweredRight) {
+  SoakReport report;
   check_configurations(4'000, 7, report);
   expect_clean(report);
 }
 
-TEST(Scale, DistancesAreBounded) {
-  ScaleReport report(true);
+TEST(Soak, DistancesAreBounded) {
+  SoakReport report;
   check_distances(5'000, 7, report);
   expect_clean(report);
 }
 
-TEST(Scale, MotionsAreFreeWhereTheyAreCalledSo) {
-  ScaleReport report(true);
+TEST(Soak, MotionsAreFreeWhereTheyAreCalledSo) {
+  SoakReport report;
   check_sweeps(1'000, 7, report);
   expect_clean(report);
   for (const Tally& tally : report.tallies()) {
@@ -56,14 +58,14 @@ TEST(Scale, MotionsAreFreeWhereTheyAreCalledSo) {
   }
 }
 
-TEST(Scale, EdgesAreFreeWhereTheyAreCalledSo) {
-  ScaleReport report(true);
+TEST(Soak, EdgesAreFreeWhereTheyAreCalledSo) {
+  SoakReport report;
   check_edges(300, 7, report);
   expect_clean(report);
 }
 
 // Exactly touching, and by the smallest step on either side of it.
-TEST(Scale, OracleIsExact) {
+TEST(Soak, OracleIsExact) {
   ExactOracle oracle;
   const std::array<Sphere, 1> a{{{{0.0, 0.0, 0.0}, 2.0}}};
   const std::array<Sphere, 1> b{{{{3.0, 4.0, 0.0}, 3.0}}};
@@ -84,7 +86,7 @@ TEST(Scale, OracleIsExact) {
 }
 
 // The two ways in which a track is made agree with each other and with the ends.
-TEST(Scale, TracksLeadFromPoseToPose) {
+TEST(Soak, TracksLeadFromPoseToPose) {
   const std::array<Sphere, 1> sphere{{{{0.3, -0.2, 0.5}, 0.1}}};
   const Pose start(Eigen::Quaterniond(0.9, 0.1, -0.4, 0.2), {1.0, 2.0, 3.0});
   const Pose end(Eigen::Quaterniond(-0.3, 0.8, 0.1, 0.6), {-2.0, 0.5, 1.0});
@@ -113,14 +115,14 @@ TEST(Scale, TracksLeadFromPoseToPose) {
   }
 }
 
-TEST(Scale, CheckedConfigurationsAreAnsweredAsByTheCanonicalTests) {
-  ScaleReport report(true);
+TEST(Soak, CheckedConfigurationsAreAnsweredAsByTheCanonicalTests) {
+  SoakReport report;
   check_checker_configurations(20'000, 7, report);
   expect_clean(report);
 }
 
-TEST(Scale, CheckedEdgesAreFreeWhereTheyAreCalledSo) {
-  ScaleReport report(true);
+TEST(Soak, CheckedEdgesAreFreeWhereTheyAreCalledSo) {
+  SoakReport report;
   check_checker_edges(2'000, 7, report);
   expect_clean(report);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/random_scene.h"
+#include "tests/soak/random_scene.h"
 
 #include "spheretree/build.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/exact_oracle.h"
+#include "tests/soak/exact_oracle.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 

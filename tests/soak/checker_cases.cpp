@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Configurations of a RobotChecker: its answer is that of the canonical tests of all pairs, one by
 // one, with every instruction set.
-#include "bench/scale/cases.h"
-#include "bench/scale/checker_rows.h"
-#include "bench/scale/checker_scene.h"
+#include "tests/soak/cases.h"
+#include "tests/soak/checker_rows.h"
+#include "tests/soak/checker_scene.h"
 
 #include <cstdint>
 #include <optional>
@@ -50,10 +50,11 @@ QueriedConfigurations make_configurations(CheckerScene& scene, SceneRandom& rand
 
 }  // namespace
 
-void check_checker_configurations(std::uint64_t configurations, std::uint64_t seed,
-                                  ScaleReport& report) {
+std::uint64_t check_checker_configurations(std::uint64_t configurations, std::uint64_t seed,
+                                           SoakReport& report) {
   const std::vector<CheckerRows> rows = add_checker_rows("checker", report);
-  for (std::uint64_t done = 0, number = 0; done < configurations; ++number) {
+  std::uint64_t done = 0;
+  for (std::uint64_t number = 0; done < configurations; ++number) {
     SceneRandom random(seed * 1'000'003 + number);
     CheckerScene scene(random);
     if (scene.pair_count() == 0) continue;
@@ -63,15 +64,15 @@ void check_checker_configurations(std::uint64_t configurations, std::uint64_t se
     const auto judge = [&](Tally& tally, std::size_t i, bool is_free) {
       tally.count(is_free ? Verdict::kFree : Verdict::kCollision, queried.is_near[i] != 0);
       if (is_free != (queried.truth[i] != 0)) return;
-      is_free ? ++tally.missed : ++tally.extra;
-      if (!is_free) ++tally.beyond;
-      report.failure(tally, std::string(is_free ? "missed" : "extra") + ", scene " +
-                                std::to_string(number) + ", configuration " + std::to_string(i));
+      tally.extra += is_free ? 0 : 1;
+      report.add_fault(tally, is_free ? Fault::kMissed : Fault::kOther,
+                       "scene " + std::to_string(number) + ", configuration " +
+                           to_text(queried.configuration(i)));
     };
     check_rows(scene.scene(), rows, queried, judge);
     done += kConfigurations;
-    report.progress("checked configurations", done, configurations);
   }
+  return done;
 }
 
 }  // namespace spherule

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Edges of a RobotChecker against the canonical tests of all pairs at many places of each.
-#include "bench/scale/cases.h"
-#include "bench/scale/checker_scene.h"
+#include "tests/soak/cases.h"
+#include "tests/soak/checker_scene.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -75,7 +76,7 @@ Edge make_edge(CheckerScene& scene, SceneRandom& random,
 
 class EdgeJudge {
  public:
-  EdgeJudge(ScaleReport& report, Tally& tally, CheckerScene& scene, const Edge& edge,
+  EdgeJudge(SoakReport& report, Tally& tally, CheckerScene& scene, const Edge& edge,
             const EdgeResult& result, const std::string& place)
       : report_(report),
         tally_(tally),
@@ -93,14 +94,16 @@ class EdgeJudge {
     if (tally_.cases % 8 == 0) sample_around(nearest());
     if (result_.verdict == Verdict::kCollision) {
       if (!touches(result_.contact_at)) {
-        ++tally_.beyond;
-        report_.failure(tally_, "no contact at contact_at, " + place_);
+        report_.add_fault(tally_, Fault::kOther, "no contact at contact_at, " + text());
       }
     }
     if (result_.verdict == Verdict::kUnknown && !has_contact_) ++tally_.extra;
   }
 
  private:
+  std::string text() const {
+    return place_ + " from " + to_text(edge_.from) + " to " + to_text(edge_.to);
+  }
   bool touches(double t) {
     place(t);
     return scene_.touches(at_);
@@ -120,8 +123,8 @@ class EdgeJudge {
     has_contact_ = true;
     if (!is_called_free(t) || is_missed_) return;
     is_missed_ = true;
-    ++tally_.missed;
-    report_.failure(tally_, "contact at t = " + std::to_string(t) + ", " + place_);
+    report_.add_fault(tally_, Fault::kMissed,
+                      "contact at t = " + to_text(std::span(&t, 1)) + ", " + text());
   }
   void sample_around(double t) {
     sample(t);
@@ -150,7 +153,7 @@ class EdgeJudge {
     return best;
   }
 
-  ScaleReport& report_;
+  SoakReport& report_;
   Tally& tally_;
   CheckerScene& scene_;
   const Edge& edge_;
@@ -163,7 +166,7 @@ class EdgeJudge {
 
 }  // namespace
 
-void check_checker_edges(std::uint64_t edges, std::uint64_t seed, ScaleReport& report) {
+std::uint64_t check_checker_edges(std::uint64_t edges, std::uint64_t seed, SoakReport& report) {
   Tally& any = report.add("checker, edge, any");
   Tally& first = report.add("checker, edge, first");
   for (std::uint64_t number = 0; any.cases + first.cases < edges; ++number) {
@@ -193,8 +196,8 @@ void check_checker_edges(std::uint64_t edges, std::uint64_t seed, ScaleReport& r
       const std::string place = "scene " + std::to_string(number) + ", edge " + std::to_string(i);
       EdgeJudge(report, request.first ? first : any, scene, edge, result, place).run();
     }
-    report.progress("checked edges", any.cases + first.cases, edges);
   }
+  return any.cases + first.cases;
 }
 
 }  // namespace spherule

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/motion_oracle.h"
+#include "tests/soak/motion_oracle.h"
 
 #include <cmath>
 #include <limits>

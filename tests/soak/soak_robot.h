@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/scale/exact_oracle.h"
-#include "bench/scale/random_scene.h"
 #include "robot/check/robot_scene.h"
+#include "tests/soak/exact_oracle.h"
+#include "tests/soak/random_scene.h"
 
 #include <memory>
 #include <optional>
@@ -12,16 +12,16 @@
 
 namespace spherule {
 
-struct ScaleObstacle {
+struct SoakObstacle {
   std::shared_ptr<const SphereTree> tree;
   Pose world_from_tree;
 };
 
 // A random robot among obstacles. Its first joint shifts all of it, so that it can be brought to
 // any gap.
-class ScaleRobot {
+class SoakRobot {
  public:
-  explicit ScaleRobot(SceneRandom& random);
+  explicit SoakRobot(SceneRandom& random);
 
   const RobotModel& robot() const { return robot_; }
   // Its links are tested against the obstacles alone.
@@ -44,7 +44,7 @@ class ScaleRobot {
   template <class Use>
   bool any_pair(std::span<const double> configuration, Use use);
 
-  std::vector<ScaleObstacle> obstacles_;
+  std::vector<SoakObstacle> obstacles_;
   Eigen::Vector3d direction_;  // of the first joint
   RobotModel robot_;
   std::vector<Sphere> static_, movers_;

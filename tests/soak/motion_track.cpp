@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/motion_track.h"
+#include "tests/soak/motion_track.h"
 
 namespace spherule {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scale/checker_scene.h"
+#include "tests/soak/checker_scene.h"
 
 #include "collide/collide.h"
 #include "collide/solid_mesh.h"
