@@ -2,6 +2,7 @@
 #include "tests/soak/process_cases.h"
 #include "tests/soak/random_scene.h"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -26,7 +27,9 @@ class Killer {
   Killer(const CommandFolder& folder, SceneRandom& random) : folder_(folder), random_(random) {
     folder_.put_older_files();
     const auto start = Clock::now();
-    CommandFolder::wait(folder_.start());
+    const pid_t process = folder_.start();
+    while (see_next(process)) ++most_sights_;
+    CommandFolder::wait(process);
     whole_run_ = Clock::now() - start;
   }
 
@@ -36,21 +39,32 @@ class Killer {
     kill(process, SIGKILL);
   }
 
-  // Once a file is being written, a little later. The command tries its places first, which is
-  // writing, too.
+  // Once one of its files is being written, a little later. The command tries its places first,
+  // which is writing, too.
   void while_writing(pid_t process) const {
-    const int sights = random_.chance(0.3) ? 1 : random_.whole(2, 40);
+    const int sights = random_.whole(1, std::max(1, most_sights_));
     const Seconds later(random_.chance(0.3) ? 0.0 : random_.magnitude(1e-6, 1e-2));
-    for (int seen = 0; seen < sights && !has_ended(process);) {
-      if (folder_.has_temporary()) ++seen;
+    for (int i = 0; i < sights && see_next(process); ++i) {
     }
     std::this_thread::sleep_for(later);
     kill(process, SIGKILL);
   }
 
  private:
+  // Waits for a temporary file to come after there was none; false if the process ended before.
+  bool see_next(pid_t process) const {
+    while (folder_.has_temporary()) {
+      if (has_ended(process)) return false;
+    }
+    while (!folder_.has_temporary()) {
+      if (has_ended(process)) return false;
+    }
+    return true;
+  }
+
   const CommandFolder& folder_;
   SceneRandom& random_;
+  int most_sights_ = 0;
   Seconds whole_run_{};
 };
 

@@ -9,15 +9,19 @@
 
 namespace spherule {
 
+// The parts of the soak in which a command is run: one that writes nothing is not killed, and of
+// those that share most of their code one runs out of memory.
+enum class CommandPart { kKills, kMemory, kBoth };
+
 // A call of the command in a folder where `in/` has what it reads, and all that it writes comes
 // into `out/`.
 struct SoakCommand {
   std::string name;
   std::vector<std::string> arguments;
-  bool writes = true;
+  CommandPart part = CommandPart::kBoth;
 };
 
-// Every command, each kind of file that one writes.
+// Each kind of file that a command writes, and the main commands.
 const std::vector<SoakCommand>& soak_commands();
 
 // A folder for one of them, removed at the end.

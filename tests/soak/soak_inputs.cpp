@@ -31,12 +31,6 @@ constexpr const char* kRobot = R"(<?xml version="1.0"?>
 </robot>
 )";
 
-constexpr const char* kRules = R"(<?xml version="1.0"?>
-<robot name="bars">
-  <disable_collisions link1="block" link2="tool" reason="Never"/>
-</robot>
-)";
-
 constexpr const char* kRobotSpheres = R"(collision_spheres:
   block:
     - center: [-0.08, 0.0, 0.0]
@@ -72,7 +66,6 @@ void write_soak_inputs(const std::filesystem::path& folder) {
   save_tree(build_tree(file.spheres), folder / "b.tree");
   write_file_atomically(folder / "zones.json", kZones);
   write_file_atomically(folder / "bars.urdf", kRobot);
-  write_file_atomically(folder / "bars.srdf", kRules);
   write_file_atomically(folder / "bars.yml", kRobotSpheres);
   write_file_atomically(folder / "scene.json", kScene);
   write_file_atomically(folder / "path.csv", "0 0\n0.2 0.5\n0.4 -0.5\n");

@@ -3,6 +3,7 @@
 #include "tests/soak/process_cases.h"
 #include "tests/soak/soak_commands.h"
 #include "tests/soak/soak_plan.h"
+#include "tests/soak/thread_cases.h"
 
 #include <utility>
 
@@ -24,6 +25,12 @@ SoakQuestion judged(std::string part, std::string name, std::uint64_t cases, std
           }};
 }
 
+SoakQuestion threaded(std::string name, std::uint64_t cases, std::uint64_t of_chunk,
+                      SoakRecord (*check)(std::uint64_t, std::uint64_t)) {
+  return {"threads", "threads, " + std::move(name), cases, of_chunk,
+          [check](const SoakChunk& chunk) { return check(chunk.cases, chunk.seed); }};
+}
+
 }  // namespace
 
 std::vector<SoakQuestion> soak_questions(const SoakPrograms& programs) {
@@ -35,15 +42,20 @@ std::vector<SoakQuestion> soak_questions(const SoakPrograms& programs) {
       judged("motions", "edges in scenes", 100'000, 500, check_checker_edges),
       judged("configurations", "robots among trees", 1'000'000, 5'000, check_configurations),
       judged("configurations", "robots in scenes", 1'000'000, 5'000, check_checker_configurations)};
+  questions.push_back(threaded("trees", 200, 10, check_shared_trees));
+  questions.push_back(threaded("checkers", 100, 5, check_shared_checkers));
+  questions.push_back(threaded("fits", 40, 2, check_fits_at_once));
+  questions.push_back(threaded("files", 200, 20, check_shared_files));
   if (programs.command.empty()) return questions;
   for (const SoakCommand& command : soak_commands()) {
-    if (!command.writes) continue;
+    if (command.part == CommandPart::kMemory) continue;
     questions.push_back({"kills", "kill " + command.name, 84, 12, [=](const SoakChunk& chunk) {
                            return check_kills(programs.command, command, chunk.cases, chunk.seed);
                          }});
   }
   if (programs.failing_new.empty()) return questions;
   for (const SoakCommand& command : soak_commands()) {
+    if (command.part == CommandPart::kKills) continue;
     questions.push_back(
         {"memory", "memory of " + command.name, 0, kRuns, [=](const SoakChunk& chunk) {
            const auto step = static_cast<std::uint64_t>(kEvery / chunk.scale);
