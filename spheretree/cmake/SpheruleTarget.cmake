@@ -21,6 +21,10 @@ function(spherule_compile_settings target kind)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion
                          -fno-fast-math -ffp-contract=off
                          $<$<BOOL:${SPHERULE_STRICT}>:-Werror>)
+  # A library of others that a program does not use costs it time at each start.
+  if(NOT "${kind}" STREQUAL "library" AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
+    target_link_options(${target} PRIVATE LINKER:--as-needed)
+  endif()
   if(SPHERULE_PRECOMPILE AND NOT ("${SPHERULE_PRECOMPILE}" STREQUAL "PROGRAMS" AND "${kind}" STREQUAL "library"))
     spherule_precompile(${target} ${kind})
   endif()
