@@ -31,6 +31,28 @@ SoakQuestion threaded(std::string name, std::uint64_t cases, std::uint64_t of_ch
           [check](const SoakChunk& chunk) { return check(chunk.cases, chunk.seed); }};
 }
 
+// The kills and the memory.
+void add_command_questions(const SoakPrograms& programs, std::vector<SoakQuestion>& questions) {
+  if (programs.command.empty()) return;
+  for (const SoakCommand& command : soak_commands()) {
+    if (command.part == CommandPart::kMemory) continue;
+    questions.push_back({"kills", "kill " + command.name, 84, 12, [=](const SoakChunk& chunk) {
+                           return check_kills(programs.command, command, chunk.cases, chunk.seed);
+                         }});
+  }
+  if (programs.failing_new.empty()) return;
+  for (const SoakCommand& command : soak_commands()) {
+    if (command.part == CommandPart::kKills) continue;
+    questions.push_back(
+        {"memory", "memory of " + command.name, 0, kRuns, [=](const SoakChunk& chunk) {
+           const auto step = static_cast<std::uint64_t>(kEvery / chunk.scale);
+           return check_memory(
+               programs.command, programs.failing_new, command,
+               {.first = (chunk.number * kRuns + 1) * step, .step = step, .runs = kRuns});
+         }});
+  }
+}
+
 }  // namespace
 
 std::vector<SoakQuestion> soak_questions(const SoakPrograms& programs) {
@@ -42,28 +64,11 @@ std::vector<SoakQuestion> soak_questions(const SoakPrograms& programs) {
       judged("motions", "edges in scenes", 100'000, 500, check_checker_edges),
       judged("configurations", "robots among trees", 1'000'000, 5'000, check_configurations),
       judged("configurations", "robots in scenes", 1'000'000, 5'000, check_checker_configurations)};
-  questions.push_back(threaded("trees", 200, 10, check_shared_trees));
-  questions.push_back(threaded("checkers", 100, 5, check_shared_checkers));
-  questions.push_back(threaded("fits", 40, 2, check_fits_at_once));
-  questions.push_back(threaded("files", 200, 20, check_shared_files));
-  if (programs.command.empty()) return questions;
-  for (const SoakCommand& command : soak_commands()) {
-    if (command.part == CommandPart::kMemory) continue;
-    questions.push_back({"kills", "kill " + command.name, 84, 12, [=](const SoakChunk& chunk) {
-                           return check_kills(programs.command, command, chunk.cases, chunk.seed);
-                         }});
-  }
-  if (programs.failing_new.empty()) return questions;
-  for (const SoakCommand& command : soak_commands()) {
-    if (command.part == CommandPart::kKills) continue;
-    questions.push_back(
-        {"memory", "memory of " + command.name, 0, kRuns, [=](const SoakChunk& chunk) {
-           const auto step = static_cast<std::uint64_t>(kEvery / chunk.scale);
-           return check_memory(
-               programs.command, programs.failing_new, command,
-               {.first = (chunk.number * kRuns + 1) * step, .step = step, .runs = kRuns});
-         }});
-  }
+  add_command_questions(programs, questions);
+  questions.push_back(threaded("trees", 2000, 100, check_shared_trees));
+  questions.push_back(threaded("checkers", 500, 10, check_shared_checkers));
+  questions.push_back(threaded("fits", 20, 2, check_fits_at_once));
+  questions.push_back(threaded("files", 1000, 50, check_shared_files));
   return questions;
 }
 
