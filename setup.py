@@ -27,7 +27,7 @@ def project_version() -> str:
 
 
 class BuildByCMake(build_ext):
-    """Compiles and installs the component `python` into the package."""
+    """Compiles and installs the parts of the package that CMake makes."""
 
     def build_extension(self, ext: Extension) -> None:
         package = Path(self.get_ext_fullpath(ext.name)).resolve().parent
@@ -48,8 +48,9 @@ class BuildByCMake(build_ext):
         subprocess.run(["cmake", "-S", str(ROOT), "-B", str(build), *options], check=True)
         targets = ["--target", "spherule_python"]
         subprocess.run(["cmake", "--build", str(build), "--parallel", jobs, *targets], check=True)
-        install = ["--component", "python", "--prefix", str(package), "--strip"]
-        subprocess.run(["cmake", "--install", str(build), *install], check=True)
+        for part in ("python", "python_command"):
+            install = ["--component", part, "--prefix", str(package), "--strip"]
+            subprocess.run(["cmake", "--install", str(build), *install], check=True)
 
 
 setup(

@@ -17,5 +17,12 @@ void bind_zones(pybind11::module_& module);
 void bind_external(pybind11::module_& module);
 void bind_simplify(pybind11::module_& module);
 void bind_certify(pybind11::module_& module);
+void bind_robot_model(pybind11::module_& module);
+void bind_robot_files(pybind11::module_& module);
+void bind_robot_formats(pybind11::module_& module);
+void bind_robot_cover(pybind11::module_& module);
+void bind_pairs(pybind11::module_& module);
+void bind_scene(pybind11::module_& module);
+void bind_checker(pybind11::module_& module);
 
 }  // namespace spherule::python

@@ -7,6 +7,7 @@
 #include "simplifier/external_spheres.h"
 #include "simplifier/levels.h"
 #include "simplifier/repair.h"
+#include "simplifier/simplify.h"
 #include "simplifier/zones.h"
 #include "spheretree/sphere_file.h"
 
@@ -34,6 +35,7 @@ std::vector<Zone> zones_of(const py::object& zones);
 py::tuple zones_object(std::span<const Zone> zones);
 
 py::object repair_object(Repair repair);
+py::object simplification_object(Simplification simplification);
 
 // None or an ExternalSpheres.
 std::shared_ptr<const ExternalSpheres> external_of(py::handle value, const char* name);

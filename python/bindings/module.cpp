@@ -36,6 +36,13 @@ PYBIND11_MODULE(_core, module) {
   bind_external(module);
   bind_simplify(module);
   bind_certify(module);
+  bind_robot_model(module);
+  bind_robot_files(module);
+  bind_robot_formats(module);
+  bind_robot_cover(module);
+  bind_pairs(module);
+  bind_scene(module);
+  bind_checker(module);
 }
 
 }  // namespace spherule::python

@@ -23,24 +23,10 @@ py::object history_object(const std::vector<CoverHistoryEntry>& history) {
   return py::tuple(result);
 }
 
-py::object cover_object(SphereCover cover) {
+py::object sphere_cover_object(SphereCover cover) {
   return make_result("SphereCover", array_of(std::move(cover.spheres)), cover.lower_bound,
                      array_of(std::move(cover.spheres_before_inflation)), cover.inflation,
                      history_object(cover.history), cover.seeds_rejected);
-}
-
-py::object simplification_object(Simplification all) {
-  const std::string broken = broken_promises(all);
-  py::object file = file_object(sphere_file(all));
-  py::dict times;
-  times["external"] = all.times.external;
-  times["cover"] = all.times.cover;
-  times["levels"] = all.times.levels;
-  times["certify"] = all.times.certify;
-  return make_result("Simplification", cover_object(std::move(all.cover)),
-                     std::make_shared<ExternalSpheres>(std::move(all.external)),
-                     levels_object(std::move(all.levels)), certificate_object(all.certificate),
-                     file, times, broken);
 }
 
 // The keyword arguments as options. Those that are lengths, numbers and truths are taken by name.
@@ -90,6 +76,20 @@ py::object simplified(const py::object& mesh, const py::object& progress, const 
 }
 
 }  // namespace
+
+py::object simplification_object(Simplification all) {
+  const std::string broken = broken_promises(all);
+  py::object file = file_object(sphere_file(all));
+  py::dict times;
+  times["external"] = all.times.external;
+  times["cover"] = all.times.cover;
+  times["levels"] = all.times.levels;
+  times["certify"] = all.times.certify;
+  return make_result("Simplification", sphere_cover_object(std::move(all.cover)),
+                     std::make_shared<ExternalSpheres>(std::move(all.external)),
+                     levels_object(std::move(all.levels)), certificate_object(all.certificate),
+                     file, times, broken);
+}
 
 void bind_simplify(py::module_& module) {
   // _functions.py has the arguments and their defaults.

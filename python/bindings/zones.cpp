@@ -16,7 +16,7 @@ py::tuple triple(const Eigen::Vector3d& point) {
   return py::make_tuple(point.x(), point.y(), point.z());
 }
 
-ZoneShape shape_of(const py::object& shape) {
+ZoneShape zone_shape_of(const py::object& shape) {
   const py::handle type = py::type::handle_of(shape);
   if (type.is(result_class("ZoneSphere"))) {
     return Sphere{vector3(shape.attr("center"), "center"), shape.attr("radius").cast<double>()};
@@ -32,7 +32,7 @@ ZoneShape shape_of(const py::object& shape) {
   throw py::type_error("zones: the shape is no ZoneSphere, ZoneBox or ZoneCapsule");
 }
 
-py::object shape_object(const ZoneShape& shape) {
+py::object zone_shape_object(const ZoneShape& shape) {
   if (const auto* ball = std::get_if<Sphere>(&shape)) {
     return make_result("ZoneSphere", triple(ball->center), ball->radius);
   }
@@ -51,7 +51,7 @@ std::vector<Zone> zones_of(const py::object& zones) {
     if (!py::type::handle_of(zone).is(result_class("Zone"))) {
       throw py::type_error("zones: an element is no Zone");
     }
-    result.push_back({.shape = shape_of(zone.attr("shape")),
+    result.push_back({.shape = zone_shape_of(zone.attr("shape")),
                       .max_error = zone.attr("max_error").cast<std::optional<double>>(),
                       .min_external_diameter =
                           zone.attr("min_external_diameter").cast<std::optional<double>>()});
@@ -62,7 +62,7 @@ std::vector<Zone> zones_of(const py::object& zones) {
 py::tuple zones_object(std::span<const Zone> zones) {
   py::list result;
   for (const Zone& zone : zones) {
-    result.append(make_result("Zone", shape_object(zone.shape), py::cast(zone.max_error),
+    result.append(make_result("Zone", zone_shape_object(zone.shape), py::cast(zone.max_error),
                               py::cast(zone.min_external_diameter)));
   }
   return py::tuple(result);

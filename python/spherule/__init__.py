@@ -11,6 +11,7 @@ from ._core import *
 from ._error import Error
 from ._functions import *
 from ._results import *
+from ._robots import *
 from ._shapes import *
 from ._version import VERSION as __version__
 

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Functions that are better written in Python: many options, or little work."""
 
-from typing import Callable, Optional, Sequence
+from typing import Sequence
+
+import numpy as np
 
 from . import _core
+from ._arguments import Array, MeshLike, Progress
 from ._record import Floats
 from ._results import Simplification
 from ._shapes import Zone
 
-Progress = Callable[[Optional[float], str], object]
-"""Called with the share that is done, None where it is not known, and a word on what is being done."""
-
 
 def simplify(
-    mesh: "_core.MeshLike",
+    mesh: MeshLike,
     *,
     max_error: float = 0.0,
     levels: Sequence[float] = (),
@@ -33,7 +33,7 @@ def simplify(
     lower_bound: bool = False,
     history: bool = False,
     threads: int = 0,
-    progress: Optional[Progress] = None,
+    progress: Progress = None,
 ) -> Simplification:
     """Both stages and the certificate: the function that most users call.
 
@@ -53,15 +53,14 @@ def simplify(
     return result
 
 
-def sphere_tree(simplification: Simplification) -> "_core.SphereTree":
+def sphere_tree(simplification: Simplification) -> _core.SphereTree:
     """The tree over the spheres: through the levels, where some were fitted."""
     if not simplification.levels:
         return _core.build_tree(simplification.spheres)
     return _core.build_tree_from_levels(simplification.spheres, simplification.levels)[0]
 
 
-def spheres_of(centers: Floats, radii: Floats) -> Floats:
+def spheres_of(centers: Array, radii: Array) -> Floats:
     """Spheres as this package takes them, shape (n, 4), of centres (n, 3) and radii (n,)."""
-    import numpy as np
-
-    return np.column_stack([np.asarray(centers, dtype=float), np.asarray(radii, dtype=float)])
+    result: Floats = np.column_stack([np.asarray(centers, dtype=float), np.asarray(radii, dtype=float)])
+    return result

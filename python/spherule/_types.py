@@ -3,4 +3,5 @@
 
 from ._error import Error
 from ._results import *
+from ._robots import *
 from ._shapes import *
