@@ -62,8 +62,8 @@ constexpr Prefix kPrefixes[] = {{"Eigen/", "Eigen"},
 
 // Of the machine rather than of the language: allowed everywhere, or in one folder only.
 constexpr std::string_view kSystemHeaders[] = {
-    "fcntl.h",    "semaphore.h", "signal.h",   "stdlib.h",   "unistd.h",
-    "sys/stat.h", "sys/types.h", "sys/wait.h", "sys/file.h", "sys/resource.h"};
+    "fcntl.h",     "semaphore.h", "signal.h",   "stdlib.h",       "unistd.h", "sys/stat.h",
+    "sys/types.h", "sys/wait.h",  "sys/file.h", "sys/resource.h", "dlfcn.h"};
 constexpr std::string_view kSimdHeaders[] = {"emmintrin.h", "immintrin.h", "arm_neon.h", "cpuid.h"};
 constexpr std::string_view kSimdFolders[] = {"collide/kernels/", "collide/mechanism/",
                                              "collide/meshes/", "collide/search/"};
@@ -209,9 +209,9 @@ std::vector<std::string> check_public_headers(const std::string& folder, std::st
 }
 
 std::vector<std::string> check_sources(const fs::path& root, std::size_t& files) {
-  static constexpr std::array kTop = {".ci",        "adapters",   "bench",  "cli",
-                                      "collide",    "mesh",       "python", "robot",
-                                      "simplifier", "spheretree", "tests"};
+  static constexpr std::array kTop = {".ci",     "adapters",   "bench",      "cli",
+                                      "collide", "examples",   "mesh",       "python",
+                                      "robot",   "simplifier", "spheretree", "tests"};
   std::vector<std::string> problems;
   files = 0;
   std::map<std::string, std::string> libraries;  // CMakeLists.txt of each, by folder
