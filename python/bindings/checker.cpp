@@ -20,20 +20,34 @@ namespace {
 
 using CheckerPointer = std::shared_ptr<CheckerOfScene>;
 
-// Scratches that are lent for a query. Made and given back under the interpreter's lock.
+// A scratch that is lent for a query, made and given back under the interpreter's lock.
+class LentScratch {
+ public:
+  explicit LentScratch(CheckerOfScene& self) : self_(self), scratch_(taken(self)) {}
+  ~LentScratch() { self_.idle.push_back(std::move(scratch_)); }
+  LentScratch(const LentScratch&) = delete;
+  LentScratch& operator=(const LentScratch&) = delete;
+
+  static RobotChecker::Scratch taken(CheckerOfScene& self) {
+    if (self.idle.empty()) return RobotChecker::Scratch(self.checker);
+    RobotChecker::Scratch scratch = std::move(self.idle.back());
+    self.idle.pop_back();
+    return scratch;
+  }
+  RobotChecker::Scratch& operator*() { return scratch_; }
+
+ private:
+  CheckerOfScene& self_;
+  RobotChecker::Scratch scratch_;
+};
+
+// The same of one for each thread.
 class Scratches {
  public:
   Scratches(CheckerOfScene& self, int threads) : self_(self) {
     std::size_t count = static_cast<std::size_t>(std::max(threads, 0));
     if (count == 0) count = std::max(1U, std::thread::hardware_concurrency());
-    while (lent_.size() < count) {
-      if (self.idle.empty()) {
-        lent_.emplace_back(self.checker);
-      } else {
-        lent_.push_back(std::move(self.idle.back()));
-        self.idle.pop_back();
-      }
-    }
+    while (lent_.size() < count) lent_.push_back(LentScratch::taken(self));
   }
   ~Scratches() {
     for (RobotChecker::Scratch& scratch : lent_) self_.idle.push_back(std::move(scratch));
@@ -42,7 +56,6 @@ class Scratches {
   Scratches& operator=(const Scratches&) = delete;
 
   std::span<RobotChecker::Scratch> all() { return lent_; }
-  RobotChecker::Scratch& first() { return lent_.front(); }
 
  private:
   CheckerOfScene& self_;
@@ -80,9 +93,9 @@ void in_parts(std::size_t count, const Work& work) {
 
 bool check_one(CheckerOfScene& self, const py::object& configuration) {
   const Numbers positions = configuration_in(self, configuration, "configuration");
-  Scratches scratches(self, 1);
+  LentScratch scratch(self);
   const WithoutLock unlocked;
-  return self.checker.check_config(configuration_of(self, positions), scratches.first());
+  return self.checker.check_config(configuration_of(self, positions), *scratch);
 }
 
 py::array check_many(CheckerOfScene& self, const py::object& configurations, int threads) {
@@ -93,13 +106,9 @@ py::array check_many(CheckerOfScene& self, const py::object& configurations, int
   Scratches scratches(self, threads);
   in_parts(count, [&](std::size_t first, std::size_t size) {
     const std::span<const double> part(all.data + first * self.dof, size * self.dof);
-    if (scratches.all().size() == 1) {
-      self.checker.check_configs(part, scratches.first(), {answers + first, size});
-    } else {
-      self.checker.check_configs(part, scratches.all(), {answers + first, size});
-    }
+    self.checker.check_configs(part, scratches.all(), {answers + first, size});
   });
-  return std::move(free);
+  return free;
 }
 
 EdgeRequest edge_request(double resolution, bool first, const py::object& continuous,
@@ -117,11 +126,11 @@ py::object check_one_edge(CheckerOfScene& self, const py::object& from, const py
   const Numbers a = configuration_in(self, from, "start");
   const Numbers b = configuration_in(self, to, "end");
   const EdgeRequest request = edge_request(resolution, first, continuous, max_configurations);
-  Scratches scratches(self, 1);
+  LentScratch scratch(self);
   const EdgeResult found = [&] {
     const WithoutLock unlocked;
-    return self.checker.check_edge(configuration_of(self, a), configuration_of(self, b),
-                                   scratches.first(), request);
+    return self.checker.check_edge(configuration_of(self, a), configuration_of(self, b), *scratch,
+                                   request);
   }();
   return make_result("EdgeResult", verdict_of(found.verdict), found.free_until, found.contact_at,
                      found.configurations);
@@ -162,17 +171,17 @@ double measure_one_edge(CheckerOfScene& self, const py::object& from, const py::
   const Numbers a = configuration_in(self, from, "start");
   const Numbers b = configuration_in(self, to, "end");
   const EdgeRequest request = edge_request(resolution, false, continuous, py::none());
-  Scratches scratches(self, 1);
+  LentScratch scratch(self);
   const WithoutLock unlocked;
-  return self.checker.measure_edge(configuration_of(self, a), configuration_of(self, b),
-                                   scratches.first(), request.resolution, request.continuous);
+  return self.checker.measure_edge(configuration_of(self, a), configuration_of(self, b), *scratch,
+                                   request.resolution, request.continuous);
 }
 
 bool is_within(CheckerOfScene& self, const py::object& configuration, double clearance) {
   const Numbers positions = configuration_in(self, configuration, "configuration");
-  Scratches scratches(self, 1);
+  LentScratch scratch(self);
   const WithoutLock unlocked;
-  return self.checker.within(configuration_of(self, positions), clearance, scratches.first());
+  return self.checker.within(configuration_of(self, positions), clearance, *scratch);
 }
 
 py::object checked_body(const CheckedBody& body) {
@@ -183,10 +192,10 @@ py::object checked_body(const CheckedBody& body) {
 
 py::object clearance_of(CheckerOfScene& self, const py::object& configuration) {
   const Numbers positions = configuration_in(self, configuration, "configuration");
-  Scratches scratches(self, 1);
+  LentScratch scratch(self);
   const RobotClearance found = [&] {
     const WithoutLock unlocked;
-    return self.checker.clearance(configuration_of(self, positions), scratches.first());
+    return self.checker.clearance(configuration_of(self, positions), *scratch);
   }();
   return make_result("RobotClearance", found.lower, found.upper, checked_body(found.first),
                      checked_body(found.second));
@@ -197,16 +206,16 @@ py::array clearances_of(CheckerOfScene& self, const py::object& configurations) 
   const std::size_t count = self.dof > 0 ? all.size / self.dof : 0;
   py::array_t<double> bounds({static_cast<py::ssize_t>(count), py::ssize_t{2}});
   double* const answers = bounds.mutable_data();
-  Scratches scratches(self, 1);
+  LentScratch scratch(self);
   in_parts(count, [&](std::size_t first, std::size_t size) {
     for (std::size_t i = first; i < first + size; ++i) {
       const std::span<const double> positions(all.data + i * self.dof, self.dof);
-      const RobotClearance found = self.checker.clearance(positions, scratches.first());
+      const RobotClearance found = self.checker.clearance(positions, *scratch);
       answers[2 * i] = found.lower;
       answers[2 * i + 1] = found.upper;
     }
   });
-  return std::move(bounds);
+  return bounds;
 }
 
 py::tuple explained(CheckerOfScene& self, const py::object& configuration,
@@ -214,10 +223,10 @@ py::tuple explained(CheckerOfScene& self, const py::object& configuration,
   const Numbers positions = configuration_in(self, configuration, "configuration");
   const ExplainRequest request = {.max_contacts = count_of(max_contacts, "max_contacts"),
                                   .proved_free = proved_free};
-  Scratches scratches(self, 1);
+  LentScratch scratch(self);
   const auto found = [&] {
     const WithoutLock unlocked;
-    return self.checker.explain(configuration_of(self, positions), scratches.first(), request);
+    return self.checker.explain(configuration_of(self, positions), *scratch, request);
   }();
   py::list contacts;
   for (const CheckedContact& contact : found) {

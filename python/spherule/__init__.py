@@ -8,14 +8,16 @@ used raises Error, a ValueError; what is of a wrong type TypeError.
 
 from . import _core
 from ._core import *
-from ._error import Error
+from ._error import Error as Error
 from ._functions import *
 from ._results import *
 from ._robots import *
 from ._shapes import *
-from ._version import VERSION as __version__
+from ._version import VERSION
+
+__version__: str = VERSION
 
 for _name, _thing in list(vars().items()):
     if getattr(_thing, "__module__", "").startswith("spherule._"):
         _thing.__module__ = "spherule"
-del _name, _thing
+del _name, _thing, VERSION

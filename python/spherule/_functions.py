@@ -11,6 +11,12 @@ from ._record import Floats
 from ._results import Simplification
 from ._shapes import Zone
 
+__all__ = [
+    "simplify",
+    "sphere_tree",
+    "spheres_of",
+]
+
 
 def simplify(
     mesh: MeshLike,

@@ -13,6 +13,27 @@ from typing import Dict, NamedTuple, Optional, Tuple, Union
 from ._core import ExternalSpheres, Pose
 from ._record import Floats, Ints, Record
 
+__all__ = [
+    "Verdict",
+    "Bounds",
+    "MeshReport",
+    "TreeReport",
+    "CertificateRecord",
+    "Certificate",
+    "BodyRecord",
+    "SphereFile",
+    "CoverHistoryEntry",
+    "SphereCover",
+    "CoverLevel",
+    "Simplification",
+    "Repair",
+    "CollisionResult",
+    "DistanceResult",
+    "SweepResult",
+    "Contact",
+    "SolidContact",
+]
+
 OptionValue = Union[bool, int, float, str]
 
 

@@ -12,6 +12,34 @@ from ._record import Bools, Floats, Ints, Record
 from ._results import Bounds, Certificate, Repair, Simplification, Verdict
 from ._shapes import Primitive, Zone
 
+__all__ = [
+    "Joint",
+    "Link",
+    "MeshFile",
+    "LinkShape",
+    "LinkDescription",
+    "DisabledPair",
+    "JointGroup",
+    "GroupState",
+    "EndEffector",
+    "SemanticDescription",
+    "RobotSpheres",
+    "LinkCoverOptions",
+    "LinkCover",
+    "RobotCover",
+    "LinkAudit",
+    "ConfigurationAudit",
+    "RobotAudit",
+    "LinkRepair",
+    "RobotRepair",
+    "LinkPair",
+    "EdgeResult",
+    "EdgeResults",
+    "CheckedBody",
+    "CheckedContact",
+    "RobotClearance",
+]
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Joint(Record):

@@ -1,9 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Solids of a few numbers, and zones."""
 
-import dataclasses
 from dataclasses import dataclass
 from typing import Optional, Tuple, Union
+
+__all__ = [
+    "Box",
+    "SolidSphere",
+    "Cylinder",
+    "Capsule",
+    "HalfSpace",
+    "ZoneSphere",
+    "ZoneBox",
+    "ZoneCapsule",
+    "Zone",
+    "Primitive",
+]
 
 Triple = Tuple[float, float, float]
 
@@ -82,4 +94,4 @@ class Zone:
 
     shape: Union[ZoneSphere, ZoneBox, ZoneCapsule]
     max_error: Optional[float] = None
-    min_external_diameter: Optional[float] = dataclasses.field(default=None)
+    min_external_diameter: Optional[float] = None

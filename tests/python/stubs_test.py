@@ -36,7 +36,7 @@ needs_mypy = pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason
 
 def run_mypy(tmp_path, text):
     (tmp_path / "program.py").write_text(text)
-    environment = dict(os.environ, MYPYPATH=os.path.join(os.environ["SPHERULE_SOURCE_DIR"], "python"))
+    environment = dict(os.environ, MYPYPATH=os.environ["PYTHONPATH"])
     environment.pop("PYTHONWARNINGS", None)
     command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path), "program.py"]
     return subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
