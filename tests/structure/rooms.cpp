@@ -137,6 +137,7 @@ const std::vector<Room>& rooms() {
       {"adapters/ompl", joined({{"spheretree", "collide"}, kRobot}), {"Eigen", "ompl"}},
 
       {"cli", kPublic, {"Eigen", "CLI", "nlohmann"}},
+      {"python", kPublic, {"Eigen", "pybind11"}},
       {"bench", kAll, {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann", "ompl"}},
       {"tests",
        kAll,
