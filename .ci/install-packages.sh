@@ -33,14 +33,30 @@ else
   exit 1
 fi
 
+# Another run of the package manager (unattended upgrades, say) is waited for: apt-get waits for the
+# lock of dpkg by itself, but not for that of the lists.
+apt() {
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=600 "$@"
+}
+update() {
+  for wait in 5 10 20 40 80 160; do
+    message=$(apt update 2>&1) && return 0
+    case $message in
+      *"Could not get lock"*) say "install-packages: waiting for another apt-get" ;;
+      *) break ;;
+    esac
+    sleep $wait
+  done
+  say "$message"
+  return 1
+}
+
 say "install-packages: installing$missing"
 # The package list is split into words on purpose. Output goes to standard error, so that a caller's
 # standard output stays its own.
 # shellcheck disable=SC2086
 {
-  $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq update &&
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends \
-      -o Dpkg::Use-Pty=0 $missing
+  update && apt install -y --no-install-recommends -o Dpkg::Use-Pty=0 $missing
 } >&2 || {
   say "install-packages: apt-get failed; the packages needed are:$missing"
   exit 1

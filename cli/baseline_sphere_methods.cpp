@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/baseline_spheres.h"
 #include "cli/command_specification.h"
+#include "cli/modules/module.h"
 #include "spheretree/error.h"
 #include "spheretree/refit.h"
 
@@ -152,7 +153,7 @@ MadeSpheres run_filling(const TriangleMesh& mesh, const SphereArguments& argumen
   LevelSetPackingOptions options = arguments.level_set;
   options.threads = arguments.threads;
   MadeSpheres made;
-  made.spheres = level_set_packing(mesh, options);
+  made.spheres = level_set_module().pack(mesh, options);
   if (made.spheres.empty()) throw Error(arguments.mesh, "no sphere of that size fits inside");
   made.options = {{"step", options.step}, {"spheres", stored(options.max_spheres)}};
   store(made, "min-radius", options.min_radius, 0.0);

@@ -121,8 +121,8 @@ void write_trees(const FitArguments& arguments, const TriangleMesh& mesh,
   if (!arguments.view.empty()) write_view(arguments, mesh, result, tree);
 }
 
-void print_result(const Simplification& result, const std::optional<CoverBreakdown>& breakdown,
-                  bool is_cad) {
+void print_result(const std::string& file, const Simplification& result,
+                  const std::optional<CoverBreakdown>& breakdown, bool is_cad) {
   std::cout << "options: max error " << result.options.max_error << ", min external diameter "
             << result.options.min_external_diameter << ", padding " << result.external.padding
             << (is_cad ? " (chord error and rounding" : " (rounding") << " of the file included)\n"
@@ -136,7 +136,7 @@ void print_result(const Simplification& result, const std::optional<CoverBreakdo
     std::cout << "zones along sharp concave edges: " << result.external.concave_edges.size()
               << "\n";
   }
-  std::cout << "spheres: " << result.cover.spheres.size() << "\n"
+  std::cout << file << ": " << result.cover.spheres.size() << " spheres\n"
             << describe(result.certificate, "the simplified solid") << describe(result.levels)
             << (breakdown ? describe(*breakdown) : "") << describe_lower_bound(result.cover)
             << "seconds: external " << result.times.external << ", cover " << result.times.cover
@@ -146,6 +146,9 @@ void print_result(const Simplification& result, const std::optional<CoverBreakdo
 // Fails (kNo) if a promise about the spheres is not proved; the files are written nevertheless and
 // say so.
 int fit(FitArguments& arguments) {
+  if (arguments.spheres.empty()) {
+    arguments.spheres = default_output(arguments.models.front(), ".json", FileKind::kSpheres);
+  }
   if (arguments.models.size() > 1 || arguments.bodies) return fit_bodies(arguments);
   check_outputs({arguments.spheres, arguments.report, arguments.tree, arguments.view},
                 {arguments.models.front(), arguments.tool, arguments.zones});
@@ -195,7 +198,7 @@ int fit(FitArguments& arguments) {
     write_trees(arguments, mesh, result);
   });
 
-  print_result(result, breakdown, model.cad.has_value());
+  print_result(arguments.spheres, result, breakdown, model.cad.has_value());
   warn_of_thin_parts(arguments, mesh, result);
   warn_each(file, volume_warnings(result));
   const std::string broken = broken_promises(result);

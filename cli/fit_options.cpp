@@ -23,8 +23,10 @@ void add_model_options(CLI::App& command, FitArguments& arguments) {
   command.add_flag("--bodies", arguments.bodies,
                    "STEP and IGES: every body of an assembly by itself, copies of a part once, in "
                    "one file");
-  command.add_option("-o,--output", arguments.spheres, "Where the spheres go (JSON)")
-      ->required()
+  command
+      .add_option(
+          "-o,--output", arguments.spheres,
+          "Where the spheres go (JSON; default: the name of the first mesh with .json, here)")
       ->type_name(kFile);
   add_unit_options(command, arguments.unit,
                    "Output units per mesh unit (of STEP and IGES: per millimetre)");

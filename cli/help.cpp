@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include <sstream>
+#include <string_view>
 
 namespace spherule {
 namespace {
@@ -58,6 +59,24 @@ std::string to_text(const HelpFooter& footer) {
   text += std::string(kExamples) + "\n";
   for (const std::string& example : footer.examples) text += "  " + example + "\n";
   return text;
+}
+
+FooterParts parts_of(const std::string& footer) {
+  FooterParts parts;
+  std::string* part = &parts.text;
+  std::istringstream lines(footer);
+  for (std::string line; std::getline(lines, line);) {
+    if (line == kExamples) {
+      part = &parts.examples;
+      continue;
+    }
+    if (line.starts_with(kExitCodes)) {
+      part = &parts.exit_codes;
+      line.erase(0, std::string_view(kExitCodes).size() + 1);
+    }
+    *part += line + "\n";
+  }
+  return parts;
 }
 
 std::string wrapped(const std::string& text, std::size_t width) {

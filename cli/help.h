@@ -28,6 +28,14 @@ inline constexpr const char* kExamples = "Examples:";
 
 std::string to_text(const HelpFooter& footer);
 
+// The lines of each part of such a text, without those words.
+struct FooterParts {
+  std::string text;
+  std::string exit_codes;
+  std::string examples;
+};
+FooterParts parts_of(const std::string& footer);
+
 // The text with line breaks in the place of blanks, so that no line is longer than `width`, unless
 // a word is.
 std::string wrapped(const std::string& text, std::size_t width);

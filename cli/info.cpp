@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "cli/command_specification.h"
 #include "cli/help.h"
+#include "cli/info_robot.h"
 #include "cli/model_file.h"
 #include "cli/model_unit.h"
 #include "cli/recognize.h"
@@ -78,24 +79,43 @@ void print_tree(const SphereTree& tree) {
   print_sphere("root", tree.sphere(0));
 }
 
+void print_model(const std::string& file) {
+  ModelUnit unit = model_unit(file, {});
+  const ModelFile model = read_model(file);
+  if (model.cad) {
+    note_cad_unit(model.cad->stated_unit, unit);
+    std::cout << describe(*model.cad);
+  }
+  std::cout << describe(unit) << describe(mesh_report(model.mesh)) << "\n";
+}
+
 int info(const std::string& file) {
-  switch (recognize(file)) {
-    case FileKind::kMesh: {
-      ModelUnit unit = model_unit(file, {});
-      const ModelFile model = read_model(file);
-      if (model.cad) {
-        note_cad_unit(model.cad->stated_unit, unit);
-        std::cout << describe(*model.cad);
-      }
-      std::cout << describe(unit) << describe(mesh_report(model.mesh)) << "\n";
-      break;
-    }
+  const FileKind kind = recognize(file);
+  switch (kind) {
     case FileKind::kSpheres:
       print_spheres(load_spheres(file));
       break;
     case FileKind::kTree:
       print_tree(load_tree(file));
       break;
+#ifdef SPHERULE_HAS_ROBOT
+    case FileKind::kUrdf:
+      std::cout << describe_urdf(file);
+      break;
+    case FileKind::kSrdf:
+      std::cout << describe_srdf(file);
+      break;
+    case FileKind::kRobotSpheres:
+      std::cout << describe_robot_spheres(file);
+      break;
+#endif
+    case FileKind::kMesh:
+    case FileKind::kCad:
+    case FileKind::kUnknown:  // the reader of meshes says what it takes
+      print_model(file);
+      break;
+    default:
+      std::cout << offer_for(kind, file) << "\n";
   }
   return kYes;
 }
@@ -104,7 +124,7 @@ int info(const std::string& file) {
 
 void add_info(CLI::App& app, int& exit_code) {
   CLI::App* command =
-      app.add_subcommand("info", "Say what is in a mesh, CAD, spheres or tree file");
+      app.add_subcommand("info", "Say what is in a file of any kind that spherule reads or writes");
   auto file = std::make_shared<std::string>();
   command->add_option("file", *file, "The file; its content tells what it is")
       ->required()
@@ -112,7 +132,7 @@ void add_info(CLI::App& app, int& exit_code) {
   command->footer(to_text({.text = "",
                            .exit_codes = "0 done",
                            .examples = {"spherule info part.stl", "spherule info part.json",
-                                        "spherule info part.tree"}}));
+                                        "spherule info robot.urdf"}}));
   command->callback([file, &exit_code] { exit_code = info(*file); });
 }
 

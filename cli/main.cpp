@@ -4,6 +4,7 @@
 #include "cli/memory_reserve.h"
 #include "cli/message.h"
 #include "cli/usage_error.h"
+#include "cli/wrong_file.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
@@ -46,6 +47,7 @@ int run(int argc, char** argv) {
 #ifdef SPHERULE_HAS_BASELINES
   add_baseline(app, exit_code);
 #endif
+  add_help(app, exit_code);
   add_completion(app, exit_code);
   add_manual(app, exit_code);
   app.footer(to_text(
@@ -61,6 +63,9 @@ int run(int argc, char** argv) {
     return app.exit(request);
   } catch (const CLI::ParseError& error) {
     return bad_input(describe_usage_error(app, error));
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    return bad_input(message + wrong_file_hint(app, message));
   }
   if (!std::cout.flush()) return bad_input("standard output: cannot be written");
   return exit_code;

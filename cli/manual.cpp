@@ -128,30 +128,6 @@ std::string items(const char* section, const std::vector<OptionSpecification>& o
 }
 
 // The footer of the help: text, exit codes and examples in sections of their own.
-struct FooterParts {
-  std::string text;
-  std::string exit_codes;
-  std::string examples;
-};
-
-FooterParts parts_of(const std::string& footer) {
-  FooterParts parts;
-  std::string* part = &parts.text;
-  std::istringstream lines(footer);
-  for (std::string line; std::getline(lines, line);) {
-    if (line == kExamples) {
-      part = &parts.examples;
-      continue;
-    }
-    if (line.starts_with(kExitCodes)) {
-      part = &parts.exit_codes;
-      line.erase(0, std::string_view(kExitCodes).size() + 1);
-    }
-    *part += line + "\n";
-  }
-  return parts;
-}
-
 std::string page(const CommandSpecification& command, const std::vector<std::string>& path) {
   const std::string name = with_blanks(path, '-');
   std::string title = name;

@@ -2,6 +2,7 @@
 #include "cli/model_file.h"
 
 #include "cli/message.h"
+#include "cli/modules/module.h"
 #include "mesh/io/length_unit.h"
 #include "mesh/io/mesh_io.h"
 #include "spheretree/error.h"
@@ -60,7 +61,7 @@ ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& 
   }
   [[maybe_unused]] const CadReadOptions cad = cad_options(path, options);
 #ifdef SPHERULE_HAS_CAD
-  model.cad = read_cad(path, cad);
+  model.cad = cad_module().read(path, cad);
   warn_of_unproved(path.string(), *model.cad);
   model.mesh = std::move(model.cad->mesh);
   return model;
@@ -73,7 +74,7 @@ std::vector<CadBody> read_model_bodies(const std::filesystem::path& path,
                                        const ModelReadOptions& options) {
   [[maybe_unused]] const CadReadOptions cad = cad_options(path, options);
 #ifdef SPHERULE_HAS_CAD
-  std::vector<CadBody> bodies = read_cad_bodies(path, cad);
+  std::vector<CadBody> bodies = cad_module().read_bodies(path, cad);
   for (const CadBody& body : bodies) {
     if (!body.copy) warn_of_unproved(path.string() + ": " + body.name, body.part);
   }

@@ -40,4 +40,13 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
   }
 }
 
+std::string default_output(const fs::path& input, const char* ending, FileKind kind) {
+  std::string output = input.filename().replace_extension(ending).string();
+  std::error_code error;
+  if (fs::exists(output, error) && recognize(output) != kind) {
+    throw Error(output, "is there already, and is something else; name another place (--output)");
+  }
+  return output;
+}
+
 }  // namespace spherule

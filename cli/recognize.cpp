@@ -1,27 +1,117 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/recognize.h"
 
+#include "mesh/io/mesh_io.h"
 #include "spheretree/atomic_file.h"
 
-#include <string>
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <string_view>
 
 namespace spherule {
 namespace {
 
-// What the two formats of the library begin with or hold (docs/tree-file.md, sphere_file.h).
+// What the binary formats of the project begin with (docs/tree-file.md, docs/link-pairs-file.md).
 constexpr std::string_view kTreeStart = "\x89SPT";
-constexpr std::string_view kSphereFormat = "\"spherule-spheres\"";
+constexpr std::string_view kPairsStart = "\x89SLP";
+
+// What only files of a kind hold, as far as is known.
+struct Mark {
+  std::string_view text;
+  FileKind kind;
+};
+constexpr std::array kJsonMarks = {
+    Mark{"\"spherule-report\"", FileKind::kReport},
+    Mark{"\"spherule-bodies-report\"", FileKind::kReport},
+    Mark{"\"spherule-robot-report\"", FileKind::kReport},
+    Mark{"\"spherule-spheres\"", FileKind::kSpheres},
+    Mark{"\"spherule-scene\"", FileKind::kScene},
+    Mark{"\"spherule-robot-spheres\"", FileKind::kRobotSpheres},
+    Mark{"\"deepest_leak\"", FileKind::kReport},
+    Mark{"\"collision_spheres\"", FileKind::kRobotSpheres},
+    Mark{"\"SubSpheres\"", FileKind::kRobotSpheres},
+    Mark{"\"radii\"", FileKind::kRobotSpheres},
+    Mark{"\"spheres\"", FileKind::kRobotSpheres},
+};
+constexpr std::array kMarkupMarks = {
+    Mark{"name=\"generator\" content=\"spherule\"", FileKind::kPage},
+    Mark{"<COLLADA", FileKind::kMesh},
+    Mark{"<link", FileKind::kUrdf},
+    Mark{"<robot", FileKind::kSrdf},
+};
+constexpr std::array kYamlMarks = {
+    Mark{"collision_spheres", FileKind::kRobotSpheres},
+    Mark{"geometry", FileKind::kRobotSpheres},
+};
+constexpr std::array<std::string_view, 8> kMeshEndings = {".stl", ".obj", ".ply",  ".off",
+                                                          ".dae", ".3mf", ".gltf", ".glb"};
+
+template <std::size_t Count>
+FileKind first_of(const std::array<Mark, Count>& marks, std::string_view text) {
+  const auto found = std::find_if(marks.begin(), marks.end(), [&](const Mark& mark) {
+    return text.find(mark.text) != std::string_view::npos;
+  });
+  return found == marks.end() ? FileKind::kUnknown : found->kind;
+}
+
+std::string lower_ending(const std::filesystem::path& path) {
+  std::string ending = path.extension();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
 
 }  // namespace
 
 FileKind recognize(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
   if (bytes.starts_with(kTreeStart)) return FileKind::kTree;
-  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-  const bool is_object = first != std::string::npos && bytes[first] == '{';
-  if (is_object && bytes.find(kSphereFormat) != std::string::npos) return FileKind::kSpheres;
-  return FileKind::kMesh;
+  if (bytes.starts_with(kPairsStart)) return FileKind::kPairs;
+  if (is_cad_file(path) || bytes.starts_with("ISO-10303-21")) return FileKind::kCad;
+  const std::string ending = lower_ending(path);
+  const std::size_t start = bytes.find_first_not_of(" \t\r\n");
+  const char first = start == std::string::npos ? '\0' : bytes[start];
+  FileKind kind = FileKind::kUnknown;
+  if (first == '{' || first == '[') kind = first_of(kJsonMarks, bytes);
+  if (first == '<') kind = first_of(kMarkupMarks, bytes);
+  if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") {
+    kind = first_of(kYamlMarks, bytes);
+  }
+  if (kind != FileKind::kUnknown) return kind;
+  const bool is_mesh =
+      std::find(kMeshEndings.begin(), kMeshEndings.end(), ending) != kMeshEndings.end();
+  return is_mesh ? FileKind::kMesh : FileKind::kUnknown;
+}
+
+std::string offer_for(FileKind kind, const std::string& file) {
+  switch (kind) {
+    case FileKind::kMesh:
+      return "a mesh (spherule fit " + file + " covers it with spheres)";
+    case FileKind::kCad:
+      return "a CAD part (spherule fit " + file + " covers it with spheres)";
+    case FileKind::kSpheres:
+      return "a set of spheres (spherule tree " + file + " builds its tree)";
+    case FileKind::kTree:
+      return "a sphere tree (spherule collide " + file + " OTHER.tree checks it)";
+    case FileKind::kUrdf:
+      return "a robot (spherule robot " + file + " covers it with spheres)";
+    case FileKind::kSrdf:
+      return "an SRDF (spherule check-srdf ROBOT.urdf " + file + " judges its pairs)";
+    case FileKind::kRobotSpheres:
+      return "a file of a robot's spheres (spherule audit-robot ROBOT.urdf " + file +
+             " proves whether they cover)";
+    case FileKind::kPairs:
+      return "a file of proofs of pairs of links (spherule check ... --pairs " + file + ")";
+    case FileKind::kScene:
+      return "a scene (spherule check ROBOT.urdf " + file + " PATH.csv checks a robot in it)";
+    case FileKind::kReport:
+      return "a report (spherule view " + file + " shows what it has)";
+    case FileKind::kPage:
+      return "a page of spherule view (a browser shows it)";
+    case FileKind::kUnknown:
+      break;
+  }
+  return {};
 }
 
 }  // namespace spherule

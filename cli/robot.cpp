@@ -211,8 +211,11 @@ void print_warnings(const RobotCover& cover, const std::vector<std::string>& wro
 
 // Fails (kNo), naming the links, if something promised of a link is not proved, or if the share of
 // false alarms that is requested is not reached; the files are written nevertheless and say so.
-int cover_links(const RobotArguments& arguments) {
+int cover_links(RobotArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
+  if (arguments.folder.empty()) {
+    arguments.folder = fs::path(arguments.urdf).stem().string() + "-spheres";
+  }
   RobotCoverOptions options = arguments.options;
   options.geometry = geometry_named(arguments.geometry);
   options.links = link_options(arguments.links);

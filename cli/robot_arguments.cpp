@@ -14,8 +14,8 @@ void add_cover_options(CLI::App& command, RobotArguments& arguments) {
   command.add_option("urdf", arguments.urdf, "The robot (URDF)")->required()->type_name(kFile);
   command
       .add_option("-o,--output", arguments.folder,
-                  "Folder for what is written; it is made if it is not there")
-      ->required()
+                  "Folder for what is written; it is made if it is not there (default: "
+                  "NAME-spheres, here, where the URDF is NAME.urdf)")
       ->type_name(kFolder);
   arguments.lengths.add_positive(command, "--max-error", arguments.options.max_error,
                                  "E in metres, how far the spheres may protrude (default: 0.01)");

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/trajectory_check.h"
 
-#include "robot/model/shortest_motion.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -17,7 +15,7 @@ class TrajectoryCheck {
  public:
   TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory,
                   const TrajectoryCheckOptions& options)
-      : checker_(checker), trajectory_(trajectory), options_(options), shortest_(checker.robot()) {
+      : checker_(checker), trajectory_(trajectory), options_(options) {
     const unsigned count = options.threads > 0 ? static_cast<unsigned>(options.threads)
                                                : std::max(1u, std::thread::hardware_concurrency());
     for (unsigned i = 0; i < count; ++i) scratches_.emplace_back(checker);
@@ -60,7 +58,10 @@ class TrajectoryCheck {
       if (results[i].verdict == Verdict::kCollision) {
         ++report_.colliding;
         at.fraction = results[i].contact_at;
-        explain(between(i, at.fraction), at);
+        explain(checker_.configuration_on_edge(trajectory_.configuration(i),
+                                               trajectory_.configuration(i + 1), at.fraction,
+                                               request.continuous),
+                at);
       } else if (results[i].verdict == Verdict::kUnknown) {
         at.fraction = results[i].free_until;
         report_.not_proved.push_back(at);
@@ -80,21 +81,6 @@ class TrajectoryCheck {
       }
       check(first, std::min(block, count - first));
     }
-  }
-
-  // On the motion that was proved.
-  std::vector<double> between(std::size_t index, double fraction) const {
-    const std::span<const double> from = trajectory_.configuration(index);
-    std::span<const double> to = trajectory_.configuration(index + 1);
-    std::vector<double> end;
-    if (options_.edge.continuous == ContinuousMotion::kShortest) {
-      to = shortest_.end_of(from, to, end);
-    }
-    std::vector<double> result;
-    for (std::size_t k = 0; k < from.size(); ++k) {
-      result.push_back((1.0 - fraction) * from[k] + fraction * to[k]);
-    }
-    return result;
   }
 
   void count_proved_free() {
@@ -118,7 +104,6 @@ class TrajectoryCheck {
   const RobotChecker& checker_;
   const Trajectory& trajectory_;
   const TrajectoryCheckOptions& options_;
-  const ShortestMotion shortest_;
   std::vector<RobotChecker::Scratch> scratches_;
   CheckReport report_;
 };

@@ -24,13 +24,15 @@ struct TreeArguments {
   std::string tree;
 };
 
-int make_tree(const TreeArguments& arguments) {
+int make_tree(TreeArguments& arguments) {
+  if (arguments.tree.empty())
+    arguments.tree = default_output(arguments.spheres, ".tree", FileKind::kTree);
   check_outputs({arguments.tree}, {arguments.spheres});
   const SphereFile file = load_spheres(arguments.spheres);
   if (file.spheres.empty()) throw Error(arguments.spheres, "holds no spheres");
   const SphereTree tree = build_tree(file.spheres);
   write_uninterrupted([&] { save_tree(tree, arguments.tree); });
-  std::cout << "tree: " << tree.spheres().size() << " spheres, " << tree.node_count()
+  std::cout << arguments.tree << ": " << tree.spheres().size() << " spheres, " << tree.node_count()
             << " nodes, depth " << tree.depth() << ", branching " << tree.branching() << "\n"
             << describe(
                    {{{"collide", arguments.tree, "OTHER.tree", "--pose-b", "x y z qx qy qz qw"},
@@ -46,8 +48,9 @@ void add_tree(CLI::App& app, int& exit_code) {
   command->add_option("spheres", arguments->spheres, "Spheres (JSON)")
       ->required()
       ->type_name(kFile);
-  command->add_option("-o,--output", arguments->tree, "Where the tree goes")
-      ->required()
+  command
+      ->add_option("-o,--output", arguments->tree,
+                   "Where the tree goes (default: the name of the spheres with .tree, here)")
       ->type_name(kFile);
   command->footer(
       to_text({.text = "A tree is what `spherule collide` checks, and load_tree() loads.",

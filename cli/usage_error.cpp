@@ -2,6 +2,7 @@
 #include "cli/usage_error.h"
 
 #include "cli/command_specification.h"
+#include "cli/help.h"
 
 #include <CLI/CLI.hpp>
 
@@ -31,28 +32,12 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return edits[a.size()][b.size()];
 }
 
-// The command that the command line has got to, the application itself at first.
-const CLI::App& command_reached(const CLI::App& app) {
-  const CLI::App* command = &app;
-  while (true) {
-    const auto inner = command->get_subcommands();
-    const auto named = std::find_if(inner.begin(), inner.end(),
-                                    [](const CLI::App* one) { return !one->get_name().empty(); });
-    if (named == inner.end()) return *command;
-    command = *named;
-  }
-}
-
 std::string full_name(const CLI::App& command) {
   std::string name = command.get_name();
   for (const CLI::App* around = command.get_parent(); around; around = around->get_parent()) {
     name = around->get_name() + " " + name;
   }
   return name;
-}
-
-std::string meant(const std::string& name) {
-  return name.empty() ? "" : "; did you mean " + name + "?";
 }
 
 // CLI11 lists what is left over in an order of its own; the first option among it is named.
@@ -71,11 +56,28 @@ std::string describe_extras(const CLI::App& app, const CommandSpecification& com
   return "unknown command: " + extras.front() + meant(nearest_name(extras.front(), names));
 }
 
+// The first of the examples.
+std::string for_instance(const std::string& examples) {
+  const std::string first = CLI::detail::trim_copy(examples.substr(0, examples.find('\n')));
+  return first.empty() ? "" : "; for instance: " + first;
+}
+
 bool names_option(const std::string& text) {
   return text.starts_with("unexpected option") || text.starts_with("unknown command");
 }
 
 }  // namespace
+
+const CLI::App& command_reached(const CLI::App& app) {
+  const CLI::App* command = &app;
+  while (true) {
+    const auto inner = command->get_subcommands();
+    const auto named = std::find_if(inner.begin(), inner.end(),
+                                    [](const CLI::App* one) { return !one->get_name().empty(); });
+    if (named == inner.end()) return *command;
+    command = *named;
+  }
+}
 
 std::string describe_usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& reached = command_reached(app);
@@ -88,11 +90,16 @@ std::string describe_usage_error(const CLI::App& app, const CLI::ParseError& err
     text = describe_extras(app, command);
     if (!names_option(text)) {
       text = command.commands.empty() ? error.what() : "a command is required";
+      text += for_instance(parts_of(command.footer).examples);
     }
   } else {
     text = error.what();
   }
   return text + " (see " + full_name(reached) + " --help)";
+}
+
+std::string meant(const std::string& name) {
+  return name.empty() ? "" : "; did you mean " + name + "?";
 }
 
 std::string nearest_name(const std::string& word, std::span<const std::string> known) {

@@ -15,6 +15,12 @@ namespace spherule {
 // may have been meant, then what is missing; and where the help is.
 std::string describe_usage_error(const CLI::App& app, const CLI::ParseError& error);
 
+// The command that the command line has got to, the application itself at first.
+const CLI::App& command_reached(const CLI::App& app);
+
+// "; did you mean NAME?", or nothing without a name.
+std::string meant(const std::string& name);
+
 // The one of `known` that differs least from `word`, if only a few letters do: one in three, one
 // of two in a name of two, neighbours that are swapped counting as one; or if `word` begins it.
 // Otherwise empty.

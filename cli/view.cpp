@@ -58,7 +58,9 @@ ViewScene load_scene(const ViewArguments& arguments) {
   return scene;
 }
 
-int view(const ViewArguments& arguments) {
+int view(ViewArguments& arguments) {
+  if (arguments.page.empty())
+    arguments.page = default_output(arguments.files.front(), ".html", FileKind::kPage);
   check_outputs({arguments.page}, {});
   for (const std::string& file : arguments.files) check_outputs({arguments.page}, {file});
   const std::string page = make_view_page(load_scene(arguments));
@@ -81,8 +83,9 @@ void add_view(CLI::App& app, int& exit_code) {
           "one unit; a robot's URDF, files of its spheres, its SRDF and NAME.pairs")
       ->required()
       ->type_name(kFile);
-  command->add_option("-o,--output", arguments->page, "Where the page goes (HTML)")
-      ->required()
+  command
+      ->add_option("-o,--output", arguments->page,
+                   "Where the page goes (default: the name of the first file with .html, here)")
       ->type_name(kFile);
   command->add_flag("--leaks", arguments->leaks,
                     "Mark where samples of the meshes lie outside of the spheres; `audit` proves");

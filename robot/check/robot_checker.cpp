@@ -257,4 +257,22 @@ double RobotChecker::measure_edge(std::span<const double> from, std::span<const 
   return check_edge(from, to, scratch, request).free_until;
 }
 
+std::vector<double> RobotChecker::configuration_on_edge(std::span<const double> from,
+                                                        std::span<const double> to, double fraction,
+                                                        ContinuousMotion continuous) const {
+  require_end_of_edge(from);
+  require_end_of_edge(to);
+  if (!(fraction >= 0.0 && fraction <= 1.0)) {
+    throw Error("edge", "the fraction must be from 0 to 1");
+  }
+  std::vector<double> end;
+  if (continuous == ContinuousMotion::kShortest) {
+    parts_->shortest.require();
+    to = parts_->shortest.end_of(from, to, end);
+  }
+  std::vector<double> configuration(from.size());
+  internal::take_between(from, to, fraction, configuration);
+  return configuration;
+}
+
 }  // namespace spherule

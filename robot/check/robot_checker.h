@@ -188,6 +188,13 @@ class RobotChecker {
                       double resolution = 1e-4,
                       ContinuousMotion continuous = ContinuousMotion::kAsGiven) const;
 
+  // The configuration at a fraction of the motion that check_edge() proves, in [0, 1], rounded as
+  // there: at EdgeResult::contact_at explain() names the bodies that touch. `continuous` as in
+  // EdgeRequest. Throws Error as check_edge(), and for a fraction outside of [0, 1]. Allocates.
+  std::vector<double> configuration_on_edge(
+      std::span<const double> from, std::span<const double> to, double fraction,
+      ContinuousMotion continuous = ContinuousMotion::kAsGiven) const;
+
   // Whether any two of the spheres and solids that are tested against each other come within
   // `clearance` (metres) of touching: never false if they do in exact arithmetic. Proofs of pairs
   // say nothing of clearances: their spheres are queried. Throws Error, too, as require_clearance()

@@ -68,7 +68,7 @@ TEST(SphereMethods, MakeMoreSpheresForASmallerError) {
     names.push_back(method.name);
     const std::size_t few = method.make(cube, 0.3).size();
     EXPECT_GT(few, 0U) << method.name;
-    EXPECT_GT(method.make(cube, 0.06).size(), few) << method.name;
+    EXPECT_GT(method.make(cube, 0.12).size(), few) << method.name;
   }
   EXPECT_EQ(names, (std::vector<std::string>{"packing", "openvdb", "voxels", "octree", "hubbard",
                                              "medial-axis", "paper", "cover-as-is", "cover"}));

@@ -17,7 +17,7 @@ class FitBodiesTest : public CommandTest {
 
   Outcome fit(const std::vector<std::string>& more = {}) {
     std::vector<std::string> line = {"fit",         "a.stl", "b.stl",    "-o", "all.json",
-                                     "--max-error", "0.5",   "--effort", "0"};
+                                     "--max-error", "1",     "--effort", "0"};
     line.insert(line.end(), more.begin(), more.end());
     return run(line);
   }
@@ -33,7 +33,7 @@ TEST_F(FitBodiesTest, EachIsAsIfItWereFittedAlone) {
   json spheres = json::array();
   for (const char* name : {"a", "b"}) {
     const std::string mesh = std::string(name) + ".stl";
-    EXPECT_EQ(run({"fit", mesh, "-o", "one.json", "--max-error", "0.5", "--effort", "0"}).exit_code,
+    EXPECT_EQ(run({"fit", mesh, "-o", "one.json", "--max-error", "1", "--effort", "0"}).exit_code,
               0);
     const json one = read_json("one.json");
     spheres.insert(spheres.end(), one.at("spheres").begin(), one.at("spheres").end());
@@ -85,8 +85,8 @@ TEST_F(FitBodiesTest, Refusals) {
   expect_refusal({"fit", "a.stl", "a.stl", "-o", "x.json"}, "a.stl: is named twice");
   expect_refusal({"fit", "a.stl", "b.stl", "-o", "b.stl"}, "b.stl");
   expect_refusal({"fit", "a.stl", "b.stl", "-o", "x.json", "--levels", "1,2"}, "are of one body");
-  ASSERT_EQ(
-      run({"fit", "a.stl", "-o", "one.json", "--max-error", "0.5", "--effort", "0"}).exit_code, 0);
+  ASSERT_EQ(run({"fit", "a.stl", "-o", "one.json", "--max-error", "1", "--effort", "0"}).exit_code,
+            0);
   expect_refusal({"audit", "a.stl", "b.stl", "one.json"}, "is of one body, but several models");
 }
 

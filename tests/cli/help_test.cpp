@@ -98,6 +98,14 @@ TEST_F(HelpTest, ExamplesRun) {
   EXPECT_GE(count, 15u);
 }
 
+TEST_F(HelpTest, HelpIsACommandToo) {
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
+  EXPECT_EQ(run({"help", "fit"}).out, run({"fit", "--help"}).out);
+  EXPECT_EQ(run({"help", "help"}).out, run({"help", "--help"}).out);
+  expect_refusal({"help", "fti"}, "there is no command 'fti'; did you mean fit?");
+  expect_refusal({"help", "fit", "fit"}, "there is no command 'fit'");
+}
+
 TEST_F(HelpTest, NamesThatMayHaveBeenMeant) {
   write_box("part.stl", {6, 5, 4});
   expect_refusal({"fitt"}, "unknown command: fitt; did you mean fit? (see spherule --help)");
@@ -112,8 +120,9 @@ TEST_F(HelpTest, NamesThatMayHaveBeenMeant) {
   expect_refusal({"fit", "part.stl", "--max-eror=1"}, "did you mean --max-error?");
   expect_refusal({"fit", "part.stl", "-o", "out.json", "--frobnicate"},
                  "unexpected option: --frobnicate (see");
-  expect_refusal({"fit", "part.stl"}, "--output is required (see spherule fit --help)");
-  expect_refusal({}, "a command is required (see spherule --help)");
+  expect_refusal({"fit"}, "mesh is required; for instance: spherule fit part.stl -o part.json");
+  expect_refusal({"collide", "a.tree"}, "(see spherule collide --help)");
+  expect_refusal({}, "a command is required; for instance: spherule fit part.stl");
 }
 
 TEST_F(HelpTest, ReportsSayWhatToDoNext) {
@@ -138,8 +147,8 @@ TEST_F(HelpTest, ReportsSayWhatToDoNext) {
 TEST_F(HelpTest, NextStepsRepeatWhatWasGiven) {
   write_box("part.stl", {2, 0.1, 0.1});
   for (const auto& [option, value] : {std::pair("--scale", "0.1"), std::pair("--weld", "0.001")}) {
-    const Outcome fit =
-        run({"fit", "part.stl", "-o", "out.json", "--max-error", "0.2", option, value});
+    const Outcome fit = run({"fit", "part.stl", "-o", "out.json", "--max-error", "0.2", "--effort",
+                             "0", option, value});
     EXPECT_NE(fit.out.find("next: spherule tree out.json"), std::string::npos) << fit.out;
     EXPECT_EQ(fit.out.find("spherule view"), std::string::npos) << fit.out;
   }

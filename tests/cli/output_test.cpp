@@ -135,8 +135,8 @@ TEST_F(OutputTest, InterruptionLeavesNoHalfWrittenFile) {
 TEST_F(OutputTest, InterruptedSearchWritesWhatIsProved) {
   for (int milliseconds = 500;; milliseconds *= 2) {
     ASSERT_LT(milliseconds, 100000);
-    const pid_t process = start({"fit", "box.stl", "-o", "out.json", "--max-error", "0.5",
-                                 "--effort", "1000000", "--tree", "out.tree"});
+    const pid_t process = start({"fit", "box.stl", "-o", "out.json", "--max-error", "2", "--effort",
+                                 "1000000", "--tree", "out.tree"});
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     kill(process, SIGINT);
     const Outcome outcome = finish(process);

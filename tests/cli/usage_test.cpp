@@ -23,7 +23,6 @@ TEST_F(UsageTest, FaultyCommandLinesAreRefused) {
   write_box("box.stl", {1, 1, 1});
   expect_refusal({}, "a command is required");
   expect_refusal({"frobnicate"}, "unknown command: frobnicate");
-  expect_refusal({"fit", "box.stl"}, "--output");
   expect_refusal({"fit", "-o", "out.json"}, "mesh");
   expect_refusal({"fit", "box.stl", "-o", "out.json", "--max-error", "fast"}, "--max-error");
   expect_refusal({"fit", "box.stl", "-o", "out.json", "--seed", "-1"}, "--seed");

@@ -36,7 +36,7 @@ TEST(CoverBound, StaysBelowTheCountOfEveryShape) {
   for (const auto& [name, mesh] : zoo_to_fit()) {
     SCOPED_TRACE(name);
     const double diagonal = diagonal_of(mesh);
-    for (const double share : effort(std::vector{0.2, 0.07}, 1)) {
+    for (const double share : effort(std::vector{0.2, 0.1}, 1)) {
       const SphereCover result = bounded_cover(mesh, share * diagonal, 4.0 * share * diagonal);
       EXPECT_GE(result.lower_bound, 1U);
       EXPECT_LE(result.lower_bound, result.spheres.size());
@@ -47,7 +47,7 @@ TEST(CoverBound, StaysBelowTheCountOfEveryShape) {
 TEST(CoverBound, IsEqualOnAnyNumberOfThreads) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const TriangleMesh mesh = l_bracket();
-  const double max_error = 0.05 * diagonal_of(mesh);
+  const double max_error = 0.1 * diagonal_of(mesh);
   const ExternalSpheres external = place_external_spheres(
       mesh, {.min_external_diameter = 4.0 * max_error, .max_error = max_error});
   const auto bound = [&](int threads) {
@@ -56,7 +56,7 @@ TEST(CoverBound, IsEqualOnAnyNumberOfThreads) {
         .lower_bound;
   };
   const std::size_t alone = bound(1);
-  for (int i = 0; i < 4; ++i) EXPECT_EQ(bound(0), alone);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(bound(0), alone);
 }
 
 TEST(CoverBound, IsUnknownWhereItWouldNotHold) {

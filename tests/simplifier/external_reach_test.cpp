@@ -89,7 +89,7 @@ TriangleMesh bent_duct() {
 }
 
 TEST(ExternalReach, EverySphereCanBeReachedFromOutside) {
-  for (const TriangleMesh& mesh : effort(std::vector{bent_duct(), pipe(2, 1.6, 4, 12)}, 1)) {
+  for (const TriangleMesh& mesh : effort(std::vector{pipe(2, 1.6, 4, 12), bent_duct()}, 1)) {
     for (const ExternalPlacement placement :
          {ExternalPlacement::kReachable, ExternalPlacement::kRandom}) {
       ExternalOptions options;

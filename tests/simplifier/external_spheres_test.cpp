@@ -102,7 +102,7 @@ TEST(ExternalSpheres, AGapNarrowerThanTheDiameterIsFilled) {
 }
 
 TEST(ExternalSpheres, AGapWiderThanTheDiameterAndTheSlackIsKeptOpen) {
-  for (const double step : effort(std::vector{0.5, 0.25, 0.17}, 2)) {
+  for (const double step : effort(std::vector{0.5, 0.25, 0.17}, 1)) {
     ExternalOptions options = options_for(ExternalPlacement::kReachable, 2.0);
     options.grid_step = step;
     const double slack = place_external_spheres(two_plates(1.0), options).closing_slack;

@@ -2,11 +2,11 @@
 // docs/guarantee.md: each guarantee names files of its proof that exist, and tests that stand in
 // the file named.
 
+#include "tests/structure/repository.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <regex>
 #include <string>
@@ -16,13 +16,6 @@ namespace spherule {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path kRoot = SPHERULE_SOURCE_DIR;
-
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 // Whether the source defines the GoogleTest case "Suite.Name".
 bool defines_test(const std::string& source, const std::string& name) {

@@ -263,6 +263,10 @@ TEST(RobotCheckerEdge, StopsAtSolidsOfEveryKind) {
     EXPECT_EQ(result.verdict, Verdict::kCollision) << half;
     EXPECT_NEAR(result.free_until, (2.0 - half - 0.05) / 4.0, 1e-4);
     expect_so(checker, from, to, result, 500);
+    const auto met =
+        checker.explain(checker.configuration_on_edge(from, to, result.contact_at), scratch);
+    ASSERT_EQ(met.size(), 1U) << half;
+    EXPECT_EQ(met[0].second.name, "thing");
     // Wholly inside, far from any surface, is a contact as well.
     EXPECT_FALSE(checker.check_config(Configuration{2.0, 0.0}, scratch));
     const auto told = checker.explain(Configuration{2.0, 0.0}, scratch);

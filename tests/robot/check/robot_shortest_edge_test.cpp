@@ -51,6 +51,12 @@ TEST(RobotShortestEdge, TheWayThatIsStatedIsProved) {
   EXPECT_EQ(verdict(0.0, ContinuousMotion::kShortest), Verdict::kFree);
   EXPECT_EQ(verdict(kPi, ContinuousMotion::kShortest), Verdict::kCollision);
   const RobotChecker checker = swing_and_post(0.0);
+  EXPECT_EQ(checker.configuration_on_edge(from, to, 0.5), Configuration{0.0});
+  EXPECT_NEAR(checker.configuration_on_edge(from, to, 0.5, ContinuousMotion::kShortest)[0], kPi,
+              1e-14);
+  EXPECT_THROW(checker.configuration_on_edge(from, to, std::numeric_limits<double>::infinity()),
+               Error);
+  EXPECT_THROW(checker.configuration_on_edge({}, to, 0.5), Error);
   RobotChecker::Scratch scratch(checker);
   EXPECT_EQ(checker.check_edge(from, to, scratch).verdict, Verdict::kCollision) << "by default";
   EXPECT_NEAR(checker.measure_edge(from, to, scratch), 0.5, 0.01);

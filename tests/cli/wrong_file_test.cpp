@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files of all kinds: told apart, refused with the command that takes them, and where a result goes
+// if no place is named.
+#include "tests/cli/command_test_support.h"
+
+namespace spherule {
+namespace {
+
+class WrongFileTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write_box("part.stl", {2, 1, 1});
+    write_spheres("part.json", {{1, 0.5, 0.5, 2}});
+    ASSERT_EQ(run({"tree", "part.json", "-o", "part.tree"}).exit_code, 0);
+  }
+
+  void expect_info(const std::string& file, const std::string& text) {
+    const Outcome info = run({"info", file});
+    EXPECT_EQ(info.exit_code, 0) << info.err;
+    EXPECT_NE(info.out.find(text), std::string::npos) << info.out;
+  }
+};
+
+TEST_F(WrongFileTest, TheRightCommandIsNamed) {
+  const std::string mesh = "it is a mesh (spherule fit part.stl covers it with spheres)";
+  const std::string spheres = "it is a set of spheres (spherule tree part.json builds its tree)";
+  const std::string tree = "it is a sphere tree (spherule collide part.tree OTHER.tree checks it)";
+  expect_refusal({"tree", "part.stl"}, mesh);
+  expect_refusal({"collide", "part.tree", "part.stl"}, mesh);
+  expect_refusal({"collide", "part.json", "part.tree"}, spheres);
+  expect_refusal({"fit", "part.json", "-o", "out.json"}, spheres);
+  expect_refusal({"fit", "part.tree", "-o", "out.json"}, tree);
+  expect_refusal({"audit", "part.stl", "part.tree"}, tree);
+}
+
+// A file of the right kind that is broken is no other kind; a name that is not there is none at
+// all.
+TEST_F(WrongFileTest, OtherErrorsStayAsTheyAre) {
+  write("broken.stl", "solid");
+  for (const std::string file : {"broken.stl", "none.stl"}) {
+    const Outcome outcome = run({"fit", file, "-o", "out.json"});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.err.find("it is a"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(WrongFileTest, ResultsHaveAPlaceByDefault) {
+  EXPECT_EQ(run({"fit", "part.stl", "--max-error", "1", "--effort", "0"}).exit_code, 0);
+  EXPECT_EQ(read_json("part.json").at("options").at("max-error"), 1.0);
+  EXPECT_EQ(run({"tree", "part.json"}).exit_code, 0);
+  EXPECT_EQ(run({"view", "part.stl", "part.json"}).exit_code, 0);
+  EXPECT_EQ(run({"view", "part.tree"}).exit_code, 0);  // over the page that is there
+  EXPECT_EQ(files(), (std::vector<std::string>{"part.html", "part.json", "part.stl", "part.tree"}));
+}
+
+TEST_F(WrongFileTest, WhatIsSomethingElseIsNotReplacedByDefault) {
+  const std::string notes = R"({"notes": "of mine"})";
+  write("part.json", notes);
+  expect_refusal({"fit", "part.stl", "--max-error", "1", "--effort", "0"},
+                 "part.json: is there already, and is something else");
+  EXPECT_EQ(read("part.json"), notes);
+  EXPECT_EQ(
+      run({"fit", "part.stl", "-o", "part.json", "--max-error", "1", "--effort", "0"}).exit_code,
+      0);
+}
+
+#ifdef SPHERULE_HAS_ROBOT
+TEST_F(WrongFileTest, RobotsHaveTheirOwnCommands) {
+  write("arm.urdf", R"(<robot name="arm"><link name="base">
+<collision><geometry><mesh filename="part.stl"/></geometry></collision></link>
+<link name="tip"/><joint name="lift" type="prismatic"><parent link="base"/><child link="tip"/>
+<axis xyz="0 0 1"/><limit lower="-1" upper="2" effort="0" velocity="0"/></joint></robot>)");
+  write("arm.srdf", R"(<robot name="arm">
+<disable_collisions link1="base" link2="tip" reason="Adjacent"/></robot>)");
+  write("arm.yml", "collision_spheres:\n  base:\n    - center: [1, 0.5, 0.5]\n      radius: 2\n");
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": []})");
+  expect_refusal({"fit", "arm.urdf", "-o", "out.json"}, "it is a robot (spherule robot arm.urdf");
+  expect_refusal({"robot", "part.stl", "-o", "out"}, "it is a mesh (spherule fit part.stl");
+  expect_refusal({"robot", "arm.srdf", "-o", "out"}, "it is an SRDF (spherule check-srdf");
+  expect_refusal({"check", "arm.urdf", "arm.yml", "path.csv"}, "it is a file of a robot's spheres");
+  expect_refusal({"audit-robot", "arm.urdf", "cell.json"}, "it is a scene (spherule check");
+
+  expect_info("arm.urdf", "links: 2, 1 with collision geometry, 0 with visual geometry\n");
+  expect_info("arm.urdf", "  lift: -1 to 2 m\n");
+  expect_info("arm.srdf", "disabled pairs of links: 1\n");
+  expect_info("arm.yml", "spheres: 1 on 1 links\n  base: 1\n");
+  expect_info("cell.json", "a scene (spherule check");
+
+  EXPECT_EQ(run({"robot", "arm.urdf", "--max-error", "0.5", "--effort", "0", "--format", "json"})
+                .exit_code,
+            0);
+  EXPECT_TRUE(exists("arm-spheres/arm.spheres.json"));
+}
+#endif
+
+}  // namespace
+}  // namespace spherule
