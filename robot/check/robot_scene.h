@@ -1,6 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// A robot and what is around it, to be edited and then queried.
+//
+// @code{.cpp}
+// #include <spherule/robot/check/robot_scene.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// const std::vector<spherule::Sphere> spheres{{{1, 0, 0}, 0.1}};
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// robot.attach("arm", std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres)));
+// spherule::RobotScene scene(robot);
+// const auto world_from_table = spherule::Pose::from_translation({0, 0, -0.2});
+// scene.add("table", spherule::Box{.size = {2, 2, 0.1}}, world_from_table);
+// scene.set_padding("arm", 0.01);
+// const spherule::RobotChecker checker = scene.snapshot();
+// spherule::RobotChecker::Scratch scratch(checker);
+// assert(checker.check_config(std::vector{0.5}, scratch));
+// @endcode
+
 #include "collide/primitive.h"
 #include "robot/check/robot_checker.h"
 #include "robot/model/robot_model.h"

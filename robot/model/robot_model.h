@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// A jointed mechanism, and the sphere trees on its links.
+//
+// @code{.cpp}
+// #include <spherule/robot/model/robot_model.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// robot.add_link("hand", "arm", {.name = "slide", .type = spherule::JointType::kPrismatic,
+//                                .axis = {1, 0, 0}, .lower = 0.0, .upper = 0.2});
+// const std::vector<spherule::Sphere> spheres{{{1, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// robot.attach("hand", sphere);
+// assert(robot.variable_count() == 2 && robot.find_link("hand") == 2);
+// @endcode
+
 #include "spheretree/moved_from.h"
 #include "spheretree/pose.h"
 #include "spheretree/sphere_tree.h"

@@ -138,10 +138,7 @@ const std::vector<Room>& rooms() {
 
       {"cli", kPublic, {"Eigen", "CLI", "nlohmann"}},
       {"python", kPublic, {"Eigen", "pybind11"}},
-      {"bench",
-       kAll,
-       {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann", "ompl"},
-       {{"boost", "bench/scale/exact_oracle.cpp"}}},
+      {"bench", kAll, {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann", "ompl"}},
       {"tests",
        kAll,
        {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "ompl", "tbb",
