@@ -47,26 +47,40 @@ def test_a_robot_made_by_hand():
     assert checker.within([0.0], 0.6) and not checker.within([0.0], 0.4)
 
 
-def test_covers_are_proved_and_audited(description, cover):
+def test_covers_are_proved(cover):
     assert cover.links_not_proved == () and cover.spheres.count > 10
     assert all(link.fit.certificate.covered for link in cover.links)
-    audit = spherule.audit_robot(
-        description, cover.spheres, max_error=0.03, configurations=np.zeros((2, 4))
-    )
-    assert audit.links_covered and audit.configurations_covered and len(audit.links) == 6
-    leaky = dict(cover.spheres.links, hand=cover.spheres.links["hand"][:1] * [1, 1, 1, 0.5])
-    audit = spherule.audit_robot(description, leaky, max_error=0.03)
-    assert not audit.links_covered
-    assert [link.link for link in audit.links if not link.certificate.covered] == ["hand"]
-    mended = spherule.repair_robot(description, leaky, max_error=0.03)
-    assert spherule.audit_robot(description, mended.spheres, max_error=0.03).links_covered
+
+
+@pytest.fixture(scope="module")
+def bar():
+    """A thin bar on a slide: audits flood cells of a share of its diagonal."""
+    model = spherule.RobotModel("rail")
+    model.add_link("bar", "rail", Joint("slide", "prismatic", lower=0.0, upper=1.0))
+    shape = spherule.LinkShape("", Pose(), spherule.Box((0.01, 0.01, 0.4)))
+    links = [spherule.LinkDescription("rail"), spherule.LinkDescription("bar", (), (shape,))]
+    return spherule.RobotDescription("bar", model, links)
+
+
+def test_audits_find_leaks_and_repairs_close_them(bar):
+    spheres = spherule.cover_robot(bar, max_error=0.02, effort=0).spheres
+    audit = spherule.audit_robot(bar, spheres, max_error=0.02, configurations=[[0.0], [1.0]])
+    assert audit.links_covered and audit.configurations_covered
+    assert [link.link for link in audit.links] == ["rail", "bar"] and len(audit.configurations) == 2
+    leaky = {"bar": spheres.links["bar"][1:], "wing": [[0, 0, 0, 1]]}
+    audit = spherule.audit_robot(bar, leaky, max_error=0.02)
+    assert not audit.links_covered and audit.unknown_links == ("wing",)
+    assert audit.links[1].uncovered_share > 0 and audit.links[0].certificate is None
+    mended = spherule.repair_robot(bar, leaky, max_error=0.02)
+    assert mended.links[0].certificate.covered
+    assert spherule.audit_robot(bar, mended.spheres, max_error=0.02).links_covered
 
 
 def test_options_of_one_link(description, cover):
-    options = {"hand": spherule.LinkCoverOptions(max_error=0.015)}
+    options = {"fore": spherule.LinkCoverOptions(max_error=0.015)}
     finer = spherule.cover_robot(description, max_error=0.03, effort=0, links=options)
     counts = {link.link: len(link.spheres) for link in finer.links}
-    assert counts["hand"] > len(cover.spheres.links["hand"])
+    assert counts["fore"] > len(cover.spheres.links["fore"])
     assert counts["upper"] == len(cover.spheres.links["upper"])
 
 
@@ -112,6 +126,7 @@ def test_srdf(tmp_path, robot):
 
 def test_scenes_are_edited(robot):
     scene = spherule.RobotScene(robot)
+    scene.allow_contact("left", "right")
     q = np.zeros(4)
     assert scene.snapshot().check_config(q)
     scene.add("block", spherule.Box((0.2, 0.2, 0.2)), Pose((0, 0, 0.9)))
