@@ -41,5 +41,7 @@ ${includes}
 #undef assert
 #define assert(condition) EXPECT_TRUE(condition)
 ${tests}
+// As others expect it, where sources are joined.
 #undef assert
+#include <cassert>
 ")
