@@ -121,7 +121,7 @@ void bind_sweep(py::module_& module) {
              py::arg("resolution") = 1e-4, py::arg("max_node_tests") = py::none(),
              py::arg("max_seconds") = std::numeric_limits<double>::infinity(),
              Help("sweep(a, motion_a, b, motion_b, *, clearance=0.0, resolution=0.0001, "
-                  "max_node_tests=None, max_seconds=inf)",
+                  "max_node_tests=None, max_seconds=1e999)",
                   "Whether two SphereTree stay apart while they move: a SweepResult. A motion on "
                   "which they touch, or come within `clearance`, at any t is never called free. "
                   "Intervals of t no longer than `resolution` are not divided any further.")
