@@ -96,7 +96,7 @@ void bind_motion(py::module_& module) {
                       .c_str())
       .def(
           "pose_at", [](const MadeMotion& made, double t) { return made.motion.pose_at(t); },
-          py::arg("t"), Help("pose_at($self, t)", "The pose at t, 0 to 1.").c_str())
+          py::arg("t"), Help("pose_at(self, t)", "The pose at t, 0 to 1.").c_str())
       .def_property_readonly("angle", [](const MadeMotion& made) { return made.motion.angle(); })
       .def_property_readonly("axis",
                              [](const MadeMotion& made) { return array_of(made.motion.axis()); })
