@@ -6,6 +6,7 @@
 // @code{.cpp}
 // #include <spherule/collide/motion.h>
 // #include <cassert>
+// #include <cmath>
 //
 // const spherule::Pose start;
 // const spherule::Pose end({0, 0, 0, 1}, {0, 0, 1});  // half a turn about z, and 1 up

@@ -7,9 +7,8 @@
 //
 // Each errs by less than 8 u (|p| + reach), with the reach as given (u = 2^-53), and what
 // underflows:
-//   box: differences u |q|, the norm of three 2.5 u, where q is at most |p| + reach; the two terms
-//   of
-//     the sum are never both other than zero: 3.5 u;
+//   box: differences u |q|, the norm of three 2.5 u, where q is at most |p| + reach; the two
+//     terms of the sum are never both other than zero: 3.5 u;
 //   sphere: norm 2.5 u |p|, difference 1 u (|p| + R);
 //   cylinder: the norm of two, 2 u |p|; the two differences 1 u; their norm 2 u: 5 u in all;
 //   capsule: z less its clamped value 1 u |p|; norm 2.5 u, difference 1 u: 4.5 u;

@@ -70,11 +70,10 @@ struct Repair {
 // added spheres as possible, then as small a sum of growths as possible, and it is reached
 // approximately:
 //  1. what no sphere can reach by growing is covered by added spheres, few by the search of
-//  cover();
-//  2. beside these, spheres grow only as far as the points need it that were found open: each goes
-//  to
-//     the sphere that has to grow least for it, and what others cover then is given back. That is
-//     repeated until nothing is found open.
+//     cover();
+//  2. beside these, spheres grow only as far as the points need it that were found open: each
+//     goes to the sphere that has to grow least for it, and what others cover then is given back.
+//     That is repeated until nothing is found open.
 // Spheres are not moved. On return S is proved to be covered, in the same way as by cover().
 // Spheres that cover S come back unchanged; without spheres this is a cover. Deterministic for
 // equal input on any number of threads. Throws Error for a mesh that validate() refuses, spheres

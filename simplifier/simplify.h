@@ -109,7 +109,7 @@ void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh);
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
 
 // Stage 2 as simplify() runs it: by the stage 2 method, where there is one, else by `method`. E
-// must be filled in. Errors as of cover() or the phase; with the subject "method" for a phase
+// must be filled in. Errors as of cover() or the method; with the subject "method" for one
 // without a name of its own or that cannot be run.
 SphereCover cover_solid(const TriangleMesh& mesh, const ExternalSpheres& external,
                         const SimplifyOptions& options);

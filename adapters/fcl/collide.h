@@ -10,8 +10,7 @@
 // Where the answers mean more, or other, than FCL's:
 // - A result is of the last call only: collide() clears it first. FCL adds to what is there.
 // - A model is its triangles and its inside, grown by up to E where the spheres decide. FCL's
-// models
-//   are surfaces.
+//   models are surfaces.
 // - None of the functions reads what requests say of FCL's solvers (gjk_*, cached_gjk_guess).
 // A transform is checked when it is queried, see from_fcl(). Errors name the argument.
 //

@@ -4,6 +4,7 @@
 // Is a robot free of obstacles and of itself, in configurations and on motions?
 //
 // @code{.cpp}
+// #include <spherule/robot/check/robot_checker.h>
 // #include <spherule/robot/check/robot_scene.h>
 // #include <spherule/spheretree/build.h>
 // #include <cassert>

@@ -162,6 +162,7 @@ class RobotScene {
     std::string body;
     std::string region;
     std::string other;
+    // In the order of the members.
     friend auto operator<=>(const Intended&, const Intended&) = default;
   };
   // Two names: of bodies, or of a body and a region.

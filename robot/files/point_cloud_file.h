@@ -7,6 +7,7 @@
 // #include <spherule/robot/files/point_cloud_file.h>
 // #include <spherule/spheretree/atomic_file.h>
 // #include <cassert>
+// #include <cmath>
 //
 // const auto path = std::filesystem::temp_directory_path() / "spherule_example.xyz";
 // spherule::write_file_atomically(path, "# millimetres\n0 0 0\n1000 0 500\n");

@@ -140,14 +140,14 @@ struct SphereFileContext {
 //   everything else is kept. Relative paths of meshes and textures are made relative to the new
 //   place.
 // - kSrdf, kCurobo, kXrdf: what `context.original` holds beside the spheres is kept, byte by byte
-// (but
-//   YAML in which a changed part stands in a line with others, or in an anchor, is written anew,
-//   without comments). Pairs of `spheres` that it does not list yet, in either order, are added:
-//   with their reason, in YAML as a comment; to cuRobo's files that have `kinematics`, to XRDF that
-//   has `self_collision`, and to an SRDF that does not enable them. Buffers go into a new file
-//   only.
+//   (but YAML in which a changed part stands in a line with others, or in an anchor, is written
+//   anew, without comments). Pairs of `spheres` that it does not list yet, in either order, are
+//   added: with their reason, in YAML as a comment; to cuRobo's files that have `kinematics`, to
+//   XRDF that has `self_collision`, and to an SRDF that does not enable them. Buffers go into a new
+//   file only.
 // - A link without spheres: in SRDF, one sphere of radius 0 says so; in a URDF it has no
-// <collision>. Throws Error for spheres that are not usable or (but for kSpherule) have no extent,
+//   <collision>.
+// Throws Error for spheres that are not usable or (but for kSpherule) have no extent,
 // names that are empty, twice, not UTF-8 or have control characters, numbers that are not finite,
 // links that the URDF does not have, and files that cannot be read or written.
 void write_robot_spheres(const RobotSpheres& spheres, SphereFormat format,

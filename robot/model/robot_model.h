@@ -119,6 +119,7 @@ class RobotModel {
     double multiplier = 1.0;
     double offset = 0.0;
   };
+  // Of each joint, in the order of joints().
   const std::vector<Mimic>& mimics() const { return follow_; }
   // How many numbers a configuration has.
   int variable_count() const { return static_cast<int>(variable_joints_.size()); }
