@@ -270,7 +270,7 @@ std::vector<double> RobotChecker::configuration_on_edge(std::span<const double> 
     parts_->shortest.require();
     to = parts_->shortest.end_of(from, to, end);
   }
-  std::vector<double> configuration;
+  std::vector<double> configuration(from.size());
   internal::take_between(from, to, fraction, configuration);
   return configuration;
 }
