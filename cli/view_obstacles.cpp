@@ -110,7 +110,7 @@ class Obstacles {
                                 Eigen::Vector3d(middle.x() + half * x, middle.y() + half * y, 0.0));
     }
     square.triangles = {{0, 1, 2}, {0, 2, 3}};
-    meshes_.parts.push_back({std::move(square), link_, name_});
+    meshes_.parts.push_back({std::move(square), link_, name_, true});
   }
 
   const RobotModel& robot_;

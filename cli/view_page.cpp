@@ -116,6 +116,7 @@ Json json_of(const ViewItem& item, const Eigen::Vector3d& middle) {
     Json& encoded = json["parts"].emplace_back(std::visit(ContentEncoder{middle}, part.content));
     encoded["link"] = part.link;
     if (!part.name.empty()) encoded["name"] = part.name;
+    if (part.background) encoded["background"] = true;
   }
   return json;
 }

@@ -20,8 +20,9 @@ using ViewContent =
 // A piece of an item, in the frame of a link of the scene's robot, or of the world.
 struct ViewPart {
   ViewContent content;
-  int link = -1;       // -1: the world
-  std::string name{};  // of an obstacle or an attached object
+  int link = -1;            // -1: the world
+  std::string name{};       // of an obstacle or an attached object
+  bool background = false;  // seen, but not what the first view is about
 };
 
 // One thing to examine. Of trees, a slider on the page chooses the level.

@@ -59,7 +59,7 @@ function clearance_text(k) {
   const [a, b] = [trajectory.nearest[2 * k], trajectory.nearest[2 * k + 1]];
   const pair = a < 0 || b < 0 ? ""
       : `, ${plain_name(trajectory.bodies[a])} – ${plain_name(trajectory.bodies[b])}`;
-  return `clearance ≥ ${distance_text(value)} in line ${trajectory.lines[k]}${pair}`;
+  return `clearance ≥ ${lower_distance_text(value)} in line ${trajectory.lines[k]}${pair}`;
 }
 
 function stop_playing() {
@@ -122,7 +122,7 @@ function tell_summary() {
   if (counts.c) parts.push(`${counts.c.toLocaleString("en-US")} with contacts`);
   if (counts.u) parts.push(`${counts.u.toLocaleString("en-US")} not proved`);
   if (finite.length) {
-    parts.push(`least clearance ≥ ${distance_text(finite.reduce((a, b) => Math.min(a, b)))}`);
+    parts.push(`least clearance ≥ ${lower_distance_text(finite.reduce((a, b) => Math.min(a, b)))}`);
   }
   if (trajectory.shown < trajectory.configurations) {
     parts.push(`${trajectory.shown.toLocaleString("en-US")} of ` +
