@@ -10,6 +10,7 @@
 #include "cli/message.h"
 #include "cli/next_step.h"
 #include "cli/output.h"
+#include "cli/page_output.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
@@ -159,7 +160,7 @@ RobotDescription read_checked_robot(const CheckArguments& arguments, LinkGeometr
   return read_urdf(arguments.urdf, urdf_options(arguments.packages, needed));
 }
 
-void write_page(const CheckArguments& arguments, const CheckedScene& checked, bool has_motions) {
+void write_checked(const CheckArguments& arguments, const CheckedScene& checked, bool has_motions) {
   ProgressBar bar;
   write_check_page(arguments.view, checked,
                    {.file = arguments.trajectory.file,
@@ -225,14 +226,14 @@ int check(const CheckArguments& arguments) {
     report.tell_kinds(model, pair_statuses(model, prepared.scene.allowed_collisions(), proofs));
   }
   if (!arguments.view.empty()) {
-    write_page(arguments,
-               {.robot = robot,
-                .geometry = arguments.geometry,
-                .scene = scene,
-                .checker = checker,
-                .trajectory = input.trajectory,
-                .report = report},
-               has_motions);
+    write_checked(arguments,
+                  {.robot = robot,
+                   .geometry = arguments.geometry,
+                   .scene = scene,
+                   .checker = checker,
+                   .trajectory = input.trajectory,
+                   .report = report},
+                  has_motions);
   }
   std::cout << (arguments.json ? check_json(report)
                                : check_table(report) + advice(arguments, report));

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_view.h"
 
-#include "cli/interruption.h"
 #include "cli/message.h"
+#include "cli/page_output.h"
 #include "cli/robot_options.h"
 #include "cli/view_obstacles.h"
 #include "cli/view_page.h"
 #include "cli/view_robot.h"
-#include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 
-#include <filesystem>
 #include <utility>
 #include <vector>
 
@@ -50,13 +48,7 @@ ViewScene scene_of(const CheckedScene& checked, const TrajectoryView& view) {
 
 void write_check_page(const std::string& page, const CheckedScene& checked,
                       const TrajectoryView& view) {
-  const std::string text = make_view_page(scene_of(checked, view));
-  write_uninterrupted([&] { write_file_atomically(page, text); });
-}
-
-std::string page_line(const std::string& page) {
-  return "page: " + page + " (" + std::to_string(std::filesystem::file_size(page) / 1024) +
-         " KiB); open it in a browser\n";
+  write_page(page, scene_of(checked, view));
 }
 
 }  // namespace spherule

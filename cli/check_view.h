@@ -9,7 +9,6 @@
 #include "robot/files/trajectory_file.h"
 #include "robot/model/robot_description.h"
 
-#include <cstddef>
 #include <string>
 
 namespace spherule {
@@ -28,8 +27,5 @@ struct CheckedScene {
 // warning), the spheres that were checked, the scene and the trajectory with its verdicts.
 void write_check_page(const std::string& page, const CheckedScene& checked,
                       const TrajectoryView& view);
-
-// "page: FILE (N KiB); open it in a browser", for a person.
-std::string page_line(const std::string& page);
 
 }  // namespace spherule

@@ -171,6 +171,17 @@ bool has_spheres(const RobotDescription& robot) {
 
 }  // namespace
 
+ViewScene covered_robot_scene(const RobotDescription& robot, const std::string& geometry,
+                              const RobotSpheres& spheres, const std::string& name,
+                              const Json& report) {
+  ViewScene scene{.title = name, .items = {}, .robot = view_robot(robot)};
+  ViewItem meshes = view_meshes(robot, geometry_named(geometry), geometry);
+  if (!meshes.parts.empty()) scene.items.push_back(std::move(meshes));
+  scene.items.push_back(sphere_item(robot, spheres, name));
+  for (ViewItem& item : report_items(robot, report, name)) scene.items.push_back(std::move(item));
+  return scene;
+}
+
 bool is_robot_file(const std::string& file) {
   std::string ending = fs::path(file).extension();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -3,6 +3,7 @@
 
 #include "cli/view_page.h"
 #include "robot/cover/link_mesh.h"
+#include "robot/formats/sphere_formats.h"
 #include "robot/model/robot_description.h"
 #include "spheretree/pose.h"
 
@@ -25,6 +26,13 @@ Json view_pose(const Pose& pose);
 // as link_mesh().
 Json view_robot(const RobotDescription& robot);
 ViewItem view_meshes(const RobotDescription& robot, LinkGeometry geometry, const std::string& name);
+
+// A robot with the meshes of its links in a geometry, the spheres that were made or audited for it,
+// called `name`, and the leaks that the certificates of its links tell of: what `robot` reports, or
+// `audit-robot --json` prints. Throws Error as link_mesh().
+ViewScene covered_robot_scene(const RobotDescription& robot, const std::string& geometry,
+                              const RobotSpheres& spheres, const std::string& name,
+                              const Json& report);
 
 // Whether a file is of a robot: a URDF, its spheres in any format, what is known of the pairs of
 // its links (NAME.pairs, SRDF), or a certificate by links.

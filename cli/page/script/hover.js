@@ -35,15 +35,17 @@ function show_hover() {
   hover_note.style.top = `${hover_place.y > 40 ? hover_place.y - 34 : hover_place.y + 18}px`;
 }
 
-// Once a frame at most, and not while the scene is turned.
+// Not while the scene is turned, and after the first time once a frame at most.
 let hover_waits = false;
 function hover_at(event) {
   hover_place = event && event.buttons === 0 ? {x: event.clientX, y: event.clientY} : null;
   if (hover_waits) return;
   hover_waits = true;
+  show_hover();
+  const shown = hover_place;
   requestAnimationFrame(() => {
     hover_waits = false;
-    show_hover();
+    if (hover_place !== shown) show_hover();
   });
 }
 
