@@ -35,6 +35,16 @@ need_sanitizers() {
   packages+=(clang libclang-rt-14-dev)
 }
 
+# The Python module, of the distribution's own Python.
+need_python() {
+  packages+=(python3-dev python3-numpy pybind11-dev)
+}
+
+need_python_tests() {
+  need_python
+  packages+=(python3-pytest mypy)
+}
+
 need_benchmarks() {
   packages+=(libbenchmark-dev libbullet-dev)
 }

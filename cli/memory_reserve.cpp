@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/memory_reserve.h"
 
+#include "cli/command.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <new>
 #include <sys/resource.h>
 
@@ -22,6 +26,21 @@ std::atomic<void*> reserve = nullptr;
   throw std::bad_alloc();
 }
 
+std::terminate_handler terminate_otherwise = nullptr;
+
+// Where memory ends inside a function that must not throw, the exception cannot travel on.
+[[noreturn]] void tell_and_end() {
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+    std::fputs("spherule: out of memory\n", stderr);
+    std::_Exit(kBadInput);
+  } catch (...) {
+  }
+  terminate_otherwise();
+  std::abort();
+}
+
 }  // namespace
 
 void keep_memory_reserve() {
@@ -35,6 +54,7 @@ void keep_memory_reserve() {
   while (memory == nullptr && size > kLeastReserve) memory = std::malloc(size /= 2);
   reserve = memory;
   std::set_new_handler(give_back_and_throw);
+  terminate_otherwise = std::set_terminate(tell_and_end);
 }
 
 }  // namespace spherule

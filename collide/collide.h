@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Do two sets of spheres, rigidly placed, overlap?
+//
+// @code{.cpp}
+// #include <spherule/collide/collide.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1}, {{2, 0, 0}, 1}};
+// const spherule::SphereTree tree = spherule::build_tree(spheres);
+// const auto beside = spherule::Pose::from_translation({3.5, 0, 0});
+// assert(collides(tree, {}, tree, beside));
+// const spherule::CollisionResult result = collide(tree, {}, tree, beside);
+// assert(result.pairs.size() == 1 && result.pairs[0].a == 1 && result.pairs[0].b == 0);
+// @endcode
+
 #include "spheretree/pose.h"
 #include "spheretree/sphere_tree.h"
 

@@ -3,6 +3,20 @@
 
 // Where two placed bodies touch, and how deep: for people and planners that want to know more than
 // that they do.
+//
+// @code{.cpp}
+// #include <spherule/collide/contact.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1}, {{2, 0, 0}, 1}};
+// const spherule::SphereTree tree = spherule::build_tree(spheres);
+// const auto beside = spherule::Pose::from_translation({3.5, 0, 0});
+// const auto contact = spherule::deepest_contact(tree, {}, tree, beside);
+// assert(contact && contact->spheres.a == 1 && contact->spheres.b == 0);
+// assert(contact->overlap_depth > 0.499 && contact->overlap_depth <= 0.5);
+// @endcode
 
 #include "collide/collide.h"
 #include "collide/mesh_contact.h"

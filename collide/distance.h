@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// The separation distance of two sets of spheres, between proved bounds.
+//
+// @code{.cpp}
+// #include <spherule/collide/distance.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1}, {{2, 0, 0}, 1}};
+// const spherule::SphereTree tree = spherule::build_tree(spheres);
+// const auto apart = spherule::Pose::from_translation({7, 0, 0});
+// const spherule::DistanceResult found = distance(tree, {}, tree, apart);
+// assert(found.lower <= 3.0 && 3.0 <= found.upper && found.upper < 3.001);
+// @endcode
+
 #include "collide/collide.h"
 
 #include <chrono>

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// What is requested of a motion in the space of a mechanism's variables, and what is proved of it:
+// by RobotChecker::check_edge() (robot/check/robot_checker.h).
+//
+// @code{.cpp}
+// #include <spherule/collide/edge.h>
+// #include <cassert>
+//
+// const spherule::EdgeRequest request{.resolution = 1e-3, .first = true};
+// spherule::require_resolution(request.resolution);  // throws Error unless above zero
+// const spherule::EdgeResult unchecked;
+// assert(unchecked.verdict == spherule::Verdict::kUnknown && unchecked.free_until == 0.0);
+// @endcode
+
 #include "collide/collide.h"
 
 #include <cstdint>

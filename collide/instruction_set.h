@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Instruction sets that queries may use.
+//
+// @code{.cpp}
+// #include <spherule/collide/instruction_set.h>
+// #include <cassert>
+//
+// assert(spherule::is_available(spherule::InstructionSet::kPortable));
+// assert(spherule::is_available(spherule::best_instruction_set()));
+// @endcode
+
 namespace spherule {
 
 // Which instructions queries may use. Answers are equal for all of them (G7).

@@ -1,6 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// A fast test of a jointed mechanism in single precision, before an exact one.
+//
+// @code{.cpp}
+// #include <spherule/collide/mechanism_check.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <vector>
+//
+// const auto sphere = std::make_shared<const spherule::SphereTree>(
+//     spherule::build_tree(std::vector<spherule::Sphere>{{{1, 0, 0}, 0.1}}));
+// const std::vector<spherule::MechanismFrame> frames{{.parent = -1, .variable = 0}};
+// const std::vector<spherule::MechanismBody> bodies{{.frame = 0, .tree = sphere}};
+// const std::vector<spherule::MechanismObstacle> obstacles{{.tree = sphere}};
+// const std::vector<spherule::MechanismPair> pairs{{.body = 0, .obstacle = 0}};
+// const spherule::MechanismCheck check(frames, bodies, obstacles, pairs, 1e-9);
+// spherule::MechanismCheck::Scratch scratch(check);
+// const auto confirm = [](const spherule::MechanismContact&) { return true; };  // if in doubt
+// assert(check.collides(std::vector{0.0}, scratch, confirm));
+// assert(!check.collides(std::vector{1.0}, scratch, confirm));  // turned by 1 rad
+// @endcode
+
 #include "collide/instruction_set.h"
 #include "spheretree/pose.h"
 #include "spheretree/sphere.h"

@@ -4,6 +4,21 @@
 // Confirmation on the triangles: sphere trees find where two meshes may touch, their triangles
 // decide. What the spheres call free stays free; what they call a collision becomes as exact as the
 // meshes.
+//
+// @code{.cpp}
+// #include <spherule/collide/mesh_contact.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const std::vector<spherule::Sphere> around{{{0.25, 0.25, 0.25}, 1}};
+// const auto cover = std::make_shared<const spherule::SphereTree>(spherule::build_tree(around));
+// const spherule::CoveredMesh part(tetrahedron, cover);
+// const auto beside = spherule::Pose::from_translation({1.5, 0, 0});
+// assert(collides(*cover, {}, *cover, beside));  // the spheres touch,
+// assert(!collides(part, {}, part, beside));     // the meshes do not
+// @endcode
 
 #include "collide/collide.h"
 #include "collide/mesh_tree.h"

@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Spheres against the surface of a mesh.
+//
+// @code{.cpp}
+// #include <spherule/collide/mesh_tree.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const spherule::MeshTree surface(tetrahedron);
+// const std::vector<spherule::Sphere> spheres{{{0, 0, -2}, 1}};
+// const spherule::SphereTree tree = spherule::build_tree(spheres);
+// assert(!collides(tree, {}, surface, {}));
+// assert(within(tree, {}, surface, {}, 1.0) && distance(tree, {}, surface, {}).upper < 1.001);
+// @endcode
+
 #include "collide/collide.h"
 #include "collide/distance.h"
 #include "mesh/triangle_mesh.h"

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Rigid motions in time.
+//
+// @code{.cpp}
+// #include <spherule/collide/motion.h>
+// #include <cassert>
+//
+// const spherule::Pose start;
+// const spherule::Pose end({0, 0, 0, 1}, {0, 0, 1});  // half a turn about z, and 1 up
+// const auto motion = spherule::Motion::between(start, end);
+// const Eigen::Vector3d middle = motion.pose_at(0.5) * Eigen::Vector3d(1, 0, 0);
+// assert(std::abs(middle.z() - 0.5) < 1e-12 && std::abs(middle.x()) < 1e-12);
+// @endcode
+
 #include "spheretree/pose.h"
 
 namespace spherule {

@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Whether two sets of spheres overlap, queried again and again under poses that change little.
+//
+// @code{.cpp}
+// #include <spherule/collide/pair_cache.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1}, {{2, 0, 0}, 1}};
+// const spherule::SphereTree tree = spherule::build_tree(spheres);
+// spherule::PairCache cache(tree, tree);
+// for (const double x : {6.0, 5.999, 5.998, 5.997}) {
+//   assert(!cache.collides({}, spherule::Pose::from_translation({x, 0, 0})));
+// }
+// assert(cache.counts().queries == 4 && cache.counts().free_from_memory > 0);
+// @endcode
+
 #include "collide/collide.h"
 
 #include <array>

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Spheres that stand for measured points.
+//
+// @code{.cpp}
+// #include <spherule/collide/point_cloud.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<Eigen::Vector3d> points{{0, 0, 0}, {0.01, 0, 0}, {1, 0, 0}};
+// const auto all = spherule::point_cloud_spheres(points, 0.05);
+// const auto few = spherule::point_cloud_spheres(points, 0.05, {.voxel = 0.1});
+// assert(all.size() == 3 && few.size() == 2);
+// assert(spherule::point_cloud_tree(points, 0.05).spheres().size() == 3);
+// @endcode
+
 #include "spheretree/build.h"
 #include "spheretree/sphere.h"
 #include "spheretree/sphere_tree.h"

@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Spheres against boxes, spheres, cylinders, capsules and half-spaces.
+//
+// @code{.cpp}
+// #include <spherule/collide/primitive.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1}, {{2, 0, 0}, 1}};
+// const spherule::SphereTree tree = spherule::build_tree(spheres);
+// const spherule::Primitive table = spherule::Box{.size = {4, 4, 0.5}};
+// const auto below = spherule::Pose::from_translation({0, 0, -1.5});
+// assert(!collides(tree, {}, table, below));
+// assert(within(tree, {}, table, below, 0.25));  // the gap
+// assert(distance(tree, {}, spherule::HalfSpace{}, below).upper < 0.501);
+// @endcode
+
 #include "collide/collide.h"
 #include "collide/distance.h"
 #include "collide/solid_contact.h"

@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Where a set of spheres touches a solid, and how deep.
+//
+// @code{.cpp}
+// #include <spherule/collide/primitive.h>
+// #include <spherule/collide/solid_contact.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 3}, 1}, {{0, 0, 0.75}, 1}};
+// const auto floor = spherule::HalfSpace{};
+// const std::optional<spherule::SolidContact> contact =
+//     deepest_contact(spherule::build_tree(spheres), {}, floor, {});
+// assert(contact && contact->sphere == 1);
+// assert(contact->overlap_depth > 0.249 && contact->overlap_depth <= 0.25);
+// @endcode
+
 #include <Eigen/Core>
 
 #include <cstdint>

@@ -20,6 +20,14 @@
 // (q . p - support(q)) / |q|, support(q) being the largest q . x of its points x. outward(p) is the
 // q for which this is the distance, up to rounding, where p is outside: that does no harm. The
 // difference q . p - support(q) errs by less than 12 u |q| (|p| + reach).
+//
+// @code{.cpp}
+// #include <spherule/collide/solid_fields.h>
+// #include <cassert>
+//
+// const auto field = spherule::internal::field_of(spherule::Box{.size = {2, 2, 2}});
+// assert(field.signed_distance({3, 0, 0}) == 2.0 && field.signed_distance({0, 0, 0}) == -1.0);
+// @endcode
 
 #include "collide/primitive.h"
 

@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Spheres against a mesh with its inside.
+//
+// @code{.cpp}
+// #include <spherule/collide/solid_mesh.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <vector>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const spherule::SolidMesh solid(tetrahedron);
+// const std::vector<spherule::Sphere> spheres{{{0.2, 0.2, 0.2}, 0.01}};
+// const spherule::SphereTree inside = spherule::build_tree(spheres);
+// assert(solid.is_closed() && collides(inside, {}, solid, {}));
+// assert(!collides(inside, {}, solid.mesh(), {}));  // it touches no triangle
+// @endcode
+
 #include "collide/collide.h"
 #include "collide/distance.h"
 #include "collide/mesh_tree.h"

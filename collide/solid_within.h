@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Do meshes with their insides, or such a mesh and a primitive, come within a clearance?
+//
+// @code{.cpp}
+// #include <spherule/collide/solid_within.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const spherule::SolidMesh solid(tetrahedron);
+// const auto beside = spherule::Pose::from_translation({1.5, 0, 0});
+// assert(!within(solid, {}, solid, beside, 0.0));
+// assert(within(solid, {}, solid, beside, 0.5));
+// assert(within(solid, {}, spherule::SolidSphere{.radius = 0.5}, beside, 0.0));
+// @endcode
+
 #include "collide/primitive.h"
 #include "collide/solid_mesh.h"
 #include "spheretree/pose.h"

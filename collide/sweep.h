@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Do two sets of spheres stay apart while they move?
+//
+// @code{.cpp}
+// #include <spherule/collide/sweep.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <vector>
+//
+// const auto tree = spherule::build_tree(std::vector<spherule::Sphere>{{{0, 0, 0}, 1}});
+// const auto still = spherule::Motion::still(spherule::Pose());
+// const auto passing = spherule::Motion::between(spherule::Pose::from_translation({-5, 0, 0}),
+//                                                spherule::Pose::from_translation({5, 0, 0}));
+// const spherule::SweepResult swept = sweep(tree, passing, tree, still);
+// assert(swept.verdict == spherule::Verdict::kCollision);
+// assert(swept.free_until <= 0.3 && 0.3 <= swept.contact_at && swept.contact_at < 0.301);
+// @endcode
+
 #include "collide/collide.h"
 #include "collide/motion.h"
 

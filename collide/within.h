@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Do two sets of spheres come within a clearance of each other?
+//
+// @code{.cpp}
+// #include <spherule/collide/within.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <vector>
+//
+// const auto tree = spherule::build_tree(std::vector<spherule::Sphere>{{{0, 0, 0}, 1}});
+// const auto apart = spherule::Pose::from_translation({3, 0, 0});
+// assert(within(tree, {}, tree, apart, 1.0));
+// assert(!within(tree, {}, tree, apart, 0.999));
+// @endcode
+
 #include "collide/collide.h"
 
 namespace spherule {

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Turns the comments of a header into those that Doxygen reads; the lines keep their numbers. A
 # comment stands for the declaration below it and, above a function, for those that follow without an
-# empty line between, but for special members of a class. One with an empty line below it is about several and stands for none.
+# empty line between, but for special members of a class. One with an empty line below it is about
+# several and stands for none, but for the one that opens the header: that is the file's. Code between
+# @code and @endcode stays as it is, and is of one declaration.
 
 function escaped(text) {
   gsub(/\\/, "\\\\", text)
@@ -18,10 +20,21 @@ function opened(code,   text) {
   return gsub(/\{/, "", text) - gsub(/\}/, "", text)
 }
 
+# The text of a line of the comment that is read, of code as it is.
+function text_of(i,   text) {
+  text = substr(comment[i], indent[i] + 2)
+  return is_code[i] ? text : escaped(text)
+}
+
+# Prints the empty line that was held back, or `line` in its place.
+function flush_held(line) {
+  if (held) print line
+  held = 0
+}
+
 function flush_comment(marker,   i) {
   for (i = 1; i <= pending; ++i) {
-    print marker == "///" ? substr(comment[i], 1, indent[i] - 1) "///" \
-                            escaped(substr(comment[i], indent[i] + 2)) : ""
+    print marker == "///" ? substr(comment[i], 1, indent[i] - 1) "///" text_of(i) : ""
   }
   pending = 0
 }
@@ -59,6 +72,21 @@ function special(code,   name, argument) {
   comment[pending] = $0
   match($0, /\/\//)
   indent[pending] = RSTART
+  is_code[pending] = in_code || $0 ~ /^ *\/\/ @code/
+  in_code = is_code[pending] && $0 !~ /^ *\/\/ @endcode/
+  next
+}
+
+/^ *$/ && opening {
+  if (pending > 0) {
+    opening = 0
+    flush_held("/// \\file")
+    flush_comment("///")
+    print ""
+  } else {
+    flush_held("")
+    held = 1
+  }
   next
 }
 
@@ -71,6 +99,8 @@ function special(code,   name, argument) {
 }
 
 {
+  opening = $0 == "#pragma once"
+  flush_held("")
   code = $0
   note = ""
   trailing = 0
@@ -90,7 +120,7 @@ function special(code,   name, argument) {
   if (pending > 0) {
     shared = ""
     if (code ~ /\(/) {
-      for (i = 1; i <= pending; ++i) shared = shared escaped(substr(comment[i], indent[i] + 2))
+      for (i = 1; i <= pending; ++i) shared = shared (is_code[i] ? "" : text_of(i))
     }
     flush_comment("///")
   } else if (!continued && shared != "" && note == "" && declares(code)) {

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// What is unusual about a mesh.
+//
+// @code{.cpp}
+// #include <spherule/mesh/mesh_report.h>
+// #include <cassert>
+// #include <iostream>
+//
+// const spherule::TriangleMesh open{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                   {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}}};
+// const spherule::MeshReport report = spherule::mesh_report(open);
+// assert(!report.closed && report.boundary_edges == 3);
+// std::cout << describe(report) << "\n";
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 
 #include <Eigen/Geometry>

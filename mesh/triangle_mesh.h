@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Triangle meshes.
+//
+// @code{.cpp}
+// #include <spherule/mesh/triangle_mesh.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// spherule::validate(tetrahedron, "tetrahedron");  // throws Error if it cannot be used
+// assert(tetrahedron.triangles.size() == 4 && tetrahedron.vertex_error == 0.0);
+// @endcode
+
 #include <Eigen/Core>
 
 #include <string>

@@ -1,6 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// What is proved about spheres, of any origin, and a mesh.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/certificate.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto external = spherule::place_external_spheres(
+//     tetrahedron, {.min_external_diameter = 2, .max_error = 0.5});
+// const std::vector<spherule::Sphere> large{{{0.25, 0.25, 0.25}, 1}};
+// const std::vector<spherule::Sphere> small{{{0.25, 0.25, 0.25}, 0.5}};
+// const spherule::CertifyOptions options{.external = &external, .volume = false};
+// assert(spherule::certify(tetrahedron, large, options).covered);
+// const spherule::Certificate leaky = spherule::certify(tetrahedron, small, options);
+// assert(!leaky.covered && leaky.surface_depth.lower > 0.3);  // the corners are out
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/external_spheres.h"
 #include "simplifier/zones.h"

@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Stage 2: covers the simplified solid with few spheres.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/cover.h>
+// #include <spherule/simplifier/certificate.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto external = spherule::place_external_spheres(
+//     tetrahedron, {.min_external_diameter = 2, .max_error = 0.5});
+// const spherule::SphereCover cover =
+//     spherule::cover(tetrahedron, external, {.max_error = 0.5, .effort = 0});
+// const spherule::CertifyOptions options{.external = &external, .volume = false};
+// assert(spherule::certify(tetrahedron, cover.spheres, options).covered);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/external_spheres.h"
 #include "simplifier/zones.h"

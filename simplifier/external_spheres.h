@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Stage 1: the spheres outside of a mesh that define its simplified solid S.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/external_spheres.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto external = spherule::place_external_spheres(
+//     tetrahedron, {.min_external_diameter = 2, .max_error = 0.5});
+// assert(!external.spheres.empty() && external.closing_slack <= 0.03 * 2);
+// for (const spherule::Sphere& sphere : external.spheres) {
+//   assert(sphere.radius >= 1.0 && !certainly_contains(sphere, {0.1, 0.1, 0.1}));
+// }
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/zones.h"
 #include "spheretree/sphere.h"

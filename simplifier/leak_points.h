@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Where a mesh sticks out of spheres, for showing where to look.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/leak_points.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const std::vector<spherule::Sphere> spheres{{{0.25, 0.25, 0.25}, 0.5}};
+// const auto leaks = spherule::leak_points(tetrahedron, spheres);
+// assert(!leaks.empty() && leaks[0].depth >= leaks.back().depth && leaks.back().depth > 0.0);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "spheretree/sphere.h"
 

@@ -1,6 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Levels of detail: coarser covers that enclose a finer one.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/levels.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto external = spherule::place_external_spheres(
+//     tetrahedron, {.min_external_diameter = 2, .max_error = 0.5});
+// const spherule::CoverOptions options{.max_error = 0.5, .effort = 0};
+// const auto spheres = spherule::cover(tetrahedron, external, options).spheres;
+// const auto levels =
+//     spherule::fit_levels(tetrahedron, external, spheres, std::vector{1.0}, options);
+// assert(levels[0].spheres.spheres.size() < spheres.size() && levels[0].protrusion <= 1.0);
+// assert(spherule::level_tree(spheres, levels).tree.spheres().size() == spheres.size());
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/cover.h"
 #include "simplifier/external_spheres.h"

@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Makes spheres of any origin cover.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/repair.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto external = spherule::place_external_spheres(
+//     tetrahedron, {.min_external_diameter = 2, .max_error = 0.5});
+// const std::vector<spherule::Sphere> leaky{{{0.25, 0.25, 0.25}, 0.5}};
+// const spherule::RepairOptions options{.max_error = 0.5, .effort = 0};
+// const auto repair = spherule::repair(tetrahedron, external, leaky, options);
+// assert(repair.spheres[0].center == leaky[0].center && repair.spheres[0].radius >= 0.5);
+// assert(repair.spheres.size() == 1 + repair.added);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/cover.h"
 #include "simplifier/external_spheres.h"

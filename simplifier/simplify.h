@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Spheres that cover a mesh, and the proof that they do: the function that most users call.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/simplify.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto fit = spherule::simplify(tetrahedron, {.max_error = 0.5, .effort = 0});
+// assert(fit.certificate.covered && broken_promises(fit).empty());
+// const spherule::SphereTree tree = sphere_tree(fit);
+// assert(tree.spheres().size() == fit.cover.spheres.size());
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/certificate.h"
 #include "simplifier/cover.h"

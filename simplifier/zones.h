@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Parts of space in which E or D is smaller.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/zones.h>
+// #include <cassert>
+//
+// const spherule::Zone zone{.shape = spherule::Sphere{{0, 0, 0}, 2}, .max_error = 0.1};
+// const std::vector<spherule::Zone> zones{zone};
+// spherule::check_zones(zones, 0.5, 2.0);  // throws Error unless they are usable with this E and D
+// assert(spherule::tightest_error(zones, 0.5) == 0.1);
+// assert(spherule::parse_zones(spherule::zones_text(zones), "zones") == zones);
+// @endcode
+
 #include "spheretree/sphere.h"
 
 #include <Eigen/Geometry>

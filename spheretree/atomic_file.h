@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Files that appear whole or not at all.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/atomic_file.h>
+// #include <cassert>
+// #include <filesystem>
+//
+// const auto path = std::filesystem::temp_directory_path() / "spherule_example.txt";
+// spherule::check_writable(path);  // before long work
+// spherule::write_file_atomically(path, "all of it\n");
+// assert(spherule::read_file(path) == "all of it\n");
+// @endcode
+
 #include <filesystem>
 #include <string>
 #include <string_view>

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Makes the sphere tree over a set of spheres.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1}, {{2, 0, 0}, 1}, {{4, 0, 0}, 1}};
+// const spherule::SphereTree tree = spherule::build_tree(spheres, {.branching = 2});
+// assert(tree.spheres().size() == 3 && tree.root().radius >= 3.0);
+// @endcode
+
 #include "spheretree/sphere_tree.h"
 
 #include <span>

@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Checks the invariants of a sphere tree, of any origin.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/check.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1.0}, {{2, 0, 0}, 1.0}};
+// spherule::SphereTreeData data = spherule::build_tree(spheres).data();
+// assert(spherule::check(data).valid);
+// data.radius[0] = 1.5;  // no longer encloses the two
+// assert(!spherule::check(data).valid && !spherule::check(data).problems.empty());
+// @endcode
+
 #include "spheretree/sphere_tree.h"
 
 #include <string>

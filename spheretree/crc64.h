@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// The checksum of the library's binary files.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/crc64.h>
+// #include <cassert>
+//
+// assert(spherule::crc64("123456789") == 0x995DC9BBDF1939FA);
+// @endcode
+
 #include <cstdint>
 #include <string_view>
 

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Smallest enclosing spheres, rounded up.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/enclosing_sphere.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<Eigen::Vector3d> points{{-1, 0, 0}, {1, 0, 0}, {0, 0.5, 0}};
+// const spherule::Sphere sphere = spherule::enclosing_sphere(points);
+// for (const Eigen::Vector3d& point : points) assert(certainly_contains(sphere, point));
+// assert(sphere.radius < 1.0 + 1e-12);
+// @endcode
+
 #include "spheretree/sphere.h"
 
 #include <span>

@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// The exception for input that cannot be used.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/error.h>
+// #include <cassert>
+//
+// bool is_refused = false;
+// try {
+//   spherule::build_tree({}, {.branching = 8});  // no spheres
+// } catch (const spherule::Error& error) {
+//   is_refused = error.what() == error.subject() + ": " + error.reason();
+// }
+// assert(is_refused);
+// @endcode
+
 #include <stdexcept>
 #include <string>
 

@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Sphere trees through given levels of detail, and sets of few spheres out of a tree.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/level_tree.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1}, {{2, 0, 0}, 1}, {{9, 0, 0}, 1}};
+// const std::vector<spherule::SphereLevel> levels{
+//     {.spheres = {{{1, 0, 0}, 2.5}, {{9, 0, 0}, 1.5}}, .parent_of = {0, 0, 1}}};
+// const spherule::LevelTree made = spherule::build_tree_from_levels(spheres, levels);
+// assert(made.tree.sphere(std::size_t(made.nodes[0][0])) == levels[0].spheres[0]);
+// assert(spherule::cut(made.tree, 2).size() == 2);
+// @endcode
+
 #include "spheretree/build.h"
 #include "spheretree/sphere_tree.h"
 

@@ -2,6 +2,16 @@
 #pragma once
 
 // How bounding volume hierarchies halve what they are built over.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/median_split.h>
+// #include <cassert>
+// #include <vector>
+//
+// std::vector<double> x{5, 1, 4, 2, 3};
+// auto half = spherule::internal::split_at_median(std::span(x), [](double k) { return k; });
+// assert(half == 2 && x[0] + x[1] == 3);
+// @endcode
 
 #include <Eigen/Geometry>
 

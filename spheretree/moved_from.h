@@ -3,6 +3,15 @@
 
 // What objects are whose content was moved to others: a query of one says so, instead of reading
 // what is not there.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/moved_from.h>
+// #include <cassert>
+//
+// spherule::internal::SharedContent<int> a(std::make_shared<const int>(7));
+// const auto b = std::move(a);
+// assert(*a == 7 && *b == 7);
+// @endcode
 
 #include <memory>
 #include <utility>

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Rigid motions, exact in what they store.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/pose.h>
+// #include <cassert>
+//
+// const spherule::Pose world_from_base = spherule::Pose::from_translation({0, 0, 2});
+// const spherule::Pose base_from_tool({0, 0, 0, 1}, {1, 0, 0});  // w, x, y, z: half a turn about z
+// const spherule::Pose world_from_tool = world_from_base * base_from_tool;
+// const Eigen::Vector3d point = world_from_tool * Eigen::Vector3d(3, 0, 0);
+// assert((point - Eigen::Vector3d(-2, 0, 2)).norm() < 1e-14);
+// @endcode
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 

@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Sphere trees over spheres that move, without building them anew.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/refit.h>
+// #include <cassert>
+// #include <utility>
+// #include <vector>
+//
+// std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1.0}, {{2, 0, 0}, 1.0}};
+// spherule::SphereTree tree = spherule::build_tree(spheres);
+// spheres[1].center.x() = 3.0;
+// tree = spherule::refit(std::move(tree), spheres);
+// assert(tree.spheres()[1] == spheres[1] && tree.root().radius >= 2.5);
+// @endcode
+
 #include "spheretree/sphere_tree.h"
 
 #include <span>

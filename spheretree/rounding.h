@@ -25,6 +25,14 @@
 // order of operations. Such a source gets no inline functions but calls to those of
 // spheretree/ieee.cpp, of the same names in a namespace of their own, so that a linker cannot take
 // the one for the other.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/rounding.h>
+// #include <cassert>
+//
+// assert(spherule::add_up(1.0, 0x1p-60) > 1.0);
+// assert(spherule::norm_lower({3, 4, 0}) <= 5.0 && 5.0 <= spherule::norm_upper({3, 4, 0}));
+// @endcode
 
 #include <Eigen/Core>
 

@@ -1,6 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Refuses threads that do not round to nearest.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/error.h>
+// #include <spherule/spheretree/rounding_mode.h>
+// #include <cassert>
+// #include <cfenv>
+//
+// bool is_refused = false;
+// std::fesetround(FE_UPWARD);
+// try {
+//   spherule::require_rounding_to_nearest();
+// } catch (const spherule::Error&) {
+//   is_refused = true;
+// }
+// std::fesetround(FE_TONEAREST);
+// assert(is_refused);
+// @endcode
+
 namespace spherule {
 
 // Throws Error unless this thread rounds to nearest, as every proved bound presumes. What is built,

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Spheres, and predicates that err on one side only.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/sphere.h>
+// #include <cassert>
+//
+// const spherule::Sphere a{{0, 0, 0}, 1.0};
+// const spherule::Sphere b{{2, 0, 0}, 1.0};
+// assert(possibly_overlap(a, b));  // they touch
+// assert(!certainly_encloses(a, b));
+// assert(certainly_contains(a, {0.5, 0, 0}));
+// @endcode
+
 #include "spheretree/rounding.h"
 
 #include <Eigen/Core>

@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Spheres in a file, with what is proved of them.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/sphere_file.h>
+// #include <cassert>
+// #include <filesystem>
+//
+// spherule::SphereFile file;
+// file.spheres = {{{0, 0, 0}, 1.0}, {{2, 0, 0}, 1.0}};
+// file.options["max-error"] = 0.1;
+// const auto path = std::filesystem::temp_directory_path() / "spherule_example.json";
+// spherule::save_spheres(file, path);
+// assert(spherule::load_spheres(path).spheres == file.spheres);
+// @endcode
+
 #include "spheretree/pose.h"
 #include "spheretree/sphere.h"
 

@@ -1,6 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// The sphere tree, which build_tree() makes (spheretree/build.h).
+//
+// @code{.cpp}
+// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/sphere_tree.h>
+// #include <cassert>
+// #include <vector>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1}, {{2, 0, 0}, 1}, {{9, 0, 0}, 1}};
+// const spherule::SphereTree tree = spherule::build_tree(spheres);
+// std::size_t leaves = 0;
+// for (std::size_t node = 0; node < tree.node_count(); ++node) {
+//   assert(certainly_encloses(tree.root(), tree.sphere(node)) || node == 0);
+//   if (tree.is_leaf(node)) ++leaves;
+// }
+// assert(leaves == spheres.size());
+// @endcode
+
 #include "spheretree/sphere.h"
 
 #include <cstddef>

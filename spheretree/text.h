@@ -3,6 +3,15 @@
 
 // What all readers of text share: numbers, words, and quotes for messages. Does not depend on the
 // locale.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/text.h>
+// #include <cassert>
+//
+// assert(spherule::internal::finite_number("1.5e3") == 1500.0);
+// assert(!spherule::internal::finite_number("1.5 mm"));
+// assert(spherule::internal::words_of("v 0.5  1 2").size() == 4);
+// @endcode
 
 #include <cstdint>
 #include <optional>

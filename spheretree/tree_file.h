@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Sphere trees in files.
+//
+// @code{.cpp}
+// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/tree_file.h>
+// #include <cassert>
+// #include <filesystem>
+// #include <vector>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1.0}, {{2, 0, 0}, 1.0}};
+// const auto path = std::filesystem::temp_directory_path() / "spherule_example.tree";
+// spherule::save_tree(spherule::build_tree(spheres), path);
+// assert(spherule::load_tree(path).spheres()[1] == spheres[1]);
+// @endcode
+
 #include "spheretree/sphere_tree.h"
 
 #include <filesystem>

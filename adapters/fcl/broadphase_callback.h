@@ -1,6 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Narrow phases for FCL's managers.
+//
+// @code{.cpp}
+// #include <spherule/adapters/fcl/broadphase_callback.h>
+// #include <spherule/spheretree/build.h>
+// #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+// #include <cassert>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// namespace api = spherule::fcl_api;
+// const auto model = std::make_shared<api::SphereModel<double>>(sphere);
+// api::CollisionObjectd a(model);
+// api::CollisionObjectd b(model, Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.15, 0, 0));
+// fcl::DynamicAABBTreeCollisionManagerd manager;
+// manager.registerObjects({&a, &b});
+// manager.setup();
+// api::DefaultCollisionData<double> query;
+// manager.collide(&query, api::DefaultCollisionFunction<double>);
+// assert(query.result.isCollision());
+// @endcode
+
 #include "adapters/fcl/collide.h"
 
 #include <fcl/broadphase/default_broadphase_callbacks.h>

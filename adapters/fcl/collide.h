@@ -14,6 +14,21 @@
 //   are surfaces.
 // - None of the functions reads what requests say of FCL's solvers (gjk_*, cached_gjk_guess).
 // A transform is checked when it is queried, see from_fcl(). Errors name the argument.
+//
+// @code{.cpp}
+// #include <spherule/adapters/fcl/collide.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// namespace api = spherule::fcl_api;
+// const auto model = std::make_shared<api::SphereModel<double>>(sphere);
+// const api::CollisionObjectd a(model);
+// const api::CollisionObjectd b(model, Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.15, 0, 0));
+// api::CollisionResultd result;
+// assert(api::collide(&a, &b, api::CollisionRequestd(), result) == 1);
+// @endcode
 
 #include "adapters/fcl/conversions.h"
 #include "adapters/fcl/part_query.h"

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Transforms and models of FCL as poses and meshes, and back.
+//
+// @code{.cpp}
+// #include <spherule/adapters/fcl/conversions.h>
+// #include <cassert>
+//
+// fcl::Transform3d shifted = fcl::Transform3d::Identity();
+// shifted.translation() = fcl::Vector3d(1, 2, 3);
+// const spherule::Pose pose = spherule::fcl_api::from_fcl(shifted);
+// assert(pose.translation() == Eigen::Vector3d(1, 2, 3));
+// assert(spherule::fcl_api::to_fcl(pose).isApprox(shifted));
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "spheretree/error.h"
 #include "spheretree/pose.h"

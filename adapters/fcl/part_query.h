@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// What the templates of collide.h rest on, for either precision of FCL.
+//
+// @code{.cpp}
+// #include <spherule/adapters/fcl/part_query.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// const spherule::fcl_api::CoveredPart part{.spheres = sphere};
+// const spherule::Pose beside = spherule::Pose::from_translation({0.15, 0, 0});
+// assert(spherule::fcl_api::internal::contacts({part, {}}, {part, beside}, 1, false).size() == 1);
+// @endcode
+
 #include "adapters/fcl/sphere_model.h"
 #include "collide/distance.h"
 #include "spheretree/pose.h"
@@ -11,7 +25,6 @@
 #include <cstdint>
 #include <vector>
 
-// What the templates of collide.h rest on, for either precision of FCL.
 namespace spherule::fcl_api::internal {
 
 inline constexpr std::intptr_t kNone = -1;

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Sphere trees as geometry of FCL.
+//
+// @code{.cpp}
+// #include <spherule/adapters/fcl/sphere_model.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// const spherule::fcl_api::SphereModel<double> model(sphere);
+// assert(model.part().spheres->spheres().size() == 1);
+// assert(model.aabb_local.max_[0] >= 0.1);
+// @endcode
+
 #include "adapters/fcl/conversions.h"
 #include "collide/mesh_contact.h"
 #include "simplifier/simplify.h"
@@ -92,8 +106,8 @@ class SphereModel final : public fcl::CollisionGeometry<S> {
   CoveredPart part_;
 };
 
-using SphereModelf = SphereModel<float>;
-using SphereModeld = SphereModel<double>;
+using SphereModelf = SphereModel<float>;   // in single precision
+using SphereModeld = SphereModel<double>;  // in double precision
 
 // From a model of FCL to one that stands for it in the queries of this namespace, in one call.
 // Throws Error as from_fcl() and cover_part() do.

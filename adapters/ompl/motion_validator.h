@@ -1,6 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Validity of OMPL's motions, proved at every point of them.
+//
+// @code{.cpp}
+// #include <spherule/adapters/ompl/motion_validator.h>
+// #include <spherule/robot/check/robot_scene.h>
+// #include <spherule/spheretree/build.h>
+// #include <ompl/base/ScopedState.h>
+// #include <cassert>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// spherule::RobotModel robot("base");
+// robot.add_link("sled", "base", {.name = "rail", .type = spherule::JointType::kPrismatic,
+//                                 .axis = {1, 0, 0}, .lower = -1, .upper = 1});
+// robot.attach("sled", sphere);
+// spherule::RobotScene scene(robot);
+// scene.add("stop", sphere);
+// const auto space = std::make_shared<ompl::base::RealVectorStateSpace>(1);
+// space->setBounds(-1, 1);
+// const auto information = std::make_shared<ompl::base::SpaceInformation>(space);
+// const spherule::MotionValidator validator(information, scene.snapshot());
+// ompl::base::ScopedState<> left(space), right(space);
+// left = std::vector<double>{-0.5};
+// right = std::vector<double>{0.5};
+// assert(validator.checkMotion(left.get(), left.get()));
+// assert(!validator.checkMotion(left.get(), right.get()));  // the stop is in between
+// @endcode
+
 #include "adapters/ompl/robot_states.h"
 #include "collide/edge.h"
 

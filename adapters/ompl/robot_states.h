@@ -1,6 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// States of OMPL's spaces as configurations of a robot.
+//
+// @code{.cpp}
+// #include <spherule/adapters/ompl/robot_states.h>
+// #include <spherule/robot/check/robot_scene.h>
+// #include <ompl/base/ScopedState.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("sled", "base", {.name = "rail", .type = spherule::JointType::kPrismatic,
+//                                 .axis = {1, 0, 0}, .lower = -1, .upper = 1});
+// const auto space = std::make_shared<ompl::base::RealVectorStateSpace>(1);
+// space->setBounds(-1, 1);
+// const spherule::RobotStates states(spherule::RobotScene(robot).snapshot(), space);
+// ompl::base::ScopedState<> state(space);
+// state = std::vector<double>{0.5};
+// std::vector<double> configuration;
+// states.read(state.get(), configuration);
+// assert(configuration == std::vector<double>{0.5});
+// @endcode
+
 #include "robot/check/robot_checker.h"
 #include "robot/model/shortest_motion.h"
 #include "spheretree/error.h"

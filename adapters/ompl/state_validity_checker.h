@@ -1,6 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Validity of OMPL's states by a RobotChecker.
+//
+// @code{.cpp}
+// #include <spherule/adapters/ompl/state_validity_checker.h>
+// #include <spherule/robot/check/robot_scene.h>
+// #include <spherule/spheretree/build.h>
+// #include <ompl/base/ScopedState.h>
+// #include <cassert>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// spherule::RobotModel robot("base");
+// robot.add_link("sled", "base", {.name = "rail", .type = spherule::JointType::kPrismatic,
+//                                 .axis = {1, 0, 0}, .lower = -1, .upper = 1});
+// robot.attach("sled", sphere);
+// spherule::RobotScene scene(robot);
+// scene.add("stop", sphere);
+// const auto space = std::make_shared<ompl::base::RealVectorStateSpace>(1);
+// space->setBounds(-1, 1);
+// const auto information = std::make_shared<ompl::base::SpaceInformation>(space);
+// information->setStateValidityChecker(
+//     std::make_shared<spherule::StateValidityChecker>(information, scene.snapshot()));
+// information->setup();
+// ompl::base::ScopedState<> state(space);
+// state = std::vector<double>{0.5};
+// assert(information->isValid(state.get()));
+// state = std::vector<double>{0.1};
+// assert(!information->isValid(state.get()));
+// @endcode
+
 #include "adapters/ompl/robot_states.h"
 
 #include <limits>

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Units of length, in texts and in files.
+//
+// @code{.cpp}
+// #include <spherule/mesh/io/length_unit.h>
+// #include <cassert>
+// #include <cmath>
+//
+// const auto length = spherule::parse_length("0.5 in");
+// const spherule::LengthUnit* const millimetre = spherule::unit_named("mm");
+// assert(std::abs(spherule::in_units_of(millimetre->micrometres, *length) - 12.7) < 1e-12);
+// assert(!spherule::stated_unit("part.stl"));  // the format has none
+// @endcode
+
 #include <filesystem>
 #include <optional>
 #include <span>

@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Meshes from files, and STL files from meshes.
+//
+// @code{.cpp}
+// #include <spherule/mesh/io/mesh_io.h>
+// #include <cassert>
+// #include <filesystem>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto path = std::filesystem::temp_directory_path() / "spherule_example.stl";
+// spherule::write_stl(tetrahedron, path);
+// const spherule::TriangleMesh read = spherule::read_mesh(path, {.scale = 1000});  // metres to mm
+// assert(read.triangles.size() == 4 && read.vertices.size() == 4);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 
 #include <filesystem>

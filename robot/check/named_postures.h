@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Named configurations of a robot, and what touches in them.
+//
+// @code{.cpp}
+// #include <spherule/robot/check/named_postures.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kRevolute,
+//                                .lower = 0.5, .upper = 1.0});
+// const spherule::NamedPosture rest = spherule::rest_posture(robot);
+// assert(rest.configuration[0] == 0.5);  // the limit that is nearest to 0
+// const spherule::AllowedCollisions allowed(robot);
+// assert(spherule::contacts_in({&rest, 1}, robot, {}, allowed, nullptr).empty());  // no spheres
+// @endcode
+
 #include "robot/files/srdf.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"

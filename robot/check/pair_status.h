@@ -1,6 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Why pairs of links are tested against each other, or not.
+//
+// @code{.cpp}
+// #include <spherule/robot/check/pair_status.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+// #include <iostream>
+//
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// for (const char* const link : {"base", "arm"}) robot.attach(link, sphere);
+// const spherule::AllowedCollisions allowed(robot);
+// const auto statuses = spherule::pair_statuses(robot, allowed, nullptr);
+// assert(statuses.size() == 1 && statuses[0].reason == spherule::AllowedReason::kAdjacent);
+// std::cout << kind_of(statuses[0]) << "\n";
+// @endcode
+
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"
 

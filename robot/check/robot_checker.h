@@ -1,6 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Is a robot free of obstacles and of itself, in configurations and on motions?
+//
+// @code{.cpp}
+// #include <spherule/robot/check/robot_scene.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// const std::vector<spherule::Sphere> spheres{{{1, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// robot.attach("arm", sphere);
+// spherule::RobotScene scene(robot);
+// scene.add("post", sphere);
+// const spherule::RobotChecker checker = scene.snapshot();
+// spherule::RobotChecker::Scratch scratch(checker);
+// const std::vector<double> left{-1.0}, right{1.0};
+// assert(checker.check_config(left, scratch) && checker.check_config(right, scratch));
+// const spherule::EdgeResult edge = checker.check_edge(left, right, scratch);
+// assert(edge.verdict == spherule::Verdict::kCollision);  // the post is in between
+// @endcode
+
 #include "collide/contact.h"
 #include "collide/edge.h"
 #include "collide/instruction_set.h"

@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Does a placed robot overlap a single obstacle? For more, see RobotScene.
+//
+// @code{.cpp}
+// #include <spherule/robot/check/robot_collision.h>
+// #include <spherule/robot/model/kinematics.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// const std::vector<spherule::Sphere> spheres{{{1, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// spherule::RobotModel robot("base");
+// robot.attach("base", sphere);
+// std::vector<spherule::Pose> world_from_link;
+// spherule::forward_kinematics(robot, {}, world_from_link);
+// assert(robot_collides(robot, world_from_link, *sphere, {}));
+// @endcode
+
 #include "collide/collide.h"
 #include "robot/model/robot_model.h"
 

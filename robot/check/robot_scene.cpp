@@ -30,6 +30,16 @@ std::vector<std::string> names_in(const Map& map) {
   return names;
 }
 
+// What has that name among the obstacles or the attached objects.
+template <class Map>
+auto found_in(Map& map, std::string_view name, const char* kind) {
+  const auto found = map.find(name);
+  if (found == map.end()) {
+    throw Error(std::string(name), "there is no " + std::string(kind) + " of that name");
+  }
+  return found;
+}
+
 }  // namespace
 
 RobotScene::RobotScene(RobotModel robot, const Pose& world_from_root)
@@ -97,20 +107,21 @@ void RobotScene::add(std::string name, ObstacleShape shape, const Pose& world_fr
 }
 
 void RobotScene::move(std::string_view obstacle, const Pose& world_from_shape) {
-  const auto found = obstacles_.find(obstacle);
-  if (found == obstacles_.end()) {
-    throw Error(std::string(obstacle), "there is no obstacle of that name");
-  }
-  found->second.world_from_shape = world_from_shape;
+  found_in(obstacles_, obstacle, "obstacle")->second.world_from_shape = world_from_shape;
 }
 
 void RobotScene::remove(std::string_view obstacle) {
-  const auto found = obstacles_.find(obstacle);
-  if (found == obstacles_.end()) {
-    throw Error(std::string(obstacle), "there is no obstacle of that name");
-  }
+  const auto found = found_in(obstacles_, obstacle, "obstacle");
   forget(obstacle);
   obstacles_.erase(found);
+}
+
+const RobotScene::Obstacle& RobotScene::obstacle(std::string_view name) const {
+  return found_in(obstacles_, name, "obstacle")->second;
+}
+
+const RobotScene::Attached& RobotScene::attached(std::string_view name) const {
+  return found_in(attached_, name, "attached object")->second;
 }
 
 std::vector<std::string> RobotScene::obstacles() const {
@@ -128,10 +139,7 @@ void RobotScene::attach(std::string name, std::string_view link,
 }
 
 void RobotScene::detach(std::string_view object) {
-  const auto found = attached_.find(object);
-  if (found == attached_.end()) {
-    throw Error(std::string(object), "there is no attached object of that name");
-  }
+  const auto found = found_in(attached_, object, "attached object");
   forget(object);
   attached_.erase(found);
 }
@@ -143,10 +151,7 @@ void RobotScene::set_link_pairs(std::shared_ptr<const LinkPairs> pairs) {
 
 void RobotScene::set_attached_pairs(std::string_view object,
                                     std::shared_ptr<const LinkPairs> pairs) {
-  const auto found = attached_.find(object);
-  if (found == attached_.end()) {
-    throw Error(std::string(object), "there is no attached object of that name");
-  }
+  const auto found = found_in(attached_, object, "attached object");
   if (pairs != nullptr) {
     internal::require_proofs_of(*pairs, robot_, robot_.find_link(found->second.link));
   }

@@ -1,6 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// A robot and what is around it, to be edited and then queried.
+//
+// @code{.cpp}
+// #include <spherule/robot/check/robot_scene.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// const std::vector<spherule::Sphere> spheres{{{1, 0, 0}, 0.1}};
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// robot.attach("arm", std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres)));
+// spherule::RobotScene scene(robot);
+// const auto world_from_table = spherule::Pose::from_translation({0, 0, -0.2});
+// scene.add("table", spherule::Box{.size = {2, 2, 0.1}}, world_from_table);
+// scene.set_padding("arm", 0.01);
+// const spherule::RobotChecker checker = scene.snapshot();
+// spherule::RobotChecker::Scratch scratch(checker);
+// assert(checker.check_config(std::vector{0.5}, scratch));
+// @endcode
+
 #include "collide/primitive.h"
 #include "robot/check/robot_checker.h"
 #include "robot/model/robot_model.h"
@@ -125,18 +145,12 @@ class RobotScene {
   void forbid_contact(std::string_view body, std::string_view other);
   void forbid_contact(const Region& region, std::string_view other);
 
-  // What is queried, as of now: later edits do not change it. Trees and meshes are shared, not
-  // copied, but for those of bodies that have padding or regions. Throws Error for what reaches
-  // too far to be computed with, a mesh of the options that is missing, and instructions that this
-  // machine has not got.
-  RobotChecker snapshot(const RobotCheckerOptions& options = {}) const;
-
- private:
-  class Snapshot;
+  // What was put in, for who shows or stores a scene. An obstacle, as add() and move() were told.
   struct Obstacle {
     ObstacleShape shape;
     Pose world_from_shape;
   };
+  // What moves with a link, as attach() and set_attached_pairs() were told.
   struct Attached {
     std::string link;
     std::shared_ptr<const SphereTree> tree;
@@ -150,7 +164,31 @@ class RobotScene {
     std::string other;
     friend auto operator<=>(const Intended&, const Intended&) = default;
   };
+  // Two names: of bodies, or of a body and a region.
   using NamePair = std::pair<std::string, std::string>;
+  // Where the robot stands, with a unit rotation.
+  const Pose& world_from_root() const { return world_from_root_; }
+  // As set_link_pairs() was told last.
+  const std::shared_ptr<const LinkPairs>& link_pairs() const { return link_pairs_; }
+  // Both throw Error for a name that is not there.
+  const Obstacle& obstacle(std::string_view name) const;
+  const Attached& attached(std::string_view name) const;
+  // Of bodies, and of pairs, their names in alphabetical order.
+  const std::map<std::string, double, std::less<>>& padding() const { return padding_; }
+  const std::map<NamePair, double>& pair_padding() const { return pair_padding_; }
+  // Of a body and a region, sorted.
+  const std::map<NamePair, std::vector<BodySphere>>& regions() const { return regions_; }
+  // What allow_contact() was told and forbid_contact() has not taken back.
+  const std::set<Intended>& intended_contacts() const { return intended_; }
+
+  // What is queried, as of now: later edits do not change it. Trees and meshes are shared, not
+  // copied, but for those of bodies that have padding or regions. Throws Error for what reaches
+  // too far to be computed with, a mesh of the options that is missing, and instructions that this
+  // machine has not got.
+  RobotChecker snapshot(const RobotCheckerOptions& options = {}) const;
+
+ private:
+  class Snapshot;
 
   bool is_body(std::string_view name) const;
   void require_free_name(const std::string& name) const;

@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// A robot, its spheres and a scene file become what answers queries.
+//
+// @code{.cpp}
+// #include <spherule/robot/check/scene_setup.h>
+// #include <cassert>
+//
+// const std::vector<spherule::LinkSpheres> spheres{
+//     {.link = "base", .spheres = {{{0, 0, 1}, 0.1}}}};
+// const auto robot = spherule::with_spheres(spherule::RobotModel("base"), spheres);
+// spherule::SceneDescription cell;  // as read_scene() reads it
+// cell.obstacles = {{.name = "floor", .shape = spherule::Primitive(spherule::HalfSpace{})}};
+// const spherule::PreparedScene prepared = spherule::prepare_scene(robot, cell);
+// const spherule::RobotChecker checker = prepared.scene.snapshot();
+// spherule::RobotChecker::Scratch scratch(checker);
+// assert(prepared.warnings.empty() && checker.check_config({}, scratch));
+// @endcode
+
 #include "robot/check/robot_scene.h"
 #include "robot/cover/robot_spheres.h"
 #include "robot/files/scene_file.h"
@@ -9,16 +26,6 @@
 
 #include <string>
 #include <vector>
-
-// A robot, its spheres and a scene file become what answers queries:
-//
-//     const RobotDescription robot = read_urdf("robot.urdf");
-//     const SphereFormatFile file = read_robot_spheres("spheres/robot.curobo.yml");
-//     const PreparedScene cell =
-//         prepare_scene(with_spheres(robot.model, file.spheres.links), read_scene("cell.json"));
-//     const RobotChecker checker = cell.scene.snapshot();
-//     RobotChecker::Scratch scratch(checker);
-//     const bool is_free = checker.check_config(configuration, scratch);
 
 namespace spherule {
 

@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Certifies the spheres of a robot, of any origin, and makes them cover.
+//
+// @code{.cpp}
+// #include <spherule/robot/cover/audit_robot.h>
+// #include <cassert>
+//
+// spherule::RobotDescription robot{.name = "post", .model = spherule::RobotModel("base")};
+// const spherule::Primitive bar = spherule::Box{.size = {0.01, 0.01, 0.1}};
+// robot.links = {{.name = "base", .collision = {{.name = "bar", .geometry = bar}}}};
+// const std::vector<spherule::LinkSpheres> small{
+//     {.link = "base", .spheres = {{{0, 0, 0}, 0.05}}}};
+// assert(!spherule::audit_robot(robot, small).links_covered);  // the corners are out
+// const auto repaired = spherule::repair_robot(robot, small, {.max_error = 0.06});
+// assert(repaired.links[0].certificate.covered);
+// @endcode
+
 #include "robot/cover/link_mesh.h"
 #include "robot/model/link_spheres.h"
 #include "robot/model/robot_description.h"

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// What the links of a robot are made of, for proofs about pairs of them.
+//
+// @code{.cpp}
+// #include <spherule/robot/cover/link_bodies.h>
+// #include <cassert>
+//
+// spherule::RobotDescription robot{.name = "post", .model = spherule::RobotModel("base")};
+// const spherule::Primitive box = spherule::Box{.size = {0.1, 0.1, 0.2}};
+// robot.links = {{.name = "base", .collision = {{.name = "post", .geometry = box}}}};
+// const std::vector<spherule::LinkBody> bodies = spherule::link_bodies(robot);
+// assert(bodies.size() == 1 && bodies[0].mesh->has_inside());
+// @endcode
+
 #include "robot/cover/link_mesh.h"
 #include "robot/model/robot_description.h"
 #include "robot/pairs/link_pairs.h"

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// The shapes of a link as one mesh.
+//
+// @code{.cpp}
+// #include <spherule/robot/cover/link_mesh.h>
+// #include <cassert>
+//
+// const spherule::Primitive pin = spherule::Cylinder{.radius = 0.01, .length = 0.1};
+// const spherule::LinkDescription link{.name = "base",
+//                                      .collision = {{.name = "", .geometry = pin}}};
+// const auto mesh = spherule::link_mesh(link, {.chord_error = 0.001});
+// assert(mesh && mesh->triangles.size() > 20);
+// assert(!spherule::link_mesh(link, {.geometry = spherule::LinkGeometry::kVisual}));
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "robot/model/robot_description.h"
 

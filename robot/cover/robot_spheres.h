@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Covers a robot's links with spheres, and certifies them.
+//
+// @code{.cpp}
+// #include <spherule/robot/cover/robot_spheres.h>
+// #include <cassert>
+//
+// spherule::RobotDescription robot{.name = "post", .model = spherule::RobotModel("base")};
+// const spherule::Primitive box = spherule::Box{.size = {0.1, 0.1, 0.1}};
+// robot.links = {{.name = "base", .collision = {{.name = "post", .geometry = box}}}};
+// const auto cover = spherule::cover_robot(robot, {.max_error = 0.04, .effort = 0});
+// assert(spherule::links_not_proved(cover).empty());
+// assert(!spherule::robot_spheres(robot, cover).links[0].spheres.empty());
+// @endcode
+
 #include "robot/cover/link_mesh.h"
 #include "robot/formats/sphere_formats.h"
 #include "robot/model/robot_description.h"

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Points from files.
+//
+// @code{.cpp}
+// #include <spherule/robot/files/point_cloud_file.h>
+// #include <spherule/spheretree/atomic_file.h>
+// #include <cassert>
+//
+// const auto path = std::filesystem::temp_directory_path() / "spherule_example.xyz";
+// spherule::write_file_atomically(path, "# millimetres\n0 0 0\n1000 0 500\n");
+// const spherule::PointCloudFile cloud = spherule::read_point_cloud(path, 0.001);
+// assert(cloud.points.size() == 2 && std::abs(cloud.points[1].z() - 0.5) <= cloud.point_error);
+// @endcode
+
 #include <Eigen/Core>
 
 #include <filesystem>

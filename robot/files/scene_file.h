@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// What is around a robot, from a file (docs/scene-file.md).
+//
+// @code{.cpp}
+// #include <spherule/robot/files/scene_file.h>
+// #include <spherule/spheretree/atomic_file.h>
+// #include <cassert>
+//
+// const auto path = std::filesystem::temp_directory_path() / "spherule_example.scene.json";
+// spherule::write_file_atomically(path, R"({"format": "spherule-scene", "version": 1,
+//   "obstacles": [{"name": "floor", "half_space": {}}]})");
+// const spherule::SceneDescription scene = spherule::read_scene(path);
+// assert(scene.obstacles[0].name == "floor");
+// @endcode
+
 #include "collide/primitive.h"
 #include "robot/model/robot_description.h"
 #include "spheretree/pose.h"

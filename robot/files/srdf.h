@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Semantic robot descriptions (SRDF).
+//
+// @code{.cpp}
+// #include <spherule/robot/files/srdf.h>
+// #include <spherule/spheretree/atomic_file.h>
+// #include <cassert>
+//
+// const auto path = std::filesystem::temp_directory_path() / "spherule_example.srdf";
+// spherule::write_file_atomically(path, R"(<robot name="arm">
+//   <disable_collisions link1="base" link2="hand" reason="Never"/>
+// </robot>)");
+// const spherule::SemanticDescription semantics = spherule::read_srdf(path);
+// assert(semantics.disabled_pairs[0].reason == "Never");
+// assert(!spherule::unknown_names(semantics, spherule::RobotModel("base")).empty());  // no hand
+// @endcode
+
 #include "robot/model/link_spheres.h"
 #include "robot/model/robot_model.h"
 

@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Trajectories from files.
+//
+// @code{.cpp}
+// #include <spherule/robot/files/trajectory_file.h>
+// #include <spherule/spheretree/atomic_file.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// const auto path = std::filesystem::temp_directory_path() / "spherule_example.csv";
+// spherule::write_file_atomically(path, "time,turn\n0,0.5\n1,0.75\n");
+// const spherule::Trajectory trajectory = spherule::read_trajectory(path, robot);
+// assert(trajectory.size() == 2 && trajectory.configuration(1)[0] == 0.75);
+// @endcode
+
 #include "robot/model/robot_model.h"
 
 #include <cstddef>

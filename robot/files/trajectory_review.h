@@ -1,15 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// What a person should know of a trajectory that is well formed: what it leaves open, or what may
+// be meant otherwise.
+//
+// @code{.cpp}
+// #include <spherule/robot/files/trajectory_review.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kRevolute,
+//                                .lower = -2.0, .upper = 2.0});
+// const spherule::Trajectory trajectory{.width = 1, .positions = {0, 45, 90}, .lines = {1, 2, 3}};
+// assert(spherule::outside_limits(robot, trajectory).count == 2);
+// assert(spherule::guess_degrees(robot, trajectory).looks_so);
+// @endcode
+
 #include "collide/edge.h"
 #include "robot/files/trajectory_file.h"
 #include "robot/model/robot_model.h"
 
 #include <cstddef>
 #include <string>
-
-// What a person should know of a trajectory that is well formed: what it leaves open, or what may
-// be meant otherwise.
 
 namespace spherule {
 

@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Robots from URDF files.
+//
+// @code{.cpp}
+// #include <spherule/robot/files/urdf.h>
+// #include <spherule/spheretree/atomic_file.h>
+// #include <cassert>
+//
+// const auto path = std::filesystem::temp_directory_path() / "spherule_example.urdf";
+// spherule::write_file_atomically(path, R"(<robot name="post">
+//   <link name="base"><collision><geometry><box size="0.1 0.1 1"/></geometry></collision></link>
+//   <link name="arm"/>
+//   <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/></joint>
+// </robot>)");
+// const spherule::RobotDescription robot = spherule::read_urdf(path);
+// assert(robot.model.variable_count() == 1 && robot.links[0].collision.size() == 1);
+// @endcode
+
 #include "robot/model/robot_description.h"
 
 #include <filesystem>

@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// The files in which tools keep the spheres of a robot.
+//
+// @code{.cpp}
+// #include <spherule/robot/formats/sphere_formats.h>
+// #include <cassert>
+//
+// spherule::RobotSpheres spheres{.robot = "arm"};
+// spheres.links = {{.link = "base", .spheres = {{{0, 0, 0.5}, 0.1}}}};
+// const auto xrdf = spherule::SphereFormat::kXrdf;
+// const auto folder = std::filesystem::temp_directory_path();
+// const auto path = folder / spherule::sphere_file_name("arm", xrdf);
+// spherule::write_robot_spheres(spheres, xrdf, {.base_link = "base"}, path);
+// const spherule::SphereFormatFile file = spherule::read_robot_spheres(path);
+// assert(file.format == xrdf && file.spheres.links[0].spheres == spheres.links[0].spheres);
+// @endcode
+
 #include "robot/files/srdf.h"
 #include "robot/model/link_spheres.h"
 

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Which joint of a configuration is beyond its limits?
+//
+// @code{.cpp}
+// #include <spherule/robot/model/joint_limits.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kRevolute,
+//                                .lower = -1.0, .upper = 1.0});
+// assert(spherule::joint_outside_limits(robot, std::vector{0.5}) == nullptr);
+// assert(spherule::joint_outside_limits(robot, std::vector{1.5})->name == "turn");
+// @endcode
+
 #include "robot/model/robot_model.h"
 
 #include <span>

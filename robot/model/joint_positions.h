@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// The positions of the joints in a configuration, those that mimic others included.
+//
+// @code{.cpp}
+// #include <spherule/robot/model/joint_positions.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("hand");
+// robot.add_link("left", "hand", {.name = "a", .type = spherule::JointType::kContinuous});
+// robot.add_link("right", "hand", {.name = "b", .type = spherule::JointType::kContinuous});
+// robot.mimic("b", "a", -1.0);
+// const spherule::JointPositions positions(robot);
+// spherule::JointPositions::Room room = positions.room_for(1);
+// assert(robot.variable_count() == 1 && positions.of(std::vector{0.5}, room)[1] == -0.5);
+// @endcode
+
 #include "robot/model/robot_model.h"
 
 #include <cstddef>

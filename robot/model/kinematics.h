@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Where a robot's links are in a configuration.
+//
+// @code{.cpp}
+// #include <spherule/robot/model/kinematics.h>
+// #include <cassert>
+// #include <numbers>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// std::vector<spherule::Pose> world_from_link;
+// spherule::forward_kinematics(robot, std::vector{std::numbers::pi}, world_from_link);
+// const Eigen::Vector3d tip = world_from_link[1] * Eigen::Vector3d(1, 0, 0);
+// assert((tip - Eigen::Vector3d(-1, 0, 0)).norm() < 1e-14);
+// assert(spherule::kinematics_error_bound(robot, 1.0) < 1e-12);
+// @endcode
+
 #include "robot/model/robot_model.h"
 
 #include <span>

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// A robot with spheres on its links.
+//
+// @code{.cpp}
+// #include <spherule/robot/model/link_spheres.h>
+// #include <cassert>
+//
+// const std::vector<spherule::LinkSpheres> spheres{
+//     {.link = "base", .spheres = {{{0, 0, 0}, 0.1}}}};
+// const auto robot = spherule::with_spheres(spherule::RobotModel("base"), spheres);
+// assert(robot.links()[0].trees[0]->spheres()[0].radius == 0.1);
+// @endcode
+
 #include "robot/model/robot_model.h"
 #include "spheretree/sphere.h"
 

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// A robot as a file describes it: its mechanism, and the shapes of its links.
+//
+// @code{.cpp}
+// #include <spherule/robot/model/robot_description.h>
+// #include <cassert>
+//
+// spherule::RobotDescription robot{.name = "post", .model = spherule::RobotModel("base")};
+// const spherule::Primitive box = spherule::Box{.size = {0.1, 0.1, 1.0}};
+// robot.links = {{.name = "base", .collision = {{.name = "post", .geometry = box}}}};
+// assert(robot.links.size() == robot.model.links().size());
+// @endcode
+
 #include "collide/primitive.h"
 #include "robot/model/robot_model.h"
 #include "spheretree/pose.h"

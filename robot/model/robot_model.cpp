@@ -29,6 +29,24 @@ RobotModel::RobotModel(std::string root_link)
 }
 
 int RobotModel::add_link(std::string name, std::string_view parent_link, Joint joint) {
+  joint.axis = joint.type == JointType::kFixed ? Eigen::Vector3d::UnitZ()
+                                               : unit_axis(joint.axis, joint.name);
+  joint.parent_from_joint = Pose(unit_rotation(joint.parent_from_joint.rotation()),
+                                 joint.parent_from_joint.translation());
+  return insert(std::move(name), parent_link, std::move(joint));
+}
+
+int RobotModel::add_copied_link(std::string name, std::string_view parent_link, Joint joint) {
+  const Eigen::Quaterniond rotation = joint.parent_from_joint.rotation();
+  if (!(std::abs(joint.axis.squaredNorm() - 1.0) <= 0x1p-49) ||
+      unit_rotation(rotation).coeffs() != rotation.coeffs()) {
+    throw Error("joint " + joint.name, "its axis or origin is not unit");
+  }
+  return insert(std::move(name), parent_link, std::move(joint));
+}
+
+// With an axis and an origin that are unit.
+int RobotModel::insert(std::string name, std::string_view parent_link, Joint joint) {
   if (find_link(name) >= 0) throw Error("link " + name, "the name is taken");
   if (find_joint(joint.name) >= 0) throw Error("joint " + joint.name, "the name is taken");
   const int parent = find_link(parent_link);
@@ -42,10 +60,6 @@ int RobotModel::add_link(std::string name, std::string_view parent_link, Joint j
   if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || joint.lower > joint.upper) {
     throw Error("joint " + joint.name, "the limits are not finite or reversed");
   }
-  joint.axis = joint.type == JointType::kFixed ? Eigen::Vector3d::UnitZ()
-                                               : unit_axis(joint.axis, joint.name);
-  joint.parent_from_joint = Pose(unit_rotation(joint.parent_from_joint.rotation()),
-                                 joint.parent_from_joint.translation());
   joint.parent_link = parent;
   joint.child_link = static_cast<int>(links_.size());
   joint.mimics = -1;

@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// A jointed mechanism, and the sphere trees on its links.
+//
+// @code{.cpp}
+// #include <spherule/robot/model/robot_model.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// robot.add_link("hand", "arm", {.name = "slide", .type = spherule::JointType::kPrismatic,
+//                                .axis = {1, 0, 0}, .lower = 0.0, .upper = 0.2});
+// const std::vector<spherule::Sphere> spheres{{{1, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// robot.attach("hand", sphere);
+// assert(robot.variable_count() == 2 && robot.find_link("hand") == 2);
+// @endcode
+
 #include "spheretree/moved_from.h"
 #include "spheretree/pose.h"
 #include "spheretree/sphere_tree.h"
@@ -77,6 +94,11 @@ class RobotModel {
   // use and replaced), and limits that are not finite or reversed.
   int add_link(std::string name, std::string_view parent_link, Joint joint);
 
+  // The same with a joint of a RobotModel, whose axis and origin are unit: they are taken bit for
+  // bit, so that a robot that is made again of its links, joints and mimics is the same. Throws
+  // Error, too, where they are not unit.
+  int add_copied_link(std::string name, std::string_view parent_link, Joint joint);
+
   // From now on `joint` stands at multiplier * (position of `other`) + offset. `other` may mimic a
   // third, and may come later; then the factors of the chain are multiplied out, rounded, and what
   // stands in Joint is what counts. Variables are numbered anew. Throws Error for a joint that does
@@ -91,6 +113,13 @@ class RobotModel {
   // In the order in which they were added, the root link first.
   const std::vector<Link>& links() const { return links_; }
   const std::vector<Joint>& joints() const { return joints_; }
+  // What mimic() was told of each joint, before chains are multiplied out; 1 and 0 of one that
+  // mimics none.
+  struct Mimic {
+    double multiplier = 1.0;
+    double offset = 0.0;
+  };
+  const std::vector<Mimic>& mimics() const { return follow_; }
   // How many numbers a configuration has.
   int variable_count() const { return static_cast<int>(variable_joints_.size()); }
   // The joint whose position each number of a configuration is, by its index.
@@ -109,18 +138,14 @@ class RobotModel {
   }
 
  private:
-  // What a joint was told to follow.
-  struct Follow {
-    double multiplier = 1.0;
-    double offset = 0.0;
-  };
+  int insert(std::string name, std::string_view parent_link, Joint joint);
   std::size_t require_moving_joint(std::string_view name) const;
   bool follows(std::size_t joint, std::size_t other) const;
   void number_variables();
 
   std::vector<Link> links_;
   std::vector<Joint> joints_;
-  std::vector<Follow> follow_;  // for each joint
+  std::vector<Mimic> follow_;  // for each joint
   std::map<std::string, int, std::less<>> link_index_;
   std::map<std::string, int, std::less<>> joint_index_;  // of those with a name
   std::vector<int> variable_joints_;

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Motions on which continuous joints turn the shorter way.
+//
+// @code{.cpp}
+// #include <spherule/robot/model/shortest_motion.h>
+// #include <cassert>
+//
+// assert(std::abs(spherule::nearest_turn(3.0, -3.0) - 3.283185307) < 1e-9);  // on through pi
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// const spherule::ShortestMotion motion(robot);
+// std::vector<double> end;
+// assert(motion.end_of(std::vector{3.0}, std::vector{-3.0}, end)[0] > 3.0);
+// @endcode
+
 #include "robot/model/robot_model.h"
 
 #include <cmath>

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Which pairs of a robot's links may touch each other, and why.
+//
+// @code{.cpp}
+// #include <spherule/robot/pairs/allowed_collisions.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// spherule::AllowedCollisions allowed(robot);
+// assert(allowed.reason(0, 1) == spherule::AllowedReason::kAdjacent);
+// allowed.forbid("base", "arm");  // tests them nevertheless
+// assert(!allowed.allows("base", "arm"));
+// @endcode
+
 #include "robot/model/robot_model.h"
 
 #include <cassert>

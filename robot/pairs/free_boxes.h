@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Sets of configurations that are proved free, as LinkPair has them.
+//
+// @code{.cpp}
+// #include <spherule/robot/pairs/free_boxes.h>
+// #include <cassert>
+//
+// // From -1 to 1 rad, halved once: free below 0, nothing proved above.
+// const spherule::FreeBoxes boxes({{.index = 0, .lower = -1.0, .upper = 1.0}},
+//                                 std::string{spherule::FreeBoxes::kFirstHalving,
+//                                             spherule::FreeBoxes::kFree,
+//                                             spherule::FreeBoxes::kNotProved});
+// assert(boxes.contains(std::vector{-0.5}) && !boxes.contains(std::vector{0.5}));
+// assert(boxes.contains_edge(std::vector{-0.9}, std::vector{-0.1}) && boxes.free_share() == 0.5);
+// @endcode
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

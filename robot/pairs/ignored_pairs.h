@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Pairs of links that are proved never to touch, for lists of ignored pairs.
+//
+// @code{.cpp}
+// #include <spherule/robot/pairs/ignored_pairs.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// const auto proofs = spherule::prove_link_pairs(robot, {});  // without bodies: of no pair
+// std::vector<spherule::DisabledPair> pairs{{.link_a = "arm", .link_b = "base", .reason = ""}};
+// spherule::add_missing_pairs(spherule::pairs_proved_never(robot, proofs), robot, pairs);
+// assert(pairs.size() == 1);
+// @endcode
+
 #include "robot/files/srdf.h"
 #include "robot/pairs/link_pairs.h"
 

@@ -1,6 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Which links of a robot can touch each other within the limits of the joints, proved where
+// possible.
+//
+// @code{.cpp}
+// #include <spherule/robot/pairs/link_pairs.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// const auto sphere_at = [](double x) {
+//   const std::vector<spherule::Sphere> spheres{{{x, 0, 0}, 0.1}};
+//   return std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// };
+// const std::vector<spherule::LinkBody> bodies{{.link = 0, .spheres = sphere_at(0.0)},
+//                                              {.link = 1, .spheres = sphere_at(1.0)}};
+// const spherule::LinkPairs pairs = spherule::prove_link_pairs(robot, bodies);
+// assert(pairs.find(0, 1)->verdict == spherule::PairVerdict::kNever);
+// @endcode
+
 #include "collide/solid_mesh.h"
 #include "robot/model/robot_model.h"
 #include "robot/pairs/free_boxes.h"

@@ -1,6 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Proofs about pairs of links in files (docs/link-pairs-file.md).
+//
+// @code{.cpp}
+// #include <spherule/robot/pairs/link_pairs_file.h>
+// #include <spherule/spheretree/build.h>
+// #include <cassert>
+//
+// spherule::RobotModel robot("base");
+// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// const std::vector<spherule::LinkBody> bodies{{.link = 0, .spheres = sphere},
+//                                              {.link = 1, .spheres = sphere}};
+// const auto path = std::filesystem::temp_directory_path() / "spherule_example.pairs";
+// spherule::save_link_pairs(spherule::prove_link_pairs(robot, bodies), path);
+// const spherule::LinkPairs pairs = spherule::load_link_pairs(path, robot, bodies);
+// assert(pairs.find(0, 1)->verdict == spherule::PairVerdict::kTouching);
+// @endcode
+
 #include "robot/pairs/link_pairs.h"
 
 #include <filesystem>

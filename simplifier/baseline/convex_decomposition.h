@@ -1,8 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
 // Approximate convex decomposition: not conservative. The parts hold the whole surface of the mesh
 // but not always what it encloses; where the surface is concave they stick out, unbounded by the
 // concavity requested. measure_deviation() tells by how much.
-#pragma once
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/convex_decomposition.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto parts = spherule::decompose(tetrahedron).parts;
+// assert(parts.size() == 1 && parts[0].triangles.size() == 4);
+// @endcode
 
 #include "mesh/triangle_mesh.h"
 #include "simplifier/baseline/mesh_deviation.h"

@@ -1,6 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Convex hull: conservative (proved, with outward rounding).
 #pragma once
+
+// Convex hull: conservative (proved, with outward rounding).
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/convex_hull.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const spherule::ConvexHull hull = spherule::convex_hull(tetrahedron, {.padding = 0.01});
+// assert(hull.mesh.triangles.size() == 4 && hull.expansion > 0.01);
+// @endcode
 
 #include "mesh/triangle_mesh.h"
 

@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
 // Decimation by quadric error: not conservative. It cuts off what stands out and fills what is
 // hollow, both unbounded by its estimate of the error; measure_deviation() tells by how much.
-#pragma once
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/decimation.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0}},
+//                                     {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};
+// const spherule::Decimation reduced = spherule::decimate(square, {.target_triangles = 2});
+// assert(reduced.mesh.triangles.size() == 2 && reduced.deviation.loss.upper < 0.01);
+// @endcode
 
 #include "mesh/triangle_mesh.h"
 #include "simplifier/baseline/mesh_deviation.h"

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Which cells of space a method takes.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/filling.h>
+// #include <spherule/simplifier/baseline/voxelisation.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto filling = spherule::Filling::kSurface;
+// const auto voxels = spherule::voxelise(tetrahedron, {.step = 0.1, .filling = filling});
+// assert(voxels.surface > 0 && voxels.inside == 0);
+// @endcode
+
 namespace spherule {
 
 // Which cells of space a method takes.

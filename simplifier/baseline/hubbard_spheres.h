@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Spheres in levels by merging medial spheres, after Hubbard: not conservative.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/hubbard_spheres.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto spheres = spherule::hubbard_spheres(
+//     tetrahedron, {.counts = {1, 8}, .sites = 100, .cover_points = 500});
+// assert(spheres.levels[0].size() == 1 && spheres.levels[1].size() <= 8);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/baseline/sphere_levels.h"
 

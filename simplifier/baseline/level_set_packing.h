@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Sphere packing by OpenVDB: not conservative.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/level_set_packing.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto spheres = spherule::level_set_packing(tetrahedron, {.step = 0.05, .max_spheres = 10});
+// assert(spheres.size() == 10);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "spheretree/sphere.h"
 

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Spheres of any method, grown until they cover.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/made_conservative.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh bar{{{0, 0, 0}, {1, 0, 0}, {0, 0.02, 0}, {0, 0, 0.02}},
+//                                  {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const std::vector<spherule::Sphere> spheres{{{0.25, 0, 0}, 0.2}, {{0.75, 0, 0}, 0.2}};
+// const auto grown = spherule::made_conservative(bar, spheres);
+// assert(grown.certificate.covered && grown.inflation > 0.05 && grown.inflation < 0.06);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/certificate.h"
 #include "spheretree/sphere.h"

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Spheres by adaptive medial axis approximation: not conservative.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/medial_axis.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto made = spherule::medial_axis(
+//     tetrahedron,
+//     {.spheres = 8, .sampling = {.cover_points = 500, .initial_sites = 100, .max_sites = 200}});
+// assert(!made.spheres.empty() && made.spheres.size() <= 8 && made.protrusion > 0.0);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/baseline/sphere_levels.h"
 #include "spheretree/sphere.h"

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// How far a mesh is from another one that it stands for.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/mesh_deviation.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh whole{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+//                                    {{0, 1, 2}, {0, 2, 3}}};
+// const spherule::TriangleMesh half{whole.vertices, {{0, 1, 2}}};
+// const spherule::MeshDeviation deviation = spherule::measure_deviation(whole, half);
+// assert(deviation.loss.lower > 0.7 && deviation.excess.upper < 0.01);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/certificate.h"
 

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Sphere trees by halving cubes: conservative.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/octree_spheres.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const spherule::OctreeSpheres made = spherule::octree_spheres(tetrahedron, {.depth = 3});
+// assert(made.tree.depth() == 3 && made.step < 0.2);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/baseline/filling.h"
 #include "spheretree/sphere_tree.h"

@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// A stage 2 by sphere packing, the largest sphere first: conservative.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/packing_cover.h>
+// #include <spherule/simplifier/certificate.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto external = spherule::place_external_spheres(
+//     tetrahedron, {.min_external_diameter = 2, .max_error = 0.5});
+// const auto cover = spherule::packing_cover(tetrahedron, external, {.max_error = 0.5});
+// const spherule::CertifyOptions options{.external = &external, .volume = false};
+// assert(spherule::certify(tetrahedron, cover.spheres, options).covered);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/cover.h"
 #include "simplifier/external_spheres.h"

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Spheres in levels as the literature makes them, as a tree for queries.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/sphere_levels.h>
+// #include <cassert>
+//
+// const spherule::SphereLevels spheres{
+//     .levels = {{{{1, 0, 0}, 1.5}}, {{{0, 0, 0}, 1}, {{2, 0, 0}, 1}}}, .parents = {{0, 0}}};
+// const auto made = spherule::enclosing_tree(spheres, spheres.levels.back());
+// assert(made.tree.root().radius >= 2.0);  // made larger: it encloses its children
+// @endcode
+
 #include "spheretree/level_tree.h"
 #include "spheretree/sphere.h"
 

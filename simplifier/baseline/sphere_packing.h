@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Sphere packing of the solid as it is, as the paper compares with: not conservative.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/sphere_packing.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const spherule::SpherePacking packing =
+//     spherule::pack_spheres(tetrahedron, {.max_error = 0.25, .closed_below = 0.5});
+// assert(packing.error <= 0.25 && packing.inflated.size() == packing.spheres.size());
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/cover.h"
 #include "simplifier/external_spheres.h"

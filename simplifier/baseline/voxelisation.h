@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// A sphere for each voxel: conservative with circumscribed spheres.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/baseline/voxelisation.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto voxels = spherule::voxelise(tetrahedron, {.max_error = 0.2});
+// assert(voxels.spheres.size() == voxels.surface + voxels.inside && voxels.step < 0.2);
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "simplifier/baseline/filling.h"
 #include "spheretree/sphere.h"

@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// STEP and IGES files as meshes, with a bound on how far these are from the faces.
+//
+// @code{.cpp}
+// #include <spherule/simplifier/cad/cad_file.h>
+// #include <spherule/spheretree/error.h>
+// #include <cassert>
+// #include <iostream>
+//
+// try {
+//   const spherule::CadPart part = spherule::read_cad("part.step", {.chord_error = 0.05});  // mm
+//   std::cout << part.mesh.triangles.size() << " triangles within " << part.chord_error << " mm\n";
+//   assert(part.chord_error <= part.mesh.vertex_error);
+// } catch (const spherule::Error& error) {
+//   std::cout << error.what() << "\n";  // where there is no such file, or a face cannot be read
+// }
+// @endcode
+
 #include "mesh/triangle_mesh.h"
 #include "spheretree/sphere_file.h"
 

@@ -38,3 +38,8 @@ install(FILES ${PROJECT_BINARY_DIR}/spheruleConfig.cmake
 if(SPHERULE_OMPL)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/SpheruleOmpl.cmake DESTINATION ${destination})
 endif()
+
+# The pages that helps and messages name, with the links between them.
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        FILES_MATCHING PATTERN "*.md" PATTERN "*.png")

@@ -12,7 +12,7 @@ endif()
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/spherule SYMBOLIC)
 
-# Applies the project's compile settings to TARGET, a `library`, `program` or `test` (KIND). The
+# Applies the project's compile settings to TARGET, a `library`, `program`, `test` or `binding` (KIND). The
 # guarantees rest on `-ffp-contract=off` in our own sources (see spheretree/rounding.h); inline code in
 # headers is valid with and without contraction.
 function(spherule_compile_settings target kind)
@@ -25,7 +25,8 @@ function(spherule_compile_settings target kind)
   if(NOT "${kind}" STREQUAL "library" AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
     target_link_options(${target} PRIVATE LINKER:--as-needed)
   endif()
-  if(SPHERULE_PRECOMPILE AND NOT ("${SPHERULE_PRECOMPILE}" STREQUAL "PROGRAMS" AND "${kind}" STREQUAL "library"))
+  if(SPHERULE_PRECOMPILE AND NOT "${kind}" STREQUAL "binding" AND
+     NOT ("${SPHERULE_PRECOMPILE}" STREQUAL "PROGRAMS" AND "${kind}" STREQUAL "library"))
     spherule_precompile(${target} ${kind})
   endif()
 endfunction()

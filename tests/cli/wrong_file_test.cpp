@@ -57,10 +57,12 @@ TEST_F(WrongFileTest, ResultsHaveAPlaceByDefault) {
 TEST_F(WrongFileTest, WhatIsSomethingElseIsNotReplacedByDefault) {
   const std::string notes = R"({"notes": "of mine"})";
   write("part.json", notes);
-  expect_refusal({"fit", "part.stl", "--effort", "0"},
+  expect_refusal({"fit", "part.stl", "--max-error", "1", "--effort", "0"},
                  "part.json: is there already, and is something else");
   EXPECT_EQ(read("part.json"), notes);
-  EXPECT_EQ(run({"fit", "part.stl", "-o", "part.json", "--effort", "0"}).exit_code, 0);
+  EXPECT_EQ(
+      run({"fit", "part.stl", "-o", "part.json", "--max-error", "1", "--effort", "0"}).exit_code,
+      0);
 }
 
 #ifdef SPHERULE_HAS_ROBOT

@@ -137,10 +137,8 @@ const std::vector<Room>& rooms() {
       {"adapters/ompl", joined({{"spheretree", "collide"}, kRobot}), {"Eigen", "ompl"}},
 
       {"cli", kPublic, {"Eigen", "CLI", "nlohmann"}},
-      {"bench",
-       kAll,
-       {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann", "ompl"},
-       {{"boost", "bench/scale/exact_oracle.cpp"}}},
+      {"python", kPublic, {"Eigen", "pybind11"}},
+      {"bench", kAll, {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann", "ompl"}},
       {"tests",
        kAll,
        {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "ompl", "tbb",

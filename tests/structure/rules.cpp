@@ -57,6 +57,7 @@ constexpr Prefix kPrefixes[] = {{"Eigen/", "Eigen"},
                                 {"openvdb/", "openvdb"},
                                 {"libqhull", "qhull"},
                                 {".hxx", "opencascade"},
+                                {"pybind11/", "pybind11"},
                                 {"spherule/", "spherule"}};
 
 // Of the machine rather than of the language: allowed everywhere, or in one folder only.
@@ -82,7 +83,7 @@ std::string check_own_include(const Room& room, std::string_view target) {
   const std::string_view library = library_of(target);
   const bool sees_internals = room.folder == "tests" || room.folder == "bench" ||
                               room.folder == "simplifier/baseline" ||
-                              room.folder == "simplifier/cad";
+                              room.folder == "simplifier/cad" || room.folder == "python";
   if (library != library_of(room.folder) && target.find("/internal/") != std::string_view::npos &&
       !sees_internals) {
     return "is private to " + std::string(library);
@@ -120,8 +121,8 @@ bool is_cpp(std::string_view path) {
 }
 
 bool is_source(const fs::path& path) {
-  static const std::set<std::string> kExtensions = {".h",  ".cpp", ".cmake", ".in",
-                                                    ".js", ".css", ".sh"};
+  static const std::set<std::string> kExtensions = {".h",   ".cpp", ".cmake", ".in", ".py",
+                                                    ".pyi", ".js",  ".css",   ".sh"};
   const std::string name = path.filename().string();
   return kExtensions.contains(path.extension().string()) || name == "CMakeLists.txt" ||
          name == "run";
@@ -208,9 +209,9 @@ std::vector<std::string> check_public_headers(const std::string& folder, std::st
 }
 
 std::vector<std::string> check_sources(const fs::path& root, std::size_t& files) {
-  static constexpr std::array kTop = {".ci",        "adapters",   "bench", "cli",
-                                      "collide",    "examples",   "mesh",  "robot",
-                                      "simplifier", "spheretree", "tests"};
+  static constexpr std::array kTop = {".ci",     "adapters",   "bench",      "cli",
+                                      "collide", "examples",   "mesh",       "python",
+                                      "robot",   "simplifier", "spheretree", "tests"};
   std::vector<std::string> problems;
   files = 0;
   std::map<std::string, std::string> libraries;  // CMakeLists.txt of each, by folder

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The answers of the library itself, for the test of the Python module: reads what
+// equal_answers_test.py wrote into a folder, and writes doubles. Usage: python_answers FOLDER
+
+#include "collide/collide.h"
+#include "collide/distance.h"
+#include "robot/check/scene_setup.h"
+#include "robot/files/urdf.h"
+#include "robot/formats/sphere_formats.h"
+#include "spheretree/tree_file.h"
+
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+std::vector<double> read_doubles(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
+  const auto* const first = reinterpret_cast<const double*>(bytes.data());
+  return {first, first + bytes.size() / sizeof(double)};
+}
+
+void write_doubles(const std::vector<double>& values, const std::filesystem::path& path) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(values.data()),
+             static_cast<std::streamsize>(values.size() * sizeof(double)));
+}
+
+// Of each configuration whether it is free; of the first edges and clearances, what is proved.
+void answer_robot(const std::filesystem::path& folder) {
+  const RobotDescription robot = read_urdf(folder / "arm.urdf");
+  const SphereFormatFile spheres = read_robot_spheres(folder / "spheres.json");
+  const PreparedScene cell = prepare_scene(with_spheres(robot.model, spheres.spheres.links),
+                                           read_scene(folder / "cell.json"));
+  const RobotChecker checker = cell.scene.snapshot();
+  const auto dof = static_cast<std::size_t>(robot.model.variable_count());
+  const std::vector<double> all = read_doubles(folder / "configurations");
+  const auto at = [&](std::size_t i) { return std::span(all).subspan(i * dof, dof); };
+  const std::size_t count = all.size() / dof;
+
+  RobotChecker::Scratch scratch(checker);
+  std::vector<double> free;
+  for (std::size_t i = 0; i < count; ++i) free.push_back(checker.check_config(at(i), scratch));
+  write_doubles(free, folder / "free");
+
+  std::vector<double> verdicts;
+  std::vector<double> bounds;
+  for (std::size_t i = 0; i + 1 < count && i < 10000; ++i) {
+    verdicts.push_back(static_cast<double>(checker.check_edge(at(i), at(i + 1), scratch).verdict));
+    if (i >= 5000) continue;
+    const RobotClearance clearance = checker.clearance(at(i), scratch);
+    bounds.push_back(clearance.lower);
+    bounds.push_back(clearance.upper);
+  }
+  write_doubles(verdicts, folder / "verdicts");
+  write_doubles(bounds, folder / "clearances");
+}
+
+// Of each pose of b, seven numbers as docs have them, whether the trees touch and how far they are.
+void answer_trees(const std::filesystem::path& folder) {
+  const SphereTree a = load_tree(folder / "a.tree");
+  const SphereTree b = load_tree(folder / "b.tree");
+  const std::vector<double> poses = read_doubles(folder / "poses");
+  std::vector<double> answers;
+  for (std::size_t i = 0; i + 7 <= poses.size(); i += 7) {
+    const double* const p = &poses[i];
+    const Pose pose(Eigen::Quaterniond(p[6], p[3], p[4], p[5]), {p[0], p[1], p[2]});
+    const DistanceResult found = distance(a, {}, b, pose);
+    answers.insert(answers.end(), {collides(a, {}, b, pose) ? 1.0 : 0.0, found.lower, found.upper});
+  }
+  write_doubles(answers, folder / "trees");
+}
+
+}  // namespace
+}  // namespace spherule
+
+int main(int argc, char** argv) {
+  try {
+    if (argc != 2) return 2;
+    spherule::answer_robot(argv[1]);
+    spherule::answer_trees(argv[1]);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+}
