@@ -11,6 +11,7 @@
 #include "cli/message.h"
 #include "cli/next_step.h"
 #include "cli/output.h"
+#include "cli/page_output.h"
 #include "cli/pair_kinds.h"
 #include "cli/pair_report.h"
 #include "cli/progress.h"
@@ -50,6 +51,7 @@ struct AuditRobotArguments {
   LengthOptions lengths;
   std::optional<double> min_external;
   bool json = false;
+  std::string view;
 };
 
 std::vector<std::vector<double>> configurations_of(const TrajectoryArguments& arguments,
@@ -118,8 +120,9 @@ bool has_shrinking_buffers(const RobotSpheres& spheres) {
 
 int audit(const AuditRobotArguments& arguments) {
   const bool mend = !arguments.repaired.empty();
-  check_outputs({arguments.repaired}, {arguments.urdf, arguments.spheres, arguments.poses.file,
-                                       arguments.pairs.srdf, arguments.pairs.pairs});
+  check_outputs({arguments.repaired, arguments.view},
+                {arguments.urdf, arguments.spheres, arguments.poses.file, arguments.pairs.srdf,
+                 arguments.pairs.pairs});
   const LinkGeometry geometry = geometry_named(arguments.geometry);
   const RobotDescription robot = read_robot(arguments.urdf, arguments.packages, geometry);
   SphereInput given = read_spheres_of(robot, geometry, arguments.spheres,
@@ -156,6 +159,11 @@ int audit(const AuditRobotArguments& arguments) {
     write_uninterrupted([&] { write_repaired(arguments, report.file, *report.repair); });
   }
   std::cout << (arguments.json ? to_text(audit_json(report)) : audit_table(report));
+  if (!arguments.view.empty()) {
+    write_page(arguments.view, covered_robot_scene(robot, arguments.geometry, spheres,
+                                                   arguments.spheres, audit_json(report)));
+    if (!arguments.json) std::cout << page_line(arguments.view);
+  }
   if (report.pairs) {
     for (const std::string& warning : wrong_pairs(report.pairs->judgement, robot.model)) {
       warn(warning);
@@ -226,6 +234,11 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
   command->add_option("--level", arguments->level,
                       "Which level of a file with levels, 0 the coarsest (default: the finest)");
   command->add_flag("--json", arguments->json, "Print the certificates as JSON");
+  command
+      ->add_option("--view", arguments->view,
+                   "Write a page that shows the robot, the spheres and their leaks (HTML, as view "
+                   "writes it)")
+      ->type_name(kFile);
   command
       ->add_option("--repair", arguments->repaired,
                    "Where the file goes with spheres grown and added so that they cover every "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/check_report.h"
 #include "cli/check_spheres.h"
+#include "cli/check_view.h"
 #include "cli/command.h"
 #include "cli/command_specification.h"
 #include "cli/help.h"
@@ -8,6 +9,8 @@
 #include "cli/length_options.h"
 #include "cli/message.h"
 #include "cli/next_step.h"
+#include "cli/output.h"
+#include "cli/page_output.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
@@ -55,6 +58,7 @@ struct CheckArguments {
   bool enforces_limits = false;
   bool ignores_unknown_links = false;
   bool json = false;
+  std::string view;
 
   ContinuousMotion motion() const {
     return continuous == kAsGiven ? ContinuousMotion::kAsGiven : ContinuousMotion::kShortest;
@@ -156,7 +160,20 @@ RobotDescription read_checked_robot(const CheckArguments& arguments, LinkGeometr
   return read_urdf(arguments.urdf, urdf_options(arguments.packages, needed));
 }
 
+void write_checked(const CheckArguments& arguments, const CheckedScene& checked, bool has_motions) {
+  ProgressBar bar;
+  write_check_page(arguments.view, checked,
+                   {.file = arguments.trajectory.file,
+                    .has_motions = has_motions,
+                    .continuous = arguments.motion(),
+                    .threads = arguments.cover.threads,
+                    .progress = bar.callback()});
+  bar.clear();
+}
+
 int check(const CheckArguments& arguments) {
+  check_outputs({arguments.view}, {arguments.urdf, arguments.scene, arguments.trajectory.file,
+                                   arguments.spheres, arguments.pairs});
   RobotCoverOptions options = arguments.cover;
   options.geometry = geometry_named(arguments.geometry);
   const RobotDescription robot = read_checked_robot(arguments, options.geometry);
@@ -208,8 +225,19 @@ int check(const CheckArguments& arguments) {
     const RobotModel& model = checker.robot();
     report.tell_kinds(model, pair_statuses(model, prepared.scene.allowed_collisions(), proofs));
   }
+  if (!arguments.view.empty()) {
+    write_checked(arguments,
+                  {.robot = robot,
+                   .geometry = arguments.geometry,
+                   .scene = scene,
+                   .checker = checker,
+                   .trajectory = input.trajectory,
+                   .report = report},
+                  has_motions);
+  }
   std::cout << (arguments.json ? check_json(report)
                                : check_table(report) + advice(arguments, report));
+  if (!arguments.view.empty() && !arguments.json) std::cout << page_line(arguments.view);
   return report.is_free() ? kYes : kNo;
 }
 
@@ -269,6 +297,11 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_option("--threads", arguments->cover.threads, "Threads, 0: all (default)")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", arguments->json, "Print the result as JSON");
+  command
+      ->add_option("--view", arguments->view,
+                   "Write a page that plays the trajectory in its scene, with verdicts, contacts "
+                   "and clearance (HTML, as view writes it)")
+      ->type_name(kFile);
   command->footer(
       to_text({.text = "",
                .exit_codes = "0 free; 1 a collision, not proved, a link without spheres, or with "
@@ -276,6 +309,7 @@ void add_check(CLI::App& app, int& exit_code) {
                .examples = {"spherule check robot.urdf cell.json path.csv",
                             "spherule check robot.urdf cell.json path.csv --edges --spheres "
                             "robot.spheres.json --json",
+                            "spherule check robot.urdf cell.json path.csv --edges --view path.html",
                             "spherule check robot.urdf cell.json path.csv --degrees "
                             "--edges --continuous shortest"}}));
   command->callback([arguments, &exit_code] {

@@ -34,12 +34,6 @@ const TouchingPair* deepest(const CheckReport& report) {
   return found == report.pairs.end() ? nullptr : &*found;
 }
 
-const char* verdict_of(const CheckReport& report) {
-  if (report.colliding > 0) return "collision";
-  if (report.is_out_of_bounds()) return "outside limits";
-  return report.is_free() ? "free" : "not proved";
-}
-
 const char* name_of(ContinuousMotion continuous) {
   return continuous == ContinuousMotion::kAsGiven ? "as-given" : "shortest";
 }
@@ -182,6 +176,12 @@ Json to_json(const TouchingPair& pair) {
 }
 
 }  // namespace
+
+const char* verdict_of(const CheckReport& report) {
+  if (report.colliding > 0) return "collision";
+  if (report.is_out_of_bounds()) return "outside limits";
+  return report.is_free() ? "free" : "not proved";
+}
 
 void CheckReport::add(const FoundContact& found) {
   std::vector<TouchingPair>& list = found.contact.is_proved_free ? proved_free : pairs;

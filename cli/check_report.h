@@ -6,6 +6,7 @@
 #include "robot/files/trajectory_review.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,13 +34,20 @@ struct TouchingPair {
   std::string kind{};        // of two links with proofs: what is known of them
 };
 
+// The verdicts one by one, of configurations or of motions.
+struct TrajectoryVerdicts {
+  std::vector<std::uint8_t> free{};   // of every configuration, 1 if it is free
+  std::vector<EdgeResult> motions{};  // of every motion
+};
+
 // What a check of a trajectory found.
 struct CheckReport {
   std::size_t configurations = 0;
   std::optional<std::size_t> motions{};       // where motions were proved
   std::size_t colliding = 0;                  // of the motions, or of the configurations
   std::vector<TrajectoryPoint> not_proved{};  // motions, and up to where they are free
-  std::vector<TouchingPair> pairs{};          // in the order of the first contacts
+  TrajectoryVerdicts verdicts{};
+  std::vector<TouchingPair> pairs{};  // in the order of the first contacts
   // Whose spheres overlap while they are proved free, in the configurations that were examined.
   std::vector<TouchingPair> proved_free{};
   std::size_t explained = 0;  // configurations that were examined for these, the first ones
@@ -62,6 +70,9 @@ struct CheckReport {
   // Says of the pairs of links of what kind they are.
   void tell_kinds(const RobotModel& robot, const std::vector<PairStatus>& statuses);
 };
+
+// "free", "collision", "not proved" or "outside limits".
+const char* verdict_of(const CheckReport& report);
 
 // Pairs of the robot's own bodies that touch in every configuration, or at the start of every
 // motion, of two or more: their spheres may be too coarse, or they are meant to touch.

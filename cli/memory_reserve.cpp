@@ -20,22 +20,33 @@ constexpr std::size_t kLeastReserve = std::size_t{1} << 16U;
 constexpr std::size_t kShareOfLimit = 32;
 
 std::atomic<void*> reserve = nullptr;
+std::atomic<bool> memory_ended = false;
 
 [[noreturn]] void give_back_and_throw() {
+  memory_ended = true;
   std::free(reserve.exchange(nullptr));
   throw std::bad_alloc();
 }
 
 std::terminate_handler terminate_otherwise = nullptr;
 
+bool ends_for_memory() {
+  // Of a function whose compiler ends the process where it catches, nothing is caught.
+  if (!std::current_exception()) return memory_ended;
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    return true;
+  } catch (...) {
+    return false;
+  }
+}
+
 // Where memory ends inside a function that must not throw, the exception cannot travel on.
 [[noreturn]] void tell_and_end() {
-  try {
-    if (std::current_exception()) throw;
-  } catch (const std::bad_alloc&) {
+  if (ends_for_memory()) {
     std::fputs("spherule: out of memory\n", stderr);
     std::_Exit(kBadInput);
-  } catch (...) {
   }
   terminate_otherwise();
   std::abort();

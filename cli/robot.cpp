@@ -9,6 +9,7 @@
 #include "cli/message.h"
 #include "cli/next_step.h"
 #include "cli/output.h"
+#include "cli/page_output.h"
 #include "cli/pair_report.h"
 #include "cli/progress.h"
 #include "cli/report_content.h"
@@ -17,6 +18,7 @@
 #include "cli/robot_files.h"
 #include "cli/robot_options.h"
 #include "cli/robot_report.h"
+#include "cli/view_robot.h"
 #include "robot/check/named_postures.h"
 #include "robot/cover/robot_spheres.h"
 #include "robot/files/srdf.h"
@@ -58,6 +60,7 @@ RobotFilePlan plan_of(const RobotArguments& arguments) {
 // there is made, but only once there is something to put into it.
 void check_places(const RobotArguments& arguments, const std::vector<fs::path>& outputs) {
   std::vector<fs::path> inputs = {arguments.urdf, arguments.srdf, arguments.curobo, arguments.xrdf};
+  check_outputs({arguments.view}, inputs);
   std::error_code fault;
   if (fs::exists(arguments.folder, fault)) {
     if (!fs::is_directory(arguments.folder, fault)) {
@@ -266,6 +269,12 @@ int cover_links(RobotArguments& arguments) {
   std::cout << (arguments.json ? to_text(summary)
                                : robot_table(result, seconds.count()) + describe_pairs(measured) +
                                      describe_false_alarms(measured, robot.model));
+  if (!arguments.view.empty()) {
+    const Json report = Json::parse(read_file(plan.report(robot)));
+    write_page(arguments.view, covered_robot_scene(robot, arguments.geometry, spheres,
+                                                   "spheres of " + robot.name, report));
+    if (!arguments.json) std::cout << page_line(arguments.view);
+  }
   print_warnings(result, wrong_pairs(judgement, robot.model), contacts);
   if (!arguments.json) std::cout << describe(next_steps(arguments, plan.all(robot, links)));
   return keeps_promises(arguments.urdf, measured) ? kYes : kNo;

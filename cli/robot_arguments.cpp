@@ -91,6 +91,10 @@ void add_robot_options(CLI::App& command, RobotArguments& arguments) {
       "machine");
   add_external_spheres_flag(command, arguments.report_content);
   command.add_flag("--json", arguments.json, "Print the summary as JSON, lengths in metres");
+  command
+      .add_option("--view", arguments.view,
+                  "Write a page that shows the robot and its spheres (HTML, as view writes it)")
+      ->type_name(kFile);
 }
 
 }  // namespace spherule

@@ -30,6 +30,7 @@ struct RobotArguments {
   std::string xrdf;
   std::string tool_link;
   bool json = false;
+  std::string view;
   bool has_max_error = false;
   ReportContent report_content = ReportContent::kNoExternalSpheres;
   FalseAlarmArguments false_alarms;

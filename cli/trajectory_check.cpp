@@ -35,6 +35,7 @@ class TrajectoryCheck {
       ++report_.colliding;
       explain(trajectory_.configuration(i), {.line = trajectory_.lines[i]});
     }
+    report_.verdicts.free = std::move(free);
     return std::move(report_);
   }
 
@@ -67,6 +68,7 @@ class TrajectoryCheck {
         report_.not_proved.push_back(at);
       }
     }
+    report_.verdicts.motions = std::move(results);
     return std::move(report_);
   }
 

@@ -2,15 +2,14 @@
 #include "cli/command.h"
 #include "cli/command_specification.h"
 #include "cli/help.h"
-#include "cli/interruption.h"
 #include "cli/model_unit.h"
 #include "cli/output.h"
+#include "cli/page_output.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
 #include "cli/view_files.h"
 #include "cli/view_page.h"
 #include "cli/view_robot.h"
-#include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
@@ -63,10 +62,8 @@ int view(ViewArguments& arguments) {
     arguments.page = default_output(arguments.files.front(), ".html", FileKind::kPage);
   check_outputs({arguments.page}, {});
   for (const std::string& file : arguments.files) check_outputs({arguments.page}, {file});
-  const std::string page = make_view_page(load_scene(arguments));
-  write_uninterrupted([&] { write_file_atomically(arguments.page, page); });
-  std::cout << "page: " << arguments.page << " (" << page.size() / 1024
-            << " KiB); open it in a browser\n";
+  write_page(arguments.page, load_scene(arguments));
+  std::cout << page_line(arguments.page);
   return kYes;
 }
 

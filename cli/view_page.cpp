@@ -2,49 +2,17 @@
 #include "cli/view_page.h"
 
 #include "cli/json.h"
+#include "cli/view_encoding.h"
 #include "cli/view_page_parts.h"
 #include "spheretree/error.h"
 
 #include <Eigen/Geometry>
 
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 
 namespace spherule {
 namespace {
-
-std::string base64(std::string_view bytes) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += k <= count ? kDigits[group >> (18 - 6 * k) & 63u] : '=';
-    }
-  }
-  return text;
-}
-
-// The page reads little-endian words, which is what all machines that run it have.
-template <class Word>
-std::string encode(const std::vector<Word>& words) {
-  static_assert(sizeof(Word) == 4);
-  std::string bytes;
-  bytes.reserve(words.size() * 4);
-  for (const Word word : words) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &word, 4);
-    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(bits >> shift & 255u);
-  }
-  return base64(bytes);
-}
 
 void append(std::vector<float>& list, const Eigen::Vector3d& point) {
   for (int axis = 0; axis < 3; ++axis) list.push_back(static_cast<float>(point[axis]));
@@ -93,7 +61,7 @@ std::string encode_spheres(std::span<const Sphere> spheres, const Eigen::Vector3
     append(list, sphere.center - middle);
     list.push_back(static_cast<float>(sphere.radius));
   }
-  return encode(list);
+  return encode_words(std::span<const float>(list));
 }
 
 struct ContentEncoder {
@@ -106,16 +74,19 @@ struct ContentEncoder {
     for (const Eigen::Vector3i& triangle : mesh.triangles) {
       corners.insert(corners.end(), triangle.data(), triangle.data() + 3);
     }
-    return {{"positions", encode(positions)}, {"corners", encode(corners)}};
+    return {{"positions", encode_words(std::span<const float>(positions))},
+            {"corners", encode_words(std::span<const std::int32_t>(corners))}};
   }
   Json operator()(const std::vector<Sphere>& spheres) const {
     return {{"levels", Json::array({encode_spheres(spheres, middle)})}};
   }
   Json operator()(const SphereTree& tree) const {
     Json levels = Json::array();
-    for (int level = 0; level <= tree.depth(); ++level) {
+    for (int level = 0; level < tree.depth(); ++level) {
       levels.push_back(encode_spheres(tree.level(level), middle));
     }
+    // In the order in which they are numbered.
+    levels.push_back(encode_spheres(tree.spheres(), middle));
     return {{"levels", std::move(levels)}};
   }
   Json operator()(const std::vector<LeakPoint>& leaks) const {
@@ -139,10 +110,13 @@ const char* kind_of(const ViewItem& item) {
 Json json_of(const ViewItem& item, const Eigen::Vector3d& middle) {
   Json json{{"name", item.name}, {"kind", kind_of(item)}, {"shown", item.shown}};
   if (!item.facts.empty()) json["facts"] = item.facts;
+  if (item.checked) json["checked"] = true;
   json["parts"] = Json::array();
   for (const ViewPart& part : item.parts) {
     Json& encoded = json["parts"].emplace_back(std::visit(ContentEncoder{middle}, part.content));
     encoded["link"] = part.link;
+    if (!part.name.empty()) encoded["name"] = part.name;
+    if (part.background) encoded["background"] = true;
   }
   return json;
 }
@@ -195,6 +169,7 @@ std::string make_view_page(const ViewScene& scene) {
   Json json;
   json["middle"] = to_json(middle);
   json["robot"] = scene.robot;
+  if (!scene.trajectory.is_null()) json["trajectory"] = scene.trajectory;
   json["items"] = Json::array();
   for (const ViewItem& item : scene.items) {
     if (!item.parts.empty()) json["items"].push_back(json_of(item, middle));

@@ -20,7 +20,9 @@ using ViewContent =
 // A piece of an item, in the frame of a link of the scene's robot, or of the world.
 struct ViewPart {
   ViewContent content;
-  int link = -1;  // -1: the world
+  int link = -1;            // -1: the world
+  std::string name{};       // of an obstacle or an attached object
+  bool background = false;  // seen, but not what the first view is about
 };
 
 // One thing to examine. Of trees, a slider on the page chooses the level.
@@ -30,12 +32,14 @@ struct ViewItem {
   bool external = false;        // spheres that are external ones
   std::string facts{};          // a line of text below the name
   bool shown = true;            // at first; the page has a switch for each item
+  bool checked = false;         // what the contacts of the trajectory number the spheres of
 };
 
 struct ViewScene {
   std::string title;
   std::vector<ViewItem> items;
-  Json robot = nullptr;  // its links and joints (cli/view_robot.h)
+  Json robot = nullptr;       // its links and joints (cli/view_robot.h)
+  Json trajectory = nullptr;  // and how it was checked (cli/view_trajectory.h)
 };
 
 // A self-contained HTML page (no network) that draws the items in one scene. Coordinates are

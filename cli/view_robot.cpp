@@ -57,13 +57,15 @@ const char* name_of(JointType type) {
   return "fixed";
 }
 
-Json json_of(const Pose& pose) {
+}  // namespace
+
+Json view_pose(const Pose& pose) {
   const Eigen::Quaterniond q = pose.rotation();
   const Eigen::Vector3d& t = pose.translation();
   return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
 }
 
-Json json_of(const RobotDescription& robot) {
+Json view_robot(const RobotDescription& robot) {
   Json json{{"name", robot.name}, {"links", Json::array()}, {"joints", Json::array()}};
   for (const Link& link : robot.model.links()) {
     json["links"].push_back({{"name", link.name}, {"joint", link.parent_joint}});
@@ -72,7 +74,7 @@ Json json_of(const RobotDescription& robot) {
     json["joints"].push_back({{"name", joint.name},
                               {"type", name_of(joint.type)},
                               {"parent", joint.parent_link},
-                              {"origin", json_of(joint.parent_from_joint)},
+                              {"origin", view_pose(joint.parent_from_joint)},
                               {"axis", to_json(joint.axis)},
                               {"lower", joint.lower},
                               {"upper", joint.upper},
@@ -84,8 +86,8 @@ Json json_of(const RobotDescription& robot) {
   return json;
 }
 
-// Without spheres, which are those of a spherized URDF and shown as spheres.
-ViewItem mesh_item(const RobotDescription& robot, LinkGeometry geometry, const std::string& name) {
+ViewItem view_meshes(const RobotDescription& robot, LinkGeometry geometry,
+                     const std::string& name) {
   ViewItem item{.name = name + " geometry", .parts = {}};
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     LinkDescription link = robot.links[i];
@@ -98,6 +100,8 @@ ViewItem mesh_item(const RobotDescription& robot, LinkGeometry geometry, const s
   }
   return item;
 }
+
+namespace {
 
 // What a file says of links that the robot has not cannot be shown, but is not passed over in
 // silence.
@@ -167,6 +171,17 @@ bool has_spheres(const RobotDescription& robot) {
 
 }  // namespace
 
+ViewScene covered_robot_scene(const RobotDescription& robot, const std::string& geometry,
+                              const RobotSpheres& spheres, const std::string& name,
+                              const Json& report) {
+  ViewScene scene{.title = name, .items = {}, .robot = view_robot(robot)};
+  ViewItem meshes = view_meshes(robot, geometry_named(geometry), geometry);
+  if (!meshes.parts.empty()) scene.items.push_back(std::move(meshes));
+  scene.items.push_back(sphere_item(robot, spheres, name));
+  for (ViewItem& item : report_items(robot, report, name)) scene.items.push_back(std::move(item));
+  return scene;
+}
+
 bool is_robot_file(const std::string& file) {
   std::string ending = fs::path(file).extension();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -196,9 +211,9 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
   for (const std::string& name : options.geometry) shown.push_back(geometry_named(name));
   const RobotDescription robot = read_urdf(*urdf, urdf_options(options.packages, shown));
   scene.title = *urdf;
-  scene.robot = json_of(robot);
+  scene.robot = view_robot(robot);
   for (const std::string& name : options.geometry) {
-    ViewItem item = mesh_item(robot, geometry_named(name), name);
+    ViewItem item = view_meshes(robot, geometry_named(name), name);
     item.shown = name == options.geometry.front();
     if (!item.parts.empty()) scene.items.push_back(std::move(item));
   }

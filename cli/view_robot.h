@@ -2,6 +2,10 @@
 #pragma once
 
 #include "cli/view_page.h"
+#include "robot/cover/link_mesh.h"
+#include "robot/formats/sphere_formats.h"
+#include "robot/model/robot_description.h"
+#include "spheretree/pose.h"
 
 #include <string>
 #include <vector>
@@ -13,6 +17,22 @@ struct RobotViewOptions {
   std::vector<std::string> geometry;  // names, the first is shown at first
   bool ignores_unknown_links = false;
 };
+
+// A pose as the page takes it: x, y, z, and the quaternion, w last.
+Json view_pose(const Pose& pose);
+
+// The links and joints of a robot, and the meshes of its links in that geometry, of which `name`
+// is the name. Spheres, which are those of a spherized URDF, are not among the meshes. Throws Error
+// as link_mesh().
+Json view_robot(const RobotDescription& robot);
+ViewItem view_meshes(const RobotDescription& robot, LinkGeometry geometry, const std::string& name);
+
+// A robot with the meshes of its links in a geometry, the spheres that were made or audited for it,
+// called `name`, and the leaks that the certificates of its links tell of: what `robot` reports, or
+// `audit-robot --json` prints. Throws Error as link_mesh().
+ViewScene covered_robot_scene(const RobotDescription& robot, const std::string& geometry,
+                              const RobotSpheres& spheres, const std::string& name,
+                              const Json& report);
 
 // Whether a file is of a robot: a URDF, its spheres in any format, what is known of the pairs of
 // its links (NAME.pairs, SRDF), or a certificate by links.

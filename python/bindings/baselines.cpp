@@ -218,7 +218,7 @@ void bind_mesh_methods(py::module_& module) {
   module.def(
       "decimate", &decimated, py::arg("mesh"), py::kw_only(), py::arg("target_triangles"),
       py::arg("max_error") = std::numeric_limits<double>::infinity(),
-      Help("decimate(mesh, *, target_triangles, max_error=inf)",
+      Help("decimate(mesh, *, target_triangles, max_error=1e999)",
            "Decimation by quadric error: a TriangleMesh. Not conservative; measure_deviation() "
            "tells by how much.")
           .c_str());

@@ -241,37 +241,37 @@ py::tuple explained(CheckerOfScene& self, const py::object& configuration,
 void bind_configurations(py::class_<CheckerOfScene, CheckerPointer>& checker) {
   checker
       .def("check_config", &check_one, py::arg("configuration"),
-           Help("check_config($self, configuration)",
+           Help("check_config(self, configuration)",
                 "True if the configuration, shape (dof,), is free: of obstacles and of itself, and "
                 "within the limits if these are enforced.")
                .c_str())
       .def("check_configs", &check_many, py::arg("configurations"), py::kw_only(),
            py::arg("threads") = 1,
-           Help("check_configs($self, configurations, *, threads=1)",
+           Help("check_configs(self, configurations, *, threads=1)",
                 "The same of configurations of shape (n, dof): bool, shape (n,). `threads` 0: all "
                 "cores.")
                .c_str())
       .def(
           "within", &is_within, py::arg("configuration"), py::arg("clearance"),
           Help(
-              "within($self, configuration, clearance)",
+              "within(self, configuration, clearance)",
               "Whether any two that are tested come within `clearance` (metres) of touching: never "
               "false if they do in exact arithmetic.")
               .c_str())
       .def(
           "clearance", &clearance_of, py::arg("configuration"),
           Help(
-              "clearance($self, configuration)",
+              "clearance(self, configuration)",
               "How far the robot is from the nearest contact, between two bounds in metres, and of "
               "which two: a RobotClearance.")
               .c_str())
       .def("clearances", &clearances_of, py::arg("configurations"),
-           Help("clearances($self, configurations)",
+           Help("clearances(self, configurations)",
                 "The two bounds for configurations of shape (n, dof): shape (n, 2), metres.")
                .c_str())
       .def("explain", &explained, py::arg("configuration"), py::kw_only(),
            py::arg("max_contacts") = py::none(), py::arg("proved_free") = false,
-           Help("explain($self, configuration, *, max_contacts=None, proved_free=False)",
+           Help("explain(self, configuration, *, max_contacts=None, proved_free=False)",
                 "What touches what: a tuple of CheckedContact, the deepest for each two bodies. "
                 "Empty "
                 "exactly if all are free of each other; limits are not looked at. `proved_free`: "
@@ -287,7 +287,7 @@ void bind_edges(py::class_<CheckerOfScene, CheckerPointer>& checker) {
           "check_edge", &check_one_edge, py::arg("start"), py::arg("end"), py::kw_only(),
           py::arg("resolution") = defaults.resolution, py::arg("first") = defaults.first,
           py::arg("continuous") = "as_given", py::arg("max_configurations") = py::none(),
-          Help("check_edge($self, start, end, *, resolution=0.0001, first=False, "
+          Help("check_edge(self, start, end, *, resolution=0.0001, first=False, "
                "continuous='as_given', max_configurations=None)",
                "Whether the straight motion in joint space between two configurations of shape "
                "(dof,) is free at every point of it, proved: an EdgeResult. What comes closer than "
@@ -301,14 +301,14 @@ void bind_edges(py::class_<CheckerOfScene, CheckerPointer>& checker) {
           py::arg("continuous") = "as_given", py::arg("max_configurations") = py::none(),
           py::arg("threads") = 1,
           Help(
-              "check_edges($self, start, end, *, resolution=0.0001, first=False, "
+              "check_edges(self, start, end, *, resolution=0.0001, first=False, "
               "continuous='as_given', max_configurations=None, threads=1)",
               "The same of many, each from start[i] to end[i], of shape (n, dof): EdgeResults. The "
               "edges of a path are check_edges(path[:-1], path[1:]).")
               .c_str())
       .def("measure_edge", &measure_one_edge, py::arg("start"), py::arg("end"), py::kw_only(),
            py::arg("resolution") = defaults.resolution, py::arg("continuous") = "as_given",
-           Help("measure_edge($self, start, end, *, resolution=0.0001, continuous='as_given')",
+           Help("measure_edge(self, start, end, *, resolution=0.0001, continuous='as_given')",
                 "How much of the motion is proved free: every point before this fraction is; 1 if "
                 "all of it is.")
                .c_str());

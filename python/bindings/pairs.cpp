@@ -83,7 +83,7 @@ void bind_link_pairs(py::module_& module) {
       "What is proved of the pairs of a robot's links that joints move against each other; "
       "prove_link_pairs() makes it, RobotScene.set_link_pairs() takes it. Immutable.")
       .def("pairs", &proved_pairs, py::arg("robot"),
-           Help("pairs($self, robot)", "A tuple of LinkPair, named as the robot's links are.")
+           Help("pairs(self, robot)", "A tuple of LinkPair, named as the robot's links are.")
                .c_str())
       .def("__len__", [](const LinkPairs& pairs) { return pairs.pairs().size(); })
       .def("__repr__",
@@ -197,38 +197,38 @@ void bind_allowed(py::module_& module) {
       .def(
           "allow", [](AllowedOfRobot& self, Names a, Names b) { self.allowed.allow(a, b); },
           py::arg("first"), py::arg("second"),
-          Help("allow($self, first, second)", "The two links may touch.").c_str())
+          Help("allow(self, first, second)", "The two links may touch.").c_str())
       .def("allow_pairs", &allow_disabled, py::arg("pairs"),
-           Help("allow_pairs($self, pairs)",
+           Help("allow_pairs(self, pairs)",
                 "The pairs that an SRDF disables: DisabledPair, or what has `link_a` and `link_b`.")
                .c_str())
       .def(
           "allow_proved",
           [](AllowedOfRobot& self, const LinkPairs& pairs) { self.allowed.allow(pairs); },
           py::arg("pairs"),
-          Help("allow_proved($self, pairs)",
+          Help("allow_proved(self, pairs)",
                "The pairs of LinkPairs that are proved never to touch.")
               .c_str())
       .def(
           "allow_all", [](AllowedOfRobot& self) { self.allowed.allow_all(); },
-          Help("allow_all($self)", "Every pair.").c_str())
+          Help("allow_all(self)", "Every pair.").c_str())
       .def("allow_sampled", &allow_by_samples, py::kw_only(),
            py::arg("configurations") = defaults.configurations, py::arg("seed") = defaults.seed,
-           Help("allow_sampled($self, *, configurations=10000, seed=1)",
+           Help("allow_sampled(self, *, configurations=10000, seed=1)",
                 "What never touched in so many random configurations, and what always did: likely, "
                 "not proved.")
                .c_str())
       .def(
           "forbid", [](AllowedOfRobot& self, Names a, Names b) { self.allowed.forbid(a, b); },
           py::arg("first"), py::arg("second"),
-          Help("forbid($self, first, second)", "Tests the two again.").c_str())
+          Help("forbid(self, first, second)", "Tests the two again.").c_str())
       .def(
           "allows",
           [](const AllowedOfRobot& self, Names a, Names b) { return self.allowed.allows(a, b); },
           py::arg("first"), py::arg("second"),
-          Help("allows($self, first, second)", "Whether the two links may touch.").c_str())
+          Help("allows(self, first, second)", "Whether the two links may touch.").c_str())
       .def("pairs", &allowed_pairs,
-           Help("pairs($self)", "The names of all allowed pairs, and the reason of each.").c_str())
+           Help("pairs(self)", "The names of all allowed pairs, and the reason of each.").c_str())
       .def("__repr__",
            [](const AllowedOfRobot& self) {
              return "<spherule.AllowedCollisions: " + std::to_string(self.allowed.pairs().size()) +

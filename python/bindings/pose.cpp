@@ -74,13 +74,13 @@ void bind_pose(py::module_& module) {
                              [](const Pose& pose) { return array_of(pose.translation()); })
       .def_property_readonly("rotation", &rotation_of)
       .def_property_readonly("matrix", &pose_matrix)
-      .def("inverse", &Pose::inverse, Help("inverse($self)", "The motion back, rounded.").c_str())
+      .def("inverse", &Pose::inverse, Help("inverse(self)", "The motion back, rounded.").c_str())
       .def("__mul__", &product, py::arg("other"), py::is_operator(),
-           Help("__mul__($self, other, /)",
+           Help("__mul__(self, other, /)",
                 "The composition with another Pose, or points of shape (3,) or (n, 3), mapped.")
                .c_str())
       .def("__matmul__", &product, py::arg("other"), py::is_operator(),
-           Help("__matmul__($self, other, /)", "As the product.").c_str())
+           Help("__matmul__(self, other, /)", "As the product.").c_str())
       .def("__eq__",
            [](const Pose& a, const py::object& other) {
              if (!py::isinstance<Pose>(other)) return false;

@@ -159,7 +159,7 @@ void bind_queries(py::module_& module) {
            "gap is at most the price of rounding, for two trees collision_slack()."));
   define(module, "collide", &collide_of,
          Help("collide(a, world_from_a, b, world_from_b, *, max_pairs=None, max_node_tests=None, "
-              "max_seconds=inf)",
+              "max_seconds=1e999)",
               "The same test with all pairs of spheres that touch, limits and cost: a "
               "CollisionResult. Two SphereTree, or a SphereTree and a primitive. None: no limit."),
          py::kw_only(), py::arg("max_pairs") = py::none(), py::arg("max_node_tests") = py::none(),
@@ -172,8 +172,8 @@ void bind_queries(py::module_& module) {
          py::arg("clearance"));
   define(
       module, "distance", &distance_of,
-      Help("distance(a, world_from_a, b, world_from_b, *, tolerance=0.0, enough=inf, "
-           "max_node_tests=None, max_seconds=inf)",
+      Help("distance(a, world_from_a, b, world_from_b, *, tolerance=0.0, enough=1e999, "
+           "max_node_tests=None, max_seconds=1e999)",
            "Separation distance of two bodies between certified bounds: a DistanceResult. It ends "
            "when upper - lower is at most `tolerance`, or lower exceeds `enough`. A SphereTree and "
            "another one, a SolidMesh or a primitive."),

@@ -151,13 +151,13 @@ void bind_model_edits(py::class_<RobotModel, ModelPointer>& model) {
             return robot.add_link(std::move(name), parent, joint_of(joint));
           },
           py::arg("name"), py::arg("parent_link"), py::arg("joint"),
-          Help("add_link($self, name, parent_link, joint)",
+          Help("add_link(self, name, parent_link, joint)",
                "Adds a link below another through a Joint (its name, type, parent_from_joint, axis "
                "and limits count) and returns its index.")
               .c_str())
       .def("mimic", &RobotModel::mimic, py::arg("joint"), py::arg("other"),
            py::arg("multiplier") = 1.0, py::arg("offset") = 0.0,
-           Help("mimic($self, joint, other, multiplier=1.0, offset=0.0)",
+           Help("mimic(self, joint, other, multiplier=1.0, offset=0.0)",
                 "From now on `joint` stands at multiplier * (position of `other`) + offset.")
                .c_str())
       .def(
@@ -166,7 +166,7 @@ void bind_model_edits(py::class_<RobotModel, ModelPointer>& model) {
             robot.attach(link, tree);
           },
           py::arg("link"), py::arg("tree"),
-          Help("attach($self, link, tree)", "Attaches a SphereTree to a link, in its frame.")
+          Help("attach(self, link, tree)", "Attaches a SphereTree to a link, in its frame.")
               .c_str());
 }
 
@@ -196,11 +196,11 @@ void bind_robot_model(py::module_& module) {
       .def(
           "find_link",
           [](const RobotModel& robot, const std::string& name) { return robot.find_link(name); },
-          py::arg("name"), Help("find_link($self, name)", "Index of a link, or -1.").c_str())
+          py::arg("name"), Help("find_link(self, name)", "Index of a link, or -1.").c_str())
       .def(
           "find_joint",
           [](const RobotModel& robot, const std::string& name) { return robot.find_joint(name); },
-          py::arg("name"), Help("find_joint($self, name)", "Index of a joint, or -1.").c_str())
+          py::arg("name"), Help("find_joint(self, name)", "Index of a joint, or -1.").c_str())
       .def("__repr__",
            [](const RobotModel& robot) {
              return "<spherule.RobotModel: " + std::to_string(robot.links().size()) + " links, " +

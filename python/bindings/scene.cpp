@@ -44,7 +44,7 @@ void bind_obstacles(SceneClass& scene) {
             self.add(name, obstacle_of(shape), pose_of(pose, "world_from_shape"));
           },
           py::arg("name"), py::arg("shape"), py::arg("world_from_shape") = py::none(),
-          Help("add($self, name, shape, world_from_shape=None)",
+          Help("add(self, name, shape, world_from_shape=None)",
                "An obstacle: a SphereTree, SolidMesh, Box, SolidSphere, Cylinder, Capsule, "
                "HalfSpace, "
                "or a mesh, which counts with its inside.")
@@ -55,11 +55,11 @@ void bind_obstacles(SceneClass& scene) {
             self.move(obstacle, pose_of(pose, "world_from_shape"));
           },
           py::arg("obstacle"), py::arg("world_from_shape"),
-          Help("move($self, obstacle, world_from_shape)", "Places an obstacle elsewhere.").c_str())
+          Help("move(self, obstacle, world_from_shape)", "Places an obstacle elsewhere.").c_str())
       .def(
           "remove", [](RobotScene& self, Name obstacle) { self.remove(obstacle); },
           py::arg("obstacle"),
-          Help("remove($self, obstacle)", "With the contacts and paddings that name it.").c_str())
+          Help("remove(self, obstacle)", "With the contacts and paddings that name it.").c_str())
       .def_property_readonly(
           "obstacles", [](const RobotScene& self) { return py::tuple(py::cast(self.obstacles())); },
           "Their names, in alphabetical order.")
@@ -71,12 +71,12 @@ void bind_obstacles(SceneClass& scene) {
           },
           py::arg("name"), py::arg("link"), py::arg("tree"),
           py::arg("link_from_object") = py::none(),
-          Help("attach($self, name, link, tree, link_from_object=None)",
+          Help("attach(self, name, link, tree, link_from_object=None)",
                "Spheres that move with a link.")
               .c_str())
       .def(
           "detach", [](RobotScene& self, Name object) { self.detach(object); }, py::arg("object"),
-          Help("detach($self, object)", "With what names it.").c_str())
+          Help("detach(self, object)", "With what names it.").c_str())
       .def_property_readonly(
           "attached",
           [](const RobotScene& self) {
@@ -110,7 +110,7 @@ void bind_rules(SceneClass& scene) {
   scene
       .def("set_padding", &set_padding, py::arg("body"), py::arg("padding"),
            py::arg("other") = py::none(),
-           Help("set_padding($self, body, padding, other=None)",
+           Help("set_padding(self, body, padding, other=None)",
                 "Every sphere of the body grows by so much, in metres; with `other`, the two are "
                 "kept "
                 "apart by so much more.")
@@ -118,25 +118,25 @@ void bind_rules(SceneClass& scene) {
       .def(
           "define_region", &define_region, py::arg("body"), py::arg("name"), py::arg("around"),
           Help(
-              "define_region($self, body, name, around)",
+              "define_region(self, body, name, around)",
               "Names the spheres of a body whose centre lies in `around`, shape (4,), in the frame "
               "of the link or object.")
               .c_str())
       .def("allow_contact", &allow, py::arg("body"), py::arg("other"),
            py::arg("region") = py::none(),
-           Help("allow_contact($self, body, other, region=None)",
+           Help("allow_contact(self, body, other, region=None)",
                 "The two may touch, or only that region of the body.")
                .c_str())
       .def("forbid_contact", &forbid, py::arg("body"), py::arg("other"),
            py::arg("region") = py::none(),
-           Help("forbid_contact($self, body, other, region=None)", "Takes that back.").c_str())
+           Help("forbid_contact(self, body, other, region=None)", "Takes that back.").c_str())
       .def(
           "set_allowed_collisions",
           [](RobotScene& self, const AllowedOfRobot& allowed) {
             self.set_allowed_collisions(allowed.allowed);
           },
           py::arg("allowed"),
-          Help("set_allowed_collisions($self, allowed)", "Which links may touch each other.")
+          Help("set_allowed_collisions(self, allowed)", "Which links may touch each other.")
               .c_str())
       .def_property_readonly("allowed_collisions",
                              [](const RobotScene& self) {
@@ -149,7 +149,7 @@ void bind_rules(SceneClass& scene) {
             self.set_link_pairs(pairs);
           },
           py::arg("pairs"),
-          Help("set_link_pairs($self, pairs)", "What is proved of the links (LinkPairs), or None.")
+          Help("set_link_pairs(self, pairs)", "What is proved of the links (LinkPairs), or None.")
               .c_str())
       .def(
           "reason",
@@ -157,7 +157,7 @@ void bind_rules(SceneClass& scene) {
             return std::string(word_of(self.reason(a, b)));
           },
           py::arg("first"), py::arg("second"),
-          Help("reason($self, first, second)",
+          Help("reason(self, first, second)",
                "Why two links are not tested against each other, or not everywhere.")
               .c_str());
 }
@@ -186,7 +186,7 @@ void bind_scene(py::module_& module) {
       .def_property_readonly("world_from_root", &RobotScene::world_from_root)
       .def("snapshot", &snapshot, py::kw_only(), py::arg("enforce_limits") = false,
            py::arg("instructions") = py::none(), py::arg("meshes") = py::tuple(),
-           Help("snapshot($self, *, enforce_limits=False, instructions=None, meshes=())",
+           Help("snapshot(self, *, enforce_limits=False, instructions=None, meshes=())",
                 "What is queried, as of now: a RobotChecker. `enforce_limits`: a joint outside its "
                 "limits counts as a collision. `meshes`: CoveredMesh whose `cover` is a tree of a "
                 "body; its contacts are confirmed on triangles. `instructions` is 'portable', "

@@ -96,7 +96,7 @@ void bind_motion(py::module_& module) {
                       .c_str())
       .def(
           "pose_at", [](const MadeMotion& made, double t) { return made.motion.pose_at(t); },
-          py::arg("t"), Help("pose_at($self, t)", "The pose at t, 0 to 1.").c_str())
+          py::arg("t"), Help("pose_at(self, t)", "The pose at t, 0 to 1.").c_str())
       .def_property_readonly("angle", [](const MadeMotion& made) { return made.motion.angle(); })
       .def_property_readonly("axis",
                              [](const MadeMotion& made) { return array_of(made.motion.axis()); })
@@ -121,7 +121,7 @@ void bind_sweep(py::module_& module) {
              py::arg("resolution") = 1e-4, py::arg("max_node_tests") = py::none(),
              py::arg("max_seconds") = std::numeric_limits<double>::infinity(),
              Help("sweep(a, motion_a, b, motion_b, *, clearance=0.0, resolution=0.0001, "
-                  "max_node_tests=None, max_seconds=inf)",
+                  "max_node_tests=None, max_seconds=1e999)",
                   "Whether two SphereTree stay apart while they move: a SweepResult. A motion on "
                   "which they touch, or come within `clearance`, at any t is never called free. "
                   "Intervals of t no longer than `resolution` are not divided any further.")

@@ -99,7 +99,7 @@ void bind_tree_class(py::module_& module) {
       .def_property_readonly("child_count", column(&SphereTreeData::child_count),
                              "Of every node; 0 marks a leaf.")
       .def("level", &level_of, py::arg("level"),
-           Help("level($self, level)",
+           Help("level(self, level)",
                 "The spheres at that distance from the root and the leaves above them, shape "
                 "(n, 4): their union contains all spheres. 0 is the root.")
                .c_str())

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The page as a browser shows it: opened from its file, without a network.
+#include "tests/cli/check_fixture.h"
 #include "tests/cli/command_test_support.h"
 #include "tests/cli/png_image.h"
 
@@ -148,6 +149,101 @@ TEST_F(ViewBrowserTest, Robot) {
     EXPECT_NE(shown.dom.find(text), std::string::npos) << text;
   }
 }
+
+#ifdef SPHERULE_HAS_ROBOT
+// A hand that slides through a wall, and what a person does on the page: script that runs there.
+class CheckedPageTest : public ViewBrowserTest {
+ protected:
+  void SetUp() override {
+    ViewBrowserTest::SetUp();
+    if (IsSkipped()) return;
+    write("slider.urdf", kSlider);
+    write("slider.json", R"({"hand": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
+    write("cell.json", wall_and(""));
+    write("path.csv", "-1 0\n0.03 0\n1 0\n");
+    EXPECT_EQ(run({"check", "slider.urdf", "cell.json", "path.csv", "--spheres", "slider.json",
+                   "--view", "page.html"})
+                  .exit_code,
+              1);
+  }
+  // The page with script that runs once it has drawn itself; frames come by the clock.
+  Shown act(const std::string& script, const std::string& state) {
+    std::string page = read("page.html");
+    page.insert(page.rfind("</body>"),
+                "<script>window.requestAnimationFrame = (call) => setTimeout(() =>"
+                " call(performance.now()), 16);\nconst on = (type, x, y) => "
+                "document.getElementById('canvas')"
+                ".dispatchEvent(new PointerEvent(type, {clientX: x, clientY: y, bubbles: true,"
+                " pointerId: 1}));\nconst click = (x, y) => { on('pointerdown', x, y);"
+                " on('pointerup', x, y); };\nsetTimeout(() => {" +
+                    script + "}, 500);</script>");
+    write("acted.html", page);
+    return show("acted.html", state);
+  }
+  static void expect_text(const Shown& shown, const std::string& text, bool is_there = true) {
+    EXPECT_EQ(shown.dom.find(text) != std::string::npos, is_there) << text;
+  }
+};
+
+TEST_F(CheckedPageTest, ShowsWhatTouchesAndHowFarTheRestIs) {
+  const Shown contact = show("page.html", "theme=light&contact=1");
+  expect_text(contact, "hand – wall 20.5 mm");
+  expect_text(contact, "Contacts, line 2");
+  expect_text(contact, "collision: 3 configurations, 1 with contacts");
+  EXPECT_GT(count(contact.picture, is_red), 100u);
+  const Shown free = show("page.html", "theme=light&at=2");
+  expect_text(free, "hand – wall 20.5 mm", false);
+  expect_text(free, "clearance ≥ 949 mm in line 3, hand – wall");
+  expect_text(free, "class=\"verdict f\">free<");
+  // Halfway between two lines: there the joint is, too.
+  const Shown between = show("page.html", "theme=light&at=1.5");
+  expect_text(between, "line 2 → 3, 50 %");
+  expect_text(between, ">515 mm<");
+}
+
+TEST_F(CheckedPageTest, TheSpaceKeyPlays) {
+  const Shown shown =
+      act("const key = () => window.dispatchEvent(new KeyboardEvent('keydown', {key: ' '}));"
+          "const place = () => document.getElementById('place').textContent;"
+          "key(); setTimeout(() => { key(); document.documentElement.dataset.played = place(); },"
+          " 600);",
+          "theme=light");
+  expect_text(shown, "data-played=\"line 1 → 2, ");
+  expect_text(shown, "aria-label=\"Play\"");
+}
+
+// The label stands beside the point where hand and wall touch, inside the hand.
+constexpr const char* kAtContact =
+    "const label = document.querySelector('.contact-label').getBoundingClientRect();"
+    "const [x, y] = [label.left - 16, label.top + 12];";
+
+TEST_F(CheckedPageTest, TellsWhatIsUnderThePointerAndShowsALinkAlone) {
+  const Shown shown =
+      act(std::string(kAtContact) +
+              "on('pointermove', x, y); const told = () => document.documentElement.dataset.links ="
+              " (document.documentElement.dataset.links || '') +"
+              " document.querySelectorAll('.link input:checked').length;"
+
+              "click(x, y); told(); click(x, y); told();",
+          "theme=light&contact=1");
+  expect_text(shown, "hand · sphere 0 · radius 50 mm");
+  expect_text(shown, "data-links=\"11\"");
+}
+
+TEST_F(CheckedPageTest, MeasuresAndMakesAPicture) {
+  const Shown shown =
+      act(std::string(kAtContact) +
+              "document.getElementById('measure').click(); click(x, y); click(x - 60, y);"
+              "document.getElementById('picture-width').value = 320;"
+              "document.getElementById('picture-height').value = 200;"
+              "HTMLCanvasElement.prototype.toBlob = function () {"
+              " document.documentElement.dataset.picture = `${this.width} ${this.height}`; };"
+              "document.getElementById('save-picture').click();",
+          "theme=light&contact=1");
+  expect_text(shown, "data-picture=\"320 200\"");
+  expect_text(shown, "class=\"measure-label\"");
+}
+#endif
 
 }  // namespace
 }  // namespace spherule

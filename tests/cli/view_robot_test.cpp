@@ -125,6 +125,33 @@ TEST_F(ViewRobotTest, LeaksOfSamplesAndOfAnAudit) {
   EXPECT_EQ(items[2].at("facts"), "1 of 2 links not proved to be covered");
 }
 
+TEST_F(ViewRobotTest, AnAuditWritesItsPage) {
+  const Outcome audit = run({"audit-robot", "arm.urdf", "arm.yml", "--view", "page.html"});
+  EXPECT_EQ(audit.exit_code, 1) << audit.err;
+  EXPECT_NE(audit.out.find("page: page.html ("), std::string::npos) << audit.out;
+  const json items = scene_of(read("page.html")).at("items");
+  ASSERT_EQ(items.size(), 3u);
+  EXPECT_EQ(items[0].at("name"), "collision geometry");
+  EXPECT_EQ(items[1].at("name"), "arm.yml");
+  EXPECT_EQ(items[2].at("facts"), "1 of 2 links not proved to be covered");
+  const std::vector<float> leaks = floats_of(items[2].at("parts").at(1).at("levels").at(0));
+  ASSERT_GE(leaks.size(), 4u);
+  EXPECT_NEAR(leaks[3], std::sqrt(0.16 + 0.0025 + 0.0025) - 0.2, 1e-6);
+  expect_refusal({"audit-robot", "arm.urdf", "arm.yml", "--view", "arm.yml"}, "arm.yml");
+}
+
+TEST_F(ViewRobotTest, ACoverWritesItsPage) {
+  const Outcome cover =
+      run({"robot", "arm.urdf", "-o", "out", "--max-error", "0.05", "--view", "page.html"});
+  EXPECT_EQ(cover.exit_code, 0) << cover.err;
+  EXPECT_NE(cover.out.find("page: page.html ("), std::string::npos) << cover.out;
+  const json items = scene_of(read("page.html")).at("items");
+  ASSERT_EQ(items.size(), 3u);
+  EXPECT_EQ(items[1].at("name"), "spheres of arm");
+  EXPECT_EQ(items[1].at("parts").size(), 2u);
+  EXPECT_EQ(items[2].at("facts"), "all links covered (proved)");
+}
+
 TEST_F(ViewRobotTest, LinksThatAreNotThereAreCounted) {
   write("more.yml",
         "collision_spheres:\n"

@@ -17,12 +17,17 @@ const kDirections = {
   home: [0.62, -0.9, 0.55], front: [0, -1, 0], right: [1, 0, 0], top: [0, -1e-4, 1],
 };
 
-// What the panel covers: a strip at the left, or on narrow screens at the bottom.
+// Below this width of the window the panel folds, and stands at the bottom (view.css).
+const kNarrowWidth = 600;
+
+// What the panel and the player cover: a strip at the left, or on narrow screens at the bottom.
 function covered_area() {
-  if (document.body.classList.contains("bare")) return {left: 0, bottom: 0};
+  const bar = document.getElementById("player");
+  const played = bar.hidden ? 0 : innerHeight - bar.getBoundingClientRect().top;
+  if (document.body.classList.contains("bare")) return {left: 0, bottom: played};
   const panel = document.getElementById("panel").getBoundingClientRect();
-  return innerWidth > 700 ? {left: panel.right, bottom: 0}
-                          : {left: 0, bottom: innerHeight - panel.top};
+  return innerWidth > kNarrowWidth ? {left: panel.right, bottom: played}
+                                   : {left: 0, bottom: innerHeight - panel.top};
 }
 
 // The scene stands in the middle of what the panel leaves free.

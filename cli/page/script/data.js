@@ -29,9 +29,17 @@ function length_text(value) {
   if (size >= 1e6 || size < 1e-4) return value.toExponential(2);
   return String(Number(value.toPrecision(3)));
 }
+// The same, rounded toward zero: for a lower bound.
+function lower_length_text(value) {
+  if (!(Math.abs(value) > 0)) return length_text(value);
+  const step = 10 ** (Math.floor(Math.log10(Math.abs(value))) - 2);
+  return length_text(Number((Math.trunc(value / step) * step).toPrecision(3)));
+}
 // Robots are in metres, which are coarse for what is shown of them; other files name no unit.
 const distance_text =
     (value) => robot_data ? `${length_text(value * 1000)} mm` : length_text(value);
+const lower_distance_text = (value) =>
+    robot_data ? `${lower_length_text(value * 1000)} mm` : lower_length_text(value);
 const count_text = (count, thing) =>
     `${count.toLocaleString("en-US")} ${thing}${count === 1 ? "" : "s"}`;
 

@@ -12,10 +12,11 @@ let colours_by_link = false;
 function make_item(data, order) {
   const item = {
     name: short_name(data.name), full_name: data.name, kind: data.kind, facts: data.facts || "",
-    shown: data.shown, order, colour_slot: 0, alpha: 1, level: 0, level_count: 1, parts: [],
+    shown: data.shown, checked: data.checked || false, order, colour_slot: 0, alpha: 1, level: 0, level_count: 1, parts: [],
   };
   for (const part_data of data.parts) {
-    const part = {link: part_data.link, levels: [], box: new THREE.Box3()};
+    const part = {link: part_data.link, name: part_data.name || "",
+                  background: part_data.background || false, levels: [], box: new THREE.Box3()};
     part.group = new THREE.Group();
     frame_of(part.link).add(part.group);
     if (item.kind === "mesh") {
@@ -109,6 +110,7 @@ const has_mesh = items.some((item) => item.kind === "mesh");
 }
 
 function item_colour(item) {
+  if (item.kind === "mesh" && item.parts.some((part) => part.name)) return theme().obstacle;
   if (item.kind === "mesh" || item.kind === "external") return theme()[item.kind];
   if (item.kind === "leaks") return theme().leak;
   return theme().spheres[item.colour_slot % theme().spheres.length];
@@ -152,7 +154,7 @@ function box_of_items(choice) {
   const box = new THREE.Box3();
   for (const item of items.filter(choice)) {
     for (const part of item.parts) {
-      if (part.box.isEmpty()) continue;
+      if (part.box.isEmpty() || part.background) continue;
       box.union(part.box.clone().applyMatrix4(frame_of(part.link).matrixWorld));
     }
   }

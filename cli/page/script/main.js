@@ -29,10 +29,12 @@ function draw() {
   place_clipping_planes();
   camera.updateMatrixWorld(true);
   place_cut(camera);
+  place_measure();
   renderer.render(world, camera);
   place_axes();
   place_scale();
   place_label();
+  place_contact_labels();
   document.documentElement.dataset.drawn = String(renderer.info.render.calls);
 }
 
@@ -42,6 +44,7 @@ const kKeys = {
   "+": () => zoom(0.9), "=": () => zoom(0.9), "-": () => zoom(1.1),
   0: () => look_from("home"), 1: () => look_from("front"), 2: () => look_from("right"),
   3: () => look_from("top"), p: fold, d: switch_theme,
+  " ": toggle_playing, m: switch_measure, n: () => jump(1), b: () => jump(-1),
 };
 const kShiftKeys = {ArrowLeft: () => pan(-1, 0), ArrowRight: () => pan(1, 0),
                     ArrowUp: () => pan(0, 1), ArrowDown: () => pan(0, -1)};
@@ -49,7 +52,11 @@ const kShiftKeys = {ArrowLeft: () => pan(-1, 0), ArrowRight: () => pan(1, 0),
 function hear_keys() {
   window.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.target.tagName === "INPUT" && event.key.startsWith("Arrow")) return;
+    const target = event.target;
+    if (target.tagName === "INPUT" && event.key.startsWith("Arrow")) return;
+    // Space presses what has the focus, and plays elsewhere.
+    if (target.type === "number") return;
+    if (event.key === " " && target.matches("button, summary, select, [type=checkbox]")) return;
     const action = event.shiftKey && kShiftKeys[event.key] || kKeys[event.key];
     if (!action) return;
     event.preventDefault();
@@ -63,12 +70,19 @@ function start() {
     renderer.setClearColor(colour(theme().ground), 1);
     refresh();
   });
+  // On a narrow screen the scene comes first; the panel is a press away.
+  if (innerWidth <= kNarrowWidth && address_options.get("panel") !== "open") {
+    document.body.classList.add("bare");
+  }
   add_heading();
   items.forEach(add_item);
   add_leaks();
   add_cut();
+  add_tools();
   add_robot();
+  add_player();
   hear_keys();
+  hear_pointer();
   canvas.addEventListener("dblclick", () => look_from("home"));
   window.addEventListener("resize", fit_again);
   apply_theme();

@@ -15,6 +15,7 @@ if (robot_data) {
     const frame = new THREE.Group();
     frame.name = link.name;
     if (link.joint < 0) {
+      if (robot_data.pose) pose_to(frame, robot_data.pose);
       world.add(frame);
     } else {
       const joint = robot_data.joints[link.joint];

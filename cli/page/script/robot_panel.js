@@ -3,7 +3,7 @@
 const joint_rows = [];
 
 const position_text = (joint, value) => joint.type === "prismatic"
-    ? distance_text(value) : `${(value * 180 / Math.PI).toFixed(1)}°`;
+    ? distance_text(value) : `${length_text(Math.abs(value) < 1e-5 ? 0 : value * 180 / Math.PI)}°`;
 
 // Without the name of the robot, with which names often begin.
 function plain_name(name) {
@@ -60,11 +60,18 @@ function link_note(link) {
   return sets.map(count_in).join(" / ");
 }
 
+// Shows the links that are chosen; set up with the list of links.
+let show_links = () => {};
+
 function add_links() {
   const boxes = [];
   const apply = (link, shown) => {
     link_shown[link] = shown;
     boxes[link].checked = shown;
+  };
+  show_links = (choose) => {
+    robot_data.links.forEach((_, index) => apply(index, choose(index)));
+    refresh();
   };
   const used = robot_data.links.map((_, link) =>
       items.some((item) => item.parts.some((part) => part.link === link)));
@@ -78,10 +85,7 @@ function add_links() {
     });
     const only = node("button", {type: "button", className: "only", title: `Only ${link.name}`},
                       "only");
-    only.addEventListener("click", () => {
-      robot_data.links.forEach((_, other) => apply(other, other === index));
-      refresh();
-    });
+    only.addEventListener("click", () => show_links((other) => other === index));
     const leak = deepest_of_link(index);
     panel_part("link-list").append(node("div", {className: "link"},
         node("label", {title: link.name}, box,
@@ -90,10 +94,7 @@ function add_links() {
         node("span", {className: "depth"}, leak ? distance_text(leak.depth) : "")));
   });
   const all = node("button", {type: "button"}, "all");
-  all.addEventListener("click", () => {
-    robot_data.links.forEach((_, index) => apply(index, true));
-    refresh();
-  });
+  all.addEventListener("click", () => show_links(() => true));
   const by_link = node("button", {type: "button", "aria-pressed": "false"}, "colour by link");
   by_link.addEventListener("click", () => {
     colours_by_link = !colours_by_link;

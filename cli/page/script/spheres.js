@@ -77,7 +77,7 @@ function make_sphere_geometry(spheres) {
   const geometry = new THREE.InstancedBufferGeometry();
   geometry.setAttribute("position", sphere_square);
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  geometry.setAttribute("ball", new THREE.InstancedBufferAttribute(spheres, 4));
+  geometry.setAttribute("sphere", new THREE.InstancedBufferAttribute(spheres, 4));
   geometry.maxInstancedCount = geometry.instanceCount = spheres.length / 4;
   return geometry;
 }
