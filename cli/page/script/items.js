@@ -12,7 +12,8 @@ let colours_by_link = false;
 function make_item(data, order) {
   const item = {
     name: short_name(data.name), full_name: data.name, kind: data.kind, facts: data.facts || "",
-    shown: data.shown, checked: data.checked || false, order, colour_slot: 0, alpha: 1, level: 0, level_count: 1, parts: [],
+    shown: data.shown, checked: data.checked || false, order,
+    colour_slot: 0, alpha: 1, level: 0, level_count: 1, parts: [],
   };
   for (const part_data of data.parts) {
     const part = {link: part_data.link, name: part_data.name || "",
