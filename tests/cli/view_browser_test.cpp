@@ -213,33 +213,35 @@ TEST_F(CheckedPageTest, TheSpaceKeyPlays) {
 }
 
 // The label stands beside the point where hand and wall touch, inside the hand.
-constexpr const char* kAtContact =
-    "const label = document.querySelector('.contact-label').getBoundingClientRect();"
-    "const [x, y] = [label.left - 16, label.top + 12];";
+std::string at_contact(const char* script) {
+  std::string all =
+      "const label = document.querySelector('.contact-label').getBoundingClientRect();"
+      "const [x, y] = [label.left - 16, label.top + 12];";
+  return all.append(script);
+}
 
 TEST_F(CheckedPageTest, TellsWhatIsUnderThePointerAndShowsALinkAlone) {
   const Shown shown =
-      act(std::string(kAtContact) +
+      act(at_contact(
               "on('pointermove', x, y); const told = () => document.documentElement.dataset.links ="
               " (document.documentElement.dataset.links || '') +"
               " document.querySelectorAll('.link input:checked').length;"
 
-              "click(x, y); told(); click(x, y); told();",
+              "click(x, y); told(); click(x, y); told();"),
           "theme=light&contact=1");
   expect_text(shown, "hand · sphere 0 · radius 50 mm");
   expect_text(shown, "data-links=\"11\"");
 }
 
 TEST_F(CheckedPageTest, MeasuresAndMakesAPicture) {
-  const Shown shown =
-      act(std::string(kAtContact) +
-              "document.getElementById('measure').click(); click(x, y); click(x - 60, y);"
-              "document.getElementById('picture-width').value = 320;"
-              "document.getElementById('picture-height').value = 200;"
-              "HTMLCanvasElement.prototype.toBlob = function () {"
-              " document.documentElement.dataset.picture = `${this.width} ${this.height}`; };"
-              "document.getElementById('save-picture').click();",
-          "theme=light&contact=1");
+  const Shown shown = act(
+      at_contact("document.getElementById('measure').click(); click(x, y); click(x - 60, y);"
+                 "document.getElementById('picture-width').value = 320;"
+                 "document.getElementById('picture-height').value = 200;"
+                 "HTMLCanvasElement.prototype.toBlob = function () {"
+                 " document.documentElement.dataset.picture = `${this.width} ${this.height}`; };"
+                 "document.getElementById('save-picture').click();"),
+      "theme=light&contact=1");
   expect_text(shown, "data-picture=\"320 200\"");
   expect_text(shown, "class=\"measure-label\"");
 }
