@@ -90,7 +90,7 @@ TEST_F(OutputTest, RunningOutOfMemoryIsAnError) {
   write_spheres("many.json", many);
   constexpr rlim_t kMegabyte = 1U << 20U;
   // Libraries that are loaded do not always say what they lack.
-  rlim_t megabytes = 64;
+  rlim_t megabytes = 8;
   for (;; ++megabytes) {
     const Limited memory(RLIMIT_AS, megabytes * kMegabyte);
     if (run({"--version"}).exit_code == 0) break;

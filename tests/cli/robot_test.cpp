@@ -308,7 +308,6 @@ TEST_F(RobotTest, BadInputIsRefusedBeforeTheWork) {
   const auto refuse = [&](const std::vector<std::string>& more, const std::string& reason) {
     expect_refusal(command(more), reason);
   };
-  expect_refusal({"robot", "arm.urdf"}, "--output");
   expect_refusal({"robot", "none.urdf", "-o", "out"}, "none.urdf");
   expect_refusal({"robot", "arm.urdf", "-o", "out"}, "parts");
   expect_refusal({"robot", "arm.urdf", "-o", "out", "--package", "parts=parts", "--max-error", "0"},
