@@ -4,6 +4,7 @@
 import importlib.util
 import inspect
 import os
+import pathlib
 import pickle
 import subprocess
 import sys
@@ -101,5 +102,5 @@ def test_what_is_public_is_meant_to_be():
 
 
 def test_the_version_is_the_projects():
-    cmake = open(os.path.join(os.environ["SPHERULE_SOURCE_DIR"], "CMakeLists.txt")).read()
+    cmake = pathlib.Path(os.environ["SPHERULE_SOURCE_DIR"], "CMakeLists.txt").read_text()
     assert f"project(spherule VERSION {spherule.__version__} " in cmake
