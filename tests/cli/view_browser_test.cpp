@@ -203,7 +203,8 @@ TEST_F(CheckedPageTest, ShowsWhatTouchesAndHowFarTheRestIs) {
 
 TEST_F(CheckedPageTest, TheSpaceKeyPlays) {
   const Shown shown =
-      act("const key = () => window.dispatchEvent(new KeyboardEvent('keydown', {key: ' '}));"
+      act("const key = () => document.body.dispatchEvent("
+          "new KeyboardEvent('keydown', {key: ' ', bubbles: true}));"
           "const place = () => document.getElementById('place').textContent;"
           "key(); setTimeout(() => { key(); document.documentElement.dataset.played = place(); },"
           " 600);",

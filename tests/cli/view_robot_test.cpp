@@ -136,7 +136,10 @@ TEST_F(ViewRobotTest, AnAuditWritesItsPage) {
   EXPECT_EQ(items[2].at("facts"), "1 of 2 links not proved to be covered");
   const std::vector<float> leaks = floats_of(items[2].at("parts").at(1).at("levels").at(0));
   ASSERT_GE(leaks.size(), 4u);
-  EXPECT_NEAR(leaks[3], std::sqrt(0.16 + 0.0025 + 0.0025) - 0.2, 1e-6);
+  // The deepest sample; the deepest point is a corner.
+  const double deepest = std::sqrt(0.16 + 0.0025 + 0.0025) - 0.2;
+  EXPECT_LE(leaks[3], deepest + 1e-6);
+  EXPECT_GT(leaks[3], deepest - 2e-3);
   expect_refusal({"audit-robot", "arm.urdf", "arm.yml", "--view", "arm.yml"}, "arm.yml");
 }
 

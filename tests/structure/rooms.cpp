@@ -145,6 +145,7 @@ const std::vector<Room>& rooms() {
         "tinyxml2", "urdfdom", "zlib", "opencascade", "assimp"}},
       // Users of the installed package: they see the library from outside.
       {"tests/consumer", {}, {"Eigen", "fcl", "ompl", "spherule"}},
+      {"examples", {}, {"spherule"}},
   };
   return kRooms;
 }

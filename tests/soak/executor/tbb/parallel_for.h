@@ -6,7 +6,7 @@
 // thread for each of its parts but the first, while fewer than kMostThreads run, and waits for
 // them: two threads have nothing in common but what the library's own code shares.
 
-#include "tbb/blocked_range.h"
+#include "tests/soak/executor/tbb/blocked_range.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tbb/parallel_for.h"
+#include "tests/soak/executor/tbb/parallel_for.h"
 
 // See parallel_for.h. Both halve a range as oneTBB's deterministic one does, so that sums are the
 // same whichever thread is first.
