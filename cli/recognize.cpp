@@ -37,6 +37,12 @@ constexpr std::array kJsonMarks = {
 constexpr std::array kMarkupMarks = {
     Mark{"name=\"generator\" content=\"spherule\"", FileKind::kPage},
     Mark{"<COLLADA", FileKind::kMesh},
+};
+// Both describe a robot; a group of an SRDF has links, too.
+constexpr std::array kRobotMarks = {
+    Mark{"<link_sphere_approximation", FileKind::kSrdf},
+    Mark{"<disable_collisions", FileKind::kSrdf},
+    Mark{"<group", FileKind::kSrdf},
     Mark{"<link", FileKind::kUrdf},
     Mark{"<robot", FileKind::kSrdf},
 };
@@ -55,10 +61,15 @@ FileKind first_of(const std::array<Mark, Count>& marks, std::string_view text) {
   return found == marks.end() ? FileKind::kUnknown : found->kind;
 }
 
-std::string lower_ending(const std::filesystem::path& path) {
-  std::string ending = path.extension();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending;
+std::size_t after_mark_of_utf8(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.starts_with(kMark) ? kMark.size() : 0;
+}
+
+FileKind kind_of_markup(std::string_view text) {
+  const FileKind kind = first_of(kMarkupMarks, text);
+  const bool is_of_robot = text.find("<robot") != std::string_view::npos;
+  return kind == FileKind::kUnknown && is_of_robot ? first_of(kRobotMarks, text) : kind;
 }
 
 }  // namespace
@@ -69,18 +80,27 @@ FileKind recognize(const std::filesystem::path& path) {
   if (bytes.starts_with(kPairsStart)) return FileKind::kPairs;
   if (is_cad_file(path) || bytes.starts_with("ISO-10303-21")) return FileKind::kCad;
   const std::string ending = lower_ending(path);
-  const std::size_t start = bytes.find_first_not_of(" \t\r\n");
+  const std::size_t start = bytes.find_first_not_of(" \t\r\n", after_mark_of_utf8(bytes));
   const char first = start == std::string::npos ? '\0' : bytes[start];
   FileKind kind = FileKind::kUnknown;
   if (first == '{' || first == '[') kind = first_of(kJsonMarks, bytes);
-  if (first == '<') kind = first_of(kMarkupMarks, bytes);
+  if (first == '<') kind = kind_of_markup(bytes);
   if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") {
     kind = first_of(kYamlMarks, bytes);
   }
   if (kind != FileKind::kUnknown) return kind;
-  const bool is_mesh =
-      std::find(kMeshEndings.begin(), kMeshEndings.end(), ending) != kMeshEndings.end();
-  return is_mesh ? FileKind::kMesh : FileKind::kUnknown;
+  return has_mesh_ending(path) ? FileKind::kMesh : FileKind::kUnknown;
+}
+
+std::string lower_ending(const std::filesystem::path& path) {
+  std::string ending = path.extension();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+bool has_mesh_ending(const std::filesystem::path& path) {
+  return std::find(kMeshEndings.begin(), kMeshEndings.end(), lower_ending(path)) !=
+         kMeshEndings.end();
 }
 
 std::string offer_for(FileKind kind, const std::string& file) {

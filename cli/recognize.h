@@ -25,6 +25,11 @@ enum class FileKind {
 // what tells the kinds apart. Throws Error if the file cannot be read.
 FileKind recognize(const std::filesystem::path& path);
 
+// The ending of a file's name, ".stl" say, in small letters.
+std::string lower_ending(const std::filesystem::path& path);
+// Whether the name ends as those of mesh files do.
+bool has_mesh_ending(const std::filesystem::path& path);
+
 // What a file of this kind is and which command takes it, for a message: "a sphere tree (spherule
 // collide FILE OTHER.tree checks it)". Empty if it is not known.
 std::string offer_for(FileKind kind, const std::string& file);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/view_robot.h"
 
+#include "cli/recognize.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
 #include "cli/view_files.h"
@@ -12,12 +13,9 @@
 #include "spheretree/error.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <filesystem>
 #include <iterator>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 namespace spherule {
@@ -25,14 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kMeshEndings = {".stl", ".obj", ".ply",  ".off",
-                                     ".dae", ".3mf", ".gltf", ".glb"};
-
 bool is_urdf(const std::string& file) {
-  const std::string text = read_file(file);
-  const auto has = [&](std::string_view mark) { return text.find(mark) != std::string::npos; };
-  return has("<robot") && has("<link") && !has("<link_sphere_approximation") &&
-         !has("<disable_collisions");
+  return recognize(file) == FileKind::kUrdf;
 }
 
 // What `robot` and `audit-robot --json` write.
@@ -183,11 +175,8 @@ ViewScene covered_robot_scene(const RobotDescription& robot, const std::string& 
 }
 
 bool is_robot_file(const std::string& file) {
-  std::string ending = fs::path(file).extension();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (std::find(kMeshEndings.begin(), kMeshEndings.end(), ending) != kMeshEndings.end()) {
-    return false;
-  }
+  if (has_mesh_ending(file)) return false;
+  const std::string ending = lower_ending(file);
   if (ending == ".json") {
     const Json json = json_in(file);
     if (is_by_links(json)) return true;

@@ -71,7 +71,7 @@ TEST_F(WrongFileTest, RobotsHaveTheirOwnCommands) {
 <collision><geometry><mesh filename="part.stl"/></geometry></collision></link>
 <link name="tip"/><joint name="lift" type="prismatic"><parent link="base"/><child link="tip"/>
 <axis xyz="0 0 1"/><limit lower="-1" upper="2" effort="0" velocity="0"/></joint></robot>)");
-  write("arm.srdf", R"(<robot name="arm">
+  write("arm.srdf", R"(<robot name="arm"><group name="all"><link name="base"/></group>
 <disable_collisions link1="base" link2="tip" reason="Adjacent"/></robot>)");
   write("arm.yml", "collision_spheres:\n  base:\n    - center: [1, 0.5, 0.5]\n      radius: 2\n");
   write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": []})");
