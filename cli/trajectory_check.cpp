@@ -15,10 +15,10 @@ class TrajectoryCheck {
  public:
   TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory,
                   const TrajectoryCheckOptions& options)
-      : checker_(checker), trajectory_(trajectory), options_(options) {
-    const unsigned count = options.threads > 0 ? static_cast<unsigned>(options.threads)
-                                               : std::max(1u, std::thread::hardware_concurrency());
-    for (unsigned i = 0; i < count; ++i) scratches_.emplace_back(checker);
+      : checker_(checker),
+        trajectory_(trajectory),
+        options_(options),
+        scratches_(make_scratches(checker, options.threads)) {
     report_.configurations = trajectory.size();
   }
 
@@ -111,6 +111,14 @@ class TrajectoryCheck {
 };
 
 }  // namespace
+
+std::vector<RobotChecker::Scratch> make_scratches(const RobotChecker& checker, int threads) {
+  const unsigned count = threads > 0 ? static_cast<unsigned>(threads)
+                                     : std::max(1u, std::thread::hardware_concurrency());
+  std::vector<RobotChecker::Scratch> scratches;
+  for (unsigned i = 0; i < count; ++i) scratches.emplace_back(checker);
+  return scratches;
+}
 
 CheckReport check_configurations(const RobotChecker& checker, const Trajectory& trajectory,
                                  const TrajectoryCheckOptions& options) {

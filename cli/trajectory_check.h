@@ -6,6 +6,8 @@
 #include "robot/files/trajectory_file.h"
 #include "simplifier/external_spheres.h"
 
+#include <vector>
+
 namespace spherule {
 
 struct TrajectoryCheckOptions {
@@ -14,6 +16,9 @@ struct TrajectoryCheckOptions {
   Progress progress{};
   EdgeRequest edge{};  // of motions
 };
+
+// One for each thread: `threads` of them, or for 0 as many as the machine runs at once.
+std::vector<RobotChecker::Scratch> make_scratches(const RobotChecker& checker, int threads);
 
 // Every configuration, or every motion from one to the next, of which there are two at least.
 CheckReport check_configurations(const RobotChecker& checker, const Trajectory& trajectory,

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/view_trajectory.h"
 
+#include "cli/trajectory_check.h"
 #include "cli/view_encoding.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <exception>
+#include <future>
 #include <map>
 #include <span>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -43,11 +43,8 @@ class Recording {
         view_(view),
         shown_(shown_of(trajectory.size(), view.most_configurations)),
         clearances_(shown_.size()),
-        contacts_(shown_.size()) {
-    const unsigned count = view.threads > 0 ? static_cast<unsigned>(view.threads)
-                                            : std::max(1u, std::thread::hardware_concurrency());
-    for (unsigned i = 0; i < count; ++i) scratches_.emplace_back(checker);
-  }
+        contacts_(shown_.size()),
+        scratches_(make_scratches(checker, view.threads)) {}
 
   Json run() && {
     examine_shown();
@@ -66,22 +63,11 @@ class Recording {
  private:
   // Clearance and contacts of the shown configurations, each thread with a scratch of its own.
   void examine_shown() {
-    std::vector<std::exception_ptr> errors(scratches_.size());
-    {
-      std::vector<std::jthread> threads;
-      for (std::size_t t = 0; t < scratches_.size(); ++t) {
-        threads.emplace_back([this, t, &errors] {
-          try {
-            examine_share(t);
-          } catch (...) {
-            errors[t] = std::current_exception();
-          }
-        });
-      }
+    std::vector<std::future<void>> shares;
+    for (std::size_t t = 0; t < scratches_.size(); ++t) {
+      shares.push_back(std::async(std::launch::async, [this, t] { examine_share(t); }));
     }
-    for (const std::exception_ptr& error : errors) {
-      if (error) std::rethrow_exception(error);
-    }
+    for (std::future<void>& share : shares) share.get();
   }
   void examine_share(std::size_t thread) {
     for (std::size_t j = thread; j < shown_.size(); j += scratches_.size()) {
@@ -217,7 +203,7 @@ class Recording {
   std::vector<std::size_t> shown_;
   std::vector<RobotClearance> clearances_;
   std::vector<std::vector<CheckedContact>> contacts_;
-  std::vector<RobotChecker::Scratch> scratches_{};
+  std::vector<RobotChecker::Scratch> scratches_;
   std::vector<std::string> names_{};
   std::map<std::string, std::int32_t> indices_{};
 };
