@@ -158,10 +158,12 @@ int audit(const AuditRobotArguments& arguments) {
   if (mend) {
     write_uninterrupted([&] { write_repaired(arguments, report.file, *report.repair); });
   }
-  std::cout << (arguments.json ? to_text(audit_json(report)) : audit_table(report));
+  const bool needs_json = arguments.json || !arguments.view.empty();
+  const Json json = needs_json ? audit_json(report) : Json();
+  std::cout << (arguments.json ? to_text(json) : audit_table(report));
   if (!arguments.view.empty()) {
-    write_page(arguments.view, covered_robot_scene(robot, arguments.geometry, spheres,
-                                                   arguments.spheres, audit_json(report)));
+    write_page(arguments.view,
+               covered_robot_scene(robot, arguments.geometry, spheres, arguments.spheres, json));
     if (!arguments.json) std::cout << page_line(arguments.view);
   }
   if (report.pairs) {

@@ -260,17 +260,16 @@ int cover_links(RobotArguments& arguments) {
       contacts_in_postures(robot, semantics, spheres, measured);
   const Json summary =
       summary_of(arguments.urdf, robot.model, measured, seconds.count(), contacts, judgement);
+  const Json report = robot_report(summary, result, arguments.report_content);
   write_uninterrupted([&] {
     write_robot_files(plan, robot, spheres, measured.pairs.get());
-    write_file_atomically(plan.report(robot),
-                          robot_report(summary, result, arguments.report_content));
+    write_file_atomically(plan.report(robot), to_text(report, Layout::kCompact));
   });
 
   std::cout << (arguments.json ? to_text(summary)
                                : robot_table(result, seconds.count()) + describe_pairs(measured) +
                                      describe_false_alarms(measured, robot.model));
   if (!arguments.view.empty()) {
-    const Json report = Json::parse(read_file(plan.report(robot)));
     write_page(arguments.view, covered_robot_scene(robot, arguments.geometry, spheres,
                                                    "spheres of " + robot.name, report));
     if (!arguments.json) std::cout << page_line(arguments.view);

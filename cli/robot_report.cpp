@@ -141,13 +141,13 @@ Json robot_summary(const std::string& urdf, const RobotCover& cover, double seco
   return json;
 }
 
-std::string robot_report(const Json& summary, const RobotCover& cover, ReportContent content) {
+Json robot_report(const Json& summary, const RobotCover& cover, ReportContent content) {
   Json json = summary;
   for (std::size_t i = 0; i < cover.links.size(); ++i) {
     if (!cover.links[i].fit) continue;
     json["links"][i]["simplified_solid"] = to_json(cover.links[i].fit->external, content);
   }
-  return to_text(json, Layout::kCompact);
+  return json;
 }
 
 std::string robot_table(const RobotCover& cover, double seconds) {

@@ -12,8 +12,8 @@ namespace spherule {
 // spheres, certificate, warnings and seconds; lengths in metres. `seconds` is for all of it.
 Json robot_summary(const std::string& urdf, const RobotCover& cover, double seconds);
 
-// The text of NAME.report.json: the summary, and a link the simplified solid.
-std::string robot_report(const Json& summary, const RobotCover& cover, ReportContent content);
+// What NAME.report.json holds: the summary, and of each link the simplified solid.
+Json robot_report(const Json& summary, const RobotCover& cover, ReportContent content);
 
 // The same as a table for a person, lengths in millimetres.
 std::string robot_table(const RobotCover& cover, double seconds);
