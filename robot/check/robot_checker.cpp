@@ -180,17 +180,24 @@ void RobotChecker::require_end_of_edge(std::span<const double> configuration) co
               "a joint's position is beyond " + std::to_string(kLargestPosition) + " in magnitude");
 }
 
+std::span<const double> RobotChecker::end_of_motion(std::span<const double> from,
+                                                    std::span<const double> to,
+                                                    ContinuousMotion continuous,
+                                                    std::vector<double>& memory) const {
+  require_end_of_edge(from);
+  require_end_of_edge(to);
+  if (continuous == ContinuousMotion::kAsGiven) return to;
+  parts_->shortest.require();
+  const std::span<const double> end = parts_->shortest.end_of(from, to, memory);
+  require_end_of_edge(end);
+  return end;
+}
+
 EdgeResult RobotChecker::check_edge(std::span<const double> from, std::span<const double> to,
                                     Scratch& scratch, const EdgeRequest& request) const {
   require_own(scratch);
-  require_end_of_edge(from);
-  require_end_of_edge(to);
+  to = end_of_motion(from, to, request.continuous, scratch.memory_->motion_end);
   require_resolution(request.resolution);
-  if (request.continuous == ContinuousMotion::kShortest) {
-    parts_->shortest.require();
-    to = parts_->shortest.end_of(from, to, scratch.memory_->motion_end);
-    require_end_of_edge(to);
-  }
   if (!parts_->enforces_limits) return check_within_limits(from, to, 1.0, scratch, request);
   if (joint_outside_limits(parts_->robot, from) != nullptr) {
     return {.verdict = Verdict::kCollision, .contact_at = 0.0};
@@ -260,18 +267,13 @@ double RobotChecker::measure_edge(std::span<const double> from, std::span<const 
 std::vector<double> RobotChecker::configuration_on_edge(std::span<const double> from,
                                                         std::span<const double> to, double fraction,
                                                         ContinuousMotion continuous) const {
-  require_end_of_edge(from);
-  require_end_of_edge(to);
   if (!(fraction >= 0.0 && fraction <= 1.0)) {
     throw Error("edge", "the fraction must be from 0 to 1");
   }
-  std::vector<double> end;
-  if (continuous == ContinuousMotion::kShortest) {
-    parts_->shortest.require();
-    to = parts_->shortest.end_of(from, to, end);
-  }
+  std::vector<double> memory;
+  const std::span<const double> end = end_of_motion(from, to, continuous, memory);
   std::vector<double> configuration(from.size());
-  internal::take_between(from, to, fraction, configuration);
+  internal::take_between(from, end, fraction, configuration);
   return configuration;
 }
 

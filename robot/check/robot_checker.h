@@ -221,6 +221,11 @@ class RobotChecker {
 
   void require_own(const Scratch& scratch) const;
   void require_end_of_edge(std::span<const double> configuration) const;
+  // Where the motion that is meant ends: `to`, or what is written to `memory`. Throws Error for
+  // ends that check_edge() refuses.
+  std::span<const double> end_of_motion(std::span<const double> from, std::span<const double> to,
+                                        ContinuousMotion continuous,
+                                        std::vector<double>& memory) const;
   bool is_free_of_itself(std::span<const double> configuration, Scratch& scratch) const;
   EdgeResult check_within_limits(std::span<const double> from, std::span<const double> to,
                                  double end, Scratch& scratch, const EdgeRequest& request) const;

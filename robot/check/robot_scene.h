@@ -145,12 +145,13 @@ class RobotScene {
   void forbid_contact(std::string_view body, std::string_view other);
   void forbid_contact(const Region& region, std::string_view other);
 
-  // What was put in, for who shows or stores a scene. An obstacle, as add() and move() were told.
+  // An obstacle, with the last arguments of add() and move(); for programs that show or store a
+  // scene.
   struct Obstacle {
     ObstacleShape shape;
     Pose world_from_shape;
   };
-  // What moves with a link, as attach() and set_attached_pairs() were told.
+  // An attached object, with the last arguments of attach() and set_attached_pairs().
   struct Attached {
     std::string link;
     std::shared_ptr<const SphereTree> tree;
@@ -169,7 +170,7 @@ class RobotScene {
   using NamePair = std::pair<std::string, std::string>;
   // Where the robot stands, with a unit rotation.
   const Pose& world_from_root() const { return world_from_root_; }
-  // As set_link_pairs() was told last.
+  // The last argument of set_link_pairs().
   const std::shared_ptr<const LinkPairs>& link_pairs() const { return link_pairs_; }
   // Both throw Error for a name that is not there.
   const Obstacle& obstacle(std::string_view name) const;
@@ -179,7 +180,7 @@ class RobotScene {
   const std::map<NamePair, double>& pair_padding() const { return pair_padding_; }
   // Of a body and a region, sorted.
   const std::map<NamePair, std::vector<BodySphere>>& regions() const { return regions_; }
-  // What allow_contact() was told and forbid_contact() has not taken back.
+  // Contacts that allow_contact() allows and forbid_contact() has not forbidden since.
   const std::set<Intended>& intended_contacts() const { return intended_; }
 
   // What is queried, as of now: later edits do not change it. Trees and meshes are shared, not
