@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/cli/command_test_support.h"
 
+#include "tests/support/child_process.h"
+
 #include <algorithm>
-#include <fcntl.h>
 #include <fstream>
 #include <iterator>
 #include <sstream>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace spherule {
 namespace {
@@ -17,11 +16,6 @@ namespace fs = std::filesystem;
 // Where the streams of a run are recorded, hidden from files().
 constexpr const char* kOut = ".out";
 constexpr const char* kErr = ".err";
-
-void redirect(const char* file, int stream) {
-  const int descriptor = open(file, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  if (descriptor < 0 || dup2(descriptor, stream) < 0) _exit(126);
-}
 
 // Long work logs its progress every ten seconds: how many lines that are depends on the machine.
 std::string without_progress(const std::string& text) {
@@ -48,22 +42,12 @@ void CommandTest::TearDown() {
 }
 
 pid_t CommandTest::start(const std::vector<std::string>& arguments) {
-  const pid_t process = fork();
-  if (process != 0) return process;
-  if (chdir(folder_.c_str()) != 0) _exit(126);
-  redirect(kOut, STDOUT_FILENO);
-  redirect(kErr, STDERR_FILENO);
-  std::vector<char*> argv = {const_cast<char*>(SPHERULE_COMMAND)};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  execv(SPHERULE_COMMAND, argv.data());
-  _exit(127);
+  return start_process(SPHERULE_COMMAND, arguments,
+                       {.folder = folder_, .out = kOut, .error = kErr});
 }
 
 Outcome CommandTest::finish(pid_t process) {
-  int status = 0;
-  EXPECT_EQ(waitpid(process, &status, 0), process);
-  return {.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status),
+  return {.exit_code = wait_for(process),
           // A run that is killed at once has recorded nothing.
           .out = exists(kOut) ? read(kOut) : "",
           .err = exists(kErr) ? without_progress(read(kErr)) : ""};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/soak/process_cases.h"
 #include "tests/soak/random_scene.h"
+#include "tests/support/child_process.h"
 
 #include <algorithm>
 #include <chrono>
@@ -29,7 +30,7 @@ class Killer {
     const auto start = Clock::now();
     const pid_t process = folder_.start();
     while (see_next(process)) ++most_sights_;
-    CommandFolder::wait(process);
+    wait_for(process);
     whole_run_ = Clock::now() - start;
   }
 
@@ -86,13 +87,13 @@ SoakRecord check_kills(const std::filesystem::path& program, const SoakCommand& 
     const pid_t process = folder.start();
     const bool is_aimed = record.cases % 2 == 1;
     is_aimed ? killer.while_writing(process) : killer.at_any_time(process);
-    CommandFolder::wait(process);
+    wait_for(process);
     const std::string place = command.name + ", kill " + std::to_string(record.cases) + ": ";
     const CommandFolder::Files killed = folder.look();
     add_faults(record, place, killed.faults);
     if (killed.has_temporary || (killed.has_old && killed.has_new)) ++record.near;
 
-    const int exit_code = CommandFolder::wait(folder.start());
+    const int exit_code = wait_for(folder.start());
     const CommandFolder::Files after = folder.look();
     add_faults(record, place + "after the next run ", after.faults);
     if (exit_code != folder.exit_code()) {

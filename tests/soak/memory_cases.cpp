@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/soak/process_cases.h"
+#include "tests/support/child_process.h"
 
 #include <filesystem>
 #include <string>
@@ -27,9 +28,9 @@ class MemoryCheck {
     const fs::path mark = folder_.path() / "failed";
     fs::remove(mark);
     const int exit_code =
-        CommandFolder::wait(folder_.start({"LD_PRELOAD=" + failing_new_.string(),
-                                           "SPHERULE_SOAK_ALLOCATION=" + std::to_string(allocation),
-                                           "SPHERULE_SOAK_MARK=" + mark.string()}));
+        wait_for(folder_.start({"LD_PRELOAD=" + failing_new_.string(),
+                                "SPHERULE_SOAK_ALLOCATION=" + std::to_string(allocation),
+                                "SPHERULE_SOAK_MARK=" + mark.string()}));
     if (!fs::exists(mark)) return false;
     ++record.cases;
     judge(name_ + ", allocation " + std::to_string(allocation) + ": ", exit_code, record);

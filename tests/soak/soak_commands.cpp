@@ -4,14 +4,11 @@
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "tests/soak/soak_inputs.h"
+#include "tests/support/child_process.h"
 
-#include <cerrno>
 #include <cstdlib>
-#include <fcntl.h>
 #include <fstream>
 #include <sstream>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <utility>
 
 namespace spherule {
@@ -22,11 +19,6 @@ namespace fs = std::filesystem;
 constexpr const char* kOut = "out";
 constexpr const char* kMessages = "messages";
 constexpr const char* kOld = "older\n";
-
-void redirect(const char* file, int stream) {
-  const int descriptor = open(file, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  if (descriptor < 0 || dup2(descriptor, stream) < 0) _exit(126);
-}
 
 // As write_file_atomically() names what it has not renamed yet.
 bool is_temporary(const std::string& name) {
@@ -106,7 +98,7 @@ CommandFolder::CommandFolder(fs::path program, const SoakCommand& command)
   path_ = pattern;
   fs::create_directories(path_ / kOut);
   write_soak_inputs(path_ / "in");
-  exit_code_ = wait(start());
+  exit_code_ = wait_for(start());
   if (exit_code_ < 0 || exit_code_ > 1) {
     const std::string said = read_file(path_ / kMessages);
     fs::remove_all(path_);
@@ -121,28 +113,9 @@ CommandFolder::~CommandFolder() {
 }
 
 pid_t CommandFolder::start(const std::vector<std::string>& environment) const {
-  const pid_t process = fork();
-  if (process < 0) throw Error(program_.string(), "cannot be started");
-  if (process > 0) return process;
-  if (chdir(path_.c_str()) != 0) _exit(126);
-  redirect("said", STDOUT_FILENO);
-  redirect(kMessages, STDERR_FILENO);
-  for (const std::string& variable : environment) {
-    putenv(const_cast<char*>(variable.c_str()));
-  }
-  std::vector<char*> argv = {const_cast<char*>(program_.c_str())};
-  for (const std::string& argument : arguments_)
-    argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  execv(program_.c_str(), argv.data());
-  _exit(127);
-}
-
-int CommandFolder::wait(pid_t process) {
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  return start_process(
+      program_, arguments_,
+      {.folder = path_, .out = "said", .error = kMessages, .environment = environment});
 }
 
 std::vector<std::string> CommandFolder::messages() const {

@@ -35,10 +35,9 @@ class CommandFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  // Starts it with these variables in its environment, and waits for it: its exit code, or the
-  // signal that ended it, negative. What it says is in its messages.
+  // Starts it with these variables in its environment; wait_for() waits for it. What it prints on
+  // standard error is in its messages.
   pid_t start(const std::vector<std::string>& environment = {}) const;
-  static int wait(pid_t process);
   // Without warnings.
   std::vector<std::string> messages() const;
   int exit_code() const { return exit_code_; }  // of the first run
