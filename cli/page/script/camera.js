@@ -76,11 +76,15 @@ function look_at(target, offset) {
   place_camera(target, offset);
 }
 
+// From where it is seen now, from no further away than that.
+function approach(place, distance) {
+  const offset = camera.position.clone().sub(controls.target);
+  look_at(place, offset.setLength(Math.min(distance, offset.length())));
+}
+
 function look_at_leak(leak) {
   label_leak(leak);
-  const offset = camera.position.clone().sub(controls.target);
-  const distance = Math.max(14 * leak.depth, 0.12 * scene_size);
-  look_at(leak_place(leak), offset.setLength(Math.min(distance, offset.length())));
+  approach(world_place(leak), Math.max(14 * leak.depth, 0.12 * scene_size));
 }
 
 function turn(yaw, pitch) {
@@ -99,6 +103,13 @@ function pan(x, y) {
   const step = 0.05 * camera.position.distanceTo(controls.target);
   const shift = new THREE.Vector3(x, y, 0).multiplyScalar(step).applyQuaternion(camera.quaternion);
   look_at(controls.target.clone().add(shift), camera.position.clone().sub(controls.target));
+}
+
+// The pixel of a picture, the window's by default, that shows a point of the world, and whether it
+// can be seen: it stands before the eye and not too far.
+function pixel_of(place, width = innerWidth, height = innerHeight) {
+  const p = place.clone().project(camera);
+  return {x: (0.5 + 0.5 * p.x) * width, y: (0.5 - 0.5 * p.y) * height, seen: Math.abs(p.z) < 1};
 }
 
 // How much of the world a pixel shows at the point looked at.

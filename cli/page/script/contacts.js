@@ -21,13 +21,6 @@ let shown_contacts = [];
 const touching_drawings = [];
 const contact_labels = [];
 
-function sphere_drawing(numbers, material, order) {
-  const drawing = new THREE.Mesh(make_sphere_geometry(new Float32Array(numbers)), material);
-  drawing.frustumCulled = false;
-  drawing.renderOrder = order;
-  return drawing;
-}
-
 // The sphere that a contact names, by link, tree among the link's, and index: x, y, z, radius.
 const checked_item = items.find((item) => item.checked);
 function checked_sphere([link, tree, sphere]) {
@@ -74,9 +67,7 @@ function show_contacts(contacts) {
 // Labels beside their points, one below the other where they would lie over each other.
 function place_contact_labels() {
   const shown = contact_labels.map((label, index) => {
-    const place = shown_contacts[index].place.clone().project(camera);
-    return {label, x: (0.5 + 0.5 * place.x) * innerWidth, y: (0.5 - 0.5 * place.y) * innerHeight,
-            seen: Math.abs(place.z) < 1};
+    return {label, ...pixel_of(shown_contacts[index].place)};
   });
   shown.sort((a, b) => a.y - b.y);
   const kApart = 26;

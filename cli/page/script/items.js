@@ -150,6 +150,9 @@ function apply_items() {
   item_outline_material.uniforms.base.value.copy(colour(theme().outline));
 }
 
+// Where a point of a part is in the world.
+const world_place = ({part, point}) => point.clone().applyMatrix4(frame_of(part.link).matrixWorld);
+
 // Where the items of a choice are, with the robot as it stands.
 function box_of_items(choice) {
   const box = new THREE.Box3();

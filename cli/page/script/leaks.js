@@ -12,8 +12,6 @@ for (const item of items.filter((one) => one.kind === "leaks")) {
 }
 leaks.sort((a, b) => b.depth - a.depth);
 
-const leak_place = (leak) =>
-    leak.point.clone().applyMatrix4(frame_of(leak.part.link).matrixWorld);
 const leak_shown = (leak) =>
     leak.item.shown && (leak.part.link < 0 || link_shown[leak.part.link]);
 const leak_link = (leak) => leak.part.link >= 0 ? robot_data.links[leak.part.link].name : "";
@@ -27,10 +25,7 @@ function label_leak(leak) {
   if (depth_sphere) depth_sphere.parent.remove(depth_sphere);
   labelled_leak = leak;
   if (!leak) return;
-  const sphere = new Float32Array([...leak.point.toArray(), leak.depth]);
-  depth_sphere = new THREE.Mesh(make_sphere_geometry(sphere), depth_materials.colour);
-  depth_sphere.frustumCulled = false;
-  depth_sphere.renderOrder = 1500;
+  depth_sphere = sphere_drawing([...leak.point.toArray(), leak.depth], depth_materials.colour, 1500);
   leak.part.group.add(depth_sphere);
 }
 set_alpha(depth_materials, 0.3);

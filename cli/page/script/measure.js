@@ -12,8 +12,6 @@ theme_listeners.push(() => {
   measure_line_material.uniforms.base.value.set(theme().outline);
 });
 
-const measured_place = ({part, point}) => point.clone().applyMatrix4(frame_of(part.link).matrixWorld);
-
 function clear_measure() {
   for (const one of measure.points.splice(0)) one.mark.parent.remove(one.mark);
   if (measure.line) measure.line.visible = false;
@@ -22,22 +20,19 @@ function clear_measure() {
 
 function add_measured_point({part, point}) {
   if (measure.points.length === 2) clear_measure();
-  const mark = new THREE.Mesh(make_sphere_geometry(new Float32Array([...point.toArray(), 0])),
-                              measure_materials.colour);
-  mark.frustumCulled = false;
-  mark.renderOrder = 2700;
+  const mark = sphere_drawing([...point.toArray(), 0], measure_materials.colour, 2700);
   frame_of(part.link).add(mark);
   measure.points.push({part, point, mark});
   redraw();
 }
 
 const measured_distance = () =>
-    measured_place(measure.points[0]).distanceTo(measured_place(measure.points[1]));
+    world_place(measure.points[0]).distanceTo(world_place(measure.points[1]));
 
 // Before every frame: the line between the two, wherever they have moved.
 function place_measure() {
   if (measure.points.length < 2) return;
-  const ends = measure.points.map(measured_place);
+  const ends = measure.points.map(world_place);
   if (!measure.line) {
     measure.line = make_lines(new Float32Array(6), measure_line_material, 2650);
     measure.label = node("div", {className: "measure-label"});
@@ -46,11 +41,11 @@ function place_measure() {
   }
   replace_lines(measure.line, new Float32Array([...ends[0].toArray(), ...ends[1].toArray()]));
   measure.line.visible = true;
-  const middle = ends[0].clone().add(ends[1]).multiplyScalar(0.5).project(camera);
-  measure.label.hidden = !(Math.abs(middle.z) < 1);
+  const middle = pixel_of(ends[0].clone().add(ends[1]).multiplyScalar(0.5));
+  measure.label.hidden = !middle.seen;
   measure.label.textContent = distance_text(measured_distance());
-  measure.label.style.left = `${(0.5 + 0.5 * middle.x) * innerWidth + 10}px`;
-  measure.label.style.top = `${(0.5 - 0.5 * middle.y) * innerHeight - 26}px`;
+  measure.label.style.left = `${middle.x + 10}px`;
+  measure.label.style.top = `${middle.y - 26}px`;
 }
 
 function switch_measure() {

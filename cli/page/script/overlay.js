@@ -42,10 +42,10 @@ function place_label() {
   const label = document.getElementById("label");
   label.hidden = !(labelled_leak && leak_shown(labelled_leak));
   if (label.hidden) return;
-  const place = leak_place(labelled_leak).project(camera);
-  label.hidden = !(Math.abs(place.z) < 1);
-  label.style.left = `${(0.5 + 0.5 * place.x) * innerWidth}px`;
-  label.style.top = `${(0.5 - 0.5 * place.y) * innerHeight}px`;
+  const place = pixel_of(world_place(labelled_leak));
+  label.hidden = !place.seen;
+  label.style.left = `${place.x}px`;
+  label.style.top = `${place.y}px`;
   const deepest = labelled_leak === leaks[0] ? "deepest leak" : "leak";
   label.firstElementChild.textContent = `${deepest} ${distance_text(labelled_leak.depth)}`;
 }

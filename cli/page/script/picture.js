@@ -30,17 +30,16 @@ function paint_labels(paint, width, height) {
   const scale = Math.max(1, height / 900);
   const labels = contact_labels.map((label, i) => ({label, world: shown_contacts[i].place}));
   if (measure.points.length === 2) {
-    const [a, b] = measure.points.map(measured_place);
+    const [a, b] = measure.points.map(world_place);
     labels.push({label: measure.label, world: a.add(b).multiplyScalar(0.5)});
   }
   if (labelled_leak && leak_shown(labelled_leak)) {
-    labels.push({label: document.querySelector("#label span"), world: leak_place(labelled_leak)});
+    labels.push({label: document.querySelector("#label span"), world: world_place(labelled_leak)});
   }
   let lowest = -Infinity;
   const placed = labels.map(({label, world}) => {
-    const p = world.clone().project(camera);
-    return {label, seen: Math.abs(p.z) < 1, x: (0.5 + 0.5 * p.x) * width + 12 * scale,
-            y: (0.5 - 0.5 * p.y) * height};
+    const place = pixel_of(world, width, height);
+    return {label, ...place, x: place.x + 12 * scale};
   }).filter((one) => one.seen).sort((a, b) => a.y - b.y);
   for (const one of placed) {
     one.y = Math.max(one.y, lowest + 26 * scale);

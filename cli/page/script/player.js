@@ -43,14 +43,9 @@ function tell_place(point, contacts) {
                         node("span", {className: "depth"}, distance_text(contact.depth)),
                         node("span", {className: "title"},
                              contact.names.map(plain_name).join(" – ")));
-    button.addEventListener("click", () => look_at_place(contact.place));
+    button.addEventListener("click", () => approach(contact.place, 0.6 * scene_size));
     return button;
   }), ...(contacts.length ? [] : [node("p", {className: "note"}, "none")]));
-}
-
-function look_at_place(place) {
-  const offset = camera.position.clone().sub(controls.target);
-  look_at(place.clone(), offset.setLength(Math.min(0.6 * scene_size, offset.length())));
 }
 
 function clearance_text(k) {

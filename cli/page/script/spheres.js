@@ -82,6 +82,14 @@ function make_sphere_geometry(spheres) {
   return geometry;
 }
 
+// Spheres that move with what they are added to, drawn in their turn.
+function sphere_drawing(numbers, material, order) {
+  const drawing = new THREE.Mesh(make_sphere_geometry(new Float32Array(numbers)), material);
+  drawing.frustumCulled = false;
+  drawing.renderOrder = order;
+  return drawing;
+}
+
 function make_sphere_materials(order, uniforms = {}, options = {}) {
   return make_materials(kSphereVertex, kSphereFragment, order, {
     base: {value: new THREE.Color()},

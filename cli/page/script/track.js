@@ -20,15 +20,16 @@ function worst_verdict(from, to) {
 }
 
 function draw_strip(paint, width, ratio) {
+  const letter_of = (x) => worst_verdict(place_of_pixel(x, width), place_of_pixel(x + 1, width));
   let run = 0;
-  for (let x = 0; x < width; ++x) {
-    const letter = worst_verdict(place_of_pixel(x, width), place_of_pixel(x + 1, width));
-    const next = x + 1 < width &&
-        worst_verdict(place_of_pixel(x + 1, width), place_of_pixel(x + 2, width));
+  let letter = letter_of(0);
+  for (let x = 1; x <= width; ++x) {
+    const next = x < width ? letter_of(x) : null;
     if (next === letter) continue;
     paint.fillStyle = verdict_colour(letter);
-    paint.fillRect(run, 0, x + 1 - run, kStripHeight * ratio);
-    run = x + 1;
+    paint.fillRect(run, 0, x - run, kStripHeight * ratio);
+    run = x;
+    letter = next;
   }
 }
 

@@ -40,13 +40,12 @@ function configuration_at(at) {
   });
 }
 
-// The verdict that holds at a place: of the motion it is on, or of the nearest configuration before.
+// The verdict that holds at a place: of the motion it is on, or of the nearest configuration.
 function verdict_at(at) {
   const cells = trajectory.verdicts.length;
-  const cell = trajectory.motions ? Math.floor(at) : last_examined(at);
+  const cell = trajectory.motions ? Math.floor(at) : Math.round(at);
   return trajectory.verdicts[Math.max(0, Math.min(cell, cells - 1))];
 }
-const last_examined = (at) => Math.round(at);
 
 // Contacts are known where the check computed them: at configurations, and where motions first touch.
 // Of these the one nearest to a place, with what touches there; null if that is a free configuration.
