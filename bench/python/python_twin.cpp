@@ -3,18 +3,15 @@
 // processor nanoseconds a configuration: of check_configs() and check_edges() of all, and of
 // check_config() of one at a time. Usage: python_twin FOLDER
 
-#include "robot/check/scene_setup.h"
-#include "robot/files/urdf.h"
-#include "robot/formats/sphere_formats.h"
+#include "bench/python/cell_files.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
+#include <span>
 #include <vector>
 
 namespace spherule {
@@ -39,16 +36,10 @@ double measure(std::size_t count, const Work& work) {
 }
 
 void run(const std::filesystem::path& folder) {
-  const RobotDescription robot = read_urdf(folder / "arm.urdf");
-  const SphereFormatFile spheres = read_robot_spheres(folder / "spheres.json");
-  const PreparedScene cell = prepare_scene(with_spheres(robot.model, spheres.spheres.links),
-                                           read_scene(folder / "cell.json"));
-  const RobotChecker checker = cell.scene.snapshot();
-  std::ifstream file(folder / "configurations", std::ios::binary);
-  const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
-  const auto dof = static_cast<std::size_t>(robot.model.variable_count());
-  const std::span<const double> all(reinterpret_cast<const double*>(bytes.data()),
-                                    bytes.size() / sizeof(double));
+  const RobotChecker checker = checker_in(folder);
+  const std::vector<double> configurations = read_doubles(folder / "configurations");
+  const std::span<const double> all(configurations);
+  const auto dof = static_cast<std::size_t>(checker.robot().variable_count());
   const std::size_t count = all.size() / dof;
 
   std::vector<RobotChecker::Scratch> scratches;

@@ -2,29 +2,19 @@
 // The answers of the library itself, for the test of the Python module: reads what
 // equal_answers_test.py wrote into a folder, and writes doubles. Usage: python_answers FOLDER
 
+#include "bench/python/cell_files.h"
 #include "collide/collide.h"
 #include "collide/distance.h"
-#include "robot/check/scene_setup.h"
-#include "robot/files/urdf.h"
-#include "robot/formats/sphere_formats.h"
 #include "spheretree/tree_file.h"
 
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <vector>
 
 namespace spherule {
 namespace {
-
-std::vector<double> read_doubles(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
-  const auto* const first = reinterpret_cast<const double*>(bytes.data());
-  return {first, first + bytes.size() / sizeof(double)};
-}
 
 void write_doubles(const std::vector<double>& values, const std::filesystem::path& path) {
   std::ofstream file(path, std::ios::binary);
@@ -34,12 +24,8 @@ void write_doubles(const std::vector<double>& values, const std::filesystem::pat
 
 // Of each configuration whether it is free; of the first edges and clearances, what is proved.
 void answer_robot(const std::filesystem::path& folder) {
-  const RobotDescription robot = read_urdf(folder / "arm.urdf");
-  const SphereFormatFile spheres = read_robot_spheres(folder / "spheres.json");
-  const PreparedScene cell = prepare_scene(with_spheres(robot.model, spheres.spheres.links),
-                                           read_scene(folder / "cell.json"));
-  const RobotChecker checker = cell.scene.snapshot();
-  const auto dof = static_cast<std::size_t>(robot.model.variable_count());
+  const RobotChecker checker = checker_in(folder);
+  const auto dof = static_cast<std::size_t>(checker.robot().variable_count());
   const std::vector<double> all = read_doubles(folder / "configurations");
   const auto at = [&](std::size_t i) { return std::span(all).subspan(i * dof, dof); };
   const std::size_t count = all.size() / dof;
