@@ -11,7 +11,7 @@ namespace spherule {
 
 // Parts of the command that stand on large libraries (OpenCASCADE, OpenVDB), each a shared object
 // that is loaded when it is first needed: to load these libraries and what they need takes 0.1 s of
-// processor time, fifty times as much as everything else at the start of a run.
+// processor time, thirty times as much as everything else at the start of a run.
 //
 // A module exports one object, `spherule_module`, of the functions that the command calls.
 
