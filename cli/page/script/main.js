@@ -72,7 +72,9 @@ function start() {
     refresh();
   });
   // On a narrow screen the scene comes first; the panel is a press away.
-  if (innerWidth <= kNarrowWidth && address_options.get("panel") !== "open") {
+  const panel = address_options.get("panel");
+  if (panel === "none") panel_part("unfold").hidden = true;
+  if (panel === "none" || panel === "closed" || innerWidth <= kNarrowWidth && panel !== "open") {
     document.body.classList.add("bare");
   }
   add_heading();
