@@ -87,6 +87,8 @@ class Gallery:
                  if link.get("certificate")]
         goal = sum(link.get("sphere_count", 0) for link in audit["links"])
         deepest = max((depth[0] for depth in leaks if isinstance(depth[0], (int, float))), default=0)
+        out = max((link["certificate"]["protrusion_over_mesh_max"] or 0 for link in audit["links"]
+                   if link.get("certificate")), default=0)
 
         def fit(error):
             folder = self.work / f"{name}-ours"
@@ -104,7 +106,8 @@ class Gallery:
                       if link.get("certificate"))
         self.card(page, title, [
             f"Published: {goal} spheres, {covered} of {len(leaks)} links covered, leaks up to "
-            f"{deepest * MILLIMETRES:.3g} mm (proved).",
+            f"{deepest * MILLIMETRES:.3g} mm (proved), protruding by at most "
+            f"{out * MILLIMETRES:.3g} mm.",
             self.tell_ours(ours, MILLIMETRES, " mm")], notes)
 
     @staticmethod
@@ -136,7 +139,8 @@ class Gallery:
         scale, unit = (100.0 / size, " % of its diagonal")
         self.card(page, title, [
             f"Medial axis (AMAA): {made['sphere_count']} spheres, leaks up to "
-            f"{certificate['uncovered_depth'][0] * scale:.3g}{unit} (proved).",
+            f"{certificate['uncovered_depth'][0] * scale:.3g}{unit} (proved), protruding by at most "
+            f"{certificate['protrusion_over_mesh_max'] * scale:.3g}{unit}.",
             self.tell_ours(ours, scale, unit)], notes)
 
     def diagonal(self, mesh):
@@ -197,7 +201,7 @@ article > * { margin: 8px 14px; }
 article > a { margin: 0; display: block; }
 img { width: 100%; height: auto; display: block; }
 h2 { font-size: 16px; } a { color: var(--link); } h2 a { text-decoration: none; }
-.notes { color: var(--quiet); font-size: 12px; }
+.notes { color: var(--quiet); font-size: 12px; overflow-wrap: anywhere; }
 </style></head><body>
 <h1>spherule: gallery</h1>
 <p>Spheres that others published or made, beside spheres of spherule: at most as many, and proved to
