@@ -73,7 +73,7 @@ function start() {
   });
   // On a narrow screen the scene comes first; the panel is a press away.
   const panel = address_options.get("panel");
-  if (panel === "none") panel_part("unfold").hidden = true;
+  if (panel === "none") panel_part("unfold").style.display = "none";
   if (panel === "none" || panel === "closed" || innerWidth <= kNarrowWidth && panel !== "open") {
     document.body.classList.add("bare");
   }
