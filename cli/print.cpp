@@ -2,6 +2,7 @@
 #include "cli/print.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iomanip>
 #include <limits>
@@ -64,6 +65,23 @@ std::string percent(double share, int digits) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(digits) << 100.0 * share << " %";
   return out.str();
+}
+
+std::string three_digits(double value, Rounding rounding) {
+  std::ostringstream text;
+  if (value == 0.0 || !std::isfinite(value)) {
+    text << value;
+    return text.str();
+  }
+  const double step = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
+  // A number of three digits is its own bound, however its decimals were rounded.
+  constexpr double kSame = 1e-9;
+  const double steps = value / step;
+  const double whole = std::abs(steps - std::round(steps)) < kSame ? std::round(steps)
+                       : rounding == Rounding::kUp                 ? std::ceil(steps)
+                                                                   : std::floor(steps);
+  text << std::setprecision(3) << whole * step;
+  return text.str();
 }
 
 std::string aligned(const std::vector<std::vector<std::string>>& rows) {

@@ -19,6 +19,10 @@ std::string describe(std::span<const CoverLevel> levels);
 // A share in per cent.
 std::string percent(double share, int digits = 2);
 
+// A number with three digits, a bound of it in that direction.
+enum class Rounding { kDown, kUp };
+std::string three_digits(double value, Rounding rounding);
+
 // A table of rows of as many cells each, of which there is one at least: columns as wide as their
 // widest cell, no blanks at the ends of lines.
 std::string aligned(const std::vector<std::vector<std::string>>& rows);

@@ -8,6 +8,7 @@
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
 #include "cli/view_files.h"
+#include "cli/view_leaks.h"
 #include "cli/view_page.h"
 #include "cli/view_robot.h"
 #include "spheretree/error.h"
@@ -50,6 +51,7 @@ ViewScene load_scene(const ViewArguments& arguments) {
     std::vector<ViewItem> items = view_items(file, arguments.units);
     std::move(items.begin(), items.end(), std::back_inserter(scene.items));
   }
+  place_leaks(scene.items);
   if (arguments.leaks) {
     std::vector<ViewItem> found = sampled_leaks(scene.items);
     std::move(found.begin(), found.end(), std::back_inserter(scene.items));
@@ -84,8 +86,10 @@ void add_view(CLI::App& app, int& exit_code) {
       ->add_option("-o,--output", arguments->page,
                    "Where the page goes (default: the name of the first file with .html, here)")
       ->type_name(kFile);
-  command->add_flag("--leaks", arguments->leaks,
-                    "Mark where samples of the meshes lie outside of the spheres; `audit` proves");
+  command->add_flag(
+      "--leaks", arguments->leaks,
+      "Colour by depth what of the meshes is outside of the spheres, found by samples; "
+      "`audit` proves");
   command
       ->add_option(
           "--units", arguments->units,
@@ -103,14 +107,18 @@ void add_view(CLI::App& app, int& exit_code) {
   add_package_option(*command, arguments->robot.packages);
   add_unknown_links_flag(*command, arguments->robot.ignores_unknown_links);
 #endif
-  command->footer(
-      to_text({.text = "The page is one file, which any browser opens, without network or server.",
-               .exit_codes = "0 done",
-               .examples = {"spherule view part.stl part.json part.tree -o part.html",
+  command->footer(to_text(
+      {.text =
+           "The page is one file, which any browser opens, without network or server. Two sets of "
+           "spheres for one mesh or one robot stand side by side, with their leaks.",
+       .exit_codes = "0 done",
+       .examples = {
+           "spherule view part.stl part.json part.tree -o part.html",
 #ifdef SPHERULE_HAS_ROBOT
-                            "spherule view robot.urdf robot.curobo.yml -o robot.html --leaks",
+           "spherule view robot.urdf robot.curobo.yml -o robot.html --leaks",
+           "spherule view robot.urdf robot.curobo.yml robot.spheres.json --leaks -o two.html",
 #endif
-                            "spherule view part.stl others.json --leaks -o leaks.html"}}));
+           "spherule view part.stl others.json --leaks -o leaks.html"}}));
   command->callback([arguments, &exit_code] { exit_code = view(*arguments); });
 }
 

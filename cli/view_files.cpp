@@ -3,6 +3,7 @@
 
 #include "cli/model_file.h"
 #include "cli/model_unit.h"
+#include "cli/print.h"
 #include "cli/recognize.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
@@ -32,7 +33,7 @@ Eigen::Vector3d point_of(const Json& json) {
 
 ViewItem leak_item(const Json& certificate, const std::string& file) {
   return {.name = leaks_name(file),
-          .parts = {{leaks_of(certificate, file)}},
+          .parts = {{ViewLeaks{leaks_of(certificate, file), {}}}},
           .facts = describe_cover(certificate)};
 }
 
@@ -40,10 +41,10 @@ std::vector<ViewItem> report_items(const Json& report, const std::string& file) 
   std::vector<ViewItem> items;
   const Json& levels = report.at("levels");
   for (const Json& level : levels) {
-    std::ostringstream name;
-    name << "level of E = " << level.at("max_error").get<double>();
     items.push_back(
-        {.name = name.str(), .parts = {{spheres_of(level.at("spheres"), file)}}, .shown = false});
+        {.name = "level of E = " + three_digits(level.at("max_error").get<double>(), Rounding::kUp),
+         .parts = {{spheres_of(level.at("spheres"), file)}},
+         .shown = false});
   }
   const Json& solid = report.at("simplified_solid");
   if (const auto spheres = solid.find("external_spheres"); spheres != solid.end()) {
@@ -70,7 +71,7 @@ std::string facts_of(const SphereFile& file) {
   std::ostringstream text;
   text << (file.certificate->covered ? "covers (proved)" : "not proved to cover");
   if (const auto& protrusion = file.certificate->protrusion_over_simplified_max) {
-    text << ", protrudes by at most " << *protrusion;
+    text << ", protrudes by at most " << three_digits(*protrusion, Rounding::kUp);
   }
   return text.str();
 }
@@ -86,8 +87,9 @@ std::string describe_cover(const Json& certificate) {
   const Json& depth = certificate.at("uncovered_depth");
   std::ostringstream text;
   if (depth.at(0).is_number() && depth.at(1).is_number()) {
-    text << "the deepest is proved to be " << depth.at(0).get<double>() << " to "
-         << depth.at(1).get<double>() << " deep";
+    text << "the deepest is proved to be "
+         << three_digits(depth.at(0).get<double>(), Rounding::kDown) << " to "
+         << three_digits(depth.at(1).get<double>(), Rounding::kUp) << " deep";
   } else {
     text << "not proved to cover";
   }
@@ -147,33 +149,6 @@ std::vector<ViewItem> view_items(const std::string& file, const std::string& uni
     const ModelUnit unit = model_unit(file, {std::nullopt, units});
     return {{.name = file, .parts = {{read_model(file, {.scale = unit.scale}).mesh}}}};
   });
-}
-
-std::vector<ViewItem> sampled_leaks(const std::vector<ViewItem>& items) {
-  std::vector<ViewItem> found;
-  for (const ViewItem& item : items) {
-    if (item.external) continue;
-    ViewItem leaks{.name = leaks_name(item.name), .parts = {}, .facts = "found by samples"};
-    bool has_spheres = false;
-    for (const ViewPart& part : item.parts) {
-      std::span<const Sphere> spheres;
-      if (const auto* set = std::get_if<std::vector<Sphere>>(&part.content)) spheres = *set;
-      if (const auto* tree = std::get_if<SphereTree>(&part.content)) spheres = tree->spheres();
-      has_spheres = has_spheres || !spheres.empty();
-      for (const ViewItem& other : items) {
-        if (!other.shown) continue;
-        for (const ViewPart& surface : other.parts) {
-          const auto* mesh = std::get_if<TriangleMesh>(&surface.content);
-          if (mesh == nullptr || surface.link != part.link) continue;
-          ViewPart& found_here = leaks.parts.emplace_back();
-          found_here.content = leak_points(*mesh, spheres);
-          found_here.link = part.link;
-        }
-      }
-    }
-    if (has_spheres && !leaks.parts.empty()) found.push_back(std::move(leaks));
-  }
-  return found;
 }
 
 }  // namespace spherule

@@ -35,8 +35,8 @@ struct BoxExtender {
   void operator()(const std::vector<Sphere>& spheres) const {
     for (const Sphere& sphere : spheres) extend(box, sphere);
   }
-  void operator()(const std::vector<LeakPoint>& leaks) const {
-    for (const LeakPoint& leak : leaks) box.extend(leak.point);
+  void operator()(const ViewLeaks& leaks) const {
+    for (const LeakPoint& leak : leaks.points) box.extend(leak.point);
   }
 };
 
@@ -68,14 +68,19 @@ struct ContentEncoder {
   const Eigen::Vector3d& middle;
 
   Json operator()(const TriangleMesh& mesh) const {
+    Json json;
+    add_triangles(mesh, json);
+    return json;
+  }
+  void add_triangles(const TriangleMesh& mesh, Json& json) const {
     std::vector<float> positions;
     for (const Eigen::Vector3d& vertex : mesh.vertices) append(positions, vertex - middle);
     std::vector<std::int32_t> corners;
     for (const Eigen::Vector3i& triangle : mesh.triangles) {
       corners.insert(corners.end(), triangle.data(), triangle.data() + 3);
     }
-    return {{"positions", encode_words(std::span<const float>(positions))},
-            {"corners", encode_words(std::span<const std::int32_t>(corners))}};
+    json["positions"] = encode_words(std::span<const float>(positions));
+    json["corners"] = encode_words(std::span<const std::int32_t>(corners));
   }
   Json operator()(const std::vector<Sphere>& spheres) const {
     return {{"levels", Json::array({encode_spheres(spheres, middle)})}};
@@ -89,10 +94,15 @@ struct ContentEncoder {
     levels.push_back(encode_spheres(tree.spheres(), middle));
     return {{"levels", std::move(levels)}};
   }
-  Json operator()(const std::vector<LeakPoint>& leaks) const {
+  Json operator()(const ViewLeaks& leaks) const {
     std::vector<Sphere> spheres;
-    for (const LeakPoint& leak : leaks) spheres.push_back({leak.point, leak.depth});
-    return (*this)(spheres);
+    for (const LeakPoint& leak : leaks.points) spheres.push_back({leak.point, leak.depth});
+    Json json = (*this)(spheres);
+    if (leaks.surface == nullptr) return json;
+    add_triangles(leaks.surface->mesh, json);
+    const std::vector<float> depths(leaks.surface->depths.begin(), leaks.surface->depths.end());
+    json["depths"] = encode_words(std::span<const float>(depths));
+    return json;
   }
 };
 
@@ -102,7 +112,7 @@ const char* kind_of(const ViewItem& item) {
     const char* operator()(const TriangleMesh&) const { return "mesh"; }
     const char* operator()(const std::vector<Sphere>&) const { return "spheres"; }
     const char* operator()(const SphereTree&) const { return "tree"; }
-    const char* operator()(const std::vector<LeakPoint>&) const { return "leaks"; }
+    const char* operator()(const ViewLeaks&) const { return "leaks"; }
   };
   return item.external ? "external" : std::visit(Kind{}, item.parts.front().content);
 }
@@ -110,6 +120,7 @@ const char* kind_of(const ViewItem& item) {
 Json json_of(const ViewItem& item, const Eigen::Vector3d& middle) {
   Json json{{"name", item.name}, {"kind", kind_of(item)}, {"shown", item.shown}};
   if (!item.facts.empty()) json["facts"] = item.facts;
+  if (!item.of.empty()) json["of"] = item.of;
   if (item.checked) json["checked"] = true;
   json["parts"] = Json::array();
   for (const ViewPart& part : item.parts) {

@@ -4,8 +4,10 @@
 #include "cli/json.h"
 #include "mesh/triangle_mesh.h"
 #include "simplifier/leak_points.h"
+#include "simplifier/leak_surface.h"
 #include "spheretree/sphere_tree.h"
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,8 +16,14 @@
 
 namespace spherule {
 
-using ViewContent =
-    std::variant<TriangleMesh, std::vector<Sphere>, SphereTree, std::vector<LeakPoint>>;
+// Where a surface is outside of spheres: points of it, the deepest first, and if it is known the
+// part that is.
+struct ViewLeaks {
+  std::vector<LeakPoint> points;
+  std::shared_ptr<const LeakSurface> surface{};  // null: not known
+};
+
+using ViewContent = std::variant<TriangleMesh, std::vector<Sphere>, SphereTree, ViewLeaks>;
 
 // A piece of an item, in the frame of a link of the scene's robot, or of the world.
 struct ViewPart {
@@ -32,6 +40,7 @@ struct ViewItem {
   bool external = false;        // spheres that are external ones
   std::string facts{};          // a line of text below the name
   bool shown = true;            // at first; the page has a switch for each item
+  std::string of{};             // leaks: the item whose spheres they are of, if that is known
   bool checked = false;         // what the contacts of the trajectory number the spheres of
 };
 

@@ -5,6 +5,7 @@
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
 #include "cli/view_files.h"
+#include "cli/view_leaks.h"
 #include "cli/view_pairs.h"
 #include "robot/cover/link_mesh.h"
 #include "robot/formats/sphere_formats.h"
@@ -137,7 +138,7 @@ std::vector<ViewItem> report_items(const RobotDescription& robot, const Json& js
       continue;
     }
     if (!certificate->at("covered").get<bool>()) ++leaking;
-    leaks.parts.push_back({leaks_of(*certificate, file), link});
+    leaks.parts.push_back({ViewLeaks{leaks_of(*certificate, file), {}}, link});
     const auto solid = entry.find("simplified_solid");
     if (solid == entry.end()) continue;
     if (const auto spheres = solid->find("external_spheres"); spheres != solid->end()) {
@@ -171,6 +172,7 @@ ViewScene covered_robot_scene(const RobotDescription& robot, const std::string& 
   if (!meshes.parts.empty()) scene.items.push_back(std::move(meshes));
   scene.items.push_back(sphere_item(robot, spheres, name));
   for (ViewItem& item : report_items(robot, report, name)) scene.items.push_back(std::move(item));
+  place_leaks(scene.items);
   return scene;
 }
 

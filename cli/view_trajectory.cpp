@@ -3,6 +3,7 @@
 
 #include "cli/trajectory_check.h"
 #include "cli/view_encoding.h"
+#include "robot/model/joint_limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -124,11 +125,19 @@ class Recording {
     json["verdicts"] = verdicts;
   }
 
+  // Where limits are enforced. They are a box of positions: a motion between two configurations
+  // within it stays there.
+  bool is_outside_limits(std::size_t index) const {
+    return report_.enforces_limits &&
+           joint_outside_limits(checker_.robot(), trajectory_.configuration(index)) != nullptr;
+  }
+
   char motions_between(std::size_t begin, std::size_t end, std::size_t j, Json& points) {
-    char worst = 'f';
+    char worst = is_outside_limits(begin) ? 'l' : 'f';
     for (std::size_t i = begin; i < end; ++i) {
       const EdgeResult& motion = report_.verdicts.motions[i];
-      if (motion.verdict == Verdict::kUnknown) worst = 'u';
+      if (is_outside_limits(i + 1)) worst = 'l';
+      if (motion.verdict == Verdict::kUnknown && worst == 'f') worst = 'u';
       if (motion.verdict != Verdict::kCollision) continue;
       if (motion.contact_at > 0.0 || i > begin) {
         const std::vector<double> configuration = checker_.configuration_on_edge(
@@ -145,14 +154,16 @@ class Recording {
 
   char configurations_between(std::size_t begin, std::size_t end, std::size_t j, Json& points) {
     const auto& free = report_.verdicts.free;
+    char worst = is_outside_limits(begin) ? 'l' : 'f';
     if (free[begin] == 0) return 'c';
     for (std::size_t i = begin + 1; i < end; ++i) {
+      if (is_outside_limits(i)) worst = 'l';
       if (free[i] != 0) continue;
       const double share = static_cast<double>(i - begin) / static_cast<double>(end - begin);
       points.push_back(point(j, share, trajectory_.configuration(i), i, 0.0));
       return 'c';
     }
-    return 'f';
+    return worst;
   }
 
   // What touches in a configuration that is not among the shown ones.

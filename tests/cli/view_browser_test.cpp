@@ -5,6 +5,7 @@
 #include "tests/cli/png_image.h"
 #include "tests/support/effort.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
 #include <string>
@@ -73,14 +74,32 @@ class ViewBrowserTest : public CommandTest {
     return shown;
   }
 
+  // The page with script that runs once it has drawn itself; frames come by the clock.
+  Shown act(const std::string& script, const std::string& state) {
+    std::string page = read("page.html");
+    page.insert(page.rfind("</body>"),
+                "<script>window.requestAnimationFrame = (call) => setTimeout(() =>"
+                " call(performance.now()), 16);\nconst on = (type, x, y) => "
+                "document.getElementById('canvas')"
+                ".dispatchEvent(new PointerEvent(type, {clientX: x, clientY: y, bubbles: true,"
+                " pointerId: 1}));\nconst click = (x, y) => { on('pointerdown', x, y);"
+                " on('pointerup', x, y); };\nsetTimeout(() => {" +
+                    script + "}, 500);</script>");
+    write("acted.html", page);
+    return show("acted.html", state);
+  }
+
   std::string browser_;
 };
 
-// Right of the panel, where the scene is.
-std::size_t count(const Picture& picture, const std::function<bool(const Pixel&)>& is_wanted) {
+// Right of the panel, where the scene is, or in some columns of it.
+std::size_t count(const Picture& picture, const std::function<bool(const Pixel&)>& is_wanted,
+                  std::size_t from = 340, std::size_t to = kWidth) {
   std::size_t number = 0;
   for (std::size_t y = 0; y < picture.height; ++y) {
-    for (std::size_t x = 340; x < picture.width; ++x) number += is_wanted(picture.at(x, y));
+    for (std::size_t x = from; x < std::min(to, picture.width); ++x) {
+      number += is_wanted(picture.at(x, y));
+    }
   }
   return number;
 }
@@ -109,6 +128,32 @@ TEST_F(ViewBrowserTest, LeakingPartByDay) {
                            "found by samples", ">4 × 2 × 1<"}) {
     EXPECT_NE(shown.dom.find(text), std::string::npos) << text;
   }
+}
+
+// A set that covers beside one that leaves the end of the box; what is pressed is a cut across x.
+TEST_F(ViewBrowserTest, TwoSetsSideBySide) {
+  write_box("box.stl", {4, 2, 1});
+  write_spheres("all.json", {{2, 1, 0.5, 2.4}});
+  write_spheres("some.json", {{1, 1, 0.5, 1.6}, {2, 1, 0.5, 1.6}});
+  ASSERT_EQ(
+      run({"view", "box.stl", "all.json", "some.json", "--leaks", "-o", "page.html"}).exit_code, 0);
+  const Shown shown = show("page.html", "theme=light");
+  for (const char* text :
+       {"aria-pressed=\"true\" title=\"Sets of spheres side by side", "no leak found",
+        "id=\"leak-scale\"", "<span>1 sphere</span>", "<span>2 spheres</span>"}) {
+    EXPECT_NE(shown.dom.find(text), std::string::npos) << text;
+  }
+  const std::size_t middle = (340 + kWidth) / 2;
+  EXPECT_EQ(count(shown.picture, is_red, 340, middle - 60), 0u);
+  EXPECT_GT(count(shown.picture, is_red, middle, kWidth), 100u);
+  EXPECT_GT(count(shown.picture, is_blue, 340, middle), 3000u);
+  // The deepest leak is the end at x = 4, which the home view sees; 2 is the middle.
+  const Shown cut = act(
+      "document.querySelectorAll('#cut button')[1].click(); document.documentElement.dataset.cut ="
+      " Math.round(Number(document.querySelector('#cut output').textContent));",
+      "theme=light&side=off");
+  EXPECT_NE(cut.dom.find("data-cut=\"4\""), std::string::npos);
+  EXPECT_EQ(cut.dom.find("class=\"pane-title\""), std::string::npos);
 }
 
 TEST_F(ViewBrowserTest, CutByNight) {
@@ -166,20 +211,6 @@ class CheckedPageTest : public ViewBrowserTest {
                    "--view", "page.html"})
                   .exit_code,
               1);
-  }
-  // The page with script that runs once it has drawn itself; frames come by the clock.
-  Shown act(const std::string& script, const std::string& state) {
-    std::string page = read("page.html");
-    page.insert(page.rfind("</body>"),
-                "<script>window.requestAnimationFrame = (call) => setTimeout(() =>"
-                " call(performance.now()), 16);\nconst on = (type, x, y) => "
-                "document.getElementById('canvas')"
-                ".dispatchEvent(new PointerEvent(type, {clientX: x, clientY: y, bubbles: true,"
-                " pointerId: 1}));\nconst click = (x, y) => { on('pointerdown', x, y);"
-                " on('pointerup', x, y); };\nsetTimeout(() => {" +
-                    script + "}, 500);</script>");
-    write("acted.html", page);
-    return show("acted.html", state);
   }
   static void expect_text(const Shown& shown, const std::string& text, bool is_there = true) {
     EXPECT_EQ(shown.dom.find(text) != std::string::npos, is_there) << text;

@@ -80,6 +80,14 @@ TEST_F(ViewCheckTest, ConfigurationsAndHowDeepTheyAre) {
   EXPECT_NEAR(floats_of(point.at(5)).at(2), kReach - 0.03, 1e-6);
 }
 
+TEST_F(ViewCheckTest, VerdictsObeyTheLimitsWhereTheseAreEnforced) {
+  write("path.csv", "-1 0\n-2.5 0\n-1.5 0\n-1 0\n1 0\n");
+  EXPECT_EQ(page_of(0, {}).at("trajectory").at("verdicts"), "fffff");
+  EXPECT_EQ(page_of(1, {"--enforce-limits"}).at("trajectory").at("verdicts"), "flfff");
+  EXPECT_EQ(page_of(1, {"--edges"}).at("trajectory").at("verdicts"), "fffc");
+  EXPECT_EQ(page_of(1, {"--edges", "--enforce-limits"}).at("trajectory").at("verdicts"), "llfc");
+}
+
 TEST_F(ViewCheckTest, ItsItemsAreTheRobotItsSpheresAndTheScene) {
   write("scan.xyz", "1 1 1\n1 1 2\n");
   write("cell.json", R"({"format": "spherule-scene", "version": 1,

@@ -2,6 +2,7 @@
 #include "tests/cli/command_test_support.h"
 #include "tests/cli/view_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -72,6 +73,17 @@ TEST_F(ViewTest, LeaksOfAnAudit) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double place = certificate.at("deepest_leak").at(axis);
     EXPECT_NEAR(numbers[axis] + scene.at("middle").at(axis).get<double>(), place, 1e-5);
+  }
+  // The surface that leaks belongs to the spheres; on it no point is covered.
+  EXPECT_EQ(leaks.at("of"), "two.json");
+  const auto corners = floats_of(leaks.at("parts").at(0).at("positions"));
+  const auto depths = floats_of(leaks.at("parts").at(0).at("depths"));
+  ASSERT_GT(depths.size(), 10u);
+  ASSERT_EQ(corners.size(), 3 * depths.size());
+  EXPECT_NEAR(*std::max_element(depths.begin(), depths.end()), deepest, 1e-5);
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    const double x = corners[3 * i] + scene.at("middle").at(0).get<double>();
+    EXPECT_GT(x, 2.9);
   }
   // What covers has none, and says so.
   write_spheres("ball.json", {{2, 0.2, 0.1, 2.5}});

@@ -30,12 +30,19 @@ function covered_area() {
                                    : {left: 0, bottom: innerHeight - panel.top};
 }
 
-// The scene stands in the middle of what the panel leaves free.
-function fit_view() {
+function free_area() {
   const {left, bottom} = covered_area();
-  camera.aspect = innerWidth / innerHeight;
-  camera.setViewOffset(innerWidth, innerHeight, -left / 2, bottom / 2, innerWidth, innerHeight);
+  return {x: left, y: 0, width: Math.max(innerWidth - left, 1), height: Math.max(innerHeight - bottom, 1)};
 }
+
+// What is looked at stands in the middle of an area of a picture of that size.
+function aim_at(area, width, height) {
+  camera.aspect = width / height;
+  camera.setViewOffset(width, height, width / 2 - area.x - area.width / 2,
+                       height / 2 - area.y - area.height / 2, width, height);
+}
+// In the middle of what the panel leaves free, or of a pane of that.
+const fit_view = (pane = 0) => aim_at(pane_areas()[Math.max(pane, 0)], innerWidth, innerHeight);
 
 // Looks at a box from a direction, from as near as all of it is seen.
 function look_from(name) {
@@ -43,10 +50,9 @@ function look_from(name) {
   const direction = new THREE.Vector3().fromArray(kDirections[name]).normalize();
   const across = new THREE.Vector3().crossVectors(camera.up, direction).normalize();
   const upward = new THREE.Vector3().crossVectors(direction, across);
-  const {left, bottom} = covered_area();
+  const area = pane_areas()[0];
   const slope = 2 * Math.tan(kFieldOfView * Math.PI / 360) / innerHeight;  // of a pixel
-  const slope_x = 0.5 * slope * Math.max(innerWidth - left, 1);
-  const slope_y = 0.5 * slope * Math.max(innerHeight - bottom, 1);
+  const [slope_x, slope_y] = [0.5 * slope * area.width, 0.5 * slope * area.height];
   const box = scene_box();
   const middle = box.getCenter(new THREE.Vector3());
   let distance = 0;

@@ -66,6 +66,7 @@ function show_contacts(contacts) {
 
 // Labels beside their points, one below the other where they would lie over each other.
 function place_contact_labels() {
+  fit_view();
   const shown = contact_labels.map((label, index) => {
     return {label, ...pixel_of(shown_contacts[index].place)};
   });

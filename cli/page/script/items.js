@@ -6,13 +6,16 @@ const kLeakShare = 0.003;
 
 // Meshes are drawn first, then spheres, external spheres over them, and leaks at last.
 const kKindRank = {mesh: 0, spheres: 1, tree: 1, external: 2, leaks: 3};
+// Surfaces of leaks come right after the meshes, which they are parts of (make_body() doubles orders).
+const kLeakSurfaceOrder =
+    2 * scene_data.items.filter((item) => item.kind === "mesh").length - 0.5;
 const link_shown = link_frames.map(() => true);
 let colours_by_link = false;
 
 function make_item(data, order) {
   const item = {
     name: short_name(data.name), full_name: data.name, kind: data.kind, facts: data.facts || "",
-    shown: data.shown, checked: data.checked || false, order,
+    shown: data.shown, checked: data.checked || false, of: data.of || "", order,
     colour_slot: 0, alpha: 1, level: 0, level_count: 1, parts: [],
   };
   for (const part_data of data.parts) {
@@ -31,6 +34,8 @@ function make_item(data, order) {
     } else {
       part.materials = make_sphere_materials(order, sphere_uniforms(item.kind));
       part.levels = part_data.levels.map((text) => ({count: text_count(text), text, body: null}));
+      part.surface = make_leak_surface(part_data, kLeakSurfaceOrder);
+      if (part.surface) part.group.add(part.surface);
     }
     item.parts.push(part);
     item.level_count = Math.max(item.level_count, part.levels.length);
@@ -39,13 +44,12 @@ function make_item(data, order) {
   return item;
 }
 
-// Leaks are shown wherever the cut is. Circles of many thousands of external spheres would blacken.
+// Circles of many thousands of external spheres would blacken. Marks may stand wherever the cut is.
 const not_cut = {value: new THREE.Vector4(0, 0, 0, 1)};
 const leak_radius = {value: 1e30};
 function sphere_uniforms(kind) {
   if (kind === "external") return {ring_tint: {value: 0.74}};
-  return kind === "leaks" ? {least_radius: {value: kLeakPixels}, greatest_radius: leak_radius,
-                             cut: not_cut} : {};
+  return kind === "leaks" ? {least_radius: {value: kLeakPixels}, greatest_radius: leak_radius} : {};
 }
 
 // Spheres in a base64 text, 16 bytes each.
@@ -72,17 +76,17 @@ function spheres_of(level) {
 }
 function load_level(item, part) {
   const level = level_of(item, part);
-  if (level.body || level.count === 0) return;
+  if (level.body || level.count === 0 || part.surface) return;
   level.body = make_body(make_sphere_geometry(spheres_of(level)), part.materials, item.order);
   part.group.add(level.body);
   if (item.kind === "leaks") add_ghost(item, level, part);
 }
 
-// Leaks inside or behind other things shine through.
+// Leaks of which only points are known shine through what is before them.
 function add_ghost(item, level, part) {
   part.ghost = make_sphere_materials(item.order, sphere_uniforms(item.kind),
                                    {depthTest: false, depthWrite: false}).colour;
-  part.ghost.uniforms.alpha.value = 0.4;
+  part.ghost.uniforms.alpha.value = 0.25;
   const ghost = new THREE.Mesh(level.body.children[0].geometry, part.ghost);
   ghost.frustumCulled = false;
   ghost.renderOrder = 2000;
@@ -131,7 +135,7 @@ function apply_items() {
   for (const item of items) {
     for (const part of item.parts) {
       const visible = item.shown && (part.link < 0 || link_shown[part.link]);
-      part.group.visible = visible;
+      part.visible = part.group.visible = visible;
       if (!visible) continue;
       if (item.kind !== "mesh") load_level(item, part);
       for (const level of part.levels) {

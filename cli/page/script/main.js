@@ -30,7 +30,8 @@ function draw() {
   camera.updateMatrixWorld(true);
   place_cut(camera);
   place_measure();
-  renderer.render(world, camera);
+  draw_panes(pane_areas(), innerWidth, innerHeight, fit_view);
+  place_pane_titles();
   place_axes();
   place_scale();
   place_label();
@@ -44,7 +45,7 @@ const kKeys = {
   "+": () => zoom(0.9), "=": () => zoom(0.9), "-": () => zoom(1.1),
   0: () => look_from("home"), 1: () => look_from("front"), 2: () => look_from("right"),
   3: () => look_from("top"), p: fold, d: switch_theme,
-  " ": toggle_playing, m: switch_measure, n: () => jump(1), b: () => jump(-1),
+  " ": toggle_playing, m: switch_measure, s: switch_panes, n: () => jump(1), b: () => jump(-1),
 };
 const kShiftKeys = {ArrowLeft: () => pan(-1, 0), ArrowRight: () => pan(1, 0),
                     ArrowUp: () => pan(0, 1), ArrowDown: () => pan(0, -1)};
@@ -71,7 +72,9 @@ function start() {
     refresh();
   });
   // On a narrow screen the scene comes first; the panel is a press away.
-  if (innerWidth <= kNarrowWidth && address_options.get("panel") !== "open") {
+  const panel = address_options.get("panel");
+  if (panel === "none") panel_part("unfold").style.display = "none";
+  if (panel === "none" || panel === "closed" || innerWidth <= kNarrowWidth && panel !== "open") {
     document.body.classList.add("bare");
   }
   add_heading();
@@ -79,6 +82,7 @@ function start() {
   add_leaks();
   add_cut();
   add_tools();
+  add_panes();
   add_robot();
   add_player();
   hear_keys();

@@ -18,11 +18,11 @@ function clear_measure() {
   if (measure.label) measure.label.hidden = true;
 }
 
-function add_measured_point({part, point}) {
+function add_measured_point({part, point, pane}) {
   if (measure.points.length === 2) clear_measure();
   const mark = sphere_drawing([...point.toArray(), 0], measure_materials.colour, 2700);
   frame_of(part.link).add(mark);
-  measure.points.push({part, point, mark});
+  measure.points.push({part, point, pane, mark});
   redraw();
 }
 
@@ -41,6 +41,7 @@ function place_measure() {
   }
   replace_lines(measure.line, new Float32Array([...ends[0].toArray(), ...ends[1].toArray()]));
   measure.line.visible = true;
+  fit_view(measure.points[1].pane);
   const middle = pixel_of(ends[0].clone().add(ends[1]).multiplyScalar(0.5));
   measure.label.hidden = !middle.seen;
   measure.label.textContent = distance_text(measured_distance());

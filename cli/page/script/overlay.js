@@ -42,6 +42,7 @@ function place_label() {
   const label = document.getElementById("label");
   label.hidden = !(labelled_leak && leak_shown(labelled_leak));
   if (label.hidden) return;
+  fit_view(pane_of(labelled_leak.item));
   const place = pixel_of(world_place(labelled_leak));
   label.hidden = !place.seen;
   label.style.left = `${place.x}px`;

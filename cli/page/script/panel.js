@@ -79,7 +79,8 @@ function add_cut() {
   const buttons = names.map((name, index) => {
     const button = node("button", {type: "button"}, name);
     button.addEventListener("click", () => {
-      cut.axis = index - 1;
+      choose_cut(index - 1);
+      place.set_value(cut.share);
       tell();
       refresh();
     });
@@ -115,14 +116,15 @@ function add_cut() {
 
 function add_leaks() {
   panel_part("leaks").hidden = leaks.length === 0;
+  add_leak_scale();
   const list = panel_part("leak-list");
   // Of a robot, the deepest of each link.
   const listed = leaks.filter(
-      (leak) => leak.part.link < 0 || leak === deepest_of_link(leak.part.link)).slice(0, 8);
+      (leak) => leak.part.link < 0 || leak === leaks.find((one) => one.part === leak.part)).slice(0, 8);
   for (const leak of listed) {
     const button = node("button", {type: "button", className: "leak"},
                         node("span", {className: "depth"}, distance_text(leak.depth)),
-                        node("span", {className: "where"}, leak_link(leak) || place_text(leak)));
+                        node("span", {className: "where"}, leak_where(leak)));
     button.addEventListener("click", () => look_at_leak(leak));
     list.append(button);
   }
@@ -130,6 +132,12 @@ function add_leaks() {
   if (rest > 0) {
     list.append(node("p", {className: "note"}, `and ${rest.toLocaleString("en-US")} more`));
   }
+}
+// Its link, or else its place; of several sets also of which one it is.
+function leak_where(leak) {
+  const sets = items.filter((item) => item.kind === "leaks").length;
+  const place = leak_link(leak) || place_text(leak);
+  return sets > 1 ? `${place} · ${leak.item.name.replace(/^leaks: /, "")}` : place;
 }
 function place_text(leak) {
   const place = leak.point.toArray().map((value, axis) => value + scene_data.middle[axis]);

@@ -50,10 +50,13 @@ function pick_triangle(triangles, ray, plane) {
 // The nearest thing at a place of the window: item, part, index of sphere or triangle, and the point,
 // in the frame of the part; null for none. Leaks are marks and not met.
 function pick(x, y) {
+  const pane = pane_at(x, y);
+  fit_view(pane);
   pick_caster.setFromCamera({x: 2 * x / innerWidth - 1, y: 1 - 2 * y / innerHeight}, camera);
   let best = null;
   for (const item of items) {
-    if (!item.shown || item.kind === "leaks") continue;
+    const own = pane_of(item);
+    if (!item.shown || item.kind === "leaks" || (own >= 0 && own !== pane)) continue;
     for (const part of item.parts) {
       if (!part.group.visible || part.box.isEmpty()) continue;
       const to_part = new THREE.Matrix4().getInverse(frame_of(part.link).matrixWorld);
@@ -64,7 +67,7 @@ function pick(x, y) {
       const found = item.kind === "mesh" ? pick_triangle(part.triangles, ray, plane)
           : level.count > 0 ? pick_sphere(spheres_of(level), ray, plane) : {t: Infinity};
       if (found.t < (best ? best.t : Infinity)) {
-        best = {...found, item, part, point: ray.at(found.t, new THREE.Vector3())};
+        best = {...found, item, part, pane, point: ray.at(found.t, new THREE.Vector3())};
       }
     }
   }

@@ -26,18 +26,21 @@ function paint_label(paint, label, place, scale) {
   paint.fillText(label.textContent, place.x + 0.5 * size, place.y);
 }
 
-function paint_labels(paint, width, height) {
+function paint_labels(paint, areas, width, height) {
   const scale = Math.max(1, height / 900);
-  const labels = contact_labels.map((label, i) => ({label, world: shown_contacts[i].place}));
+  const labels = contact_labels.map((label, i) => ({label, world: shown_contacts[i].place, pane: 0}));
   if (measure.points.length === 2) {
     const [a, b] = measure.points.map(world_place);
-    labels.push({label: measure.label, world: a.add(b).multiplyScalar(0.5)});
+    labels.push({label: measure.label, world: a.add(b).multiplyScalar(0.5),
+                 pane: measure.points[1].pane});
   }
   if (labelled_leak && leak_shown(labelled_leak)) {
-    labels.push({label: document.querySelector("#label span"), world: world_place(labelled_leak)});
+    labels.push({label: document.querySelector("#label span"), world: world_place(labelled_leak),
+                 pane: pane_of(labelled_leak.item)});
   }
   let lowest = -Infinity;
-  const placed = labels.map(({label, world}) => {
+  const placed = labels.map(({label, world, pane}) => {
+    aim_at(areas[Math.max(pane, 0)], width, height);
     const place = pixel_of(world, width, height);
     return {label, ...place, x: place.x + 12 * scale};
   }).filter((one) => one.seen).sort((a, b) => a.y - b.y);
@@ -48,23 +51,39 @@ function paint_labels(paint, width, height) {
   }
 }
 
-// The whole window of the camera, without what the panel covers.
+// What stands above each of several panes, and the lines between them.
+function paint_panes(paint, areas, height) {
+  if (areas.length < 2) return;
+  const size = 13 * Math.max(1, height / 900);
+  const style = getComputedStyle(document.body);
+  paint.textBaseline = "top";
+  areas.forEach((area, k) => {
+    paint.font = `600 ${size}px system-ui, "DejaVu Sans", sans-serif`;
+    paint.fillStyle = style.color;
+    paint.textAlign = "center";
+    paint.fillText(pane_title(pane_sets[k]).join(" · "), area.x + area.width / 2, area.y + size,
+                   area.width - size);
+    paint.strokeStyle = theme().grid;
+    paint.strokeRect(area.x, area.y, area.width, area.height);
+  });
+  paint.textAlign = "left";
+}
+
+// All that the camera sees, without what the panel covers.
 function make_picture(width, height) {
   renderer.setPixelRatio(1);
   renderer.setSize(width, height, false);
-  camera.clearViewOffset();
-  camera.aspect = width / height;
-  camera.updateProjectionMatrix();
+  const areas = split_area({x: 0, y: 0, width, height});
   shared_uniforms.viewport.value.set(width, height);
   place_cut(camera);
   place_measure();
-  renderer.render(world, camera);
+  draw_panes(areas, width, height, (k) => aim_at(areas[k], width, height));
   const made = node("canvas", {width, height});
   const paint = made.getContext("2d");
   paint.drawImage(canvas, 0, 0);
-  paint_labels(paint, width, height);
+  paint_panes(paint, areas, height);
+  paint_labels(paint, areas, width, height);
   fit_view();  // the window's own again
-  camera.updateProjectionMatrix();
   redraw();
   return made;
 }

@@ -108,7 +108,7 @@ function hear_track() {
 }
 
 function tell_summary() {
-  const counts = {f: 0, u: 0, c: 0};
+  const counts = {f: 0, u: 0, l: 0, c: 0};
   for (const letter of trajectory.verdicts) ++counts[letter];
   const what = trajectory.shown < trajectory.configurations ? "steps"
       : trajectory.motions ? "motions" : "configurations";
@@ -116,6 +116,7 @@ function tell_summary() {
   const parts = [`${trajectory.verdict}: ${trajectory.verdicts.length.toLocaleString("en-US")} ${what}`];
   if (counts.c) parts.push(`${counts.c.toLocaleString("en-US")} with contacts`);
   if (counts.u) parts.push(`${counts.u.toLocaleString("en-US")} not proved`);
+  if (counts.l) parts.push(`${counts.l.toLocaleString("en-US")} outside the joint limits`);
   if (finite.length) {
     parts.push(`least clearance ≥ ${lower_distance_text(finite.reduce((a, b) => Math.min(a, b)))}`);
   }

@@ -15,10 +15,10 @@ const trajectory = trajectory_data && {
 };
 let place_on_trajectory = 0;
 
-const kVerdictNames = {f: "free", c: "collision", u: "not proved"};
-const kVerdictRank = {f: 0, u: 1, c: 2};
+const kVerdictNames = {f: "free", c: "collision", u: "not proved", l: "outside limits"};
+const kVerdictRank = {f: 0, u: 1, l: 2, c: 3};
 const verdict_colour = (letter) =>
-    letter === "c" ? theme().leak : letter === "u" ? theme().unknown : theme().free;
+    letter === "c" ? theme().leak : letter === "f" ? theme().free : theme().unknown;
 
 // The numbers of the k-th configuration.
 function shown_configuration(k) {
