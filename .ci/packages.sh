@@ -40,9 +40,10 @@ need_python() {
   packages+=(python3-dev python3-numpy pybind11-dev)
 }
 
+# Dask is what studies run on beside threads.
 need_python_tests() {
   need_python
-  packages+=(python3-pytest mypy)
+  packages+=(python3-pytest mypy python3-distributed)
 }
 
 need_benchmarks() {
