@@ -265,7 +265,8 @@ def test_a_killed_process_goes_on(checker, configurations, tmp_path):
 
 
 @pytest.mark.parametrize("kind, killed", [("file", 1), ("array", 2)])
-def test_killed_workers_lose_nothing(checker, configurations, client, tmp_path, kind, killed):
+def test_killed_workers_lose_nothing(checker, configurations, client, monkeypatch, tmp_path, kind, killed):
+    monkeypatch.setattr(studies._engines, "PATIENCE", 1.0)
     pids = list(client.run(os.getpid).values())
     assert len(pids) == 2
     shares = []
@@ -283,7 +284,7 @@ def test_killed_workers_lose_nothing(checker, configurations, client, tmp_path, 
     assert not pids
     assert np.array_equal(study.free, checker.check_configs(configurations))
     assert len(shares) == len(set(shares)) == len(list((tmp_path / "results").glob("part-*.npy"))) == -(-COUNT // 64)
-    client.wait_for_workers(2)
+    client.wait_for_workers(2, timeout=60)
 
 
 class FailAtFirst:

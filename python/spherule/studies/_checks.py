@@ -18,7 +18,7 @@ from ._engines import Ended
 from ._rows import RowResults, Run, run_rows
 from ._sources import Beside, RowsLike, Source, source_of
 
-STEP = 4096
+STEP = 1 << 15
 """Rows after which a thread looks whether its work is still wanted."""
 
 EDGE = np.dtype([("verdict", np.int32), ("free_until", np.float64), ("contact_at", np.float64)])

@@ -2,6 +2,7 @@
 """Runs tasks on threads of this machine or on the workers of a Dask client."""
 
 import asyncio
+import contextlib
 import importlib
 import os
 import threading
@@ -9,7 +10,8 @@ import time
 from collections import deque
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, Generic, Iterable, Iterator, Optional, Tuple, TypeVar
+from itertools import chain
+from typing import Any, Callable, Dict, Generic, Iterable, Iterator, List, Optional, Tuple, TypeVar
 
 from .._error import Error
 
@@ -33,6 +35,9 @@ class Task(Generic[Input]):
 LOST = (CancelledError, asyncio.CancelledError)
 """What Dask raises where data went with a worker."""
 
+
+PATIENCE = 60.0
+"""Seconds without a result after which it is looked where tasks are."""
 
 SETTLING = 0.5
 """Seconds until a scheduler knows of a worker that died."""
@@ -83,7 +88,7 @@ def run_on_threads(
     try:
         while True:
             while len(running) < 2 * threads:
-                found: "Optional[Task[Input]]" = again.popleft() if again else next(waiting, None)
+                found = next(chain(popped(again), waiting), None)
                 if found is None:
                     break
                 running[pool.submit(run, found)] = found
@@ -100,6 +105,11 @@ def run_on_threads(
     finally:
         stop.set()
         pool.shutdown(wait=False, cancel_futures=True)
+
+
+def popped(queue: "deque[Task[Input]]") -> "Iterator[Task[Input]]":
+    while queue:
+        yield queue.popleft()
 
 
 def work_on(work: "Work[Input, Result]", take: Callable[[], Input]) -> Result:
@@ -139,7 +149,7 @@ class DaskRun(Generic[Input, Result]):
             future = self.client.submit(work_on, self.sent_work, task.take, **options)
         return future
 
-    def place(self, task: "Task[Input]") -> Any:
+    def place(self, task: "Task[Input]") -> None:
         """Submits it, again where a worker dies of which the scheduler does not know yet."""
         while True:
             try:
@@ -149,34 +159,51 @@ class DaskRun(Generic[Input, Result]):
                 time.sleep(SETTLING)
             else:
                 self.running[future] = task
-                return future
+                return
 
     def note(self, task: "Task[Input]", error: BaseException) -> None:
         self.failures.note(task.index, error)
         if isinstance(error, (OSError, *LOST)):
             self.sent_work = None
 
+    def finished(self) -> List[Any]:
+        """Futures that are no longer pending, of which it waits for one."""
+        with contextlib.suppress(TimeoutError, asyncio.TimeoutError, *LOST):
+            self.distributed.wait(list(self.running), timeout=PATIENCE, return_when="FIRST_COMPLETED")
+        found = [future for future in self.running if future.status != "pending"]
+        if not found:
+            self.place_again_what_no_worker_has()
+        return found
+
+    def place_again_what_no_worker_has(self) -> None:
+        """Schedulers were seen to forget tasks of workers that died."""
+        held = {key for keys in self.client.processing().values() for key in keys}
+        for future in [future for future in self.running if future.key not in held]:
+            task = self.running.pop(future)
+            self.client.cancel([future])
+            self.sent_work = None
+            self.place(task)
+
     def results(self, tasks: Iterable["Task[Input]"]) -> Iterator[Tuple[int, Result]]:
         waiting = iter(tasks)
-        done = self.distributed.as_completed(loop=self.client.loop)
         try:
             while True:
                 while len(self.running) < self.slots():
                     task = next(waiting, None)
                     if task is None:
                         break
-                    done.add(self.place(task))
+                    self.place(task)
                 if not self.running:
                     return
-                future = next(done)
-                task = self.running.pop(future)
-                try:
-                    result = future.result()
-                except (Exception, *LOST) as error:
-                    self.note(task, error)
-                    done.add(self.place(task))
-                else:
-                    yield task.index, result
+                for future in self.finished():
+                    task = self.running.pop(future)
+                    try:
+                        result = future.result()
+                    except (Exception, *LOST) as error:
+                        self.note(task, error)
+                        self.place(task)
+                    else:
+                        yield task.index, result
         finally:
             self.client.cancel(list(self.running))
 

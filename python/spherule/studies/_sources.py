@@ -185,7 +185,10 @@ class Uniform:
     upper: Tuple[float, ...]
 
     def __call__(self, rng: np.random.Generator, count: int) -> Floats:
-        return rng.uniform(self.lower, self.upper, (count, len(self.lower)))
+        rows = rng.random((count, len(self.lower)))
+        rows *= np.subtract(self.upper, self.lower)
+        rows += self.lower
+        return np.minimum(rows, self.upper, out=rows)  # rounding may lead beyond
 
 
 def uniform_configurations(robot: Robot, count: int, *, seed: int) -> GeneratedRows:
