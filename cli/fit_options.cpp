@@ -105,7 +105,8 @@ void add_method_options(CLI::App& command, FitArguments& arguments) {
       ->type_name("E1,E2,...");
   add_search_options(
       command, {options.seed, options.effort, options.seconds, options.threads},
-      "Rounds of searching for fewer spheres than at first, with cover; 0: none",
+      "With cover: rounds at most of searching for fewer spheres than at first, fewer where more "
+      "would not pay; 0: none",
       "With cover: search for fewer spheres for so long, less where it no longer finds any; the "
       "result then depends on the machine");
 }

@@ -4,6 +4,7 @@
 #include "simplifier/stage2/cover_bound.h"
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/cover_moves.h"
+#include "simplifier/stage2/cover_yield.h"
 #include "simplifier/stage2/lazy_cover_search.h"
 #include "simplifier/stage2/surface_extent.h"
 #include "simplifier/support/parallel.h"
@@ -55,7 +56,7 @@ constexpr std::size_t kMaxStarts = 10000;
 // left gets a small sphere of its own, of which large thin parts would need a great many.
 constexpr int kPasses = 5;
 
-constexpr std::uint64_t kWork = 60;     // of a search: visits per entry of the rows it begins with
+constexpr std::uint64_t kWork = 60;     // of a search: visits per entry of the core it begins with
 constexpr std::size_t kSampling = 10;   // a search begins with one of so many rows
 constexpr std::size_t kForgetting = 4;  // times as large as it was the problem may grow
 // So many leaks more than there are spheres to gain may still be mended by fewer spheres.
@@ -115,6 +116,8 @@ std::vector<Sphere> CoverFitter::run() {
     return std::max(rounds, elapsed.count() / options_.seconds);
   };
   begin();
+  CoverYield yield(options_.effort);
+  yield.add(best_.spheres.size());
   int in_vain = 0;
   for (int round = 0; round < options_.effort && best_.spheres.size() > 1; ++round) {
     const double share = share_done(round);
@@ -122,7 +125,8 @@ std::vector<Sphere> CoverFitter::run() {
     report(share);
     in_vain = improve() ? 0 : in_vain + 1;
     if (in_vain >= kPatience && refine()) in_vain = 0;
-    if (in_vain >= kConverged) break;
+    yield.add(best_.spheres.size());
+    if (in_vain >= kConverged || !yield.pays()) break;
   }
   bound();
   return best_.spheres;
@@ -214,11 +218,9 @@ bool CoverFitter::search() {
   // The second, if the first succeeds; both, if a stop is requested.
   std::array<std::atomic<bool>, 2> unneeded{};
   const std::stop_callback quit(options_.stop, [&] { unneeded[0] = unneeded[1] = true; });
-  const std::uint64_t entries_per_row = problem_.entries() / problem_.rows().size();
-  const std::uint64_t work = kWork * entries_per_row * known_.rows.size();
   parallel_for(0, searches.size(), [&](std::size_t i) {
     searches[i].emplace(problem_.instance(), problem_.columns_of(), known_, solution_);
-    covers[i] = searches[i]->reach(targets[i], work, options_.seed + seeds_used_ + i, unneeded[i]);
+    covers[i] = searches[i]->reach(targets[i], kWork, options_.seed + seeds_used_ + i, unneeded[i]);
     if (i == 0 && covers[0]) unneeded[1] = true;
   });
   seeds_used_ += searches.size();

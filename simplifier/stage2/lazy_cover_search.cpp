@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/lazy_cover_search.h"
 
+#include "simplifier/stage2/cover_core.h"
+
 #include <algorithm>
+#include <numeric>
 
 namespace spherule::internal {
 namespace {
@@ -14,12 +17,17 @@ constexpr std::uint64_t kSeedStep = 0x9e3779b97f4a7c15;
 
 }  // namespace
 
-bool LazyCoverSearch::reach(std::size_t target, std::uint64_t work, std::uint64_t seed,
+bool LazyCoverSearch::reach(std::size_t target, std::uint64_t visits, std::uint64_t seed,
                             const std::atomic<bool>& unneeded) {
+  CoverCore core(instance_, columns_of_, known_, columns_);
+  const std::uint64_t work = visits * core.entries();
   for (std::uint64_t done = 0;; seed += kSeedStep) {
-    CoverSearch search(instance_.columns.size(), columns_of_, known_, columns_);
+    CoverSearch::Rows rows{{}, known_.weights};
+    rows.rows.resize(known_.rows.size());
+    std::iota(rows.rows.begin(), rows.rows.end(), std::uint32_t{0});
+    CoverSearch search(core.column_count(), core.columns_of(), rows, core.in_core(columns_));
     const bool covers = search.reach(target, work - done, seed, unneeded);
-    columns_.assign(search.best_columns().begin(), search.best_columns().end());
+    columns_ = core.in_instance(search.best_columns());
     known_.weights = search.weights();
     done += search.work();
     if (!covers) return false;
@@ -27,7 +35,11 @@ bool LazyCoverSearch::reach(std::size_t target, std::uint64_t work, std::uint64_
     if (open.empty()) return true;
     if (done >= work || unneeded) return false;
     const std::size_t count = std::min(open.size(), known_.rows.size() / kShare + kLeast);
-    for (std::size_t i = 0; i < count; ++i) known_.add(open[i * open.size() / count]);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t row = open[i * open.size() / count];
+      known_.add(row);
+      core.add_row(row);
+    }
   }
 }
 

@@ -27,9 +27,10 @@ class LazyCoverSearch {
         known_(std::move(known)),
         columns_(std::move(columns)) {}
 
-  // As CoverSearch::reach, the `work` being that of all searches between which rows are learned.
+  // As CoverSearch::reach, on a CoverCore. All searches between which rows are learned make about
+  // `visits` for each entry of the core that the first begins with.
   // True if every row of the instance is covered.
-  bool reach(std::size_t target, std::uint64_t work, std::uint64_t seed,
+  bool reach(std::size_t target, std::uint64_t visits, std::uint64_t seed,
              const std::atomic<bool>& unneeded);
 
   // After reach(): the rows known by then, with their weights, and the best columns found.

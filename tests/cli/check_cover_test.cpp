@@ -2,6 +2,7 @@
 // `check` where it makes spheres itself, of the robot and of what is attached to it.
 
 #include "tests/cli/check_fixture.h"
+#include "tests/support/effort.h"
 
 #include <string>
 #include <vector>
@@ -101,6 +102,7 @@ TEST_F(CheckTest, AttachedMeshesAreCoveredAsTheySay) {
 
 // Two cubes that a gap of 0.05 parts, and which one sphere around each makes touch.
 TEST_F(CheckTest, BodiesThatAlwaysTouchGetAdvice) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   const std::string cube =
       R"(<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>)";
   write("cubes.urdf", R"(<robot name="cubes"><link name="a">)" + cube +

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Several meshes in one file: `fit A.stl B.stl -o all.json`, and what reads it.
 #include "tests/cli/command_test_support.h"
+#include "tests/support/effort.h"
 
 namespace spherule {
 namespace {
@@ -24,6 +25,7 @@ class FitBodiesTest : public CommandTest {
 };
 
 TEST_F(FitBodiesTest, EachIsAsIfItWereFittedAlone) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   const Outcome outcome =
       fit({"--tree", "all.tree", "--view", "all.html", "--report", "report.json"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

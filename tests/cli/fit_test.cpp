@@ -96,6 +96,7 @@ TEST_F(FitTest, WarnsOfThinPlates) {
 }
 
 TEST_F(FitTest, ReportLeavesOutWhatWasNotAskedFor) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   const Outcome plain = run({"fit", "box.stl", "-o", "box.json", "--max-error", "4", "--effort",
                              "0", "--report", "report.json"});
   ASSERT_EQ(plain.exit_code, 0) << plain.err;
@@ -156,6 +157,7 @@ TEST_F(FitTest, ReportHoldsTheSimplifiedSolid) {
 
 // What is not filled is proved of the flood alone.
 TEST_F(FitTest, TellsWhatStaysOpenWhereThatIsProved) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   for (const std::string external : {"reachable", "random", "none"}) {
     const Outcome result = run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", "--effort",
                                 "0", "--external", external, "--external-limit", "300"});
@@ -187,13 +189,14 @@ TEST_F(FitTest, ThreadsDoNotChangeTheOutput) {
 }
 
 TEST_F(FitTest, EffortOrSecondsSayHowLongToLook) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   const auto fit = [&](const std::string& option, const std::string& value) {
     EXPECT_EQ(
         run({"fit", "box.stl", "-o", "box.json", "--max-error", "2", option, value}).exit_code, 0);
     return read_json("box.json");
   };
   const json first = fit("--effort", "0");
-  const json later = fit("--effort", test::kSanitized ? "2" : "6");
+  const json later = fit("--effort", "6");
   EXPECT_EQ(first.at("options").at("effort"), 0);
   EXPECT_LT(later.at("spheres").size(), first.at("spheres").size());
   EXPECT_EQ(fit("--seconds", "0.5").at("options").at("seconds"), 0.5);

@@ -145,6 +145,7 @@ TEST_F(HelpTest, ReportsSayWhatToDoNext) {
 
 // What is offered is about the same model, in the same unit.
 TEST_F(HelpTest, NextStepsRepeatWhatWasGiven) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   write_box("part.stl", {2, 0.1, 0.1});
   for (const auto& [option, value] : {std::pair("--scale", "0.1"), std::pair("--weld", "0.001")}) {
     const Outcome fit = run({"fit", "part.stl", "-o", "out.json", "--max-error", "0.2", "--effort",

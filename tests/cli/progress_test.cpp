@@ -88,7 +88,7 @@ class ProgressTest : public CommandTest {
 
 TEST_F(ProgressTest, LongCommandsShowABarOnATerminalOnly) {
   write_box("part.stl", {2, 0.1, 0.1});
-  expect_progress({"fit", "part.stl", "-o", "part.json", "--max-error", "2"});
+  expect_progress({"fit", "part.stl", "-o", "part.json", "--max-error", "2", "--effort", "2"});
   expect_progress({"audit", "part.stl", "part.json"});
 #ifdef SPHERULE_HAS_BASELINES
   expect_progress({"baseline", "hull", "part.stl", "-o", "hull.obj"});
@@ -97,7 +97,7 @@ TEST_F(ProgressTest, LongCommandsShowABarOnATerminalOnly) {
 #ifdef SPHERULE_HAS_ROBOT
   write("robot.urdf", R"(<robot name="robot"><link name="hand">
     <collision><geometry><box size="0.02 0.001 0.001"/></geometry></collision></link></robot>)");
-  expect_progress({"robot", "robot.urdf", "-o", "."});
+  expect_progress({"robot", "robot.urdf", "-o", ".", "--effort", "2"});
   expect_progress({"audit-robot", "robot.urdf", "robot.curobo.yml"});
 #endif
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/formats/sphere_formats.h"
 #include "tests/cli/gantry.h"
+#include "tests/support/effort.h"
 
 #include <string>
 #include <vector>
@@ -57,6 +58,7 @@ TEST_F(RobotFalseAlarmsTest, ProofsSpareThePair) {
 }
 
 TEST_F(RobotFalseAlarmsTest, ReachesAGoal) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   write("poses.csv", "turn, slide\n0, 0.3\n0.5, 0.4\n");
   const Outcome result =
       run(command({"--proofs", "none", "--false-alarms", "20%", "--poses", "poses.csv"}));

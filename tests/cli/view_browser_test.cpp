@@ -3,6 +3,7 @@
 #include "tests/cli/check_fixture.h"
 #include "tests/cli/command_test_support.h"
 #include "tests/cli/png_image.h"
+#include "tests/support/effort.h"
 
 #include <cstdlib>
 #include <functional>
@@ -186,6 +187,7 @@ class CheckedPageTest : public ViewBrowserTest {
 };
 
 TEST_F(CheckedPageTest, ShowsWhatTouchesAndHowFarTheRestIs) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   const Shown contact = show("page.html", "theme=light&contact=1");
   expect_text(contact, "hand – wall 20.5 mm");
   expect_text(contact, "Contacts, line 2");

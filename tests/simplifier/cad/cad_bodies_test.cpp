@@ -94,6 +94,7 @@ TEST(CadBodies, TheUnitOfTheFileIsTold) {
 // More than a hundred bodies: each as if it were fitted alone, on one thread and on two; what
 // OpenCASCADE has on the faces of each in its place lies in its spheres.
 TEST(CadBodies, AHundredBodiesAreFittedAsEachAlone) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const TempDir folder;
   const int kinds = effort(12, 2);
   const std::vector<AssemblyPart> parts = box_parts(kinds, 9);

@@ -42,6 +42,7 @@ TEST(CadCover, SpheresCoverThePart) {
 
 // Without the chord error in the padding the same check finds points outside: it can fail.
 TEST(CadCover, SpheresOfTheMeshAloneLeaveThePartUncovered) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const TempDir folder;
   const TopoDS_Shape shape = shape_named("sphere");
   write_step(shape, folder.path() / "part.step");
