@@ -117,5 +117,11 @@ def test_what_is_public_is_meant_to_be():
 
 
 def test_the_version_is_the_projects():
-    cmake = pathlib.Path(os.environ["SPHERULE_SOURCE_DIR"], "CMakeLists.txt").read_text()
-    assert f"project(spherule VERSION {spherule.__version__} " in cmake
+    root = pathlib.Path(os.environ["SPHERULE_SOURCE_DIR"])
+    for file, text in {
+        "CMakeLists.txt": "project(spherule VERSION {} ",
+        "package.xml": "<version>{}</version>",
+        "packaging/vcpkg/spherule/vcpkg.json": '"version": "{}"',
+        "packaging/debian/changelog": "spherule ({}) ",
+    }.items():
+        assert text.format(spherule.__version__) in (root / file).read_text(), file

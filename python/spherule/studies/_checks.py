@@ -130,7 +130,7 @@ def check_configs(
     output: Optional[Path] = None,
     client: Any = None,
     threads: int = 0,
-    chunk: int = 1 << 18,
+    chunk: int = 1 << 20,
     retries: int = 3,
     progress: Progress = None,
 ) -> ConfigurationStudy:
@@ -160,7 +160,7 @@ def check_edges(
     output: Optional[Path] = None,
     client: Any = None,
     threads: int = 0,
-    chunk: int = 1 << 16,
+    chunk: int = 1 << 18,
     retries: int = 3,
     progress: Progress = None,
 ) -> EdgeStudy:
