@@ -21,7 +21,8 @@ class ShardTest : public CheckTest {
       {"name": "wall", "box": {"size": [0.001, 1, 1]}},
       {"name": "post", "ball": {"radius": 0.1}, "pose": {"position": [1.47, 0.150000001, 0]}}]})");
     write("path.csv",
-          "-1 0\n-0.5 1\n0.5 1\n# a line that is passed over\n0.02 1\n0.7 0\n2.5 0\n2.6 0\n1 0\n1.8 0\n1 0\n"
+          "-1 0\n-0.5 1\n0.5 1\n# a line that is passed over\n0.02 1\n0.7 0\n2.5 0\n2.6 0\n1 "
+          "0\n1.8 0\n1 0\n"
           "-0.0506 0\n-0.0506 1\n-0.0506 0.5\n-1 0\n0.04 0\n-0.03 0\n-2 0\n-2.1 0\n-0.0506 1\n");
   }
 };
