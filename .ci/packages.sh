@@ -40,9 +40,15 @@ need_python() {
   packages+=(python3-dev python3-numpy pybind11-dev)
 }
 
+# An example runs on several processes.
+need_mpi() {
+  packages+=(mpi-default-dev)
+}
+
+# Dask is what studies run on beside threads; matplotlib draws in an example.
 need_python_tests() {
   need_python
-  packages+=(python3-pytest mypy)
+  packages+=(python3-pytest mypy python3-distributed python3-matplotlib)
 }
 
 need_benchmarks() {

@@ -13,6 +13,7 @@
 #include "cli/page_output.h"
 #include "cli/progress.h"
 #include "cli/robot_options.h"
+#include "cli/shard.h"
 #include "cli/sphere_input.h"
 #include "cli/trajectory_check.h"
 #include "cli/trajectory_input.h"
@@ -54,7 +55,6 @@ struct CheckArguments {
   double resolution = EdgeRequest{}.resolution;
   std::string continuous = kAsGiven;
   LengthOptions lengths;
-  bool edges = false;
   bool enforces_limits = false;
   bool ignores_unknown_links = false;
   bool json = false;
@@ -122,7 +122,7 @@ std::string advice(const CheckArguments& arguments, const CheckReport& report) {
   const CheckArguments defaults;
   std::vector<std::string> finer = {"check", arguments.urdf, arguments.scene,
                                     arguments.trajectory.file};
-  if (arguments.edges) finer.push_back("--edges");
+  if (arguments.trajectory.has_motions) finer.push_back("--edges");
   if (arguments.continuous != defaults.continuous) {
     repeat("--continuous", arguments.continuous, finer);
   }
@@ -138,6 +138,12 @@ std::string advice(const CheckArguments& arguments, const CheckReport& report) {
   if (!arguments.pairs.empty()) repeat("--pairs", arguments.pairs, finer);
   repeat_robot_options(arguments.geometry, arguments.packages, finer);
   return text + describe({{std::move(finer), "finer spheres may part them"}});
+}
+
+// Of how many configurations of this shard, the first of the file, proofs are told of.
+std::size_t explained_of(const TrajectoryInput& input) {
+  constexpr std::size_t kMost = 10000;  // enough to see which pairs they are
+  return std::min(input.own, kMost - std::min(kMost, input.first));
 }
 
 // What stands around the robot, and what is ignored.
@@ -179,9 +185,12 @@ int check(const CheckArguments& arguments) {
   const RobotDescription robot = read_checked_robot(arguments, options.geometry);
   const SceneDescription scene = read_scene(arguments.scene);
   const TrajectoryInput input = read_configurations(arguments.trajectory, robot.model);
-  const bool has_motions = arguments.edges && input.trajectory.size() > 1;
+  const bool has_motions = input.has_motions;
+  if (!arguments.view.empty() && input.trajectory.size() == 0) {
+    throw Error("--view", "there is nothing to show: this shard of the trajectory is empty");
+  }
   CheckReport seen;
-  if (arguments.edges) {
+  if (arguments.trajectory.has_motions) {
     require_provable(robot.model, arguments.trajectory, input.trajectory);
     if (has_motions) review_turns(arguments, robot.model, input.trajectory, seen);
     if (arguments.motion() == ContinuousMotion::kShortest) {
@@ -208,7 +217,7 @@ int check(const CheckArguments& arguments) {
   const RobotChecker checker = in_file(arguments.scene, [&] { return prepared.scene.snapshot(); });
   ProgressBar bar;
   const TrajectoryCheckOptions how{
-      .has_proofs = proofs != nullptr,
+      .explained = proofs != nullptr ? explained_of(input) : 0,
       .threads = options.threads,
       .progress = bar.callback(),
       .edge = {.resolution = arguments.resolution, .continuous = arguments.motion()}};
@@ -216,6 +225,8 @@ int check(const CheckArguments& arguments) {
                                    : check_configurations(checker, input.trajectory, how);
   bar.clear();
   report.is_whole = is_whole;
+  report.configurations = input.own;
+  report.shard = arguments.trajectory.shard;
   report.continuous = seen.continuous;
   report.turning = seen.turning;
   report.outside = input.outside;
@@ -257,7 +268,7 @@ void add_check(CLI::App& app, int& exit_code) {
                    "Configurations, one a line, with or without a line of joint names")
       ->required()
       ->type_name(kFile);
-  command->add_flag("--edges", arguments->edges,
+  command->add_flag("--edges", arguments->trajectory.has_motions,
                     "Prove every motion from one configuration to the next");
   command
       ->add_option("--continuous", arguments->continuous,
@@ -269,6 +280,10 @@ void add_check(CLI::App& app, int& exit_code) {
                    arguments->trajectory);
   command->add_flag("--enforce-limits", arguments->enforces_limits,
                     "Configurations outside the joint limits are not free (default: a warning)");
+  add_shard_option(*command,
+                   "Only the I-th of N equal parts of the trajectory, for batch systems: counts of "
+                   "all parts add up to those of the whole",
+                   arguments->trajectory.shard);
   arguments->lengths.add(
       *command, "--resolution", arguments->resolution,
       "With --edges: how closely motions are examined, in metres (default 1e-4)");
@@ -311,7 +326,9 @@ void add_check(CLI::App& app, int& exit_code) {
                             "robot.spheres.json --json",
                             "spherule check robot.urdf cell.json path.csv --edges --view path.html",
                             "spherule check robot.urdf cell.json path.csv --degrees "
-                            "--edges --continuous shortest"}}));
+                            "--edges --continuous shortest",
+                            "spherule check robot.urdf cell.json path.csv --edges --json --shard "
+                            "2/8"}}));
   command->callback([arguments, &exit_code] {
     arguments->lengths.convert(metres());
     exit_code = check(*arguments);

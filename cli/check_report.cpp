@@ -235,6 +235,8 @@ std::string describe(const TurningMotions& turning, bool in_degrees) {
 
 std::string check_table(const CheckReport& report) {
   std::ostringstream text;
+  if (report.shard.of > 1)
+    text << "shard " << report.shard.index << " of " << report.shard.of << ", ";
   text << verdict_of(report) << ": " << report.configurations << " configurations";
   if (report.motions) {
     text << ", " << *report.motions << " motions, " << report.colliding << " of them collide, "
@@ -274,6 +276,9 @@ std::string check_table(const CheckReport& report) {
 std::string check_json(const CheckReport& report) {
   Json json{{"verdict", verdict_of(report)}, {"configurations", report.configurations}};
   if (report.motions) json["motions"] = *report.motions;
+  if (report.shard.of > 1) {
+    json["shard"] = {{"index", report.shard.index}, {"of", report.shard.of}};
+  }
   if (report.continuous) {
     json["continuous"] = name_of(*report.continuous);
     json["more_than_half_a_turn"] = to_json(report.turning);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/shard.h"
 #include "robot/check/pair_status.h"
 #include "robot/check/robot_checker.h"
 #include "robot/files/trajectory_review.h"
@@ -51,6 +52,8 @@ struct CheckReport {
   // Whose spheres overlap while they are proved free, in the configurations that were examined.
   std::vector<TouchingPair> proved_free{};
   std::size_t explained = 0;  // configurations that were examined for these, the first ones
+
+  Shard shard{};  // of the trajectory, that the report is about
 
   bool is_whole = true;  // no part of the robot was left out
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.h"
 #include "cli/fit_bodies.h"
+#include "cli/fit_each.h"
 #include "cli/fit_options.h"
 #include "cli/fit_report.h"
 #include "cli/help.h"
@@ -202,7 +203,7 @@ int fit(FitArguments& arguments) {
   warn_of_thin_parts(arguments, mesh, result);
   warn_each(file, volume_warnings(result));
   const std::string broken = broken_promises(result);
-  std::cout << describe(next_steps(arguments, result.certificate.covered));
+  if (!arguments.each) std::cout << describe(next_steps(arguments, result.certificate.covered));
   if (broken.empty()) return model.cad && !model.cad->proved ? kNo : kYes;
   tell(arguments.spheres + ": " + broken);
   return kNo;
@@ -232,8 +233,12 @@ void add_fit(CLI::App& app, int& exit_code) {
            "spherule fit part.stl -o part.json --tool tool.json --levels 4,2,1 --tree "
            "part.tree",
            "spherule fit part.stl -o part.json --method packing --max-error 2 --report "
-           "report.json"}}));
-  command->callback([arguments, &exit_code] { exit_code = fit(*arguments); });
+           "report.json",
+           "spherule fit parts/*.stl --each -o covers --max-error 1 --skip-existing --shard "
+           "2/8"}}));
+  command->callback([arguments, &exit_code] {
+    exit_code = arguments->each ? fit_each(*arguments, fit) : fit(*arguments);
+  });
 }
 
 }  // namespace spherule

@@ -205,7 +205,8 @@ int fit_bodies(FitArguments& arguments) {
     if (!arguments.tree.empty()) save_tree(*tree, arguments.tree);
     if (!arguments.view.empty()) write_view(arguments, model, file, tree);
   });
-  std::cout << table(model, fits, seconds.count()) << describe(next_steps(arguments));
+  std::cout << table(model, fits, seconds.count())
+            << (arguments.each ? "" : describe(next_steps(arguments)));
   bool is_proved = true;
   for (std::size_t i = 0; i < fits.size(); ++i) {
     is_proved = is_proved && !(model.cad[i] && !model.cad[i]->proved);

@@ -26,8 +26,21 @@ void add_model_options(CLI::App& command, FitArguments& arguments) {
   command
       .add_option(
           "-o,--output", arguments.spheres,
-          "Where the spheres go (JSON; default: the name of the first mesh with .json, here)")
+          "Where the spheres go (JSON; default: the name of the first mesh with .json, here); with "
+          "--each their folder")
       ->type_name(kFile);
+  CLI::Option* each =
+      command.add_flag("--each", arguments.each,
+                       "Each mesh by itself, into a file of its own: NAME.json. One that cannot be "
+                       "read does not end the others");
+  command
+      .add_flag("--skip-existing", arguments.skips_existing,
+                "With --each: leave out meshes whose spheres are there, so that a run that was "
+                "ended goes on")
+      ->needs(each);
+  add_shard_option(command, "With --each: every N-th mesh, the I-th of each N, for batch systems",
+                   arguments.shard)
+      ->needs(each);
   add_unit_options(command, arguments.unit,
                    "Output units per mesh unit (of STEP and IGES: per millimetre)");
   lengths.add(command, "--weld", arguments.reading.weld,

@@ -5,6 +5,7 @@
 #include "cli/model_file.h"
 #include "cli/model_unit.h"
 #include "cli/report_content.h"
+#include "cli/shard.h"
 #include "cli/stage2_method.h"
 #include "simplifier/simplify.h"
 #include "spheretree/error.h"
@@ -30,6 +31,9 @@ struct FitArguments {
   std::string zones;
   std::string levels;
   bool bodies = false;  // CAD files: each of their bodies by itself
+  bool each = false;    // a file of spheres for each model; `spheres` is their folder
+  bool skips_existing = false;
+  Shard shard;  // of the models, with `each`
   ReportContent report_content = ReportContent::kNoExternalSpheres;
   std::string method = fit_method_names().front();
   std::string external = placement_names().front();

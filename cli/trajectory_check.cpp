@@ -40,7 +40,7 @@ class TrajectoryCheck {
   }
 
   CheckReport motions() && {
-    const std::size_t count = trajectory_.size() - 1;
+    const std::size_t count = std::max<std::size_t>(trajectory_.size(), 1) - 1;
     const std::span all(trajectory_.positions);
     const std::size_t width = trajectory_.width;
     EdgeRequest request = options_.edge;
@@ -86,9 +86,7 @@ class TrajectoryCheck {
   }
 
   void count_proved_free() {
-    constexpr std::size_t kMost = 10000;  // enough to see which pairs they are
-    if (!options_.has_proofs) return;
-    report_.explained = std::min(kMost, trajectory_.size());
+    report_.explained = options_.explained;
     for (std::size_t i = 0; i < report_.explained; ++i) {
       for (const CheckedContact& contact : checker_.explain(
                trajectory_.configuration(i), scratches_.front(), {.proved_free = true})) {

@@ -6,12 +6,14 @@
 #include "robot/files/trajectory_file.h"
 #include "simplifier/external_spheres.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace spherule {
 
 struct TrajectoryCheckOptions {
-  bool has_proofs = false;  // then pairs that these alone keep apart are counted, too
+  std::size_t explained =
+      0;  // the first so many: pairs that only proofs keep apart are counted, too
   int threads = 0;
   Progress progress{};
   EdgeRequest edge{};  // of motions
@@ -20,7 +22,7 @@ struct TrajectoryCheckOptions {
 // One for each thread: `threads` of them, or for 0 as many as the machine runs at once.
 std::vector<RobotChecker::Scratch> make_scratches(const RobotChecker& checker, int threads);
 
-// Every configuration, or every motion from one to the next, of which there are two at least.
+// Every configuration, or every motion from one to the next.
 CheckReport check_configurations(const RobotChecker& checker, const Trajectory& trajectory,
                                  const TrajectoryCheckOptions& options);
 CheckReport check_motions(const RobotChecker& checker, const Trajectory& trajectory,

@@ -7,7 +7,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iomanip>
 #include <sstream>
 #include <utility>
@@ -19,11 +21,42 @@ CLI::Option* add_degrees_flag(CLI::App& command, const std::string& help,
   return command.add_flag("--degrees", arguments.is_in_degrees, help);
 }
 
+namespace {
+
+// Configurations in a row.
+Trajectory part_of(const Trajectory& trajectory, std::size_t first, std::size_t count) {
+  const auto lines = trajectory.lines.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto positions =
+      trajectory.positions.begin() + static_cast<std::ptrdiff_t>(first * trajectory.width);
+  return {
+      .width = trajectory.width,
+      .positions = {positions, positions + static_cast<std::ptrdiff_t>(count * trajectory.width)},
+      .lines = {lines, lines + static_cast<std::ptrdiff_t>(count)}};
+}
+
+TrajectoryInput shard_of(const TrajectoryArguments& arguments, const Trajectory& whole) {
+  const std::size_t size = whole.size();
+  const bool has_motions = arguments.has_motions && size > 1;
+  const ShardRange range = range_of(arguments.shard, has_motions ? size - 1 : size);
+  const bool is_last = arguments.shard.index == arguments.shard.of;
+  // The end of the last motion.
+  const std::size_t end = has_motions && range.count > 0 ? 1 : 0;
+  // Of a trajectory with fewer motions than shards, the last one has none, but the last
+  // configuration.
+  const std::size_t own = range.count + (has_motions && is_last ? 1 : 0);
+  return {.trajectory = part_of(whole, range.first, std::max(range.count + end, own)),
+          .has_motions = has_motions,
+          .first = range.first,
+          .own = own,
+          .outside = {}};
+}
+
+}  // namespace
+
 TrajectoryInput read_configurations(const TrajectoryArguments& arguments, const RobotModel& robot) {
   const AngleUnit unit = arguments.is_in_degrees ? AngleUnit::kDegrees : AngleUnit::kRadians;
-  TrajectoryInput input{read_trajectory(arguments.file, robot, unit), {}};
-  const DegreesGuess guess =
-      arguments.is_in_degrees ? DegreesGuess() : guess_degrees(robot, input.trajectory);
+  const Trajectory whole = read_trajectory(arguments.file, robot, unit);
+  const DegreesGuess guess = arguments.is_in_degrees ? DegreesGuess() : guess_degrees(robot, whole);
   if (guess.looks_so) {
     std::ostringstream text;
     text << arguments.file << ": its angles look like degrees: as radians " << guess.beyond
@@ -33,10 +66,10 @@ TrajectoryInput read_configurations(const TrajectoryArguments& arguments, const 
          << "; --degrees reads them as degrees";
     warn(text.str());
   }
-  input.outside = outside_limits(robot, input.trajectory);
+  TrajectoryInput input = shard_of(arguments, whole);
+  input.outside = outside_limits(robot, part_of(input.trajectory, 0, input.own));
   if (input.outside.count > 0) {
-    warn(arguments.file + ": " +
-         describe(input.outside, input.trajectory.size(), arguments.is_in_degrees));
+    warn(arguments.file + ": " + describe(input.outside, input.own, arguments.is_in_degrees));
   }
   return input;
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/shard.h"
 #include "robot/files/trajectory_file.h"
 #include "robot/files/trajectory_review.h"
 #include "robot/model/robot_model.h"
 
+#include <cstddef>
 #include <string>
 
 namespace CLI {
@@ -18,15 +20,22 @@ namespace spherule {
 struct TrajectoryArguments {
   std::string file;
   bool is_in_degrees = false;
+  bool has_motions = false;  // its shards are of motions, where it has any
+  Shard shard{};
 };
 
 // Adds --degrees, with what its help says.
 CLI::Option* add_degrees_flag(CLI::App& command, const std::string& help,
                               TrajectoryArguments& arguments);
 
-// What is read, and what of it is outside the limits of the joints.
+// What is read of this shard, and what of it is outside the limits of the joints. A shard of
+// motions has a configuration more, the end of its last motion, unless that is the end of the
+// trajectory or the shard is empty: each configuration is counted in one shard.
 struct TrajectoryInput {
   Trajectory trajectory;
+  bool has_motions = false;
+  std::size_t first = 0;  // in the file, of the first configuration
+  std::size_t own = 0;    // configurations that are counted here
   OutsideLimits outside;
 };
 

@@ -358,6 +358,15 @@ void bind_checker(py::module_& module) {
              return "<spherule.RobotChecker: " + std::to_string(self.dof) + " variables, " +
                     std::to_string(self.scene.obstacles().size()) + " obstacles>";
            })
+      .def(
+          "__copy__",
+          [](const CheckerOfScene& self) {
+            return std::make_shared<CheckerOfScene>(CheckerOfScene{.scene = self.scene,
+                                                                   .options = self.options,
+                                                                   .checker = self.checker,
+                                                                   .dof = self.dof});
+          },
+          "Shares all but the memory of queries: what was asked before has no part in its answers.")
       .def(py::pickle(
           [](const CheckerOfScene& self) {
             return py::make_tuple(std::make_shared<RobotScene>(self.scene), self.options);

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs PROJECT_BUILD below WORK, then configures, builds and runs the consumer in SOURCE against
 # it. With FORBIDDEN (a regular expression of libraries), none of them may be found, stand in the
-# link line, or be loaded by the program.
+# link line, or be loaded by the program. With MPIRUN it runs by that, too.
 cmake_minimum_required(VERSION 3.25)
 
 include(${CMAKE_CURRENT_LIST_DIR}/run_command.cmake)
@@ -23,6 +23,21 @@ run(${CMAKE_COMMAND} --build ${WORK}/build)
 set(program ${WORK}/build/consumer)
 run(${program})
 message("${output}")
+
+# With MPIRUN, on several processes the program says the same.
+if(MPIRUN)
+  set(alone "${output}")
+  # Of Open MPI: as root, and more processes than cores.
+  set(ENV{OMPI_ALLOW_RUN_AS_ROOT} 1)
+  set(ENV{OMPI_ALLOW_RUN_AS_ROOT_CONFIRM} 1)
+  set(ENV{OMPI_MCA_rmaps_base_oversubscribe} 1)
+  foreach(processes IN ITEMS 2 4)
+    run(${MPIRUN} -n ${processes} ${program})
+    if(NOT output STREQUAL alone)
+      message(FATAL_ERROR "${processes} processes: ${output}\none: ${alone}")
+    endif()
+  endforeach()
+endif()
 
 if(FORBIDDEN)
   file(GLOB link_lines ${WORK}/build/build.ninja ${WORK}/build/CMakeFiles/consumer.dir/link.txt)

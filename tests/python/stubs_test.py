@@ -11,11 +11,13 @@ import sys
 
 import pytest
 import spherule
+from spherule import studies
 
 PROGRAM = """
 import numpy as np
 import numpy.typing as npt
 import spherule
+from spherule import studies
 
 mesh = spherule.read_mesh("part.stl", scale=1000.0)
 fit = spherule.simplify(mesh, max_error=1.0, progress=lambda share, what: print(share, what))
@@ -29,6 +31,11 @@ scene.add("table", spherule.Box((1.0, 1.0, 0.1)), spherule.Pose((0.0, 0.0, -0.1)
 free: npt.NDArray[np.bool_] = scene.snapshot().check_configs(np.zeros((10, 6)))
 edges = scene.snapshot().check_edges(np.zeros((9, 6)), np.zeros((9, 6)))
 share: float = edges.free_until.min()
+study = studies.check_configs(scene.snapshot(), studies.uniform_configurations(robot, 10, seed=1), threads=2)
+count: int = study.free_count
+motions: spherule.EdgeResults = studies.check_edges(scene.snapshot(), (np.zeros((9, 6)), "ends.npy")).results
+reached: npt.NDArray[np.bool_] = studies.reachability(scene.snapshot(), None, np.zeros((9, 2, 4, 6)), turns=[0, 1]).reachable
+covers = studies.cover_parts(["a.stl"], max_error=1.0, progress=lambda share, what: None)
 """
 WRONG = 'import spherule\nspherule.build_tree(3, branching="wide")\n'
 
@@ -85,8 +92,16 @@ PUBLIC = [name for name in dir(spherule) if not name.startswith("_")]
 @pytest.mark.parametrize("name", [n for n in PUBLIC if callable(getattr(spherule, n))])
 def test_everything_has_help(name):
     thing = getattr(spherule, name)
-    if thing.__module__ != "spherule":
-        return
+    if thing.__module__ == "spherule":
+        require_help(thing)
+
+
+@pytest.mark.parametrize("name", studies.__all__)
+def test_studies_have_help(name):
+    require_help(getattr(studies, name))
+
+
+def require_help(thing):
     assert inspect.getdoc(thing)
     if inspect.isclass(thing):
         members = [m for n, m in vars(thing).items() if not n.startswith("_") and callable(m)]
@@ -102,5 +117,11 @@ def test_what_is_public_is_meant_to_be():
 
 
 def test_the_version_is_the_projects():
-    cmake = pathlib.Path(os.environ["SPHERULE_SOURCE_DIR"], "CMakeLists.txt").read_text()
-    assert f"project(spherule VERSION {spherule.__version__} " in cmake
+    root = pathlib.Path(os.environ["SPHERULE_SOURCE_DIR"])
+    for file, text in {
+        "CMakeLists.txt": "project(spherule VERSION {} ",
+        "package.xml": "<version>{}</version>",
+        "packaging/vcpkg/spherule/vcpkg.json": '"version": "{}"',
+        "packaging/debian/changelog": "spherule ({}) ",
+    }.items():
+        assert text.format(spherule.__version__) in (root / file).read_text(), file

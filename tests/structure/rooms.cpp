@@ -144,8 +144,8 @@ const std::vector<Room>& rooms() {
        {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "ompl", "tbb",
         "tinyxml2", "urdfdom", "zlib", "opencascade", "assimp"}},
       // Users of the installed package: they see the library from outside.
-      {"tests/consumer", {}, {"Eigen", "fcl", "ompl", "spherule"}},
-      {"examples", {}, {"spherule"}},
+      {"tests/consumer", {}, {"Eigen", "fcl", "spherule"}},
+      {"examples", {}, {"spherule", "mpi", "ompl", "Eigen"}},
   };
   return kRooms;
 }

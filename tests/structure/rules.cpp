@@ -58,6 +58,7 @@ constexpr Prefix kPrefixes[] = {{"Eigen/", "Eigen"},
                                 {"libqhull", "qhull"},
                                 {".hxx", "opencascade"},
                                 {"pybind11/", "pybind11"},
+                                {"mpi.h", "mpi"},
                                 {"spherule/", "spherule"}};
 
 // Of the machine rather than of the language: allowed everywhere, or in one folder only.
