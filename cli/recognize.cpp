@@ -27,6 +27,7 @@ constexpr std::array kJsonMarks = {
     Mark{"\"spherule-robot-report\"", FileKind::kReport},
     Mark{"\"spherule-spheres\"", FileKind::kSpheres},
     Mark{"\"spherule-scene\"", FileKind::kScene},
+    Mark{"\"spherule-zones\"", FileKind::kZones},
     Mark{"\"spherule-robot-spheres\"", FileKind::kRobotSpheres},
     Mark{"\"deepest_leak\"", FileKind::kReport},
     Mark{"\"collision_spheres\"", FileKind::kRobotSpheres},
@@ -52,6 +53,22 @@ constexpr std::array kYamlMarks = {
 };
 constexpr std::array<std::string_view, 8> kMeshEndings = {".stl", ".obj", ".ply",  ".off",
                                                           ".dae", ".3mf", ".gltf", ".glb"};
+
+constexpr std::array<std::string_view, 5> kTableEndings = {".csv", ".txt", ".xyz", ".asc", ".pts"};
+
+// Whether one of the first two lines begins with a number: the first may have names.
+bool is_table(std::string_view text) {
+  for (int line = 0; line < 2 && !text.empty(); ++line) {
+    const std::size_t at = text.find_first_not_of(" \t\r\n");
+    if (at == std::string_view::npos) return false;
+    text.remove_prefix(at);
+    const std::size_t sign = text.front() == '-' || text.front() == '+' ? 1 : 0;
+    if (sign < text.size() && (std::isdigit(static_cast<unsigned char>(text[sign])) != 0))
+      return true;
+    text.remove_prefix(std::min(text.find('\n'), text.size()));
+  }
+  return false;
+}
 
 template <std::size_t Count>
 FileKind first_of(const std::array<Mark, Count>& marks, std::string_view text) {
@@ -89,6 +106,9 @@ FileKind recognize(const std::filesystem::path& path) {
     kind = first_of(kYamlMarks, bytes);
   }
   if (kind != FileKind::kUnknown) return kind;
+  const bool may_be_table =
+      std::find(kTableEndings.begin(), kTableEndings.end(), ending) != kTableEndings.end();
+  if (may_be_table && is_table(bytes)) return FileKind::kTable;
   return has_mesh_ending(path) ? FileKind::kMesh : FileKind::kUnknown;
 }
 
@@ -124,6 +144,11 @@ std::string offer_for(FileKind kind, const std::string& file) {
       return "a file of proofs of pairs of links (spherule check ... --pairs " + file + ")";
     case FileKind::kScene:
       return "a scene (spherule check ROBOT.urdf " + file + " PATH.csv checks a robot in it)";
+    case FileKind::kZones:
+      return "a file of zones (spherule fit MESH --zones " + file + ")";
+    case FileKind::kTable:
+      return "a table of numbers (spherule check ROBOT.urdf SCENE.json " + file +
+             " checks it as a trajectory; a scene takes clouds of points)";
     case FileKind::kReport:
       return "a report (spherule view " + file + " shows what it has)";
     case FileKind::kPage:

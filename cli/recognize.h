@@ -16,6 +16,8 @@ enum class FileKind {
   kRobotSpheres,  // any format of several links, but URDF and SRDF
   kPairs,         // of links
   kScene,         //
+  kZones,         // of `fit`
+  kTable,         // of numbers: a trajectory, or a cloud of points
   kReport,        // of `fit` or `robot`, or what `audit --json` printed
   kPage,          // of `view`
   kUnknown,

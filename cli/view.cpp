@@ -64,6 +64,9 @@ int view(ViewArguments& arguments) {
     arguments.page = default_output(arguments.files.front(), ".html", FileKind::kPage);
   check_outputs({arguments.page}, {});
   for (const std::string& file : arguments.files) check_outputs({arguments.page}, {file});
+#ifdef SPHERULE_HAS_ROBOT
+  check_outputs({arguments.page}, {arguments.robot.postures.file});
+#endif
   write_page(arguments.page, load_scene(arguments));
   std::cout << page_line(arguments.page);
   return kYes;
@@ -105,6 +108,15 @@ void add_view(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->allow_extra_args(false);
   add_package_option(*command, arguments->robot.packages);
+  CLI::Option* poses =
+      command
+          ->add_option("--poses", arguments->robot.postures.file,
+                       "Postures of the robot to step through, one a line (as the trajectories "
+                       "that check reads)")
+          ->type_name(kFile);
+  add_degrees_flag(*command, "Angles of --poses are in degrees, lengths in metres",
+                   arguments->robot.postures)
+      ->needs(poses);
   add_unknown_links_flag(*command, arguments->robot.ignores_unknown_links);
 #endif
   command->footer(to_text(
@@ -116,6 +128,7 @@ void add_view(CLI::App& app, int& exit_code) {
            "spherule view part.stl part.json part.tree -o part.html",
 #ifdef SPHERULE_HAS_ROBOT
            "spherule view robot.urdf robot.curobo.yml -o robot.html --leaks",
+           "spherule view robot.urdf robot.curobo.yml --poses path.csv -o poses.html",
            "spherule view robot.urdf robot.curobo.yml robot.spheres.json --leaks -o two.html",
 #endif
            "spherule view part.stl others.json --leaks -o leaks.html"}}));

@@ -4,6 +4,7 @@
 #include "cli/recognize.h"
 #include "cli/robot_options.h"
 #include "cli/sphere_input.h"
+#include "cli/view_encoding.h"
 #include "cli/view_files.h"
 #include "cli/view_leaks.h"
 #include "cli/view_pairs.h"
@@ -153,6 +154,15 @@ std::vector<ViewItem> report_items(const RobotDescription& robot, const Json& js
   return {std::move(external), std::move(leaks)};
 }
 
+// As many numbers a posture as there are variables, and the lines of the file.
+Json view_postures(const TrajectoryArguments& arguments, const RobotModel& robot) {
+  const Trajectory trajectory = read_configurations(arguments, robot).trajectory;
+  const std::vector<float> positions(trajectory.positions.begin(), trajectory.positions.end());
+  return {{"file", arguments.file},
+          {"lines", trajectory.lines},
+          {"positions", encode_words(std::span<const float>(positions))}};
+}
+
 bool has_spheres(const RobotDescription& robot) {
   return std::any_of(robot.links.begin(), robot.links.end(), [](const LinkDescription& link) {
     return std::any_of(link.collision.begin(), link.collision.end(), [](const LinkShape& shape) {
@@ -193,7 +203,12 @@ bool is_robot_file(const std::string& file) {
 
 void add_robot(const std::vector<std::string>& files, const RobotViewOptions& options,
                ViewScene& scene) {
-  if (files.empty()) return;
+  if (files.empty()) {
+    if (!options.postures.file.empty()) {
+      throw Error(options.postures.file, "has postures of a robot: its URDF must be named too");
+    }
+    return;
+  }
   const auto urdf = std::find_if(files.begin(), files.end(), is_urdf);
   if (urdf == files.end()) {
     throw Error(files.front(), "belongs to a robot: its URDF must be named too");
@@ -203,6 +218,9 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
   const RobotDescription robot = read_urdf(*urdf, urdf_options(options.packages, shown));
   scene.title = *urdf;
   scene.robot = view_robot(robot);
+  if (!options.postures.file.empty()) {
+    scene.robot["postures"] = view_postures(options.postures, robot.model);
+  }
   for (const std::string& name : options.geometry) {
     ViewItem item = view_meshes(robot, geometry_named(name), name);
     item.shown = name == options.geometry.front();

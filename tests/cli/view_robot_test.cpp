@@ -80,6 +80,20 @@ TEST_F(ViewRobotTest, JointsAsTheFileSays) {
   }
 }
 
+TEST_F(ViewRobotTest, PosturesOfAFile) {
+  write("path.csv", "slide,hip\n0.1,90\n\n0.05,60\n");
+  const json postures =
+      scene({"arm.urdf", "--poses", "path.csv", "--degrees"}).at("robot").at("postures");
+  EXPECT_EQ(postures.at("lines"), json({2, 4}));
+  const std::vector<float> positions = floats_of(postures.at("positions"));
+  ASSERT_EQ(positions.size(), 4u);
+  EXPECT_NEAR(positions[0], 1.5707963, 1e-6);
+  EXPECT_NEAR(positions[1], 0.1, 1e-6);
+  EXPECT_NEAR(positions[2], 1.0471976, 1e-6);
+  write_box("box.stl", {1, 1, 1});
+  expect_refusal({"view", "box.stl", "--poses", "path.csv", "-o", "box.html"}, "its URDF must be");
+}
+
 TEST_F(ViewRobotTest, MeshesAndSpheresHangOnTheirLinks) {
   const json items = scene({"arm.urdf", "arm.yml", "--geometry", "collision,visual"}).at("items");
   ASSERT_EQ(items.size(), 3u);

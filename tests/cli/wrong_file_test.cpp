@@ -86,6 +86,10 @@ TEST_F(WrongFileTest, RobotsHaveTheirOwnCommands) {
   expect_info("arm.srdf", "disabled pairs of links: 1\n");
   expect_info("arm.yml", "spheres: 1 on 1 links\n  base: 1\n");
   expect_info("cell.json", "a scene (spherule check");
+  write("path.csv", "lift\n-0.5\n");
+  expect_info("path.csv", "a table of numbers (spherule check");
+  write("zones.json", R"({"format": "spherule-zones", "version": 1, "zones": []})");
+  expect_info("zones.json", "a file of zones (spherule fit");
 
   EXPECT_EQ(run({"robot", "arm.urdf", "--max-error", "0.5", "--effort", "0", "--format", "json"})
                 .exit_code,

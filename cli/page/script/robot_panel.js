@@ -52,6 +52,27 @@ function add_joints() {
           (joint) => joint.lower + Math.random() * (joint.upper - joint.lower))));
 }
 
+// The postures of a file, one of which is shown; a joint may be moved from there.
+function add_postures() {
+  const postures = robot_data.postures;
+  if (!postures) return;
+  const positions = new Float32Array(decode(postures.positions));
+  const width = variable_joints.length;
+  const last = postures.lines.length - 1;
+  const readout = node("output", {});
+  const go = (index) => {
+    readout.textContent = `line ${postures.lines[index]}`;
+    set_configuration(Array.from(positions.subarray(index * width, (index + 1) * width)));
+  };
+  // As in #posture=2 for the second.
+  const first = Math.min(last, Math.max(0, Number(address_options.get("posture") || 1) - 1));
+  const line = row("posture", slider(`posture of ${short_name(postures.file)}`, 0, last, 1, first, go),
+                   readout);
+  line.title = postures.file;
+  panel_part("joint-list").prepend(line);
+  go(first);
+}
+
 // How many spheres a link has, over all sets that are there.
 function link_note(link) {
   const sets = items.filter((item) => item.kind === "spheres" || item.kind === "tree");
@@ -108,6 +129,7 @@ function add_robot() {
   for (const id of ["joints", "links"]) panel_part(id).hidden = !robot_data;
   if (!robot_data) return;
   add_joints();
+  add_postures();
   add_pairs();
   add_links();
 }
