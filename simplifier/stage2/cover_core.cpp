@@ -6,7 +6,9 @@
 namespace spherule::internal {
 namespace {
 
-// Columns of each row that enter the core.
+// Columns of each row that enter the core: all where they are few, as in plates, where none is to
+// spare; else the heaviest.
+constexpr std::size_t kFew = 64;
 constexpr std::size_t kBest = 16;
 
 }  // namespace
@@ -41,6 +43,10 @@ void CoverCore::add_row(std::uint32_t row) {
 }
 
 void CoverCore::add_best_columns(std::uint32_t row) {
+  if (columns_of_[row].size() <= kFew) {
+    for (const std::uint32_t c : columns_of_[row]) add_column(c);
+    return;
+  }
   std::array<std::uint32_t, kBest> best;
   std::size_t count = 0;
   for (const std::uint32_t c : columns_of_[row]) {

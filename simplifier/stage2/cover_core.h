@@ -12,7 +12,8 @@
 namespace spherule::internal {
 
 // The part of a set cover instance that a local search works on: of each row that it knows, the few
-// columns that hold the most weight of known rows, and the columns it starts from (the core problem
+// columns that hold the most weight of known rows (all, where they are few anyway), and the columns
+// it starts from (the core problem
 // of Caprara, Fischetti and Toth, "A heuristic method for the set covering problem", Operations
 // Research 47, 1999, who price columns by Lagrangian costs; the weights of the rows stand for the
 // multipliers here). Where a row is held by thousands of columns, a search over all of them spends

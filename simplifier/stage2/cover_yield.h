@@ -34,7 +34,7 @@ class CoverYield {
  private:
   static constexpr double kLeast = 0.01;
   static constexpr double kDefaultEffort = 60.0;
-  static constexpr std::size_t kLatest = 12;       // rounds at least, to tell a rate from chance
+  static constexpr std::size_t kLatest = 20;       // rounds at least, to tell a rate from chance
   static constexpr std::size_t kFirstAnswer = 10;  // takes about as long as so many rounds
 
   double least_;
