@@ -154,7 +154,8 @@ TEST(CoverSearch, KnowsOnlyItsRowsAndTheirWeights) {
 TEST(CoverCore, HoldsTheHeaviestColumnsOfEachRow) {
   Random random(5);
   for (int i = 0; i < 20; ++i) {
-    const Planted made = planted(random, 200, 20, 1000);
+    // So that some rows have more columns than enter the core unseen, and others have not.
+    const Planted made = planted(random, 200, 15, 1000);
     CoverSearch::Rows known;
     for (std::uint32_t row = 0; row < 200; row += 4) {
       known.rows.push_back(row);
@@ -214,8 +215,8 @@ TEST(CoverYield, EndsWhereATenthMoreTimeWouldSaveLessThanOnePerCent) {
   const auto steady = [](double saved) {
     return [saved](int round) { return static_cast<std::size_t>(1e6 * std::pow(saved, round)); };
   };
-  // After 20 rounds, the first rate known, three more are a tenth of the time (the first answer takes
-  // ten): 1 % each pays, 0.3 % each does not.
+  // After 20 rounds, the first rate known, three more are a tenth of the time (the first answer
+  // takes ten): 1 % each pays, 0.3 % each does not.
   EXPECT_EQ(rounds_that_pay(60, steady(0.99)), 1000);
   EXPECT_EQ(rounds_that_pay(60, steady(0.997)), 20);
   // What there is to save halves every ten rounds. In rounds 49 to 72 that is 2^-4.8 - 2^-7.2 =
