@@ -140,7 +140,7 @@ def postures_of(pose):
     return rng.uniform(-2, 2, (int(pose[0, 3]), 4))
 
 
-def test_reachability(checker, where):
+def test_reachability(checker, where, tmp_path):
     poses = np.tile(np.eye(4), (40, 1, 1))
     poses[:, 0, 3] = np.arange(40) % 4
     poses[:, 2, 3] = np.arange(40)
@@ -158,6 +158,22 @@ def test_reachability(checker, where):
     assert np.array_equal(found.reachable, found.free.max(axis=1) > 0)
     assert 0 < found.reachable.sum() < 40
     assert studies.reachability(checker, None, padded, turns=turns, chunk=7, **where) == found
+    stored = tmp_path / "postures.npy"
+    np.save(stored, padded)
+    assert studies.reachability(checker, None, stored, turns=turns, chunk=7, **where) == found
+    for array in (padded.transpose(0, 2, 1, 3), padded.reshape(40, -1)):
+        np.save(stored, array)
+        with pytest.raises(spherule.Error, match="its shape is"):
+            studies.reachability(checker, None, stored, turns=turns, **where)
+
+
+def test_inverses_of_one_name_are_told_apart(checker, tmp_path):
+    def shifted(by):
+        return lambda pose: np.full((2, 4), by)
+
+    studies.reachability(checker, np.eye(4)[None], shifted(0.1), output=tmp_path)
+    with pytest.raises(spherule.Error, match="another study"):
+        studies.reachability(checker, np.eye(4)[None], shifted(0.2), output=tmp_path)
 
 
 def test_parts(where, tmp_path):
@@ -184,6 +200,21 @@ def test_parts(where, tmp_path):
     assert made == ["cube1"]
     assert again["cube1"].file == spherule.simplify(cubes[1], **options).file
     assert again["cube0"] == found["cube0"]
+
+
+def test_covers_of_others_stay(tmp_path):
+    """What is there and of no study is never overwritten; what was cut is made again."""
+    (tmp_path / "a.json").write_text("precious")
+    with pytest.raises(spherule.Error, match="not of this study"):
+        studies.cover_parts({"a": make_cube()}, output=tmp_path, max_error=0.4, effort=0)
+    assert (tmp_path / "a.json").read_text() == "precious"
+    (tmp_path / "a.json").unlink()
+    options = {"output": tmp_path, "max_error": np.float64(0.4), "effort": 0}
+    found = studies.cover_parts({"a": make_cube()}, **options)
+    whole = (tmp_path / "a.json").read_bytes()
+    (tmp_path / "a.json").write_bytes(whole[: len(whole) // 2])
+    assert studies.cover_parts({"a": make_cube()}, **options) == found
+    assert (tmp_path / "a.json").read_bytes() == whole
 
 
 def test_meshes_by_name():
@@ -232,7 +263,18 @@ def test_a_folder_is_of_one_study(checker, scene, configurations, tmp_path):
         arguments = {"checker": checker, "configurations": configurations, "chunk": CHUNK, **other}
         with pytest.raises(spherule.Error, match="another study"):
             studies.check_configs(**arguments, output=tmp_path)
+    # Parts of another shape or type, and what a killed run left.
+    parts = sorted(tmp_path.glob("part-*.npy"))
+    np.save(parts[0], np.ones(CHUNK) * 0.5)
+    np.save(parts[1], np.array(5))
+    (tmp_path / ".part-00000003.npy.77").write_text("cut")
+    again = studies.check_configs(checker, configurations, output=tmp_path, chunk=np.int64(CHUNK))
+    assert np.array_equal(again.free, checker.check_configs(configurations))
+    assert not list(tmp_path.glob(".*"))
     content = json.loads((tmp_path / "study.json").read_text())
+    (tmp_path / "study.json").unlink()
+    with pytest.raises(spherule.Error, match="no study.json"):
+        studies.check_configs(checker, configurations[::-1], output=tmp_path, chunk=CHUNK)
     assert content["count"] == COUNT and content["kind"] == "configurations"
 
 

@@ -30,6 +30,18 @@ def write_whole(path: Path, write: Callable[[Any], object]) -> None:
         raise
 
 
+def plain(identity: Identity) -> Identity:
+    """As it comes back from its file: lists for tuples, Python's numbers for NumPy's."""
+
+    def number(value: Any) -> Any:
+        if isinstance(value, np.generic):
+            return value.item()
+        raise TypeError(f"{type(value).__name__} is no number")
+
+    result: Identity = json.loads(json.dumps(identity, default=number))
+    return result
+
+
 class StudyFolder:
     """A folder that one study uses at a time, with what tells it from another in `study.json`."""
 
@@ -42,6 +54,9 @@ class StudyFolder:
         except OSError:
             os.close(self.lock)
             raise Error(str(self.path), "another run is writing there") from None
+        for left in self.path.glob(".*.[0-9]*"):  # of runs that were killed while they wrote
+            if left.name.startswith((".part-", f".{STUDY_FILE}.")):
+                left.unlink()
 
     def close(self) -> None:
         os.close(self.lock)
@@ -52,9 +67,11 @@ class StudyFolder:
         if not path.exists():
             return None
         try:
-            identity: Identity = json.loads(path.read_text())
+            identity = json.loads(path.read_text())
         except ValueError:
-            raise Error(str(path), "no file of a study") from None
+            identity = None
+        if not isinstance(identity, dict):
+            raise Error(str(path), "no file of a study")
         return identity
 
     def store(self, identity: Identity) -> None:
@@ -77,7 +94,7 @@ class StudyFolder:
 class Parts(Protocol):
     """Results by the index of their chunk."""
 
-    def present(self, sizes: List[int]) -> Set[int]: ...
+    def present(self, sizes: List[int], empty: Any) -> Set[int]: ...
 
     def put(self, index: int, part: Any) -> None: ...
 
@@ -92,7 +109,7 @@ class PartsInMemory:
     def __init__(self) -> None:
         self.parts: Dict[int, Any] = {}
 
-    def present(self, sizes: List[int]) -> Set[int]:
+    def present(self, sizes: List[int], empty: Any) -> Set[int]:
         return set()
 
     def put(self, index: int, part: Any) -> None:
@@ -111,6 +128,9 @@ class PartsInFolder:
     def __init__(self, path: PathLike, identity: Identity) -> None:
         self.folder = StudyFolder(path)
         try:
+            if self.folder.stored() is None and any(self.folder.path.glob("part-*.npy")):
+                raise Error(str(path), f"has parts of a study, but no {STUDY_FILE} that says of which")
+            identity = plain(identity)
             self.folder.require_same(identity, set(identity))
             self.folder.store(identity)
         except BaseException:
@@ -120,15 +140,16 @@ class PartsInFolder:
     def file(self, index: int) -> Path:
         return self.folder.path / f"part-{index:08}.npy"
 
-    def present(self, sizes: List[int]) -> Set[int]:
-        """Those of the right length; others, cut by a failing disk, are made again."""
-        return {index for index, size in enumerate(sizes) if self.is_whole(index, size)}
+    def present(self, sizes: List[int], empty: Any) -> Set[int]:
+        """Those of the right shape and type; others, cut by a failing disk, are made again."""
+        return {index for index, size in enumerate(sizes) if self.is_whole(index, size, empty)}
 
-    def is_whole(self, index: int, size: int) -> bool:
+    def is_whole(self, index: int, size: int, empty: Any) -> bool:
         try:
-            return len(self.get(index)) == size
+            part = self.get(index)
         except (OSError, ValueError, EOFError):
             return False
+        return part.dtype == empty.dtype and part.shape == (size, *empty.shape[1:])
 
     def put(self, index: int, part: Any) -> None:
         write_whole(self.file(index), lambda file: np.save(file, part))

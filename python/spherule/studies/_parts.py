@@ -19,7 +19,7 @@ from .._record import Record
 from .._results import SphereFile
 from .._version import VERSION
 from ._engines import Ended, Task, default_threads, run_tasks
-from ._output import StudyFolder
+from ._output import StudyFolder, plain
 from ._sources import Identity, digest_of, file_identity
 
 ENDING = ".json"
@@ -90,6 +90,14 @@ def identity_of(mesh: MeshLike) -> Identity:
     return {"mesh": digest_of(arrays)}
 
 
+def file_if_whole(path: Path) -> Optional[SphereFile]:
+    """None for one that was cut by a failing disk."""
+    try:
+        return load_spheres(path)
+    except Error:
+        return None
+
+
 class Covers:
     """The covers that are made, in memory and, where there is one, in a folder."""
 
@@ -104,6 +112,7 @@ class Covers:
                 "options": {name: repr(value) for name, value in options.items()},
                 "parts": {name: identity_of(mesh) for name, mesh in meshes.items()},
             }  # fmt: skip
+            identity = plain(identity)
             self.folder.require_same(identity, KEYS)
             self.take_over(self.folder, identity)
         except BaseException:
@@ -115,10 +124,15 @@ class Covers:
         known = (folder.stored() or {}).get("parts", {})
         for name, part in identity["parts"].items():
             path = folder.path / (name + ENDING)
-            if path.exists() and known.get(name) == part:
-                self.found[name] = PartCover(name, load_spheres(path))
+            if not path.exists():
+                continue
+            if name not in known:
+                raise Error(str(path), "is there, and not of this study: it would be overwritten")
+            file = file_if_whole(path) if known[name] == part else None
+            if file is not None:
+                self.found[name] = PartCover(name, file)
             else:
-                path.unlink(missing_ok=True)
+                path.unlink()
         folder.store({**identity, "parts": {**known, **identity["parts"]}})
 
     def put(self, name: str, result: Union[SphereFile, str]) -> None:

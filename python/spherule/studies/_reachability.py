@@ -12,7 +12,7 @@ from .._error import Error
 from .._record import Bools, Floats, Ints, Record
 from ._checks import CheckConfigs
 from ._rows import Run, run_rows
-from ._sources import ArrayRows, Identity, RowsLike, Source, source_of
+from ._sources import ArrayRows, Identity, NpyRows, RowsLike, Source, digest_of, source_of
 
 CELL = np.dtype([("found", np.int32), ("free", np.int32), ("posture", np.int32)])
 
@@ -104,8 +104,8 @@ def reachability(
     `chunk` points at a time. Limits of joints count where the checker enforces them.
     """
     angles = tuple(np.asarray(turns, dtype=np.float64).reshape(-1).tolist())
-    if not angles:
-        raise Error("turns", "there are none: without a turn it is (0.0,)")
+    if not angles or not np.isfinite(angles).all():
+        raise Error("turns", "are angles, at least one: without a turn it is (0.0,)")
     inverse = postures if callable(postures) else None
     if inverse is not None:
         if points is None:
@@ -113,6 +113,10 @@ def reachability(
         source = source_of(points, "points", 16)
         name = getattr(inverse, "__qualname__", type(inverse).__qualname__)
         options: Identity = {"turns": list(angles), "inverse": name}
+        if source.shape[0] > 0:
+            # Two inverses of one name differ here.
+            first = MapPoints(checker, angles, inverse).postures(source.rows(0, 1)[0])
+            options["first"] = digest_of(np.concatenate(first).tobytes())
     else:
         source = posture_source(postures, len(angles), checker.dof)
         options = {"turns": list(angles)}
@@ -123,14 +127,20 @@ def reachability(
     return Reachability(*(np.ascontiguousarray(cells[name]) for name in CELL.names or ()))
 
 
+def require_posture_shape(shape: Tuple[int, ...], turns: int, dof: int) -> None:
+    if len(shape) != 4 or shape[1] != turns or shape[3] != dof:
+        raise Error("postures", f"its shape is {shape}, (points, {turns}, postures, {dof}) is needed")
+
+
 def posture_source(postures: Any, turns: int, dof: int) -> Source:
     source: Source
     if isinstance(postures, (list, tuple, np.ndarray)):
         array = np.asarray(postures, dtype=np.float64)
-        if array.ndim != 4 or array.shape[1] != turns or array.shape[3] != dof:
-            raise Error("postures", f"its shape is {array.shape}, (points, {turns}, postures, {dof}) is needed")
+        require_posture_shape(array.shape, turns, dof)
         return ArrayRows(array.reshape(len(array), -1))
     source = source_of(postures, "postures", None)
+    if isinstance(source, NpyRows):
+        require_posture_shape(source.stored_shape, turns, dof)
     if source.shape[1] % (turns * dof) != 0:
         raise Error("postures", f"{source.shape[1]} numbers a point, a multiple of {turns * dof} is needed")
     return source

@@ -69,7 +69,7 @@ def run_rows(
 
     parts = parts_in(run.output, identity)
     try:
-        present = parts.present(sizes)
+        present = parts.present(sizes, empty)
         done = sum(sizes[index] for index in present)
         tasks = (
             Task(index, partial(source.rows, index * chunk, size), source.stays)

@@ -76,13 +76,24 @@ class NpyRows:
     path: Path
     stays = False
 
-    def table(self) -> Any:
+    def mapped(self) -> Any:
         try:
-            return as_table(np.load(self.path, mmap_mode="r"), str(self.path))
+            array = np.load(self.path, mmap_mode="r")
+        except FileNotFoundError:
+            raise
         except (OSError, ValueError) as error:
-            if isinstance(error, (Error, FileNotFoundError)):
-                raise
             raise Error(str(self.path), f"no array that can be mapped: {error}") from error
+        if not isinstance(array, np.ndarray) or array.dtype.kind not in "biuf":
+            raise Error(str(self.path), "no array of real numbers")
+        return array
+
+    def table(self) -> Any:
+        return as_table(self.mapped(), str(self.path))
+
+    @property
+    def stored_shape(self) -> Tuple[int, ...]:
+        shape: Tuple[int, ...] = self.mapped().shape
+        return shape
 
     @property
     def shape(self) -> Tuple[int, int]:
@@ -145,6 +156,10 @@ class GeneratedRows:
     seed: int
     block: int = 1 << 16
     stays = False
+
+    def __post_init__(self) -> None:
+        if self.count < 0 or self.block < 1:
+            raise Error("count" if self.count < 0 else "block", "must not be so small")
 
     def made(self, index: int, count: int) -> Floats:
         """The first rows of a block as `make` returns them when so many are wanted."""
