@@ -5,6 +5,7 @@
 #include "cli/message.h"
 #include "cli/shard.h"
 #include "spheretree/error.h"
+#include "spheretree/sphere_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -34,6 +35,17 @@ std::vector<std::string> outputs_of(const FitArguments& arguments) {
   return outputs;
 }
 
+// Whether there are spheres that are proved to cover, with whatever options they were made.
+bool has_cover(const std::string& file) {
+  if (!fs::exists(file)) return false;
+  try {
+    const SphereFile found = load_spheres(file);
+    return found.certificate && found.certificate->covered;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 void require_one_file_options(const FitArguments& arguments) {
   const std::pair<const char*, const std::string&> kOptions[] = {
       {"--report", arguments.report}, {"--tree", arguments.tree}, {"--view", arguments.view}};
@@ -56,7 +68,7 @@ int fit_each(FitArguments& arguments, const std::function<int(FitArguments&)>& f
   int exit_code = kYes;
   for (std::size_t i = 0; i < models.size(); ++i) {
     if (!is_dealt_to(arguments.shard, i)) continue;
-    if (arguments.skips_existing && fs::exists(outputs[i])) {
+    if (arguments.skips_existing && has_cover(outputs[i])) {
       std::cout << outputs[i] << ": is there\n";
       continue;
     }

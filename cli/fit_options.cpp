@@ -34,9 +34,10 @@ void add_model_options(CLI::App& command, FitArguments& arguments) {
                        "Each mesh by itself, into a file of its own: NAME.json. One that cannot be "
                        "read does not end the others");
   command
-      .add_flag("--skip-existing", arguments.skips_existing,
-                "With --each: leave out meshes whose spheres are there, so that a run that was "
-                "ended goes on")
+      .add_flag(
+          "--skip-existing", arguments.skips_existing,
+          "With --each: leave out meshes whose spheres are there and proved, made with whatever "
+          "options, so that a run that was ended goes on")
       ->needs(each);
   add_shard_option(command, "With --each: every N-th mesh, the I-th of each N, for batch systems",
                    arguments.shard)

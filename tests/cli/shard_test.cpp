@@ -147,10 +147,13 @@ TEST_F(FitEachTest, ShardsDivideThemAndWhatIsThereIsLeft) {
   EXPECT_FALSE(exists("covers/d.json"));
   EXPECT_EQ(fit({"-o", "covers", "--shard", "2/2"}).exit_code, 2);
   EXPECT_TRUE(exists("covers/d.json"));
-  write("covers/a.json", "kept");
+  const std::string whole = read("covers/a.json");
+  write("covers/d.json", "half");
   const Outcome again = fit({"-o", "covers", "--skip-existing"});
-  EXPECT_EQ(read("covers/a.json"), "kept");
+  EXPECT_EQ(read("covers/a.json"), whole);
   EXPECT_NE(again.out.find("covers/a.json: is there"), std::string::npos) << again.out;
+  EXPECT_EQ(again.out.find("covers/d.json: is there"), std::string::npos) << again.out;
+  EXPECT_EQ(read_json("covers/d.json")["certificate"]["covered"], true);
 }
 
 TEST_F(FitEachTest, WhatIsOfOneFileIsRefused) {
