@@ -225,6 +225,7 @@ int check(const CheckArguments& arguments) {
                                    : check_configurations(checker, input.trajectory, how);
   bar.clear();
   report.is_whole = is_whole;
+  report.given_spheres = arguments.spheres;
   report.configurations = input.own;
   report.shard = arguments.trajectory.shard;
   report.continuous = seen.continuous;
@@ -289,8 +290,8 @@ void add_check(CLI::App& app, int& exit_code) {
       "With --edges: how closely motions are examined, in metres (default 1e-4)");
   command
       ->add_option("--spheres", arguments->spheres,
-                   "Spheres of the robot, in any format that audit-robot reads (default: cover "
-                   "the robot first)")
+                   "Spheres of the robot, in any format that audit-robot reads, taken as they are: "
+                   "audit-robot proves whether they cover (default: cover the robot first)")
       ->type_name(kFile);
   add_unknown_links_flag(*command, arguments->ignores_unknown_links);
   command

@@ -244,6 +244,10 @@ std::string check_table(const CheckReport& report) {
   } else {
     text << ", " << report.colliding << " of them collide\n";
   }
+  if (!report.given_spheres.empty()) {
+    text << "this is about the spheres of " << report.given_spheres
+         << " as given; whether they cover the robot is for spherule audit-robot to prove\n";
+  }
   put_continuous(text, report);
   if (report.is_out_of_bounds()) {
     text << describe(report.outside, report.configurations, report.is_in_degrees) << "\n";
@@ -276,6 +280,7 @@ std::string check_table(const CheckReport& report) {
 std::string check_json(const CheckReport& report) {
   Json json{{"verdict", verdict_of(report)}, {"configurations", report.configurations}};
   if (report.motions) json["motions"] = *report.motions;
+  json["spheres"] = report.given_spheres.empty() ? "proved" : "given";
   if (report.shard.of > 1) {
     json["shard"] = {{"index", report.shard.index}, {"of", report.shard.of}};
   }

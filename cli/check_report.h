@@ -53,6 +53,10 @@ struct CheckReport {
   std::vector<TouchingPair> proved_free{};
   std::size_t explained = 0;  // configurations that were examined for these, the first ones
 
+  // The file of spheres that were given: whether they cover the robot is not known. Empty for those
+  // that were fitted, and so proved.
+  std::string given_spheres{};
+
   Shard shard{};  // of the trajectory, that the report is about
 
   bool is_whole = true;  // no part of the robot was left out
