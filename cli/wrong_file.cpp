@@ -31,7 +31,10 @@ const std::map<std::string, std::map<std::string, Kinds>, std::less<>> kTakes = 
     {"robot", {{"urdf", {FileKind::kUrdf}}}},
     {"audit-robot", {{"urdf", {FileKind::kUrdf}}, {"spheres", kRobotSets}}},
     {"check-srdf", {{"urdf", {FileKind::kUrdf}}, {"srdf", {FileKind::kSrdf}}}},
-    {"check", {{"urdf", {FileKind::kUrdf}}, {"scene", {FileKind::kScene}}, {"trajectory", {FileKind::kTable}}}},
+    {"check",
+     {{"urdf", {FileKind::kUrdf}},
+      {"scene", {FileKind::kScene}},
+      {"trajectory", {FileKind::kTable}}}},
     {"baseline", {{"mesh", {FileKind::kMesh}}}},
 };
 
