@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The Debian packages that parts of the project need, for scripts to source. Adds to `packages`.
+# The Debian packages that parts of the project need, for scripts to source: adds to `packages`. And how
+# they have CMake build.
 
 packages=()
 
@@ -53,4 +54,15 @@ need_python_tests() {
 
 need_benchmarks() {
   packages+=(libbenchmark-dev libbullet-dev)
+}
+
+# Has CMake build by Ninja and through ccache, where they are. It reads both variables when a build
+# folder is made, and only then.
+use_ninja_and_ccache() {
+  if command -v ninja >/dev/null; then export CMAKE_GENERATOR=Ninja; fi
+  if command -v ccache >/dev/null; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+    # Without these it stores nothing of a build with precompiled headers.
+    export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:+$CCACHE_SLOPPINESS,}pch_defines,time_macros
+  fi
 }
