@@ -97,11 +97,8 @@ std::vector<LeakPoint> leak_points(const TriangleMesh& mesh, std::span<const Sph
   const SphereHierarchy hierarchy(spheres);
   Sampler sampler(hierarchy, options.spacing * size);
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
-    SurfacePiece piece;
-    for (std::size_t k = 0; k < 3; ++k) {
-      piece.corner[k] = mesh.vertices[static_cast<std::size_t>(triangle[static_cast<int>(k)])];
-      sampler.add_point(piece.corner[k]);
-    }
+    const SurfacePiece piece = internal::piece_of(mesh, triangle);
+    for (const Vector3d& corner : piece.corner) sampler.add_point(corner);
     sampler.add_triangle(piece);
   }
   return deepest(sampler.take(), options.separation * size, options.max_count);

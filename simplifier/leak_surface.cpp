@@ -127,11 +127,7 @@ LeakSurface leak_surface(const TriangleMesh& mesh, std::span<const Sphere> spher
   const SphereHierarchy hierarchy(spheres);
   LeakCollector collector(hierarchy, options.spacing * internal::box_of(mesh).diagonal().norm());
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
-    SurfacePiece piece;
-    for (std::size_t k = 0; k < 3; ++k) {
-      piece.corner[k] = mesh.vertices[static_cast<std::size_t>(triangle[static_cast<int>(k)])];
-    }
-    collector.add_triangle(piece);
+    collector.add_triangle(internal::piece_of(mesh, triangle));
   }
   return collector.take();
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/triangle_mesh.h"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -13,6 +15,11 @@ namespace spherule::internal {
 struct SurfacePiece {
   std::array<Eigen::Vector3d, 3> corner;
 };
+
+inline SurfacePiece piece_of(const TriangleMesh& mesh, const Eigen::Vector3i& triangle) {
+  const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(triangle[k])]; };
+  return {{corner(0), corner(1), corner(2)}};
+}
 
 // The edge from this corner to the next is as long as any.
 inline std::size_t longest_edge(const SurfacePiece& piece) {
