@@ -64,14 +64,18 @@ class CheckEdges:
         return found
 
 
-class ConfigurationStudy:
-    """What check_configs() found."""
+class RowStudy:
+    """What was found for each of many rows."""
 
     def __init__(self, results: RowResults) -> None:
         self._results = results
 
     def __len__(self) -> int:
         return len(self._results)
+
+
+class ConfigurationStudy(RowStudy):
+    """What check_configs() found."""
 
     def parts(self) -> Iterator[Bools]:
         """`free` in parts one behind the other: where there is no room for all of it."""
@@ -92,14 +96,8 @@ class ConfigurationStudy:
         return f"ConfigurationStudy({self.free_count} of {len(self)} free)"
 
 
-class EdgeStudy:
+class EdgeStudy(RowStudy):
     """What check_edges() found."""
-
-    def __init__(self, results: RowResults) -> None:
-        self._results = results
-
-    def __len__(self) -> int:
-        return len(self._results)
 
     def parts(self) -> Iterator[Any]:
         """In parts one behind the other: arrays with the fields verdict, free_until, contact_at."""

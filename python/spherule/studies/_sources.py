@@ -70,11 +70,18 @@ class ArrayRows:
 
 
 @dataclass(frozen=True)
-class NpyRows:
-    """Rows of an NPY file, which whoever needs them maps into memory: it lies where all see it."""
+class FileRows:
+    """Rows of a file, which whoever needs them reads: it lies where all see it."""
 
     path: Path
     stays = False
+
+    def identity(self) -> Identity:
+        return file_identity(self.path)
+
+
+class NpyRows(FileRows):
+    """Of an NPY file, mapped into memory."""
 
     def mapped(self) -> Any:
         try:
@@ -103,16 +110,9 @@ class NpyRows:
     def rows(self, first: int, count: int) -> Floats:
         return np.array(self.table()[first : first + count], dtype=np.float64)
 
-    def identity(self) -> Identity:
-        return file_identity(self.path)
 
-
-@dataclass(frozen=True)
-class ParquetRows:
-    """Rows of a Parquet file, a column a joint, read a row group at a time by pyarrow."""
-
-    path: Path
-    stays = False
+class ParquetRows(FileRows):
+    """Of a Parquet file, a column a joint, read a row group at a time by pyarrow."""
 
     def file(self) -> Any:
         try:
@@ -138,9 +138,6 @@ class ParquetRows:
             start += size
         rows: Floats = np.concatenate(pieces).astype(np.float64, copy=False)
         return rows
-
-    def identity(self) -> Identity:
-        return file_identity(self.path)
 
 
 @dataclass(frozen=True)
