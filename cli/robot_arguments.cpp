@@ -87,8 +87,7 @@ void add_robot_options(CLI::App& command, RobotArguments& arguments) {
   add_search_options(
       command, {options.seed, options.effort, options.seconds, options.threads},
       "Rounds at most of searching for fewer spheres than at first, for each link, fewer where "
-      "more "
-      "would not pay; 0: none",
+      "more would not pay; 0: none",
       "Search for fewer spheres for so long, for each link; the result then depends on the "
       "machine");
   add_external_spheres_flag(command, arguments.report_content);

@@ -12,8 +12,8 @@
 namespace spherule {
 
 struct TrajectoryCheckOptions {
-  std::size_t explained =
-      0;  // the first so many: pairs that only proofs keep apart are counted, too
+  // In so many of the first configurations pairs that only proofs keep apart are counted, too.
+  std::size_t explained = 0;
   int threads = 0;
   Progress progress{};
   EdgeRequest edge{};  // of motions
