@@ -20,11 +20,28 @@ using Eigen::Vector3d;
 
 constexpr std::int32_t kLeafSize = 4;
 
+// At least the square, and by more than a box's squared distance errs by; never 0.
+double squared_up(double x) {
+  return x * x * kRelativeUp + 0x1p-1060;
+}
+
 // Square of the distance from a point to a box: each difference and square rounded once, two sums,
 // so a relative error below 6 u.
 double squared_distance(const Vector3d& low, const Vector3d& high, const Vector3d& p) {
   const Vector3d d = (low - p).cwiseMax(p - high).cwiseMax(0.0);
   return d.squaredNorm();
+}
+
+// The same of two boxes, a row each.
+template <class Corners>
+Eigen::Array2d squared_distances(const Corners& low, const Corners& high, const Vector3d& p) {
+  Eigen::Array2d sum = Eigen::Array2d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Array2d d =
+        (low.col(axis) - p[axis]).max(p[axis] - high.col(axis)).max(Eigen::Array2d::Zero());
+    sum += d * d;
+  }
+  return sum;
 }
 
 }  // namespace
@@ -37,86 +54,93 @@ MeshDistance::MeshDistance(const TriangleMesh& mesh) {
     corners_.push_back({vertex(0), vertex(1), vertex(2), static_cast<std::int32_t>(i)});
     for (int k = 0; k < 3; ++k) box_.extend(vertex(k));
   }
-  nodes_.reserve(corners_.size());
-  build(0, static_cast<std::int32_t>(corners_.size()));
+  nodes_.reserve(corners_.size() / kLeafSize);
+  root_ = build(0, static_cast<std::int32_t>(corners_.size())).first;
 }
 
-void MeshDistance::build(std::int32_t begin, std::int32_t end) {
-  Eigen::AlignedBox3d box;
-  Eigen::AlignedBox3d centroids;
+std::pair<std::int32_t, Eigen::AlignedBox3d> MeshDistance::build(std::int32_t begin,
+                                                                 std::int32_t end) {
   const auto part = std::span(corners_).subspan(static_cast<std::size_t>(begin),
                                                 static_cast<std::size_t>(end - begin));
-  for (const Corners& t : part) {
-    box.extend(t.a).extend(t.b).extend(t.c);
-    centroids.extend(Vector3d(t.a + t.b + t.c));
+  if (end - begin <= kLeafSize) {
+    Eigen::AlignedBox3d box;
+    for (const Corners& t : part) box.extend(t.a).extend(t.b).extend(t.c);
+    leaves_.push_back({begin, end});
+    return {~static_cast<std::int32_t>(leaves_.size() - 1), box};
   }
-  const std::size_t self = nodes_.size();
-  nodes_.push_back({box.min(), box.max(), -1, begin, end});
-  if (end - begin <= kLeafSize) return;
+  Eigen::AlignedBox3d centroids;
+  for (const Corners& t : part) centroids.extend(Vector3d(t.a + t.b + t.c));
   const Eigen::Index axis = internal::longest_axis(centroids);
   const std::int32_t middle =
       begin + static_cast<std::int32_t>(internal::split_at_median(part, [axis](const Corners& t) {
         return std::pair(t.a[axis] + t.b[axis] + t.c[axis], t.triangle);
       }));
-  build(begin, middle);
-  nodes_[self].right = static_cast<std::int32_t>(nodes_.size());
-  build(middle, end);
+  const std::size_t self = nodes_.size();
+  nodes_.emplace_back();
+  const auto left = build(begin, middle);
+  const auto right = build(middle, end);
+  Node& node = nodes_[self];
+  node.children = {left.first, right.first};
+  node.low << left.second.min().transpose(), right.second.min().transpose();
+  node.high << left.second.max().transpose(), right.second.max().transpose();
+  return {static_cast<std::int32_t>(self), left.second.merged(right.second)};
 }
 
 SurfaceDistance MeshDistance::operator()(const Vector3d& point, double limit) const {
-  internal::require_content(!nodes_.empty(), "MeshDistance");
+  internal::require_content(!leaves_.empty(), "MeshDistance");
   SurfaceDistance best;
   best.lower = limit;
-  double reach = limit;                                // nearest upper bound so far
-  double reach_squared = reach * reach * kRelativeUp;  // boxes beyond it are no nearer
-  std::array<std::pair<double, std::int32_t>, kStackSize> stack;
+  double reach = limit;                      // nearest upper bound so far
+  double reach_squared = squared_up(reach);  // boxes beyond it are no nearer
+  const auto is_beyond = [&](double squared) { return squared * kRelativeDown >= reach_squared; };
+  std::array<std::pair<double, std::int32_t>, kStackSize> waiting;
   std::size_t size = 0;
-  stack[size++] = {squared_distance(nodes_[0].low, nodes_[0].high, point), 0};
-  while (size > 0) {
-    const auto [box_squared, index] = stack[--size];
-    if (box_squared * kRelativeDown >= reach_squared) continue;
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (node.right < 0) {
-      for (auto i = node.begin; i < node.end; ++i) {
+  for (std::int32_t child = root_;;) {
+    if (child < 0) {
+      const Leaf& leaf = leaves_[static_cast<std::size_t>(~child)];
+      for (auto i = leaf.begin; i < leaf.end; ++i) {
         const Corners& t = corners_[static_cast<std::size_t>(i)];
         const Vector3d low = t.a.cwiseMin(t.b).cwiseMin(t.c);
         const Vector3d high = t.a.cwiseMax(t.b).cwiseMax(t.c);
-        if (squared_distance(low, high, point) * kRelativeDown >= reach_squared) continue;
+        if (is_beyond(squared_distance(low, high, point))) continue;
         const TriangleDistance d = point_triangle_distance(point, t.a, t.b, t.c);
         best.lower = std::min(best.lower, d.lower);
         if (d.upper < reach) {
           reach = d.upper;
-          reach_squared = reach * reach * kRelativeUp;
+          reach_squared = squared_up(reach);
           best.upper = d.upper;
           best.closest = d.closest;
           best.triangle = t.triangle;
         }
       }
-      continue;
+    } else {
+      const Node& node = nodes_[static_cast<std::size_t>(child)];
+      const Eigen::Array2d squared = squared_distances(node.low, node.high, point);
+      std::pair near(squared[0], node.children[0]);
+      std::pair far(squared[1], node.children[1]);
+      if (far.first < near.first) std::swap(near, far);
+      if (!is_beyond(near.first)) {
+        if (!is_beyond(far.first)) waiting[size++] = far;
+        child = near.second;
+        continue;
+      }
     }
-    const std::int32_t left = index + 1;
-    const auto child = [&](std::int32_t i) {
-      const Node& n = nodes_[static_cast<std::size_t>(i)];
-      return std::pair{squared_distance(n.low, n.high, point), i};
-    };
-    auto near = child(left);
-    auto far = child(node.right);
-    if (far.first < near.first) std::swap(near, far);
-    stack[size++] = far;
-    stack[size++] = near;
+    while (size > 0 && is_beyond(waiting[size - 1].first)) --size;
+    if (size == 0) return best;
+    child = waiting[--size].second;
   }
-  return best;
 }
 
 // Where the ray is between the planes of the box: each quotient errs by 2 u of itself, and so do
 // the least and the greatest of them.
-bool MeshDistance::may_intersect(const Node& node, const Vector3d& point,
+bool MeshDistance::may_intersect(const Eigen::Array3d& low_corner,
+                                 const Eigen::Array3d& high_corner, const Vector3d& point,
                                  const Vector3d& direction) {
   double enter = -std::numeric_limits<double>::infinity();
   double leave = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
-    const double low = (node.low[axis] - point[axis]) / direction[axis];
-    const double high = (node.high[axis] - point[axis]) / direction[axis];
+    const double low = (low_corner[axis] - point[axis]) / direction[axis];
+    const double high = (high_corner[axis] - point[axis]) / direction[axis];
     enter = std::max(enter, std::min(low, high));
     leave = std::min(leave, std::max(low, high));
   }
@@ -125,7 +149,7 @@ bool MeshDistance::may_intersect(const Node& node, const Vector3d& point,
 }
 
 double MeshDistance::winding_number(const Vector3d& point) const {
-  internal::require_content(!nodes_.empty(), "MeshDistance");
+  internal::require_content(!leaves_.empty(), "MeshDistance");
   double angle = 0.0;
   for (const Corners& t : corners_) {
     angle += internal::solid_angle(t.a - point, t.b - point, t.c - point);

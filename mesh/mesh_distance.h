@@ -24,6 +24,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -73,7 +74,7 @@ class MeshDistance {
   // Calls visit(corners) for every triangle.
   template <typename Visit>
   void visit_all(Visit visit) const {
-    internal::require_content(!nodes_.empty(), "MeshDistance");
+    internal::require_content(!leaves_.empty(), "MeshDistance");
     for (const Corners& t : corners_) visit(t);
   }
 
@@ -83,12 +84,17 @@ class MeshDistance {
   std::size_t triangle_count() const { return corners_.size(); }
 
  private:
-  // Boxes in depth-first order. An inner node's left child is the next node, `right` its right
-  // child; a leaf (right < 0) holds the triangles [begin, end).
+  // Not aligned, so that its layout does not depend on a program's settings of Eigen.
+  using BoxCorners = Eigen::Array<double, 2, 3, Eigen::DontAlign>;
+  // The boxes of two children side by side, a row each, so that both are examined at once. A child
+  // is a node, or a leaf where it is negative: that of the index ~child.
   struct Node {
-    Eigen::Vector3d low;
-    Eigen::Vector3d high;
-    std::int32_t right = -1;
+    BoxCorners low;
+    BoxCorners high;
+    std::array<std::int32_t, 2> children{};
+  };
+  // Holds the triangles [begin, end).
+  struct Leaf {
     std::int32_t begin = 0;
     std::int32_t end = 0;
   };
@@ -96,11 +102,14 @@ class MeshDistance {
   // depth-first search that holds one waiting sibling per level needs no more entries than that.
   static constexpr std::size_t kStackSize = 40;
 
-  static bool may_intersect(const Node& node, const Eigen::Vector3d& point,
-                            const Eigen::Vector3d& direction);
-  void build(std::int32_t begin, std::int32_t end);
+  static bool may_intersect(const Eigen::Array3d& low_corner, const Eigen::Array3d& high_corner,
+                            const Eigen::Vector3d& point, const Eigen::Vector3d& direction);
+  // Appends what holds the triangles [begin, end); returns it as a child, with its box.
+  std::pair<std::int32_t, Eigen::AlignedBox3d> build(std::int32_t begin, std::int32_t end);
 
-  std::vector<Node> nodes_;
+  std::vector<Node> nodes_;  // in depth-first order
+  std::vector<Leaf> leaves_;
+  std::int32_t root_ = -1;  // as a child
   std::vector<Corners> corners_;
   Eigen::AlignedBox3d box_;
 };
@@ -108,21 +117,25 @@ class MeshDistance {
 template <typename Visit>
 bool MeshDistance::visit_ray(const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                              Visit visit) const {
-  internal::require_content(!nodes_.empty(), "MeshDistance");
+  internal::require_content(!leaves_.empty(), "MeshDistance");
   std::array<std::int32_t, kStackSize> stack;
   std::size_t size = 0;
-  stack[size++] = 0;
+  if (may_intersect(box_.min().array(), box_.max().array(), point, direction))
+    stack[size++] = root_;
   while (size > 0) {
-    const std::int32_t index = stack[--size];
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (!may_intersect(node, point, direction)) continue;
-    if (node.right >= 0) {
-      stack[size++] = node.right;
-      stack[size++] = index + 1;
+    const std::int32_t child = stack[--size];
+    if (child < 0) {
+      const Leaf& leaf = leaves_[static_cast<std::size_t>(~child)];
+      for (auto i = leaf.begin; i < leaf.end; ++i) {
+        if (!visit(corners_[static_cast<std::size_t>(i)])) return false;
+      }
       continue;
     }
-    for (auto i = node.begin; i < node.end; ++i) {
-      if (!visit(corners_[static_cast<std::size_t>(i)])) return false;
+    const Node& node = nodes_[static_cast<std::size_t>(child)];
+    for (const int k : {1, 0}) {
+      if (may_intersect(node.low.row(k), node.high.row(k), point, direction)) {
+        stack[size++] = node.children[static_cast<std::size_t>(k)];
+      }
     }
   }
   return true;

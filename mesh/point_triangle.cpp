@@ -47,9 +47,9 @@ Vector3d nearest_on_triangle(const Vector3d& a, const Vector3d& b, const Vector3
   return a + v * ab + w * ac;
 }
 
-double lower_bound(const Vector3d& q, const Vector3d& a, const Vector3d& b, const Vector3d& c,
-                   double reach) {
-  const double norm = q.norm();
+// Along q, whose norm is given.
+double lower_bound(const Vector3d& q, double norm, const Vector3d& a, const Vector3d& b,
+                   const Vector3d& c, double reach) {
   if (!(norm > 1e-140)) return 0.0;
   const double m = std::min({q.dot(a), q.dot(b), q.dot(c)});
   return std::max(0.0, m / norm - 16.0 * kUnitRoundoff * reach - kUnderflow);
@@ -65,16 +65,18 @@ TriangleDistance point_triangle_distance(const Vector3d& p, const Vector3d& a, c
   const double reach =
       std::sqrt(std::max({ra.squaredNorm(), rb.squaredNorm(), rc.squaredNorm()})) * kRelativeUp;
   Vector3d q = nearest_on_triangle(ra, rb, rc);
-  double lower = q.allFinite() ? lower_bound(q, ra, rb, rc, reach) : 0.0;
+  double norm = q.norm();
+  double lower = std::isfinite(norm) ? lower_bound(q, norm, ra, rb, rc, reach) : 0.0;
   // A needle's Voronoi regions are lost in rounding; its edges are not.
-  if (!(q.norm() - lower <= 1e-10 * reach)) {
+  if (!(norm - lower <= 1e-10 * reach)) {
     for (const Vector3d& candidate :
          {nearest_on_segment(ra, rb), nearest_on_segment(rb, rc), nearest_on_segment(rc, ra)}) {
       if (!q.allFinite() || candidate.squaredNorm() < q.squaredNorm()) q = candidate;
     }
-    lower = std::max(lower, lower_bound(q, ra, rb, rc, reach));
+    norm = q.norm();
+    lower = std::max(lower, lower_bound(q, norm, ra, rb, rc, reach));
   }
-  return {lower, norm_upper(q) + 32.0 * kUnitRoundoff * reach, p + q};
+  return {lower, norm * kRelativeUp + kUnderflow + 32.0 * kUnitRoundoff * reach, p + q};
 }
 
 }  // namespace spherule

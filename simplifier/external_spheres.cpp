@@ -122,22 +122,25 @@ class SnugSpheres {
 
   std::vector<Sphere> operator()(const FloodGrid::Frontier& frontier) const {
     std::vector<Sphere> found;
-    sample(frontier, frontier.center, 0.5 * frontier.step, found);
+    const FloodGrid::Cell& node = frontier.neighbour;
+    const double to_surface = node.clearance + padding_ + (frontier.center - node.center).norm();
+    sample(frontier, frontier.center, to_surface, 0.5 * frontier.step, found);
     return found;
   }
 
  private:
   // What came of a point.
   struct Pushed {
-    Sphere sphere;        // of radius 0 where nothing is to be had
-    bool is_flat = true;  // one surface only was met, if any
+    Sphere sphere;            // of radius 0 where nothing is to be had
+    bool is_flat = true;      // one surface only was met, if any
+    double to_surface = 0.0;  // upper bound of the distance from the point, up to rounding
   };
 
   // From a point, and, unless only a wall is there that the grid does as well for, from eight
-  // around it, and around those that find a sphere.
-  void sample(const FloodGrid::Frontier& frontier, const Vector3d& start, double apart,
-              std::vector<Sphere>& found) const {
-    const Pushed here = pushed(frontier, start, found);
+  // around it, and around those that find a sphere. The surface is at most `to_surface` away.
+  void sample(const FloodGrid::Frontier& frontier, const Vector3d& start, double to_surface,
+              double apart, std::vector<Sphere>& found) const {
+    const Pushed here = pushed(frontier, start, to_surface, found);
     const bool is_found = here.sphere.radius > 0.0;
     if (is_found) found.push_back(here.sphere);
     const bool is_first = apart == 0.5 * frontier.step;
@@ -145,19 +148,21 @@ class SnugSpheres {
     for (int k = 0; k < 8; ++k) {
       const Vector3d aside((k & 1) != 0 ? apart : -apart, (k & 2) != 0 ? apart : -apart,
                            (k & 4) != 0 ? apart : -apart);
-      sample(frontier, start + aside, 0.5 * apart, found);
+      sample(frontier, start + aside, here.to_surface + aside.norm(), 0.5 * apart, found);
     }
   }
 
-  Pushed pushed(const FloodGrid::Frontier& frontier, const Vector3d& start,
+  Pushed pushed(const FloodGrid::Frontier& frontier, const Vector3d& start, double to_surface,
                 std::span<const Sphere> found) const {
     constexpr int kMaxPushes = 6;
     const Vector3d& from = frontier.neighbour.center;
     const double rho = diameter_.on_way(frontier.center, from);
     const double wanted = rho + 0.02 * frontier.step;
     Vector3d x = start;
+    Pushed result;
     for (int push = 0; push <= kMaxPushes; ++push) {
-      const SurfaceDistance d = distance_(x);
+      const SurfaceDistance d = distance_(x, to_surface * internal::SphereWay::kLimitUp);
+      if (push == 0) result.to_surface = d.upper;
       const double clearance = sub_down(d.lower, padding_);
       if (clearance >= rho) {
         const Sphere sphere{x, clearance};
@@ -165,15 +170,18 @@ class SnugSpheres {
         const bool reached = push > 0 &&
                              takes_something(sphere, start, frontier.step, node, found) &&
                              diameter_.on_way(from, x) <= rho && way_.passes(node, sphere, rho);
-        return {reached ? sphere : Sphere{}, push < 2};
+        if (reached) result.sphere = sphere;
+        result.is_flat = push < 2;
+        break;
       }
       const Vector3d away = x - d.closest;
       const double norm = away.norm();
-      if (!(norm > 0.0)) break;
+      if (d.triangle < 0 || !(norm > 0.0)) break;
       x += away * ((wanted - clearance) / norm);
+      to_surface = d.upper + (wanted - clearance);
       if ((x - start).norm() > 2.0 * frontier.step) break;
     }
-    return {};
+    return result;
   }
 
   // Whether the point of the sphere towards `start` is this far from all others.

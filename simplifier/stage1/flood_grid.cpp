@@ -6,6 +6,7 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <iomanip>
@@ -28,21 +29,7 @@ constexpr int kForeseen = 3;
 constexpr double kClearlyMore = 1.5;
 constexpr double kMargin = 1.2;
 
-std::uint32_t gather(std::uint64_t x) {
-  x &= 0x1249249249249249;
-  x = (x ^ x >> 2) & 0x10c30c30c30c30c3;
-  x = (x ^ x >> 4) & 0x100f00f00f00f00f;
-  x = (x ^ x >> 8) & 0x1f0000ff0000ff;
-  x = (x ^ x >> 16) & 0x1f00000000ffff;
-  x = (x ^ x >> 32) & 0x1fffff;
-  return static_cast<std::uint32_t>(x);
-}
-
 }  // namespace
-
-FloodGrid::Index FloodGrid::decode(std::uint64_t code) {
-  return {gather(code), gather(code >> 1), gather(code >> 2)};
-}
 
 FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
                      const Shape& shape, const Progress& progress)
@@ -52,6 +39,11 @@ FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDi
       diameter_(diameter),
       shape_(shape),
       levels_(shape.levels + diameter.most_halvings()) {
+  assert(levels_ <= kMostLevels);
+  for (int level = 0; level <= kMostLevels; ++level) {
+    edges_[static_cast<std::size_t>(level)] = std::ldexp(shape_.step, shape_.levels - level);
+  }
+  rounding_ = 16.0 * kUnitRoundoff * (shape_.origin.cwiseAbs().maxCoeff() + edge(0));
   cells_.push_back({});
   level_begin_ = {0};
   for (int level = 0; level <= levels_; ++level) {
@@ -114,23 +106,6 @@ void FloodGrid::halve(std::size_t cell) {
     cells_.push_back(
         {.code = parent.code << 3 | k, .level = static_cast<std::uint8_t>(parent.level + 1)});
   }
-}
-
-double FloodGrid::edge(int level) const {
-  return std::ldexp(shape_.step, shape_.levels - level);
-}
-
-double FloodGrid::rounding() const {
-  return 16.0 * kUnitRoundoff * (shape_.origin.cwiseAbs().maxCoeff() + edge(0));
-}
-
-Eigen::Vector3d FloodGrid::center(int level, const Index& index) const {
-  return shape_.origin +
-         edge(level) * Eigen::Vector3d(index[0] + 0.5, index[1] + 0.5, index[2] + 0.5);
-}
-
-Eigen::Vector3d FloodGrid::center(const Entry& cell) const {
-  return center(cell.level, decode(cell.code));
 }
 
 // Half the diagonal, with room for the rounding of centres and faces.

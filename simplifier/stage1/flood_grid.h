@@ -80,10 +80,24 @@ class FloodGrid {
  private:
   // Memory stays below 4 GiB.
   static constexpr std::size_t kMaxCells = std::size_t{1} << 27;
+  // Morton codes have room for 21.
+  static constexpr int kMostLevels = 20;
 
   enum class State : std::uint8_t { kBlocked, kRefined, kFree };
   using Index = std::array<std::uint32_t, 3>;
-  static Index decode(std::uint64_t code);
+  // The index of a Morton code: every third of its bits, from each of the three on.
+  static Index decode(std::uint64_t code) {
+    return {gather(code), gather(code >> 1), gather(code >> 2)};
+  }
+  static std::uint32_t gather(std::uint64_t x) {
+    x &= 0x1249249249249249;
+    x = (x ^ x >> 2) & 0x10c30c30c30c30c3;
+    x = (x ^ x >> 4) & 0x100f00f00f00f00f;
+    x = (x ^ x >> 8) & 0x1f0000ff0000ff;
+    x = (x ^ x >> 16) & 0x1f00000000ffff;
+    x = (x ^ x >> 32) & 0x1fffff;
+    return static_cast<std::uint32_t>(x);
+  }
   struct Entry {
     std::uint64_t code = 0;  // Morton code of the index within its level
     double clearance = 0.0;
@@ -96,11 +110,14 @@ class FloodGrid {
     bool reached = false;
   };
 
-  double edge(int level) const;
+  double edge(int level) const { return edges_[static_cast<std::size_t>(level)]; }
   // Bound on the rounding of the coordinates of centres and faces.
-  double rounding() const;
-  Eigen::Vector3d center(int level, const Index& index) const;
-  Eigen::Vector3d center(const Entry& cell) const;
+  double rounding() const { return rounding_; }
+  Eigen::Vector3d center(int level, const Index& index) const {
+    return shape_.origin +
+           edge(level) * Eigen::Vector3d(index[0] + 0.5, index[1] + 0.5, index[2] + 0.5);
+  }
+  Eigen::Vector3d center(const Entry& cell) const { return center(cell.level, decode(cell.code)); }
   // Appends the eight children of a cell, which are to be examined.
   void halve(std::size_t cell);
   // Measures and classifies the cells of a level, which are the last.
@@ -150,6 +167,8 @@ class FloodGrid {
   SphereWay way_;
   const LocalDiameter& diameter_;
   Shape shape_;
+  std::array<double, kMostLevels + 1> edges_{};  // of the cells of each level
+  double rounding_ = 0.0;
   int levels_;  // with the halvings of zones
   std::vector<Entry> cells_;
   std::vector<std::size_t> level_begin_;

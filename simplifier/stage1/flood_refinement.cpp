@@ -40,8 +40,6 @@ namespace {
 // rho + h / 2 that suffices to get to the face of any free cell.
 constexpr double kUniform = 0.8661 + 0.5;
 constexpr int kRings = 2;
-// Morton codes have room for 21.
-constexpr int kMostLevels = 20;
 
 }  // namespace
 
@@ -268,7 +266,14 @@ class FloodGrid::Refinement {
         return;
       }
       const std::uint32_t half = node_size / 2;
+      // The halves along each axis that the cell touches.
+      std::array<std::array<bool, 2>, 3> touches{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        touches[axis] = {low[axis] <= node_low[axis] + half,
+                         low[axis] + size >= node_low[axis] + half};
+      }
       for (std::uint32_t k = 0; k < 8; ++k) {
+        if (!touches[0][k & 1U] || !touches[1][k >> 1 & 1U] || !touches[2][k >> 2 & 1U]) continue;
         const Index child_low = {node_low[0] + (k & 1U) * half, node_low[1] + (k >> 1 & 1U) * half,
                                  node_low[2] + (k >> 2 & 1U) * half};
         descend_on(descend_on, cells()[node].child_or_zone + k, child_low, half);

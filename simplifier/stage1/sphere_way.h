@@ -5,6 +5,8 @@
 #include "spheretree/rounding.h"
 #include "spheretree/sphere.h"
 
+#include <algorithm>
+
 namespace spherule::internal {
 
 // Whether a sphere of radius rho provably passes on the straight way between the centres of two
@@ -13,6 +15,10 @@ namespace spherule::internal {
 // fails only where the clearance comes below rho + (length of the way) / 2^8 somewhere.
 class SphereWay {
  public:
+  // Of a bound of a distance that is passed to MeshDistance as a limit: usually more than all
+  // roundings. Where it is not, the limit is returned as the lower bound: true, but less room.
+  static constexpr double kLimitUp = 1.0 + 1e-5;
+
   SphereWay(const MeshDistance& distance, double padding)
       : distance_(distance), padding_(padding) {}
 
@@ -22,7 +28,9 @@ class SphereWay {
     if (sub_down(add_down(a.radius, b.radius), gap) >= 2.0 * rho * kRelativeUp) return true;
     if (depth == kMaxDepth) return false;
     Sphere middle{(a.center + b.center) / 2.0, 0.0};
-    middle.radius = sub_down(distance_(middle.center).lower, padding_);
+    // Usually the surface is no further from there.
+    const double limit = (std::min(a.radius, b.radius) + padding_ + 0.5 * gap) * kLimitUp;
+    middle.radius = sub_down(distance_(middle.center, limit).lower, padding_);
     return middle.radius >= rho && passes(a, middle, rho, depth + 1) &&
            passes(middle, b, rho, depth + 1);
   }

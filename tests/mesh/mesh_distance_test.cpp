@@ -103,6 +103,15 @@ TEST(MeshDistance, WithALimitOnlyNearerTrianglesAreFound) {
   EXPECT_GT(missed, 100);
 }
 
+// The square of the limit vanishes.
+TEST(MeshDistance, ATinyLimitClaimsNothingOfAPointOnTheSurface) {
+  const MeshDistance distance(cube_mesh());
+  for (const double limit : {1e-150, 1e-170, 1e-310, 0.0}) {
+    const SurfaceDistance d = distance({0.5, 0.5, 1.0}, limit);
+    EXPECT_EQ(d.lower, 0.0) << limit;
+  }
+}
+
 // The surface itself is at the distance of the limit: neither answer may claim more than is true.
 TEST(MeshDistance, ALimitEqualToTheDistanceIsSound) {
   const MeshDistance distance(cube_mesh());
