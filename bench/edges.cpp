@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/edges.h"
 
+#include "bench/checkers/tree_checker.h"
 #include "bench/clock.h"
-#include "bench/tree_checker.h"
 
 #include <algorithm>
 #include <vector>

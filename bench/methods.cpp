@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/methods.h"
 
-#include "bench/bullet_sphere_checker.h"
-#include "bench/fcl_mesh_checker.h"
-#include "bench/fcl_sphere_checker.h"
-#include "bench/flat_scan_checker.h"
-#include "bench/tree_checker.h"
+#include "bench/checkers/bullet_sphere_checker.h"
+#include "bench/checkers/fcl_mesh_checker.h"
+#include "bench/checkers/fcl_sphere_checker.h"
+#include "bench/checkers/flat_scan_checker.h"
+#include "bench/checkers/tree_checker.h"
 
 #include <utility>
 

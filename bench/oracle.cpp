@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/oracle.h"
 
-#include "bench/fcl_solid.h"
+#include "bench/checkers/fcl_solid.h"
 #include "robot/model/kinematics.h"
 
 #include <algorithm>

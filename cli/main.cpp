@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/command.h"
-#include "cli/help.h"
+#include "cli/commands/command.h"
+#include "cli/files/wrong_file.h"
+#include "cli/help/help.h"
+#include "cli/help/usage_error.h"
 #include "cli/memory_reserve.h"
-#include "cli/message.h"
-#include "cli/usage_error.h"
-#include "cli/wrong_file.h"
+#include "cli/text/exit_code.h"
+#include "cli/text/message.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/memory_reserve.h"
 
-#include "cli/command.h"
+#include "cli/text/exit_code.h"
 
 #include <algorithm>
 #include <atomic>

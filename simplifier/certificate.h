@@ -53,7 +53,8 @@ struct CertifyOptions {
   Progress progress = {};
 };
 
-// A stretch between two proved bounds.
+// A lower and an upper bound of a length: proved in a Certificate, true up to rounding in a
+// MeshDeviation (baseline/mesh_deviation.h).
 struct Bounds {
   double lower = 0.0;
   double upper = 0.0;
@@ -82,7 +83,9 @@ struct Certificate {
   std::vector<double> protrusion_in_zones;
   // Proved bounds of the protrusion over |M|; absent if not requested.
   std::optional<Bounds> protrusion_over_mesh;
-  std::optional<double> volume_ratio;  // of the union of the spheres to the solid mesh; estimated
+  // Volume of the union of the spheres over that of the solid mesh, estimated. Absent unless it is
+  // requested, the mesh is closed and there are spheres.
+  std::optional<double> volume_ratio;
   // With external spheres and a closed mesh: volume of what stage 1 fills, S without |M|;
   // estimated, and the standard error of that.
   std::optional<double> filled_volume;

@@ -7,7 +7,7 @@
 #include "simplifier/solid/clearance.h"
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/cover_fitter.h"
-#include "simplifier/stage2/internal_spheres.h"
+#include "simplifier/stage2/paper/internal_spheres.h"
 #include "simplifier/support/thread_limit.h"
 
 namespace spherule {

@@ -108,9 +108,11 @@ struct SphereCover {
   std::size_t seeds_rejected = 0;
 };
 
-// Stage 2: covers S with spheres that protrude from it by at most E (the paper,
-// Algorithm 1; docs/covering.md). On return the union of the spheres contains S: the search ends
-// only with what an octree over S has proved; certify() proves it again, by a search of its own.
+// Stage 2: covers S with spheres that protrude from it by at most E. kPaper is the second loop of
+// Algorithm 1 of the paper that simplify.h names; kCover a set cover, greedy at first, then by
+// row-weighting local search (Gao, Weise and Li, EJOR 246, 2015); see docs/covering.md. On return
+// the union of the spheres contains S: the search ends only with what an octree over S has proved;
+// certify() proves it again, by a search of its own.
 // Every sphere's radius is at most E plus the distance of its centre, a point of S (up to rounding,
 // for which a reserve is kept), to the outside of S, and at most a zone's error plus that distance
 // where the sphere reaches into that zone, unless min_radius is larger; where external spheres

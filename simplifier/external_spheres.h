@@ -37,8 +37,9 @@ enum class ExternalPlacement {
   kNone        // no external sphere: S is the box of M
 };
 
-// Called from time to time with the done share (0 to 1, or negative where unknown) and a word on
-// what is being done.
+// Called from time to time with the share that is done (0 to 1, or negative where unknown) and a
+// few words on what is being done, which are valid during the call only. It must be thread-safe:
+// worker threads call it, several at once where links are covered or a lower bound is proved.
 using Progress = std::function<void(double share, const char* what)>;
 
 // What the first stage simplifies away.
@@ -52,7 +53,8 @@ struct ExternalOptions {
   // Grid step of the flood; 0 chooses sqrt(0.08 * max_error * D / 2), at most D / 8, which leaves
   // spikes of about 0.02 E between the spheres along a flat wall. Without `max_error` it is D / 16.
   double grid_step = 0.0;
-  // E, used for the choice of the grid step only.
+  // E: chooses the grid step and, with `keep_concave_edges`, the zones (0: those of E = D / 4).
+  // Unless it is 0, no zone may have a larger `max_error`.
   double max_error = 0.0;
   // Reachable placement only: the grid is made finer, where that matters, until `closing_slack` is
   // proved to be at most this share of D; above 0 and at most kNoTightness, which leaves the grid
@@ -100,8 +102,9 @@ struct ExternalSpheres {
   std::vector<Zone> concave_edges;
 };
 
-// Stage 1 (paper, section II and Algorithm 1; docs/covering.md). Deterministic for equal
-// options. Throws Error for a mesh that validate() refuses and for options out of range (D must be
+// Stage 1 (section II and Algorithm 1 of the paper that simplify.h names; docs/covering.md).
+// Deterministic for an equal mesh and equal options, on any number of threads.
+// Throws Error for a mesh that validate() refuses and for options out of range (D must be
 // positive and finite unless nothing is placed, padding finite and not negative, the grid not finer
 // than the resolution of the coordinates or 2^20 steps, zones usable and their values not above D
 // and E, and a smaller D only for the reachable placement).

@@ -28,7 +28,8 @@ namespace spherule {
 // A point of a surface that no sphere contains.
 struct LeakPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  // on the surface, up to its rounding
-  double depth = 0.0;                               // positive: no sphere is nearer to `point`
+  // Lower bound of the distance from `point` to the nearest sphere; positive.
+  double depth = 0.0;
 };
 
 // How closely leaks are searched for.

@@ -39,8 +39,8 @@ struct CoverLevel {
   SphereLevel spheres;
   // Proved upper bound of the protrusion over S.
   double protrusion = 0.0;
-  // The same of plain clustering: of as many spheres, or as few fewer as it has, of build_tree()
-  // over the cover.
+  // For comparison, the same bound for plain clustering: for cut() of build_tree() over the cover,
+  // with at most as many spheres as this level has, clustering_count of them.
   double clustering_protrusion = 0.0;
   std::size_t clustering_count = 0;
 };

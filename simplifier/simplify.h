@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Spheres that cover a mesh, and the proof that they do: the function that most users call.
+// Spheres that cover a mesh, and the proof that they do: the function that most users call. M, |M|,
+// S, D, E, t and the guarantees G1 to G9 are defined in docs/guarantee.md. "The paper" is Larkin,
+// Short, Pan and van Duin, "Bounding Sphere CAD Model Simplification for Efficient Collision
+// Detection in Offline Programming". Lengths are in the unit of the mesh.
 //
 // @code{.cpp}
 // #include <spherule/simplifier/simplify.h>
@@ -49,13 +52,14 @@ struct SimplifyOptions {
   // E: how far the result may protrude from the simplified solid; 0 chooses 1 % of the box
   // diagonal.
   double max_error = 0.0;
-  // Errors of levels of detail to fit above the cover (levels.h), in any order; the finest is E:
-  // with a max_error of 0 it becomes that, else it must not be below it.
+  // The E of each level of detail to fit above the cover (levels.h), in any order. None may be
+  // below `max_error`, which is added where it is not among them; where `max_error` is 0, it
+  // becomes the least of them.
   std::vector<double> levels = {};
   // D: diameter of the smallest object to be checked against the model; 0 chooses 4 E.
   double min_external_diameter = 0.0;
-  // How much wider than D a way may be and still be filled, as a share of D, at most
-  // (ExternalOptions::tightness).
+  // The closing slack aimed at, as a share of D: ways in that are wider than D (1 + tightness) are
+  // not filled (ExternalOptions::tightness). What is proved: ExternalSpheres::closing_slack.
   double tightness = ExternalOptions{}.tightness;
   // t: grow M by this much (chord error of the tessellation, calibration).
   double padding = 0.0;
@@ -147,9 +151,10 @@ std::vector<double> levels_named(const std::string& text);
 std::string name_of_levels(std::span<const double> levels);
 
 // The options under their command-line names, for SphereFile::options; `scale` is the one the mesh
-// was read with. And back, for an audit: what is absent keeps its default, Error names a bad value.
-// A method that is none of method_names() comes back as the name of a stage 2 method that cannot be
-// run: an audit judges spheres of any origin.
+// was read with. And back, for an audit: what is absent keeps its default, but "tightness" becomes
+// ExternalOptions::kNoTightness, with which files that lack it were made. Throws Error naming the
+// option for a bad value. A method that is none of method_names() comes back as the name of a
+// stage 2 method that cannot be run: an audit judges spheres of any origin.
 std::map<std::string, OptionValue> option_record(const SimplifyOptions& options, double scale);
 SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& record);
 

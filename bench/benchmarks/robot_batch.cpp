@@ -4,8 +4,8 @@
 // The spheres are those around the triangles, cut small: more than fitted ones, and there at once.
 // Counters: time a configuration (of the clock on the wall), the share that collides, spheres.
 
+#include "bench/checkers/tree_checker.h"
 #include "bench/scenes/program.h"
-#include "bench/tree_checker.h"
 #include "bench/workload.h"
 #include "spheretree/build.h"
 #include "spheretree/enclosing_sphere.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/fcl_convex_checker.h"
 
-#include "bench/fcl_models.h"
+#include "bench/checkers/fcl_models.h"
 #include "bench/scenes/mesh_facts.h"
 #include "bench/scenes/solids.h"
 #include "simplifier/baseline/convex_hull.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/representations.h"
 
-#include "bench/fcl_mesh_checker.h"
+#include "bench/checkers/fcl_mesh_checker.h"
+#include "bench/checkers/tree_checker.h"
 #include "bench/paper/fcl_convex_checker.h"
 #include "bench/paper/figures.h"
-#include "bench/tree_checker.h"
 #include "simplifier/baseline/convex_decomposition.h"
 #include "simplifier/baseline/convex_hull.h"
 #include "simplifier/baseline/decimation.h"

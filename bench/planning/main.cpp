@@ -2,14 +2,14 @@
 // Does a planner gain by spheres, and does it lose solutions? And how many process points are
 // judged a second? In the paper's work cell; see bench/README.md.
 //   spherule_planning [--out DIR] [--effort N] [--problems N]
+#include "bench/checkers/fcl_mesh_checker.h"
+#include "bench/checkers/tree_checker.h"
 #include "bench/clock.h"
-#include "bench/fcl_mesh_checker.h"
 #include "bench/fit_parts.h"
 #include "bench/planning/arguments.h"
 #include "bench/planning/planning_cell.h"
 #include "bench/planning/report.h"
 #include "bench/scenes/torch.h"
-#include "bench/tree_checker.h"
 #include "spheretree/error.h"
 
 #include <cstdio>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/planning/problem_study.h"
 
+#include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/clock.h"
-#include "bench/fcl_mesh_checker.h"
 #include "bench/planning/path_check.h"
 #include "bench/planning/planning_cell.h"
 

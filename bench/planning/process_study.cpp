@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/planning/process_study.h"
 
-#include "bench/fcl_mesh_checker.h"
+#include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/oracle.h"
 #include "bench/planning/processor_time.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/robot_edges/bullet_arm.h"
 
-#include "bench/bullet_pair_test.h"
+#include "bench/checkers/bullet_pair_test.h"
 #include "robot/model/kinematics.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/robot_edges/fcl_arm.h"
 
-#include "bench/fcl_models.h"
-#include "bench/fcl_solid.h"
+#include "bench/checkers/fcl_models.h"
+#include "bench/checkers/fcl_solid.h"
 #include "robot/model/kinematics.h"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>

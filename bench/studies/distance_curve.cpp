@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "bench/checkers/fcl_solid.h"
 #include "bench/clock.h"
-#include "bench/fcl_solid.h"
 #include "bench/studies/fcl_pair.h"
 #include "bench/studies/random_numbers.h"
 #include "bench/studies/study.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/studies/fcl_pair.h"
 
-#include "bench/fcl_float.h"
-#include "bench/fcl_models.h"
+#include "bench/checkers/fcl_float.h"
+#include "bench/checkers/fcl_models.h"
 
 #include <memory>
 

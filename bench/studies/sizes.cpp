@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "bench/checkers/tree_checker.h"
 #include "bench/scenes/program.h"
 #include "bench/studies/refined_cover.h"
 #include "bench/studies/study.h"
 #include "bench/studies/turns.h"
-#include "bench/tree_checker.h"
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/flat_scan_checker.h"
+#include "bench/checkers/flat_scan_checker.h"
+#include "bench/checkers/tree_checker.h"
 #include "bench/studies/coarse_cover.h"
 #include "bench/studies/random_numbers.h"
 #include "bench/studies/study.h"
 #include "bench/studies/turns.h"
-#include "bench/tree_checker.h"
 #include "spheretree/build.h"
 
 #include <cmath>

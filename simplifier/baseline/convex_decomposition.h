@@ -25,7 +25,7 @@ namespace spherule {
 
 // How far a mesh is taken apart.
 struct ConvexDecompositionOptions {
-  // Concavity at which parts are no longer joined, as the library measures it: distance of the
+  // Concavity at which parts are no longer joined, as HACD measures it: distance of the
   // surface of a part from its hull, in the unit of the mesh; 0: 1 % of the box diagonal.
   double max_concavity = 0.0;
   // No fewer parts than this are made of a mesh, if it has so many triangles.

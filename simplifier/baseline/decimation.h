@@ -37,7 +37,7 @@ struct DecimationOptions {
 // The reduced mesh, and how far it is from the original.
 struct Decimation {
   TriangleMesh mesh;  // its vertices are vertices of the original, bit for bit
-  // The library's estimate: root of the mean square distance to the planes that met in a vertex.
+  // meshoptimizer's estimate: root of the mean square distance to the planes that met in a vertex.
   // No bound, and often far below the deviation.
   double estimated_error = 0.0;
   MeshDeviation deviation;  // measured; zero if not requested
@@ -45,7 +45,7 @@ struct Decimation {
 
 // Decimates by edge collapses in order of their quadric error (Garland and Heckbert 1997), by
 // meshoptimizer. A closed mesh stays closed in the sense of MeshReport (a collapse joins vertices,
-// which takes no boundary in), but edges used by more than two triangles may appear. The library
+// which takes no boundary in), but edges used by more than two triangles may appear. meshoptimizer
 // works in 32-bit floats, relative to the box: equal input gives equal results. Triangles that fall
 // together are left out. Throws Error for a mesh that validate() refuses, a target of zero, a
 // max_error that is negative or NaN, an extent of zero, and if nothing of the mesh is left.

@@ -38,7 +38,7 @@ struct LevelSetPackingOptions {
 // distances in voxels near the surface, in 32-bit floats), and the largest sphere that fits inside
 // of it about one of many random points is taken, overlapping allowed, until no candidate is left
 // outside of the spheres with a sphere of the least radius about it. The spheres lie in the solid
-// up to a step. What is inside of an open mesh the library guesses; there may be no sphere then.
+// up to a step. What is inside of an open mesh OpenVDB guesses; there may be no sphere then.
 // Equal input gives equal results. Throws Error for a mesh that validate() refuses, for options out
 // of range, and for a step below 1/4096 of the box diagonal.
 std::vector<Sphere> level_set_packing(const TriangleMesh& mesh,

@@ -42,8 +42,8 @@ struct MedialSampling {
   // Sites of the Voronoi diagram: at first, and at most after refinement.
   std::size_t initial_sites = 1000;
   std::size_t max_sites = 6000;
-  // The medial spheres are refined until they protrude by less than is wanted by this factor. More
-  // than 0.
+  // The medial spheres are refined towards a protrusion of the wanted one divided by this. Above 0,
+  // at most 1e6.
   double error_factor = 2.0;
   std::uint64_t seed = 1;
 };

@@ -6,7 +6,7 @@
 #include "simplifier/baseline/internal/simplified_probe.h"
 #include "simplifier/baseline/internal/simplified_solid.h"
 #include "simplifier/proof/protrusion.h"
-#include "simplifier/stage2/inscribed_spheres.h"
+#include "simplifier/stage2/paper/inscribed_spheres.h"
 #include "simplifier/support/thread_limit.h"
 #include "spheretree/rounding.h"
 

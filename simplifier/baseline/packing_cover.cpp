@@ -3,7 +3,7 @@
 
 #include "simplifier/baseline/internal/simplified_solid.h"
 #include "simplifier/stage2/cover_checks.h"
-#include "simplifier/stage2/inscribed_spheres.h"
+#include "simplifier/stage2/paper/inscribed_spheres.h"
 #include "simplifier/support/parallel.h"
 #include "simplifier/support/thread_limit.h"
 

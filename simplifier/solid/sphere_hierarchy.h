@@ -4,6 +4,7 @@
 #include "simplifier/solid/nearest_sphere.h"
 #include "spheretree/sphere.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>

@@ -4,6 +4,7 @@
 #include "simplifier/solid/sphere_hierarchy.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace spherule::internal {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/cover_fitter.h"
 
-#include "simplifier/stage2/cover_bound.h"
+#include "simplifier/stage2/bound/cover_bound.h"
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/cover_moves.h"
-#include "simplifier/stage2/cover_yield.h"
-#include "simplifier/stage2/lazy_cover_search.h"
+#include "simplifier/stage2/search/cover_yield.h"
+#include "simplifier/stage2/search/lazy_cover_search.h"
 #include "simplifier/stage2/surface_extent.h"
 #include "simplifier/support/parallel.h"
 #include "simplifier/support/random.h"

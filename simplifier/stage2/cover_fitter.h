@@ -6,8 +6,8 @@
 #include "simplifier/solid/clearance.h"
 #include "simplifier/stage2/cover_goal.h"
 #include "simplifier/stage2/cover_problem.h"
-#include "simplifier/stage2/cover_search.h"
 #include "simplifier/stage2/local_error.h"
+#include "simplifier/stage2/search/cover_search.h"
 #include "simplifier/stage2/solid_cells.h"
 #include "spheretree/sphere.h"
 

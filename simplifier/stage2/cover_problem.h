@@ -4,7 +4,7 @@
 #include "simplifier/solid/clearance.h"
 #include "simplifier/stage2/cover_candidates.h"
 #include "simplifier/stage2/local_error.h"
-#include "simplifier/stage2/set_cover.h"
+#include "simplifier/stage2/search/set_cover.h"
 #include "spheretree/sphere.h"
 
 #include <Eigen/Core>

@@ -4,7 +4,7 @@
 #include "simplifier/solid/box_cell.h"
 #include "simplifier/stage2/cover_candidates.h"
 #include "simplifier/stage2/cover_moves.h"
-#include "simplifier/stage2/cover_search.h"
+#include "simplifier/stage2/search/cover_search.h"
 #include "simplifier/support/random.h"
 #include "spheretree/enclosing_sphere.h"
 #include "spheretree/rounding.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/fcl_mesh_checker.h"
-#include "bench/fcl_sphere_checker.h"
+#include "bench/checkers/fcl_mesh_checker.h"
+#include "bench/checkers/fcl_sphere_checker.h"
+#include "bench/checkers/tree_checker.h"
 #include "bench/oracle.h"
 #include "bench/scenes/shapes.h"
 #include "bench/scenes/solids.h"
-#include "bench/tree_checker.h"
 #include "tests/bench/surface_spheres.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/fcl_solid.h"
+#include "bench/checkers/fcl_solid.h"
 
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"

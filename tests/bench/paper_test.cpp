@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The paper's comparisons: what they count, and that conservative rows miss nothing.
 
-#include "bench/fcl_mesh_checker.h"
+#include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/paper/fcl_convex_checker.h"
 #include "bench/paper/figures.h"
 #include "bench/paper/picture.h"

@@ -2,11 +2,11 @@
 // A tool that has to go around a post, planned with each way of checking.
 #include "bench/planning/planner.h"
 
-#include "bench/fcl_mesh_checker.h"
+#include "bench/checkers/fcl_mesh_checker.h"
+#include "bench/checkers/tree_checker.h"
 #include "bench/planning/path_check.h"
 #include "bench/planning/planning_cell.h"
 #include "bench/scenes/shapes.h"
-#include "bench/tree_checker.h"
 #include "tests/bench/surface_spheres.h"
 #include "tests/support/effort.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What planners are given, how their paths are examined again, and how they are compared.
-#include "bench/fcl_mesh_checker.h"
+#include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/oracle.h"
 #include "bench/planning/path_check.h"
 #include "bench/planning/planning_cell.h"

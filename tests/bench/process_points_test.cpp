@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/planning/process_points.h"
 
+#include "bench/checkers/tree_checker.h"
 #include "bench/planning/planning_cell.h"
 #include "bench/planning/process_study.h"
 #include "bench/scenes/program.h"
 #include "bench/scenes/torch.h"
 #include "bench/scenes/workpiece.h"
-#include "bench/tree_checker.h"
 #include "robot/model/kinematics.h"
 #include "tests/bench/surface_spheres.h"
 #include "tests/support/effort.h"

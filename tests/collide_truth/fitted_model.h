@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/fcl_solid.h"
+#include "bench/checkers/fcl_solid.h"
 #include "mesh/triangle_mesh.h"
 #include "spheretree/sphere_tree.h"
 

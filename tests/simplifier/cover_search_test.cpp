@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/stage2/cover_search.h"
+#include "simplifier/stage2/search/cover_search.h"
 
-#include "simplifier/stage2/cover_core.h"
-#include "simplifier/stage2/cover_yield.h"
-#include "simplifier/stage2/lazy_cover_search.h"
+#include "simplifier/stage2/search/cover_core.h"
+#include "simplifier/stage2/search/cover_yield.h"
+#include "simplifier/stage2/search/lazy_cover_search.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>

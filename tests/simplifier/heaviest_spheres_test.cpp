@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is said of the spheres that may cover a solid, held against many of them taken at random.
-#include "simplifier/stage2/heaviest_spheres.h"
+#include "simplifier/stage2/bound/heaviest_spheres.h"
 
 #include "simplifier/external_spheres.h"
 #include "tests/simplifier/fitting.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The paper's loop (cover() with CoverMethod::kPaper).
-#include "simplifier/stage2/internal_spheres.h"
+#include "simplifier/stage2/paper/internal_spheres.h"
 
 #include "spheretree/error.h"
 #include "tests/simplifier/fitting.h"

@@ -4,7 +4,7 @@
 #include "simplifier/baseline/internal/surface_samples.h"
 #include "simplifier/solid/cube.h"
 #include "simplifier/stage2/cover_checks.h"
-#include "simplifier/stage2/inscribed_spheres.h"
+#include "simplifier/stage2/paper/inscribed_spheres.h"
 
 #include <algorithm>
 #include <set>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/geometry/point_grid.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
-#include "simplifier/stage2/set_cover.h"
+#include "simplifier/stage2/search/set_cover.h"
 #include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
 

@@ -15,6 +15,7 @@
 #include <XCAFDoc_ShapeTool.hxx>
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <map>
 #include <set>
 

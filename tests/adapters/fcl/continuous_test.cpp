@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "adapters/fcl/collide.h"
-#include "bench/fcl_solid.h"
+#include "bench/checkers/fcl_solid.h"
 #include "bench/scenes/shapes.h"
 #include "collide/collide.h"
 #include "collide/motion.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "adapters/fcl/sphere_model.h"
-#include "bench/fcl_solid.h"
+#include "bench/checkers/fcl_solid.h"
 #include "mesh/triangle_mesh.h"
 #include "tests/support/random.h"
 

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/checkers/fcl_mesh_checker.h"
+
+#include "bench/checkers/fcl_float.h"
+#include "bench/checkers/fcl_models.h"
+
+#include <memory>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+template <class Volume>
+bool meshes_touch(const fcl::CollisionGeometry<typename Volume::S>& a,
+                  const fcl::Transform3<typename Volume::S>& world_from_a,
+                  const fcl::CollisionGeometry<typename Volume::S>& b,
+                  const fcl::Transform3<typename Volume::S>& world_from_b) {
+  using S = typename Volume::S;
+  fcl::CollisionRequest<S> request;  // one contact, not kept
+  fcl::CollisionResult<S> result;
+  return fcl::collide(&a, world_from_a, &b, world_from_b, request, result) > 0;
+}
+
+template <class Volume>
+class BoxesThenMeshes : public SingleChecker {
+ public:
+  explicit BoxesThenMeshes(const Workload& workload) : SingleChecker(workload.robot) {
+    for (const Obstacle& obstacle : workload.obstacles) {
+      const auto pose = fcl_pose<S>(obstacle.world_from_part);
+      const FclModel<Volume> model(obstacle.part.mesh);
+      obstacles_.push_back({model, pose, model.world_box(pose)});
+    }
+    for (const Body& body : workload.bodies) {
+      bodies_.push_back(
+          {FclModel<Volume>(body.part.mesh), static_cast<std::size_t>(body.link), {}});
+      for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
+        if (is_tested(body, workload.obstacles[i])) bodies_.back().against.push_back(i);
+      }
+    }
+  }
+
+ protected:
+  bool collides(std::span<const Pose> world_from_link) override {
+    for (const Moving& body : bodies_) {
+      const auto pose = fcl_pose<S>(world_from_link[body.link]);
+      const auto box = body.model.world_box(pose);
+      for (const std::size_t i : body.against) {
+        const Static& obstacle = obstacles_[i];
+        if (box.intersects(obstacle.box) &&
+            meshes_touch<Volume>(*body.model.geometry, pose, *obstacle.model.geometry,
+                                 obstacle.pose)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  using S = typename Volume::S;
+  struct Static {
+    FclModel<Volume> model;
+    fcl::Transform3<S> pose;
+    Eigen::AlignedBox<S, 3> box;
+  };
+  struct Moving {
+    FclModel<Volume> model;
+    std::size_t link;
+    std::vector<std::size_t> against;
+  };
+  std::vector<Static> obstacles_;
+  std::vector<Moving> bodies_;
+};
+
+template <class Volume>
+class ManagerThenMeshes : public SingleChecker {
+ public:
+  explicit ManagerThenMeshes(const Workload& workload) : SingleChecker(workload.robot) {
+    for (const Obstacle& obstacle : workload.obstacles) {
+      obstacles_.push_back(std::make_unique<fcl::CollisionObject<S>>(
+          FclModel<Volume>(obstacle.part.mesh).geometry, fcl_pose<S>(obstacle.world_from_part)));
+      manager_.registerObject(obstacles_.back().get());
+    }
+    manager_.setup();
+    for (const Body& body : workload.bodies) {
+      Moving moving{
+          std::make_unique<fcl::CollisionObject<S>>(FclModel<Volume>(body.part.mesh).geometry),
+          static_cast<std::size_t>(body.link),
+          {}};
+      for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
+        if (!is_tested(body, workload.obstacles[i])) moving.left_out.push_back(obstacles_[i].get());
+      }
+      bodies_.push_back(std::move(moving));
+    }
+  }
+
+ protected:
+  bool collides(std::span<const Pose> world_from_link) override {
+    for (const Moving& body : bodies_) {
+      body.object->setTransform(fcl_pose<S>(world_from_link[body.link]));
+      body.object->computeAABB();
+      Query query{&body, false};
+      manager_.collide(body.object.get(), &query, &visit);
+      if (query.hit) return true;
+    }
+    return false;
+  }
+
+ private:
+  using S = typename Volume::S;
+  struct Moving {
+    std::unique_ptr<fcl::CollisionObject<S>> object;
+    std::size_t link;
+    std::vector<const fcl::CollisionObject<S>*> left_out;
+  };
+  struct Query {
+    const Moving* body;
+    bool hit;
+  };
+
+  // True ends the search.
+  static bool visit(fcl::CollisionObject<S>* a, fcl::CollisionObject<S>* b, void* data) {
+    Query& query = *static_cast<Query*>(data);
+    for (const auto* left_out : query.body->left_out) {
+      if (a == left_out || b == left_out) return false;
+    }
+    query.hit = meshes_touch<Volume>(*a->collisionGeometry(), a->getTransform(),
+                                     *b->collisionGeometry(), b->getTransform());
+    return query.hit;
+  }
+
+  std::vector<std::unique_ptr<fcl::CollisionObject<S>>> obstacles_;
+  fcl::DynamicAABBTreeCollisionManager<S> manager_;
+  std::vector<Moving> bodies_;
+};
+
+template <class Volume>
+std::unique_ptr<Checker> make(const Workload& workload, FclMeshSetting::Front front) {
+  if (front == FclMeshSetting::Front::kBoxes) {
+    return std::make_unique<BoxesThenMeshes<Volume>>(workload);
+  }
+  return std::make_unique<ManagerThenMeshes<Volume>>(workload);
+}
+
+}  // namespace
+
+std::string to_string(const FclMeshSetting& setting) {
+  return std::string(setting.volume == FclMeshSetting::Volume::kObb ? "OBB" : "OBBRSS") +
+         (setting.precision == FclMeshSetting::Precision::kDouble ? " double" : " float") +
+         (setting.front == FclMeshSetting::Front::kBoxes ? ", boxes" : ", manager");
+}
+
+std::vector<FclMeshSetting> all_fcl_mesh_settings() {
+  std::vector<FclMeshSetting> settings;
+  for (const auto volume : {FclMeshSetting::Volume::kObb, FclMeshSetting::Volume::kObbRss}) {
+    for (const auto precision :
+         {FclMeshSetting::Precision::kDouble, FclMeshSetting::Precision::kFloat}) {
+      for (const auto front : {FclMeshSetting::Front::kBoxes, FclMeshSetting::Front::kManager}) {
+        settings.push_back({volume, precision, front});
+      }
+    }
+  }
+  return settings;
+}
+
+std::unique_ptr<Checker> make_fcl_mesh_checker(const Workload& workload,
+                                               const FclMeshSetting& setting) {
+  const bool is_double = setting.precision == FclMeshSetting::Precision::kDouble;
+  if (setting.volume == FclMeshSetting::Volume::kObb) {
+    return is_double ? make<fcl::OBB<double>>(workload, setting.front)
+                     : make<fcl::OBB<float>>(workload, setting.front);
+  }
+  return is_double ? make<fcl::OBBRSS<double>>(workload, setting.front)
+                   : make<fcl::OBBRSS<float>>(workload, setting.front);
+}
+
+}  // namespace spherule

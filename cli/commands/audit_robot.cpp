@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/cover/audit_robot.h"
+
+#include "cli/commands/command.h"
+#include "cli/files/in_file.h"
+#include "cli/files/interruption.h"
+#include "cli/files/output.h"
+#include "cli/help/command_specification.h"
+#include "cli/help/help.h"
+#include "cli/options/length_options.h"
+#include "cli/options/robot_options.h"
+#include "cli/pages/page_output.h"
+#include "cli/pages/view_robot.h"
+#include "cli/robots/audit_robot_report.h"
+#include "cli/robots/pair_kinds.h"
+#include "cli/robots/pair_report.h"
+#include "cli/robots/sphere_input.h"
+#include "cli/robots/trajectory_input.h"
+#include "cli/text/exit_code.h"
+#include "cli/text/message.h"
+#include "cli/text/next_step.h"
+#include "cli/text/progress.h"
+#include "robot/formats/sphere_formats.h"
+#include "spheretree/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+struct AuditRobotArguments {
+  std::string urdf;
+  std::string spheres;
+  std::string geometry = geometry_names().front();
+  std::vector<std::string> packages;
+  TrajectoryArguments poses;
+  std::string link;
+  std::optional<std::size_t> level;
+  std::string repaired;
+  PairSources pairs;
+  bool ignores_unknown_links = false;
+  std::optional<double> max_error;
+  LengthOptions lengths;
+  std::optional<double> min_external;
+  bool json = false;
+  std::string view;
+};
+
+std::vector<std::vector<double>> configurations_of(const TrajectoryArguments& arguments,
+                                                   const RobotModel& model) {
+  std::vector<std::vector<double>> configurations;
+  if (arguments.file.empty()) return configurations;
+  const Trajectory trajectory = read_configurations(arguments, model).trajectory;
+  require_provable(model, arguments, trajectory);
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const auto positions = trajectory.configuration(i);
+    configurations.emplace_back(positions.begin(), positions.end());
+  }
+  return configurations;
+}
+
+void check_repair(const AuditRobotArguments& arguments, const SphereFormatFile& file,
+                  bool is_shrunk) {
+  if (!is_written(file.format)) {
+    throw Error(arguments.spheres,
+                std::string(name_of(file.format)) + " is read only and cannot be repaired");
+  }
+  if (is_shrunk) throw Error(arguments.spheres, "spheres with a buffer below 0 are not repaired");
+}
+
+// In the format of the file, which is kept but for the spheres.
+void write_repaired(const AuditRobotArguments& arguments, const SphereFormatFile& file,
+                    const RobotRepair& repair) {
+  RobotSpheres spheres = file.spheres;
+  spheres.links = repair.spheres;
+  write_robot_spheres(spheres, file.format,
+                      {.urdf = arguments.spheres, .original = arguments.spheres},
+                      arguments.repaired);
+}
+
+// `view` knows neither --link nor --level, and of files that name no link only those that cannot be
+// a part's; --repair makes the links cover, not the configurations.
+std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, bool names_links,
+                                       bool is_mendable) {
+  std::vector<NextStep> steps;
+  const bool is_shown = names_links || is_robot_file(arguments.spheres);
+  if (is_shown && arguments.link.empty() && !arguments.level) {
+    std::vector<std::string> view = {"view", arguments.urdf, arguments.spheres};
+    repeat_robot_options(arguments.geometry, arguments.packages, view);
+    view.insert(view.end(), {"--leaks", "-o", beside(arguments.spheres, ".html")});
+    steps.push_back({std::move(view), "see where they leak"});
+  }
+  if (is_mendable && arguments.poses.file.empty()) {
+    std::vector<std::string> mend = {"audit-robot", arguments.urdf, arguments.spheres};
+    repeat_robot_options(arguments.geometry, arguments.packages, mend);
+    repeat("--link", arguments.link, mend);
+    if (arguments.level) repeat("--level", std::to_string(*arguments.level), mend);
+    repeat("--max-error", arguments.max_error, mend);
+    repeat("--min-external", arguments.min_external, mend);
+    const std::string ending = std::filesystem::path(arguments.spheres).extension().string();
+    repeat("--repair", beside(arguments.spheres, ".mended" + ending), mend);
+    steps.push_back({std::move(mend), "make them cover"});
+  }
+  return steps;
+}
+
+bool has_shrinking_buffers(const RobotSpheres& spheres) {
+  return spheres.collision_buffer < 0.0 ||
+         std::any_of(spheres.collision_buffers.begin(), spheres.collision_buffers.end(),
+                     [](const auto& buffer) { return buffer.second < 0.0; });
+}
+
+int audit(const AuditRobotArguments& arguments) {
+  const bool mend = !arguments.repaired.empty();
+  check_outputs({arguments.repaired, arguments.view},
+                {arguments.urdf, arguments.spheres, arguments.poses.file, arguments.pairs.srdf,
+                 arguments.pairs.pairs});
+  const LinkGeometry geometry = geometry_named(arguments.geometry);
+  const RobotDescription robot = read_robot(arguments.urdf, arguments.packages, geometry);
+  SphereInput given = read_spheres_of(robot, geometry, arguments.spheres,
+                                      {.link = arguments.link, .level = arguments.level});
+  RobotAuditReport report{.file = std::move(given.file),
+                          .audit = {},
+                          .repaired_file = arguments.repaired,
+                          .repair = std::nullopt,
+                          .pairs = std::nullopt};
+  const RobotSpheres& spheres = report.file.spheres;
+  require_known_links(robot.model, arguments.spheres, spheres, arguments.ignores_unknown_links);
+  const bool is_shrunk = has_shrinking_buffers(spheres);
+  if (mend) check_repair(arguments, report.file, is_shrunk);
+  RobotAuditOptions options{.geometry = geometry,
+                            .min_external_diameter = arguments.min_external.value_or(0.0),
+                            .configurations = configurations_of(arguments.poses, robot.model)};
+  if (arguments.max_error) options.max_error = *arguments.max_error;
+  {
+    ProgressBar bar;
+    options.progress = bar.callback();
+    in_file(arguments.urdf, [&] {
+      report.audit = audit_robot(robot, shrunk_by_buffers(spheres), options);
+      if (!mend) return;
+      report.repair = repair_robot(robot, spheres.links,
+                                   {.geometry = geometry,
+                                    .max_error = arguments.max_error.value_or(0.0),
+                                    .progress = options.progress});
+    });
+  }
+  if (!arguments.pairs.is_empty()) {
+    report.pairs = pair_kinds(robot, spheres, geometry, arguments.pairs, true);
+  }
+  if (mend) {
+    write_uninterrupted([&] { write_repaired(arguments, report.file, *report.repair); });
+  }
+  const bool needs_json = arguments.json || !arguments.view.empty();
+  const Json json = needs_json ? audit_json(report) : Json();
+  std::cout << (arguments.json ? to_text(json) : audit_table(report));
+  if (!arguments.view.empty()) {
+    write_page(arguments.view,
+               covered_robot_scene(robot, arguments.geometry, spheres, arguments.spheres, json));
+    if (!arguments.json) std::cout << page_line(arguments.view);
+  }
+  if (report.pairs) {
+    for (const std::string& warning : wrong_pairs(report.pairs->judgement, robot.model)) {
+      warn(warning);
+    }
+  }
+  if (is_shrunk) {
+    tell(arguments.spheres + ": spheres were certified as its buffers below 0 shrink them");
+  }
+  if (mend) {
+    const std::vector<LinkRepair>& links = report.repair->links;
+    return std::all_of(links.begin(), links.end(),
+                       [](const LinkRepair& link) { return link.certificate.covered; })
+               ? kYes
+               : kNo;
+  }
+  const RobotAudit& result = report.audit;
+  if (arguments.poses.file.empty() ? result.links_covered : result.configurations_covered)
+    return kYes;
+  if (!arguments.json) {
+    const bool is_mendable = is_written(report.file.format) && !is_shrunk;
+    std::cout << describe(steps_after_leak(arguments, given.names_links, is_mendable));
+  }
+  return kNo;
+}
+
+void add_inputs(CLI::App& command, AuditRobotArguments& arguments) {
+  command.add_option("urdf", arguments.urdf, "The robot, with its meshes")
+      ->required()
+      ->type_name(kFile);
+  command
+      .add_option("spheres", arguments.spheres,
+                  "Its spheres: spherized URDF, SRDF, cuRobo yml, XRDF, or JSON of foam, MorphIt, "
+                  "ballpark or spherule; told apart by content")
+      ->required()
+      ->type_name(kFile);
+  add_unknown_links_flag(command, arguments.ignores_unknown_links);
+  add_geometry_option(command, "Which of the robot's geometries is to be covered",
+                      arguments.geometry);
+  add_package_option(command, arguments.packages);
+  command
+      .add_option("--poses", arguments.poses.file,
+                  "Configurations (CSV) in which spheres of other links may cover too; the "
+                  "exit code is then about these")
+      ->type_name(kFile);
+  add_degrees_flag(command, "Angles of --poses are in degrees, lengths in metres", arguments.poses)
+      ->needs("--poses");
+  command
+      .add_option("--srdf", arguments.pairs.srdf,
+                  "The robot's SRDF: tell the pairs of links apart, and judge those it disables")
+      ->type_name(kFile);
+  command
+      .add_option("--pairs", arguments.pairs.pairs,
+                  "What is proved of the pairs of links (NAME.pairs of robot, covered without "
+                  "padding): tell them apart by it; without it --srdf proves them first")
+      ->type_name(kFile);
+}
+
+}  // namespace
+
+void add_audit_robot(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "audit-robot",
+      "Prove whether a file's spheres cover a robot, link by link; exit 0 covered, 1 leaks");
+  auto arguments = std::make_shared<AuditRobotArguments>();
+  add_inputs(*command, *arguments);
+  command->add_option("--link", arguments->link,
+                      "Whose spheres they are, if the file names no link");
+  command->add_option("--level", arguments->level,
+                      "Which level of a file with levels, 0 the coarsest (default: the finest)");
+  command->add_flag("--json", arguments->json, "Print the certificates as JSON");
+  command
+      ->add_option("--view", arguments->view,
+                   "Write a page that shows the robot, the spheres and their leaks (HTML, as view "
+                   "writes it)")
+      ->type_name(kFile);
+  command
+      ->add_option("--repair", arguments->repaired,
+                   "Where the file goes with spheres grown and added so that they cover every "
+                   "link; exit 0 then says that these do")
+      ->type_name(kFile);
+  arguments->lengths.add_positive(
+      *command, "--max-error", arguments->max_error,
+      "E, metres: for which the spheres were made (default 0.01), and how far a repaired one may "
+      "protrude (default: as far as half of the link's spheres do, and at least 1 % of its box "
+      "diagonal)");
+  arguments->lengths.add_positive(*command, "--min-external", arguments->min_external,
+                                  "D, metres, for which the spheres were made (default: 4 E)");
+  command->footer(to_text(
+      {.text =
+           "Lengths are in metres, as in the URDF, or have a unit of their own (5mm); the table is "
+           "in millimetres.",
+       .exit_codes = "0 every link is proved to be covered (with --poses: in these; with "
+                     "--repair: by the repaired spheres); 1 leaks, or not proved",
+       .examples = {"spherule audit-robot robot.urdf robot.curobo.yml",
+                    "spherule audit-robot robot.urdf robot.spheres.urdf --geometry visual "
+                    "--poses path.csv",
+                    "spherule audit-robot robot.urdf robot.curobo.yml --repair "
+                    "mended.yml --json"}}));
+  command->callback([arguments, &exit_code] {
+    arguments->lengths.convert(metres());
+    exit_code = audit(*arguments);
+  });
+}
+
+}  // namespace spherule

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/commands/command.h"
+#include "cli/files/in_file.h"
+#include "cli/files/output.h"
+#include "cli/help/command_specification.h"
+#include "cli/help/help.h"
+#include "cli/options/length_options.h"
+#include "cli/options/robot_options.h"
+#include "cli/options/shard.h"
+#include "cli/pages/check_view.h"
+#include "cli/pages/page_output.h"
+#include "cli/robots/check_report.h"
+#include "cli/robots/check_spheres.h"
+#include "cli/robots/sphere_input.h"
+#include "cli/robots/trajectory_check.h"
+#include "cli/robots/trajectory_input.h"
+#include "cli/text/exit_code.h"
+#include "cli/text/message.h"
+#include "cli/text/next_step.h"
+#include "cli/text/progress.h"
+#include "robot/check/robot_checker.h"
+#include "robot/check/scene_setup.h"
+#include "robot/cover/goal_cover.h"
+#include "robot/files/urdf.h"
+#include "robot/model/shortest_motion.h"
+#include "robot/pairs/link_pairs_file.h"
+#include "spheretree/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <iostream>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+// What --continuous takes.
+constexpr const char* kAsGiven = "as-given";
+constexpr const char* kShortest = "shortest";
+
+struct CheckArguments {
+  std::string urdf;
+  std::string scene;
+  TrajectoryArguments trajectory;
+  std::string spheres;
+  std::string pairs;
+  std::string geometry = geometry_names().front();
+  std::vector<std::string> packages;
+  RobotCoverOptions cover;
+  double resolution = EdgeRequest{}.resolution;
+  std::string continuous = kAsGiven;
+  LengthOptions lengths;
+  bool enforces_limits = false;
+  bool ignores_unknown_links = false;
+  bool json = false;
+  std::string view;
+
+  ContinuousMotion motion() const {
+    return continuous == kAsGiven ? ContinuousMotion::kAsGiven : ContinuousMotion::kShortest;
+  }
+};
+
+// The same trajectory with each configuration where the motion to it ends.
+Trajectory ends_of_motions(const RobotModel& robot, const Trajectory& trajectory) {
+  const ShortestMotion shortest(robot);
+  Trajectory ends = trajectory;
+  std::vector<double> room;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const std::span<const double> end =
+        shortest.end_of(trajectory.configuration(i - 1), trajectory.configuration(i), room);
+    std::copy(end.begin(), end.end(),
+              ends.positions.begin() + static_cast<std::ptrdiff_t>(i * trajectory.width));
+  }
+  return ends;
+}
+
+// Which motions of continuous joints are proved, before that is done.
+void review_turns(const CheckArguments& arguments, const RobotModel& robot,
+                  const Trajectory& trajectory, CheckReport& report) {
+  const ShortestMotion shortest(robot);
+  if (!shortest.has_turns()) return;
+  report.continuous = arguments.motion();
+  report.turning = more_than_half_a_turn(robot, trajectory);
+  const std::string& file = arguments.trajectory.file;
+  if (report.continuous == ContinuousMotion::kAsGiven) {
+    if (report.turning.count == 0) return;
+    warn(file + ": " + describe(report.turning, arguments.trajectory.is_in_degrees) +
+         "; that way is proved: OMPL and many controllers go the shorter one, which "
+         "--continuous shortest proves");
+    return;
+  }
+  try {
+    shortest.require();
+  } catch (const Error& error) {
+    throw Error(arguments.urdf, error.what());
+  }
+  const TurningMotions half = half_a_turn(robot, trajectory);
+  if (half.count == 0) return;
+  warn(file + ": of " + std::to_string(half.count) + (half.count == 1 ? " motion" : " motions") +
+       " no way is clearly the shorter one, because a continuous joint turns by half a turn, the "
+       "first from line " +
+       std::to_string(half.line) + " to line " + std::to_string(half.to_line) + ": joint " +
+       half.joint + "; a controller may go the other way than what is proved");
+}
+
+// Where bodies of the robot touch all the time: what to do about it, for a person.
+std::string advice(const CheckArguments& arguments, const CheckReport& report) {
+  const std::vector<TouchingPair> pairs = always_touching(report);
+  if (pairs.empty()) return {};
+  std::string text;
+  for (const TouchingPair& pair : pairs) {
+    text += pair.first.contact.first.name + " and " + pair.first.contact.second.name +
+            " touch all the time\n";
+  }
+  text += "where they may, name them under \"allowed_contacts\" in " + arguments.scene + "\n";
+  if (!arguments.spheres.empty()) return text;  // how coarse they are is not known
+  const CheckArguments defaults;
+  std::vector<std::string> finer = {"check", arguments.urdf, arguments.scene,
+                                    arguments.trajectory.file};
+  if (arguments.trajectory.has_motions) finer.push_back("--edges");
+  if (arguments.continuous != defaults.continuous) {
+    repeat("--continuous", arguments.continuous, finer);
+  }
+  if (arguments.trajectory.is_in_degrees) finer.push_back("--degrees");
+  if (arguments.enforces_limits) finer.push_back("--enforce-limits");
+  if (arguments.resolution != defaults.resolution) {
+    repeat("--resolution", arguments.resolution, finer);
+  }
+  repeat("--max-error", 0.5 * arguments.cover.max_error, finer);
+  if (arguments.cover.effort != defaults.cover.effort) {
+    repeat("--effort", std::to_string(arguments.cover.effort), finer);
+  }
+  if (!arguments.pairs.empty()) repeat("--pairs", arguments.pairs, finer);
+  repeat_robot_options(arguments.geometry, arguments.packages, finer);
+  return text + describe({{std::move(finer), "finer spheres may part them"}});
+}
+
+// Of how many configurations of this shard, the first of the file, proofs are told of.
+std::size_t explained_of(const TrajectoryInput& input) {
+  constexpr std::size_t kMost = 10000;  // enough to see which pairs they are
+  return std::min(input.own, kMost - std::min(kMost, input.first));
+}
+
+// What stands around the robot, and what is ignored.
+PreparedScene prepare(SphereRobot robot, const SceneDescription& scene, RobotCoverOptions options) {
+  ProgressBar bar;
+  options.progress = bar.callback();
+  PreparedScene prepared = prepare_scene(std::move(robot.model), scene, options);
+  bar.clear();
+  for (const std::string& warning : prepared.warnings) warn(warning);
+  AllowedCollisions allowed = prepared.scene.allowed_collisions();
+  for (const DisabledPair& pair : robot.ignored) allowed.allow(pair.link_a, pair.link_b);
+  prepared.scene.set_allowed_collisions(std::move(allowed));
+  return prepared;
+}
+
+// With --spheres no mesh is needed, unless proofs are about meshes.
+RobotDescription read_checked_robot(const CheckArguments& arguments, LinkGeometry geometry) {
+  if (arguments.spheres.empty()) return read_robot(arguments.urdf, arguments.packages, geometry);
+  const std::vector<LinkGeometry> needed(arguments.pairs.empty() ? 0 : 1, geometry);
+  return read_urdf(arguments.urdf, urdf_options(arguments.packages, needed));
+}
+
+void write_checked(const CheckArguments& arguments, const CheckedScene& checked, bool has_motions) {
+  ProgressBar bar;
+  write_check_page(arguments.view, checked,
+                   {.file = arguments.trajectory.file,
+                    .has_motions = has_motions,
+                    .continuous = arguments.motion(),
+                    .threads = arguments.cover.threads,
+                    .progress = bar.callback()});
+  bar.clear();
+}
+
+int check(const CheckArguments& arguments) {
+  check_outputs({arguments.view}, {arguments.urdf, arguments.scene, arguments.trajectory.file,
+                                   arguments.spheres, arguments.pairs});
+  RobotCoverOptions options = arguments.cover;
+  options.geometry = geometry_named(arguments.geometry);
+  const RobotDescription robot = read_checked_robot(arguments, options.geometry);
+  const SceneDescription scene = read_scene(arguments.scene);
+  const TrajectoryInput input = read_configurations(arguments.trajectory, robot.model);
+  const bool has_motions = input.has_motions;
+  if (!arguments.view.empty() && input.trajectory.size() == 0) {
+    throw Error("--view", "there is nothing to show: this shard of the trajectory is empty");
+  }
+  CheckReport seen;
+  if (arguments.trajectory.has_motions) {
+    require_provable(robot.model, arguments.trajectory, input.trajectory);
+    if (has_motions) review_turns(arguments, robot.model, input.trajectory, seen);
+    if (arguments.motion() == ContinuousMotion::kShortest) {
+      require_provable(robot.model, arguments.trajectory,
+                       ends_of_motions(robot.model, input.trajectory));
+    }
+  }
+  require_resolution(arguments.resolution);
+
+  SphereRobot spheres = arguments.spheres.empty()
+                            ? cover_sphere_robot(arguments.urdf, robot, options)
+                            : read_sphere_robot(arguments.spheres, robot, options.geometry,
+                                                arguments.ignores_unknown_links);
+  const bool is_whole = spheres.is_whole;
+  PreparedScene prepared =
+      in_file(arguments.scene, [&] { return prepare(std::move(spheres), scene, options); });
+  std::shared_ptr<const LinkPairs> proofs;
+  if (!arguments.pairs.empty()) {
+    proofs = std::make_shared<const LinkPairs>(
+        load_link_pairs(arguments.pairs, robot.model, covered_bodies(robot, options)));
+    prepared.scene.set_link_pairs(proofs);
+  }
+
+  const RobotChecker checker = in_file(arguments.scene, [&] { return prepared.scene.snapshot(); });
+  ProgressBar bar;
+  const TrajectoryCheckOptions how{
+      .explained = proofs != nullptr ? explained_of(input) : 0,
+      .threads = options.threads,
+      .progress = bar.callback(),
+      .edge = {.resolution = arguments.resolution, .continuous = arguments.motion()}};
+  CheckReport report = has_motions ? check_motions(checker, input.trajectory, how)
+                                   : check_configurations(checker, input.trajectory, how);
+  bar.clear();
+  report.is_whole = is_whole;
+  report.given_spheres = arguments.spheres;
+  report.configurations = input.own;
+  report.shard = arguments.trajectory.shard;
+  report.continuous = seen.continuous;
+  report.turning = seen.turning;
+  report.outside = input.outside;
+  report.enforces_limits = arguments.enforces_limits;
+  report.is_in_degrees = arguments.trajectory.is_in_degrees;
+  if (proofs != nullptr) {
+    const RobotModel& model = checker.robot();
+    report.tell_kinds(model, pair_statuses(model, prepared.scene.allowed_collisions(), proofs));
+  }
+  if (!arguments.view.empty()) {
+    write_checked(arguments,
+                  {.robot = robot,
+                   .geometry = arguments.geometry,
+                   .scene = scene,
+                   .checker = checker,
+                   .trajectory = input.trajectory,
+                   .report = report},
+                  has_motions);
+  }
+  std::cout << (arguments.json ? check_json(report)
+                               : check_table(report) + advice(arguments, report));
+  if (!arguments.view.empty() && !arguments.json) std::cout << page_line(arguments.view);
+  return report.is_free() ? kYes : kNo;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "check",
+      "Check a robot along a trajectory in a scene; exit 0 free, 1 collision or not proved");
+  auto arguments = std::make_shared<CheckArguments>();
+  command->add_option("urdf", arguments->urdf, "URDF of the robot")->required()->type_name(kFile);
+  command->add_option("scene", arguments->scene, "Scene, JSON (docs/scene-file.md)")
+      ->required()
+      ->type_name(kFile);
+  command
+      ->add_option("trajectory", arguments->trajectory.file,
+                   "Configurations, one a line, with or without a line of joint names")
+      ->required()
+      ->type_name(kFile);
+  command->add_flag("--edges", arguments->trajectory.has_motions,
+                    "Prove every motion from one configuration to the next");
+  command
+      ->add_option("--continuous", arguments->continuous,
+                   "With --edges: the way that continuous joints turn from one configuration to "
+                   "the next: as-given, straight from number to number (default), or shortest, by "
+                   "at most half a turn, as OMPL's SO2 goes")
+      ->check(CLI::IsMember({kAsGiven, kShortest}));
+  add_degrees_flag(*command, "Angles of the trajectory are in degrees, lengths in metres",
+                   arguments->trajectory);
+  command->add_flag("--enforce-limits", arguments->enforces_limits,
+                    "Configurations outside the joint limits are not free (default: a warning)");
+  add_shard_option(*command,
+                   "Only the I-th of N equal parts of the trajectory, for batch systems: counts of "
+                   "all parts add up to those of the whole",
+                   arguments->trajectory.shard);
+  arguments->lengths.add(
+      *command, "--resolution", arguments->resolution,
+      "With --edges: how closely motions are examined, in metres (default 1e-4)");
+  command
+      ->add_option("--spheres", arguments->spheres,
+                   "Spheres of the robot, in any format that audit-robot reads, taken as they are: "
+                   "audit-robot proves whether they cover (default: cover the robot first)")
+      ->type_name(kFile);
+  add_unknown_links_flag(*command, arguments->ignores_unknown_links);
+  command
+      ->add_option("--pairs", arguments->pairs,
+                   "What is proved of the pairs of the robot's links (NAME.pairs of robot, covered "
+                   "without padding): where two are proved free their spheres are not tested")
+      ->type_name(kFile);
+  arguments->lengths.add_positive(
+      *command, "--max-error", arguments->cover.max_error,
+      "Without --spheres: how far spheres may protrude, in metres (default 0.01)");
+  command
+      ->add_option("--effort", arguments->cover.effort,
+                   "Without --spheres: how long to search for fewer spheres, as fit has it")
+      ->check(CLI::NonNegativeNumber);
+  add_geometry_option(*command,
+                      "Which of the robot's geometries stands for it (default: collision)",
+                      arguments->geometry);
+  add_package_option(*command, arguments->packages);
+  command->add_option("--threads", arguments->cover.threads, "Threads, 0: all (default)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--json", arguments->json, "Print the result as JSON");
+  command
+      ->add_option("--view", arguments->view,
+                   "Write a page that plays the trajectory in its scene, with verdicts, contacts "
+                   "and clearance (HTML, as view writes it)")
+      ->type_name(kFile);
+  command->footer(
+      to_text({.text = "",
+               .exit_codes = "0 free; 1 a collision, not proved, a link without spheres, or with "
+                             "--enforce-limits a configuration outside the joint limits",
+               .examples = {"spherule check robot.urdf cell.json path.csv",
+                            "spherule check robot.urdf cell.json path.csv --edges --spheres "
+                            "robot.spheres.json --json",
+                            "spherule check robot.urdf cell.json path.csv --edges --view path.html",
+                            "spherule check robot.urdf cell.json path.csv --degrees "
+                            "--edges --continuous shortest",
+                            "spherule check robot.urdf cell.json path.csv --edges --json --shard "
+                            "2/8"}}));
+  command->callback([arguments, &exit_code] {
+    arguments->lengths.convert(metres());
+    exit_code = check(*arguments);
+  });
+}
+
+}  // namespace spherule

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/commands/command.h"
+#include "cli/files/in_file.h"
+#include "cli/files/interruption.h"
+#include "cli/files/output.h"
+#include "cli/help/command_specification.h"
+#include "cli/help/help.h"
+#include "cli/options/length_options.h"
+#include "cli/options/robot_options.h"
+#include "cli/pages/page_output.h"
+#include "cli/pages/view_robot.h"
+#include "cli/robots/false_alarm_report.h"
+#include "cli/robots/pair_report.h"
+#include "cli/robots/robot_arguments.h"
+#include "cli/robots/robot_false_alarms.h"
+#include "cli/robots/robot_files.h"
+#include "cli/robots/robot_report.h"
+#include "cli/text/exit_code.h"
+#include "cli/text/message.h"
+#include "cli/text/next_step.h"
+#include "cli/text/progress.h"
+#include "robot/check/named_postures.h"
+#include "robot/cover/robot_spheres.h"
+#include "robot/files/srdf.h"
+#include "robot/model/link_spheres.h"
+#include "robot/pairs/ignored_pairs.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+namespace fs = std::filesystem;
+
+RobotFilePlan plan_of(const RobotArguments& arguments) {
+  RobotFilePlan plan{.folder = arguments.folder,
+                     .urdf = arguments.urdf,
+                     .formats = arguments.formats,
+                     .srdf = arguments.srdf,
+                     .curobo = arguments.curobo,
+                     .xrdf = arguments.xrdf,
+                     .tool_link = arguments.tool_link};
+  std::sort(plan.formats.begin(), plan.formats.end());
+  plan.formats.erase(std::unique(plan.formats.begin(), plan.formats.end()), plan.formats.end());
+  return plan;
+}
+
+// Refuses places that cannot be written, before long work is done for nothing. A folder that is not
+// there is made, but only once there is something to put into it.
+void check_places(const RobotArguments& arguments, const std::vector<fs::path>& outputs) {
+  std::vector<fs::path> inputs = {arguments.urdf, arguments.srdf, arguments.curobo, arguments.xrdf};
+  check_outputs({arguments.view}, inputs);
+  std::error_code fault;
+  if (fs::exists(arguments.folder, fault)) {
+    if (!fs::is_directory(arguments.folder, fault)) {
+      throw Error(arguments.folder, "is not a folder");
+    }
+    check_outputs(outputs, inputs);
+  } else {
+    check_outputs({arguments.folder}, inputs);
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> names_of(const std::vector<DisabledPair>& pairs) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const DisabledPair& pair : pairs) names.emplace_back(pair.link_a, pair.link_b);
+  return names;
+}
+
+// What is false is not handed on to other files as a reason.
+std::vector<DisabledPair> without_refuted_reasons(std::vector<DisabledPair> pairs,
+                                                  const SrdfJudgement& judgement) {
+  for (DisabledPair& pair : pairs) {
+    const bool is_wrong =
+        std::any_of(judgement.pairs.begin(), judgement.pairs.end(), [&](const JudgedPair& judged) {
+          return judged.is_wrong && judged.pair.link_a == pair.link_a &&
+                 judged.pair.link_b == pair.link_b;
+        });
+    if (is_wrong) pair.reason = "given, though they can touch";
+  }
+  return pairs;
+}
+
+std::vector<std::string> links_to_cover(const RobotDescription& robot, LinkGeometry geometry) {
+  std::vector<std::string> names;
+  for (const LinkDescription& link : robot.links) {
+    if (!link_shapes(link, geometry).empty()) names.push_back(link.name);
+  }
+  return names;
+}
+
+// Whether the links are as other commands read them: neither padded nor welded.
+bool has_plain_links(const RobotArguments& arguments) {
+  const auto links = link_options(arguments.links);
+  return arguments.options.padding == 0.0 && arguments.options.weld == 0.0 &&
+         std::none_of(links.begin(), links.end(),
+                      [](const auto& link) { return link.second.padding.value_or(0.0) > 0.0; });
+}
+
+// With the file of all links that the other commands read, if it was requested.
+std::vector<NextStep> next_steps(const RobotArguments& arguments,
+                                 const std::vector<fs::path>& written) {
+  const auto spheres = std::find_if(written.begin(), written.end(), [](const fs::path& file) {
+    return file.string().ends_with(".spheres.json");
+  });
+  if (spheres == written.end()) return {};
+  std::vector<std::string> view = {"view", arguments.urdf, spheres->string()};
+  std::vector<std::string> check = {"check",    arguments.urdf, "SCENE.json",
+                                    "PATH.csv", "--spheres",    spheres->string()};
+  const auto pairs = std::find_if(written.begin(), written.end(), [](const fs::path& file) {
+    return file.extension() == ".pairs";
+  });
+  // Proofs of other links are not those that these take.
+  if (pairs != written.end() && has_plain_links(arguments)) {
+    view.push_back(pairs->string());
+    check.insert(check.end(), {"--pairs", pairs->string()});
+  }
+  view.insert(view.end(), {"-o", beside(spheres->string(), ".html")});
+  for (std::vector<std::string>* step : {&view, &check}) {
+    repeat_robot_options(arguments.geometry, arguments.packages, *step);
+  }
+  return {{std::move(view), "examine them"}, {std::move(check), "check a program"}};
+}
+
+// By the spheres and the lists of ignored pairs that are written.
+std::vector<PostureContact> contacts_in_postures(const RobotDescription& robot,
+                                                 const SemanticDescription& semantics,
+                                                 const RobotSpheres& spheres,
+                                                 const MeasuredCover& measured) {
+  const RobotModel model = with_spheres(robot.model, spheres.links);
+  AllowedCollisions allowed(model);
+  allowed.allow(names_of(spheres.self_collision_ignore));
+  std::vector<NamedPosture> postures = group_postures(model, semantics);
+  postures.insert(postures.begin(), rest_posture(model));
+  return contacts_in(postures, model, measured.bodies, allowed, measured.pairs);
+}
+
+std::string describe_pairs(const MeasuredCover& measured) {
+  if (measured.pairs == nullptr) return {};
+  return describe_link_pairs(*measured.pairs, measured.pair_seconds);
+}
+
+// Whether all that was promised holds; says on standard error what does not.
+bool keeps_promises(const std::string& urdf, const MeasuredCover& result) {
+  const std::vector<std::string> open = links_not_proved(result.cover);
+  if (!open.empty()) {
+    std::string names;
+    for (const std::string& link : open) names += " " + link;
+    tell(urdf + ": not proved for" + names);
+  }
+  const bool is_reached = !result.choice || result.choice->is_reached;
+  if (!is_reached) tell(urdf + ": the share of false alarms is not reached");
+  return open.empty() && is_reached;
+}
+
+void require_proofs_of_pairs(const RobotArguments& arguments, const RobotFilePlan& plan) {
+  const bool wants_pairs =
+      std::find(plan.formats.begin(), plan.formats.end(), kPairsFormat) != plan.formats.end();
+  if (wants_pairs && plan.formats.size() < robot_format_names().size() &&
+      arguments.false_alarms.proofs == name_of(PairProofs::kNone)) {
+    throw Error("--format pairs", "nothing is proved of pairs with --proofs none");
+  }
+}
+
+// With the pairs that need no test.
+RobotSpheres spheres_to_write(const RobotDescription& robot, const MeasuredCover& measured,
+                              const std::vector<DisabledPair>& disabled,
+                              const SrdfJudgement& judgement) {
+  RobotSpheres spheres = robot_spheres(robot, measured.cover);
+  if (measured.pairs != nullptr) {
+    add_missing_pairs(pairs_proved_never(robot.model, *measured.pairs), robot.model,
+                      spheres.self_collision_ignore);
+  }
+  add_missing_pairs(without_refuted_reasons(disabled, judgement), robot.model,
+                    spheres.self_collision_ignore);
+  return spheres;
+}
+
+Json summary_of(const std::string& urdf, const RobotModel& model, const MeasuredCover& measured,
+                double seconds, const std::vector<PostureContact>& contacts,
+                const SrdfJudgement& judgement) {
+  Json summary = robot_summary(urdf, measured.cover, seconds);
+  if (measured.pairs != nullptr) {
+    summary["link_pairs"] = pair_summary(*measured.pairs, model, measured.pair_seconds);
+  }
+  summary["false_alarms"] = false_alarm_summary(measured, model);
+  summary["posture_contacts"] = to_json(contacts);
+  if (!judgement.pairs.empty()) summary["disabled_pairs"] = Json::array();
+  for (const JudgedPair& judged : judgement.pairs) {
+    summary["disabled_pairs"].push_back(to_json(judged, model));
+  }
+  return summary;
+}
+
+void print_warnings(const RobotCover& cover, const std::vector<std::string>& wrong_pairs,
+                    const std::vector<PostureContact>& contacts) {
+  for (const LinkCover& link : cover.links) {
+    for (const std::string& warning : link.warnings) warn("link " + link.link + ": " + warning);
+  }
+  for (const std::string& warning : wrong_pairs) warn(warning);
+  for (const PostureContact& contact : contacts) warn(describe(contact));
+}
+
+// Fails (kNo), naming the links, if something promised of a link is not proved, or if the share of
+// false alarms that is requested is not reached; the files are written nevertheless and say so.
+int cover_links(RobotArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  if (arguments.folder.empty()) {
+    arguments.folder = fs::path(arguments.urdf).stem().string() + "-spheres";
+  }
+  RobotCoverOptions options = arguments.options;
+  options.geometry = geometry_named(arguments.geometry);
+  options.links = link_options(arguments.links);
+  RobotFilePlan plan = plan_of(arguments);
+  require_proofs_of_pairs(arguments, plan);
+  const RobotDescription robot = read_robot(arguments.urdf, arguments.packages, options.geometry);
+  if (!plan.tool_link.empty() && robot.model.find_link(plan.tool_link) < 0) {
+    throw Error("--tool-link", "the robot has no link '" + plan.tool_link + "'");
+  }
+  const std::vector<std::string> links = links_to_cover(robot, options.geometry);
+  const std::vector<fs::path> outputs =
+      in_file(arguments.urdf, [&] { return plan.all(robot, links); });
+  check_places(arguments, outputs);
+  rehearse_robot_files(plan, robot, links);
+  SemanticDescription semantics;  // a bad file is refused in time
+  if (!arguments.srdf.empty()) semantics = read_srdf(arguments.srdf);
+  std::vector<DisabledPair> disabled;
+  add_missing_pairs(semantics.disabled_pairs, robot.model, disabled);
+  const FalseAlarmRun run(arguments.false_alarms, robot);
+
+  StopOnInterruption interruption;
+  options.stop = interruption.token();
+  // The first answers of all links are a matter of seconds; the search for a goal has none before
+  // its end.
+  if (arguments.false_alarms.goal.empty()) interruption.have_answer();
+  const MeasuredCover measured = [&] {
+    ProgressBar bar;
+    options.progress = bar.callback();
+    return in_file(arguments.urdf,
+                   [&] { return run.cover(options, arguments.has_max_error, names_of(disabled)); });
+  }();
+  const RobotCover& result = measured.cover;
+  if (measured.pairs == nullptr) std::erase(plan.formats, kPairsFormat);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  SrdfJudgement judgement;
+  if (measured.pairs != nullptr) judgement = judge_srdf(robot.model, semantics, *measured.pairs);
+  const RobotSpheres spheres = spheres_to_write(robot, measured, disabled, judgement);
+  const std::vector<PostureContact> contacts =
+      contacts_in_postures(robot, semantics, spheres, measured);
+  const Json summary =
+      summary_of(arguments.urdf, robot.model, measured, seconds.count(), contacts, judgement);
+  const Json report = robot_report(summary, result, arguments.report_content);
+  write_uninterrupted([&] {
+    write_robot_files(plan, robot, spheres, measured.pairs.get());
+    write_file_atomically(plan.report(robot), to_text(report, Layout::kCompact));
+  });
+
+  std::cout << (arguments.json ? to_text(summary)
+                               : robot_table(result, seconds.count()) + describe_pairs(measured) +
+                                     describe_false_alarms(measured, robot.model));
+  if (!arguments.view.empty()) {
+    write_page(arguments.view, covered_robot_scene(robot, arguments.geometry, spheres,
+                                                   "spheres of " + robot.name, report));
+    if (!arguments.json) std::cout << page_line(arguments.view);
+  }
+  print_warnings(result, wrong_pairs(judgement, robot.model), contacts);
+  if (!arguments.json) std::cout << describe(next_steps(arguments, plan.all(robot, links)));
+  return keeps_promises(arguments.urdf, measured) ? kYes : kNo;
+}
+
+}  // namespace
+
+void add_robot(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("robot", "Cover every link of a robot with spheres, with a proof");
+  auto arguments = std::make_shared<RobotArguments>();
+  add_robot_options(*command, *arguments);
+  command->footer(to_text(
+      {.text = "Lengths are in metres, as in the URDF, or have a unit of their own (5mm). Writes "
+               "NAME.spheres.urdf, NAME.srdf, NAME.curobo.yml, NAME.xrdf, NAME.foam.json, "
+               "NAME.spheres.json, NAME.LINK.tree, NAME.pairs and NAME.report.json, NAME being the "
+               "robot's "
+               "name.",
+       .exit_codes = "0 proved for every link; 1 not proved for links that are named (the files "
+                     "are written and say so), or the share of false alarms is not reached",
+       .examples = {"spherule robot robot.urdf -o spheres",
+                    "spherule robot robot.urdf -o spheres --max-error 20mm --format curobo,tree",
+                    "spherule robot robot.urdf -o spheres --false-alarms 1%",
+                    "spherule robot robot.urdf -o spheres --geometry visual --link "
+                    "hand:max-error=5mm",
+                    "spherule robot robot.urdf -o spheres --package parts=../parts --srdf "
+                    "robot.srdf"}}));
+  command->callback([arguments, command, &exit_code] {
+    arguments->lengths.convert(metres());
+    arguments->has_max_error = command->count("--max-error") > 0;
+    exit_code = cover_links(*arguments);
+  });
+}
+
+}  // namespace spherule

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/files/recognize.h"
+
+#include "mesh/io/mesh_io.h"
+#include "spheretree/atomic_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+namespace spherule {
+namespace {
+
+// What the binary formats of the project begin with (docs/tree-file.md, docs/link-pairs-file.md).
+constexpr std::string_view kTreeStart = "\x89SPT";
+constexpr std::string_view kPairsStart = "\x89SLP";
+
+// What only files of a kind hold, as far as is known.
+struct Mark {
+  std::string_view text;
+  FileKind kind;
+};
+constexpr std::array kJsonMarks = {
+    Mark{"\"spherule-report\"", FileKind::kReport},
+    Mark{"\"spherule-bodies-report\"", FileKind::kReport},
+    Mark{"\"spherule-robot-report\"", FileKind::kReport},
+    Mark{"\"spherule-spheres\"", FileKind::kSpheres},
+    Mark{"\"spherule-scene\"", FileKind::kScene},
+    Mark{"\"spherule-zones\"", FileKind::kZones},
+    Mark{"\"spherule-robot-spheres\"", FileKind::kRobotSpheres},
+    Mark{"\"deepest_leak\"", FileKind::kReport},
+    Mark{"\"collision_spheres\"", FileKind::kRobotSpheres},
+    Mark{"\"SubSpheres\"", FileKind::kRobotSpheres},
+    Mark{"\"radii\"", FileKind::kRobotSpheres},
+    Mark{"\"spheres\"", FileKind::kRobotSpheres},
+};
+constexpr std::array kMarkupMarks = {
+    Mark{"name=\"generator\" content=\"spherule\"", FileKind::kPage},
+    Mark{"<COLLADA", FileKind::kMesh},
+};
+// Both describe a robot; a group of an SRDF has links, too.
+constexpr std::array kRobotMarks = {
+    Mark{"<link_sphere_approximation", FileKind::kSrdf},
+    Mark{"<disable_collisions", FileKind::kSrdf},
+    Mark{"<group", FileKind::kSrdf},
+    Mark{"<link", FileKind::kUrdf},
+    Mark{"<robot", FileKind::kSrdf},
+};
+constexpr std::array kYamlMarks = {
+    Mark{"collision_spheres", FileKind::kRobotSpheres},
+    Mark{"geometry", FileKind::kRobotSpheres},
+};
+constexpr std::array<std::string_view, 8> kMeshEndings = {".stl", ".obj", ".ply",  ".off",
+                                                          ".dae", ".3mf", ".gltf", ".glb"};
+
+constexpr std::array<std::string_view, 5> kTableEndings = {".csv", ".txt", ".xyz", ".asc", ".pts"};
+
+// Whether one of the first two lines begins with a number: the first may have names.
+bool is_table(std::string_view text) {
+  for (int line = 0; line < 2 && !text.empty(); ++line) {
+    const std::size_t at = text.find_first_not_of(" \t\r\n");
+    if (at == std::string_view::npos) return false;
+    text.remove_prefix(at);
+    const std::size_t sign = text.front() == '-' || text.front() == '+' ? 1 : 0;
+    if (sign < text.size() && (std::isdigit(static_cast<unsigned char>(text[sign])) != 0))
+      return true;
+    text.remove_prefix(std::min(text.find('\n'), text.size()));
+  }
+  return false;
+}
+
+template <std::size_t Count>
+FileKind first_of(const std::array<Mark, Count>& marks, std::string_view text) {
+  const auto found = std::find_if(marks.begin(), marks.end(), [&](const Mark& mark) {
+    return text.find(mark.text) != std::string_view::npos;
+  });
+  return found == marks.end() ? FileKind::kUnknown : found->kind;
+}
+
+std::size_t after_mark_of_utf8(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.starts_with(kMark) ? kMark.size() : 0;
+}
+
+FileKind kind_of_markup(std::string_view text) {
+  const FileKind kind = first_of(kMarkupMarks, text);
+  const bool is_of_robot = text.find("<robot") != std::string_view::npos;
+  return kind == FileKind::kUnknown && is_of_robot ? first_of(kRobotMarks, text) : kind;
+}
+
+}  // namespace
+
+FileKind recognize(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  if (bytes.starts_with(kTreeStart)) return FileKind::kTree;
+  if (bytes.starts_with(kPairsStart)) return FileKind::kPairs;
+  if (is_cad_file(path) || bytes.starts_with("ISO-10303-21")) return FileKind::kCad;
+  const std::string ending = lower_ending(path);
+  const std::size_t start = bytes.find_first_not_of(" \t\r\n", after_mark_of_utf8(bytes));
+  const char first = start == std::string::npos ? '\0' : bytes[start];
+  FileKind kind = FileKind::kUnknown;
+  if (first == '{' || first == '[') kind = first_of(kJsonMarks, bytes);
+  if (first == '<') kind = kind_of_markup(bytes);
+  if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") {
+    kind = first_of(kYamlMarks, bytes);
+  }
+  if (kind != FileKind::kUnknown) return kind;
+  const bool may_be_table =
+      std::find(kTableEndings.begin(), kTableEndings.end(), ending) != kTableEndings.end();
+  if (may_be_table && is_table(bytes)) return FileKind::kTable;
+  return has_mesh_ending(path) ? FileKind::kMesh : FileKind::kUnknown;
+}
+
+std::string lower_ending(const std::filesystem::path& path) {
+  std::string ending = path.extension();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+bool has_mesh_ending(const std::filesystem::path& path) {
+  return std::find(kMeshEndings.begin(), kMeshEndings.end(), lower_ending(path)) !=
+         kMeshEndings.end();
+}
+
+std::string offer_for(FileKind kind, const std::string& file) {
+  switch (kind) {
+    case FileKind::kMesh:
+      return "a mesh (spherule fit " + file + " covers it with spheres)";
+    case FileKind::kCad:
+      return "a CAD part (spherule fit " + file + " covers it with spheres)";
+    case FileKind::kSpheres:
+      return "a set of spheres (spherule tree " + file + " builds its tree)";
+    case FileKind::kTree:
+      return "a sphere tree (spherule collide " + file + " OTHER.tree checks it)";
+    case FileKind::kUrdf:
+      return "a robot (spherule robot " + file + " covers it with spheres)";
+    case FileKind::kSrdf:
+      return "an SRDF (spherule check-srdf ROBOT.urdf " + file + " judges its pairs)";
+    case FileKind::kRobotSpheres:
+      return "a file of a robot's spheres (spherule audit-robot ROBOT.urdf " + file +
+             " proves whether they cover)";
+    case FileKind::kPairs:
+      return "a file of proofs of pairs of links (spherule check ... --pairs " + file + ")";
+    case FileKind::kScene:
+      return "a scene (spherule check ROBOT.urdf " + file + " PATH.csv checks a robot in it)";
+    case FileKind::kZones:
+      return "a file of zones (spherule fit MESH --zones " + file + ")";
+    case FileKind::kTable:
+      return "a table of numbers (spherule check ROBOT.urdf SCENE.json " + file +
+             " checks it as a trajectory; a scene takes clouds of points)";
+    case FileKind::kReport:
+      return "a report (spherule view " + file + " shows what it has)";
+    case FileKind::kPage:
+      return "a page of spherule view (a browser shows it)";
+    case FileKind::kUnknown:
+      break;
+  }
+  return {};
+}
+
+}  // namespace spherule

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/pages/page_output.h"
+
+#include "cli/files/interruption.h"
+#include "spheretree/atomic_file.h"
+
+#include <filesystem>
+
+namespace spherule {
+
+void write_page(const std::string& page, const ViewScene& scene) {
+  const std::string text = make_view_page(scene);
+  write_uninterrupted([&] { write_file_atomically(page, text); });
+}
+
+std::string page_line(const std::string& page) {
+  return "page: " + page + " (" + std::to_string(std::filesystem::file_size(page) / 1024) +
+         " KiB); open it in a browser\n";
+}
+
+}  // namespace spherule

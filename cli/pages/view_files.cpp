@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/pages/view_files.h"
+
+#include "cli/files/model_file.h"
+#include "cli/files/model_unit.h"
+#include "cli/files/recognize.h"
+#include "cli/text/print.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+#include "spheretree/sphere_file.h"
+#include "spheretree/tree_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace spherule {
+namespace {
+
+// Runs what takes values out of JSON, and blames the file where they are of a wrong type.
+template <typename Use>
+auto reading(const std::string& file, Use use) {
+  try {
+    return use();
+  } catch (const Json::exception& error) {
+    throw Error(file, error.what());
+  }
+}
+
+Eigen::Vector3d point_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+ViewItem leak_item(const Json& certificate, const std::string& file) {
+  return {.name = leaks_name(file),
+          .parts = {{ViewLeaks{leaks_of(certificate, file), {}}}},
+          .facts = describe_cover(certificate)};
+}
+
+std::vector<ViewItem> report_items(const Json& report, const std::string& file) {
+  std::vector<ViewItem> items;
+  const Json& levels = report.at("levels");
+  for (const Json& level : levels) {
+    items.push_back(
+        {.name = "level of E = " + three_digits(level.at("max_error").get<double>(), Rounding::kUp),
+         .parts = {{spheres_of(level.at("spheres"), file)}},
+         .shown = false});
+  }
+  const Json& solid = report.at("simplified_solid");
+  if (const auto spheres = solid.find("external_spheres"); spheres != solid.end()) {
+    items.push_back({.name = "external spheres",
+                     .parts = {{spheres_of(*spheres, file)}},
+                     .external = true,
+                     .shown = false});
+  }
+  if (!report.at("certificate").at("covered").get<bool>()) {
+    items.push_back(leak_item(report.at("certificate"), file));
+  }
+  return items;
+}
+
+// Only for showing: the proof is of the spheres in their own unit.
+void show_in(const std::string& units, const std::string& stored, std::vector<Sphere>& spheres) {
+  if (units.empty() || stored.empty() || units == stored) return;
+  const double scale = in_units_of(unit_named(units)->micrometres, {1.0, unit_named(stored)});
+  for (Sphere& sphere : spheres) sphere = {sphere.center * scale, sphere.radius * scale};
+}
+
+std::string facts_of(const SphereFile& file) {
+  if (!file.certificate) return "";
+  std::ostringstream text;
+  text << (file.certificate->covered ? "covers (proved)" : "not proved to cover");
+  if (const auto& protrusion = file.certificate->protrusion_over_simplified_max) {
+    text << ", protrudes by at most " << three_digits(*protrusion, Rounding::kUp);
+  }
+  return text.str();
+}
+
+}  // namespace
+
+std::string leaks_name(const std::filesystem::path& file) {
+  return "leaks: " + file.filename().string();
+}
+
+std::string describe_cover(const Json& certificate) {
+  if (certificate.at("covered").get<bool>()) return "covered (proved)";
+  const Json& depth = certificate.at("uncovered_depth");
+  std::ostringstream text;
+  if (depth.at(0).is_number() && depth.at(1).is_number()) {
+    text << "the deepest is proved to be "
+         << three_digits(depth.at(0).get<double>(), Rounding::kDown) << " to "
+         << three_digits(depth.at(1).get<double>(), Rounding::kUp) << " deep";
+  } else {
+    text << "not proved to cover";
+  }
+  return text.str();
+}
+
+std::vector<Sphere> spheres_of(const Json& list, const std::string& file) {
+  return reading(file, [&] {
+    std::vector<Sphere> spheres;
+    for (const Json& entry : list) {
+      const Sphere sphere{point_of(entry.at("center")), entry.at("radius").get<double>()};
+      if (!is_usable(sphere)) throw Error(file, "holds a sphere that is not usable");
+      spheres.push_back(sphere);
+    }
+    return spheres;
+  });
+}
+
+std::vector<LeakPoint> leaks_of(const Json& certificate, const std::string& file) {
+  return reading(file, [&] {
+    std::vector<LeakPoint> leaks;
+    const Json& deepest = certificate.at("deepest_leak");
+    const Json& depth = certificate.at("uncovered_depth").at(0);
+    if (deepest.is_array() && depth.is_number()) {
+      leaks.push_back({point_of(deepest), depth.get<double>()});
+    }
+    if (const auto more = certificate.find("leaks"); more != certificate.end()) {
+      for (const Json& leak : *more) {
+        leaks.push_back({point_of(leak.at("point")), leak.at("depth").get<double>()});
+      }
+    }
+    return leaks;
+  });
+}
+
+Json json_in(const std::filesystem::path& file) {
+  if (file.extension() != ".json") return nullptr;
+  Json json = Json::parse(read_file(file), nullptr, false);
+  return json.is_discarded() ? Json(nullptr) : json;
+}
+
+std::vector<ViewItem> view_items(const std::string& file, const std::string& units) {
+  const FileKind kind = recognize(file);
+  if (kind == FileKind::kSpheres) {
+    SphereFile spheres = load_spheres(file);
+    const std::string facts = facts_of(spheres);
+    show_in(units, stored_reading(spheres).units, spheres.spheres);
+    return {{.name = file, .parts = {{std::move(spheres.spheres)}}, .facts = facts}};
+  }
+  if (kind == FileKind::kTree) return {{.name = file, .parts = {{load_tree(file)}}}};
+  const Json json = json_in(file);
+  return reading(file, [&]() -> std::vector<ViewItem> {
+    if (json.is_object() && json.value("format", "") == "spherule-report") {
+      return report_items(json, file);
+    }
+    if (json.is_object() && json.contains("deepest_leak")) return {leak_item(json, file)};
+    const ModelUnit unit = model_unit(file, {std::nullopt, units});
+    return {{.name = file, .parts = {{read_model(file, {.scale = unit.scale}).mesh}}}};
+  });
+}
+
+}  // namespace spherule

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/pages/view_page.h"
+#include "spheretree/sphere.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// What an item of the leaks of a file is called.
+std::string leaks_name(const std::filesystem::path& file);
+
+// "covered (proved)", or between which bounds the deepest leak is; of a certificate as JSON.
+std::string describe_cover(const Json& certificate);
+
+// The leaks that a certificate as JSON tells of, the deepest first: its deepest, and those that
+// `audit --json` lists. Throws Error, naming `file`, for values of a wrong type.
+std::vector<LeakPoint> leaks_of(const Json& certificate, const std::string& file);
+
+// A list of {"center", "radius"}. Throws as above, and for spheres that are not usable.
+std::vector<Sphere> spheres_of(const Json& list, const std::string& file);
+
+// The JSON in a file whose name ends with .json; null for other files and for what is no JSON.
+Json json_in(const std::filesystem::path& file);
+
+// What a file holds that is of no robot: a mesh, SPHERES.json, a tree, the report of a fit
+// (external spheres, levels, the leak), or what `audit --json` printed. Throws Error, naming the
+// file. With `units`, the symbol of a unit, meshes whose files state theirs and spheres whose
+// options say it are shown in it.
+std::vector<ViewItem> view_items(const std::string& file, const std::string& units = "");
+
+}  // namespace spherule

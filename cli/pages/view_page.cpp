@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/pages/view_page.h"
+
+#include "cli/pages/view_encoding.h"
+#include "cli/pages/view_page_parts.h"
+#include "cli/text/json.h"
+#include "spheretree/error.h"
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <string_view>
+
+namespace spherule {
+namespace {
+
+void append(std::vector<float>& list, const Eigen::Vector3d& point) {
+  for (int axis = 0; axis < 3; ++axis) list.push_back(static_cast<float>(point[axis]));
+}
+
+void extend(Eigen::AlignedBox3d& box, const Sphere& sphere) {
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(sphere.radius);
+  box.extend(sphere.center - reach).extend(sphere.center + reach);
+}
+
+struct BoxExtender {
+  Eigen::AlignedBox3d& box;
+
+  void operator()(const TriangleMesh& mesh) const {
+    for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  }
+  void operator()(const SphereTree& tree) const {
+    for (const Sphere& sphere : tree.spheres()) extend(box, sphere);
+  }
+  void operator()(const std::vector<Sphere>& spheres) const {
+    for (const Sphere& sphere : spheres) extend(box, sphere);
+  }
+  void operator()(const ViewLeaks& leaks) const {
+    for (const LeakPoint& leak : leaks.points) box.extend(leak.point);
+  }
+};
+
+// Of what is shown at first; of everything if that is nothing.
+Eigen::AlignedBox3d box_of(std::span<const ViewItem> items) {
+  Eigen::AlignedBox3d shown;
+  Eigen::AlignedBox3d all;
+  for (const ViewItem& item : items) {
+    for (const ViewPart& part : item.parts) {
+      std::visit(BoxExtender{all}, part.content);
+      if (item.shown) std::visit(BoxExtender{shown}, part.content);
+    }
+  }
+  return shown.isEmpty() ? all : shown;
+}
+
+// x, y, z, radius of each sphere.
+std::string encode_spheres(std::span<const Sphere> spheres, const Eigen::Vector3d& middle) {
+  std::vector<float> list;
+  list.reserve(spheres.size() * 4);
+  for (const Sphere& sphere : spheres) {
+    append(list, sphere.center - middle);
+    list.push_back(static_cast<float>(sphere.radius));
+  }
+  return encode_words(std::span<const float>(list));
+}
+
+struct ContentEncoder {
+  const Eigen::Vector3d& middle;
+
+  Json operator()(const TriangleMesh& mesh) const {
+    Json json;
+    add_triangles(mesh, json);
+    return json;
+  }
+  void add_triangles(const TriangleMesh& mesh, Json& json) const {
+    std::vector<float> positions;
+    for (const Eigen::Vector3d& vertex : mesh.vertices) append(positions, vertex - middle);
+    std::vector<std::int32_t> corners;
+    for (const Eigen::Vector3i& triangle : mesh.triangles) {
+      corners.insert(corners.end(), triangle.data(), triangle.data() + 3);
+    }
+    json["positions"] = encode_words(std::span<const float>(positions));
+    json["corners"] = encode_words(std::span<const std::int32_t>(corners));
+  }
+  Json operator()(const std::vector<Sphere>& spheres) const {
+    return {{"levels", Json::array({encode_spheres(spheres, middle)})}};
+  }
+  Json operator()(const SphereTree& tree) const {
+    Json levels = Json::array();
+    for (int level = 0; level < tree.depth(); ++level) {
+      levels.push_back(encode_spheres(tree.level(level), middle));
+    }
+    // In the order in which they are numbered.
+    levels.push_back(encode_spheres(tree.spheres(), middle));
+    return {{"levels", std::move(levels)}};
+  }
+  Json operator()(const ViewLeaks& leaks) const {
+    std::vector<Sphere> spheres;
+    for (const LeakPoint& leak : leaks.points) spheres.push_back({leak.point, leak.depth});
+    Json json = (*this)(spheres);
+    if (leaks.surface == nullptr) return json;
+    add_triangles(leaks.surface->mesh, json);
+    const std::vector<float> depths(leaks.surface->depths.begin(), leaks.surface->depths.end());
+    json["depths"] = encode_words(std::span<const float>(depths));
+    return json;
+  }
+};
+
+// What the page calls an item of this content.
+const char* kind_of(const ViewItem& item) {
+  struct Kind {
+    const char* operator()(const TriangleMesh&) const { return "mesh"; }
+    const char* operator()(const std::vector<Sphere>&) const { return "spheres"; }
+    const char* operator()(const SphereTree&) const { return "tree"; }
+    const char* operator()(const ViewLeaks&) const { return "leaks"; }
+  };
+  return item.external ? "external" : std::visit(Kind{}, item.parts.front().content);
+}
+
+Json json_of(const ViewItem& item, const Eigen::Vector3d& middle) {
+  Json json{{"name", item.name}, {"kind", kind_of(item)}, {"shown", item.shown}};
+  if (!item.facts.empty()) json["facts"] = item.facts;
+  if (!item.of.empty()) json["of"] = item.of;
+  if (item.checked) json["checked"] = true;
+  json["parts"] = Json::array();
+  for (const ViewPart& part : item.parts) {
+    Json& encoded = json["parts"].emplace_back(std::visit(ContentEncoder{middle}, part.content));
+    encoded["link"] = part.link;
+    if (!part.name.empty()) encoded["name"] = part.name;
+    if (part.background) encoded["background"] = true;
+  }
+  return json;
+}
+
+// JSON that may stand inside a script element: no "</script>" and no "<!--" can occur in it.
+std::string script_text(const Json& json) {
+  std::string text;
+  for (const char c : to_text(json, Layout::kCompact)) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string html_text(std::string_view plain) {
+  std::string text;
+  for (const char c : plain) {
+    switch (c) {
+      case '&':
+        text += "&amp;";
+        break;
+      case '<':
+        text += "&lt;";
+        break;
+      case '>':
+        text += "&gt;";
+        break;
+      default:
+        text += c;
+    }
+  }
+  return text;
+}
+
+void replace(std::string& text, std::string_view mark, const std::string& with) {
+  const std::size_t place = text.find(mark);
+  if (place != std::string::npos) text.replace(place, mark.size(), with);
+}
+
+}  // namespace
+
+std::string make_view_page(const ViewScene& scene) {
+  const Eigen::AlignedBox3d box = box_of(scene.items);
+  if (box.isEmpty()) throw Error("view", "there is nothing to show");
+  const Eigen::Vector3d middle =
+      scene.robot.is_null() ? Eigen::Vector3d(box.center()) : Eigen::Vector3d::Zero();
+  Json json;
+  json["middle"] = to_json(middle);
+  json["robot"] = scene.robot;
+  if (!scene.trajectory.is_null()) json["trajectory"] = scene.trajectory;
+  json["items"] = Json::array();
+  for (const ViewItem& item : scene.items) {
+    if (!item.parts.empty()) json["items"].push_back(json_of(item, middle));
+  }
+  // The scene goes in last: no mark is searched for in what the user named.
+  std::string page(kViewPageHtml);
+  replace(page, "/*STYLE*/", kViewPageStyle);
+  replace(page, "/*THREE*/", kViewPageThree);
+  replace(page, "/*SCRIPT*/", kViewPageScript);
+  replace(page, "<!--TITLE-->", html_text(scene.title));
+  replace(page, "/*SCENE*/", script_text(json));
+  return page;
+}
+
+}  // namespace spherule

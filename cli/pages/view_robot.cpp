@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/pages/view_robot.h"
+
+#include "cli/files/recognize.h"
+#include "cli/options/robot_options.h"
+#include "cli/pages/view_encoding.h"
+#include "cli/pages/view_files.h"
+#include "cli/pages/view_leaks.h"
+#include "cli/pages/view_pairs.h"
+#include "cli/robots/sphere_input.h"
+#include "robot/cover/link_mesh.h"
+#include "robot/formats/sphere_formats.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+namespace spherule {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_urdf(const std::string& file) {
+  return recognize(file) == FileKind::kUrdf;
+}
+
+// What `robot` and `audit-robot --json` write.
+bool is_by_links(const Json& json) {
+  if (!json.is_object() || !json.contains("links") || !json["links"].is_array()) return false;
+  return std::any_of(json["links"].begin(), json["links"].end(), [](const Json& link) {
+    return link.is_object() && link.contains("link") && link.contains("certificate");
+  });
+}
+
+const char* name_of(JointType type) {
+  switch (type) {
+    case JointType::kRevolute:
+      return "revolute";
+    case JointType::kPrismatic:
+      return "prismatic";
+    case JointType::kContinuous:
+      return "continuous";
+    case JointType::kFixed:
+      break;
+  }
+  return "fixed";
+}
+
+}  // namespace
+
+Json view_pose(const Pose& pose) {
+  const Eigen::Quaterniond q = pose.rotation();
+  const Eigen::Vector3d& t = pose.translation();
+  return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
+}
+
+Json view_robot(const RobotDescription& robot) {
+  Json json{{"name", robot.name}, {"links", Json::array()}, {"joints", Json::array()}};
+  for (const Link& link : robot.model.links()) {
+    json["links"].push_back({{"name", link.name}, {"joint", link.parent_joint}});
+  }
+  for (const Joint& joint : robot.model.joints()) {
+    json["joints"].push_back({{"name", joint.name},
+                              {"type", name_of(joint.type)},
+                              {"parent", joint.parent_link},
+                              {"origin", view_pose(joint.parent_from_joint)},
+                              {"axis", to_json(joint.axis)},
+                              {"lower", joint.lower},
+                              {"upper", joint.upper},
+                              {"variable", joint.variable},
+                              {"multiplier", joint.mimics < 0 ? 1.0 : joint.multiplier},
+                              {"offset", joint.mimics < 0 ? 0.0 : joint.offset}});
+  }
+  json["variables"] = robot.model.variable_joints();
+  return json;
+}
+
+ViewItem view_meshes(const RobotDescription& robot, LinkGeometry geometry,
+                     const std::string& name) {
+  ViewItem item{.name = name + " geometry", .parts = {}};
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    LinkDescription link = robot.links[i];
+    std::erase_if(link.collision, [](const LinkShape& shape) {
+      const auto* primitive = std::get_if<Primitive>(&shape.geometry);
+      return primitive != nullptr && std::holds_alternative<SolidSphere>(*primitive);
+    });
+    auto mesh = link_mesh(link, {.geometry = geometry});
+    if (mesh) item.parts.push_back({std::move(*mesh), static_cast<int>(i)});
+  }
+  return item;
+}
+
+namespace {
+
+// What a file says of links that the robot has not cannot be shown, but is not passed over in
+// silence.
+void add_unknown(std::size_t count, ViewItem& item) {
+  if (count == 0) return;
+  if (!item.facts.empty()) item.facts += "; ";
+  item.facts += std::to_string(count) + (count == 1 ? " link" : " links") +
+                " of the file left out: the robot has none of that name";
+}
+
+ViewItem sphere_item(const RobotDescription& robot, const RobotSpheres& spheres,
+                     const std::string& file) {
+  ViewItem item{.name = file, .parts = {}};
+  std::size_t unknown = 0;
+  for (const LinkSpheres& link : spheres.links) {
+    const int index = robot.model.find_link(link.link);
+    if (index < 0 && !link.spheres.empty()) ++unknown;
+    if (index >= 0 && !link.spheres.empty()) {
+      item.parts.push_back({build_tree(link.spheres), index});
+    }
+  }
+  if (item.parts.empty()) throw Error(file, "has no spheres for a link of the robot");
+  add_unknown(unknown, item);
+  return item;
+}
+
+// Of the report of a robot's cover, which has the external spheres too, or of its audit.
+std::vector<ViewItem> report_items(const RobotDescription& robot, const Json& json,
+                                   const std::string& file) {
+  ViewItem external{
+      .name = "external spheres", .parts = {}, .external = true, .facts = {}, .shown = false};
+  ViewItem leaks{.name = leaks_name(file), .parts = {}};
+  std::size_t leaking = 0;
+  std::size_t unknown = 0;
+  for (const Json& entry : json.at("links")) {
+    const auto certificate = entry.find("certificate");
+    if (certificate == entry.end() || !certificate->is_object()) continue;
+    const int link = robot.model.find_link(entry.at("link").get<std::string>());
+    if (link < 0) {
+      ++unknown;
+      continue;
+    }
+    if (!certificate->at("covered").get<bool>()) ++leaking;
+    leaks.parts.push_back({ViewLeaks{leaks_of(*certificate, file), {}}, link});
+    const auto solid = entry.find("simplified_solid");
+    if (solid == entry.end()) continue;
+    if (const auto spheres = solid->find("external_spheres"); spheres != solid->end()) {
+      external.parts.push_back({spheres_of(*spheres, file), link});
+    }
+  }
+  leaks.facts = leaking == 0
+                    ? "all links covered (proved)"
+                    : std::to_string(leaking) + " of " + std::to_string(leaks.parts.size()) +
+                          " links not proved to be covered";
+  add_unknown(unknown, leaks);
+  return {std::move(external), std::move(leaks)};
+}
+
+// As many numbers a posture as there are variables, and the lines of the file.
+Json view_postures(const TrajectoryArguments& arguments, const RobotModel& robot) {
+  const Trajectory trajectory = read_configurations(arguments, robot).trajectory;
+  const std::vector<float> positions(trajectory.positions.begin(), trajectory.positions.end());
+  return {{"file", arguments.file},
+          {"lines", trajectory.lines},
+          {"positions", encode_words(std::span<const float>(positions))}};
+}
+
+bool has_spheres(const RobotDescription& robot) {
+  return std::any_of(robot.links.begin(), robot.links.end(), [](const LinkDescription& link) {
+    return std::any_of(link.collision.begin(), link.collision.end(), [](const LinkShape& shape) {
+      const auto* primitive = std::get_if<Primitive>(&shape.geometry);
+      return primitive != nullptr && std::holds_alternative<SolidSphere>(*primitive);
+    });
+  });
+}
+
+}  // namespace
+
+ViewScene covered_robot_scene(const RobotDescription& robot, const std::string& geometry,
+                              const RobotSpheres& spheres, const std::string& name,
+                              const Json& report) {
+  ViewScene scene{.title = name, .items = {}, .robot = view_robot(robot)};
+  ViewItem meshes = view_meshes(robot, geometry_named(geometry), geometry);
+  if (!meshes.parts.empty()) scene.items.push_back(std::move(meshes));
+  scene.items.push_back(sphere_item(robot, spheres, name));
+  for (ViewItem& item : report_items(robot, report, name)) scene.items.push_back(std::move(item));
+  place_leaks(scene.items);
+  return scene;
+}
+
+bool is_robot_file(const std::string& file) {
+  if (has_mesh_ending(file)) return false;
+  const std::string ending = lower_ending(file);
+  if (ending == ".json") {
+    const Json json = json_in(file);
+    if (is_by_links(json)) return true;
+    const bool ours = json.is_object() && (json.contains("deepest_leak") ||
+                                           json.value("format", Json()) == "spherule-report" ||
+                                           json.value("format", Json()) == "spherule-spheres");
+    return !json.is_null() && !ours;
+  }
+  if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf" || ending == ".pairs") return true;
+  return read_file(file).find("<robot") != std::string::npos;
+}
+
+void add_robot(const std::vector<std::string>& files, const RobotViewOptions& options,
+               ViewScene& scene) {
+  if (files.empty()) {
+    if (!options.postures.file.empty()) {
+      throw Error(options.postures.file, "has postures of a robot: its URDF must be named too");
+    }
+    return;
+  }
+  const auto urdf = std::find_if(files.begin(), files.end(), is_urdf);
+  if (urdf == files.end()) {
+    throw Error(files.front(), "belongs to a robot: its URDF must be named too");
+  }
+  std::vector<LinkGeometry> shown;
+  for (const std::string& name : options.geometry) shown.push_back(geometry_named(name));
+  const RobotDescription robot = read_urdf(*urdf, urdf_options(options.packages, shown));
+  scene.title = *urdf;
+  scene.robot = view_robot(robot);
+  if (!options.postures.file.empty()) {
+    scene.robot["postures"] = view_postures(options.postures, robot.model);
+  }
+  for (const std::string& name : options.geometry) {
+    ViewItem item = view_meshes(robot, geometry_named(name), name);
+    item.shown = name == options.geometry.front();
+    if (!item.parts.empty()) scene.items.push_back(std::move(item));
+  }
+  PairSources pairs;
+  std::optional<RobotSpheres> first_spheres;  // to which the pairs belong
+  for (const std::string& file : files) {
+    if (file == *urdf && !has_spheres(robot)) continue;
+    if (file != *urdf && is_of_pairs_alone(file)) {
+      std::string& source = fs::path(file).extension() == ".pairs" ? pairs.pairs : pairs.srdf;
+      if (!source.empty()) throw Error(file, "is the second file of pairs of links; one is shown");
+      source = file;
+      continue;
+    }
+    if (const Json json = json_in(file); is_by_links(json)) {
+      try {
+        std::vector<ViewItem> items = report_items(robot, json, file);
+        std::move(items.begin(), items.end(), std::back_inserter(scene.items));
+      } catch (const Json::exception& error) {
+        throw Error(file, error.what());
+      }
+      continue;
+    }
+    const LinkGeometry geometry = geometry_named(options.geometry.front());
+    SphereInput spheres = read_spheres_of(robot, geometry, file);
+    require_known_links(robot.model, file, spheres.file.spheres, options.ignores_unknown_links);
+    scene.items.push_back(sphere_item(robot, spheres.file.spheres, file));
+    if (first_spheres) continue;
+    first_spheres = std::move(spheres.file.spheres);
+    scene.robot["pairs_of"] = file;
+  }
+  if (first_spheres) {
+    scene.robot["pairs"] = view_pairs(
+        pair_kinds(robot, *first_spheres, geometry_named(options.geometry.front()), pairs, false));
+  } else if (!pairs.is_empty()) {
+    throw Error(*urdf, "pairs of its links are told apart with its spheres: name a file of them");
+  }
+}
+
+}  // namespace spherule

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/files/model_file.h"
+#include "cli/files/model_unit.h"
+#include "cli/options/length_options.h"
+#include "cli/options/report_content.h"
+#include "cli/options/shard.h"
+#include "cli/parts/stage2_method.h"
+#include "simplifier/simplify.h"
+#include "spheretree/error.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace spherule {
+
+// What the command line of `fit` says.
+struct FitArguments {
+  std::vector<std::string> models;
+  std::string spheres;
+  std::string report;
+  std::string tree;
+  std::string view;
+  std::string tool;
+  std::string zones;
+  std::string levels;
+  bool bodies = false;  // CAD files: each of their bodies by itself
+  bool each = false;    // a file of spheres for each model; `spheres` is their folder
+  bool skips_existing = false;
+  Shard shard;  // of the models, with `each`
+  ReportContent report_content = ReportContent::kNoExternalSpheres;
+  std::string method = fit_method_names().front();
+  std::string external = placement_names().front();
+  UnitArguments unit;
+  ModelReadOptions reading;  // the scale apart
+  SimplifyOptions options;
+  LengthOptions lengths;
+};
+
+void add_fit_options(CLI::App& command, FitArguments& arguments);
+
+// The options of the fit, and in `arguments.reading` those of reading but for the scale, with
+// lengths converted to output units and what files of options say filled in. Throws Error.
+SimplifyOptions fit_options(FitArguments& arguments, const LengthContext& context);
+
+// Runs what depends on a file that an option names, and blames that file for what is wrong with
+// `subject`.
+template <typename Use>
+auto blaming_named_file(const std::string& file, std::string_view subject, Use use) {
+  try {
+    return use();
+  } catch (const Error& error) {
+    if (file.empty() || !error.subject().starts_with(subject)) throw;
+    throw Error(file, error.what());
+  }
+}
+
+}  // namespace spherule

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/options/shard.h"
+#include "robot/check/pair_status.h"
+#include "robot/check/robot_checker.h"
+#include "robot/files/trajectory_review.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// Where on a trajectory: a configuration, or a point of the motion from it to the next one.
+struct TrajectoryPoint {
+  std::size_t line = 0;     // of the file
+  std::size_t to_line = 0;  // of the next configuration; 0 for the configuration itself
+  double fraction = 0.0;    // of the motion
+};
+
+struct FoundContact {
+  TrajectoryPoint at;
+  CheckedContact contact;
+};
+
+// Two bodies, or a body and an obstacle, that touch somewhere.
+struct TouchingPair {
+  std::size_t count = 0;     // of configurations or motions
+  std::size_t at_start = 0;  // of these, where nothing before the contact is free
+  FoundContact first;        // on the trajectory
+  FoundContact worst;        // the deepest
+  std::string kind{};        // of two links with proofs: what is known of them
+};
+
+// The verdicts one by one, of configurations or of motions.
+struct TrajectoryVerdicts {
+  std::vector<std::uint8_t> free{};   // of every configuration, 1 if it is free
+  std::vector<EdgeResult> motions{};  // of every motion
+};
+
+// What a check of a trajectory found.
+struct CheckReport {
+  std::size_t configurations = 0;
+  std::optional<std::size_t> motions{};       // where motions were proved
+  std::size_t colliding = 0;                  // of the motions, or of the configurations
+  std::vector<TrajectoryPoint> not_proved{};  // motions, and up to where they are free
+  TrajectoryVerdicts verdicts{};
+  std::vector<TouchingPair> pairs{};  // in the order of the first contacts
+  // Whose spheres overlap while they are proved free, in the configurations that were examined.
+  std::vector<TouchingPair> proved_free{};
+  std::size_t explained = 0;  // configurations that were examined for these, the first ones
+
+  // The file of spheres that were given: whether they cover the robot is not known. Empty for those
+  // that were fitted, and so proved.
+  std::string given_spheres{};
+
+  Shard shard{};  // of the trajectory, that the report is about
+
+  bool is_whole = true;  // no part of the robot was left out
+
+  // Of motions of a robot with continuous joints: which way these turn, and where that matters.
+  std::optional<ContinuousMotion> continuous{};
+  TurningMotions turning{};
+  OutsideLimits outside{};
+  bool enforces_limits = false;
+  bool is_in_degrees = false;  // what people are told
+
+  bool is_out_of_bounds() const { return enforces_limits && outside.count > 0; }
+  bool is_free() const {
+    return colliding == 0 && not_proved.empty() && is_whole && !is_out_of_bounds();
+  }
+  // Where it belongs.
+  void add(const FoundContact& found);
+  // Says of the pairs of links of what kind they are.
+  void tell_kinds(const RobotModel& robot, const std::vector<PairStatus>& statuses);
+};
+
+// "free", "collision", "not proved" or "outside limits".
+const char* verdict_of(const CheckReport& report);
+
+// Pairs of the robot's own bodies that touch in every configuration, or at the start of every
+// motion, of two or more: their spheres may be too coarse, or they are meant to touch.
+std::vector<TouchingPair> always_touching(const CheckReport& report);
+
+// "2 motions turn a continuous joint by more than half a turn, the first from line 1 to ...".
+std::string describe(const TurningMotions& turning, bool in_degrees);
+
+// For a person, a few lines and a table, and as JSON.
+std::string check_table(const CheckReport& report);
+std::string check_json(const CheckReport& report);
+
+}  // namespace spherule

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/robots/robot_files.h"
+
+#include "robot/check/named_postures.h"
+#include "robot/pairs/ignored_pairs.h"
+#include "robot/pairs/link_pairs_file.h"
+#include "spheretree/build.h"
+#include "spheretree/error.h"
+#include "spheretree/tree_file.h"
+
+#include <climits>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <system_error>
+
+namespace spherule {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTree = "tree";
+
+std::string checked_name(const std::string& name) {
+  if (name.empty() || name.find_first_of(std::string("/\0", 2)) != std::string::npos) {
+    throw Error("'" + name + "'", "cannot be part of the name of a file");
+  }
+  return name;
+}
+
+// Down from the root as long as only one way leads on: only one that has joints that move or, past
+// the last of those, only one at all.
+std::string last_link(const RobotModel& model) {
+  const std::size_t count = model.links().size();
+  std::vector<bool> moves(count, false);  // a joint at the link or below it
+  std::vector<std::vector<std::size_t>> children(count);
+  for (std::size_t i = count; i-- > 1;) {
+    const Joint& joint = model.joints()[static_cast<std::size_t>(model.links()[i].parent_joint)];
+    const auto parent = static_cast<std::size_t>(joint.parent_link);
+    moves[i] = moves[i] || joint.moves();
+    moves[parent] = moves[parent] || moves[i];
+    children[parent].push_back(i);
+  }
+  std::size_t link = 0;
+  for (;;) {
+    std::vector<std::size_t> ways = children[link];
+    if (moves[link]) std::erase_if(ways, [&](std::size_t child) { return !moves[child]; });
+    if (ways.size() != 1) return model.links()[link].name;
+    link = ways.front();
+    // Whether the link's own joint moves does not matter any more.
+    moves[link] = std::any_of(children[link].begin(), children[link].end(),
+                              [&](std::size_t child) { return moves[child]; });
+  }
+}
+
+SphereFileContext context_of(const RobotFilePlan& plan, const RobotDescription& robot) {
+  SphereFileContext context;
+  context.urdf = plan.urdf;
+  context.base_link = robot.model.links().front().name;
+  context.tool_link = plan.tool_link.empty() ? last_link(robot.model) : plan.tool_link;
+  context.joint_positions = rest_posture(robot.model).configuration;
+  for (const int index : robot.model.variable_joints()) {
+    const Joint& joint = robot.model.joints()[static_cast<std::size_t>(index)];
+    context.joint_names.push_back(joint.name);
+  }
+  return context;
+}
+
+fs::path original(const RobotFilePlan& plan, SphereFormat format) {
+  switch (format) {
+    case SphereFormat::kSrdf:
+      return plan.srdf;
+    case SphereFormat::kCurobo:
+      return plan.curobo;
+    case SphereFormat::kXrdf:
+      return plan.xrdf;
+    default:
+      return {};
+  }
+}
+
+// The text with one folder in the place of another.
+std::string moved(std::string text, const fs::path& from, const fs::path& to) {
+  for (std::size_t at = text.find(from.string()); at != std::string::npos;
+       at = text.find(from.string(), at + to.string().size())) {
+    text.replace(at, from.string().size(), to.string());
+  }
+  return text;
+}
+
+// An empty folder that vanishes with the object.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = (fs::temp_directory_path() / "spherule-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) throw Error(pattern, "cannot be made");
+    path_ = pattern;
+  }
+  ~ScratchFolder() {
+    std::error_code fault;
+    fs::remove_all(path_, fault);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+}  // namespace
+
+std::vector<std::string> robot_format_names() {
+  return {"urdf", "srdf", "curobo", "xrdf", "foam", "json", kTree, kPairsFormat};
+}
+
+fs::path RobotFilePlan::report(const RobotDescription& robot) const {
+  return folder / (checked_name(robot.name) + ".report.json");
+}
+
+fs::path RobotFilePlan::pairs(const RobotDescription& robot) const {
+  return folder / (checked_name(robot.name) + ".pairs");
+}
+
+fs::path RobotFilePlan::tree(const RobotDescription& robot, const std::string& link) const {
+  return folder / (checked_name(robot.name) + "." + checked_name(link) + ".tree");
+}
+
+std::vector<fs::path> RobotFilePlan::all(const RobotDescription& robot,
+                                         const std::vector<std::string>& links) const {
+  std::vector<fs::path> files;
+  for (const std::string& format : formats) {
+    if (format == kTree) {
+      for (const std::string& link : links) files.push_back(tree(robot, link));
+    } else if (format == kPairsFormat) {
+      files.push_back(pairs(robot));
+    } else {
+      files.push_back(folder / sphere_file_name(robot.name, *sphere_format_named(format)));
+    }
+  }
+  files.push_back(report(robot));
+  for (const fs::path& file : files) {
+    if (file.filename().string().size() > NAME_MAX) {
+      throw Error(file.string(), "cannot be written: the name is too long");
+    }
+  }
+  return files;
+}
+
+void rehearse_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
+                          const std::vector<std::string>& links) {
+  const ScratchFolder folder;
+  RobotFilePlan rehearsal = plan;
+  rehearsal.folder = folder.path();
+  std::erase(rehearsal.formats, kTree);
+  RobotSpheres spheres;
+  spheres.robot = robot.name;
+  for (const std::string& link : links) {
+    for (const LinkSpheres& other : spheres.links) {
+      spheres.self_collision_ignore.push_back({other.link, link, std::string(kProvedNeverReason)});
+    }
+    spheres.links.push_back({link, {Sphere{Eigen::Vector3d::Zero(), 1.0}}});
+  }
+  try {
+    write_robot_files(rehearsal, robot, spheres, nullptr);
+  } catch (const Error& error) {
+    throw Error(moved(error.subject(), folder.path(), plan.folder),
+                moved(error.reason(), folder.path(), plan.folder));
+  }
+}
+
+void write_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
+                       const RobotSpheres& spheres, const LinkPairs* pairs) {
+  std::error_code fault;
+  fs::create_directory(plan.folder, fault);
+  if (fault) throw Error(plan.folder.string(), fault.message());
+  SphereFileContext context = context_of(plan, robot);
+  for (const std::string& name : plan.formats) {
+    if (name == kTree) {
+      for (const LinkSpheres& link : spheres.links) {
+        if (link.spheres.empty()) continue;
+        save_tree(build_tree(link.spheres), plan.tree(robot, link.link));
+      }
+      continue;
+    }
+    if (name == kPairsFormat) {
+      if (pairs != nullptr) save_link_pairs(*pairs, plan.pairs(robot));
+      continue;
+    }
+    const SphereFormat format = *sphere_format_named(name);
+    context.original = original(plan, format);
+    write_robot_spheres(spheres, format, context,
+                        plan.folder / sphere_file_name(robot.name, format));
+  }
+}
+
+}  // namespace spherule

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/robots/trajectory_check.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+class TrajectoryCheck {
+ public:
+  TrajectoryCheck(const RobotChecker& checker, const Trajectory& trajectory,
+                  const TrajectoryCheckOptions& options)
+      : checker_(checker),
+        trajectory_(trajectory),
+        options_(options),
+        scratches_(make_scratches(checker, options.threads)) {
+    report_.configurations = trajectory.size();
+  }
+
+  CheckReport configurations() && {
+    std::vector<std::uint8_t> free(trajectory_.size());
+    const std::span all(trajectory_.positions);
+    in_blocks(free.size(), [&](std::size_t first, std::size_t count) {
+      checker_.check_configs(all.subspan(first * trajectory_.width, count * trajectory_.width),
+                             scratches_, std::span(free).subspan(first, count));
+    });
+    count_proved_free();
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      if (free[i] != 0) continue;
+      ++report_.colliding;
+      explain(trajectory_.configuration(i), {.line = trajectory_.lines[i]});
+    }
+    report_.verdicts.free = std::move(free);
+    return std::move(report_);
+  }
+
+  CheckReport motions() && {
+    const std::size_t count = std::max<std::size_t>(trajectory_.size(), 1) - 1;
+    const std::span all(trajectory_.positions);
+    const std::size_t width = trajectory_.width;
+    EdgeRequest request = options_.edge;
+    request.first = true;
+    std::vector<EdgeResult> results;
+    in_blocks(count, [&](std::size_t first, std::size_t edges) {
+      const std::vector<EdgeResult> some = checker_.check_edges(
+          all.subspan(first * width, edges * width),
+          all.subspan((first + 1) * width, edges * width), scratches_, request);
+      results.insert(results.end(), some.begin(), some.end());
+    });
+    report_.motions = count;
+    count_proved_free();
+    for (std::size_t i = 0; i < count; ++i) {
+      TrajectoryPoint at{.line = trajectory_.lines[i], .to_line = trajectory_.lines[i + 1]};
+      if (results[i].verdict == Verdict::kCollision) {
+        ++report_.colliding;
+        at.fraction = results[i].contact_at;
+        explain(checker_.configuration_on_edge(trajectory_.configuration(i),
+                                               trajectory_.configuration(i + 1), at.fraction,
+                                               request.continuous),
+                at);
+      } else if (results[i].verdict == Verdict::kUnknown) {
+        at.fraction = results[i].free_until;
+        report_.not_proved.push_back(at);
+      }
+    }
+    report_.verdicts.motions = std::move(results);
+    return std::move(report_);
+  }
+
+ private:
+  // So many at a time that the bar moves and the threads have enough to do.
+  template <typename Check>
+  void in_blocks(std::size_t count, Check check) const {
+    const std::size_t block = std::max<std::size_t>(count / 50, 256);
+    for (std::size_t first = 0; first < count; first += block) {
+      if (options_.progress) {
+        options_.progress(static_cast<double>(first) / static_cast<double>(count), "checking");
+      }
+      check(first, std::min(block, count - first));
+    }
+  }
+
+  void count_proved_free() {
+    report_.explained = options_.explained;
+    for (std::size_t i = 0; i < report_.explained; ++i) {
+      for (const CheckedContact& contact : checker_.explain(
+               trajectory_.configuration(i), scratches_.front(), {.proved_free = true})) {
+        if (contact.is_proved_free) report_.add({{.line = trajectory_.lines[i]}, contact});
+      }
+    }
+  }
+
+  void explain(std::span<const double> configuration, const TrajectoryPoint& at) {
+    for (const CheckedContact& contact : checker_.explain(configuration, scratches_.front())) {
+      report_.add({at, contact});
+    }
+  }
+
+  const RobotChecker& checker_;
+  const Trajectory& trajectory_;
+  const TrajectoryCheckOptions& options_;
+  std::vector<RobotChecker::Scratch> scratches_;
+  CheckReport report_;
+};
+
+}  // namespace
+
+std::vector<RobotChecker::Scratch> make_scratches(const RobotChecker& checker, int threads) {
+  const unsigned count = threads > 0 ? static_cast<unsigned>(threads)
+                                     : std::max(1u, std::thread::hardware_concurrency());
+  std::vector<RobotChecker::Scratch> scratches;
+  for (unsigned i = 0; i < count; ++i) scratches.emplace_back(checker);
+  return scratches;
+}
+
+CheckReport check_configurations(const RobotChecker& checker, const Trajectory& trajectory,
+                                 const TrajectoryCheckOptions& options) {
+  return TrajectoryCheck(checker, trajectory, options).configurations();
+}
+
+CheckReport check_motions(const RobotChecker& checker, const Trajectory& trajectory,
+                          const TrajectoryCheckOptions& options) {
+  return TrajectoryCheck(checker, trajectory, options).motions();
+}
+
+}  // namespace spherule

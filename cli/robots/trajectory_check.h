@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/robots/check_report.h"
+#include "robot/check/robot_checker.h"
+#include "robot/files/trajectory_file.h"
+#include "simplifier/external_spheres.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace spherule {
+
+struct TrajectoryCheckOptions {
+  // In so many of the first configurations pairs that only proofs keep apart are counted, too.
+  std::size_t explained = 0;
+  int threads = 0;
+  Progress progress{};
+  EdgeRequest edge{};  // of motions
+};
+
+// One for each thread: `threads` of them, or for 0 as many as the machine runs at once.
+std::vector<RobotChecker::Scratch> make_scratches(const RobotChecker& checker, int threads);
+
+// Every configuration, or every motion from one to the next.
+CheckReport check_configurations(const RobotChecker& checker, const Trajectory& trajectory,
+                                 const TrajectoryCheckOptions& options);
+CheckReport check_motions(const RobotChecker& checker, const Trajectory& trajectory,
+                          const TrajectoryCheckOptions& options);
+
+}  // namespace spherule

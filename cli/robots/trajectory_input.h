@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/options/shard.h"
+#include "robot/files/trajectory_file.h"
+#include "robot/files/trajectory_review.h"
+#include "robot/model/robot_model.h"
+
+#include <cstddef>
+#include <string>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace spherule {
+
+// A file of configurations, as an argument of a command, and in which unit its angles are.
+struct TrajectoryArguments {
+  std::string file;
+  bool is_in_degrees = false;
+  bool has_motions = false;  // its shards are of motions, where it has any
+  Shard shard{};
+};
+
+// Adds --degrees, with what its help says.
+CLI::Option* add_degrees_flag(CLI::App& command, const std::string& help,
+                              TrajectoryArguments& arguments);
+
+// What is read of this shard, and what of it is outside the limits of the joints. A shard of
+// motions has a configuration more, the end of its last motion, unless that is the end of the
+// trajectory or the shard is empty: each configuration is counted in one shard.
+struct TrajectoryInput {
+  Trajectory trajectory;
+  bool has_motions = false;
+  std::size_t first = 0;  // in the file, of the first configuration
+  std::size_t own = 0;    // configurations that are counted here
+  OutsideLimits outside;
+};
+
+// As read_trajectory(). Warns of angles that look like degrees, and of configurations outside the
+// limits of the joints, once each.
+TrajectoryInput read_configurations(const TrajectoryArguments& arguments, const RobotModel& robot);
+
+// Throws Error, naming the line and the joint, for a configuration with a position beyond
+// RobotChecker::kLargestPosition, of joints that mimic others, too: nothing is proved there.
+void require_provable(const RobotModel& robot, const TrajectoryArguments& arguments,
+                      const Trajectory& trajectory);
+
+// "2 of 9 configurations are outside the joint limits, the first in line 3: joint ...".
+std::string describe(const OutsideLimits& outside, std::size_t configurations, bool in_degrees);
+
+}  // namespace spherule
