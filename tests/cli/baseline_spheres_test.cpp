@@ -101,7 +101,7 @@ TEST_P(EachBaseline, ExitCodeFileAndAuditSayTheSame) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(, EachBaseline, ::testing::ValuesIn(test::effort(kMethods, 2)));
+INSTANTIATE_TEST_SUITE_P(, EachBaseline, ::testing::ValuesIn(test::effort(kMethods, 1)));
 
 TEST_F(BaselineSpheresTest, FiguresOfVoxels) {
   if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
@@ -121,6 +121,7 @@ TEST_F(BaselineSpheresTest, FiguresOfVoxels) {
 }
 
 TEST_F(BaselineSpheresTest, FiguresOfPackingAndOctree) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   json figures =
       json::parse(make({"pack", "--max-error", "0.2", "--closed-below", "0.3", "--json"}).out);
   EXPECT_LE(figures.at("error"), 0.2);
@@ -187,6 +188,7 @@ TEST_F(BaselineSpheresTest, PaddingIsCoveredToo) {
 }
 
 TEST_F(BaselineSpheresTest, ScaleComesFirst) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   EXPECT_EQ(make({"voxelise", "--step", "2.5", "--scale", "10", "--conservative"}).exit_code, 0);
   EXPECT_EQ(spheres().spheres.size(), 68U);
   EXPECT_EQ(run({"audit", "bar.stl", "out.json"}).exit_code, 0);

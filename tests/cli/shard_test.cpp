@@ -2,6 +2,7 @@
 // --shard: the reports of all parts, put together, are that of the whole.
 
 #include "tests/cli/check_fixture.h"
+#include "tests/support/effort.h"
 
 #include <algorithm>
 #include <string>
@@ -83,7 +84,7 @@ TEST_F(ShardTest, ReportsTogetherAreThatOfTheWhole) {
     if (way == ways[1]) {
       ASSERT_GT(whole["not_proved"].size(), 1u);
     }
-    for (const int of : {2, 3, 7, 16, 40}) {
+    for (const int of : test::effort(std::vector{7, 2, 3, 16, 40}, 1)) {
       std::vector<json> parts;
       for (int i = 1; i <= of; ++i) {
         std::vector<std::string> line = command(way);

@@ -50,6 +50,7 @@ class ViewBrowserTest : public CommandTest {
 
   void SetUp() override {
     CommandTest::SetUp();
+    if (test::kSanitized) GTEST_SKIP() << "what runs in the browser is none of our binaries";
     browser_ = browser();
     if (browser_.empty()) GTEST_SKIP() << "no chromium to open the page with";
   }
@@ -218,7 +219,6 @@ class CheckedPageTest : public ViewBrowserTest {
 };
 
 TEST_F(CheckedPageTest, ShowsWhatTouchesAndHowFarTheRestIs) {
-  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   const Shown contact = show("page.html", "theme=light&contact=1");
   expect_text(contact, "hand – wall 20.5 mm");
   expect_text(contact, "Contacts, line 2");

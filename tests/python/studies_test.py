@@ -343,6 +343,11 @@ def test_input_that_cannot_be_used(checker, tmp_path):
         studies.check_configs(checker, np.zeros(4))
     with pytest.raises(spherule.Error, match="chunk"):
         studies.check_configs(checker, np.zeros((3, 4)), chunk=0)
+    for option in ("threads", "retries"):
+        with pytest.raises(spherule.Error, match=f"{option}: -1"):
+            studies.check_configs(checker, np.zeros((3, 4)), **{option: -1})
+        with pytest.raises(spherule.Error, match=f"{option}: -1"):
+            studies.cover_parts({}, **{option: -1})
     with pytest.raises(spherule.Error, match="of starts 3"):
         studies.check_edges(checker, (np.zeros((3, 4)), np.zeros((2, 4))))
     with pytest.raises(spherule.Error, match="an inverse needs"):

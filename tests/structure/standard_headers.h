@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// Of a source or header below `root` (its path relative to that): the headers of others that are
+// compiled before it in some builds (spheretree/cmake/SpherulePrecompiled.cmake), that it uses
+// names of, and that neither it nor a header of ours that it includes, directly or not, does
+// include. A build without precompiled headers may then fail. Goes by a list of names, the usual
+// ones. A line each, "std::span needs <span>".
+std::vector<std::string> missing_standard_headers(const std::filesystem::path& root,
+                                                  const std::filesystem::path& file);
+
+}  // namespace spherule

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/structure/standard_headers.h"
+
+#include "tests/support/temp_dir.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace spherule {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(StandardHeaders, AreIncludedByTheSourcesOfLibrariesThatUseTheirNames) {
+  const fs::path root = SPHERULE_SOURCE_DIR;
+  std::size_t files = 0;
+  for (const char* folder : {"spheretree", "mesh", "simplifier", "collide", "robot", "adapters",
+                             "cli", "bench", "python"}) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
+      const fs::path file = fs::relative(entry.path(), root);
+      if (file.extension() != ".h" && file.extension() != ".cpp") continue;
+      ++files;
+      for (const std::string& what : missing_standard_headers(root, file)) {
+        ADD_FAILURE() << file << ": " << what;
+      }
+    }
+  }
+  EXPECT_GT(files, 300u);
+}
+
+TEST(StandardHeaders, ThatAreMissingAreFound) {
+  const test::TempDir folder;
+  folder.write(
+      "own.h",
+      "#include <vector>\n// #include <cstddef>\nstd::vector<std::size_t> own();  // std::map\n");
+  folder.write("own.cpp",
+               "#include \"own.h\"\n#include <cstddef>\nstd::vector<std::size_t> own() {}\n");
+  EXPECT_EQ(missing_standard_headers(folder.path(), "own.cpp").size(), 0u);
+  EXPECT_EQ(missing_standard_headers(folder.path(), "own.h"),
+            std::vector<std::string>{"std::size_t needs <cstddef>"});
+  folder.write("eigen.cpp", "Eigen::Vector3d v;\nconst char* text = \"std::set\";\n");
+  EXPECT_EQ(missing_standard_headers(folder.path(), "eigen.cpp").size(), 1u);
+}
+
+}  // namespace
+}  // namespace spherule
