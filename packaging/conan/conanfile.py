@@ -10,7 +10,7 @@ from conan.tools.cmake import CMake, CMakeDeps, CMakeToolchain, cmake_layout
 from conan.tools.files import copy, load
 
 LEFT_OUT = ("BASELINES", "CAD", "FCL", "OMPL", "CLI", "PYTHON", "TESTS", "BENCH")
-FOLDERS = ("spheretree", "mesh", "simplifier", "collide", "robot", "docs")
+FOLDERS = ("spheretree", "mesh", "simplifier", "collide", "robot", "docs", "examples")
 
 
 class Spherule(ConanFile):
@@ -42,7 +42,7 @@ class Spherule(ConanFile):
     def export_sources(self):
         for folder in FOLDERS:
             copy(self, f"{folder}/*", self.root, self.export_sources_folder)
-        for file in ("CMakeLists.txt", "LICENSE"):
+        for file in ("CMakeLists.txt", "LICENSE", "README.md", "CHANGELOG.md"):
             copy(self, file, self.root, self.export_sources_folder)
 
     def validate(self):

@@ -39,7 +39,15 @@ if(SPHERULE_OMPL)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/SpheruleOmpl.cmake DESTINATION ${destination})
 endif()
 
-# The pages that helps and messages name, with the links between them.
+# The pages that helps and messages name, with what their links lead to.
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
         FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN "__pycache__" EXCLUDE)
+foreach(folder IN ITEMS adapters bench cli collide mesh packaging python robot simplifier spheretree tests)
+  file(GLOB_RECURSE readmes RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS ${folder}/*README.md)
+  foreach(readme IN LISTS readmes)
+    get_filename_component(place ${readme} DIRECTORY)
+    install(FILES ${readme} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${place})
+  endforeach()
+endforeach()
