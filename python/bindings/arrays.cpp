@@ -4,6 +4,7 @@
 #include "spheretree/error.h"
 
 #include <limits>
+#include <string_view>
 
 namespace spherule::python {
 namespace {

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <pybind11/stl.h>
+#include <tuple>
 
 namespace spherule::python {
 namespace {

@@ -6,6 +6,7 @@
 #include "robot/pairs/link_pairs.h"
 
 #include <pybind11/stl.h>
+#include <tuple>
 
 namespace spherule::python {
 namespace {

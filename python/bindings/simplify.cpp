@@ -8,6 +8,7 @@
 #include "python/bindings/long_run.h"
 
 #include <pybind11/stl.h>
+#include <type_traits>
 
 namespace spherule::python {
 namespace {

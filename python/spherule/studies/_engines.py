@@ -67,6 +67,12 @@ class Retries:
             raise error
 
 
+def check_counts(*, threads: int, retries: int) -> None:
+    for name, value in (("threads", threads), ("retries", retries)):
+        if value < 0:
+            raise Error(name, f"{value}: it is a count, at least 0")
+
+
 def default_threads(threads: int) -> int:
     return threads if threads > 0 else len(os.sched_getaffinity(0))
 

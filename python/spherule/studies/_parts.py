@@ -18,7 +18,7 @@ from .._functions import simplify
 from .._record import Record
 from .._results import SphereFile
 from .._version import VERSION
-from ._engines import Ended, Task, default_threads, run_tasks
+from ._engines import Ended, Task, check_counts, default_threads, run_tasks
 from ._output import StudyFolder, plain
 from ._sources import Identity, digest_of, file_identity
 
@@ -178,6 +178,7 @@ def cover_parts(
     machine (0: all), or on the workers of `client`, a dask.distributed Client, where files have to
     be found under the same name. A part that fails otherwise is tried `retries` more times.
     """
+    check_counts(threads=threads, retries=retries)
     meshes = named(parts)
     covers = Covers(output, {"scale": scale, **options}, meshes)
     try:

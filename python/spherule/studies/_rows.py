@@ -12,7 +12,7 @@ from .._arguments import Path, Progress
 from .._core import RobotChecker
 from .._error import Error
 from .._version import VERSION
-from ._engines import Task, Work, run_tasks
+from ._engines import Task, Work, check_counts, run_tasks
 from ._output import Parts, parts_in
 from ._sources import Identity, Source, digest_of
 
@@ -26,6 +26,9 @@ class Run:
     threads: int
     retries: int
     progress: Progress
+
+    def __post_init__(self) -> None:
+        check_counts(threads=self.threads, retries=self.retries)
 
 
 class RowResults:
