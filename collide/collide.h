@@ -69,11 +69,12 @@ struct CollisionResult {
 // Whether two sets of spheres, rigidly placed, overlap: by simultaneous traversal of both trees
 // (Gottschalk, Lin and Manocha, "OBBTree", 1996).
 //
-// G4: if two spheres overlap (touching included) in exact arithmetic under exactly the given poses,
-// the answer is true. G5: if it is true, the exact gap of the two sets is at most
-// collision_slack(): the price of rounding, about 2e-14 of the size of the scene. Does not throw,
-// and does not allocate on trees that build_tree() makes of up to a million spheres; for deeper
-// ones, which only a file or more spheres can bring, the stack may come from the heap.
+// G4 (docs/guarantee.md): if two spheres overlap (touching included) in exact arithmetic under
+// exactly the given poses, the answer is true. G5: if it is true, the exact gap of the two sets is
+// at most collision_slack(): the price of rounding, about 2e-14 of the size of the scene, which is
+// the reach of both sets and the distance of their frames. Does not throw, and does not allocate on
+// trees that build_tree() makes of up to a million spheres; for deeper ones, which only a file or
+// more spheres can bring, the stack may come from the heap.
 bool collides(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
               const Pose& world_from_b) noexcept;
 

@@ -39,11 +39,11 @@ struct Contact {
   ContactKind kind = ContactKind::kSpheres;
   // Indices of two spheres that touch into SphereTree::spheres() of a and of b.
   SpherePair spheres;
-  // At least this is missing for these two spheres to part, in exact arithmetic under exactly the
-  // given poses: the sum of the radii less the distance of the centres, rounded downward. In the
-  // unit of the trees. Nothing is said of how deep the meshes are in each other, nor of how far the
-  // bodies have to be moved. Never below -2 collision_slack(); below zero where rounding alone may
-  // have made them touch.
+  // Lower bound of the penetration depth of these two spheres, in exact arithmetic under exactly
+  // the given poses: the sum of the radii less the distance of the centres, rounded downward. In
+  // the unit of the trees. Nothing is said of the penetration depth of the meshes, nor of how far
+  // the bodies have to be moved. Never below -2 collision_slack(); below zero where rounding alone
+  // may have made them touch.
   double overlap_depth = 0.0;
   // In the middle of what the two spheres share of the line through their centres, up to rounding.
   Eigen::Vector3d world_point = Eigen::Vector3d::Zero();

@@ -34,8 +34,9 @@ struct DistanceRequest {
 
 // What distance() found.
 struct DistanceResult {
-  // Bounds of the separation distance of the two sets in exact arithmetic; both 0 where they
-  // overlap (lower is 0 wherever rounding cannot tell).
+  // Bounds of the separation distance of the two sets in exact arithmetic, whatever ended the
+  // search. Of sets that overlap or touch `lower` is 0, and `upper` is 0 once a pair is found that
+  // overlaps by more than rounding. 0 and infinity, and no pair, if a limit forbids every test.
   double lower = 0.0;
   double upper = std::numeric_limits<double>::infinity();
   SpherePair nearest;  // the pair that gives `upper`

@@ -49,12 +49,14 @@ void require_resolution(double resolution);
 // What is proved of a motion.
 struct EdgeResult {
   // kFree: proved at every point of the motion (G6). kCollision: at `contact_at` the canonical test
-  // finds a contact. kUnknown: something comes closer than the resolution tells apart, without a
-  // contact that was found, or the budget was spent; count it as a collision.
+  // finds a contact or, where limits are enforced, a joint is outside of its limits. kUnknown:
+  // something comes closer than the resolution tells apart and no contact was found, or
+  // max_configurations was reached; count it as a collision.
   Verdict verdict = Verdict::kUnknown;
   // Every point of the motion before this fraction is proved free; 1 for kFree (then its end is,
   // too). Nothing is proved if it is 0. More may be free unless the first contact was requested.
   double free_until = 0.0;
+  // The fraction of the motion at which that is, from 0 to 1; infinite unless kCollision.
   double contact_at = std::numeric_limits<double>::infinity();
   // Evaluated: the middles of parts of the motion, by a RobotChecker up to eight side by side.
   std::uint64_t configurations = 0;

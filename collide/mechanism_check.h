@@ -111,10 +111,10 @@ class MechanismCheck {
     std::unique_ptr<Memory> memory_;
   };
 
-  // Whether the variables are such that collides() can be queried: none larger than this in
-  // magnitude.
+  // The largest magnitude of a variable, in radians or the unit of the trees, for which collides()
+  // may be queried.
   static constexpr double kLargestVariable = 100.0;
-  // Whether none is larger than that or not finite.
+  // Whether all variables are finite and none is larger than that in magnitude.
   static bool is_in_range(std::span<const double> variables);
 
   // True if two spheres of a pair touch for sure or `confirm`, given a MechanismContact, says so of

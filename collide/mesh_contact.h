@@ -52,7 +52,8 @@ class PatchTrees;
 // inside: what lies within such a one without touching it is free. So is what only several parts
 // enclose that share no edges, as halves that are not welded do.
 //
-// One whose content was moved to another is as a SphereTree like that.
+// Not to be queried once it was moved from: a query that finds its content gone throws Error, or
+// ends the program where it is noexcept.
 class CoveredMesh {
  public:
   // Proves that the spheres cover every triangle, and throws Error, naming one, where that fails.
@@ -66,8 +67,8 @@ class CoveredMesh {
   const MeshTree& mesh() const { return solid_.mesh(); }
   // The mesh with its inside, as stored: inflation() is 0.
   const SolidMesh& solid() const { return solid_; }
-  // Those that a sphere of cover().spheres() stands for, at least in part, sorted. Every point of
-  // a triangle lies in a sphere under which the triangle is listed.
+  // The triangles (indices into the mesh) that a sphere of cover().spheres() stands for, at least
+  // in part, sorted. Every point of a triangle lies in a sphere under which the triangle is listed.
   std::span<const std::int32_t> triangles_under(std::int32_t sphere) const {
     const auto i = static_cast<std::size_t>(sphere);
     const auto first = static_cast<std::size_t>(first_[i]);
@@ -127,8 +128,9 @@ inline bool triangles_touch(const CoveredMesh& a, std::int32_t sphere_a, const P
                             const Pose& world_from_b) noexcept {
   return touching_triangles(a, sphere_a, world_from_a, b, sphere_b, world_from_b).has_value();
 }
-// How deep two triangles are in each other: if it is above zero they have a point in common, and
-// keep one wherever one of them goes, none of its points by more than that from where it is.
+// Lower bound of the penetration depth of two triangles, in the unit of the meshes: if it is above
+// zero they have a point in common, and still have one after any displacement of one of them that
+// moves none of its points by more than that. Otherwise nothing is proved.
 double contact_depth(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
                      const Pose& world_from_b, const TrianglePair& triangles) noexcept;
 // The same of a triangle and a sphere of a set.
@@ -139,7 +141,8 @@ struct TriangleDepth {
   std::int32_t triangle = -1;
   double depth = -std::numeric_limits<double>::infinity();
 };
-// The one whose enclosing sphere is centred nearest to a sphere of a set; -1 if there is none.
+// Of the triangles under `sphere_a`, the one whose enclosing sphere is centred nearest to the
+// centre of `sphere_b`, with its contact_depth(); -1 if there is none.
 TriangleDepth nearest_triangle(const CoveredMesh& a, std::int32_t sphere_a,
                                const Pose& world_from_a, const SphereTree& b, std::int32_t sphere_b,
                                const Pose& world_from_b) noexcept;

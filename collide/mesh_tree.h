@@ -34,13 +34,14 @@ class PackedMesh;
 
 // A sphere tree whose leaves are triangles: every leaf sphere encloses one triangle. Immutable. The
 // mesh is judged as stored: its vertex_error, the distance to the file's mesh, is not added to it.
-// One whose content was moved to another is as a SphereTree like that.
+// Threads may share it. Not to be queried once it was moved from: a query that finds its content
+// gone throws Error, or ends the program where it is noexcept.
 class MeshTree {
  public:
   // Throws Error for a mesh that validate() refuses.
   explicit MeshTree(const TriangleMesh& mesh);
 
-  // Sphere `index` of tree() is the sphere of triangle(index).
+  // triangle(index) is triangle `index` of the mesh; sphere `index` of tree() encloses it.
   const SphereTree& tree() const { return tree_; }
   const std::array<Eigen::Vector3d, 3>& triangle(std::int32_t index) const {
     return triangles_[static_cast<std::size_t>(index)];

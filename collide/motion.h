@@ -35,18 +35,17 @@ class Motion {
 
   // From pose to pose by the shorter way round; where both ways are equally long to rounding, by
   // either of the two. It starts and ends at exactly the given poses. `reference` is in the body's
-  // frame.
+  // frame. Throws Error for numbers that are not finite and for a motion that could take the body's
+  // origin or the reference point beyond kMaxCoordinate.
   static Motion between(const Pose& start, const Pose& end,
                         const Eigen::Vector3d& reference = Eigen::Vector3d::Zero());
 
   // Turns by `angle` (radians, of any size up to kLargestAngle) about `axis` (in the world's frame,
-  // of any length) through the reference point, which moves by `displacement`.
+  // of any length) through the reference point, which moves by `displacement`. Throws Error as
+  // between() does, for a zero axis, and for an angle beyond kLargestAngle.
   static Motion turning(const Pose& start, const Eigen::Vector3d& axis, double angle,
                         const Eigen::Vector3d& displacement = Eigen::Vector3d::Zero(),
                         const Eigen::Vector3d& reference = Eigen::Vector3d::Zero());
-
-  // All of them throw Error for numbers that are not finite, a zero axis, and motions that could
-  // take the body's origin or the reference point beyond kMaxCoordinate.
 
   // Exactly the start at 0 and, for between(), exactly the end at 1. Throws Error unless
   // 0 <= t <= 1.

@@ -30,10 +30,10 @@ namespace spherule {
 //   - after a free answer it knows a clearance, proved where the bodies stood then. As long as they
 //     have moved against each other by less, no tree is examined;
 //   - after a collision, the two spheres that touched are tried first.
-// Not to be shared between threads. The trees must outlive it.
+// Not thread-safe: each thread needs one of its own.
 class PairCache {
  public:
-  // Both trees must outlive it.
+  // Both trees must outlive it and not be moved. Throws Error unless this thread rounds to nearest.
   PairCache(const SphereTree& a, const SphereTree& b);
 
   // Exactly what collides() answers for the two trees.

@@ -42,8 +42,8 @@ class MeshInside;
 // is TriangleMesh::vertex_error. Each surface is judged by itself: overlapping ones take nothing
 // from each other, whichever way they are turned, and a sealed hollow is inside, as is what it
 // holds. A part with a boundary, or which cannot be turned alike, has no inside, and what lies
-// within it without touching it is free. One whose content was moved to another is as a SphereTree
-// like that.
+// within it without touching it is free. Not to be queried once it was moved from: a query that
+// finds its content gone throws Error, or ends the program where it is noexcept.
 class SolidMesh {
  public:
   // Throws Error for a mesh that validate() refuses.

@@ -56,7 +56,7 @@ struct MeshReportOptions {
   bool self_intersections = true;
 };
 
-// Examines a mesh as a whole; it changes nothing.
+// Examines a mesh as a whole. Throws Error for a mesh that validate() refuses.
 MeshReport mesh_report(const TriangleMesh& mesh, const MeshReportOptions& options = {});
 
 // The report in a few lines for a person: counts, size, and a sentence for everything unusual.

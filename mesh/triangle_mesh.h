@@ -34,8 +34,9 @@ struct TriangleMesh {
 };
 
 // Throws Error(subject, ...) unless the mesh can be used at all: at least one triangle, indices in
-// range, coordinates finite and at most kMaxCoordinate, vertex_error finite and not negative. Every
-// entry point that takes a mesh calls it.
+// range, coordinates finite and at most kMaxCoordinate, vertex_error finite and not negative. What
+// covers, certifies, measures, writes or queries a mesh calls it, but for MeshDistance, which has
+// to be given a mesh that passed.
 void validate(const TriangleMesh& mesh, const std::string& subject);
 
 }  // namespace spherule

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 // The smallest enclosing ball of spheres is an LP-type problem (Fischer and Gaertner, "The smallest

@@ -20,9 +20,10 @@
 
 namespace spherule {
 
-// The smallest sphere that encloses all points, or all spheres, its radius rounded up so that it
-// encloses them in exact arithmetic (certainly_encloses holds for each). The input must not be
-// empty.
+// The smallest sphere that encloses all points, or all spheres, up to rounding (Fischer and
+// Gaertner, "The smallest enclosing ball of balls", 2003): its radius is rounded up so that it
+// encloses them in exact arithmetic (certainly_encloses() or certainly_contains() holds for each).
+// The input must not be empty.
 Sphere enclosing_sphere(std::span<const Eigen::Vector3d> points);
 Sphere enclosing_sphere(std::span<const Sphere> spheres);
 

@@ -22,9 +22,11 @@
 
 namespace spherule {
 
-// Bad input: a file, a mesh, an option or a pose that cannot be used. Thrown at the boundary only
-// (readers, option checks, makers of a Pose), never inside a query. `what()` is "subject: reason",
-// where the subject names the file, the option or the argument.
+// Bad input: a file, a mesh, an option, a pose or another argument that cannot be used. Thrown by
+// readers, option checks, constructors, and by queries for arguments that they cannot take (a
+// negative clearance, a configuration of the wrong size, an object that was moved from), never for
+// what a query finds. `what()` is "subject: reason", where the subject names the file, the option
+// or the argument.
 class Error : public std::runtime_error {
  public:
   // What cannot be used, and why.

@@ -28,8 +28,9 @@ namespace spherule {
 
 // A set of spheres, each of which encloses some of the next finer set.
 struct SphereLevel {
-  // Of the radius: by so much more than to enclose them a sphere of several finer ones has to be
-  // larger. Room for the copies of it that build_tree_from_levels() makes.
+  // Share of its radius by which a sphere has to be larger than it takes to enclose its children,
+  // unless it equals its only child: room for the slightly smaller copies of it that
+  // build_tree_from_levels() makes.
   static constexpr double kReserve = 0x1p-42;
 
   std::vector<Sphere> spheres;

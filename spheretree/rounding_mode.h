@@ -22,10 +22,11 @@
 
 namespace spherule {
 
-// Throws Error unless this thread rounds to nearest, as every proved bound presumes. What is built,
-// loaded, fitted, certified, or memory of queries calls it once; single queries do not, and with
-// another mode set after that no contact is missed in tests, but nothing is promised. Determined by
-// sums, as std::fegetround() does not see every unit of a processor.
+// Throws Error unless this thread rounds to nearest, as every proved bound presumes. build_tree(),
+// load_tree(), place_external_spheres(), certify() and the constructors of PairCache,
+// MechanismCheck::Scratch and RobotChecker::Scratch call it; single queries do not. If the mode is
+// changed after that nothing is promised; in tests no contact was missed. Determined by sums, as
+// std::fegetround() does not see every floating-point unit of a processor.
 void require_rounding_to_nearest();
 
 }  // namespace spherule

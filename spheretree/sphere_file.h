@@ -40,7 +40,8 @@ struct CertificateRecord {
   // Proved upper bounds on the protrusion; absent where it was not requested.
   std::optional<double> protrusion_over_simplified_max = std::nullopt;
   std::optional<double> protrusion_over_mesh_max = std::nullopt;
-  // The first of these for the points of the spheres in each zone of the options; empty without.
+  // The same over the simplified solid for the points of the spheres in each zone, in the order of
+  // the zones in the options; empty without zones.
   std::vector<double> protrusion_in_zones = {};
   std::size_t sphere_count = 0;  // the number of spheres in the file, checked by both functions
   // Volume of the union of the spheres over the volume of the solid mesh, estimated.
@@ -48,7 +49,7 @@ struct CertificateRecord {
   // Volume between the solid and the mesh, and its standard error, estimated.
   std::optional<double> filled_volume = std::nullopt;
   std::optional<double> filled_volume_error = std::nullopt;
-  // How much wider than D a way into the solid may be and still have been filled, proved.
+  // Proved: a way into the solid that is wider than D by more than this has not been filled.
   std::optional<double> closing_slack = std::nullopt;
 };
 

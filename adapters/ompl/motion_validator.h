@@ -50,7 +50,8 @@ namespace spherule {
 // -3 rad back through 0. `continuous` of the request is not used.
 class MotionValidator : public ompl::base::MotionValidator {
  public:
-  // Throws Error as RobotStates and require_resolution() do.
+  // Throws Error as RobotStates and require_resolution() do. OMPL's base class keeps a plain
+  // pointer to `information`, which must outlive this.
   MotionValidator(const ompl::base::SpaceInformationPtr& information, RobotChecker checker,
                   const EdgeRequest& request = {})
       : ompl::base::MotionValidator(information),

@@ -44,7 +44,8 @@ namespace spherule {
 // of obstacles and of itself, certainly (G4). Threads may share it.
 class StateValidityChecker : public ompl::base::StateValidityChecker {
  public:
-  // Throws Error as RobotStates does.
+  // Throws Error as RobotStates does. OMPL's base class keeps a plain pointer to `information`,
+  // which must outlive this.
   StateValidityChecker(const ompl::base::SpaceInformationPtr& information, RobotChecker checker)
       : ompl::base::StateValidityChecker(information),
         states_(std::move(checker), information->getStateSpace()) {

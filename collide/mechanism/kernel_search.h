@@ -7,6 +7,8 @@
 #include "collide/mechanism/kernel_vectors.h"
 #include "collide/mechanism/mechanism_kernel.h"
 
+#include <cstddef>
+
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 

@@ -28,6 +28,8 @@
 #include "collide/mechanism/kernel_search.h"
 #include "collide/meshes/mesh_kernel.h"
 
+#include <cstddef>
+
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 

@@ -66,8 +66,8 @@ struct StatedUnit {
 
 // For mesh and CAD files. A 3MF file states its unit (by default the millimetre), glTF is in
 // metres, DAE is read into metres from its own <unit>, CAD files into millimetres. Nothing for the
-// formats that have no units: STL, OBJ, PLY, OFF. Throws Error for a 3MF or DAE file that is not
-// there, and a 3MF file of which the unit cannot be read.
+// formats that have no units: STL, OBJ, PLY, OFF. Only 3MF and DAE files are opened: throws Error,
+// naming the file, for one that cannot be read or whose unit cannot be used.
 std::optional<StatedUnit> stated_unit(const std::filesystem::path& path);
 
 }  // namespace spherule

@@ -60,7 +60,8 @@ TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions&
 bool is_cad_file(const std::filesystem::path& path);
 
 // Writes binary STL; the coordinates are rounded to 32-bit floats. The file appears whole or not at
-// all. Throws Error.
+// all. Throws Error, naming the file, for a mesh that validate() refuses and if it cannot be
+// written.
 void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path);
 
 }  // namespace spherule

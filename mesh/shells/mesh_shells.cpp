@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <tuple>
+#include <utility>
 
 namespace spherule::internal {
 namespace {

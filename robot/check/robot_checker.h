@@ -49,18 +49,19 @@ struct RobotCheckerOptions {
   // A configuration with a joint outside its limits counts as a collision.
   bool enforce_limits = false;
   InstructionSet instructions = best_instruction_set();
-  // Confirmation on the triangles (opt-in). A body or an obstacle whose tree is the cover() of one
-  // of these counts as the mesh with its inside (mesh_contact.h), the padding that is requested
-  // around it, against all that it is tested with: a contact of its spheres counts only if the mesh
-  // touches, in configurations as on motions. Free stays certain, where the spheres cover the
-  // inside, too, as covers of the simplifier do; false alarms of coarse covers vanish. Bodies of
-  // which a region may touch are judged by their spheres.
+  // Confirmation on the triangles (opt-in). It holds for each body or obstacle whose tree is the
+  // same object as the cover() of one of these; an equal tree in another object is not recognised,
+  // and a mesh without such a body is ignored. Such a body counts as its mesh with the inside
+  // (mesh_contact.h), grown by the padding that is requested, against all that it is tested with: a
+  // contact of its spheres counts only if the mesh touches, in configurations as on motions. Free
+  // stays certain where the spheres cover the inside, too, as covers of the simplifier do; false
+  // alarms of coarse covers vanish. Bodies of which a region may touch are judged by their spheres.
   std::vector<std::shared_ptr<const CoveredMesh>> meshes{};
 };
 
 // When an explanation may stop.
 struct ExplainRequest {
-  // Tell of no more contacts than this (1: the first); contacts before what is proved free.
+  // At most so many entries are returned: contacts first, then what is proved free.
   std::size_t max_contacts = std::numeric_limits<std::size_t>::max();
   // Tell, too, of spheres that overlap though their bodies are proved free of each other.
   bool proved_free = false;
@@ -168,8 +169,9 @@ class RobotChecker {
   // exact motion as for the poses that forward_kinematics() computes for configurations on it.
   // Continuous joints turn as the request says; by the shorter way, the exact motion is from `from`
   // by at most half a turn to the posture of `to`, and ShortestMotion has the configurations on it.
-  // Where limits are enforced, leaving them is a contact. Unless the first contact is requested,
-  // free_until may be 0 where one is found. Throws Error also for a position beyond
+  // Where limits are enforced, leaving them is a contact, stated at the end that is outside of them
+  // (contact_at is 0 or 1) unless bodies are found to touch before. Unless the first contact is
+  // requested, free_until may be 0 where one is found. Throws Error also for a position beyond
   // kLargestPosition, at the end of the shorter way too, for a resolution that is not above zero,
   // and for the shorter way where ShortestMotion::require() does.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
@@ -190,8 +192,9 @@ class RobotChecker {
                       ContinuousMotion continuous = ContinuousMotion::kAsGiven) const;
 
   // The configuration at a fraction of the motion that check_edge() proves, in [0, 1], rounded as
-  // there: at EdgeResult::contact_at explain() names the bodies that touch. `continuous` as in
-  // EdgeRequest. Throws Error as check_edge(), and for a fraction outside of [0, 1]. Allocates.
+  // there: at EdgeResult::contact_at explain() names the bodies that touch, or none where only a
+  // joint is outside of its limits. `continuous` as in EdgeRequest. Throws Error as check_edge(),
+  // and for a fraction outside of [0, 1]. Allocates.
   std::vector<double> configuration_on_edge(
       std::span<const double> from, std::span<const double> to, double fraction,
       ContinuousMotion continuous = ContinuousMotion::kAsGiven) const;

@@ -70,11 +70,12 @@ struct Region {
 // Names. Links, attached objects and obstacles share one space of names: a name that is taken, or
 // is not there, is an Error that says so. Links and attached objects are bodies.
 //
-// What is tested: every body against every obstacle; and two bodies against each other if a joint
-// moves one against the other, unless both are links and AllowedCollisions allows them. An attached
-// object moves with its link but has no part in what that link is allowed: a long tool is tested
-// against the links next to its flange. Contacts that are intended are taken out, by
-// allow_contact().
+// What is tested: every body against every obstacle; two links against each other unless
+// AllowedCollisions allows them (at first it allows, among others, links that no joint moves
+// against each other); and an attached object against a link or another attached object if a joint
+// moves one against the other. An attached object moves with its link but has no part in what that
+// link is allowed: a long tool is tested against the links next to its flange. Contacts that are
+// intended are taken out, by allow_contact().
 //
 // One whose content was moved to another has no robot: snapshot() throws Error, as does what names
 // a body.

@@ -101,8 +101,10 @@ struct RobotRepairOptions {
 // The repair of one link's spheres.
 struct LinkRepair {
   std::string link;
-  Repair repair;            // its spheres are those of RobotRepair::spheres
-  Certificate certificate;  // of these, against the simplified solid with D = 4 E
+  Repair repair;  // its spheres are those of RobotRepair::spheres
+  // Of these spheres, against the simplified solid with D = 4 RobotRepairOptions::max_error or,
+  // where that is 0, with D = 4 % of the diagonal of the box of the link's mesh.
+  Certificate certificate;
 };
 
 // A robot's spheres, repaired.

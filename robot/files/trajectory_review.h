@@ -25,7 +25,8 @@
 
 namespace spherule {
 
-// Configurations with a joint outside its limits. None of a straight motion between others has one.
+// Configurations with a joint outside its limits. A straight motion between two configurations that
+// have none stays within the limits.
 struct OutsideLimits {
   std::size_t count = 0;  // of configurations
   // In the first of them: its line, and the first such joint. Radians where it turns, or metres.

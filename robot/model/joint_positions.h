@@ -24,8 +24,10 @@
 
 namespace spherule {
 
-// From configurations to what a check made from MovingFrames is called with, the positions of the
-// joints that move. Where no joint mimics another, both are the same numbers and nothing is done.
+// From configurations, one number for each variable, to the positions of all joints that move,
+// mimics included, in the order of RobotModel::joints(): the variables of a MechanismCheck that has
+// a frame for each of these joints. Where no joint mimics another, both are the same numbers and
+// nothing is done. Immutable; threads may share it, each with a Room of its own.
 class JointPositions {
  public:
   // Of the joints of this robot.
@@ -38,8 +40,9 @@ class JointPositions {
   // Room for so many configurations.
   Room room_for(std::size_t configurations) const;
 
-  // The positions in a configuration of as many numbers as the robot has variables, kept at a
-  // `place` below the number that the room was made for. Allocates nothing.
+  // The positions in a configuration of as many numbers as the robot has variables. The result is a
+  // view of `configuration` itself or, with mimics, of `room`, where it is kept at a `place` below
+  // the number that the room was made for. Sizes are not checked. Allocates nothing.
   std::span<const double> of(std::span<const double> configuration, Room& room,
                              std::size_t place = 0) const {
     return has_mimics_ ? computed(configuration, room, place) : configuration;

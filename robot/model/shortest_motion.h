@@ -41,7 +41,7 @@ inline bool is_periodic(const Joint& joint) {
 // motions (RobotChecker) charge that, so that what they prove holds for the exact motion.
 double nearest_turn(double from, double to);
 
-// As said above, in radians.
+// Bound on the rounding of nearest_turn(), in radians, for angles of at most 100 in magnitude.
 inline constexpr double kTurnError = 2e-14;
 
 // Motions of a robot on which its continuous joints turn the shorter way (nearest_turn()); other

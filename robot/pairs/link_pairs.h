@@ -77,9 +77,11 @@ struct LinkPair {
 // How long is searched. Equal options give equal results on any number of threads, unless `seconds`
 // is set or a stop is requested.
 struct LinkPairOptions {
-  std::size_t boxes = 8000;              // for each pair that touches
-  std::size_t undecided_boxes = 100000;  // for each pair without a witness
-  std::size_t samples = 300;             // configurations from which a witness is searched
+  // How many boxes of the joints' ranges are examined for a pair, at most: once a configuration is
+  // known in which it touches, and as long as none is.
+  std::size_t boxes = 8000;
+  std::size_t undecided_boxes = 100000;
+  std::size_t samples = 300;  // configurations from which a witness is searched
   // Boxes in which the two move against each other by less are not halved, in metres.
   double smallest_motion = 1e-4;
   double seconds = 0.0;  // limit for all pairs together; what is left then is kUnknown. 0: none

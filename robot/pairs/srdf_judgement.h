@@ -47,11 +47,11 @@ struct JudgedPair {
   DisabledVerdict verdict = DisabledVerdict::kUnknown;
   std::vector<double> witness{};  // where they touch: a configuration
   double smallest_gap = std::numeric_limits<double>::infinity();  // found, in metres; of kUnknown
-  // Two links touch that are neither joined nor, by the reason that the SRDF gives, meant to
-  // ("Default", "Always" and "User" are somebody's decision; "Never" is a statement, as is
-  // "Adjacent", which is false of links that are not joined, and no reason is none).
+  // The links touch (kTouches), though the SRDF states that they do not: its reason is not
+  // "Default", "Always" or "User", which are decisions. Any other reason, such as "Never" or
+  // "Adjacent", counts as that statement, and so does a missing one.
   bool is_wrong = false;
-  // Nothing is known of them, though the SRDF states it.
+  // The same statement, of links for which neither a contact nor a proof was found (kUnknown).
   bool is_open = false;
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <tinyxml2.h>
+#include <utility>
 #include <vector>
 
 // The XML of a COLLADA file (Khronos, "COLLADA - Digital Asset Schema Release 1.5.0"), with checked

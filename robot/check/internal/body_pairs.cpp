@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 // Root spheres. Let W bound |p| + |t| of the centre p of a root sphere in its frame and the pose's
