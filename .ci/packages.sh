@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The Debian packages that parts of the project need, for scripts to source: adds to `packages`. And how
-# they have CMake build.
+# For scripts to source: the Debian packages that parts of the project need (functions that add to
+# `packages`), and the generator and compiler cache of their builds.
 
 packages=()
 
@@ -56,8 +56,8 @@ need_benchmarks() {
   packages+=(libbenchmark-dev libbullet-dev)
 }
 
-# Has CMake build by Ninja and through ccache, where they are. It reads both variables when a build
-# folder is made, and only then.
+# Selects Ninja and ccache for CMake, if they are installed. CMake reads both variables only when a build
+# folder is made.
 use_ninja_and_ccache() {
   if command -v ninja >/dev/null; then export CMAKE_GENERATOR=Ninja; fi
   if command -v ccache >/dev/null; then

@@ -76,7 +76,7 @@ TriangleDistance point_triangle_distance(const Vector3d& p, const Vector3d& a, c
     norm = q.norm();
     lower = std::max(lower, lower_bound(q, norm, ra, rb, rc, reach));
   }
-  return {lower, norm * kRelativeUp + kUnderflow + 32.0 * kUnitRoundoff * reach, p + q};
+  return {lower, norm_upper(q) + 32.0 * kUnitRoundoff * reach, p + q};
 }
 
 }  // namespace spherule

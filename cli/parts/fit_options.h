@@ -3,8 +3,8 @@
 
 #include "cli/files/model_file.h"
 #include "cli/files/model_unit.h"
+#include "cli/options/external_spheres_flag.h"
 #include "cli/options/length_options.h"
-#include "cli/options/report_content.h"
 #include "cli/options/shard.h"
 #include "cli/parts/stage2_method.h"
 #include "simplifier/simplify.h"

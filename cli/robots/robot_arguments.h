@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/options/external_spheres_flag.h"
 #include "cli/options/length_options.h"
-#include "cli/options/report_content.h"
 #include "cli/options/robot_options.h"
 #include "cli/robots/robot_false_alarms.h"
 #include "cli/robots/robot_files.h"

@@ -257,7 +257,6 @@ class FloodGrid::Refinement {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::uint32_t begin = std::max(low[axis], node_low[axis]);
         const std::uint32_t end = std::min(low[axis] + size, node_low[axis] + node_size);
-        if (begin > end) return;
         apart_by_none += begin == end ? 1 : 0;
       }
       if (by_faces && apart_by_none > 1) return;

@@ -12,6 +12,13 @@ endif()
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/spherule SYMBOLIC)
 
+# SPHERULE_PROGRAM_OPTIONS for a TARGET that is no library (KIND as below).
+function(spherule_program_options target kind)
+  if(NOT "${kind}" STREQUAL "library")
+    target_compile_options(${target} PRIVATE ${SPHERULE_PROGRAM_OPTIONS})
+  endif()
+endfunction()
+
 # Applies the project's compile settings to TARGET, a `library`, `program`, `test` or `binding` (KIND). The
 # guarantees rest on `-ffp-contract=off` in our own sources (see spheretree/rounding.h); inline code in
 # headers is valid with and without contraction.
@@ -25,9 +32,7 @@ function(spherule_compile_settings target kind)
   if(NOT "${kind}" STREQUAL "library" AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
     target_link_options(${target} PRIVATE LINKER:--as-needed)
   endif()
-  if(NOT "${kind}" STREQUAL "library")
-    target_compile_options(${target} PRIVATE ${SPHERULE_PROGRAM_OPTIONS})
-  endif()
+  spherule_program_options(${target} ${kind})
   if(SPHERULE_PRECOMPILE AND NOT "${kind}" STREQUAL "binding")
     spherule_precompile(${target} ${kind})
   endif()

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/structure/rules.h"
 
+#include "tests/structure/repository.h"
 #include "tests/structure/rooms.h"
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <initializer_list>
 #include <iterator>
 #include <map>
@@ -218,8 +218,7 @@ std::vector<std::string> check_sources(const fs::path& root, std::size_t& files)
   std::map<std::string, std::string> libraries;  // CMakeLists.txt of each, by folder
   std::vector<std::string> headers;
   const auto check = [&](const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    const std::string text((std::istreambuf_iterator<char>(stream)), {});
+    const std::string text = text_of(path);
     const std::string name = fs::relative(path, root).generic_string();
     const auto found = check_file(name, text);
     problems.insert(problems.end(), found.begin(), found.end());

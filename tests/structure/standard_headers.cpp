@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/structure/standard_headers.h"
 
+#include "tests/structure/repository.h"
+
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -77,17 +77,12 @@ const std::map<std::string, std::set<std::string>>& declaring() {
   return kDeclaring;
 }
 
-std::string content_of(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 // The headers in angle brackets that a file includes, or that ours do which it includes.
 void collect_includes(const fs::path& root, const fs::path& file, std::set<fs::path>& seen,
                       std::set<std::string>& headers) {
   if (!seen.insert(file).second || !fs::exists(root / file)) return;
   static const std::regex kInclude(R"re((?:^|\n) *# *include +([<"])([^>"]+))re");
-  const std::string text = content_of(root / file);
+  const std::string text = text_of(root / file);
   for (std::sregex_iterator at(text.begin(), text.end(), kInclude), end; at != end; ++at) {
     if ((*at)[1] == "<") {
       headers.insert((*at)[2]);
@@ -105,7 +100,7 @@ std::vector<std::string> missing_standard_headers(const fs::path& root, const fs
   collect_includes(root, file, seen, headers);
   static const std::regex kNoCode(R"re(//[^\n]*|"(\\.|[^"\\\n])*")re");
   static const std::regex kName(R"re(std::(?:ranges::)?(\w+))re");
-  const std::string code = std::regex_replace(content_of(root / file), kNoCode, "");
+  const std::string code = std::regex_replace(text_of(root / file), kNoCode, "");
   std::set<std::string> names;
   for (std::sregex_iterator at(code.begin(), code.end(), kName), end; at != end; ++at) {
     names.insert((*at)[1]);

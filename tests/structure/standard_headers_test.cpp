@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/structure/standard_headers.h"
 
+#include "tests/structure/repository.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>
@@ -13,15 +14,14 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(StandardHeaders, AreIncludedByTheSourcesOfLibrariesThatUseTheirNames) {
-  const fs::path root = SPHERULE_SOURCE_DIR;
   std::size_t files = 0;
   for (const char* folder : {"spheretree", "mesh", "simplifier", "collide", "robot", "adapters",
                              "cli", "bench", "python"}) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
-      const fs::path file = fs::relative(entry.path(), root);
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      const fs::path file = fs::relative(entry.path(), kRoot);
       if (file.extension() != ".h" && file.extension() != ".cpp") continue;
       ++files;
-      for (const std::string& what : missing_standard_headers(root, file)) {
+      for (const std::string& what : missing_standard_headers(kRoot, file)) {
         ADD_FAILURE() << file << ": " << what;
       }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/options/report_content.h"
+#include "cli/options/external_spheres_flag.h"
 
 #include <CLI/CLI.hpp>
 
