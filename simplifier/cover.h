@@ -54,8 +54,8 @@ struct CoverOptions {
   std::uint64_t seed = 1;
   // kCover: rounds at most of searching for fewer spheres than the first proved answer; 0: none.
   // The search ends sooner where, by what it saved of late, a tenth more rounds would save less
-  // than 1 % of the spheres, above 60 rounds less than 60 % / effort; and where 40 rounds on end
-  // have saved nothing.
+  // than 1 % of the spheres, above 60 rounds less than 60 % / effort; and where a quarter of the
+  // rounds that are allowed, but 40 at least and 400 at most, have saved nothing on end.
   int effort = 60;
   // kCover: no new round begins after so many seconds, either; 0 sets no limit. The result then
   // depends on the machine.

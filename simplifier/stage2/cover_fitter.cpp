@@ -32,9 +32,13 @@ using Eigen::Vector3d;
 constexpr std::array kSpacings{0.7, 0.5, 0.3, 0.2, 0.14};
 constexpr std::size_t kFewCells = 10000;
 constexpr std::size_t kManyCells = 30000;
-// Rounds without a better answer, after which cells become finer, or which end the search.
+// Rounds without a better answer, after which cells become finer, spheres are nudged, or the search
+// ends: a share of the rounds that are allowed, within limits.
 constexpr int kPatience = 1;
+constexpr int kStuck = 3;
+constexpr int kConvergedShare = 4;
 constexpr int kConverged = 40;
+constexpr int kConvergedAtMost = 400;
 
 // Surroundings of rows: the radii as shares of the cells' spacing and, in all, of E; the discs as
 // shares of how much further than E spheres reach.
@@ -62,11 +66,12 @@ constexpr std::size_t kForgetting = 4;  // times as large as it was the problem 
 // So many leaks more than there are spheres to gain may still be mended by fewer spheres.
 constexpr std::size_t kHopefulLeaks = 8;
 constexpr std::size_t kOpenRows = 100;  // that candidates are made for in a round
+constexpr std::size_t kFewerRows = 30;  // where spheres are nudged instead
 
 // What a lower bound is made of, for every sphere proved and at least.
-constexpr std::size_t kBoundPoints = 120;
+constexpr std::size_t kBoundPoints = 240;
 constexpr std::size_t kMinBoundPoints = 6000;
-constexpr std::size_t kBoundCenters = 20;
+constexpr std::size_t kBoundCenters = 60;
 constexpr std::size_t kMinBoundCenters = 1000;
 
 // At most `count` of the items, evenly picked.
@@ -118,15 +123,16 @@ std::vector<Sphere> CoverFitter::run() {
   begin();
   CoverYield yield(options_.effort);
   yield.add(best_.spheres.size());
-  int in_vain = 0;
+  const int converged = std::clamp(options_.effort / kConvergedShare, kConverged, kConvergedAtMost);
+  in_vain_ = 0;
   for (int round = 0; round < options_.effort && best_.spheres.size() > 1; ++round) {
     const double share = share_done(round);
     if (share >= 1.0 || options_.stop.stop_requested()) break;
     report(share);
-    in_vain = improve() ? 0 : in_vain + 1;
-    if (in_vain >= kPatience && refine()) in_vain = 0;
+    in_vain_ = improve() ? 0 : in_vain_ + 1;
+    if (in_vain_ >= kPatience && refine()) in_vain_ = 0;
     yield.add(best_.spheres.size());
-    if (in_vain >= kConverged || !yield.pays()) break;
+    if (in_vain_ >= converged || !yield.pays()) break;
   }
   bound();
   return best_.spheres;
@@ -255,12 +261,16 @@ void CoverFitter::widen() {
   for (const std::uint32_t row : open) points.push_back(problem_.rows()[row].point);
   // Where few are left open it takes new places for other spheres, too.
   Random random(options_.seed + seeds_used_++);
-  while (points.size() < kOpenRows) {
+  const bool stuck = in_vain_ >= kStuck;
+  while (points.size() < (stuck ? kFewerRows : kOpenRows)) {
     points.push_back(problem_.rows()[random.index(problem_.rows().size())].point);
   }
   problem_.add_candidates(reach_for(clearance_, problem_, solution_, open));
   problem_.add_candidates(
       candidates_from(clearance_, points, error_, options_.seed + seeds_used_++, local_));
+  if (stuck) {
+    problem_.add_candidates(nudged(clearance_, problem_, solution_, options_.seed + seeds_used_++));
+  }
 }
 
 CoverFitter::Spheres CoverFitter::mended(Spheres spheres, SolidCells::Leaks leaks) {

@@ -120,6 +120,7 @@ class CoverFitter {
   std::vector<Sphere> given_;
   std::size_t lower_bound_ = 0;
   std::uint64_t seeds_used_ = 0;
+  int in_vain_ = 0;                  // rounds on end without a better answer
   std::uint64_t first_entries_ = 0;  // of the problem when its cells were made
 };
 

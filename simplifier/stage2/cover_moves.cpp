@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/cover_moves.h"
 
+#include "simplifier/solid/medial_ascent.h"
 #include "simplifier/stage2/cover_shift.h"
+#include "simplifier/stage2/surface_extent.h"
 #include "simplifier/support/parallel.h"
+#include "simplifier/support/random.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -14,6 +18,8 @@ namespace {
 using Columns = CoverProblem::Columns;
 
 constexpr std::size_t kNearest = 8;
+constexpr double kLeastNudge = 0.04;  // shares of how far a sphere reaches along a plane
+constexpr double kLargestNudge = 0.4;
 
 // For every sphere of the solution the rows that it alone covers.
 std::vector<std::vector<std::uint32_t>> exclusive_rows(const CoverProblem& problem,
@@ -88,6 +94,28 @@ std::vector<Candidate> reach_for(const Clearance& clearance, const CoverProblem&
   std::vector<Candidate> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
   return all;
+}
+
+std::vector<Candidate> nudged(const Clearance& clearance, const CoverProblem& problem,
+                              const Columns& solution, std::uint64_t seed) {
+  std::vector<Candidate> found(solution.size());
+  parallel_for(0, solution.size(), [&](std::size_t i) {
+    Random random(seed + 0x9e3779b97f4a7c15U * (i + 1));
+    const Candidate& from = problem.candidate(solution[i]);
+    const double inside = std::max(0.0, from.clearance);
+    const double error = problem.error().allowance(from.center, inside);
+    const double largest = cap_width(inside, error) * kLeastNudge *
+                           std::pow(kLargestNudge / kLeastNudge, random.between(0.0, 1.0));
+    const Eigen::Vector3d by(random.between(-1.0, 1.0), random.between(-1.0, 1.0),
+                             random.between(-1.0, 1.0));
+    const AscentStep end =
+        ascend(clearance, from.center + largest * by,
+               {.first_step = 0.1 * error, .least_step = 0.005 * error, .tolerance = 0.01 * error})
+            .back();
+    found[i] = {end.point, end.clearance};
+  });
+  std::erase_if(found, [](const Candidate& c) { return c.clearance < 0.0; });
+  return found;
 }
 
 }  // namespace spherule::internal

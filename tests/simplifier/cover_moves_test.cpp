@@ -137,6 +137,27 @@ TEST(CoverMoves, SpheresReachForRowsThatAreOpen) {
   EXPECT_TRUE(std::ranges::any_of(found, covers_one));
 }
 
+TEST(CoverMoves, NudgedSpheresStandBesideThoseOfTheSolutionOnTheMedialAxis) {
+  Random random(14);
+  const Scene scene(random);
+  const CoverProblem::Columns solution = greedy_set_cover(scene.problem.instance());
+  const std::vector<Candidate> found = nudged(scene.clearance, scene.problem, solution, 1);
+  EXPECT_LE(found.size(), solution.size());
+  EXPECT_GE(2 * found.size(), solution.size());
+  for (const Candidate& c : found) {
+    EXPECT_GE(c.clearance, 0.0);
+    EXPECT_LE(c.clearance, scene.clearance(c.center).upper);
+    // Moving on, away from the contact, meets another one.
+    const Vector3d on = c.center + 0.02 * kError * scene.clearance(c.center).away;
+    EXPECT_LE(scene.clearance(on).lower, c.clearance + 0.017 * kError);
+  }
+  const std::vector<Candidate> again = nudged(scene.clearance, scene.problem, solution, 1);
+  const auto same = [](const Candidate& a, const Candidate& b) { return a.center == b.center; };
+  EXPECT_TRUE(std::ranges::equal(found, again, same));
+  EXPECT_FALSE(
+      std::ranges::equal(found, nudged(scene.clearance, scene.problem, solution, 2), same));
+}
+
 TEST(CoverEffort, MoreOfItNeverTakesMoreSpheresAndIsProved) {
   for (const char* name : effort(std::vector{"cube", "l-bracket", "torus"}, 1)) {
     SCOPED_TRACE(name);

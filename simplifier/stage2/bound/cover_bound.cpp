@@ -24,7 +24,7 @@ struct Round {
   double news;    // what a cell holds is handed on if it is heavier by this factor, for a point
 };
 constexpr std::array kRounds{Round{0.08, 1.3}, Round{0.04, 1.1}, Round{0.03, 1.03},
-                             Round{0.03, 1.02}};
+                             Round{0.03, 1.02}, Round{0.02, 1.02}};
 constexpr int kSteps = 300;  // of the packing
 // Spheres heavier than 1 by less are not worth finding: the weights are lessened by as much.
 constexpr double kReserve = 0.01;
