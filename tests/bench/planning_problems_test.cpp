@@ -18,7 +18,7 @@
 #include <set>
 #include <vector>
 
-namespace spherule {
+namespace spherule::planning_problems_test {
 namespace {
 
 TEST(PlanningProblems, EndsAreFreeAndTheStraightMotionIsNot) {
@@ -112,4 +112,4 @@ TEST(ProblemStudy, ComparesWhatBothSolve) {
 }
 
 }  // namespace
-}  // namespace spherule
+}  // namespace spherule::planning_problems_test

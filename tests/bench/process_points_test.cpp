@@ -17,7 +17,7 @@
 #include <cmath>
 #include <vector>
 
-namespace spherule {
+namespace spherule::process_points_test {
 namespace {
 
 // How far a point in the world is from the nearest pipe's outer surface.
@@ -99,4 +99,4 @@ TEST(ProcessStudy, MissesNothing) {
 }
 
 }  // namespace
-}  // namespace spherule
+}  // namespace spherule::process_points_test

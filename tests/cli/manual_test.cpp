@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace spherule {
+namespace spherule::manual_test {
 namespace {
 
 class ManualTest : public CommandTest {
@@ -91,4 +91,4 @@ TEST_F(ManualTest, FormattersFindNoFault) {
 }
 
 }  // namespace
-}  // namespace spherule
+}  // namespace spherule::manual_test

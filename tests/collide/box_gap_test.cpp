@@ -17,7 +17,7 @@
 #include <cmath>
 #include <utility>
 
-namespace spherule::test {
+namespace spherule::test::box_gap_test {
 namespace {
 
 using Eigen::Quaterniond;
@@ -202,4 +202,4 @@ TEST(BoxGap, HoldsForTheSmallestAndTheLargest) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::box_gap_test

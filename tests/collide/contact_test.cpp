@@ -18,7 +18,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::contact_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -180,4 +180,4 @@ TEST(Contact, OfMeshesIsTheDeepestThatTrianglesConfirm) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::contact_test

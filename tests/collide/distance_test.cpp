@@ -14,7 +14,7 @@
 #include <chrono>
 #include <cmath>
 
-namespace spherule::test {
+namespace spherule::test::distance_test {
 namespace {
 
 struct Scene {
@@ -157,4 +157,4 @@ TEST(Distance, OfTwoSpheres) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::distance_test

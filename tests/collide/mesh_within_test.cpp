@@ -15,7 +15,7 @@
 
 #include <cmath>
 
-namespace spherule::test {
+namespace spherule::test::mesh_within_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -74,4 +74,4 @@ TEST(MeshTreeTest, SurfaceWithinAClearance) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::mesh_within_test

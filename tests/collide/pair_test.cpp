@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-namespace spherule::test {
+namespace spherule::test::pair_test {
 namespace {
 
 SphereTree tree_of(const Sphere& sphere) {
@@ -188,4 +188,4 @@ TEST(ErrorBudget, CoversTheImagesOfBothFrames) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::pair_test

@@ -17,7 +17,7 @@
 #include <cmath>
 #include <set>
 
-namespace spherule::test {
+namespace spherule::test::primitive_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -397,4 +397,4 @@ TEST(PrimitiveTest, RefusesWhatIsNoSolid) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::primitive_test

@@ -13,7 +13,7 @@
 #include <cfenv>
 #include <string>
 
-namespace spherule::test {
+namespace spherule::test::rounding_mode_test {
 namespace {
 
 // The mode of this thread while it lives.
@@ -55,4 +55,4 @@ TEST(RoundingMode, OthersAreRefused) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::rounding_mode_test

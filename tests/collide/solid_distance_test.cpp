@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace spherule::test {
+namespace spherule::test::solid_distance_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -52,4 +52,4 @@ TEST(SolidDistance, BoundsHoldWhereTheInsideIsUncertain) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::solid_distance_test

@@ -18,7 +18,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace spherule::test {
+namespace spherule::test::solid_mesh_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -389,4 +389,4 @@ TEST(SolidMeshTest, GrowsByTheVertexError) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::solid_mesh_test

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <limits>
 
-namespace spherule::test {
+namespace spherule::test::within_test {
 namespace {
 
 struct Scene {
@@ -127,4 +127,4 @@ TEST(Within, RefusesWhatCannotBeUsed) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::within_test

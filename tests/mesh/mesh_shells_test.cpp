@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::mesh_shells_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -214,4 +214,4 @@ TEST(MeshShells, ManySurfacesOnOneRay) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::mesh_shells_test

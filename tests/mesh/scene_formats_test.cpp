@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule {
+namespace spherule::scene_formats_test {
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -295,4 +295,4 @@ TEST_F(SceneFormats, RandomScenesAreThoseOfAssimp) {
 }
 
 }  // namespace
-}  // namespace spherule
+}  // namespace spherule::scene_formats_test

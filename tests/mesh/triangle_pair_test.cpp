@@ -16,7 +16,7 @@
 #include <string>
 #include <utility>
 
-namespace spherule::test {
+namespace spherule::test::triangle_pair_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -231,4 +231,4 @@ TEST(TrianglePair, KeepsTouchingUpToItsDepth) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::triangle_pair_test

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::certificate_input_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -68,4 +68,4 @@ TEST(Certificate, SpheresOfFarLargerSizeAreRefusedOrExaminedInFewPieces) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::certificate_input_test

@@ -13,7 +13,7 @@
 #include <limits>
 #include <string>
 
-namespace spherule::test {
+namespace spherule::test::external_spheres_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -270,4 +270,4 @@ TEST(ExternalSpheres, BadOptionsAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::external_spheres_test

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::nearest_cells_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -219,4 +219,4 @@ TEST(NearestCells, AnEmptySetIsInfinitelyFar) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::nearest_cells_test

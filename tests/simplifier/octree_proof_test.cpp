@@ -13,7 +13,7 @@
 #include <cmath>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::octree_proof_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -111,4 +111,4 @@ TEST(OctreeProof, AgreesWithTheCertificateOnSpoiltCovers) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::octree_proof_test

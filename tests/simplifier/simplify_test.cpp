@@ -15,7 +15,7 @@
 #include <set>
 #include <string>
 
-namespace spherule::test {
+namespace spherule::test::simplify_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -304,4 +304,4 @@ TEST(Simplify, AFileHoldsSpheresCertificateAndOptions) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::simplify_test

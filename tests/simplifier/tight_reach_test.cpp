@@ -15,7 +15,7 @@
 #include <cmath>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::tight_reach_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -203,4 +203,4 @@ TEST(TightReach, BadTightnessIsRefused) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::tight_reach_test

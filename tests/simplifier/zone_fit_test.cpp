@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::zone_fit_test {
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -328,4 +328,4 @@ TEST(Tool, ANarrowSlotIsOpenForTheToolThatFits) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::zone_fit_test

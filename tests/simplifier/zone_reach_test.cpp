@@ -15,7 +15,7 @@
 #include <numbers>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::zone_reach_test {
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -266,4 +266,4 @@ TEST(ConcaveEdges, TheCornerIsKept) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::zone_reach_test

@@ -14,7 +14,7 @@
 #include <limits>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::pose_test {
 namespace {
 
 using Eigen::Isometry3d;
@@ -212,4 +212,4 @@ TEST(Pose, RefusesWhatIsNoRigidMotion) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::pose_test

@@ -17,7 +17,7 @@
 #include <limits>
 #include <utility>
 
-namespace spherule::test {
+namespace spherule::test::refit_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -248,4 +248,4 @@ TEST(Refit, RefusesBadInput) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::refit_test

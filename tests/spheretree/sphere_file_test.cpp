@@ -10,7 +10,7 @@
 #include <cstring>
 #include <limits>
 
-namespace spherule::test {
+namespace spherule::test::sphere_file_test {
 namespace {
 
 class SphereFiles : public TemporaryFolder {};
@@ -320,4 +320,4 @@ TEST_F(SphereFiles, BodiesThatDoNotFitTheSpheresAreRefused) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::sphere_file_test

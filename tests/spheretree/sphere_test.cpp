@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace spherule::test {
+namespace spherule::test::sphere_test {
 namespace {
 
 // `value` moved by up to ten units in the last place either way.
@@ -117,4 +117,4 @@ TEST(Sphere, Usable) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::sphere_test

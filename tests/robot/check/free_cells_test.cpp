@@ -15,7 +15,7 @@
 #include <memory>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::free_cells_test {
 namespace {
 
 using internal::FreeCells;
@@ -175,4 +175,4 @@ TEST(FreeCells, AreKeptForTheSameTreesAndJoints) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::free_cells_test

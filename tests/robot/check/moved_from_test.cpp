@@ -26,7 +26,7 @@
 #include <utility>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::moved_from_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -199,4 +199,4 @@ TEST(MovedFrom, Proofs) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::moved_from_test

@@ -12,7 +12,7 @@
 #include <memory>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::named_postures_test {
 namespace {
 
 // A block that slides towards another one on the x axis: they touch where the slide is below 0.2.
@@ -99,4 +99,4 @@ TEST(IgnoredPairs, AreThoseProvedNeverToTouch) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::named_postures_test

@@ -11,7 +11,7 @@
 #include <memory>
 #include <string>
 
-namespace spherule::test {
+namespace spherule::test::pair_status_test {
 namespace {
 
 // Boxes that slide along x: a sled on the floor, on it a cart that can reach the floor's box, a
@@ -83,4 +83,4 @@ TEST(PairStatus, WhereNoBoxIsFreeTheVerdictIsTheKind) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::pair_status_test

@@ -19,7 +19,7 @@
 #include <limits>
 #include <numbers>
 
-namespace spherule::test {
+namespace spherule::test::robot_checker_edge_test {
 namespace {
 
 using Configuration = std::vector<double>;
@@ -349,4 +349,4 @@ TEST(RobotCheckerEdge, BudgetsLeaveTheAnswerOpen) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_checker_edge_test

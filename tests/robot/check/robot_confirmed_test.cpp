@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::robot_confirmed_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -249,4 +249,4 @@ TEST(RobotConfirmed, MotionsAreProvedOnTheMeshes) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_confirmed_test

@@ -17,7 +17,7 @@
 #include <variant>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::robot_edge_passes_test {
 namespace {
 
 using Configuration = std::vector<double>;
@@ -253,4 +253,4 @@ TEST(RobotEdgePasses, NothingIsLostBySlidingAlongAWall) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_edge_passes_test

@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::robot_explain_test {
 namespace {
 
 struct Scene {
@@ -290,4 +290,4 @@ TEST(RobotExplain, NamesLinksAndRefusesBadInput) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_explain_test

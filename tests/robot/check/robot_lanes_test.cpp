@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::robot_lanes_test {
 namespace {
 
 Primitive random_primitive(SceneRandom& random, double size) {
@@ -248,4 +248,4 @@ TEST(RobotLanes, RigidPairsAtRoundingsDistance) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_lanes_test

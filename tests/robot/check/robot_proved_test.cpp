@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::robot_proved_test {
 namespace {
 
 using Configuration = std::vector<double>;
@@ -384,4 +384,4 @@ TEST_F(TwoBarScene, WhatNeverTouchesMayBeAllowed) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_proved_test

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::robot_scene_mimic_test {
 namespace {
 
 using Configuration = std::vector<double>;
@@ -70,4 +70,4 @@ TEST(RobotSceneMimics, FarOnesAreMetToTheLastDigits) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_scene_mimic_test

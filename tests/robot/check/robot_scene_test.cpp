@@ -14,7 +14,7 @@
 #include <limits>
 #include <optional>
 
-namespace spherule::test {
+namespace spherule::test::robot_scene_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -391,4 +391,4 @@ TEST(RobotScene, EmptyOnesAreFree) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_scene_test

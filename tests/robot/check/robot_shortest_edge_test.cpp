@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::robot_shortest_edge_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -177,4 +177,4 @@ TEST(RobotShortestEdge, RefusesWhatCannotBeSo) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_shortest_edge_test

@@ -15,7 +15,7 @@
 #include <memory>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::robot_solid_growth_test {
 namespace {
 
 // A body on a line through the middle of a sphere of fine triangles, far smaller than the growth.
@@ -50,4 +50,4 @@ TEST(RobotSolidGrowth, TouchesWithinTheGrowth) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_solid_growth_test

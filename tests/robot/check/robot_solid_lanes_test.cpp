@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::robot_solid_lanes_test {
 namespace {
 
 constexpr int kKinds = 8;
@@ -202,4 +202,4 @@ TEST(SolidSpheres, HoldWhatTheCanonicalTestFindsInside) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_solid_lanes_test

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::robot_threads_test {
 namespace {
 
 // What robot_checker.cpp shares out.
@@ -224,4 +224,4 @@ TEST(SharedWork, ThrowsWhatTheFirstPieceThrows) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_threads_test

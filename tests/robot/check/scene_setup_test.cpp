@@ -14,7 +14,7 @@
 #include <sstream>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::scene_setup_test {
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
@@ -115,4 +115,4 @@ TEST(PointSpheres, OneForThoseOfACell) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::scene_setup_test

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::goal_cover_test {
 namespace {
 
 // Two blocks that slide towards each other on two rails, 0.02 m apart at least.
@@ -92,4 +92,4 @@ TEST_F(GoalOfBlocks, DisabledPairsAndFixedLinksCount) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::goal_cover_test

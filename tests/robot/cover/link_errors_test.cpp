@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::link_errors_test {
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -246,4 +246,4 @@ TEST_F(ThreeLinks, RefusesBadOptions) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::link_errors_test

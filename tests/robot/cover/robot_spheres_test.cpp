@@ -18,7 +18,7 @@
 #include <variant>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::robot_spheres_test {
 namespace {
 
 // How far outside of all spheres a point lies; below 0 within one.
@@ -301,4 +301,4 @@ TEST(RobotSpheres, RefusesBadOptionsAndNamesThem) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::robot_spheres_test

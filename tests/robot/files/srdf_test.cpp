@@ -10,7 +10,7 @@
 
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::srdf_test {
 namespace {
 
 std::string robot_of(const std::string& elements) {
@@ -186,4 +186,4 @@ TEST(ReadSrdf, RefusesBadFiles) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::srdf_test

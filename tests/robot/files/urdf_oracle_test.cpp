@@ -20,7 +20,7 @@
 #include <urdf_parser/urdf_parser.h>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::urdf_oracle_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -151,4 +151,4 @@ TEST(UrdfOracle, AgreesWithUrdfdomOnRealRobots) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::urdf_oracle_test

@@ -10,7 +10,7 @@
 
 #include <limits>
 
-namespace spherule {
+namespace spherule::sphere_formats_faults_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -367,4 +367,4 @@ TEST_F(SphereFormatFaults, DeepNesting) {
 }
 
 }  // namespace
-}  // namespace spherule
+}  // namespace spherule::sphere_formats_faults_test

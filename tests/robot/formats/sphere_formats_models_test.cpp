@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spherule {
+namespace spherule::sphere_formats_models_test {
 namespace {
 
 struct Published {
@@ -63,4 +63,4 @@ TEST(PublishedSpheres, VampAndFoamShipTheSame) {
 }
 
 }  // namespace
-}  // namespace spherule
+}  // namespace spherule::sphere_formats_models_test

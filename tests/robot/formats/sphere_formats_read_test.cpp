@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule {
+namespace spherule::sphere_formats_read_test {
 namespace {
 
 using Buffers = std::map<std::string, double>;
@@ -196,4 +196,4 @@ TEST(ShrunkByBuffers, RoundsDown) {
 }
 
 }  // namespace
-}  // namespace spherule
+}  // namespace spherule::sphere_formats_read_test

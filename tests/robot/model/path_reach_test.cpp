@@ -16,7 +16,7 @@
 #include <cmath>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::path_reach_test {
 namespace {
 
 using Configuration = std::vector<double>;
@@ -128,4 +128,4 @@ TEST(PathReach, CountsTurnsThatAddUp) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::path_reach_test

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::shortest_motion_test {
 namespace {
 
 using Real = boost::multiprecision::cpp_bin_float_100;
@@ -139,4 +139,4 @@ TEST(ShortestMotion, RoundingOfTurnsIsCharged) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::shortest_motion_test

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::free_boxes_test {
 namespace {
 
 using Configuration = std::vector<double>;
@@ -191,4 +191,4 @@ TEST(FreeBoxesQueries, FreeCellsHoldFreeConfigurations) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::free_boxes_test

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::link_pairs_file_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -144,4 +144,4 @@ TEST(FreeBoxes, RefusesWhatIsNoTree) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::link_pairs_file_test

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::srdf_judgement_test {
 namespace {
 
 // On a rail: a block, a cart beside it that reaches it at 0.2, a lid fixed to the cart, a bare
@@ -133,4 +133,4 @@ TEST_F(SrdfJudged, WhatIsProvedAndMissingCouldBeAdded) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::srdf_judgement_test

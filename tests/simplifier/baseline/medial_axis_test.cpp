@@ -16,7 +16,7 @@
 
 #include <algorithm>
 
-namespace spherule::test {
+namespace spherule::test::medial_axis_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -187,4 +187,4 @@ TEST(MedialAxis, RefusesBadInput) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::medial_axis_test

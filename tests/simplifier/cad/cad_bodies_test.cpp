@@ -13,7 +13,7 @@
 
 #include <algorithm>
 
-namespace spherule::test {
+namespace spherule::test::cad_bodies_test {
 namespace {
 
 std::vector<Body> bodies_of(std::vector<CadBody> read) {
@@ -134,4 +134,4 @@ TEST(CadBodies, AHundredBodiesAreFittedAsEachAlone) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::cad_bodies_test

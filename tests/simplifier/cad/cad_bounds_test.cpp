@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace spherule::test {
+namespace spherule::test::cad_bounds_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -129,4 +129,4 @@ TEST_F(CadBounds, WhatIsNotProvedSaysSo) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::cad_bounds_test

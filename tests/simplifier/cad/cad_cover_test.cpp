@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace spherule::test {
+namespace spherule::test::cad_cover_test {
 namespace {
 
 std::size_t uncovered(const std::vector<Sphere>& spheres,
@@ -53,4 +53,4 @@ TEST(CadCover, SpheresOfTheMeshAloneLeaveThePartUncovered) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::cad_cover_test

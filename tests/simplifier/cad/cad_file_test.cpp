@@ -13,7 +13,7 @@
 
 #include <string>
 
-namespace spherule::test {
+namespace spherule::test::cad_file_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -162,4 +162,4 @@ TEST_F(CadFile, MeshReadersNameTheReader) {
 }
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::cad_file_test

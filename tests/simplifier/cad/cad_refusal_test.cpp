@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace spherule::test {
+namespace spherule::test::cad_refusal_test {
 namespace {
 
 // The number of the first entity of this type, with its #.
@@ -104,4 +104,4 @@ INSTANTIATE_TEST_SUITE_P(Kinds, CadRefusal, ::testing::ValuesIn(kLost),
                          [](const auto& lost) { return lost.param.name; });
 
 }  // namespace
-}  // namespace spherule::test
+}  // namespace spherule::test::cad_refusal_test
