@@ -14,7 +14,7 @@ namespace spherule::test {
 namespace {
 
 using Eigen::Vector3d;
-using Exact = ExactMotion<long double>;
+using LongMotion = ExactMotion<long double>;
 
 std::vector<Vector<long double>> centers_at(const Body& body, double t) {
   std::vector<Vector<long double>> centers;
@@ -35,13 +35,13 @@ Body turning_body(const std::vector<Sphere>& spheres, const Pose& start, const V
                   int branching) {
   return {build_tree(spheres, {.branching = branching}),
           Motion::turning(start, axis, angle, displacement, reference),
-          Exact::turning(start, axis, angle, displacement, reference)};
+          LongMotion::turning(start, axis, angle, displacement, reference)};
 }
 
 Body body_between(const std::vector<Sphere>& spheres, const Pose& start, const Pose& end,
                   const Vector3d& reference) {
   return {build_tree(spheres), Motion::between(start, end, reference),
-          Exact::between(start, end, reference)};
+          LongMotion::between(start, end, reference)};
 }
 
 Body still_body(const std::vector<Sphere>& spheres, const Pose& pose) {
