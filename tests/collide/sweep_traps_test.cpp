@@ -55,7 +55,7 @@ std::vector<Sphere> rod() {
 
 TEST(Sweep, ARodThatTurnsManyTimes) {
   SceneRandom random(4);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < effort(100, 25); ++i) {
     const double rho = random.uniform(0.1, 1.0);
     const double at = random.uniform(0.3, 2.0 * kPi - 0.3);
     const int turns = random.whole(0, 6);

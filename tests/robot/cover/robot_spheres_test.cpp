@@ -134,6 +134,7 @@ TEST(RobotSpheres, AreEqualOnAnyNumberOfThreads) {
 }
 
 TEST(RobotSpheres, OptionsOfALinkAreForThatLink) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   Random random(13);
   const RobotDescription robot = boxes_of(random_robot(random, 3));
   RobotCoverOptions options = quick(0.05);
