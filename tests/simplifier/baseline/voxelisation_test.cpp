@@ -49,7 +49,7 @@ TriangleMesh on_lattice(TriangleMesh mesh) {
 
 // The voxels of the surface are those that a triangle intersects in rational arithmetic.
 TEST(Voxelise, FindsTheCubesThatTheSurfaceIntersects) {
-  for (const std::string name :
+  for (const std::string& name :
        effort(std::vector<std::string>{"l bracket", "thin sheet", "soup", "cube", "needles"}, 3)) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = on_lattice(name == "cube"         ? cube_mesh()
