@@ -95,49 +95,49 @@ Triangle brought(const Triangle& t, const Vector3d& from, const Vector3d& to, Sc
 }
 
 TEST(TrianglePair, RandomOnesAreDecidedForSure) {
-  const Tally tally = judge(effort(3000, 750), 1, [](SceneRandom& random) -> Scene {
+  const Tally tally = judge(effort(3000, 250), 1, [](SceneRandom& random) -> Scene {
     return {random_triangle(random), random_triangle(random)};
   });
-  EXPECT_GT(tally.apart, effort(1000, 200));
-  EXPECT_GT(tally.touching, effort(300, 60));
+  EXPECT_GT(tally.apart, effort(1000, 66));
+  EXPECT_GT(tally.touching, effort(300, 20));
   EXPECT_EQ(tally.uncertain, 0);
 }
 
 TEST(TrianglePair, CornerAgainstFace) {
-  const Tally tally = judge(effort(3000, 750), 2, [](SceneRandom& random) -> Scene {
+  const Tally tally = judge(effort(3000, 250), 2, [](SceneRandom& random) -> Scene {
     const Triangle a = random_triangle(random), b = random_triangle(random);
     return {a, brought(b, b[0], point_of(a, random), random)};
   });
-  EXPECT_GT(tally.apart, effort(100, 20));
-  EXPECT_GT(tally.touching, effort(300, 60));
-  EXPECT_GT(tally.uncertain, effort(100, 20));
+  EXPECT_GT(tally.apart, effort(100, 6));
+  EXPECT_GT(tally.touching, effort(300, 20));
+  EXPECT_GT(tally.uncertain, effort(100, 6));
   EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
 TEST(TrianglePair, EdgeAgainstEdge) {
-  const Tally tally = judge(effort(3000, 750), 3, [](SceneRandom& random) -> Scene {
+  const Tally tally = judge(effort(3000, 250), 3, [](SceneRandom& random) -> Scene {
     const Triangle a = random_triangle(random), b = random_triangle(random);
     return {a, brought(b, point_of_edge(b, random), point_of_edge(a, random), random)};
   });
-  EXPECT_GT(tally.apart, effort(100, 20));
-  EXPECT_GT(tally.touching, effort(300, 60));
-  EXPECT_GT(tally.uncertain, effort(100, 20));
+  EXPECT_GT(tally.apart, effort(100, 6));
+  EXPECT_GT(tally.touching, effort(300, 20));
+  EXPECT_GT(tally.uncertain, effort(100, 6));
   EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
 TEST(TrianglePair, CornerAgainstCornerOrEdge) {
-  const Tally tally = judge(effort(3000, 750), 4, [](SceneRandom& random) -> Scene {
+  const Tally tally = judge(effort(3000, 250), 4, [](SceneRandom& random) -> Scene {
     const Triangle a = random_triangle(random), b = random_triangle(random);
     const Vector3d to = random.whole(0, 1) == 0 ? a[2] : point_of_edge(a, random);
     return {a, brought(b, b[0], to, random)};
   });
-  EXPECT_GT(tally.apart, effort(500, 100));
-  EXPECT_GT(tally.uncertain, effort(100, 20));
+  EXPECT_GT(tally.apart, effort(500, 33));
+  EXPECT_GT(tally.uncertain, effort(100, 6));
   EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
 TEST(TrianglePair, InOnePlane) {
-  const Tally tally = judge(effort(2000, 500), 5, [](SceneRandom& random) -> Scene {
+  const Tally tally = judge(effort(2000, 166), 5, [](SceneRandom& random) -> Scene {
     // On a grid, so that corners and edges often coincide; each along the axes' plane in turn.
     const int axis = random.whole(0, 2);
     const auto triangle = [&] {
@@ -152,14 +152,14 @@ TEST(TrianglePair, InOnePlane) {
     if (random.whole(0, 1) == 0) shift[random.whole(0, 2)] = offset(random);
     return {triangle(), moved(triangle(), shift)};
   });
-  EXPECT_GT(tally.apart, effort(500, 100));
-  EXPECT_GT(tally.uncertain, effort(500, 100));
+  EXPECT_GT(tally.apart, effort(500, 33));
+  EXPECT_GT(tally.uncertain, effort(500, 33));
   EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
 TEST(TrianglePair, NeedlesSegmentsAndPoints) {
   for (const double width : {1e-6, 1e-9, 1e-13, 0.0}) {
-    const Tally tally = judge(effort(1000, 250), 6, [width](SceneRandom& random) -> Scene {
+    const Tally tally = judge(effort(1000, 83), 6, [width](SceneRandom& random) -> Scene {
       const Triangle a = random.whole(0, 1) == 0 ? needle(random, width) : random_triangle(random);
       Triangle b = needle(random, width);
       if (random.whole(0, 4) == 0) b = {b[0], b[0], random.whole(0, 1) == 0 ? b[0] : b[1]};
@@ -167,27 +167,27 @@ TEST(TrianglePair, NeedlesSegmentsAndPoints) {
       const Vector3d to = random.whole(0, 1) == 0 ? a[1] : point_of(a, random);
       return {a, brought(b, from, to, random)};
     });
-    EXPECT_GT(tally.apart, effort(200, 40)) << width;
-    EXPECT_GT(tally.uncertain, effort(50, 10)) << width;
+    EXPECT_GT(tally.apart, effort(200, 13)) << width;
+    EXPECT_GT(tally.uncertain, effort(50, 3)) << width;
     EXPECT_LT(tally.widest_uncertainty, 1e-9) << width;
   }
 }
 
 TEST(TrianglePair, SmallFarFromTheOrigin) {
-  const Tally tally = judge(effort(2000, 500), 7, [](SceneRandom& random) -> Scene {
+  const Tally tally = judge(effort(2000, 166), 7, [](SceneRandom& random) -> Scene {
     const Vector3d far = random.point(1e6);
     const Triangle a = moved(random_triangle(random), far), b = random_triangle(random);
     return {a, brought(b, b[0], point_of(a, random), random)};
   });
-  EXPECT_GT(tally.apart, effort(50, 10));
-  EXPECT_GT(tally.uncertain, effort(500, 100));
+  EXPECT_GT(tally.apart, effort(50, 3));
+  EXPECT_GT(tally.uncertain, effort(500, 33));
   EXPECT_LT(tally.widest_uncertainty, internal::kSlack);
 }
 
 // Far smaller than the scene, and so small that squares of areas underflow.
 TEST(TrianglePair, TinyOnesAreNotTakenForApart) {
   for (const double size : {1e-6, 1e-30, 1e-90, 1e-150, 1e-300}) {
-    judge(effort(60, 8), 8, [size](SceneRandom& random) -> Scene {
+    judge(effort(60, 2), 8, [size](SceneRandom& random) -> Scene {
       Scene scene{random_triangle(random), random_triangle(random)};
       for (Vector3d& corner : scene.a) corner *= size;
       for (Vector3d& corner : scene.b) corner *= random.whole(0, 1) == 0 ? 1.0 : size;
@@ -201,7 +201,7 @@ TEST(TrianglePair, TinyOnesAreNotTakenForApart) {
 TEST(TrianglePair, KeepsTouchingUpToItsDepth) {
   SceneRandom random(11);
   int deep = 0, tight = 0;
-  for (int i = 0; i < effort(800, 100); ++i) {
+  for (int i = 0; i < effort(800, 33); ++i) {
     const Triangle a = random.whole(0, 2) == 0 ? needle(random, 0.1) : random_triangle(random);
     Triangle b = random_triangle(random);
     if (random.whole(0, 1) == 0) b = brought(b, point_of(b, random), point_of(a, random), random);
@@ -226,8 +226,8 @@ TEST(TrianglePair, KeepsTouchingUpToItsDepth) {
     }
     tight += parted;
   }
-  EXPECT_GT(deep, effort(100, 12));
-  EXPECT_GT(tight, effort(50, 6));
+  EXPECT_GT(deep, effort(100, 4));
+  EXPECT_GT(tight, effort(50, 2));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ void expect_smallest(const Sphere& result, std::span<const Sphere> spheres,
 
 TEST(EnclosingSphere, SmallSetsOfEveryFamilyAreEnclosedTightly) {
   for (std::size_t count = 1; count <= 20; ++count) {
-    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(effort(25, 8)); ++seed) {
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(effort(25, 4)); ++seed) {
       for (const Family& family : sphere_families(count, seed)) {
         SCOPED_TRACE(family.name + ", " + std::to_string(count) + " spheres, seed " +
                      std::to_string(seed));
