@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/recognize.h"
 
+#include "cli/help/file_endings.h"
 #include "mesh/io/mesh_io.h"
 #include "spheretree/atomic_file.h"
 
@@ -51,9 +52,6 @@ constexpr std::array kYamlMarks = {
     Mark{"collision_spheres", FileKind::kRobotSpheres},
     Mark{"geometry", FileKind::kRobotSpheres},
 };
-constexpr std::array<std::string_view, 8> kMeshEndings = {".stl", ".obj", ".ply",  ".off",
-                                                          ".dae", ".3mf", ".gltf", ".glb"};
-
 constexpr std::array<std::string_view, 5> kTableEndings = {".csv", ".txt", ".xyz", ".asc", ".pts"};
 
 // Whether one of the first two lines begins with a number: the first may have names.
@@ -119,8 +117,9 @@ std::string lower_ending(const std::filesystem::path& path) {
 }
 
 bool has_mesh_ending(const std::filesystem::path& path) {
-  return std::find(kMeshEndings.begin(), kMeshEndings.end(), lower_ending(path)) !=
-         kMeshEndings.end();
+  const std::string ending = lower_ending(path);
+  return std::ranges::any_of(mesh_endings(),
+                             [&](const std::string& one) { return ending == "." + one; });
 }
 
 std::string offer_for(FileKind kind, const std::string& file) {

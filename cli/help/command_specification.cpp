@@ -74,6 +74,7 @@ OptionSpecification specification(const CLI::Option& option) {
   OptionSpecification result;
   if (option.get_positional()) {
     result.names = {option.get_name(true, false)};
+    result.endings = endings_for(result.names.front());
   } else {
     for (const std::string& name : option.get_snames()) result.names.push_back("-" + name);
     for (const std::string& name : option.get_lnames()) result.names.push_back("--" + name);
@@ -114,6 +115,17 @@ std::string full_description(const OptionSpecification& option) {
   };
   return option.description + (option.is_required ? " (required)" : "") +
          note("needs ", option.needs) + note("not with ", option.excludes);
+}
+
+FileEndings endings_for_arguments(const CommandSpecification& command) {
+  FileEndings all;
+  for (const OptionSpecification& argument : command.arguments) {
+    if (argument.endings.empty()) return {};
+    for (const std::string& ending : argument.endings) {
+      if (std::find(all.begin(), all.end(), ending) == all.end()) all.push_back(ending);
+    }
+  }
+  return all;
 }
 
 std::vector<std::string> option_names(const CommandSpecification& command) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/help/file_endings.h"
+
 #include <string>
 #include <vector>
 
@@ -24,6 +26,7 @@ struct OptionSpecification {
   std::vector<std::string> names;    // "-o", "--output"; of an argument its one name: "mesh"
   std::string value;                 // "FILE", "NUMBER", "cover|paper"; empty for a flag
   std::vector<std::string> choices;  // the words that it takes, where these are few
+  FileEndings endings;               // of the files that an argument takes; empty: all
   bool is_list = false;              // it takes several of them with commas between
   bool is_repeatable = false;
   bool is_required = false;
@@ -47,6 +50,9 @@ CommandSpecification specification(const CLI::App& app);
 
 // The description, and whether the option is required, what it needs and what it excludes.
 std::string full_description(const OptionSpecification& option);
+
+// The endings of the files that the arguments of a command take together; empty: all.
+FileEndings endings_for_arguments(const CommandSpecification& command);
 
 // The names of all options of a command.
 std::vector<std::string> option_names(const CommandSpecification& command);

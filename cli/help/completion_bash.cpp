@@ -12,6 +12,7 @@ constexpr const char* kStart =
 _spherule() {
   local word=${COMP_WORDS[COMP_CWORD]} at=$((COMP_CWORD - 1)) i
   local option command='' commands='' options='' choices='' list='' files='' folders=''
+  local -a kept=()
   COMPREPLY=()
   # Bash has "=" for a word of its own, in --option=VALUE as in NAME=DIR.
   if [[ $word == = ]]; then
@@ -35,6 +36,14 @@ constexpr const char* kEnd = R"(  if [[ -z $option && $word == -* ]]; then
   elif [[ -n $files ]]; then
     compopt -o filenames 2>/dev/null
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
+    if [[ $files != all ]]; then
+      # Folders and files of the kinds that are read, if there are any.
+      local path
+      for path in "${COMPREPLY[@]}"; do
+        if [[ -d ${path/#\~/$HOME} || ${path,,} == *.@($files) ]]; then kept+=("$path"); fi
+      done
+      [[ ${#kept[@]} -eq 0 ]] || COMPREPLY=("${kept[@]}")
+    fi
   else
     mapfile -t COMPREPLY < <(compgen -W "$commands $choices" -- "$word")
   fi
@@ -55,7 +64,9 @@ class BashWriter {
     words_ += "    '" + path + "')\n      options='" +
               CLI::detail::join(option_names(command), " ") + "'\n";
     if (!inner.empty()) words_ += "      commands='" + CLI::detail::join(inner, " ") + "'\n";
-    if (!command.arguments.empty()) words_ += "      " + reply(command.arguments.front()) + "\n";
+    if (!command.arguments.empty()) {
+      words_ += "      " + reply(command.arguments.front(), endings_for_arguments(command)) + "\n";
+    }
     words_ += "      ;;\n";
     for (const OptionSpecification& option : command.options) add_values(option, path);
     for (const CommandSpecification& one : command.commands) {
@@ -72,11 +83,13 @@ class BashWriter {
   }
 
  private:
-  // What is offered for a value.
-  static std::string reply(const OptionSpecification& option) {
+  // What is offered for a value; of files those with one of the endings.
+  static std::string reply(const OptionSpecification& option, const FileEndings& endings = {}) {
     const std::string choices = "'" + CLI::detail::join(option.choices, " ") + "'";
     if (!option.choices.empty()) return (option.is_list ? "list=" : "choices=") + choices;
-    if (option.value == kFile) return "files=yes";
+    if (option.value == kFile) {
+      return "files='" + (endings.empty() ? "all" : CLI::detail::join(endings, "|")) + "'";
+    }
     if (option.value == kFolder) return "folders=yes";
     return ":";  // nothing is known of it
   }

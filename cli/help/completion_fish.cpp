@@ -15,9 +15,13 @@ std::string fish_quoted(const std::string& text) {
   return result + "'";
 }
 
-// What fish is told of a value: whether files are offered, and which words.
-std::string fish_value(const OptionSpecification& option) {
-  if (option.value == kFile) return " -F";
+// What fish is told of a value: whether files are offered, those with one of the endings, and which
+// words.
+std::string fish_value(const OptionSpecification& option, const FileEndings& endings = {}) {
+  if (option.value == kFile) {
+    return endings.empty() ? " -F"
+                           : " -f -a '(__spherule_files " + CLI::detail::join(endings, " ") + ")'";
+  }
   if (option.value == kFolder) return " -f -a '(__fish_complete_directories)'";
   if (option.choices.empty()) return " -f";
   const std::string words = CLI::detail::join(option.choices, " ");
@@ -52,6 +56,17 @@ end
 )";
 }
 
+// Folders and files of the kinds that are read, if there are any.
+constexpr const char* kFishFiles = R"(function __spherule_files
+    set -l paths (complete -C "__fish_command_without_completions "(commandline -ct))
+    set -l kept (string match -ri -- '^.*(?:/|[.](?:'(string join '|' $argv)'))$' $paths)
+    if set -q kept[1]
+        set paths $kept
+    end
+    printf '%s\n' $paths
+end
+)";
+
 std::string fish_lines(const CommandSpecification& command, const std::string& path) {
   const std::string when =
       "complete -c spherule -n '__spherule_at" + (path.empty() ? "" : " " + path) + "'";
@@ -59,7 +74,9 @@ std::string fish_lines(const CommandSpecification& command, const std::string& p
   for (const CommandSpecification& one : command.commands) {
     text += when + " -f -a " + one.name + " -d " + fish_quoted(one.summary) + "\n";
   }
-  if (!command.arguments.empty()) text += when + fish_value(command.arguments.front()) + "\n";
+  if (!command.arguments.empty()) {
+    text += when + fish_value(command.arguments.front(), endings_for_arguments(command)) + "\n";
+  }
   for (const OptionSpecification& option : command.options) {
     text += when;
     for (const std::string& name : option.names) {
@@ -79,7 +96,7 @@ std::string fish_lines(const CommandSpecification& command, const std::string& p
 
 std::string fish_completion(const CommandSpecification& command) {
   return "# Completion of spherule for fish, made by `spherule completion fish`.\n" +
-         fish_function(command) + fish_lines(command, "");
+         fish_function(command) + kFishFiles + fish_lines(command, "");
 }
 
 }  // namespace spherule

@@ -22,7 +22,10 @@ std::string zsh_escaped(const std::string& text) {
 
 // What _arguments does for a value.
 std::string zsh_value(const OptionSpecification& option) {
-  if (option.value == kFile) return "_files";
+  if (option.value == kFile) {
+    if (option.endings.empty()) return "_files";
+    return "_files -g \"*.(#i)(" + CLI::detail::join(option.endings, "|") + ")\"";
+  }
   if (option.value == kFolder) return "_files -/";
   if (option.choices.empty()) return " ";
   const std::string words = CLI::detail::join(option.choices, " ");

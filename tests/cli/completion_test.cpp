@@ -21,6 +21,7 @@ class CompletionTest : public CommandTest {
       write(std::string(".completion.") + shell, script.out);
     }
     write("part.stl", "");
+    write("paper.txt", "");
     std::filesystem::create_directory(folder_ / "parts");
   }
 
@@ -83,16 +84,20 @@ TEST_F(CompletionTest, BashCompletesCommandsAndTheirOptions) {
 
 TEST_F(CompletionTest, BashCompletesValuesAndFiles) {
   const Words methods = {"cover", "medial", "packing", "paper"};
-  const Words files = {"part.stl", "parts"};
+  const Words files = {"paper.txt", "part.stl", "parts"};
   EXPECT_EQ(offered({"spherule", "fi"}), Words{"fit"});
   EXPECT_EQ(offered({"spherule", "fit", "part.stl", "--method", ""}), methods);
   EXPECT_EQ(offered({"spherule", "fit", "part.stl", "--method", "="}), methods);
   EXPECT_EQ(offered({"spherule", "fit", "--method", "=", "pap"}), Words{"paper"});
-  EXPECT_EQ(offered({"spherule", "fit", "pa"}), files);
+  EXPECT_EQ(offered({"spherule", "fit", "pa"}), (Words{"part.stl", "parts"}));
+  EXPECT_EQ(offered({"spherule", "fit", "pap"}), Words{"paper.txt"});  // no mesh begins like that
+  EXPECT_EQ(offered({"spherule", "info", "pa"}), files);
+  EXPECT_EQ(offered({"spherule", "tree", "pa"}), Words{"parts"});
   EXPECT_EQ(offered({"spherule", "fit", "part.stl", "-o", "pa"}), files);
   EXPECT_EQ(offered({"spherule", "fit", "--report", "=", "pa"}), files);
   EXPECT_EQ(offered({"spherule", "fit", "--seed", ""}), Words{});
-  EXPECT_EQ(offered({"spherule", "fit", "--keep-concave-edges", "pa"}), files);
+  EXPECT_EQ(offered({"spherule", "fit", "--keep-concave-edges", "pa"}),
+            offered({"spherule", "fit", "pa"}));
   EXPECT_EQ(offered({"spherule", "completion", ""}), (Words{"bash", "fish", "zsh"}));
   EXPECT_EQ(offered({"spherule", "manual", "fi"}), Words{"fit"});
 #ifdef SPHERULE_HAS_ROBOT
@@ -116,7 +121,9 @@ TEST_F(CompletionTest, FishCompletes) {
   EXPECT_EQ(offers("spherule fi"), Words{"fit"});
   EXPECT_EQ(offers("spherule fit --meth"), Words{"--method"});
   EXPECT_EQ(offers("spherule fit --method "), (Words{"cover", "medial", "packing", "paper"}));
-  EXPECT_EQ(offers("spherule fit --zones pa"), (Words{"part.stl", "parts/"}));
+  EXPECT_EQ(offers("spherule fit --zones pa"), (Words{"paper.txt", "part.stl", "parts/"}));
+  EXPECT_EQ(offers("spherule fit pa"), (Words{"part.stl", "parts/"}));
+  EXPECT_EQ(offers("spherule fit pap"), Words{"paper.txt"});
   EXPECT_EQ(offers("spherule completion "), (Words{"bash", "fish", "zsh"}));
   EXPECT_EQ(offers("spherule manual fi"), Words{"fit"});
   EXPECT_EQ(offers("spherule manual fit --meth"), Words{});
@@ -126,6 +133,7 @@ TEST_F(CompletionTest, ZshReadsItsScript) {
   if (!has("zsh")) GTEST_SKIP() << "zsh is not installed";
   EXPECT_EQ(shell("zsh -f -n", read(".completion.zsh")), Words{});
   EXPECT_NE(read(".completion.zsh").find("'*:command:(fit audit "), std::string::npos);
+  EXPECT_NE(read(".completion.zsh").find(R"(_files -g "*.(#i)(stl|obj|)"), std::string::npos);
 }
 
 }  // namespace
