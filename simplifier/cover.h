@@ -55,13 +55,14 @@ struct CoverOptions {
   // kCover: rounds at most of searching for fewer spheres than the first proved answer; 0: none.
   // The search ends sooner where, by what it saved of late, a tenth more rounds would save less
   // than 1 % of the spheres, above 60 rounds less than 60 % / effort; and where a quarter of the
-  // rounds that are allowed, but 40 at least and 400 at most, have saved nothing on end.
+  // rounds that are allowed, but 40 at least and 400 at most, have saved nothing since cells last
+  // became finer.
   int effort = 60;
   // kCover: no new round begins after so many seconds, either; 0 sets no limit. The result then
   // depends on the machine.
   double seconds = 0.0;
   // kCover: prove a lower bound of the count, too (SphereCover::lower_bound), after the search:
-  // that takes several times as long as the first answer. Not with a min_radius, which lets spheres
+  // that takes tens of times as long as the first answer. Not with a min_radius, which lets spheres
   // protrude.
   bool lower_bound = false;
   // kPaper: record the history (costs some time).

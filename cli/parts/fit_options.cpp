@@ -119,7 +119,7 @@ void add_output_options(CLI::App& command, FitArguments& arguments) {
       ->type_name(kFile);
   add_external_spheres_flag(command, arguments.report_content);
   command.add_flag("--lower-bound", arguments.options.lower_bound,
-                   "Prove, too, how few spheres any cover must have (with cover); takes several "
+                   "Prove, too, how few spheres any cover must have (with cover); takes tens of "
                    "times as long as the first answer");
   command.add_option("--tree", arguments.tree, "Where the sphere tree goes")->type_name(kFile);
   command.add_option("--view", arguments.view, "Where a page to examine goes (HTML)")

@@ -88,8 +88,8 @@ void add_robot_options(CLI::App& command, RobotArguments& arguments) {
       command, {options.seed, options.effort, options.seconds, options.threads},
       "Rounds at most of searching for fewer spheres than at first, for each link, fewer where "
       "more would not pay; 0: none",
-      "Search for fewer spheres for so long, for each link; the result then depends on the "
-      "machine");
+      "Search for fewer spheres for so long, for each link, less where it no longer finds any; the "
+      "result then depends on the machine");
   add_external_spheres_flag(command, arguments.report_content);
   command.add_flag("--json", arguments.json, "Print the summary as JSON, lengths in metres");
   command

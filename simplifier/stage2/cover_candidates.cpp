@@ -71,7 +71,7 @@ std::vector<Candidate> candidates_from(const Clearance& clearance,
                                        std::uint64_t seed, const LocalError& local) {
   std::vector<std::vector<Candidate>> each(points.size());
   parallel_for(0, points.size(), [&](std::size_t i) {
-    Random random(seed + 0x9e3779b97f4a7c15U * (i + 1));
+    Random random(seed_of(seed, i));
     const double error = max_error * local.scale(points[i]);
     const double depth = random.between(0.2, 1.5) * error;
     const Eigen::Vector3d start =

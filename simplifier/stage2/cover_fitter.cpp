@@ -32,12 +32,12 @@ using Eigen::Vector3d;
 constexpr std::array kSpacings{0.7, 0.5, 0.3, 0.2, 0.14};
 constexpr std::size_t kFewCells = 10000;
 constexpr std::size_t kManyCells = 30000;
-// Rounds without a better answer, after which cells become finer, spheres are nudged, or the search
-// ends: a share of the rounds that are allowed, within limits.
+// Rounds without a better answer, after which cells become finer, a search that was asked to be
+// long nudges spheres, or the search ends: a share of the rounds that are allowed, within limits.
 constexpr int kPatience = 1;
 constexpr int kStuck = 3;
 constexpr int kConvergedShare = 4;
-constexpr int kConverged = 40;
+constexpr int kConvergedAtLeast = 40;
 constexpr int kConvergedAtMost = 400;
 
 // Surroundings of rows: the radii as shares of the cells' spacing and, in all, of E; the discs as
@@ -65,8 +65,9 @@ constexpr std::size_t kSampling = 10;   // a search begins with one of so many r
 constexpr std::size_t kForgetting = 4;  // times as large as it was the problem may grow
 // So many leaks more than there are spheres to gain may still be mended by fewer spheres.
 constexpr std::size_t kHopefulLeaks = 8;
-constexpr std::size_t kOpenRows = 100;  // that candidates are made for in a round
-constexpr std::size_t kFewerRows = 30;  // where spheres are nudged instead
+constexpr std::size_t kOpenRows = 100;        // that candidates are made for in a round
+constexpr std::size_t kOpenRowsIfStuck = 30;  // filled up to, where spheres are nudged, too
+constexpr std::size_t kNudged = 300;          // spheres at most, in a round
 
 // What a lower bound is made of, for every sphere proved and at least.
 constexpr std::size_t kBoundPoints = 240;
@@ -123,8 +124,8 @@ std::vector<Sphere> CoverFitter::run() {
   begin();
   CoverYield yield(options_.effort);
   yield.add(best_.spheres.size());
-  const int converged = std::clamp(options_.effort / kConvergedShare, kConverged, kConvergedAtMost);
-  in_vain_ = 0;
+  const int converged =
+      std::clamp(options_.effort / kConvergedShare, kConvergedAtLeast, kConvergedAtMost);
   for (int round = 0; round < options_.effort && best_.spheres.size() > 1; ++round) {
     const double share = share_done(round);
     if (share >= 1.0 || options_.stop.stop_requested()) break;
@@ -261,16 +262,24 @@ void CoverFitter::widen() {
   for (const std::uint32_t row : open) points.push_back(problem_.rows()[row].point);
   // Where few are left open it takes new places for other spheres, too.
   Random random(options_.seed + seeds_used_++);
-  const bool stuck = in_vain_ >= kStuck;
-  while (points.size() < (stuck ? kFewerRows : kOpenRows)) {
+  const bool stuck = in_vain_ >= kStuck && options_.effort > CoverOptions{}.effort;
+  while (points.size() < (stuck ? kOpenRowsIfStuck : kOpenRows)) {
     points.push_back(problem_.rows()[random.index(problem_.rows().size())].point);
   }
-  problem_.add_candidates(reach_for(clearance_, problem_, solution_, open));
-  problem_.add_candidates(
-      candidates_from(clearance_, points, error_, options_.seed + seeds_used_++, local_));
+  std::vector<Candidate> wider = reach_for(clearance_, problem_, solution_, open);
+  const auto add = [&wider](const std::vector<Candidate>& more) {
+    wider.insert(wider.end(), more.begin(), more.end());
+  };
+  add(candidates_from(clearance_, points, error_, options_.seed + seeds_used_++, local_));
   if (stuck) {
-    problem_.add_candidates(nudged(clearance_, problem_, solution_, options_.seed + seeds_used_++));
+    Columns some = solution_;
+    while (some.size() > kNudged) {
+      std::swap(some[random.index(some.size())], some.back());
+      some.pop_back();
+    }
+    add(nudged(clearance_, problem_, some, options_.seed + seeds_used_++));
   }
+  problem_.add_candidates(wider);
 }
 
 CoverFitter::Spheres CoverFitter::mended(Spheres spheres, SolidCells::Leaks leaks) {

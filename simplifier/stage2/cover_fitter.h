@@ -25,7 +25,7 @@ namespace spherule::internal {
 // Few spheres that cover S (docs/covering.md): a greedy set cover, mended where it leaks, is the
 // first proved answer; then rounds search for a cover of fewer spheres by local search, spread the
 // spheres to where they have the most to spare, and prove the result or learn from where it leaks.
-// Where that no longer helps, cells and rows become finer.
+// Where that no longer helps, cells and rows become finer, and in a long search spheres are nudged.
 class CoverFitter {
  public:
   // What the spheres `given` cover need not be covered again. Throws Error for an E too small for
@@ -74,7 +74,7 @@ class CoverFitter {
   void prove_or_learn();
   // Sets lower_bound_, from the rows and candidates known so far.
   void bound();
-  // New candidates about the rows that solution_ leaves open.
+  // New candidates about the rows that solution_ leaves open, and beside its spheres where it is stuck.
   void widen();
   // With spheres added until nothing leaks.
   Spheres mended(Spheres spheres, SolidCells::Leaks leaks);

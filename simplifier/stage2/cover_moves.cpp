@@ -8,7 +8,6 @@
 #include "simplifier/support/random.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -18,8 +17,7 @@ namespace {
 using Columns = CoverProblem::Columns;
 
 constexpr std::size_t kNearest = 8;
-constexpr double kLeastNudge = 0.04;  // shares of how far a sphere reaches along a plane
-constexpr double kLargestNudge = 0.4;
+constexpr double kLargestNudge = 0.4;  // of how far a sphere reaches along a plane, in x, y and z
 
 // For every sphere of the solution the rows that it alone covers.
 std::vector<std::vector<std::uint32_t>> exclusive_rows(const CoverProblem& problem,
@@ -97,19 +95,20 @@ std::vector<Candidate> reach_for(const Clearance& clearance, const CoverProblem&
 }
 
 std::vector<Candidate> nudged(const Clearance& clearance, const CoverProblem& problem,
-                              const Columns& solution, std::uint64_t seed) {
-  std::vector<Candidate> found(solution.size());
-  parallel_for(0, solution.size(), [&](std::size_t i) {
-    Random random(seed + 0x9e3779b97f4a7c15U * (i + 1));
-    const Candidate& from = problem.candidate(solution[i]);
+                              const Columns& columns, std::uint64_t seed) {
+  std::vector<Candidate> found(columns.size());
+  parallel_for(0, columns.size(), [&](std::size_t i) {
+    Random random(seed_of(seed, i));
+    const Candidate& from = problem.candidate(columns[i]);
     const double inside = std::max(0.0, from.clearance);
     const double error = problem.error().allowance(from.center, inside);
-    const double largest = cap_width(inside, error) * kLeastNudge *
-                           std::pow(kLargestNudge / kLeastNudge, random.between(0.0, 1.0));
-    const Eigen::Vector3d by(random.between(-1.0, 1.0), random.between(-1.0, 1.0),
-                             random.between(-1.0, 1.0));
+    // Small ones more often: most spheres are nearly where they should be.
+    const double share = random.unit();
+    const double size = kLargestNudge * share * share * cap_width(inside, error);
+    const Eigen::Vector3d by =
+        random.in({Eigen::Vector3d::Constant(-size), Eigen::Vector3d::Constant(size)});
     const AscentStep end =
-        ascend(clearance, from.center + largest * by,
+        ascend(clearance, from.center + by,
                {.first_step = 0.1 * error, .least_step = 0.005 * error, .tolerance = 0.01 * error})
             .back();
     found[i] = {end.point, end.clearance};

@@ -9,6 +9,11 @@
 
 namespace spherule::internal {
 
+// A seed for each of several things made at once, whatever the threads.
+constexpr std::uint64_t seed_of(std::uint64_t seed, std::size_t number) {
+  return seed + 0x9e3779b97f4a7c15U * (number + 1);
+}
+
 // Random numbers that are equal on every platform: the standard fixes the engine's output but not
 // that of its distributions, so the numbers are made from the output directly.
 class Random {

@@ -3,7 +3,7 @@
 
 namespace spherule::test {
 
-// A program that links counting_new.cpp has these: calls of operator new so far, and whether it
+// A program that links spherule_counting_new has these: calls of operator new so far, and whether it
 // finds no memory any more.
 extern int allocations;
 extern bool exhausted;

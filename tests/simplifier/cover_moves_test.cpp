@@ -5,14 +5,17 @@
 #include "simplifier/stage2/cover_shift.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
+#include "tests/simplifier/sphere_hash.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -137,7 +140,7 @@ TEST(CoverMoves, SpheresReachForRowsThatAreOpen) {
   EXPECT_TRUE(std::ranges::any_of(found, covers_one));
 }
 
-TEST(CoverMoves, NudgedSpheresStandBesideThoseOfTheSolutionOnTheMedialAxis) {
+TEST(CoverMoves, NudgedSpheresAreNewOnesOnTheMedialAxis) {
   Random random(14);
   const Scene scene(random);
   const CoverProblem::Columns solution = greedy_set_cover(scene.problem.instance());
@@ -150,12 +153,30 @@ TEST(CoverMoves, NudgedSpheresStandBesideThoseOfTheSolutionOnTheMedialAxis) {
     // Moving on, away from the contact, meets another one.
     const Vector3d on = c.center + 0.02 * kError * scene.clearance(c.center).away;
     EXPECT_LE(scene.clearance(on).lower, c.clearance + 0.017 * kError);
+    EXPECT_TRUE(std::ranges::none_of(solution, [&](std::size_t column) {
+      return scene.problem.candidate(column).center == c.center;
+    }));
   }
-  const std::vector<Candidate> again = nudged(scene.clearance, scene.problem, solution, 1);
-  const auto same = [](const Candidate& a, const Candidate& b) { return a.center == b.center; };
-  EXPECT_TRUE(std::ranges::equal(found, again, same));
-  EXPECT_FALSE(
-      std::ranges::equal(found, nudged(scene.clearance, scene.problem, solution, 2), same));
+}
+
+// Equal bits on every machine and any number of threads (G7).
+TEST(CoverMoves, NudgedSpheresAreEqualEverywhere) {
+  Random random(14);
+  const Scene scene(random);
+  const CoverProblem::Columns solution = greedy_set_cover(scene.problem.instance());
+  const auto hash = [&](std::uint64_t seed, int threads) {
+    tbb::task_arena arena(threads);
+    return arena.execute([&] {
+      std::vector<Sphere> spheres;
+      for (const Candidate& c : nudged(scene.clearance, scene.problem, solution, seed)) {
+        spheres.push_back({c.center, c.clearance});
+      }
+      return hash_of(spheres);
+    });
+  };
+  EXPECT_EQ(hash(1, 1), 0x0U);
+  EXPECT_EQ(hash(1, 4), hash(1, 1));
+  EXPECT_NE(hash(2, 1), hash(1, 1));
 }
 
 TEST(CoverEffort, MoreOfItNeverTakesMoreSpheresAndIsProved) {

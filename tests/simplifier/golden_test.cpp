@@ -2,34 +2,17 @@
 // G7 (docs/guarantee.md): equal input gives equal bits on every machine, compiler and optimisation
 // level. If a stage is changed on purpose, put the value that the failing test prints here and say
 // so in CHANGELOG.md: spheres fitted before will differ from spheres fitted after.
-#include "spheretree/crc64.h"
 #include "tests/simplifier/fitting.h"
+#include "tests/simplifier/sphere_hash.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cstdint>
-#include <span>
-#include <string>
 
 namespace spherule::test {
 namespace {
-
-// Of the bits of all numbers, the lowest byte first.
-std::uint64_t hash_of(std::span<const Sphere> spheres) {
-  std::string bytes;
-  for (const Sphere& s : spheres) {
-    for (const double x : {s.center.x(), s.center.y(), s.center.z(), s.radius}) {
-      const auto bits = std::bit_cast<std::uint64_t>(x);
-      for (int shift = 0; shift < 64; shift += 8) {
-        bytes.push_back(static_cast<char>(static_cast<unsigned char>(bits >> shift)));
-      }
-    }
-  }
-  return crc64(bytes);
-}
 
 struct Golden {
   const char* name;
