@@ -45,7 +45,7 @@ struct Scene {
     problem.add_rows(rows);
     std::vector<Candidate> candidates;
     while (candidates.size() < 3000) {
-      const Vector3d p(random.unit(), random.unit(), random.unit());
+      const Vector3d p = random.in_box({Vector3d(0, 0, 0), Vector3d(1, 1, 1)});
       const double lower = clearance(p).lower;
       if (lower >= 0.0) candidates.push_back({p, lower});
     }
