@@ -74,7 +74,8 @@ class CoverFitter {
   void prove_or_learn();
   // Sets lower_bound_, from the rows and candidates known so far.
   void bound();
-  // New candidates about the rows that solution_ leaves open, and beside its spheres where it is stuck.
+  // New candidates about the rows that solution_ leaves open, and beside its spheres where it is
+  // stuck.
   void widen();
   // With spheres added until nothing leaks.
   Spheres mended(Spheres spheres, SolidCells::Leaks leaks);

@@ -20,9 +20,9 @@ std::vector<Candidate> reach_for(const Clearance& clearance, const CoverProblem&
                                  const CoverProblem::Columns& solution,
                                  std::span<const std::uint32_t> open);
 
-// Candidates beside the spheres of these columns: each is moved at random by up to some share of how
-// far it reaches along a plane, and from there away from its contact to the medial axis of S (which
-// in zones may be too far: unlike those of candidates_from, these stand nowhere on the way).
+// Candidates beside the spheres of these columns: each is moved at random by up to some share of
+// how far it reaches along a plane, and from there away from its contact to the medial axis of S
+// (which in zones may be too far: unlike those of candidates_from, these stand nowhere on the way).
 std::vector<Candidate> nudged(const Clearance& clearance, const CoverProblem& problem,
                               const CoverProblem::Columns& columns, std::uint64_t seed);
 

@@ -3,8 +3,8 @@
 
 namespace spherule::test {
 
-// A program that links spherule_counting_new has these: calls of operator new so far, and whether it
-// finds no memory any more.
+// A program that links spherule_counting_new has these: calls of operator new so far, and whether
+// it finds no memory any more.
 extern int allocations;
 extern bool exhausted;
 
