@@ -117,15 +117,17 @@ std::string full_description(const OptionSpecification& option) {
          note("needs ", option.needs) + note("not with ", option.excludes);
 }
 
-FileEndings endings_for_arguments(const CommandSpecification& command) {
-  FileEndings all;
+OptionSpecification any_argument(const CommandSpecification& command) {
+  OptionSpecification any = command.arguments.front();
   for (const OptionSpecification& argument : command.arguments) {
-    if (argument.endings.empty()) return {};
+    if (argument.endings.empty()) any.endings.clear();
+    if (any.endings.empty()) break;
     for (const std::string& ending : argument.endings) {
-      if (std::find(all.begin(), all.end(), ending) == all.end()) all.push_back(ending);
+      if (std::ranges::find(any.endings, ending) == any.endings.end())
+        any.endings.push_back(ending);
     }
   }
-  return all;
+  return any;
 }
 
 std::vector<std::string> option_names(const CommandSpecification& command) {

@@ -51,8 +51,8 @@ CommandSpecification specification(const CLI::App& app);
 // The description, and whether the option is required, what it needs and what it excludes.
 std::string full_description(const OptionSpecification& option);
 
-// The endings of the files that the arguments of a command take together; empty: all.
-FileEndings endings_for_arguments(const CommandSpecification& command);
+// The first argument of a command, with the endings of the files that all of its arguments take.
+OptionSpecification any_argument(const CommandSpecification& command);
 
 // The names of all options of a command.
 std::vector<std::string> option_names(const CommandSpecification& command);

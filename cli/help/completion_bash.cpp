@@ -64,9 +64,7 @@ class BashWriter {
     words_ += "    '" + path + "')\n      options='" +
               CLI::detail::join(option_names(command), " ") + "'\n";
     if (!inner.empty()) words_ += "      commands='" + CLI::detail::join(inner, " ") + "'\n";
-    if (!command.arguments.empty()) {
-      words_ += "      " + reply(command.arguments.front(), endings_for_arguments(command)) + "\n";
-    }
+    if (!command.arguments.empty()) words_ += "      " + reply(any_argument(command)) + "\n";
     words_ += "      ;;\n";
     for (const OptionSpecification& option : command.options) add_values(option, path);
     for (const CommandSpecification& one : command.commands) {
@@ -84,11 +82,12 @@ class BashWriter {
 
  private:
   // What is offered for a value; of files those with one of the endings.
-  static std::string reply(const OptionSpecification& option, const FileEndings& endings = {}) {
+  static std::string reply(const OptionSpecification& option) {
     const std::string choices = "'" + CLI::detail::join(option.choices, " ") + "'";
     if (!option.choices.empty()) return (option.is_list ? "list=" : "choices=") + choices;
     if (option.value == kFile) {
-      return "files='" + (endings.empty() ? "all" : CLI::detail::join(endings, "|")) + "'";
+      return "files='" + (option.endings.empty() ? "all" : CLI::detail::join(option.endings, "|")) +
+             "'";
     }
     if (option.value == kFolder) return "folders=yes";
     return ":";  // nothing is known of it

@@ -17,10 +17,10 @@ std::string fish_quoted(const std::string& text) {
 
 // What fish is told of a value: whether files are offered, those with one of the endings, and which
 // words.
-std::string fish_value(const OptionSpecification& option, const FileEndings& endings = {}) {
+std::string fish_value(const OptionSpecification& option) {
   if (option.value == kFile) {
-    return endings.empty() ? " -F"
-                           : " -f -a '(__spherule_files " + CLI::detail::join(endings, " ") + ")'";
+    if (option.endings.empty()) return " -F";
+    return " -f -a '(__spherule_files " + CLI::detail::join(option.endings, " ") + ")'";
   }
   if (option.value == kFolder) return " -f -a '(__fish_complete_directories)'";
   if (option.choices.empty()) return " -f";
@@ -74,9 +74,7 @@ std::string fish_lines(const CommandSpecification& command, const std::string& p
   for (const CommandSpecification& one : command.commands) {
     text += when + " -f -a " + one.name + " -d " + fish_quoted(one.summary) + "\n";
   }
-  if (!command.arguments.empty()) {
-    text += when + fish_value(command.arguments.front(), endings_for_arguments(command)) + "\n";
-  }
+  if (!command.arguments.empty()) text += when + fish_value(any_argument(command)) + "\n";
   for (const OptionSpecification& option : command.options) {
     text += when;
     for (const std::string& name : option.names) {

@@ -33,7 +33,7 @@ constexpr std::array kSpacings{0.7, 0.5, 0.3, 0.2, 0.14};
 constexpr std::size_t kFewCells = 10000;
 constexpr std::size_t kManyCells = 30000;
 // Rounds without a better answer, after which cells become finer, a search that was asked to be
-// long nudges spheres, or the search ends: a share of the rounds that are allowed, within limits.
+// long perturbs spheres, or the search ends: a share of the rounds that are allowed, within limits.
 constexpr int kPatience = 1;
 constexpr int kStuck = 3;
 constexpr int kConvergedShare = 4;
@@ -66,8 +66,8 @@ constexpr std::size_t kForgetting = 4;  // times as large as it was the problem 
 // So many leaks more than there are spheres to gain may still be mended by fewer spheres.
 constexpr std::size_t kHopefulLeaks = 8;
 constexpr std::size_t kOpenRows = 100;        // that candidates are made for in a round
-constexpr std::size_t kOpenRowsIfStuck = 30;  // filled up to, where spheres are nudged, too
-constexpr std::size_t kNudged = 300;          // spheres at most, in a round
+constexpr std::size_t kOpenRowsIfStuck = 30;  // filled up to, where spheres are perturbed, too
+constexpr std::size_t kPerturbed = 300;       // spheres at most, in a round
 
 // What a lower bound is made of, for every sphere proved and at least.
 constexpr std::size_t kBoundPoints = 240;
@@ -272,12 +272,13 @@ void CoverFitter::widen() {
   };
   add(candidates_from(clearance_, points, error_, options_.seed + seeds_used_++, local_));
   if (stuck) {
+    // Others in each round.
     Columns some = solution_;
-    while (some.size() > kNudged) {
+    while (some.size() > kPerturbed) {
       std::swap(some[random.index(some.size())], some.back());
       some.pop_back();
     }
-    add(nudged(clearance_, problem_, some, options_.seed + seeds_used_++));
+    add(perturbed(clearance_, problem_, some, options_.seed + seeds_used_++));
   }
   problem_.add_candidates(wider);
 }

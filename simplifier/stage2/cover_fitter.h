@@ -25,7 +25,8 @@ namespace spherule::internal {
 // Few spheres that cover S (docs/covering.md): a greedy set cover, mended where it leaks, is the
 // first proved answer; then rounds search for a cover of fewer spheres by local search, spread the
 // spheres to where they have the most to spare, and prove the result or learn from where it leaks.
-// Where that no longer helps, cells and rows become finer, and in a long search spheres are nudged.
+// Where that no longer helps, cells and rows become finer, and in a long search spheres are
+// perturbed.
 class CoverFitter {
  public:
   // What the spheres `given` cover need not be covered again. Throws Error for an E too small for
@@ -121,7 +122,7 @@ class CoverFitter {
   std::vector<Sphere> given_;
   std::size_t lower_bound_ = 0;
   std::uint64_t seeds_used_ = 0;
-  int in_vain_ = 0;                  // rounds on end without a better answer
+  int in_vain_ = 0;                  // rounds since the last better answer or finer cells
   std::uint64_t first_entries_ = 0;  // of the problem when its cells were made
 };
 

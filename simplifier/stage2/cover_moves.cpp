@@ -17,7 +17,7 @@ namespace {
 using Columns = CoverProblem::Columns;
 
 constexpr std::size_t kNearest = 8;
-constexpr double kLargestNudge = 0.4;  // of how far a sphere reaches along a plane, in x, y and z
+constexpr double kLargestMove = 0.4;  // of how far a sphere reaches along a plane, in x, y and z
 
 // For every sphere of the solution the rows that it alone covers.
 std::vector<std::vector<std::uint32_t>> exclusive_rows(const CoverProblem& problem,
@@ -94,8 +94,8 @@ std::vector<Candidate> reach_for(const Clearance& clearance, const CoverProblem&
   return all;
 }
 
-std::vector<Candidate> nudged(const Clearance& clearance, const CoverProblem& problem,
-                              const Columns& columns, std::uint64_t seed) {
+std::vector<Candidate> perturbed(const Clearance& clearance, const CoverProblem& problem,
+                                 const Columns& columns, std::uint64_t seed) {
   std::vector<Candidate> found(columns.size());
   parallel_for(0, columns.size(), [&](std::size_t i) {
     Random random(seed_of(seed, i));
@@ -104,7 +104,7 @@ std::vector<Candidate> nudged(const Clearance& clearance, const CoverProblem& pr
     const double error = problem.error().allowance(from.center, inside);
     // Small ones more often: most spheres are nearly where they should be.
     const double share = random.unit();
-    const double size = kLargestNudge * share * share * cap_width(inside, error);
+    const double size = kLargestMove * share * share * cap_width(inside, error);
     const Eigen::Vector3d by =
         random.in({Eigen::Vector3d::Constant(-size), Eigen::Vector3d::Constant(size)});
     const AscentStep end =

@@ -23,7 +23,7 @@ std::vector<Candidate> reach_for(const Clearance& clearance, const CoverProblem&
 // Candidates beside the spheres of these columns: each is moved at random by up to some share of
 // how far it reaches along a plane, and from there away from its contact to the medial axis of S
 // (which in zones may be too far: unlike those of candidates_from, these stand nowhere on the way).
-std::vector<Candidate> nudged(const Clearance& clearance, const CoverProblem& problem,
-                              const CoverProblem::Columns& columns, std::uint64_t seed);
+std::vector<Candidate> perturbed(const Clearance& clearance, const CoverProblem& problem,
+                                 const CoverProblem::Columns& columns, std::uint64_t seed);
 
 }  // namespace spherule::internal

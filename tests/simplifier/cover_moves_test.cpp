@@ -140,11 +140,11 @@ TEST(CoverMoves, SpheresReachForRowsThatAreOpen) {
   EXPECT_TRUE(std::ranges::any_of(found, covers_one));
 }
 
-TEST(CoverMoves, NudgedSpheresAreNewOnesOnTheMedialAxis) {
+TEST(CoverMoves, PerturbedSpheresAreNewOnesOnTheMedialAxis) {
   Random random(14);
   const Scene scene(random);
   const CoverProblem::Columns solution = greedy_set_cover(scene.problem.instance());
-  const std::vector<Candidate> found = nudged(scene.clearance, scene.problem, solution, 1);
+  const std::vector<Candidate> found = perturbed(scene.clearance, scene.problem, solution, 1);
   EXPECT_LE(found.size(), solution.size());
   EXPECT_GE(2 * found.size(), solution.size());
   for (const Candidate& c : found) {
@@ -160,7 +160,7 @@ TEST(CoverMoves, NudgedSpheresAreNewOnesOnTheMedialAxis) {
 }
 
 // Equal bits on every machine and any number of threads (G7).
-TEST(CoverMoves, NudgedSpheresAreEqualEverywhere) {
+TEST(CoverMoves, PerturbedSpheresAreEqualEverywhere) {
   Random random(14);
   const Scene scene(random);
   const CoverProblem::Columns solution = greedy_set_cover(scene.problem.instance());
@@ -168,7 +168,7 @@ TEST(CoverMoves, NudgedSpheresAreEqualEverywhere) {
     tbb::task_arena arena(threads);
     return arena.execute([&] {
       std::vector<Sphere> spheres;
-      for (const Candidate& c : nudged(scene.clearance, scene.problem, solution, seed)) {
+      for (const Candidate& c : perturbed(scene.clearance, scene.problem, solution, seed)) {
         spheres.push_back({c.center, c.clearance});
       }
       return hash_of(spheres);
