@@ -35,11 +35,11 @@ class Descriptor {
 
   int get() const { return value_; }
 
-  // Reports the errors that some file systems keep back until the file is closed.
-  bool close() {
-    const int value = value_;
-    value_ = -1;
-    return ::close(value) == 0;
+  // Reports the errors that some file systems keep back until the file is closed. It stays open,
+  // and locked.
+  bool close_another() const {
+    const int another = ::fcntl(value_, F_DUPFD_CLOEXEC, 0);
+    return another >= 0 && ::close(another) == 0;
   }
 
  private:
@@ -141,7 +141,7 @@ class TemporaryFile {
     if (!renamed_) ::unlink(name_.c_str());
   }
 
-  Descriptor& file() { return *file_; }
+  const Descriptor& file() const { return *file_; }
 
   bool rename_to(const fs::path& target) {
     renamed_ = std::rename(name_.c_str(), target.c_str()) == 0;
@@ -164,7 +164,7 @@ void check_writable(const fs::path& path) {
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
   const Target target = target_of(path);
   TemporaryFile temporary(target.path, path);
-  Descriptor& file = temporary.file();
+  const Descriptor& file = temporary.file();
   struct stat old = {};
   const bool keep = target.exists && ::stat(target.path.c_str(), &old) == 0;
   if (::fchmod(file.get(), keep ? old.st_mode & 07777U : default_permissions()) != 0) {
@@ -176,7 +176,8 @@ void write_file_atomically(const fs::path& path, std::string_view bytes) {
     if (written < 0) fail(path, "cannot be written");
     rest.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::fsync(file.get()) != 0 || !file.close()) fail(path, "cannot be written");
+  if (::fsync(file.get()) != 0 || !file.close_another()) fail(path, "cannot be written");
+  // While it is still locked: for others it would be left behind.
   if (!temporary.rename_to(target.path)) fail(path, "cannot be written");
 }
 

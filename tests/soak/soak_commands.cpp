@@ -82,7 +82,7 @@ const std::vector<SoakCommand>& soak_commands() {
        CommandPart::kKills},
       {"completion", {"completion", "bash", "-o", "out/spherule"}, CommandPart::kKills},
       {"manual", {"manual", "-o", "out"}, CommandPart::kKills},
-      {"audit", {"audit", "in/bar.stl", "in/bar.json", "--max-error", "6"}, CommandPart::kMemory},
+      {"audit", {"audit", "in/bar.stl", "in/bar.json"}, CommandPart::kMemory},
       {"collide", {"collide", "in/a.tree", "in/b.tree", "--distance"}, CommandPart::kMemory},
       {"check",
        {"check", "in/bars.urdf", "in/scene.json", "in/path.csv", "--spheres", "in/bars.yml",

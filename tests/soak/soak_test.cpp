@@ -4,6 +4,7 @@
 #include "spheretree/error.h"
 #include "tests/soak/process_cases.h"
 #include "tests/soak/soak_plan.h"
+#include "tests/support/effort.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>
@@ -86,6 +87,14 @@ TEST(Soak, FaultsStandInTheTableAndFailIt) {
 
 const SoakCommand& command(const std::string& name) {
   return *std::ranges::find(soak_commands(), name, &SoakCommand::name);
+}
+
+// Their options are those that the command has today.
+TEST(Soak, CommandsRun) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
+  for (const SoakCommand& command : soak_commands()) {
+    EXPECT_NO_THROW(CommandFolder(SPHERULE_COMMAND, command)) << command.name;
+  }
 }
 
 TEST(Soak, KilledCommandsLeaveWholeFiles) {

@@ -3,13 +3,17 @@
 
 #include "tests/spheretree/temporary_folder.h"
 
+#include <atomic>
 #include <csignal>
 #include <fcntl.h>
 #include <fstream>
+#include <string>
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
+#include <vector>
 
 namespace spherule::test {
 namespace {
@@ -107,6 +111,29 @@ TEST_F(AtomicFile, WhatKilledProcessesLeftIsRemovedAndNothingElse) {
       fs::remove_all(entry.path());
     }
   }
+}
+
+// The temporary file of one that is still writing is not a leftover for another.
+TEST_F(AtomicFile, ThoseWhoWriteTheSameFileAtOnceAllSucceed) {
+  constexpr int kWriters = 8;
+  std::atomic<int> failed = 0;
+  std::vector<std::thread> writers;
+  for (int i = 0; i < kWriters; ++i) {
+    writers.emplace_back([&, i] {
+      for (int n = 0; n < 100; ++n) {
+        try {
+          write_file_atomically(path("file"), std::string(100, static_cast<char>('a' + i)));
+        } catch (const Error&) {
+          ++failed;
+        }
+      }
+    });
+  }
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_EQ(failed, 0);
+  const std::string bytes = bytes_of(path("file"));
+  EXPECT_EQ(bytes, std::string(100, bytes.front()));
+  EXPECT_EQ(files_in_folder(), 1U);
 }
 
 TEST_F(AtomicFile, AFullDiskIsReportedAndTheOldFileStays) {
