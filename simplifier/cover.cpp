@@ -5,10 +5,14 @@
 #include "mesh/triangle_mesh.h"
 #include "simplifier/internal/stages.h"
 #include "simplifier/solid/clearance.h"
+#include "simplifier/stage2/cover_blocks.h"
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/cover_fitter.h"
 #include "simplifier/stage2/paper/internal_spheres.h"
 #include "simplifier/support/thread_limit.h"
+
+#include <optional>
+#include <utility>
 
 namespace spherule {
 
@@ -30,9 +34,15 @@ SphereCover internal::cover(const TriangleMesh& mesh, const MeshDistance& distan
     return internal::place_internal_spheres(mesh, distance, clearance, options);
   }
   SphereCover result;
-  CoverFitter fitter(clearance, distance, options);
-  result.spheres = fitter.run();
-  result.lower_bound = fitter.lower_bound();
+  std::optional<CoverFitter> fitter(std::in_place, clearance, distance, options);
+  if (fitter->divided().size() > CoverBlocks::kMostCells) {
+    CoverBlocks blocks(clearance, distance, options, fitter->divided().boxes());
+    fitter.reset();
+    result.spheres = blocks.run();
+    return result;
+  }
+  result.spheres = fitter->run();
+  result.lower_bound = fitter->lower_bound();
   return result;
 }
 

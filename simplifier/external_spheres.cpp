@@ -40,6 +40,9 @@ void check_options(const ExternalOptions& options) {
     throw Error("tightness", "must be above 0 and at most 10");
   }
   const double infinity = std::numeric_limits<double>::infinity();
+  if (options.max_cells == 0 || options.max_cells > ExternalOptions::kMostCells) {
+    throw Error("max cells", "must be at least 1 and at most 2^27");
+  }
   const bool none = options.placement == ExternalPlacement::kNone;
   check_zones(options.zones, options.max_error > 0.0 ? options.max_error : infinity,
               none ? infinity : options.min_external_diameter);
@@ -73,26 +76,39 @@ Eigen::AlignedBox3d inflated_outwards(const Eigen::AlignedBox3d& box, double by)
   return inflated;
 }
 
-// For spheres of this diameter that intersect S with this error.
-double chosen_step(const ExternalOptions& options, double diameter, double max_error) {
-  if (options.grid_step > 0.0) {
-    return options.grid_step * (diameter / options.min_external_diameter);
-  }
-  const double coarsest = diameter / 8.0;
-  if (max_error == 0.0) return coarsest / 2.0;
-  return std::min(coarsest, std::sqrt(0.08 * max_error * diameter / 2.0));
-}
+// The steps of the grid.
+struct Steps {
+  // The scallops of S along a flat wall, E / 50 with the steps that are chosen, grow with their
+  // square: to E / 8 at most, where there would be many cells.
+  static constexpr double kCoarsest = 2.5;
 
-double chosen_step(const ExternalOptions& options, const Zone& zone) {
-  return chosen_step(options, zone.min_external_diameter.value_or(options.min_external_diameter),
-                     zone.max_error.value_or(options.max_error));
-}
+  const ExternalOptions* options;
+  double coarsening = 1.0;  // of those that are chosen
+
+  double operator()() const { return of(options->min_external_diameter, options->max_error); }
+  double operator()(const Zone& zone) const {
+    return of(zone.min_external_diameter.value_or(options->min_external_diameter),
+              zone.max_error.value_or(options->max_error));
+  }
+
+ private:
+  // For spheres of this diameter that intersect S with this error.
+  double of(double diameter, double max_error) const {
+    if (options->grid_step > 0.0) {
+      return options->grid_step * (diameter / options->min_external_diameter);
+    }
+    const double coarsest = diameter / 8.0;
+    const double finest =
+        max_error > 0.0 ? std::sqrt(0.08 * max_error * diameter / 2.0) : coarsest / 2.0;
+    return std::min(coarsest, coarsening * finest);
+  }
+};
 
 // A cube around the box that leaves a sphere of radius rho and three steps of room on every side.
 // Zones halve the step up to `halvings` times.
 FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double step, int halvings) {
   const double edge = box.sizes().maxCoeff() + 2.0 * (rho + 3.0 * step);
-  FloodGrid::Shape shape{Vector3d::Zero(), step, 0};
+  FloodGrid::Shape shape{.origin = Vector3d::Zero(), .step = step};
   while (std::ldexp(step, shape.levels) < edge) ++shape.levels;
   const double magnitude = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() + edge;
   if (shape.levels + halvings > 20 ||
@@ -207,9 +223,10 @@ class SnugSpheres {
   internal::SphereHierarchy reached_;
 };
 
-void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
-                     const ExternalOptions& options, ExternalSpheres& result) {
-  const double step = chosen_step(options, options.min_external_diameter, options.max_error);
+void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance, const Steps& steps,
+                     std::size_t grid_cells, ExternalSpheres& result) {
+  const ExternalOptions& options = *steps.options;
+  const double step = steps();
   std::vector<Zone> zones = options.zones;
   if (options.keep_concave_edges) {
     result.concave_edges = concave_edge_zones(
@@ -221,11 +238,13 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
     zones.insert(zones.end(), result.concave_edges.begin(), result.concave_edges.end());
   }
   std::vector<double> zone_steps;
-  for (const Zone& zone : zones) zone_steps.push_back(chosen_step(options, zone));
+  for (const Zone& zone : zones) zone_steps.push_back(steps(zone));
   const LocalDiameter diameter(options.min_external_diameter, step, zones, zone_steps);
-  FloodGrid grid(distance, result.padding, diameter,
-                 grid_shape(result.box, diameter.radius(), step, diameter.most_halvings()),
-                 options.progress);
+  FloodGrid::Shape shape =
+      grid_shape(result.box, diameter.radius(), step, diameter.most_halvings());
+  shape.grid_cells = grid_cells;
+  shape.max_cells = options.max_cells;
+  FloodGrid grid(distance, result.padding, diameter, shape, options.progress);
   grid.flood();
   result.closing_slack =
       2.0 * diameter.radius() * grid.tighten(options.tightness, options.progress);
@@ -244,6 +263,31 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
     result.spheres.insert(result.spheres.end(), spheres.begin(), spheres.end());
   }
   if (options.progress) options.progress(1.0, "placing external spheres");
+}
+
+// With steps that are coarser where there would be many cells, and as many cells as are allowed
+// where that is not enough.
+void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
+                     const ExternalOptions& options, ExternalSpheres& result) {
+  constexpr double kMargin = 1.1;  // of the steps
+  Steps steps{&options};
+  std::size_t grid_cells = std::min(options.max_cells, ExternalOptions::kManyCells);
+  for (;;) {
+    try {
+      return place_reachable(mesh, distance, steps, grid_cells, result);
+    } catch (const internal::TooManyCells& too_many) {
+      Steps coarser = steps;
+      coarser.coarsening =
+          std::min(Steps::kCoarsest, kMargin * std::sqrt(too_many.factor()) * steps.coarsening);
+      if (coarser() > steps()) {
+        steps = coarser;
+      } else if (grid_cells < options.max_cells) {
+        grid_cells = options.max_cells;
+      } else {
+        throw;
+      }
+    }
+  }
 }
 
 }  // namespace

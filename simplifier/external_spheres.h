@@ -52,7 +52,14 @@ struct ExternalOptions {
   double padding = 0.0;
   // Grid step of the flood; 0 chooses sqrt(0.08 * max_error * D / 2), at most D / 8, which leaves
   // spikes of about 0.02 E between the spheres along a flat wall. Without `max_error` it is D / 16.
+  // Where the grid would have more than kManyCells, the step that is chosen is up to 2.5 times as
+  // large, but no more than D / 8: the spikes, which belong to S, are then up to E / 8 high.
+  // ExternalSpheres::grid_step is the one that was used.
   double grid_step = 0.0;
+  static constexpr std::size_t kManyCells = std::size_t{1} << 24;
+  // Cells of the grid at most, about 30 bytes each; from 1 to kMostCells.
+  static constexpr std::size_t kMostCells = std::size_t{1} << 27;
+  std::size_t max_cells = kMostCells;
   // E: chooses the grid step and, with `keep_concave_edges`, the zones (0: those of E = D / 4).
   // Unless it is 0, no zone may have a larger `max_error`.
   double max_error = 0.0;

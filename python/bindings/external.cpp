@@ -38,15 +38,17 @@ ExternalPointer external_from(const py::tuple& state) {
 }
 
 ExternalPointer place(const py::object& mesh, double min_external_diameter, double max_error,
-                      double padding, double grid_step, double tightness, const py::object& zones,
-                      bool keep_concave_edges, const py::object& placement, std::size_t limit,
-                      std::uint64_t seed, int threads, const py::object& progress) {
+                      double padding, double grid_step, std::size_t max_cells, double tightness,
+                      const py::object& zones, bool keep_concave_edges, const py::object& placement,
+                      std::size_t limit, std::uint64_t seed, int threads,
+                      const py::object& progress) {
   ExternalOptions options;
   options.placement = static_cast<ExternalPlacement>(
       choice(placement, {"reachable", "random", "none"}, "placement"));
   options.min_external_diameter = min_external_diameter;
   options.padding = padding;
   options.grid_step = grid_step;
+  options.max_cells = max_cells;
   options.max_error = max_error;
   options.tightness = tightness;
   options.zones = zones_of(zones);
@@ -119,18 +121,19 @@ void bind_external(py::module_& module) {
       "place_external_spheres", &place, py::arg("mesh"), py::kw_only(),
       py::arg("min_external_diameter"), py::arg("max_error") = defaults.max_error,
       py::arg("padding") = defaults.padding, py::arg("grid_step") = defaults.grid_step,
-      py::arg("tightness") = defaults.tightness, py::arg("zones") = py::tuple(),
-      py::arg("keep_concave_edges") = defaults.keep_concave_edges,
+      py::arg("max_cells") = defaults.max_cells, py::arg("tightness") = defaults.tightness,
+      py::arg("zones") = py::tuple(), py::arg("keep_concave_edges") = defaults.keep_concave_edges,
       py::arg("placement") = "reachable", py::arg("limit") = defaults.limit,
       py::arg("seed") = defaults.seed, py::arg("threads") = defaults.threads,
       py::arg("progress") = py::none(),
-      Help("place_external_spheres(mesh, *, min_external_diameter, max_error=0.0, padding=0.0, "
-           "grid_step=0.0, tightness=0.03, zones=(), keep_concave_edges=False, "
-           "placement='reachable', limit=100000, seed=1, threads=0, progress=None)",
-           "Stage 1: the spheres of diameter D around the mesh, an ExternalSpheres. Lengths in the "
-           "unit of the mesh. `placement` is 'reachable', 'random' or 'none'; `limit` and `seed` "
-           "are "
-           "those of 'random'. simplify() does it by itself.")
+      Help(
+          "place_external_spheres(mesh, *, min_external_diameter, max_error=0.0, padding=0.0, "
+          "grid_step=0.0, max_cells=134217728, tightness=0.03, zones=(), keep_concave_edges=False, "
+          "placement='reachable', limit=100000, seed=1, threads=0, progress=None)",
+          "Stage 1: the spheres of diameter D around the mesh, an ExternalSpheres. Lengths in the "
+          "unit of the mesh. `placement` is 'reachable', 'random' or 'none'; `limit` and `seed` "
+          "are "
+          "those of 'random'. simplify() does it by itself.")
           .c_str());
 }
 

@@ -234,6 +234,7 @@ def place_external_spheres(
     max_error: float = ...,
     padding: float = ...,
     grid_step: float = ...,
+    max_cells: int = ...,
     tightness: float = ...,
     zones: Sequence[Zone] = ...,
     keep_concave_edges: bool = ...,

@@ -19,6 +19,11 @@ constexpr int kPatience = 64;  // queries that use a middling list before its ce
 constexpr int kPerCell = 64;   // spheres for each of the first cells that have a list
 constexpr int kDeepest = 36;   // halvings
 
+// Bytes.
+constexpr std::size_t kPerSphere = 256;
+constexpr std::size_t kLeastMemory = std::size_t{1} << 26;
+constexpr std::size_t kMostMemory = std::size_t{1} << 32;
+
 // A sphere as seen from the middle of a cell.
 struct Seen {
   std::int32_t index;
@@ -109,6 +114,11 @@ struct NearestCells::Cell {
   }
   std::size_t bytes() const { return sizeof(Cell) + list.size() * sizeof(list[0]); }
 };
+
+NearestCells::NearestCells(std::vector<Sphere> spheres, const Eigen::AlignedBox3d& box)
+    : NearestCells(std::move(spheres), box, 0) {
+  memory_ = std::clamp(kPerSphere * spheres_.size(), kLeastMemory, kMostMemory);
+}
 
 NearestCells::NearestCells(std::vector<Sphere> spheres, const Eigen::AlignedBox3d& box,
                            std::size_t memory)

@@ -24,10 +24,12 @@ namespace spherule::internal {
 // Safe to share between threads. The answers do not depend on which cells were made before.
 class NearestCells {
  public:
+  // With as much memory as queries from everywhere in the box use, about: 256 bytes a sphere, at
+  // least 64 MiB and at most 4 GiB.
+  NearestCells(std::vector<Sphere> spheres, const Eigen::AlignedBox3d& box);
   // Cells take up to `memory` bytes in all, beside that of the whole box; where that is used up,
   // lists stay as long as they are, and those that are missing are made for each query again.
-  NearestCells(std::vector<Sphere> spheres, const Eigen::AlignedBox3d& box,
-               std::size_t memory = kMemory);
+  NearestCells(std::vector<Sphere> spheres, const Eigen::AlignedBox3d& box, std::size_t memory);
   ~NearestCells();
 
   // What SphereHierarchy::nearest() answers without a tolerance, except where that is called, with
@@ -38,8 +40,6 @@ class NearestCells {
   const std::vector<Sphere>& spheres() const { return spheres_; }
   // Bytes that cells take, beside that of the whole box.
   std::size_t memory_used() const { return used_.load(std::memory_order_relaxed); }
-
-  static constexpr std::size_t kMemory = std::size_t{1} << 26;
 
  private:
   struct Cell;

@@ -2,7 +2,6 @@
 #include "simplifier/stage1/flood_grid.h"
 
 #include "simplifier/support/parallel.h"
-#include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <iomanip>
 #include <limits>
 #include <sstream>
+#include <string>
 
 namespace spherule::internal {
 namespace {
@@ -29,7 +29,23 @@ constexpr int kForeseen = 3;
 constexpr double kClearlyMore = 1.5;
 constexpr double kMargin = 1.2;
 
+std::string too_many(double count, double edge, double most) {
+  const double larger = kMargin * count / most;
+  std::ostringstream reason;
+  reason << std::setprecision(3) << "too fine for a model of this size: about " << count
+         << " cells with an edge of " << edge << " would be needed, and " << most
+         << " is the most; with a min external diameter " << std::ceil(10.0 * larger) / 10.0
+         << " times as large, or both it and the max error "
+         << std::ceil(10.0 * std::sqrt(larger)) / 10.0
+         << " times, or with the model in parts, memory suffices";
+  return reason.str();
+}
+
 }  // namespace
+
+TooManyCells::TooManyCells(double count, double edge, std::size_t max_cells)
+    : Error("grid step", too_many(count, edge, static_cast<double>(max_cells))),
+      factor_(count / static_cast<double>(max_cells)) {}
 
 FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
                      const Shape& shape, const Progress& progress)
@@ -79,22 +95,14 @@ void FloodGrid::check_memory(int level) const {
       begin, cells_.end(), [](const Entry& e) { return e.state == State::kRefined; }));
   double next = 8.0 * refined;
   double total = static_cast<double>(cells_.size()) + next;
-  const auto most = static_cast<double>(kMaxCells);
+  const auto most = static_cast<double>(shape_.grid_cells);
   const bool is_foreseeable = diameter_.most_halvings() == 0 && levels_ - level <= kForeseen;
   for (int finer = level + 1; finer < levels_ && is_foreseeable; ++finer) {
     next *= 4.0;
     total += next;
   }
   if (total <= (is_foreseeable && level + 1 < levels_ ? kClearlyMore : 1.0) * most) return;
-  const double factor = kMargin * total / most;
-  std::ostringstream reason;
-  reason << std::setprecision(3) << "too fine for a model of this size: about " << total
-         << " cells with an edge of " << edge(levels_) << " would be needed, and " << most
-         << " is the most; with a min external diameter " << std::ceil(10.0 * factor) / 10.0
-         << " times as large, or both it and the max error "
-         << std::ceil(10.0 * std::sqrt(factor)) / 10.0
-         << " times, or with the model in parts, memory suffices";
-  throw Error("grid step", reason.str());
+  throw TooManyCells(total, edge(levels_), shape_.grid_cells);
 }
 
 void FloodGrid::halve(std::size_t cell) {

@@ -6,6 +6,7 @@
 #include "simplifier/external_spheres.h"
 #include "simplifier/stage1/local_diameter.h"
 #include "simplifier/stage1/sphere_way.h"
+#include "spheretree/error.h"
 
 #include <Eigen/Geometry>
 
@@ -16,6 +17,18 @@
 #include <vector>
 
 namespace spherule::internal {
+
+// The grid would have more cells than it may.
+class TooManyCells : public Error {
+ public:
+  // `count` cells, of this edge the finest, are foreseen.
+  TooManyCells(double count, double edge, std::size_t max_cells);
+  // How many times too many they are.
+  double factor() const { return factor_; }
+
+ private:
+  double factor_;
+};
 
 // The free space of a sphere of radius rho around a mesh, as a sparse octree over a cube that
 // leaves the sphere room on every side of the mesh; rho and the finest step h are those of the
@@ -39,15 +52,17 @@ class FloodGrid {
     double step = 0.0;  // h there
   };
   struct Shape {
-    Eigen::Vector3d origin;  // low corner of the cube
-    double step = 0.0;       // h, where no zone halves it
-    int levels = 0;          // the cube has the edge h * 2^levels; with the halvings at most 20
+    Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // low corner of the cube
+    double step = 0.0;                                 // h, where no zone halves it
+    int levels = 0;              // the cube has the edge h * 2^levels; with the halvings at most 20
+    std::size_t grid_cells = 0;  // at most, as it is made
+    std::size_t max_cells = 0;   // at most, as tighten() leaves it
   };
 
   // `progress` is called after every level and between parts of it. The share takes the finest
   // level for nine tenths of the work and each coarser one for a quarter of the next: cells near
-  // the surface grow that fast. Throws Error if there are more cells than memory is allowed for, as
-  // soon as that is foreseen.
+  // the surface grow that fast. Throws TooManyCells as soon as that
+  // is foreseen.
   FloodGrid(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
             const Shape& shape, const Progress& progress);
 
@@ -78,8 +93,6 @@ class FloodGrid {
   std::size_t evaluations() const { return cells_.size(); }
 
  private:
-  // Memory stays below 4 GiB.
-  static constexpr std::size_t kMaxCells = std::size_t{1} << 27;
   // Morton codes have room for 21.
   static constexpr int kMostLevels = 20;
 
@@ -124,8 +137,8 @@ class FloodGrid {
   void examine_level(int level, const Progress& progress);
   // The same for cells from one on, up to another.
   void examine(std::size_t begin, std::size_t end);
-  // Throws Error if the cells that the last level is halved into are too many, or those of the
-  // finest will be.
+  // Throws TooManyCells for those that the last level is halved into, or those of the finest that
+  // are foreseen.
   void check_memory(int level) const;
   void classify(Entry& cell, const Eigen::Vector3d& middle, const SurfaceDistance& d) const;
   // From the centre to a corner, and all that rounding adds.

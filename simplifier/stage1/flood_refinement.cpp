@@ -107,7 +107,7 @@ class FloodGrid::Refinement {
       const std::vector<std::size_t> inner = chosen;
       for (const std::size_t i : inner) for_each_touching(i, false, choose);
     }
-    if (chosen.empty() || cells().size() + 8 * chosen.size() > kMaxCells) return false;
+    if (chosen.empty() || cells().size() + 8 * chosen.size() > grid_.shape_.max_cells) return false;
     std::sort(chosen.begin(), chosen.end());
     const std::size_t begin = cells().size();
     for (const std::size_t i : chosen) grid_.halve(i);

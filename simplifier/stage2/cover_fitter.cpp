@@ -100,14 +100,17 @@ double CoverFitter::leak_spacing(double max_error) {
 }
 
 CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distance,
-                         const CoverOptions& options, std::span<const Sphere> given)
+                         const CoverOptions& options, std::span<const Sphere> given,
+                         std::vector<BoxCell> part)
     : clearance_(clearance),
       distance_(distance),
       options_(options),
       error_(options.max_error),
       local_(options.max_error, options.zones),
       problem_(options.max_error, options.min_radius, options.zones),
+      part_(std::move(part)),
       given_(given.begin(), given.end()) {
+  if (part_.empty()) part_.push_back(BoxCell::around(clearance.box()));
   check_resolved(clearance, tightest_error(options.zones, options.max_error), kFinest);
 }
 
@@ -139,15 +142,26 @@ std::vector<Sphere> CoverFitter::run() {
   return best_.spheres;
 }
 
+void CoverFitter::divide() {
+  cells_.emplace(clearance_, distance_, local_, error_, kSpacings[spacing_], part_);
+}
+
+const SolidCells& CoverFitter::divided() {
+  if (cells_) return *cells_;
+  if (options_.progress) options_.progress(0.0, "covering: dividing the solid");
+  divide();
+  while (cells_->size() < kFewCells && spacing_ + 1 < kSpacings.size()) {
+    ++spacing_;
+    divide();
+  }
+  return *cells_;
+}
+
 void CoverFitter::begin() {
   const auto announce = [&](const char* what) {
     if (options_.progress) options_.progress(0.0, what);
   };
-  announce("covering: dividing the solid");
-  for (;; ++spacing_) {
-    cells_.emplace(clearance_, distance_, local_, error_, kSpacings[spacing_]);
-    if (cells_->size() >= kFewCells || spacing_ + 1 == kSpacings.size()) break;
-  }
+  divided();
   announce("covering: searching for places of spheres");
   pose({});
   first_entries_ = problem_.entries();
@@ -173,7 +187,7 @@ bool CoverFitter::refine() {
   ++spacing_;
   const std::vector<CoverProblem::Row> rows = problem_.rows();
   const std::size_t learned = sampled_;
-  cells_.emplace(clearance_, distance_, local_, error_, kSpacings[spacing_]);
+  divide();
   pose(best_.places);
   problem_.add_rows(std::span(rows).subspan(learned));
   add_own(problem_, sampled_);

@@ -29,10 +29,13 @@ namespace spherule::internal {
 // perturbed.
 class CoverFitter {
  public:
-  // What the spheres `given` cover need not be covered again. Throws Error for an E too small for
-  // the rounding of the coordinates.
+  // What the spheres `given` cover need not be covered again. With a `part`, cells, S means what of
+  // it lies in these. Throws Error for an E too small for the rounding of the coordinates.
   CoverFitter(const Clearance& clearance, const MeshDistance& distance, const CoverOptions& options,
-              std::span<const Sphere> given = {});
+              std::span<const Sphere> given = {}, std::vector<BoxCell> part = {});
+
+  // Before run(): the cells that the search begins with, of all S.
+  const SolidCells& divided();
 
   // The fewest spheres that were proved to cover S, together with those given.
   std::vector<Sphere> run();
@@ -65,7 +68,9 @@ class CoverFitter {
   // Sets out again with cells and rows of the next finer spacing, if that is not too fine; what was
   // proved and learned stays.
   bool refine();
-  // Makes the cells of the present spacing, and a problem of their rows and the `candidates`.
+  // Makes the cells of the present spacing.
+  void divide();
+  // Makes a problem of the cells' rows and the `candidates`.
   void pose(const std::vector<Candidate>& candidates);
   // Searches for columns that cover all rows, for the target and for an easier one side by side;
   // true if it finds any. What it found, or came to for the easier one, is left in solution_.
@@ -119,6 +124,7 @@ class CoverFitter {
   Columns solution_;         // the last that was tried
   Spheres best_;             // proved
   CoverGoal goal_;
+  std::vector<BoxCell> part_;
   std::vector<Sphere> given_;
   std::size_t lower_bound_ = 0;
   std::uint64_t seeds_used_ = 0;

@@ -7,6 +7,7 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 namespace spherule::internal {
@@ -36,6 +37,12 @@ using Eigen::Vector3d;
 
 SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
                        const LocalError& error, double max_error, double share, double widest_cap)
+    : SolidCells(clearance, distance, error, max_error, share,
+                 std::array{BoxCell::around(clearance.box())}, widest_cap) {}
+
+SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
+                       const LocalError& error, double max_error, double share,
+                       std::span<const BoxCell> part, double widest_cap)
     : clearance_(clearance), distance_(distance), error_(error), spacing_(share * max_error) {
   // Spheres of S that touch the boundary in the cell are large enough for its size, and remain so
   // this far along it.
@@ -46,7 +53,8 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
     return touched_by(clearance, cell.center, at, inside, local_error);
   };
   enum class Step : char { kDrop, kKeep, kHalve };
-  std::vector<Cell> level{{.box = BoxCell::around(clearance.box())}};
+  std::vector<Cell> level;
+  for (const BoxCell& box : part) level.push_back({.box = box});
   std::vector<Step> steps;
   while (!level.empty()) {
     steps.assign(level.size(), Step::kDrop);
@@ -73,6 +81,12 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
     level = std::move(next);
   }
   first_ = cells_;
+}
+
+std::vector<BoxCell> SolidCells::boxes() const {
+  std::vector<BoxCell> boxes;
+  for (const Cell& cell : cells_) boxes.push_back(cell.box);
+  return boxes;
 }
 
 std::vector<Vector3d> SolidCells::sample() const {

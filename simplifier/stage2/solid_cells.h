@@ -31,8 +31,13 @@ class SolidCells {
   // the error in zones.
   SolidCells(const Clearance& clearance, const MeshDistance& distance, const LocalError& error,
              double max_error, double share, double widest_cap = kWidestCap);
+  // The same of the part of S in these cells alone, which the search and the proof are then about.
+  SolidCells(const Clearance& clearance, const MeshDistance& distance, const LocalError& error,
+             double max_error, double share, std::span<const BoxCell> part,
+             double widest_cap = kWidestCap);
 
   std::size_t size() const { return cells_.size(); }
+  std::vector<BoxCell> boxes() const;
 
   // A point of S for every cell: the centre, moved onto the boundary of S where that crosses the
   // cell; there at most one per cube of about a cell's size. Cells without such a point near their

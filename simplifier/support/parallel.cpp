@@ -6,6 +6,10 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cstddef>
 
 namespace spherule::internal {
 
@@ -13,8 +17,18 @@ void run_in_parts(std::size_t begin, std::size_t end, const void* work,
                   void (*call)(const void* work, std::size_t first, std::size_t last)) {
   if (begin >= end) return;
   using Range = tbb::blocked_range<std::size_t>;
-  tbb::parallel_for(Range(begin, end),
-                    [&](const Range& part) { call(work, part.begin(), part.end()); });
+  // A thread that waits for a loop inside another takes no part of the outer one meanwhile, whose
+  // memory would come on top.
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(Range(begin, end),
+                      [&](const Range& part) { call(work, part.begin(), part.end()); });
+  });
+}
+
+std::size_t thread_count() {
+  const auto allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::min(allowed, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
 }
 
 struct ThreadLimit::Control {

@@ -9,6 +9,9 @@ namespace spherule::internal {
 void run_in_parts(std::size_t begin, std::size_t end, const void* work,
                   void (*call)(const void* work, std::size_t first, std::size_t last));
 
+// Over how many threads at most: those that a ThreadLimit leaves.
+std::size_t thread_count();
+
 // Runs `work(i)` for every index of [begin, end), over the threads that a ThreadLimit leaves, in no
 // order. What one of them throws is thrown when the others are done or left out. Without the
 // headers of oneTBB, which cost each source half a second to compile.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/external_spheres.h"
 
+#include "mesh/mesh_distance.h"
 #include "spheretree/error.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
@@ -208,7 +209,7 @@ TEST(ExternalSpheres, TellOfTheirProgressAndKeepToTheThreadsTheyAreGiven) {
 // one before.
 TEST(ExternalSpheres, TooManyCellsAreForeseenAndTheReasonSaysWhatToChoose) {
   if (kSanitized) GTEST_SKIP() << "some million distances";
-  ExternalOptions options = options_for(ExternalPlacement::kReachable, 0.005);
+  ExternalOptions options = options_for(ExternalPlacement::kReachable, 0.002);
   double last = 0.0;
   options.progress = [&](double share, const char*) { last = share; };
   try {
@@ -221,6 +222,29 @@ TEST(ExternalSpheres, TooManyCellsAreForeseenAndTheReasonSaysWhatToChoose) {
   }
   EXPECT_GT(last, 0.0);
   EXPECT_LT(last, 0.9 / 16.0 + 1e-9);
+}
+
+// Coarser, and still what is promised of every grid; where that is not enough, or the step was
+// requested, it is refused.
+TEST(ExternalSpheres, WhereCellsAreTooManyTheGridIsCoarser) {
+  ExternalOptions options = options_for(ExternalPlacement::kReachable, 0.25);
+  options.max_error = 0.01;
+  const ExternalSpheres fine = place_external_spheres(cube_mesh(), options);
+  options.max_cells = fine.nodes_examined / 2;
+  const ExternalSpheres coarse = place_external_spheres(cube_mesh(), options);
+  EXPECT_LE(coarse.nodes_examined, options.max_cells);
+  EXPECT_GT(coarse.grid_step, 1.2 * fine.grid_step);
+  EXPECT_LT(coarse.grid_step, 2.51 * fine.grid_step);
+  EXPECT_LE(coarse.closing_slack, 0.25 * options.tightness);
+  const MeshDistance distance(cube_mesh());
+  for (const Sphere& sphere : coarse.spheres) {
+    EXPECT_GE(distance(sphere.center).upper, sphere.radius);
+  }
+  options.grid_step = fine.grid_step;
+  EXPECT_THROW(place_external_spheres(cube_mesh(), options), Error);
+  options.grid_step = 0.0;
+  options.max_cells = fine.nodes_examined / 50;
+  EXPECT_THROW(place_external_spheres(cube_mesh(), options), Error);
 }
 
 TEST(ExternalSpheres, ThePaddingIsTheSumOfTheTwoGivenWhereThereAreTwo) {
@@ -261,6 +285,11 @@ TEST(ExternalSpheres, BadOptionsAreRefusedByName) {
     ExternalOptions options = options_for(ExternalPlacement::kReachable, 0.5);
     options.grid_step = bad;
     EXPECT_EQ(refused(options), "grid step") << bad;
+  }
+  for (const std::size_t bad : {std::size_t{0}, ExternalOptions::kMostCells + 1}) {
+    ExternalOptions options = options_for(ExternalPlacement::kReachable, 0.5);
+    options.max_cells = bad;
+    EXPECT_EQ(refused(options), "max cells") << bad;
   }
   EXPECT_EQ(refused(options_for(ExternalPlacement::kReachable, 1e-9)), "grid step");
   EXPECT_EQ(refused(options_for(ExternalPlacement::kReachable, 0.5), {}), "mesh");

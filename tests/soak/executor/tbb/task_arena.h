@@ -9,4 +9,8 @@ void isolate(const Work& work) {
   work();
 }
 
+inline int max_concurrency() {
+  return 4;
+}
+
 }  // namespace tbb::this_task_arena
