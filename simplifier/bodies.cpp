@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/bodies.h"
 
+#include "simplifier/support/stopwatch.h"
 #include "simplifier/support/thread_limit.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -87,7 +87,7 @@ class Fitter {
   }
 
   void fit(std::size_t body) {
-    const auto start = std::chrono::steady_clock::now();
+    const internal::Stopwatch watch;
     BodyFit& result = fits_[body];
     try {
       result.fit = simplify(bodies_[body].mesh, options_);
@@ -97,8 +97,7 @@ class Fitter {
     result.spheres = result.fit->cover.spheres;
     result.certificate = record(result.fit->certificate);
     result.broken = broken_promises(*result.fit);
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.seconds = watch.seconds();
   }
 
   void tell() {

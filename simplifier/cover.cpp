@@ -9,8 +9,10 @@
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/cover_fitter.h"
 #include "simplifier/stage2/paper/internal_spheres.h"
+#include "simplifier/support/stopwatch.h"
 #include "simplifier/support/thread_limit.h"
 
+#include <cstddef>
 #include <optional>
 #include <utility>
 
@@ -26,7 +28,8 @@ SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
 }
 
 SphereCover internal::cover(const TriangleMesh& mesh, const MeshDistance& distance,
-                            const internal::Clearance& clearance, const CoverOptions& options) {
+                            const internal::Clearance& clearance, const CoverOptions& options,
+                            std::size_t most_cells) {
   check_options(options);
   const ThreadLimit threads(options.threads);
   if (options.method == CoverMethod::kPaper) {
@@ -34,14 +37,15 @@ SphereCover internal::cover(const TriangleMesh& mesh, const MeshDistance& distan
     return internal::place_internal_spheres(mesh, distance, clearance, options);
   }
   SphereCover result;
+  const Stopwatch watch;
   std::optional<CoverFitter> fitter(std::in_place, clearance, distance, options);
-  if (fitter->divided().size() > CoverBlocks::kMostCells) {
-    CoverBlocks blocks(clearance, distance, options, fitter->divided().boxes());
+  if (fitter->divided().size() > most_cells) {
+    CoverBlocks blocks(clearance, distance, options, fitter->divided().boxes(), watch);
     fitter.reset();
     result.spheres = blocks.run();
     return result;
   }
-  result.spheres = fitter->run();
+  result.spheres = fitter->run().spheres;
   result.lower_bound = fitter->lower_bound();
   return result;
 }

@@ -53,27 +53,28 @@ struct CoverOptions {
   double min_internal_diameter = 0.0;
   std::uint64_t seed = 1;
   // kCover: rounds at most of searching for fewer spheres than the first proved answer; 0: none.
-  // The search ends sooner where, by what it saved of late, a tenth more rounds would save less
-  // than 1 % of the spheres, above 60 rounds less than 60 % / effort; and where a quarter of the
-  // rounds that are allowed, but 40 at least and 400 at most, have saved nothing since cells last
-  // became finer.
+  // A solid that takes more than some 8,000 spheres is covered in blocks (docs/covering.md), each
+  // with so many rounds. The search ends sooner where, by what it saved of late, a tenth more
+  // rounds would save less than 1 % of the spheres, above 60 rounds less than 60 % / effort; and
+  // where a quarter of the rounds that are allowed, but 40 at least and 400 at most, have saved
+  // nothing since cells last became finer.
   int effort = 60;
   // kCover: no new round begins after so many seconds, either; 0 sets no limit. The result then
   // depends on the machine.
   double seconds = 0.0;
   // kCover: prove a lower bound of the count, too (SphereCover::lower_bound), after the search:
   // that takes tens of times as long as the first answer. Not with a min_radius, which lets spheres
-  // protrude.
+  // protrude, and not where S is covered in blocks.
   bool lower_bound = false;
   // kPaper: record the history (costs some time).
   bool history = false;
   int threads = 0;  // 0: all
   Progress progress = {};
   // kCover: called with the count whenever fewer spheres are proved to cover S, the first answer
-  // included, from one thread at a time.
+  // included, from one thread at a time; where S is covered in blocks, when some of these are done.
   std::function<void(std::size_t)> on_proved = {};
   // kCover: once a stop is requested, the search ends with the fewest spheres proved so far, after
-  // the first answer at the earliest. The result then depends on when that was.
+  // the first answer (of all blocks) at the earliest. The result then depends on when that was.
   std::stop_token stop = {};
 };
 
@@ -99,7 +100,8 @@ struct CoverHistoryEntry {
 // Stage 2's result.
 struct SphereCover {
   std::vector<Sphere> spheres;
-  // No cover of S that protrudes by at most E has fewer spheres, as proved; 0: not known.
+  // No cover of S that protrudes by at most E has fewer spheres, as proved; 0: not known
+  // (CoverOptions::lower_bound).
   std::size_t lower_bound = 0;
   // kPaper, and a Stage2Method that inflates: the spheres before that, and the certified error.
   std::vector<Sphere> spheres_before_inflation;

@@ -270,17 +270,19 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance, con
 void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
                      const ExternalOptions& options, ExternalSpheres& result) {
   constexpr double kMargin = 1.1;  // of the steps
+  const bool is_chosen = options.grid_step == 0.0;
+  // With zones, cells are counted only as they are made.
+  const bool is_foreseen = options.zones.empty() && !options.keep_concave_edges;
   Steps steps{&options};
-  std::size_t grid_cells = std::min(options.max_cells, ExternalOptions::kManyCells);
+  std::size_t grid_cells =
+      is_chosen ? std::min(options.max_cells, ExternalOptions::kManyCells) : options.max_cells;
   for (;;) {
     try {
       return place_reachable(mesh, distance, steps, grid_cells, result);
     } catch (const internal::TooManyCells& too_many) {
-      Steps coarser = steps;
-      coarser.coarsening =
-          std::min(Steps::kCoarsest, kMargin * std::sqrt(too_many.factor()) * steps.coarsening);
-      if (coarser() > steps()) {
-        steps = coarser;
+      if (is_chosen && steps.coarsening < Steps::kCoarsest) {
+        const double needed = kMargin * std::sqrt(too_many.factor()) * steps.coarsening;
+        steps.coarsening = is_foreseen ? std::min(Steps::kCoarsest, needed) : Steps::kCoarsest;
       } else if (grid_cells < options.max_cells) {
         grid_cells = options.max_cells;
       } else {

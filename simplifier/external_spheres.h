@@ -38,8 +38,9 @@ enum class ExternalPlacement {
 };
 
 // Called from time to time with the share that is done (0 to 1, or negative where unknown) and a
-// few words on what is being done, which are valid during the call only. It must be thread-safe:
-// worker threads call it, several at once where links are covered or a lower bound is proved.
+// few words on what is being done, which are valid during the call only. The share may begin again
+// where something is done anew, on a coarser grid. It must be thread-safe: worker threads call it,
+// several at once where links are covered or a lower bound is proved.
 using Progress = std::function<void(double share, const char* what)>;
 
 // What the first stage simplifies away.
@@ -52,9 +53,9 @@ struct ExternalOptions {
   double padding = 0.0;
   // Grid step of the flood; 0 chooses sqrt(0.08 * max_error * D / 2), at most D / 8, which leaves
   // spikes of about 0.02 E between the spheres along a flat wall. Without `max_error` it is D / 16.
-  // Where the grid would have more than kManyCells, the step that is chosen is up to 2.5 times as
-  // large, but no more than D / 8: the spikes, which belong to S, are then up to E / 8 high.
-  // ExternalSpheres::grid_step is the one that was used.
+  // Where the grid would have more than kManyCells (or `max_cells`), the step that is chosen is up
+  // to 2.5 times as large, but no more than D / 8: the spikes, which belong to S, are then up to E
+  // / 8 high. ExternalSpheres::grid_step is the one that was used.
   double grid_step = 0.0;
   static constexpr std::size_t kManyCells = std::size_t{1} << 24;
   // Cells of the grid at most, about 30 bytes each; from 1 to kMostCells.

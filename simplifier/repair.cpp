@@ -129,7 +129,7 @@ Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
                                    .effort = options.effort,
                                    .progress = options.progress};
   const std::vector<Sphere> added =
-      internal::CoverFitter(clearance, distance, cover_options, limit).run();
+      internal::CoverFitter(clearance, distance, cover_options, limit).run().spheres;
   if (options.progress) options.progress(-1.0, "growing");
   result.spheres =
       inflated_spheres(clearance, distance, spheres, limit, added, result.max_error, error);

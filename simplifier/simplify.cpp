@@ -4,13 +4,13 @@
 #include "mesh/geometry/mesh_box.h"
 #include "mesh/mesh_report.h"
 #include "simplifier/internal/stages.h"
+#include "simplifier/support/stopwatch.h"
 #include "simplifier/support/thread_limit.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -89,16 +89,6 @@ CoverOptions cover_options(const SimplifyOptions& options) {
           .stop = options.stop};
 }
 
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 }  // namespace
 
 void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh) {
@@ -120,19 +110,19 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
               used.external == ExternalPlacement::kNone ? std::numeric_limits<double>::infinity()
                                                         : used.min_external_diameter);
 
-  const Stopwatch external_time;
+  const internal::Stopwatch external_time;
   const MeshDistance distance(mesh);
   result.external = internal::place_external_spheres(mesh, distance, external_options(used));
   result.times.external = external_time.seconds();
 
-  const Stopwatch cover_time;
+  const internal::Stopwatch cover_time;
   const internal::Clearance clearance(result.external);
   result.cover = used.stage2_method
                      ? cover_solid(mesh, result.external, used)
                      : internal::cover(mesh, distance, clearance, cover_options(used));
   result.times.cover = cover_time.seconds();
 
-  const Stopwatch levels_time;
+  const internal::Stopwatch levels_time;
   if (used.levels.size() > 1) {
     const std::span<const double> coarser = std::span(used.levels).first(used.levels.size() - 1);
     CoverOptions level_options = cover_options(used);
@@ -142,7 +132,7 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   }
   result.times.levels = levels_time.seconds();
 
-  const Stopwatch certify_time;
+  const internal::Stopwatch certify_time;
   CertifyOptions certify_options;
   certify_options.external = &result.external;
   certify_options.zones = used.zones;

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <fcntl.h>
+#include <mutex>
 #include <optional>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -46,9 +47,12 @@ class Descriptor {
   int value_;
 };
 
-// The permissions that a newly created file gets. The mask can only be read by setting it; files
-// made by other threads in between would get stricter permissions, not looser ones.
+// The permissions that a newly created file gets. The mask can only be read by setting it, by one
+// thread at a time: another would take the one that is set meanwhile for the usual one, and leave
+// it. Files that others make in between get stricter permissions, not looser ones.
 mode_t default_permissions() {
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
   const mode_t mask = ::umask(077);
   ::umask(mask);
   return 0666 & ~mask;

@@ -5,6 +5,7 @@
 
 #include "bench/scenes/robot.h"
 #include "bench/scenes/shapes.h"
+#include "bench/scenes/solids.h"
 #include "bench/scenes/torch.h"
 #include "bench/scenes/workpiece.h"
 #include "simplifier/simplify.h"
@@ -16,12 +17,7 @@
 namespace spherule {
 namespace {
 
-void fit(benchmark::State& state, const TriangleMesh& mesh, double max_error,
-         double min_external_diameter, CoverMethod method) {
-  SimplifyOptions options;
-  options.max_error = max_error;
-  options.min_external_diameter = min_external_diameter;
-  options.method = method;
+void fit(benchmark::State& state, const TriangleMesh& mesh, const SimplifyOptions& options) {
   Simplification result;
   for (auto _ : state) {
     result = simplify(mesh, options);
@@ -36,14 +32,29 @@ void fit(benchmark::State& state, const TriangleMesh& mesh, double max_error,
   state.counters["covered"] = result.certificate.covered ? 1.0 : 0.0;
 }
 
+void add(const std::string& name, const TriangleMesh& mesh, const SimplifyOptions& options) {
+  benchmark::RegisterBenchmark(name.c_str(), fit, mesh, options)->Unit(benchmark::kMillisecond);
+}
+
 void add(const std::string& name, const TriangleMesh& mesh, double max_error,
          double min_external_diameter) {
-  for (const auto& [method, suffix] :
-       {std::pair{CoverMethod::kCover, "/cover"}, std::pair{CoverMethod::kPaper, "/paper"}}) {
-    benchmark::RegisterBenchmark((name + suffix).c_str(), fit, mesh, max_error,
-                                 min_external_diameter, method)
-        ->Unit(benchmark::kMillisecond);
-  }
+  SimplifyOptions options{.max_error = max_error, .min_external_diameter = min_external_diameter};
+  options.method = CoverMethod::kCover;
+  add(name + "/cover", mesh, options);
+  options.method = CoverMethod::kPaper;
+  add(name + "/paper", mesh, options);
+}
+
+// A square tube of 60 mm, walls of 3 mm, the first answer: time and spheres grow with the length,
+// from 2000 mm on in blocks.
+void add_tube(int length) {
+  const auto square = [](double edge) {
+    return Loop{
+        {-edge / 2, -edge / 2}, {edge / 2, -edge / 2}, {edge / 2, edge / 2}, {-edge / 2, edge / 2}};
+  };
+  add("square_tube_" + std::to_string(length) + "/E1/first",
+      extrude(square(60.0), {square(54.0)}, 0.0, length),
+      {.max_error = 1.0, .min_external_diameter = 100.0, .effort = 0});
 }
 
 // Millimetres for the plain shapes, metres for the parts of the work cell.
@@ -55,6 +66,7 @@ const bool kRegistered = [] {
   add("forearm/E20", make_robot_links()[4], 0.02, 0.1);
   add("torch/E3", make_torch(), 0.003, 0.012);
   add("workpiece/E1", make_workpiece(), 0.001, 0.1);
+  for (const int length : {1000, 2000, 4000}) add_tube(length);
   return true;
 }();
 

@@ -95,9 +95,11 @@ std::vector<NextStep> next_steps(const FitArguments& arguments, bool is_covered)
   return steps;
 }
 
-std::string describe_lower_bound(const SphereCover& cover) {
-  if (cover.lower_bound == 0) return {};
-  return "lower bound: no cover at this error has fewer than " + std::to_string(cover.lower_bound) +
+std::string describe_lower_bound(const Simplification& result) {
+  const std::size_t bound = result.cover.lower_bound;
+  if (!result.options.lower_bound) return {};
+  if (bound == 0) return "lower bound: not known (see spherule fit --help)\n";
+  return "lower bound: no cover at this error has fewer than " + std::to_string(bound) +
          " spheres\n";
 }
 
@@ -140,7 +142,7 @@ void print_result(const std::string& file, const Simplification& result,
   }
   std::cout << file << ": " << result.cover.spheres.size() << " spheres\n"
             << describe(result.certificate, "the simplified solid") << describe(result.levels)
-            << (breakdown ? describe(*breakdown) : "") << describe_lower_bound(result.cover)
+            << (breakdown ? describe(*breakdown) : "") << describe_lower_bound(result)
             << "seconds: external " << result.times.external << ", cover " << result.times.cover
             << ", levels " << result.times.levels << ", certify " << result.times.certify << "\n";
 }
@@ -202,7 +204,7 @@ int fit(FitArguments& arguments) {
 
   print_result(arguments.spheres, result, breakdown, model.cad.has_value());
   warn_of_thin_parts(arguments, mesh, result);
-  warn_each(file, volume_warnings(result));
+  warn_each(file, result_warnings(result));
   const std::string broken = broken_promises(result);
   if (!arguments.each) std::cout << describe(next_steps(arguments, result.certificate.covered));
   if (broken.empty()) return model.cad && !model.cad->proved ? kNo : kYes;

@@ -18,7 +18,8 @@ namespace spherule {
 std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyOptions& options,
                                          const ModelUnit& unit);
 
-// After it: spheres of more than five times the volume of the mesh.
-std::vector<std::string> volume_warnings(const Simplification& result);
+// After it: a grid of stage 1 that is coarser than its E asks for, as the part is large; spheres of
+// more than five times the volume of the mesh.
+std::vector<std::string> result_warnings(const Simplification& result);
 
 }  // namespace spherule

@@ -12,7 +12,7 @@ class FormatterBase;
 namespace spherule {
 
 // How the help of all commands is laid out: CLI11's way, with descriptions broken into lines and
-// values named as the outline names them (outline.h).
+// values named as in command_specification.h.
 std::shared_ptr<CLI::FormatterBase> help_layout();
 
 // How the help of a command ends. What is left out is not shown.

@@ -118,9 +118,10 @@ void add_output_options(CLI::App& command, FitArguments& arguments) {
                   "Where the report goes (JSON): the mesh, where the spheres go, history, times")
       ->type_name(kFile);
   add_external_spheres_flag(command, arguments.report_content);
-  command.add_flag("--lower-bound", arguments.options.lower_bound,
-                   "Prove, too, how few spheres any cover must have (with cover); takes tens of "
-                   "times as long as the first answer");
+  command.add_flag(
+      "--lower-bound", arguments.options.lower_bound,
+      "Prove, too, how few spheres any cover must have (with cover, up to some 8,000 "
+      "spheres, without --min-radius); takes tens of times as long as the first answer");
   command.add_option("--tree", arguments.tree, "Where the sphere tree goes")->type_name(kFile);
   command.add_option("--view", arguments.view, "Where a page to examine goes (HTML)")
       ->type_name(kFile);

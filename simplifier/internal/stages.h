@@ -8,6 +8,7 @@
 #include "simplifier/levels.h"
 #include "simplifier/solid/clearance.h"
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -20,8 +21,13 @@ namespace spherule::internal {
 ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const MeshDistance& distance,
                                        const ExternalOptions& options);
 
+// A solid that is divided into more cells than this for kCover is covered in blocks
+// (cover_blocks.h).
+inline constexpr std::size_t kMostCells = 100000;
+
 SphereCover cover(const TriangleMesh& mesh, const MeshDistance& distance,
-                  const Clearance& clearance, const CoverOptions& options);
+                  const Clearance& clearance, const CoverOptions& options,
+                  std::size_t most_cells = kMostCells);
 
 std::vector<CoverLevel> fit_levels(const MeshDistance& distance, const Clearance& clearance,
                                    std::span<const Sphere> spheres,

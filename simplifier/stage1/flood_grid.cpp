@@ -38,6 +38,9 @@ std::string too_many(double count, double edge, double most) {
          << " times as large, or both it and the max error "
          << std::ceil(10.0 * std::sqrt(larger)) / 10.0
          << " times, or with the model in parts, memory suffices";
+  if (most < static_cast<double>(ExternalOptions::kMostCells)) {
+    reason << "; max_cells may be larger";
+  }
   return reason.str();
 }
 

@@ -23,7 +23,7 @@ class TooManyCells : public Error {
  public:
   // `count` cells, of this edge the finest, are foreseen.
   TooManyCells(double count, double edge, std::size_t max_cells);
-  // How many times too many they are.
+  // The number foreseen over the number allowed.
   double factor() const { return factor_; }
 
  private:
@@ -61,8 +61,8 @@ class FloodGrid {
 
   // `progress` is called after every level and between parts of it. The share takes the finest
   // level for nine tenths of the work and each coarser one for a quarter of the next: cells near
-  // the surface grow that fast. Throws TooManyCells as soon as that
-  // is foreseen.
+  // the surface grow that fast. Throws TooManyCells as soon as more
+  // than `grid_cells` are foreseen.
   FloodGrid(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
             const Shape& shape, const Progress& progress);
 

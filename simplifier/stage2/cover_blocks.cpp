@@ -2,14 +2,13 @@
 #include "simplifier/stage2/cover_blocks.h"
 
 #include "simplifier/solid/sphere_hierarchy.h"
-#include "simplifier/stage2/cover_fitter.h"
 #include "simplifier/support/parallel.h"
 #include "simplifier/support/random.h"
 #include "spheretree/median_split.h"
+#include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <iterator>
 #include <span>
 #include <string>
@@ -24,13 +23,22 @@ using Eigen::Vector3d;
 // Of the progress of a search: the first answers.
 constexpr double kFirstShare = 0.1;
 
+// Rounded outwards.
+AlignedBox3d box_around(const Vector3d& center, const Vector3d& half) {
+  AlignedBox3d box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min()[axis] = sub_down(center[axis], half[axis]);
+    box.max()[axis] = add_up(center[axis], half[axis]);
+  }
+  return box;
+}
+
 AlignedBox3d box_of(const BoxCell& cell) {
-  return {cell.center - cell.half, cell.center + cell.half};
+  return box_around(cell.center, cell.half);
 }
 
 AlignedBox3d box_of(const Sphere& sphere) {
-  const Vector3d radius = Vector3d::Constant(sphere.radius);
-  return {sphere.center - radius, sphere.center + radius};
+  return box_around(sphere.center, Vector3d::Constant(sphere.radius));
 }
 
 template <class Item>
@@ -40,7 +48,8 @@ AlignedBox3d box_of(const std::vector<Item>& items) {
   return box;
 }
 
-CoverOptions block_options(CoverOptions options) {
+CoverOptions block_options(CoverOptions options, std::size_t block) {
+  options.seed = seed_of(options.seed, block);
   options.lower_bound = false;
   options.progress = {};
   options.on_proved = {};
@@ -51,8 +60,8 @@ CoverOptions block_options(CoverOptions options) {
 
 CoverBlocks::CoverBlocks(const Clearance& clearance, const MeshDistance& distance,
                          const CoverOptions& options, std::vector<BoxCell> cells,
-                         std::size_t block_cells)
-    : clearance_(clearance), distance_(distance), options_(options) {
+                         const Stopwatch& watch, std::size_t block_cells)
+    : clearance_(clearance), distance_(distance), options_(options), watch_(watch) {
   divide(std::move(cells), block_cells);
 }
 
@@ -63,7 +72,7 @@ void CoverBlocks::divide(std::vector<BoxCell> cells, std::size_t block_cells) {
     waiting.pop_back();
     const std::span part = std::span(cells).subspan(begin, end - begin);
     if (part.size() <= block_cells) {
-      blocks_.push_back({.cells = {part.begin(), part.end()}, .spheres = {}, .box = {}});
+      blocks_.push_back({.cells = {part.begin(), part.end()}, .own = {}});
       blocks_.back().box = box_of(blocks_.back().cells);
       continue;
     }
@@ -88,6 +97,7 @@ void CoverBlocks::divide(std::vector<BoxCell> cells, std::size_t block_cells) {
 std::vector<CoverBlocks::Turn> CoverBlocks::turns() const {
   std::vector<Turn> turns;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (blocks_[i].cells.empty()) continue;
     const auto is_apart = [&](const Turn& turn) {
       return std::ranges::none_of(
           turn, [&](std::size_t other) { return blocks_[i].box.intersects(blocks_[other].box); });
@@ -105,50 +115,42 @@ std::vector<CoverBlocks::Turn> CoverBlocks::turns() const {
 std::vector<Sphere> CoverBlocks::spheres_near(const Block& block) const {
   std::vector<Sphere> near;
   for (const Block& other : blocks_) {
-    if (&other == &block || !other.box.intersects(block.box)) continue;
-    std::ranges::copy_if(other.spheres, std::back_inserter(near),
-                         [&](const Sphere& s) { return box_of(s).intersects(block.box); });
+    if (&other == &block) continue;
+    // Not for spheres whose boxes have no point in common with that of the block: the distance
+    // along an axis is then no less than the radius as rounded, and so is all that follows.
+    std::ranges::copy_if(other.own.spheres, std::back_inserter(near), [&](const Sphere& s) {
+      return block.box.squaredExteriorDistance(s.center) < s.radius * s.radius;
+    });
   }
   return near;
 }
 
-std::vector<std::vector<Sphere>> CoverBlocks::covered(const Turn& turn,
-                                                      const CoverOptions& options) {
-  std::vector<std::vector<Sphere>> found(turn.size());
-  parallel_for(0, turn.size(), [&](std::size_t k) {
-    const Block& block = blocks_[turn[k]];
-    if (is_proved_ && options.stop.stop_requested()) {
-      found[k] = block.spheres;
-      return;
-    }
-    CoverOptions own = options;
-    own.seed = seed_of(options.seed, turn[k]);
-    found[k] = CoverFitter(clearance_, distance_, own, spheres_near(block), block.cells).run();
-    ++done_;
-    report();
-  });
-  return found;
+CoverFitter::Spheres CoverBlocks::covered(const Block& block, const CoverOptions& options) const {
+  return CoverFitter(clearance_, distance_, options, spheres_near(block), block.cells)
+      .run(block.own);
 }
 
 void CoverBlocks::cover() {
-  CoverOptions options = block_options(options_);
-  options.effort = 0;
+  total_ = blocks_.size();
   for (const Turn& turn : turns()) {
-    std::vector<std::vector<Sphere>> found = covered(turn, options);
-    for (std::size_t k = 0; k < turn.size(); ++k) {
-      Block& block = blocks_[turn[k]];
-      block.spheres = std::move(found[k]);
-      block.box.extend(box_of(block.spheres));
-    }
+    std::vector<CoverFitter::Spheres> found(turn.size());
+    parallel_for(0, turn.size(), [&](std::size_t k) {
+      CoverOptions options = block_options(options_, turn[k]);
+      options.effort = 0;
+      found[k] = covered(blocks_[turn[k]], options);
+      report();
+    });
+    for (std::size_t k = 0; k < turn.size(); ++k) blocks_[turn[k]].own = std::move(found[k]);
   }
   is_proved_ = true;
 }
 
 void CoverBlocks::widen() {
+  for (Block& block : blocks_) block.box = box_of(block.cells).merged(box_of(block.own.spheres));
   std::vector<std::vector<BoxCell>> met(blocks_.size());
   parallel_for(0, blocks_.size(), [&](std::size_t i) {
     const Block& block = blocks_[i];
-    const SphereHierarchy spheres(block.spheres);
+    const SphereHierarchy spheres(block.own.spheres);
     for (const Block& other : blocks_) {
       if (!other.box.intersects(block.box)) continue;
       std::ranges::copy_if(other.cells, std::back_inserter(met[i]), [&](const BoxCell& cell) {
@@ -159,43 +161,53 @@ void CoverBlocks::widen() {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     Block& block = blocks_[i];
     block.cells = std::move(met[i]);
-    block.box = box_of(block.cells).merged(box_of(block.spheres));
+    block.box = box_of(block.cells).merged(box_of(block.own.spheres));
   }
 }
 
+std::optional<CoverOptions> CoverBlocks::search_options(std::size_t block, std::size_t at_once) {
+  const std::size_t left = total_ - begun_++;
+  if (options_.stop.stop_requested()) return std::nullopt;
+  CoverOptions options = block_options(options_, block);
+  if (options_.seconds > 0.0) {
+    // An equal share for all that are left.
+    options.seconds = (options_.seconds - watch_.seconds()) *
+                      static_cast<double>(std::min(at_once, left)) / static_cast<double>(left);
+    if (options.seconds <= 0.0) return std::nullopt;
+  }
+  return options;
+}
+
 void CoverBlocks::search() {
-  const auto start = std::chrono::steady_clock::now();
-  CoverOptions options = block_options(options_);
-  std::size_t left = blocks_.size();
+  const std::vector<Turn> all = turns();
+  total_ = 0;
+  for (const Turn& turn : all) total_ += turn.size();
   done_ = 0;
-  for (const Turn& turn : turns()) {
-    if (options_.seconds > 0.0) {
-      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-      const std::size_t at_once = std::min(turn.size(), thread_count());
-      options.seconds = (options_.seconds - elapsed.count()) * static_cast<double>(at_once) /
-                        static_cast<double>(left);
-      if (options.seconds <= 0.0) return;
-    }
+  for (const Turn& turn : all) {
     const std::size_t before = count();
-    std::vector<std::vector<Sphere>> found = covered(turn, options);
-    for (std::size_t k = 0; k < turn.size(); ++k) {
-      std::vector<Sphere>& spheres = blocks_[turn[k]].spheres;
-      if (found[k].size() < spheres.size()) spheres = std::move(found[k]);
-    }
-    left -= turn.size();
+    const std::size_t at_once = std::min(turn.size(), thread_count());
+    std::vector<CoverFitter::Spheres> found(turn.size());
+    parallel_for(0, turn.size(), [&](std::size_t k) {
+      const Block& block = blocks_[turn[k]];
+      const std::optional<CoverOptions> options = search_options(turn[k], at_once);
+      found[k] = options ? covered(block, *options) : block.own;
+      report();
+    });
+    for (std::size_t k = 0; k < turn.size(); ++k) blocks_[turn[k]].own = std::move(found[k]);
     if (options_.on_proved && count() < before) options_.on_proved(count());
   }
 }
 
 std::size_t CoverBlocks::count() const {
   std::size_t count = 0;
-  for (const Block& block : blocks_) count += block.spheres.size();
+  for (const Block& block : blocks_) count += block.own.spheres.size();
   return count;
 }
 
-void CoverBlocks::report() const {
+void CoverBlocks::report() {
   if (!options_.progress) return;
-  const double share = static_cast<double>(done_) / static_cast<double>(blocks_.size());
+  const std::lock_guard lock(reporting_);
+  const double share = static_cast<double>(++done_) / static_cast<double>(total_);
   if (!is_proved_) {
     options_.progress(options_.effort > 0 ? kFirstShare * share : share, "covering in blocks");
     return;
@@ -213,7 +225,7 @@ std::vector<Sphere> CoverBlocks::run() {
   }
   std::vector<Sphere> all;
   for (const Block& block : blocks_) {
-    all.insert(all.end(), block.spheres.begin(), block.spheres.end());
+    all.insert(all.end(), block.own.spheres.begin(), block.own.spheres.end());
   }
   return all;
 }

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cstddef>
 #include <numeric>
 #include <optional>
@@ -86,11 +85,6 @@ std::vector<Item> some_of(const std::vector<Item>& items, std::size_t count) {
 
 }  // namespace
 
-void CoverFitter::Spheres::append(const Spheres& other) {
-  places.insert(places.end(), other.places.begin(), other.places.end());
-  spheres.insert(spheres.end(), other.spheres.begin(), other.spheres.end());
-}
-
 double CoverFitter::finest(double max_error) {
   return kFinest * max_error;
 }
@@ -114,17 +108,14 @@ CoverFitter::CoverFitter(const Clearance& clearance, const MeshDistance& distanc
   check_resolved(clearance, tightest_error(options.zones, options.max_error), kFinest);
 }
 
-std::vector<Sphere> CoverFitter::run() {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
+CoverFitter::Spheres CoverFitter::run(Spheres proved) {
   // Of what the options allow for the search.
   const auto share_done = [&](int round) {
     const double rounds = static_cast<double>(round) / std::max(1, options_.effort);
     if (options_.seconds == 0.0) return rounds;
-    const std::chrono::duration<double> elapsed = Clock::now() - start;
-    return std::max(rounds, elapsed.count() / options_.seconds);
+    return std::max(rounds, watch_.seconds() / options_.seconds);
   };
-  begin();
+  begin(std::move(proved));
   CoverYield yield(options_.effort);
   yield.add(best_.spheres.size());
   const int converged =
@@ -139,7 +130,7 @@ std::vector<Sphere> CoverFitter::run() {
     if (in_vain_ >= converged || !yield.pays()) break;
   }
   bound();
-  return best_.spheres;
+  return best_;
 }
 
 void CoverFitter::divide() {
@@ -157,14 +148,20 @@ const SolidCells& CoverFitter::divided() {
   return *cells_;
 }
 
-void CoverFitter::begin() {
+void CoverFitter::begin(Spheres proved) {
   const auto announce = [&](const char* what) {
     if (options_.progress) options_.progress(0.0, what);
   };
   divided();
   announce("covering: searching for places of spheres");
-  pose({});
+  pose(proved.places);
   first_entries_ = problem_.entries();
+  if (!proved.spheres.empty()) {
+    best_ = std::move(proved);
+    goal_.reached(best_.spheres.size());
+    set_out();
+    return;
+  }
   solution_ = greedy_set_cover(problem_.instance());
   announce("covering: proving the first answer");
   prove_or_learn();
@@ -193,10 +190,14 @@ bool CoverFitter::refine() {
   add_own(problem_, sampled_);
   know_from(sampled_);
   first_entries_ = problem_.entries();
+  set_out();
+  return true;
+}
+
+void CoverFitter::set_out() {
   solution_.resize(best_.places.size());
   std::iota(solution_.begin(), solution_.end(), std::size_t{0});
   goal_.restart();
-  return true;
 }
 
 void CoverFitter::pose(const std::vector<Candidate>& candidates) {

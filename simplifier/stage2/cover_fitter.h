@@ -9,6 +9,7 @@
 #include "simplifier/stage2/local_error.h"
 #include "simplifier/stage2/search/cover_search.h"
 #include "simplifier/stage2/solid_cells.h"
+#include "simplifier/support/stopwatch.h"
 #include "spheretree/sphere.h"
 
 #include <Eigen/Core>
@@ -29,16 +30,29 @@ namespace spherule::internal {
 // perturbed.
 class CoverFitter {
  public:
+  // Spheres that stand at candidates.
+  struct Spheres {
+    std::vector<Candidate> places;
+    std::vector<Sphere> spheres;
+
+    void append(const Spheres& other) {
+      places.insert(places.end(), other.places.begin(), other.places.end());
+      spheres.insert(spheres.end(), other.spheres.begin(), other.spheres.end());
+    }
+  };
+
   // What the spheres `given` cover need not be covered again. With a `part`, cells, S means what of
-  // it lies in these. Throws Error for an E too small for the rounding of the coordinates.
+  // it lies in these, everywhere below. Throws Error for an E too small for the rounding of the
+  // coordinates. The seconds of the options run from here on.
   CoverFitter(const Clearance& clearance, const MeshDistance& distance, const CoverOptions& options,
               std::span<const Sphere> given = {}, std::vector<BoxCell> part = {});
 
-  // Before run(): the cells that the search begins with, of all S.
+  // Before run(): the cells that the search begins with.
   const SolidCells& divided();
 
-  // The fewest spheres that were proved to cover S, together with those given.
-  std::vector<Sphere> run();
+  // The fewest spheres that were proved to cover S, together with those given. The search begins
+  // with the spheres `proved`, of which that is known, if there are any.
+  Spheres run(Spheres proved = {});
 
   // After run(): that many spheres at least are in any cover that keeps to E; 0 where it was not
   // requested or is not known.
@@ -53,16 +67,10 @@ class CoverFitter {
   using Columns = CoverProblem::Columns;
   using Points = std::vector<Eigen::Vector3d>;
 
-  // Spheres that stand at candidates.
-  struct Spheres {
-    std::vector<Candidate> places;
-    std::vector<Sphere> spheres;
-
-    void append(const Spheres& other);
-  };
-
-  // The first proved answer.
-  void begin();
+  // The first proved answer: the spheres `proved`, or new ones.
+  void begin(Spheres proved);
+  // Has the search begin with the best spheres, which are the first candidates of the problem.
+  void set_out();
   // One round; true if fewer spheres were proved.
   bool improve();
   // Sets out again with cells and rows of the next finer spacing, if that is not too fine; what was
@@ -125,6 +133,7 @@ class CoverFitter {
   Spheres best_;             // proved
   CoverGoal goal_;
   std::vector<BoxCell> part_;
+  Stopwatch watch_;
   std::vector<Sphere> given_;
   std::size_t lower_bound_ = 0;
   std::uint64_t seeds_used_ = 0;

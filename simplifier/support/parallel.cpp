@@ -7,6 +7,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -17,11 +18,13 @@ void run_in_parts(std::size_t begin, std::size_t end, const void* work,
                   void (*call)(const void* work, std::size_t first, std::size_t last)) {
   if (begin >= end) return;
   using Range = tbb::blocked_range<std::size_t>;
+  // What is thrown in one loop cancels that loop alone, not those inside its other parts.
+  tbb::task_group_context own(tbb::task_group_context::isolated);
   // A thread that waits for a loop inside another takes no part of the outer one meanwhile, whose
   // memory would come on top.
   tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(Range(begin, end),
-                      [&](const Range& part) { call(work, part.begin(), part.end()); });
+    tbb::parallel_for(
+        Range(begin, end), [&](const Range& part) { call(work, part.begin(), part.end()); }, own);
   });
 }
 

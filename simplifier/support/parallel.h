@@ -13,8 +13,9 @@ void run_in_parts(std::size_t begin, std::size_t end, const void* work,
 std::size_t thread_count();
 
 // Runs `work(i)` for every index of [begin, end), over the threads that a ThreadLimit leaves, in no
-// order. What one of them throws is thrown when the others are done or left out. Without the
-// headers of oneTBB, which cost each source half a second to compile.
+// order. What one of them throws is thrown when the others are done or left out; a loop inside a
+// `work(i)` is whole unless something is thrown in that loop itself. Without the headers of oneTBB,
+// which cost each source half a second to compile.
 template <class Work>
 void parallel_for(std::size_t begin, std::size_t end, const Work& work) {
   run_in_parts(begin, end, &work, [](const void* all, std::size_t first, std::size_t last) {

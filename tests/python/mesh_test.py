@@ -101,6 +101,8 @@ def test_stage_1_alone(cube, fit):
     assert external == fit.external and external.spheres.base is external
     assert external.spheres[:, 3].min() >= 0.4 and external.box.shape == (2, 3)
     assert spherule.tool_diameter([[0, 0, 0, 0.5], [1, 0, 0, 0.25]]) == 0.5
+    with pytest.raises(spherule.Error, match="max cells"):
+        spherule.place_external_spheres(cube, min_external_diameter=0.8, max_cells=0)
 
 
 def test_spheres_of_centres_and_radii():

@@ -3,8 +3,10 @@
 #include "simplifier/stage2/cover_blocks.h"
 
 #include "mesh/mesh_distance.h"
+#include "simplifier/internal/stages.h"
 #include "simplifier/stage2/cover_fitter.h"
 #include "tests/simplifier/fitting.h"
+#include "tests/simplifier/sphere_hash.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
@@ -12,7 +14,10 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <functional>
+#include <stdexcept>
 #include <stop_token>
 #include <vector>
 
@@ -25,8 +30,12 @@ using internal::CoverFitter;
 class Blocks : public testing::Test {
  protected:
   Blocks() : mesh_(l_bracket()) {
-    options_.max_error = (kSanitized ? 0.1 : 0.05) * diagonal_of(mesh_);
     options_.effort = 0;
+    set_error((kSanitized ? 0.1 : 0.05) * diagonal_of(mesh_));
+  }
+
+  void set_error(double max_error) {
+    options_.max_error = max_error;
     external_ = place_external_spheres(mesh_, {.min_external_diameter = 4.0 * options_.max_error,
                                                .max_error = options_.max_error});
   }
@@ -37,7 +46,8 @@ class Blocks : public testing::Test {
     const internal::Clearance clearance(external_);
     CoverFitter fitter(clearance, distance, options_);
     const std::size_t count = fitter.divided().size();
-    return CoverBlocks(clearance, distance, options_, fitter.divided().boxes(), count / blocks + 1)
+    return CoverBlocks(clearance, distance, options_, fitter.divided().boxes(), {},
+                       count / blocks + 1)
         .run();
   }
 
@@ -92,14 +102,16 @@ TEST_F(Blocks, TakeFewMoreSpheresThanOneSearch) {
   EXPECT_LE(static_cast<double>(covered(3).size()), 1.3 * whole);
 }
 
-// Equal on any number of threads (G7).
-TEST_F(Blocks, AnswerThreadsAlike) {
+// Equal bits on every machine and any number of threads (G7).
+TEST_F(Blocks, AreEqualEverywhere) {
+  set_error(0.1 * diagonal_of(mesh_));
   options_.effort = 2;
   const auto on = [&](int threads) {
     tbb::task_arena arena(threads);
     return arena.execute([&] { return covered(9); });
   };
   EXPECT_EQ(on(1), on(4));
+  EXPECT_EQ(hash_of(on(1)), 0x389d86ed48de1ec2U);
 }
 
 TEST_F(Blocks, KeepZonesOfTheirOwnError) {
@@ -121,9 +133,43 @@ TEST_F(Blocks, StopAfterTheFirstAnswerAtTheEarliest) {
 }
 
 TEST_F(Blocks, KeepToTheSecondsOfASearch) {
+  const std::vector<Sphere> first = covered(6);
   options_.effort = 1000000;
   options_.seconds = 1e-3;
-  expect_proved(covered(6));
+  EXPECT_EQ(covered(6), first);
+}
+
+// Of cover(), where there are more cells than it is told.
+TEST_F(Blocks, AreUsedForSolidsOfManyCells) {
+  const MeshDistance distance(mesh_);
+  const internal::Clearance clearance(external_);
+  options_.lower_bound = true;
+  const SphereCover in_blocks = internal::cover(mesh_, distance, clearance, options_, 1000);
+  expect_proved(in_blocks.spheres);
+  EXPECT_EQ(in_blocks.spheres, covered(1));
+  EXPECT_EQ(in_blocks.lower_bound, 0U);
+}
+
+// One that nothing is left to cover for: the spheres are larger than the blocks.
+TEST_F(Blocks, MayNeedNoSpheres) {
+  options_.min_radius = 0.3 * diagonal_of(mesh_);
+  options_.effort = 1;
+  const std::vector<Sphere> spheres = covered(30);
+  EXPECT_LT(spheres.size(), 15U);
+  const CertifyOptions options{.external = &external_, .volume = false};
+  EXPECT_TRUE(certify(mesh_, spheres, options).covered);
+}
+
+// What the progress throws ends all blocks, in the first answer and in the search.
+TEST_F(Blocks, EndWithWhatIsThrown) {
+  options_.effort = 2;
+  for (const int calls : {2, 20}) {
+    std::atomic<int> count = 0;
+    options_.progress = [&](double, const char*) {
+      if (++count == calls) throw std::runtime_error("enough");
+    };
+    EXPECT_THROW(covered(12), std::runtime_error) << calls;
+  }
 }
 
 TEST_F(Blocks, ReportTheShareThatIsDone) {

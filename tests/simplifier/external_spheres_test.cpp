@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/external_spheres.h"
 
-#include "mesh/mesh_distance.h"
 #include "spheretree/error.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
@@ -236,9 +235,8 @@ TEST(ExternalSpheres, WhereCellsAreTooManyTheGridIsCoarser) {
   EXPECT_GT(coarse.grid_step, 1.2 * fine.grid_step);
   EXPECT_LT(coarse.grid_step, 2.51 * fine.grid_step);
   EXPECT_LE(coarse.closing_slack, 0.25 * options.tightness);
-  const MeshDistance distance(cube_mesh());
   for (const Sphere& sphere : coarse.spheres) {
-    EXPECT_GE(distance(sphere.center).upper, sphere.radius);
+    EXPECT_GE(judged_mesh_distance(sphere.center, cube_mesh()), sphere.radius);
   }
   options.grid_step = fine.grid_step;
   EXPECT_THROW(place_external_spheres(cube_mesh(), options), Error);

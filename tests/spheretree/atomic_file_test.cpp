@@ -116,11 +116,12 @@ TEST_F(AtomicFile, WhatKilledProcessesLeftIsRemovedAndNothingElse) {
 // The temporary file of one that is still writing is not a leftover for another.
 TEST_F(AtomicFile, ThoseWhoWriteTheSameFileAtOnceAllSucceed) {
   constexpr int kWriters = 8;
+  const mode_t mask = ::umask(027);
   std::atomic<int> failed = 0;
   std::vector<std::thread> writers;
   for (int i = 0; i < kWriters; ++i) {
     writers.emplace_back([&, i] {
-      for (int n = 0; n < 100; ++n) {
+      for (int n = 0; n < 25; ++n) {
         try {
           write_file_atomically(path("file"), std::string(100, static_cast<char>('a' + i)));
         } catch (const Error&) {
@@ -130,6 +131,8 @@ TEST_F(AtomicFile, ThoseWhoWriteTheSameFileAtOnceAllSucceed) {
     });
   }
   for (std::thread& writer : writers) writer.join();
+  EXPECT_EQ(::umask(mask), 027U);
+  EXPECT_EQ(static_cast<int>(fs::status(path("file")).permissions()), 0640);
   EXPECT_EQ(failed, 0);
   const std::string bytes = bytes_of(path("file"));
   EXPECT_EQ(bytes, std::string(100, bytes.front()));

@@ -7,6 +7,7 @@
 // them: two threads have nothing in common but what the library's own code shares.
 
 #include "tests/soak/executor/tbb/blocked_range.h"
+#include "tests/soak/executor/tbb/task_group.h"
 
 #include <algorithm>
 #include <atomic>
@@ -66,6 +67,11 @@ template <class Index, class Work>
 void parallel_for(const blocked_range<Index>& range, const Work& work) {
   executor::run(range.begin(), range.end(),
                 [&](Index first, Index last) { work(blocked_range<Index>(first, last)); });
+}
+
+template <class Index, class Work>
+void parallel_for(const blocked_range<Index>& range, const Work& work, task_group_context&) {
+  parallel_for(range, work);
 }
 
 template <class Index, class Work>
