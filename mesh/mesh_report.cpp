@@ -3,11 +3,12 @@
 
 #include "mesh/geometry/self_intersection.h"
 #include "mesh/geometry/weld.h"
+#include "mesh/shells/disjoint_sets.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <cstdint>
 #include <sstream>
 #include <vector>
 
@@ -69,29 +70,18 @@ std::vector<EdgeUse> edge_uses(const TriangleMesh& mesh) {
   return uses;
 }
 
-// Union-find over the vertices.
-class Components {
- public:
-  explicit Components(const TriangleMesh& mesh) : parent_(mesh.vertices.size()) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-    for (const Eigen::Vector3i& t : mesh.triangles) {
-      parent_[static_cast<std::size_t>(root(t[1]))] = root(t[0]);
-      parent_[static_cast<std::size_t>(root(t[2]))] = root(t[0]);
-    }
-  }
+using internal::DisjointSets;
 
-  int root(int vertex) {
-    auto v = static_cast<std::size_t>(vertex);
-    while (parent_[v] != static_cast<int>(v)) {
-      parent_[v] = parent_[static_cast<std::size_t>(parent_[v])];
-      v = static_cast<std::size_t>(parent_[v]);
-    }
-    return static_cast<int>(v);
+// Of the vertices.
+DisjointSets components_of(const TriangleMesh& mesh) {
+  DisjointSets components(mesh.vertices.size());
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const Eigen::Vector3<std::uint32_t> corners = t.cast<std::uint32_t>();
+    components.unite(corners[0], corners[1]);
+    components.unite(corners[0], corners[2]);
   }
-
- private:
-  std::vector<int> parent_;
-};
+  return components;
+}
 
 struct Component {
   bool used = false;
@@ -101,7 +91,7 @@ struct Component {
 };
 
 // Counts the edges and marks the components that are not closed.
-void count_edges(const TriangleMesh& mesh, Components& components, std::vector<Component>& parts,
+void count_edges(const TriangleMesh& mesh, DisjointSets& components, std::vector<Component>& parts,
                  MeshReport& report) {
   const std::vector<EdgeUse> uses = edge_uses(mesh);
   for (std::size_t i = 0; i < uses.size();) {
@@ -115,7 +105,7 @@ void count_edges(const TriangleMesh& mesh, Components& components, std::vector<C
     report.misoriented_edges += count == 2 && forward != backward;
     if (forward != backward) {
       report.closed = false;
-      parts[static_cast<std::size_t>(components.root(uses[i].low))].closed = false;
+      parts[components.find(static_cast<std::uint32_t>(uses[i].low))].closed = false;
     }
     i = j;
   }
@@ -137,14 +127,14 @@ MeshReport mesh_report(const TriangleMesh& input, const MeshReportOptions& optio
   report.triangles = mesh.triangles.size();
   for (const Eigen::Vector3d& v : mesh.vertices) report.box.extend(v);
 
-  Components components(mesh);
+  DisjointSets components = components_of(mesh);
   std::vector<Component> parts(mesh.vertices.size());
   const Eigen::Vector3d center = report.box.center();  // keeps the terms of the volume small
   for (const Eigen::Vector3i& t : mesh.triangles) {
     const Eigen::Vector3d a = corner(mesh, t, 0) - center;
     const Eigen::Vector3d b = corner(mesh, t, 1) - center;
     const Eigen::Vector3d c = corner(mesh, t, 2) - center;
-    Component& part = parts[static_cast<std::size_t>(components.root(t[0]))];
+    Component& part = parts[components.find(static_cast<std::uint32_t>(t[0]))];
     part.used = true;
     part.area += 0.5 * (b - a).cross(c - a).norm();
     part.volume += a.dot(b.cross(c)) / 6.0;

@@ -9,6 +9,7 @@
 
 namespace spherule {
 
+// What every reader's mesh has to pass before anything is made of it (G8).
 void validate(const TriangleMesh& mesh, const std::string& subject) {
   if (mesh.triangles.empty()) throw Error(subject, "there are no triangles");
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {

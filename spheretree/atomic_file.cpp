@@ -165,6 +165,7 @@ void check_writable(const fs::path& path) {
   const TemporaryFile temporary(target.path, path);
 }
 
+// No file is lost (G8): until the new one is whole and on the disk, `path` is what it was.
 void write_file_atomically(const fs::path& path, std::string_view bytes) {
   const Target target = target_of(path);
   TemporaryFile temporary(target.path, path);

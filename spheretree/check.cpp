@@ -11,8 +11,8 @@
 namespace spherule {
 namespace {
 
-// One run of check(). Nothing about the data is taken for granted: each step reads only what the
-// steps before it have found in order.
+// One run of check(), for G3 and G8. Nothing about the data is taken for granted: each step reads
+// only what the steps before it have found in order.
 class Checker {
  public:
   explicit Checker(const SphereTreeData& data) : data_(data) {}

@@ -26,7 +26,7 @@ constexpr int kMaxBasis = 4;
 
 // Each exchange makes the sphere of the basis strictly larger, so the loop ends by itself; a dozen
 // exchanges are usual. The cap only bounds the time if rounding made it creep; the result encloses
-// all spheres in any case.
+// all spheres in any case (G3).
 constexpr int kMaxExchanges = 1000;
 
 // The basis has settled when no sphere sticks out by more than this factor: rounding of `reach`.

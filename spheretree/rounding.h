@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Outward rounding: sums, products, norms and distances, rounded to a proved side. The bounds of
-// longer computations stand with these (pose.h, point_triangle.h, motion.cpp, ...).
+// Outward rounding: sums, products, norms and distances, rounded to a proved side; G3 and all other
+// proofs rest on it. The bounds of longer computations stand with these (pose.h, point_triangle.h,
+// motion.cpp, ...).
 //
 // Model: IEEE double, round to nearest, u = 2^-53. Every bound below holds for coordinates of
 // magnitude at most kMaxCoordinate and with or without contraction to fused multiply-add, because

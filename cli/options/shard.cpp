@@ -1,32 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/options/shard.h"
 
+#include "spheretree/text.h"
+
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <charconv>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
 namespace spherule {
 namespace {
 
-constexpr std::size_t kMostShards = 1'000'000;
-
-std::optional<std::size_t> number_in(std::string_view text) {
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
+constexpr std::int64_t kMostShards = 1'000'000;
 
 std::optional<Shard> shard_in(std::string_view text) {
   const std::size_t slash = text.find('/');
   if (slash == text.npos) return std::nullopt;
-  const std::optional<std::size_t> index = number_in(text.substr(0, slash));
-  const std::optional<std::size_t> of = number_in(text.substr(slash + 1));
+  const std::optional<std::int64_t> index = internal::whole_number(text.substr(0, slash));
+  const std::optional<std::int64_t> of = internal::whole_number(text.substr(slash + 1));
   if (!index || !of || *index < 1 || *index > *of || *of > kMostShards) return std::nullopt;
-  return Shard{*index, *of};
+  return Shard{static_cast<std::size_t>(*index), static_cast<std::size_t>(*of)};
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// One test in lanes: a body against an obstacle or another body, coarse to fine. Part of the
-// kernels, see plan_kernel_impl.h.
+// One test in lanes: a body against an obstacle or another body, coarse to fine, and the proof that
+// a motion is free (G6). Part of the kernels, see plan_kernel_impl.h.
 //
 // In each lane a part of a motion (or a configuration, a part of length 0) is evaluated at its
 // middle; h is half its length. Let K be a convex solid that is static, or a sphere's centre as

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Two placed sphere trees, seen from each other, and the error budget behind G4 and G5.
+// Two placed sphere trees, seen from each other, and the error budget behind G4 and G5. That all
+// traversals and kernels decide by the canonical test below makes their answers equal (G7).
 //
 // Model: IEEE double, round to nearest, u = 2^-53; first-order terms are proved, the constants
 // leave room for the rest. |.| is the Euclidean norm. Written for the exact poses, x in a's frame

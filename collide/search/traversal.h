@@ -58,7 +58,8 @@ inline std::int32_t nearest_of(std::uint32_t mask, const SphereArrays& children,
   return nearest;
 }
 
-// Depth-first dual-tree traversal from the pair of roots, taken as if they may touch. True if
+// Depth-first dual-tree traversal from the pair of roots, taken as if they may touch. Only pairs
+// whose nodes are proved apart are left out (G4). True if
 // nothing is left to visit, false if the policy ended it with pairs waiting.
 template <class Policy>
 bool traverse_with(NodePair* stack, [[maybe_unused]] std::size_t capacity, const TreePair& trees,

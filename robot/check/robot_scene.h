@@ -99,30 +99,32 @@ class RobotScene {
   // are about have to be what the spheres of the links stand for: all of them. Pairs with padding
   // are tested everywhere. Throws Error for proofs of another robot, or of a tool.
   void set_link_pairs(std::shared_ptr<const LinkPairs> pairs);
-  // The same for an attached object and all links, by prove_attached_pairs(); forgotten with the
-  // object. That tool, in its link's frame, has to be what the object's spheres stand for where the
-  // object is attached: the scene knows spheres alone and cannot compare. Throws Error, too, for an
-  // unknown object, and for proofs of a tool on another link.
+  // What is proved of an attached object and all links, by prove_attached_pairs(); forgotten with
+  // the object. That tool, in its link's frame, has to be what the object's spheres stand for where
+  // the object is attached: the scene knows spheres alone and cannot compare. Throws Error, too,
+  // for an unknown object, and for proofs of a tool on another link.
   void set_attached_pairs(std::string_view object, std::shared_ptr<const LinkPairs> pairs);
   // Why two links are not tested against each other, or not everywhere: what is allowed, and then
   // what is proved. Throws Error for names that are no links.
   AllowedReason reason(std::string_view first, std::string_view second) const;
 
-  // Throws Error for a name that is taken or empty, a missing tree or mesh, or a primitive that
-  // require_primitive() refuses.
+  // Adds an obstacle at a pose in the world. Throws Error for a name that is taken or empty, a
+  // missing tree or mesh, or a primitive that require_primitive() refuses.
   void add(std::string name, ObstacleShape shape, const Pose& world_from_shape = {});
-  // Throws Error for an unknown obstacle.
+  // Moves an obstacle to another pose. Throws Error for an unknown obstacle.
   void move(std::string_view obstacle, const Pose& world_from_shape);
-  // Forgets the contacts and paddings that name it, too. Throws Error for an unknown obstacle.
+  // Removes an obstacle, with all contacts and paddings that name it. Throws Error for an unknown
+  // obstacle.
   void remove(std::string_view obstacle);
-  // Their names, in alphabetical order.
+  // The names of the obstacles, in alphabetical order.
   std::vector<std::string> obstacles() const;
 
-  // Spheres that move with a link. Throws Error as add() does, and for an unknown link.
+  // Attaches spheres to a link, with which they move. Throws Error as add() does, and for an
+  // unknown link.
   void attach(std::string name, std::string_view link, std::shared_ptr<const SphereTree> tree,
               const Pose& link_from_object = {});
-  // Forgets the contacts, paddings and regions that name it, too. Throws Error for an unknown
-  // object.
+  // Detaches an object, and removes all contacts, paddings and regions that name it. Throws Error
+  // for an unknown object.
   void detach(std::string_view object);
   // The names of what is attached, in alphabetical order.
   std::vector<std::string> attached() const;
@@ -135,15 +137,17 @@ class RobotScene {
   // Names some spheres of a body; a region of that name that was there is replaced. Regions may
   // share spheres. Throws Error for spheres that are not there, and for none.
   void define_region(Region region, std::span<const BodySphere> spheres);
-  // Those whose centre lies in `around`, a sphere in the frame of the link, or of the object.
+  // Names the spheres of a body whose centres lie in `around`, a sphere in the frame of the link,
+  // or of the object; otherwise as above.
   void define_region(Region region, const Sphere& around);
 
   // A body and an obstacle, or two bodies, may touch: they are not tested any more.
   void allow_contact(std::string_view body, std::string_view other);
   // Only the region may touch; the rest of the body is tested as before.
   void allow_contact(const Region& region, std::string_view other);
-  // Takes that back. What was not allowed stays as it is.
+  // Takes back what allow_contact() allowed of a body; what was not allowed stays as it is.
   void forbid_contact(std::string_view body, std::string_view other);
+  // Takes back what allow_contact() allowed of a region; what was not allowed stays as it is.
   void forbid_contact(const Region& region, std::string_view other);
 
   // An obstacle, with the last arguments of add() and move(); for programs that show or store a
@@ -173,13 +177,15 @@ class RobotScene {
   const Pose& world_from_root() const { return world_from_root_; }
   // The last argument of set_link_pairs().
   const std::shared_ptr<const LinkPairs>& link_pairs() const { return link_pairs_; }
-  // Both throw Error for a name that is not there.
+  // The obstacle of that name; throws Error where there is none.
   const Obstacle& obstacle(std::string_view name) const;
+  // The attached object of that name; throws Error where there is none.
   const Attached& attached(std::string_view name) const;
-  // Of bodies, and of pairs, their names in alphabetical order.
+  // The padding of bodies, their names in alphabetical order.
   const std::map<std::string, double, std::less<>>& padding() const { return padding_; }
+  // The padding of pairs, the names of each in alphabetical order.
   const std::map<NamePair, double>& pair_padding() const { return pair_padding_; }
-  // Of a body and a region, sorted.
+  // The spheres of each region, by the names of body and region, sorted.
   const std::map<NamePair, std::vector<BodySphere>>& regions() const { return regions_; }
   // Contacts that allow_contact() allows and forbid_contact() has not forbidden since.
   const std::set<Intended>& intended_contacts() const { return intended_; }

@@ -8,10 +8,10 @@
 
 namespace spherule {
 
-// With |from| and |to| at most 100, at most n = 32 turns are taken off. The double kTurn is within
-// 2.5e-16 of 2 pi, which n turns multiply to 8e-15. The product is not rounded, and the difference,
-// below 128 in magnitude, by at most half a unit in its last place, 7.2e-15. Together less than
-// kTurnError.
+// The rounding that G6 charges. With |from| and |to| at most 100, at most n = 32 turns are taken
+// off. The double kTurn is within 2.5e-16 of 2 pi, which n turns multiply to 8e-15. The product is
+// not rounded, and the difference, below 128 in magnitude, by at most half a unit in its last
+// place, 7.2e-15. Together less than kTurnError.
 double nearest_turn(double from, double to) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const double step = to - from;

@@ -74,16 +74,17 @@ class AllowedCollisions {
   // Tests them again. Throws Error as allow() does, and for a link and itself.
   void forbid(std::string_view first, std::string_view second);
 
-  // Indices of links, in range.
+  // Indices of links, in range. An object that was moved from has no links, and allows nothing.
   bool allows(int first, int second) const noexcept {
+    if (names_.empty()) return false;
     const std::size_t i = index(first, second);
     return (bits_[i / 64] >> (i % 64) & 1U) != 0;
   }
   // Throws Error for names that are no links.
   bool allows(std::string_view first, std::string_view second) const;
-  // Why it is allowed, or kTested. Indices of links, in range.
+  // Why it is allowed, or kTested. Indices of links, in range, as above.
   AllowedReason reason(int first, int second) const noexcept {
-    return reasons_[index(first, second)];
+    return names_.empty() ? AllowedReason::kTested : reasons_[index(first, second)];
   }
 
   // Two links, and why they are allowed to touch.

@@ -42,6 +42,9 @@ bool below(const Cell& a, const Cell& b) {
 
 }  // namespace
 
+// G2. About a centre in S the sphere whose radius is the clearance d lies in S, and no point of the
+// sphere is further from it than r - d; elsewhere none is further than r from the centre, which is
+// at some distance from S.
 std::vector<double> protrusions_over_solid(const Clearance& clearance, const MeshDistance& distance,
                                            std::span<const Sphere> spheres) {
   std::vector<double> each(spheres.size());

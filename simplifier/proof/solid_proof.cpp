@@ -23,6 +23,8 @@ void halve(const Cell& cell, std::vector<Cell>& parts) {
 
 }  // namespace
 
+// G1 of S: a cell lies in a single sphere, or outside of S, or is halved; one that cannot be halved
+// further is no proof.
 CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
                           const SpheresToProve& spheres, double finest,
                           const std::function<bool(const Vector3d&)>& is_witness) {

@@ -23,10 +23,10 @@ struct Finding {
   bool witness = false;  // `point` may be reported
 };
 
-// Proves the coverage of X, given as pieces, by splitting what `examine` leaves open with `split`
-// (which appends the parts of a piece to a list). A piece that is proved not to be deeper than the
-// deepest point met, within `finest` or kDepthTolerance of that depth, is left as it is: it changes
-// neither verdict nor depth.
+// Proves the coverage of X (G1), given as pieces, by splitting what `examine` leaves open with
+// `split` (which appends the parts of a piece to a list). A piece that is proved not to be deeper
+// than the deepest point met, within `finest` or kDepthTolerance of that depth, is left as it is:
+// it changes neither verdict nor depth.
 //
 // The deepest pieces are examined first, so that a leak is soon known; what remains after
 // kBestFirst pieces is divided into fixed blocks for the threads, so that the result does not

@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A midpoint is off by at most sqrt(3) u times the largest coordinate, and the midpoint of points
-// that are off by some amount is off by no more than that plus one rounding. After n halvings of
-// longest edges no edge is longer than sqrt(3) 2^(-n/2) of the first (Stynes 1980), which is at
-// most 2 sqrt(3) of the largest coordinate; so 86 halvings come below 2^-40 of that, the least
-// `finest`, and 256 u times the largest coordinate bounds how far the pieces are from tiling the
-// triangle.
+// What halving costs the proof of G1. A midpoint is off by at most sqrt(3) u times the largest
+// coordinate, and the midpoint of points that are off by some amount is off by no more than that
+// plus one rounding. After n halvings of longest edges no edge is longer than sqrt(3) 2^(-n/2) of
+// the first (Stynes 1980), which is at most 2 sqrt(3) of the largest coordinate; so 86 halvings
+// come below 2^-40 of that, the least `finest`, and 256 u times the largest coordinate bounds how
+// far the pieces are from tiling the triangle.
 double subdivision_error(const TriangleMesh& mesh) {
   double magnitude = 0.0;
   for (const Vector3d& v : mesh.vertices) magnitude = std::max(magnitude, v.cwiseAbs().maxCoeff());

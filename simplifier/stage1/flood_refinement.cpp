@@ -2,7 +2,7 @@
 
 // Makes the flood tight where that matters.
 //
-// What is proved. Let T(x) = (1 + s) rho(x), R the places to which a sphere of radius T can be
+// What is proved (G2). Let T(x) = (1 + s) rho(x), R the places to which a sphere of radius T can be
 // moved from outside the cube: its centre passes points of clearance >= T alone. A leaf is
 // *possible* if its clearance may be T somewhere: the clearance at its centre, rounded up, and half
 // its diagonal make the least T in it; a coarse leaf that is free is, one that is blocked is not.

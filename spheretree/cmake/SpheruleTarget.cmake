@@ -20,7 +20,7 @@ function(spherule_program_options target kind)
 endfunction()
 
 # Applies the project's compile settings to TARGET, a `library`, `program`, `test` or `binding` (KIND). The
-# guarantees rest on `-ffp-contract=off` in our own sources (see spheretree/rounding.h); inline code in
+# guarantees, G7 above all, rest on `-ffp-contract=off` in our own sources (see spheretree/rounding.h); inline code in
 # headers is valid with and without contraction.
 function(spherule_compile_settings target kind)
   target_compile_features(${target} PUBLIC cxx_std_20)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// docs/guarantee.md: each guarantee names files of its proof that exist, and tests that stand in
-// the file named.
+// docs/guarantee.md: each guarantee names files of its proof, which cite it, and tests that stand
+// in the file named.
 
 #include "tests/structure/repository.h"
 
@@ -63,7 +63,9 @@ TEST(Guarantee, NamesProofsAndTestsThatExist) {
     EXPECT_FALSE(section.proofs.empty()) << guarantee;
     EXPECT_FALSE(section.tests.empty()) << guarantee;
     for (const std::string& file : section.proofs) {
-      EXPECT_TRUE(fs::is_regular_file(kRoot / file)) << guarantee << ": " << file;
+      ASSERT_TRUE(fs::is_regular_file(kRoot / file)) << guarantee << ": " << file;
+      EXPECT_TRUE(std::regex_search(text_of(kRoot / file), std::regex("\\b" + guarantee + "\\b")))
+          << file << " does not cite " << guarantee;
     }
     for (const auto& [name, file] : section.tests) {
       EXPECT_TRUE(defines_test(text_of(kRoot / file), name)) << guarantee << ": " << name;

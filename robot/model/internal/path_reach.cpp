@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Bounds of the velocity and the acceleration of one body as seen from another.
+// Bounds of the velocity and the acceleration of one body as seen from another (for G6).
 //
 // Of the joints that lie on the way from one body to the other only these matter, whatever moves
 // both. Let them be numbered from the first body on, and let joint k change at the constant rate

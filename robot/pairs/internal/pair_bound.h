@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// How far two links can come towards each other anywhere in a box of joint positions.
+// How far two links can come towards each other anywhere in a box of joint positions (for G9).
 //
 // Setting. Joints 1 to k lie on the path from the first link to the second; x0 is the middle of the
 // box and joint j is anywhere within h_j of it. Look from the link behind joint s, any s from 0 to

@@ -31,7 +31,7 @@ struct PairSearchLimits {
 // that is not proved at its middle is halved, along the variable that moves the links most against
 // each other.
 //
-// Proof for one box. Either the hulls of the links, grown by their radii, are apart throughout
+// Proof for one box (G9). Either the hulls of the links, grown by their radii, are apart throughout
 // (pair_bound.h). Or all pairs of leaves (link_pieces.h) are, by pieces that
 // hold them, so that the surfaces of meshes,
 // grown, and spheres have no point in common throughout; and at the middle the solids have none, as

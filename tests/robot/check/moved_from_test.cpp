@@ -12,6 +12,7 @@
 #include "collide/within.h"
 #include "mesh/mesh_distance.h"
 #include "robot/check/robot_scene.h"
+#include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/free_boxes.h"
 #include "robot/pairs/link_pairs.h"
 #include "spheretree/error.h"
@@ -175,6 +176,20 @@ TEST(MovedFrom, RobotCheckerAndScene) {
   EXPECT_THROW(robot.attach("base_link", around_it()), Error);
   EXPECT_THROW(RobotScene(robot).snapshot(), Error);
   EXPECT_THROW(robot.check_cache(), Error);
+}
+
+TEST(MovedFrom, AllowedCollisions) {
+  RobotModel robot("base");
+  robot.add_link("arm", "base", {.name = "turn", .type = JointType::kRevolute});
+  AllowedCollisions allowed(robot);
+  const AllowedCollisions taken = taken_from(allowed);
+  EXPECT_TRUE(taken.allows(0, 1));
+  EXPECT_FALSE(allowed.allows(0, 1));
+  EXPECT_EQ(allowed.reason(0, 1), AllowedReason::kTested);
+  EXPECT_TRUE(allowed.pairs().empty());
+  EXPECT_THROW(allowed.allows("base", "arm"), Error);
+  EXPECT_THROW(allowed.allow("base", "arm"), Error);
+  EXPECT_THROW(allowed.require_robot(robot), Error);
 }
 
 TEST(MovedFrom, Proofs) {
