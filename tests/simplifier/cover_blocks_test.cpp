@@ -69,7 +69,7 @@ class Blocks : public testing::Test {
 };
 
 TEST_F(Blocks, CoverS) {
-  for (const std::size_t blocks : {2, 30}) {
+  for (const std::size_t blocks : {2U, 30U}) {
     SCOPED_TRACE(blocks);
     expect_proved(covered(blocks));
   }
