@@ -99,7 +99,8 @@ TEST_F(Blocks, CoverSAfterASearchWithNoMoreSpheres) {
 
 TEST_F(Blocks, TakeFewMoreSpheresThanOneSearch) {
   const auto whole = static_cast<double>(covered(1).size());
-  EXPECT_LE(static_cast<double>(covered(3).size()), 1.3 * whole);
+  // Seams, and what chance does with the few spheres of a coarse cover.
+  EXPECT_LE(static_cast<double>(covered(3).size()), 1.2 * whole + 5.0);
 }
 
 // Equal bits on every machine and any number of threads (G7).
