@@ -125,22 +125,30 @@ std::vector<Sphere> CoverBlocks::spheres_near(const Block& block) const {
   return near;
 }
 
-CoverFitter::Spheres CoverBlocks::covered(const Block& block, const CoverOptions& options) const {
-  return CoverFitter(clearance_, distance_, options, spheres_near(block), block.cells)
-      .run(block.own);
+template <class OptionsOf>
+void CoverBlocks::take(const Turn& turn, const OptionsOf& options_of) {
+  std::vector<CoverFitter::Spheres> found(turn.size());
+  parallel_for(0, turn.size(), [&](std::size_t k) {
+    const Block& block = blocks_[turn[k]];
+    if (const std::optional<CoverOptions> options = options_of(turn[k])) {
+      CoverFitter fitter(clearance_, distance_, *options, spheres_near(block), block.cells);
+      found[k] = fitter.run(block.own);
+    } else {
+      found[k] = block.own;
+    }
+    report();
+  });
+  for (std::size_t k = 0; k < turn.size(); ++k) blocks_[turn[k]].own = std::move(found[k]);
 }
 
 void CoverBlocks::cover() {
   total_ = blocks_.size();
   for (const Turn& turn : turns()) {
-    std::vector<CoverFitter::Spheres> found(turn.size());
-    parallel_for(0, turn.size(), [&](std::size_t k) {
-      CoverOptions options = block_options(options_, turn[k]);
+    take(turn, [&](std::size_t block) -> std::optional<CoverOptions> {
+      CoverOptions options = block_options(options_, block);
       options.effort = 0;
-      found[k] = covered(blocks_[turn[k]], options);
-      report();
+      return options;
     });
-    for (std::size_t k = 0; k < turn.size(); ++k) blocks_[turn[k]].own = std::move(found[k]);
   }
   is_proved_ = true;
 }
@@ -186,14 +194,7 @@ void CoverBlocks::search() {
   for (const Turn& turn : all) {
     const std::size_t before = count();
     const std::size_t at_once = std::min(turn.size(), thread_count());
-    std::vector<CoverFitter::Spheres> found(turn.size());
-    parallel_for(0, turn.size(), [&](std::size_t k) {
-      const Block& block = blocks_[turn[k]];
-      const std::optional<CoverOptions> options = search_options(turn[k], at_once);
-      found[k] = options ? covered(block, *options) : block.own;
-      report();
-    });
-    for (std::size_t k = 0; k < turn.size(); ++k) blocks_[turn[k]].own = std::move(found[k]);
+    take(turn, [&](std::size_t block) { return search_options(block, at_once); });
     if (options_.on_proved && count() < before) options_.on_proved(count());
   }
 }

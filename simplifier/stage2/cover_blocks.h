@@ -63,8 +63,10 @@ class CoverBlocks {
   void widen();
   // Has each block search for fewer spheres.
   void search();
-  // Runs the search of a block: from its own spheres on, if it has any.
-  CoverFitter::Spheres covered(const Block& block, const CoverOptions& options) const;
+  // Runs the searches of a turn's blocks, each from its own spheres on, if it has any. A block
+  // without options keeps these.
+  template <class OptionsOf>
+  void take(const Turn& turn, const OptionsOf& options_of);
   // The options for a block that begins its search now, or none if it should not.
   std::optional<CoverOptions> search_options(std::size_t block, std::size_t at_once);
   std::vector<Sphere> spheres_near(const Block& block) const;

@@ -20,8 +20,8 @@ function(spherule_program_options target kind)
 endfunction()
 
 # Applies the project's compile settings to TARGET, a `library`, `program`, `test` or `binding` (KIND). The
-# guarantees, G7 above all, rest on `-ffp-contract=off` in our own sources (see spheretree/rounding.h); inline code in
-# headers is valid with and without contraction.
+# guarantees, G7 above all, rest on `-ffp-contract=off` in our own sources (see spheretree/rounding.h);
+# inline code in headers is valid with and without contraction.
 function(spherule_compile_settings target kind)
   target_compile_features(${target} PUBLIC cxx_std_20)
   # A -ffast-math among the flags of a whole build (CMAKE_CXX_FLAGS) is taken back.
