@@ -4,6 +4,7 @@
 #include "simplifier/solid/sphere_hierarchy.h"
 #include "simplifier/support/parallel.h"
 #include "simplifier/support/random.h"
+#include "simplifier/zones.h"
 #include "spheretree/median_split.h"
 #include "spheretree/rounding.h"
 
@@ -18,33 +19,25 @@ namespace spherule::internal {
 namespace {
 
 using Eigen::AlignedBox3d;
-using Eigen::Vector3d;
+using spherule::bounds;
 
 // Of the progress of a search: the first answers.
 constexpr double kFirstShare = 0.1;
 
-// Rounded outwards.
-AlignedBox3d box_around(const Vector3d& center, const Vector3d& half) {
+// Rounded outwards, as is that of a sphere (zones.h).
+AlignedBox3d bounds(const BoxCell& cell) {
   AlignedBox3d box;
   for (int axis = 0; axis < 3; ++axis) {
-    box.min()[axis] = sub_down(center[axis], half[axis]);
-    box.max()[axis] = add_up(center[axis], half[axis]);
+    box.min()[axis] = sub_down(cell.center[axis], cell.half[axis]);
+    box.max()[axis] = add_up(cell.center[axis], cell.half[axis]);
   }
   return box;
-}
-
-AlignedBox3d box_of(const BoxCell& cell) {
-  return box_around(cell.center, cell.half);
-}
-
-AlignedBox3d box_of(const Sphere& sphere) {
-  return box_around(sphere.center, Vector3d::Constant(sphere.radius));
 }
 
 template <class Item>
 AlignedBox3d box_of(const std::vector<Item>& items) {
   AlignedBox3d box;
-  for (const Item& item : items) box.extend(box_of(item));
+  for (const Item& item : items) box.extend(bounds(item));
   return box;
 }
 
