@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/model_file.h"
 
-#include "cli/modules/module.h"
+#include "cli/cad/cad_process.h"
 #include "cli/text/message.h"
 #include "mesh/io/length_unit.h"
 #include "mesh/io/mesh_io.h"
@@ -61,7 +61,7 @@ ModelFile read_model(const std::filesystem::path& path, const ModelReadOptions& 
   }
   [[maybe_unused]] const CadReadOptions cad = cad_options(path, options);
 #ifdef SPHERULE_HAS_CAD
-  model.cad = cad_module().read(path, cad);
+  model.cad = read_cad_apart(path, cad);
   warn_of_unproved(path.string(), *model.cad);
   model.mesh = std::move(model.cad->mesh);
   return model;
@@ -74,7 +74,7 @@ std::vector<CadBody> read_model_bodies(const std::filesystem::path& path,
                                        const ModelReadOptions& options) {
   [[maybe_unused]] const CadReadOptions cad = cad_options(path, options);
 #ifdef SPHERULE_HAS_CAD
-  std::vector<CadBody> bodies = cad_module().read_bodies(path, cad);
+  std::vector<CadBody> bodies = read_cad_bodies_apart(path, cad);
   for (const CadBody& body : bodies) {
     if (!body.copy) warn_of_unproved(path.string() + ": " + body.name, body.part);
   }

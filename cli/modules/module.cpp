@@ -4,7 +4,6 @@
 #include "spheretree/error.h"
 
 #include <dlfcn.h>
-#include <string>
 
 namespace spherule {
 namespace {
@@ -14,12 +13,8 @@ std::string last_error() {
   return message == nullptr ? "reason unknown" : message;
 }
 
-// Modules stand where SPHERULE_MODULE_FOLDER leads from the folder of the command, so that the
-// prefix may be moved.
 const void* load(const char* name) {
-  const std::filesystem::path command = std::filesystem::read_symlink("/proc/self/exe");
-  const std::filesystem::path file =
-      (command.parent_path() / SPHERULE_MODULE_FOLDER / name).lexically_normal();
+  const std::filesystem::path file = module_path(name);
   void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (module == nullptr) throw Error(file.string(), "cannot be loaded: " + last_error());
   const void* functions = ::dlsym(module, "spherule_module");
@@ -29,9 +24,9 @@ const void* load(const char* name) {
 
 }  // namespace
 
-const CadModule& cad_module() {
-  static const void* functions = load("spherule_cad.so");
-  return *static_cast<const CadModule*>(functions);
+std::filesystem::path module_path(const std::string& name) {
+  const std::filesystem::path command = std::filesystem::read_symlink("/proc/self/exe");
+  return (command.parent_path() / SPHERULE_MODULE_FOLDER / name).lexically_normal();
 }
 
 const LevelSetModule& level_set_module() {

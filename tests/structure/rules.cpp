@@ -63,8 +63,9 @@ constexpr Prefix kPrefixes[] = {{"Eigen/", "Eigen"},
 
 // Of the machine rather than of the language: allowed everywhere, or in one folder only.
 constexpr std::string_view kSystemHeaders[] = {
-    "fcntl.h",     "semaphore.h", "signal.h",   "stdlib.h",       "unistd.h", "sys/stat.h",
-    "sys/types.h", "sys/wait.h",  "sys/file.h", "sys/resource.h", "dlfcn.h"};
+    "fcntl.h",     "semaphore.h",    "signal.h",    "spawn.h",    "stdlib.h",
+    "unistd.h",    "sys/stat.h",     "sys/types.h", "sys/wait.h", "sys/file.h",
+    "sys/prctl.h", "sys/resource.h", "dlfcn.h"};
 constexpr std::string_view kSimdHeaders[] = {"emmintrin.h", "immintrin.h", "arm_neon.h", "cpuid.h"};
 constexpr std::string_view kSimdFolders[] = {"collide/kernels/", "collide/mechanism/",
                                              "collide/meshes/", "collide/search/"};
