@@ -10,6 +10,7 @@
 #include "simplifier/stage1/local_diameter.h"
 #include "simplifier/stage1/random_placement.h"
 #include "simplifier/stage1/sphere_way.h"
+#include "simplifier/stage1/too_many_cells.h"
 #include "simplifier/support/parallel.h"
 #include "simplifier/support/thread_limit.h"
 #include "spheretree/error.h"
@@ -329,6 +330,25 @@ ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
     return result.box.exteriorDistance(s.center) * (1.0 - 1e-12) >= s.radius;
   });
   return result;
+}
+
+ExternalSpheres internal::place_with_default_diameter(const TriangleMesh& mesh,
+                                                      const MeshDistance& distance,
+                                                      ExternalOptions options) {
+  constexpr double kMargin = 1.1;
+  constexpr double kLargest = 0.1;  // of the diagonal of the box
+  const double largest = kLargest * distance.box().diagonal().norm();
+  const bool is_foreseen = options.zones.empty() && !options.keep_concave_edges;
+  if (is_foreseen) options.max_cells = std::min(options.max_cells, ExternalOptions::kMostCells / 4);
+  for (;;) {
+    try {
+      return place_external_spheres(mesh, distance, options);
+    } catch (const TooManyCells& too_many) {
+      const double larger = kMargin * std::sqrt(too_many.factor()) * options.min_external_diameter;
+      if (!is_foreseen || !(larger <= largest)) throw;
+      options.min_external_diameter = larger;
+    }
+  }
 }
 
 }  // namespace spherule

@@ -112,7 +112,12 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
 
   const internal::Stopwatch external_time;
   const MeshDistance distance(mesh);
-  result.external = internal::place_external_spheres(mesh, distance, external_options(used));
+  result.external =
+      options.min_external_diameter == 0.0
+          ? internal::place_with_default_diameter(mesh, distance, external_options(used))
+          : internal::place_external_spheres(mesh, distance, external_options(used));
+  result.larger_diameter = result.external.min_external_diameter > used.min_external_diameter;
+  used.min_external_diameter = result.external.min_external_diameter;
   result.times.external = external_time.seconds();
 
   const internal::Stopwatch cover_time;

@@ -56,7 +56,9 @@ struct SimplifyOptions {
   // below `max_error`, which is added where it is not among them; where `max_error` is 0, it
   // becomes the least of them.
   std::vector<double> levels = {};
-  // D: diameter of the smallest object to be checked against the model; 0 chooses 4 E.
+  // D: diameter of the smallest object to be checked against the model; 0 chooses 4 E, or more
+  // where a part is so large that the grid of stage 1 would have too many cells (up to a tenth of
+  // the box diagonal; `Simplification::options` has the one that was used).
   double min_external_diameter = 0.0;
   // The closing slack aimed at, as a share of D: ways in that are wider than D (1 + tightness) are
   // not filled (ExternalOptions::tightness). What is proved: ExternalSpheres::closing_slack.
@@ -101,6 +103,8 @@ struct Simplification {
   std::vector<CoverLevel> levels;  // coarser than the cover, the finest first
   Certificate certificate;
   SimplifyOptions options;  // as used, the defaults filled in
+  // D was to be chosen, and is more than 4 E (SimplifyOptions::min_external_diameter).
+  bool larger_diameter = false;
   SimplifyTimes times;
 };
 

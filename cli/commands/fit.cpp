@@ -3,6 +3,7 @@
 #include "cli/files/interruption.h"
 #include "cli/files/model_file.h"
 #include "cli/files/output.h"
+#include "cli/files/result_warnings.h"
 #include "cli/files/unit_warnings.h"
 #include "cli/help/help.h"
 #include "cli/pages/view_page.h"

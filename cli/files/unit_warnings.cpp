@@ -10,9 +10,6 @@ namespace {
 constexpr double kLargestError = 0.1;    // of the largest extent of the part
 constexpr double kSmallestError = 1e-4;  // that units are guessed for
 constexpr double kLeastDiameter = 0.1;   // of E
-constexpr double kLargestVolume = 5.0;   // of the mesh's
-// Of E: with the step that is usually chosen they are 0.02 E high.
-constexpr double kLargestScallops = 0.025;
 
 // A unit that lengths may have been meant in, and one that a mesh may be in instead.
 struct UnitPair {
@@ -63,32 +60,6 @@ std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyO
     std::ostringstream text;
     text << "the min external diameter " << diameter << " is less than a tenth of the max error "
          << error << ": nearly nothing is simplified away; are both in the same unit?";
-    warnings.push_back(text.str());
-  }
-  return warnings;
-}
-
-std::vector<std::string> result_warnings(const Simplification& result) {
-  std::vector<std::string> warnings;
-  const ExternalSpheres& external = result.external;
-  const double step = external.grid_step;
-  const double scallops = step > 0.0 ? step * step / (2.0 * external.min_external_diameter) : 0.0;
-  if (scallops > kLargestScallops * result.options.max_error) {
-    std::ostringstream text;
-    text << "the part is so large that the grid of stage 1 has steps of " << step
-         << ": what is covered has scallops up to " << scallops
-         << " high along its walls, which takes some more spheres; a larger min external diameter, "
-            "or the part in pieces, avoids that";
-    warnings.push_back(text.str());
-  }
-  const std::optional<double>& ratio = result.certificate.volume_ratio;
-  if (ratio && *ratio > kLargestVolume) {
-    std::ostringstream text;
-    text << "the spheres hold about " << *ratio << " times the volume of the mesh: the max error "
-         << result.options.max_error
-         << " is coarse for it, or spaces are filled that a sphere of the min external diameter "
-         << result.options.min_external_diameter
-         << " cannot enter; if that is not wanted, choose less of either";
     warnings.push_back(text.str());
   }
   return warnings;

@@ -4,6 +4,7 @@
 #include "cli/files/interruption.h"
 #include "cli/files/model_bodies.h"
 #include "cli/files/output.h"
+#include "cli/files/result_warnings.h"
 #include "cli/files/unit_warnings.h"
 #include "cli/pages/view_page.h"
 #include "cli/parts/fit_report.h"
@@ -210,6 +211,11 @@ int fit_bodies(FitArguments& arguments) {
   bool is_proved = true;
   for (std::size_t i = 0; i < fits.size(); ++i) {
     is_proved = is_proved && !(model.cad[i] && !model.cad[i]->proved);
+    if (fits[i].fit) {
+      for (const std::string& warning : result_warnings(*fits[i].fit)) {
+        warn(model.bodies[i].name + ": " + warning);
+      }
+    }
     if (fits[i].broken.empty()) continue;
     is_proved = false;
     tell(arguments.spheres + ": " + model.bodies[i].name + ": " + fits[i].broken);

@@ -55,11 +55,11 @@ void add_model_options(CLI::App& command, FitArguments& arguments) {
 void add_promise_options(CLI::App& command, FitArguments& arguments) {
   SimplifyOptions& options = arguments.options;
   LengthOptions& lengths = arguments.lengths;
-  auto* diameter =
-      lengths.add(command, "--min-external", options.min_external_diameter,
-                  "D, diameter of the smallest object to be checked against the model (default: 4 "
-                  "E). With E / 2 "
-                  "or less only gaps narrower than that are filled: the method without stage 1");
+  auto* diameter = lengths.add(
+      command, "--min-external", options.min_external_diameter,
+      "D, diameter of the smallest object to be checked against the model (default: 4 "
+      "E, more where a part is so large that this would take too much memory). With E "
+      "/ 2 or less only gaps narrower than that are filled: the method without stage 1");
   command
       .add_option(
           "--tool", arguments.tool,

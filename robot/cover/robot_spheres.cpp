@@ -152,6 +152,12 @@ std::vector<std::string> warnings_of(const MeshReport& report, const Simplificat
     }
     warnings.push_back(text.str());
   }
+  if (fit.larger_diameter) {
+    std::ostringstream text;
+    text << "it is so large for its max error that D is " << fit.options.min_external_diameter
+         << " m instead of 4 E: narrower gaps are filled";
+    warnings.push_back(text.str());
+  }
   const std::string broken = broken_promises(fit);
   if (!broken.empty()) warnings.push_back(broken);
   return warnings;

@@ -21,6 +21,13 @@ namespace spherule::internal {
 ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const MeshDistance& distance,
                                        const ExternalOptions& options);
 
+// The same where D is a default: if the grid would have too many cells, more than a quarter of what
+// a D that was requested may take, D becomes larger until it has not, up to a tenth of the diagonal
+// of the box. ExternalSpheres::min_external_diameter is the
+// one that was used. With zones of their own D it stays as it is: their cells are not foreseen.
+ExternalSpheres place_with_default_diameter(const TriangleMesh& mesh, const MeshDistance& distance,
+                                            ExternalOptions options);
+
 // A solid that is divided into more cells than this for kCover is covered in blocks
 // (cover_blocks.h).
 inline constexpr std::size_t kMostCells = 100000;

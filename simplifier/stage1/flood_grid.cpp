@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage1/flood_grid.h"
 
+#include "simplifier/stage1/too_many_cells.h"
 #include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
 
@@ -8,10 +9,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <iomanip>
 #include <limits>
-#include <sstream>
-#include <string>
 
 namespace spherule::internal {
 namespace {
@@ -23,32 +21,11 @@ constexpr double kLayer = 1.2;
 constexpr double kContained = 1e-9;
 // Cells that are examined between two reports of progress: siblings stay together.
 constexpr std::size_t kPart = std::size_t{1} << 20;
-// How many levels ahead the number of cells is foreseen, and by how much that may be wrong; what is
-// advised has some room.
+// How many levels ahead the number of cells is foreseen, and by how much that may be wrong.
 constexpr int kForeseen = 3;
 constexpr double kClearlyMore = 1.5;
-constexpr double kMargin = 1.2;
-
-std::string too_many(double count, double edge, double most) {
-  const double larger = kMargin * count / most;
-  std::ostringstream reason;
-  reason << std::setprecision(3) << "too fine for a model of this size: about " << count
-         << " cells with an edge of " << edge << " would be needed, and " << most
-         << " is the most; with a min external diameter " << std::ceil(10.0 * larger) / 10.0
-         << " times as large, or both it and the max error "
-         << std::ceil(10.0 * std::sqrt(larger)) / 10.0
-         << " times, or with the model in parts, memory suffices";
-  if (most < static_cast<double>(ExternalOptions::kMostCells)) {
-    reason << "; max_cells may be larger";
-  }
-  return reason.str();
-}
 
 }  // namespace
-
-TooManyCells::TooManyCells(double count, double edge, std::size_t max_cells)
-    : Error("grid step", too_many(count, edge, static_cast<double>(max_cells))),
-      factor_(count / static_cast<double>(max_cells)) {}
 
 FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
                      const Shape& shape, const Progress& progress)

@@ -6,7 +6,6 @@
 #include "simplifier/external_spheres.h"
 #include "simplifier/stage1/local_diameter.h"
 #include "simplifier/stage1/sphere_way.h"
-#include "spheretree/error.h"
 
 #include <Eigen/Geometry>
 
@@ -17,18 +16,6 @@
 #include <vector>
 
 namespace spherule::internal {
-
-// The grid would have more cells than it may.
-class TooManyCells : public Error {
- public:
-  // `count` cells, of this edge the finest, are foreseen.
-  TooManyCells(double count, double edge, std::size_t max_cells);
-  // The number foreseen over the number allowed.
-  double factor() const { return factor_; }
-
- private:
-  double factor_;
-};
 
 // The free space of a sphere of radius rho around a mesh, as a sparse octree over a cube that
 // leaves the sphere room on every side of the mesh; rho and the finest step h are those of the

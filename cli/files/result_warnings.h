@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "simplifier/simplify.h"
+
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// Sentences about a fit whose user may have wanted another: a D that became larger than 4 E, a grid
+// of stage 1 that is coarser than its E asks for, both as the part is large; spheres of more than
+// five times the volume of the mesh.
+std::vector<std::string> result_warnings(const Simplification& result);
+
+}  // namespace spherule

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/stage1/too_many_cells.h"
+
+#include "simplifier/external_spheres.h"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <string>
+
+namespace spherule::internal {
+namespace {
+
+// What is advised has some room.
+constexpr double kMargin = 1.2;
+
+std::string too_many(double count, double edge, double most) {
+  const double larger = kMargin * count / most;
+  std::ostringstream reason;
+  reason << std::setprecision(3) << "too fine for a model of this size: about " << count
+         << " cells with an edge of " << edge << " would be needed, and " << most
+         << " is the most; with a min external diameter " << std::ceil(10.0 * larger) / 10.0
+         << " times as large, or both it and the max error "
+         << std::ceil(10.0 * std::sqrt(larger)) / 10.0
+         << " times, or with the model in parts, memory suffices";
+  if (most < static_cast<double>(ExternalOptions::kMostCells)) {
+    reason << "; max_cells may be larger";
+  }
+  return reason.str();
+}
+
+}  // namespace
+
+TooManyCells::TooManyCells(double count, double edge, std::size_t max_cells)
+    : Error("grid step", too_many(count, edge, static_cast<double>(max_cells))),
+      factor_(count / static_cast<double>(max_cells)) {}
+
+}  // namespace spherule::internal
