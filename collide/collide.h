@@ -78,7 +78,8 @@ struct CollisionResult {
 bool collides(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
               const Pose& world_from_b) noexcept;
 
-// The same test with pairs, limits and cost.
+// Whether two sets of spheres touch, by the test of collides(), with the pairs of spheres that do,
+// up to the limits requested, and the cost of the search.
 CollisionResult collide(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
                         const Pose& world_from_b, const CollisionRequest& request = {});
 

@@ -58,9 +58,9 @@ struct Contact {
 std::optional<Contact> deepest_contact(const SphereTree& a, const Pose& world_from_a,
                                        const SphereTree& b, const Pose& world_from_b);
 
-// The same for two covered meshes: none exactly if their collides() is false. Where triangles
-// touch, of all pairs of spheres for which touching_triangles() finds some; otherwise, where one
-// lies inside the other, of all pairs of spheres that touch.
+// The contact of two covered meshes, the deepest up to rounding: none exactly if their collides()
+// is false. Where triangles touch, of all pairs of spheres for which touching_triangles() finds
+// some; otherwise, where one lies inside the other, of all pairs of spheres that touch.
 std::optional<Contact> deepest_contact(const CoveredMesh& a, const Pose& world_from_a,
                                        const CoveredMesh& b, const Pose& world_from_b);
 

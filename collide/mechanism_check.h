@@ -154,9 +154,10 @@ class MechanismCheck {
     std::uint32_t out_of_range;  // is_in_range() does not hold: no answer
   };
 
-  // The same for a block; `confirm` is given the configuration's index, too. Each pointer leads to
-  // as many variables as the frames name. Fast where neighbours in the block differ little; the
-  // scratch remembers contacts from block to block, which changes no answer. Allocates nothing.
+  // Which configurations of a block collide; `confirm`, as collides() of one configuration calls
+  // it, is given the configuration's index, too. Each pointer leads to as many variables as the
+  // frames name. Fast where neighbours in the block differ little; the scratch remembers contacts
+  // from block to block, which changes no answer. Allocates nothing.
   template <class Confirm>
   BlockAnswer collides(std::span<const double* const, kBlock> configurations, Scratch& scratch,
                        Confirm confirm) const {

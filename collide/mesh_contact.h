@@ -133,7 +133,9 @@ inline bool triangles_touch(const CoveredMesh& a, std::int32_t sphere_a, const P
 // moves none of its points by more than that. Otherwise nothing is proved.
 double contact_depth(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
                      const Pose& world_from_b, const TrianglePair& triangles) noexcept;
-// The same of a triangle and a sphere of a set.
+// Lower bound of the penetration depth of a triangle and a sphere of a set: if it is above zero
+// they have a point in common, and still have one after any displacement of one of them that moves
+// none of its points by more than that. Otherwise nothing is proved.
 double contact_depth(const CoveredMesh& a, std::int32_t triangle_a, const Pose& world_from_a,
                      const SphereTree& b, std::int32_t sphere_b, const Pose& world_from_b) noexcept;
 // A triangle under a sphere, and that depth.

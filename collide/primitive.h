@@ -79,7 +79,8 @@ void require_primitive(const Primitive& primitive, const std::string& subject);
 bool collides(const SphereTree& tree, const Pose& world_from_tree, const Primitive& solid,
               const Pose& world_from_solid) noexcept;
 
-// The same with the spheres that touch, limits and cost: in a pair, `a` is the sphere and `b` is 0.
+// Whether a set of spheres and a solid overlap, by the test of collides(), with the spheres that
+// do, up to the limits requested, and the cost: in a pair, `a` is the sphere and `b` is 0.
 CollisionResult collide(const SphereTree& tree, const Pose& world_from_tree, const Primitive& solid,
                         const Pose& world_from_solid, const CollisionRequest& request = {});
 

@@ -33,9 +33,10 @@ namespace spherule {
 bool within(const SolidMesh& a, const Pose& world_from_a, const SolidMesh& b,
             const Pose& world_from_b, double clearance);
 
-// The same of a mesh with its inside and a solid of simple shape. If it is true, the exact distance
-// is larger by at most 1e-9 of the scene, or by more where a triangle lies along a curved surface
-// at nearly that distance and the search for a proof was given up.
+// Whether a mesh with its inside and a solid of simple shape, rigidly placed, come within a
+// clearance of each other. Never false if the exact distance is at most the clearance. If it is
+// true, the exact distance is larger by at most 1e-9 of the scene, or by more where a triangle lies
+// along a curved surface at nearly that distance and the search for a proof was given up.
 bool within(const SolidMesh& a, const Pose& world_from_a, const Primitive& b,
             const Pose& world_from_b, double clearance);
 

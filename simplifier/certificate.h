@@ -78,8 +78,9 @@ struct Certificate {
   // G2: proved upper bound of the protrusion of the spheres over S; absent without external
   // spheres.
   std::optional<double> protrusion_over_simplified_max;
-  // The same for the points of the spheres that lie in a zone, for every zone requested: the
-  // greatest bound of a sphere that may reach into it, 0 if none does.
+  // Proved upper bound of the protrusion over S of the points of the spheres that lie in a zone,
+  // for every zone requested: the greatest bound of a sphere that may reach into it, 0 if none
+  // does.
   std::vector<double> protrusion_in_zones;
   // Proved bounds of the protrusion over |M|; absent if not requested.
   std::optional<Bounds> protrusion_over_mesh;

@@ -34,8 +34,8 @@ namespace spherule {
 // A coarser cover that was fitted to the solid and encloses a finer one.
 struct CoverLevel {
   double max_error = 0.0;  // E of this level
-  // Its spheres, and for every sphere of the next finer level (of the cover itself below the first
-  // level) the sphere that encloses it.
+  // The spheres of this level, and for every sphere of the next finer level (of the cover itself
+  // below the first level) the sphere that encloses it.
   SphereLevel spheres;
   // Proved upper bound of the protrusion over S.
   double protrusion = 0.0;

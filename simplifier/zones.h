@@ -86,9 +86,9 @@ double tightest_error(std::span<const Zone> zones, double max_error);
 // or there twice, a value of a wrong type, a zone that check_zones() refuses.
 std::vector<Zone> read_zones(const std::filesystem::path& path);
 
-// The same from the text of a file, which `subject` names; and the compact text of the zones, from
-// which parse_zones() gets them back bit for bit.
+// Zones from the text of a file as read_zones() reads it, which `subject` names in errors.
 std::vector<Zone> parse_zones(std::string_view text, const std::string& subject);
+// Compact text of the zones, from which parse_zones() gets them back bit for bit.
 std::string zones_text(std::span<const Zone> zones);
 
 }  // namespace spherule

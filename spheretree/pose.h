@@ -59,7 +59,7 @@ class Pose {
   // The rotation matrix, each entry within kRotationEntryError of the exact one.
   const Eigen::Matrix3d& matrix() const { return matrix_; }
 
-  // The same motion as Eigen has it, with the rounded matrix().
+  // This motion as Eigen has it, with the rounded matrix().
   Eigen::Isometry3d isometry() const;
 
   // The error of a mapped point is at most 40 u (|p| + |t|). Proof: of the matrix's error, what
@@ -83,7 +83,7 @@ class Pose {
   Eigen::Matrix3d matrix_ = Eigen::Matrix3d::Identity();
 };
 
-// The same rotation, rounded to nearest, with a quaternion of unit length, so that chains can be
+// The rotation of `q`, rounded to nearest, as a quaternion of unit length, so that chains can be
 // composed without renormalising. Returned as it is where it is unit already, to within 8 u of the
 // squared length. `q` must be finite and not zero.
 Eigen::Quaterniond unit_rotation(const Eigen::Quaterniond& q);

@@ -40,8 +40,8 @@ struct CertificateRecord {
   // Proved upper bounds on the protrusion; absent where it was not requested.
   std::optional<double> protrusion_over_simplified_max = std::nullopt;
   std::optional<double> protrusion_over_mesh_max = std::nullopt;
-  // The same over the simplified solid for the points of the spheres in each zone, in the order of
-  // the zones in the options; empty without zones.
+  // Proved upper bounds of the protrusion over the simplified solid of the points of the spheres in
+  // each zone, in the order of the zones in the options; empty without zones.
   std::vector<double> protrusion_in_zones = {};
   std::size_t sphere_count = 0;  // the number of spheres in the file, checked by both functions
   // Volume of the union of the spheres over the volume of the solid mesh, estimated.

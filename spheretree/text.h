@@ -26,7 +26,8 @@ namespace spherule::internal {
 // next to zero, too.
 std::optional<double> finite_number(std::string_view text);
 
-// The same for a whole number, in digits only, with a minus sign where it is negative.
+// The value of a text that is one whole number and nothing else: digits only, with a minus sign
+// where it is negative. Nothing for other texts and what std::int64_t cannot hold.
 std::optional<std::int64_t> whole_number(std::string_view text);
 
 // The words of a text, apart by blanks, tabs and ends of lines.

@@ -187,7 +187,7 @@ std::size_t collide(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S
   return result.numContacts();
 }
 
-// The same of two objects, where they stand.
+// Whether two objects touch where they stand: collide() of their geometries at their transforms.
 template <class S>
 std::size_t collide(const fcl::CollisionObject<S>* o1, const fcl::CollisionObject<S>* o2,
                     const fcl::CollisionRequest<S>& request, fcl::CollisionResult<S>& result) {
@@ -229,7 +229,7 @@ S distance(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S>& tf1,
   return result.min_distance;
 }
 
-// The same of two objects, where they stand.
+// The distance of two objects where they stand: distance() of their geometries at their transforms.
 template <class S>
 S distance(const fcl::CollisionObject<S>* o1, const fcl::CollisionObject<S>* o2,
            const fcl::DistanceRequest<S>& request, fcl::DistanceResult<S>& result) {
@@ -274,7 +274,7 @@ S continuousCollide(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S
   return result.time_of_contact;
 }
 
-// The same of two objects, from where they stand.
+// continuousCollide() of the geometries of two objects, from where they stand to the given ends.
 template <class S>
 S continuousCollide(const fcl::CollisionObject<S>* o1, const fcl::Transform3<S>& tf1_end,
                     const fcl::CollisionObject<S>* o2, const fcl::Transform3<S>& tf2_end,

@@ -38,8 +38,8 @@ Pose from_fcl(const fcl::Transform3<S>& world_from_body) {
   return Pose::from_isometry(world_from_body.template cast<double>());
 }
 
-// And back, rounded to nearest: each entry of the matrix errs by kRotationEntryError, in single
-// precision by 2^-24 more.
+// A pose as FCL has it, rounded to nearest: each entry of the matrix errs by kRotationEntryError,
+// in single precision by 2^-24 more.
 template <class S = double>
 fcl::Transform3<S> to_fcl(const Pose& world_from_body) {
   return world_from_body.isometry().template cast<S>();

@@ -54,9 +54,9 @@ CoveredPart cover_part(const TriangleMesh& mesh, const ModelOptions& options = {
 // A covered part as geometry of FCL: its objects and managers of the broad phase hold it as any
 // other, and the functions of this namespace answer for it. Immutable; threads may share it.
 //
-// Its boxes, by which FCL's managers cull, hold the spheres wherever the body is at most 100 times
-// SphereTree::reach() away from the origin of the world. Beyond, FCL's own rounding of a box
-// counts.
+// The boxes of a part, by which FCL's managers cull, hold its spheres wherever the body is at most
+// 100 times SphereTree::reach() away from the origin of the world. Beyond, FCL's own rounding of a
+// box counts.
 //
 // FCL's own collide() and distance() do not know spheres and would answer "free" for lack of a
 // function. So getObjectType(), which they call first, throws Error.

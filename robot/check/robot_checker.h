@@ -155,13 +155,13 @@ class RobotChecker {
   // are enforced.
   bool check_config(std::span<const double> configuration, Scratch& scratch) const;
 
-  // The same for many, which lie one behind the other: free[i] is 1 if the i-th is free, otherwise
-  // 0. Throws Error also if there are not variable_count() numbers for every answer; after an Error
-  // the answers mean nothing.
+  // check_config() for many configurations, which lie one behind the other: free[i] is 1 if the
+  // i-th is free, otherwise 0. Throws Error also if there are not variable_count() numbers for
+  // every answer; after an Error the answers mean nothing.
   void check_configs(std::span<const double> configurations, Scratch& scratch,
                      std::span<std::uint8_t> free) const;
-  // On several threads, one for each scratch, of which the caller's is one: the same answers, and
-  // the same Error. Throws Error, too, if there is no scratch. Allocates.
+  // check_configs() on several threads, one for each scratch, of which the caller's is one: the
+  // same answers, and the same Error. Throws Error, too, if there is no scratch. Allocates.
   void check_configs(std::span<const double> configurations, std::span<Scratch> scratches,
                      std::span<std::uint8_t> free) const;
 
@@ -177,9 +177,9 @@ class RobotChecker {
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, Scratch& scratch,
                         const EdgeRequest& request = {}) const;
 
-  // The same for many, each from from[i] to to[i], which lie one behind the other: the edges of a
-  // path of n configurations are those from the first n - 1 to the last n - 1. One thread for each
-  // scratch, as above.
+  // check_edge() for many motions, each from from[i] to to[i], which lie one behind the other: the
+  // edges of a path of n configurations are those from the first n - 1 to the last n - 1. One
+  // thread for each scratch, as above.
   std::vector<EdgeResult> check_edges(std::span<const double> from, std::span<const double> to,
                                       std::span<Scratch> scratches,
                                       const EdgeRequest& request = {}) const;

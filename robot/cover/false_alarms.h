@@ -123,8 +123,9 @@ FalseAlarms measure_false_alarms(const RobotModel& robot, std::span<const LinkBo
                                  const AllowedCollisions& allowed, const LinkPairs* proofs,
                                  const FalseAlarmOptions& options = {});
 
-// The same among given postures, one configuration behind the other. Throws Error, too, if these
-// are not whole configurations, and as forward_kinematics().
+// How many of the given postures, one configuration behind the other, are false alarms, in the
+// sense of the function above without postures of its own. Throws Error, too, if these are not
+// whole configurations, and as forward_kinematics().
 FalseAlarms measure_false_alarms(const RobotModel& robot, std::span<const LinkBody> bodies,
                                  const AllowedCollisions& allowed, const LinkPairs* proofs,
                                  std::span<const double> postures,

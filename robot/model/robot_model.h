@@ -94,9 +94,9 @@ class RobotModel {
   // use and replaced), and limits that are not finite or reversed.
   int add_link(std::string name, std::string_view parent_link, Joint joint);
 
-  // The same with a joint of a RobotModel, whose axis and origin are unit: they are taken bit for
-  // bit, so that a robot that is made again of its links, joints and mimics is the same. Throws
-  // Error, too, where they are not unit.
+  // Adds a link as add_link() does, with a joint of a RobotModel, whose axis and origin are unit:
+  // they are taken bit for bit, so that a robot that is made again of its links, joints and mimics
+  // is the same. Throws Error, too, where they are not unit.
   int add_copied_link(std::string name, std::string_view parent_link, Joint joint);
 
   // From now on `joint` stands at multiplier * (position of `other`) + offset. `other` may mimic a

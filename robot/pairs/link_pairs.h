@@ -150,9 +150,10 @@ class LinkPairs {
 LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
                            const LinkPairOptions& options = {});
 
-// The same for a tool that is fixed to a link, or what a gripper holds: the pairs of its link with
-// all others, in which the tool alone stands for that link. `bodies` are those of the links; those
-// of links that do not move against the tool are of no matter. Throws Error as above.
+// Proves what it can of a tool that is fixed to a link, or of what a gripper holds, as
+// prove_link_pairs() does: of the pairs of its link with all others, in which the tool alone stands
+// for that link. `bodies` are those of the links; those of links that do not move against the tool
+// are of no matter. Throws Error as above.
 LinkPairs prove_attached_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
                                const LinkBody& tool, const LinkPairOptions& options = {});
 

@@ -51,7 +51,8 @@ struct JudgedPair {
   // "Default", "Always" or "User", which are decisions. Any other reason, such as "Never" or
   // "Adjacent", counts as that statement, and so does a missing one.
   bool is_wrong = false;
-  // The same statement, of links for which neither a contact nor a proof was found (kUnknown).
+  // The SRDF states that the links do not touch, as for is_wrong, of links for which neither a
+  // contact nor a proof was found (kUnknown).
   bool is_open = false;
 };
 

@@ -60,7 +60,7 @@ struct ConvexHull {
 // extent below 1e-60; if no hull can be proved within max_expansion, or that is not above zero.
 ConvexHull convex_hull(const TriangleMesh& mesh, const ConvexHullOptions& options = {});
 
-// The same of points; errors name `subject`.
+// The convex hull of points, as that of the vertices of a mesh; errors name `subject`.
 ConvexHull convex_hull(std::span<const Eigen::Vector3d> points, const ConvexHullOptions& options,
                        const std::string& subject);
 

@@ -33,8 +33,8 @@ struct OctreeSpheresOptions {
 
 // The spheres, as a tree.
 struct OctreeSpheres {
-  // Its spheres() are the spheres around the cubes without halves; its inner nodes are the spheres
-  // around the others, and nothing else.
+  // spheres() of this tree are the spheres around the cubes without halves; the inner nodes are the
+  // spheres around the others, and nothing else.
   SphereTree tree;
   double step = 0.0;  // edge of the smallest cubes
 };
