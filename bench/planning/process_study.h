@@ -26,7 +26,7 @@ struct ProcessStudy {
   std::size_t configurations = 0;
   std::size_t free_configurations = 0;  // for the oracle
   std::size_t free_points = 0;          // for the oracle
-  std::vector<ProcessRow> rows = {};    // ours one a call and many a call, FCL twice
+  std::vector<ProcessRow> rows = {};    // ours in single calls and in batches, FCL twice
 };
 
 // Checks all postures in their order with every engine; of some runs the fastest counts, in

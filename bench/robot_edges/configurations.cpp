@@ -16,7 +16,7 @@ double ConfigurationRow::median_ns() const {
 
 void ConfigurationTimes::print_head() const {
   std::printf(
-      "\none configuration: ns one a call; times as long as that: many a call, confirmed, the "
+      "\none configuration: ns in single calls; times as long as that: in batches, confirmed, the "
       "flat\n"
       "scan, other libraries; of all configurations in contact by FCL or with an obstacle inside "
       "of a link, missed / extra\n"

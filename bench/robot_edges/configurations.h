@@ -36,7 +36,7 @@ struct ConfigurationTimes {
   std::vector<Peer> peers{};
   std::vector<std::uint8_t> truth;  // 1: free, by FCL and by points in solids
 
-  // A row of the table: ns a configuration, times as long as one a call, and verdicts.
+  // A row of the table: ns a configuration, times as long as single calls, and verdicts.
   void print(const char* name) const;
   void print_head() const;
 };

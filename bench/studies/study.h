@@ -24,7 +24,7 @@ struct SizeRow {
   std::size_t spheres = 0;     // all parts together
   double single_ns = 0.0;      // one configuration a call, in path order
   double shuffled_ns = 0.0;    // the same in a random order
-  double batch_ns = 0.0;       // many a call, in path order
+  double batch_ns = 0.0;       // in batches, in path order
   double free_ns = 0.0;        // as single_ns, of the configurations that are free in every size
   double node_tests = 0.0;     // of collide() for each pair of trees up to the first contact
   std::size_t collisions = 0;  // in the whole program
