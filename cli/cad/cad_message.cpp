@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -87,23 +88,29 @@ BodyCopy copy_of(const Message& message) {
                        {t.at(0), t.at(1), t.at(2)})};
 }
 
+std::string to_bytes(const Message& message) {
+  std::string bytes;
+  Message::to_cbor(message, bytes);
+  return bytes;
+}
+
 }  // namespace
 
-std::vector<std::uint8_t> packed(std::span<const CadBody> bodies) {
+std::string packed(std::span<const CadBody> bodies) {
   Message message = Message::array();
   for (const CadBody& body : bodies) {
     Message one = {{"name", body.name}, {"part", to_message(body.part)}};
     if (body.copy) one["copy"] = to_message(*body.copy);
     message.push_back(std::move(one));
   }
-  return Message::to_cbor({{"bodies", std::move(message)}});
+  return to_bytes({{"bodies", std::move(message)}});
 }
 
-std::vector<std::uint8_t> packed_error(const std::string& subject, const std::string& reason) {
-  return Message::to_cbor({{"subject", subject}, {"reason", reason}});
+std::string packed_error(const std::string& subject, const std::string& reason) {
+  return to_bytes({{"subject", subject}, {"reason", reason}});
 }
 
-std::vector<CadBody> unpacked(std::span<const std::uint8_t> bytes) {
+std::vector<CadBody> unpacked(std::string_view bytes) {
   const Message message = Message::from_cbor(bytes.begin(), bytes.end());
   if (message.contains("reason")) {
     throw Error(message.at("subject").get<std::string>(), message.at("reason").get<std::string>());

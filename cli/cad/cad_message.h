@@ -3,8 +3,9 @@
 
 #include "simplifier/cad/cad_file.h"
 
-#include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace spherule {
@@ -12,10 +13,10 @@ namespace spherule {
 // What the program that reads CAD files (cad_reader.cpp) sends to the command (cad_process.h), as
 // CBOR: the bodies that were read, every number exactly, or the error that ended the reading.
 
-std::vector<std::uint8_t> packed(std::span<const CadBody> bodies);
-std::vector<std::uint8_t> packed_error(const std::string& subject, const std::string& reason);
+std::string packed(std::span<const CadBody> bodies);
+std::string packed_error(const std::string& subject, const std::string& reason);
 
 // The bodies. Throws the Error that was sent; std::runtime_error if the message is not whole.
-std::vector<CadBody> unpacked(std::span<const std::uint8_t> message);
+std::vector<CadBody> unpacked(std::string_view message);
 
 }  // namespace spherule

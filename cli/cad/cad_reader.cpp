@@ -9,7 +9,6 @@
 #include <charconv>
 #include <csignal>
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -18,7 +17,6 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
-#include <vector>
 
 namespace spherule {
 namespace {
@@ -43,8 +41,8 @@ void limit(long seconds) {
   ::setrlimit(RLIMIT_CORE, &no_core);
 }
 
-std::vector<std::uint8_t> answer(const std::string& function, const std::string& path,
-                                 const CadReadOptions& options) {
+std::string answer(const std::string& function, const std::string& path,
+                   const CadReadOptions& options) {
   try {
     if (function == "bodies") return packed(read_cad_bodies(path, options));
     const CadBody body{.name = "", .part = read_cad(path, options)};
@@ -56,7 +54,7 @@ std::vector<std::uint8_t> answer(const std::string& function, const std::string&
   }
 }
 
-bool write_all(const std::vector<std::uint8_t>& bytes) {
+bool write_all(const std::string& bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t count = ::write(kCadAnswer, bytes.data() + done, bytes.size() - done);

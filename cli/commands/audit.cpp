@@ -104,12 +104,12 @@ std::vector<NextStep> steps_after_leak(const AuditArguments& arguments, double s
   repeat("--scale", arguments.unit.scale, mend);
   repeat("--units", arguments.unit.units, mend);
   repeat("--min-external", arguments.min_external, mend);
-  repeat("--repair", beside(arguments.spheres, ".mended.json"), mend);
+  repeat("--repair", here(arguments.spheres, ".mended.json"), mend);
   std::vector<NextStep> steps = {{std::move(mend), "make them cover"}};
   // `view` has no scale: its page would mix units.
   if (scale == 1.0) {
     steps.push_back({{"view", arguments.models.front(), arguments.spheres, "--leaks", "-o",
-                      beside(arguments.spheres, ".html")},
+                      here(arguments.spheres, ".html")},
                      "see where they leak"});
   }
   return steps;

@@ -77,14 +77,28 @@ void check_repair(const AuditRobotArguments& arguments, const SphereFormatFile& 
   if (is_shrunk) throw Error(arguments.spheres, "spheres with a buffer below 0 are not repaired");
 }
 
+RobotSpheres repaired_spheres(const RobotAuditReport& report) {
+  RobotSpheres spheres = report.file.spheres;
+  spheres.links = report.repair->spheres;
+  return spheres;
+}
+
 // In the format of the file, which is kept but for the spheres.
-void write_repaired(const AuditRobotArguments& arguments, const SphereFormatFile& file,
-                    const RobotRepair& repair) {
-  RobotSpheres spheres = file.spheres;
-  spheres.links = repair.spheres;
-  write_robot_spheres(spheres, file.format,
+void write_repaired(const AuditRobotArguments& arguments, const RobotAuditReport& report) {
+  write_robot_spheres(repaired_spheres(report), report.file.format,
                       {.urdf = arguments.spheres, .original = arguments.spheres},
                       arguments.repaired);
+}
+
+// Of the repaired spheres, where they were requested, otherwise of those audited with their leaks.
+ViewScene page_of(const AuditRobotArguments& arguments, const RobotDescription& robot,
+                  const RobotAuditReport& report, const Json& json) {
+  if (report.repair) {
+    return covered_robot_scene(robot, arguments.geometry, repaired_spheres(report),
+                               arguments.repaired, Json::object());
+  }
+  return covered_robot_scene(robot, arguments.geometry, report.file.spheres, arguments.spheres,
+                             json);
 }
 
 // `view` knows neither --link nor --level, and of files that name no link only those that cannot be
@@ -96,7 +110,7 @@ std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, boo
   if (is_shown && arguments.link.empty() && !arguments.level) {
     std::vector<std::string> view = {"view", arguments.urdf, arguments.spheres};
     repeat_robot_options(arguments.geometry, arguments.packages, view);
-    view.insert(view.end(), {"--leaks", "-o", beside(arguments.spheres, ".html")});
+    view.insert(view.end(), {"--leaks", "-o", here(arguments.spheres, ".html")});
     steps.push_back({std::move(view), "see where they leak"});
   }
   if (is_mendable && arguments.poses.file.empty()) {
@@ -107,7 +121,7 @@ std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, boo
     repeat("--max-error", arguments.max_error, mend);
     repeat("--min-external", arguments.min_external, mend);
     const std::string ending = std::filesystem::path(arguments.spheres).extension().string();
-    repeat("--repair", beside(arguments.spheres, ".mended" + ending), mend);
+    repeat("--repair", here(arguments.spheres, ".mended" + ending), mend);
     steps.push_back({std::move(mend), "make them cover"});
   }
   return steps;
@@ -157,14 +171,13 @@ int audit(const AuditRobotArguments& arguments) {
     report.pairs = pair_kinds(robot, spheres, geometry, arguments.pairs, true);
   }
   if (mend) {
-    write_uninterrupted([&] { write_repaired(arguments, report.file, *report.repair); });
+    write_uninterrupted([&] { write_repaired(arguments, report); });
   }
   const bool needs_json = arguments.json || !arguments.view.empty();
   const Json json = needs_json ? audit_json(report) : Json();
   std::cout << (arguments.json ? to_text(json) : audit_table(report));
   if (!arguments.view.empty()) {
-    write_page(arguments.view,
-               covered_robot_scene(robot, arguments.geometry, spheres, arguments.spheres, json));
+    write_page(arguments.view, page_of(arguments, robot, report, json));
     if (!arguments.json) std::cout << page_line(arguments.view);
   }
   if (report.pairs) {

@@ -29,6 +29,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iostream>
 #include <memory>
@@ -178,6 +179,18 @@ void write_checked(const CheckArguments& arguments, const CheckedScene& checked,
   bar.clear();
 }
 
+// Names the first obstacle that only a scene in millimetres would have where it is.
+void warn_of_far_obstacles(const std::string& file, const RobotScene& scene) {
+  constexpr double kFar = 100.0;
+  for (const std::string& name : scene.obstacles()) {
+    const double away = scene.obstacle(name).world_from_shape.translation().norm();
+    if (away <= kFar) continue;
+    warn(file + ": obstacle " + name + " is " + std::to_string(std::lround(away)) +
+         " m from the origin: lengths in scenes are metres; are these millimetres?");
+    return;
+  }
+}
+
 int check(const CheckArguments& arguments) {
   check_outputs({arguments.view}, {arguments.urdf, arguments.scene, arguments.trajectory.file,
                                    arguments.spheres, arguments.pairs});
@@ -208,6 +221,7 @@ int check(const CheckArguments& arguments) {
   const bool is_whole = spheres.is_whole;
   PreparedScene prepared =
       in_file(arguments.scene, [&] { return prepare(std::move(spheres), scene, options); });
+  warn_of_far_obstacles(arguments.scene, prepared.scene);
   std::shared_ptr<const LinkPairs> proofs;
   if (!arguments.pairs.empty()) {
     proofs = std::make_shared<const LinkPairs>(

@@ -5,6 +5,7 @@
 #include "cli/help/usage_error.h"
 #include "cli/text/exit_code.h"
 #include "spheretree/error.h"
+#include "spheretree/nearest_name.h"
 
 #include <CLI/CLI.hpp>
 
@@ -22,7 +23,7 @@ const CLI::App& inner_command(const CLI::App& around, const std::string& name) {
     if (inner->get_name() == name && !name.empty()) return *inner;
     known.push_back(inner->get_name());
   }
-  throw Error("help", "there is no command '" + name + "'" + meant(nearest_name(name, known)));
+  throw Error("help", "there is no command '" + name + "'" + internal::did_you_mean(name, known));
 }
 
 void print_help(const CLI::App& app, const std::vector<std::string>& names) {

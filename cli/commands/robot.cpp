@@ -142,7 +142,7 @@ std::vector<PostureContact> contacts_in_postures(const RobotDescription& robot,
   AllowedCollisions allowed(model);
   allowed.allow(names_of(spheres.self_collision_ignore));
   std::vector<NamedPosture> postures = group_postures(model, semantics);
-  postures.insert(postures.begin(), rest_posture(model));
+  postures.insert(postures.begin(), zero_posture(model));
   return contacts_in(postures, model, measured.bodies, allowed, measured.pairs);
 }
 
@@ -217,7 +217,9 @@ void print_warnings(const RobotCover& cover, const std::vector<std::string>& wro
 int cover_links(RobotArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   if (arguments.folder.empty()) {
-    arguments.folder = fs::path(arguments.urdf).stem().string() + "-spheres";
+    fs::path name = fs::path(arguments.urdf).stem();
+    if (name.extension() == ".urdf") name = name.stem();  // of NAME.urdf.xacro
+    arguments.folder = name.string() + "-spheres";
   }
   RobotCoverOptions options = arguments.options;
   options.geometry = geometry_named(arguments.geometry);

@@ -28,6 +28,8 @@ class InterruptionHandler {
     action.sa_flags = SA_RESTART;
     for (std::size_t i = 0; i < kInterruptions.size(); ++i) {
       sigaction(kInterruptions[i], &action, &before_[i]);
+      // What the parent has this process ignore stays ignored.
+      if (before_[i].sa_handler == SIG_IGN) sigaction(kInterruptions[i], &before_[i], nullptr);
     }
   }
   ~InterruptionHandler() {

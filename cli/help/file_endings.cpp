@@ -24,10 +24,14 @@ FileEndings endings_for(const std::string& argument) {
   static const FileEndings kModel = joined({mesh_endings(), {"step", "stp", "iges", "igs"}});
   static const FileEndings kSpheres = {"json", "yml", "yaml", "xrdf", "urdf", "srdf"};
   static const std::map<std::string, FileEndings> kOfArguments = {
-      {"mesh", kModel},     {"more", joined({kModel, {"json"}})},
-      {"urdf", {"urdf"}},   {"srdf", {"srdf"}},
-      {"a", {"tree"}},      {"b", {"tree"}},
-      {"scene", {"json"}},  {"trajectory", {"csv", "txt"}},
+      {"mesh", kModel},
+      {"more", joined({kModel, {"json"}})},
+      {"urdf", {"urdf", "xacro"}},
+      {"srdf", {"srdf"}},
+      {"a", {"tree"}},
+      {"b", {"tree"}},
+      {"scene", {"json"}},
+      {"trajectory", {"csv", "txt"}},
       {"spheres", kSpheres}};
   const auto found = kOfArguments.find(argument);
   return found == kOfArguments.end() ? FileEndings{} : found->second;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
 #include <string>
 
 namespace CLI {
@@ -17,13 +16,5 @@ std::string describe_usage_error(const CLI::App& app, const CLI::ParseError& err
 
 // The command that the command line has got to, the application itself at first.
 const CLI::App& command_reached(const CLI::App& app);
-
-// "; did you mean NAME?", or nothing without a name.
-std::string meant(const std::string& name);
-
-// The one of `known` that differs least from `word`, if only a few letters do: one in three, one
-// of two in a name of two, neighbours that are swapped counting as one; or if `word` begins it.
-// Otherwise empty.
-std::string nearest_name(const std::string& word, std::span<const std::string> known);
 
 }  // namespace spherule

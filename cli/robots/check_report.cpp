@@ -183,20 +183,23 @@ const char* verdict_of(const CheckReport& report) {
   return report.is_free() ? "free" : "not proved";
 }
 
-void CheckReport::add(const FoundContact& found) {
-  std::vector<TouchingPair>& list = found.contact.is_proved_free ? proved_free : pairs;
-  const auto known = std::find_if(list.begin(), list.end(), [&](const TouchingPair& pair) {
-    return pair.first.contact.first.name == found.contact.first.name &&
-           pair.first.contact.second.name == found.contact.second.name;
-  });
-  const std::size_t at_start = found.at.fraction == 0.0 ? 1 : 0;
+bool is_same_pair(const FoundContact& a, const FoundContact& b) {
+  return a.contact.first.name == b.contact.first.name &&
+         a.contact.second.name == b.contact.second.name;
+}
+
+void CheckReport::add(const FoundContact& first, const FoundContact& deepest) {
+  std::vector<TouchingPair>& list = first.contact.is_proved_free ? proved_free : pairs;
+  const auto known = std::ranges::find_if(
+      list, [&](const TouchingPair& pair) { return is_same_pair(pair.first, first); });
+  const std::size_t at_start = first.at.fraction == 0.0 ? 1 : 0;
   if (known == list.end()) {
-    list.push_back({1, at_start, found, found});
+    list.push_back({1, at_start, first, deepest});
     return;
   }
   ++known->count;
   known->at_start += at_start;
-  if (found.contact.overlap_depth > known->worst.contact.overlap_depth) known->worst = found;
+  if (deepest.contact.overlap_depth > known->worst.contact.overlap_depth) known->worst = deepest;
 }
 
 void CheckReport::tell_kinds(const RobotModel& robot, const std::vector<PairStatus>& statuses) {
@@ -255,10 +258,8 @@ std::string check_table(const CheckReport& report) {
   if (!report.pairs.empty()) {
     const bool has_kinds = std::any_of(report.pairs.begin(), report.pairs.end(),
                                        [](const TouchingPair& pair) { return !pair.kind.empty(); });
-    // Of a motion only where it first touches is known.
-    const char* const deepest = report.motions ? "deepest first touch at line" : "deepest at line";
     std::vector<std::vector<std::string>> rows = {{"body", "touches", "times", "first at line",
-                                                   deepest, "depth there/mm", "where/m",
+                                                   "deepest at line", "depth there/mm", "where/m",
                                                    has_kinds ? "kind" : ""}};
     for (const TouchingPair& pair : report.pairs) {
       const CheckedContact& worst = pair.worst.contact;

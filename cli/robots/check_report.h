@@ -26,12 +26,15 @@ struct FoundContact {
   CheckedContact contact;
 };
 
+// Whether two contacts are of the same bodies.
+bool is_same_pair(const FoundContact& a, const FoundContact& b);
+
 // Two bodies, or a body and an obstacle, that touch somewhere.
 struct TouchingPair {
   std::size_t count = 0;     // of configurations or motions
   std::size_t at_start = 0;  // of these, where nothing before the contact is free
   FoundContact first;        // on the trajectory
-  FoundContact worst;        // the deepest
+  FoundContact worst;        // the deepest that was found
   std::string kind{};        // of two links with proofs: what is known of them
 };
 
@@ -72,8 +75,9 @@ struct CheckReport {
   bool is_free() const {
     return colliding == 0 && not_proved.empty() && is_whole && !is_out_of_bounds();
   }
-  // Where it belongs.
-  void add(const FoundContact& found);
+  // Counts a configuration or motion in which a pair touches, at first and deepest there.
+  void add(const FoundContact& first, const FoundContact& deepest);
+  void add(const FoundContact& found) { add(found, found); }
   // Says of the pairs of links of what kind they are.
   void tell_kinds(const RobotModel& robot, const std::vector<PairStatus>& statuses);
 };

@@ -47,7 +47,10 @@ SphereRobot read_sphere_robot(const std::string& file, const RobotDescription& r
   };
   warn_of(read.other_shapes, " shapes are no spheres: they are not checked");
   warn_of(read.switched_off, " spheres are switched off: they are not checked");
-  warn_of(read.self_collision_ignore.size(), " pairs of links are not tested against each other");
+  if (!read.self_collision_ignore.empty()) {
+    tell(file + ": " + std::to_string(read.self_collision_ignore.size()) +
+         " of the pairs of links are ignored, as the file says");
+  }
   if (read.collision_buffer != 0.0 || !read.collision_buffers.empty() ||
       !read.self_collision_buffer.empty()) {
     warn(file + ": its buffers are not added; name them as padding in the scene");

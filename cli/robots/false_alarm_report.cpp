@@ -84,13 +84,13 @@ void describe_pairs(const FalseAlarms& alarms, const RobotModel& robot, const Ro
 std::string_view words_for(PairProofs proofs) {
   switch (proofs) {
     case PairProofs::kNever:
-      return "without pairs that never touch";
+      return "where pairs that never touch are tested";
     case PairProofs::kBoxes:
-      return "without boxes proved free";
+      return "where only pairs that never touch are ignored, as cuRobo and MoveIt do";
     case PairProofs::kNone:
       break;
   }
-  return "without any proof";
+  return "where no pair is ignored";
 }
 
 void describe_choice(const MeasuredCover& measured, std::ostream& out) {

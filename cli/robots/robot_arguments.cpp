@@ -11,7 +11,11 @@ namespace spherule {
 namespace {
 
 void add_cover_options(CLI::App& command, RobotArguments& arguments) {
-  command.add_option("urdf", arguments.urdf, "The robot (URDF)")->required()->type_name(kFile);
+  command
+      .add_option("urdf", arguments.urdf,
+                  "The robot (URDF, or .xacro where the program xacro is found)")
+      ->required()
+      ->type_name(kFile);
   command
       .add_option("-o,--output", arguments.folder,
                   "Folder for what is written; it is made if it is not there (default: "

@@ -54,18 +54,15 @@ class TrajectoryCheck {
     });
     report_.motions = count;
     count_proved_free();
+    report_.colliding = static_cast<std::size_t>(
+        std::ranges::count(results, Verdict::kCollision, &EdgeResult::verdict));
     for (std::size_t i = 0; i < count; ++i) {
-      TrajectoryPoint at{.line = trajectory_.lines[i], .to_line = trajectory_.lines[i + 1]};
       if (results[i].verdict == Verdict::kCollision) {
-        ++report_.colliding;
-        at.fraction = results[i].contact_at;
-        explain(checker_.configuration_on_edge(trajectory_.configuration(i),
-                                               trajectory_.configuration(i + 1), at.fraction,
-                                               request.continuous),
-                at);
+        explain_motion(i, results[i].contact_at);
       } else if (results[i].verdict == Verdict::kUnknown) {
-        at.fraction = results[i].free_until;
-        report_.not_proved.push_back(at);
+        report_.not_proved.push_back({.line = trajectory_.lines[i],
+                                      .to_line = trajectory_.lines[i + 1],
+                                      .fraction = results[i].free_until});
       }
     }
     report_.verdicts.motions = std::move(results);
@@ -100,6 +97,37 @@ class TrajectoryCheck {
       report_.add({at, contact});
     }
   }
+
+  // Where a motion first touches, and at places on the rest of it: of every two bodies that touch
+  // there the first and the deepest contact.
+  void explain_motion(std::size_t motion, double contact_at) {
+    std::vector<std::pair<FoundContact, FoundContact>> found;
+    const std::size_t places = std::min(kPlaces, kPlacesInAll / report_.colliding);
+    for (std::size_t k = 0; k <= places; ++k) {
+      const double share = k == 0 ? 0.0 : static_cast<double>(k) / static_cast<double>(places);
+      const TrajectoryPoint at{.line = trajectory_.lines[motion],
+                               .to_line = trajectory_.lines[motion + 1],
+                               .fraction = contact_at + share * (1.0 - contact_at)};
+      const std::vector<double> configuration = checker_.configuration_on_edge(
+          trajectory_.configuration(motion), trajectory_.configuration(motion + 1), at.fraction,
+          options_.edge.continuous);
+      for (const CheckedContact& contact : checker_.explain(configuration, scratches_.front())) {
+        const FoundContact here{at, contact};
+        const auto known = std::ranges::find_if(
+            found, [&](const auto& pair) { return is_same_pair(pair.first, here); });
+        if (known == found.end()) {
+          found.emplace_back(here, here);
+        } else if (contact.overlap_depth > known->second.contact.overlap_depth) {
+          known->second = here;
+        }
+      }
+    }
+    for (const auto& [first, deepest] : found) report_.add(first, deepest);
+  }
+
+  // Of a motion, and of all of them.
+  static constexpr std::size_t kPlaces = 24;
+  static constexpr std::size_t kPlacesInAll = 20000;
 
   const RobotChecker& checker_;
   const Trajectory& trajectory_;

@@ -39,6 +39,10 @@ std::string beside(const std::string& path, const std::string& ending) {
   return std::filesystem::path(path).replace_extension(ending).string();
 }
 
+std::string here(const std::string& path, const std::string& ending) {
+  return beside(std::filesystem::path(path).filename().string(), ending);
+}
+
 void repeat(const std::string& option, const std::string& value, std::vector<std::string>& words) {
   if (!value.empty()) words.insert(words.end(), {option, value});
 }

@@ -19,6 +19,8 @@ std::string describe(const std::vector<NextStep>& steps);
 
 // The name of a file beside `path`: with another ending, ".html" say, in the place of its own.
 std::string beside(const std::string& path, const std::string& ending);
+// The same name in the current folder, where what is made of others' files goes.
+std::string here(const std::string& path, const std::string& ending);
 
 // Adds an option to the words of a command, as it was given to this one, and nothing where it was
 // not (an empty text). Numbers are written so that they are read back without loss.

@@ -13,6 +13,9 @@
 namespace spherule {
 namespace {
 
+// Of a joint's range: closer to a limit it is not at rest.
+constexpr double kMargin = 0.1;
+
 std::vector<LinkBody> bodies_of(std::span<const LinkBody> bodies, int link) {
   std::vector<LinkBody> result;
   std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(result),
@@ -22,11 +25,22 @@ std::vector<LinkBody> bodies_of(std::span<const LinkBody> bodies, int link) {
 
 }  // namespace
 
+NamedPosture zero_posture(const RobotModel& robot) {
+  NamedPosture zero{"the zero posture"};
+  for (const int joint : robot.variable_joints()) {
+    const Joint& moving = robot.joints()[static_cast<std::size_t>(joint)];
+    zero.configuration.push_back(std::clamp(0.0, moving.lower, moving.upper));
+  }
+  return zero;
+}
+
 NamedPosture rest_posture(const RobotModel& robot) {
   NamedPosture rest{"the rest posture"};
   for (const int joint : robot.variable_joints()) {
     const Joint& moving = robot.joints()[static_cast<std::size_t>(joint)];
-    rest.configuration.push_back(std::clamp(0.0, moving.lower, moving.upper));
+    const double margin = kMargin * (moving.upper - moving.lower);
+    const bool is_within = moving.lower + margin < 0.0 && 0.0 < moving.upper - margin;
+    rest.configuration.push_back(is_within ? 0.0 : 0.5 * (moving.lower + moving.upper));
   }
   return rest;
 }
@@ -35,7 +49,7 @@ std::vector<NamedPosture> group_postures(const RobotModel& robot,
                                          const SemanticDescription& semantics) {
   std::vector<NamedPosture> result;
   for (const GroupState& state : semantics.group_states) {
-    NamedPosture posture{state.group + "/" + state.name, rest_posture(robot).configuration};
+    NamedPosture posture{state.group + "/" + state.name, zero_posture(robot).configuration};
     for (const JointState& joint : state.joints) {
       const int index = robot.find_joint(joint.joint);
       const auto& variables = robot.variable_joints();

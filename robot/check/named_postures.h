@@ -10,8 +10,9 @@
 // spherule::RobotModel robot("base");
 // robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kRevolute,
 //                                .lower = 0.5, .upper = 1.0});
+// assert(spherule::zero_posture(robot).configuration[0] == 0.5);  // the limit that is nearest to 0
 // const spherule::NamedPosture rest = spherule::rest_posture(robot);
-// assert(rest.configuration[0] == 0.5);  // the limit that is nearest to 0
+// assert(rest.configuration[0] == 0.75);
 // const spherule::AllowedCollisions allowed(robot);
 // assert(spherule::contacts_in({&rest, 1}, robot, {}, allowed, nullptr).empty());  // no spheres
 // @endcode
@@ -34,10 +35,14 @@ struct NamedPosture {
 };
 
 // Where all variables are zero, or the limit that is nearest to it.
+NamedPosture zero_posture(const RobotModel& robot);
+
+// Where each variable is zero, or, if that is beyond its limits or within a tenth of its range of
+// one, in the middle between them.
 NamedPosture rest_posture(const RobotModel& robot);
 
 // The states of a semantic description's groups, "GROUP/STATE", the other joints as in
-// rest_posture(). What is about joints that the robot has not got, that do not move or follow
+// zero_posture(). What is about joints that the robot has not got, that do not move or follow
 // others, or about several numbers for one joint, is passed over.
 std::vector<NamedPosture> group_postures(const RobotModel& robot,
                                          const SemanticDescription& semantics);

@@ -5,6 +5,7 @@
 #include "robot/pairs/link_pairs.h"
 #include "spheretree/error.h"
 #include "spheretree/moved_from.h"
+#include "spheretree/nearest_name.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -64,6 +65,12 @@ bool RobotScene::is_body(std::string_view name) const {
   return robot_.find_link(name) >= 0 || attached_.find(name) != attached_.end();
 }
 
+std::vector<std::string> RobotScene::body_names() const {
+  std::vector<std::string> names = names_in(attached_);
+  for (const Link& link : robot_.links()) names.push_back(link.name);
+  return names;
+}
+
 void RobotScene::require_free_name(const std::string& name) const {
   if (name.empty()) throw Error("scene", "a name is empty");
   if (is_body(name) || obstacles_.find(name) != obstacles_.end()) {
@@ -73,7 +80,8 @@ void RobotScene::require_free_name(const std::string& name) const {
 
 void RobotScene::require_body(std::string_view name) const {
   if (!is_body(name)) {
-    throw Error(std::string(name), "there is no link or attached object of that name");
+    throw Error(std::string(name), "there is no link or attached object of that name" +
+                                       internal::did_you_mean(name, body_names()));
   }
 }
 
@@ -81,7 +89,10 @@ void RobotScene::require_pair(std::string_view body, std::string_view other) con
   require_body(body);
   if (body == other) throw Error(std::string(body), "it cannot collide with itself");
   if (!is_body(other) && obstacles_.find(other) == obstacles_.end()) {
-    throw Error(std::string(other), "there is no link, attached object or obstacle of that name");
+    std::vector<std::string> names = body_names();
+    for (const std::string& name : obstacles()) names.push_back(name);
+    throw Error(std::string(other), "there is no link, attached object or obstacle of that name" +
+                                        internal::did_you_mean(other, names));
   }
 }
 
@@ -131,7 +142,7 @@ std::vector<std::string> RobotScene::obstacles() const {
 void RobotScene::attach(std::string name, std::string_view link,
                         std::shared_ptr<const SphereTree> tree, const Pose& link_from_object) {
   require_free_name(name);
-  if (robot_.find_link(link) < 0) throw Error("link " + std::string(link), "there is no such link");
+  robot_.require_link(link);
   if (!tree) throw Error(name, "the tree is missing");
   internal::require_content(tree->node_count() > 0, "SphereTree");
   attached_.emplace(std::move(name),

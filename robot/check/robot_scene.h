@@ -200,6 +200,7 @@ class RobotScene {
   class Snapshot;
 
   bool is_body(std::string_view name) const;
+  std::vector<std::string> body_names() const;
   void require_free_name(const std::string& name) const;
   void require_body(std::string_view name) const;
   // That the two can collide: a body, and an obstacle or another body.

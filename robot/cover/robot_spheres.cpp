@@ -5,6 +5,7 @@
 #include "robot/model/internal/link_paths.h"
 #include "robot/model/internal/shared_work.h"
 #include "spheretree/error.h"
+#include "spheretree/nearest_name.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -93,10 +94,33 @@ void check_options(const RobotDescription& robot, const RobotCoverOptions& optio
     const std::string& name = entry.first;
     const auto link = std::find_if(robot.links.begin(), robot.links.end(),
                                    [&](const LinkDescription& l) { return l.name == name; });
-    require(link != robot.links.end(), subject_of(name), "the robot has no such link");
+    std::vector<std::string> names;
+    for (const LinkDescription& known : robot.links) names.push_back(known.name);
+    require(link != robot.links.end(), subject_of(name),
+            "the robot has no such link" + internal::did_you_mean(name, names));
     require(!link_shapes(*link, options.geometry).empty(), subject_of(name),
             "has options and no geometry to cover");
   }
+}
+
+double diagonal_of(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
+  return box.diagonal().norm();
+}
+
+// An E far larger than every link was meant in another unit.
+void require_error_below_size(const std::vector<Task>& tasks, double max_error) {
+  double largest = 0.0;
+  for (const Task& task : tasks) {
+    largest = std::max(largest, diagonal_of(task.mesh));
+  }
+  constexpr double kFar = 10.0;
+  if (max_error <= kFar * largest) return;
+  std::ostringstream reason;
+  reason << max_error << " m is far more than any link is across (" << largest
+         << " m at most): if it was meant in millimetres, it is " << max_error / 1000.0 << " m";
+  throw Error("max error", reason.str());
 }
 
 std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOptions& options,
@@ -118,15 +142,14 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
     task.mesh = *link_mesh(link, {.geometry = options.geometry,
                                   .chord_error = kChordErrorOfError * max_error,
                                   .weld = options.weld});
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& v : task.mesh.vertices) box.extend(v);
-    const double across = box.diagonal().norm();
+    const double across = diagonal_of(task.mesh);
     if (across <= kMostErrorsAcross * max_error) return;
     std::ostringstream reason;
     reason << "is " << across << " m across, too much for a max error of " << max_error
            << " m: are its meshes in millimetres? Then they need a scale of 0.001";
     throw Error(subject_of(link.name), reason.str());
   });
+  require_error_below_size(tasks, options.max_error);
   return tasks;
 }
 

@@ -3,6 +3,7 @@
 
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/nearest_name.h"
 #include "spheretree/parse_json.h"
 #include "spheretree/text.h"
 
@@ -42,8 +43,10 @@ class Value {
   void require_keys(std::initializer_list<std::string_view> keys) const {
     unless(json_.is_object(), "is not an object");
     for (const auto& [key, value] : json_.items()) {
-      unless(std::find(keys.begin(), keys.end(), key) != keys.end(),
-             "the key " + internal::in_quotes(key) + " is not known here");
+      if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+      const std::vector<std::string> known(keys.begin(), keys.end());
+      refuse("the key " + internal::in_quotes(key) + " is not known here" +
+             internal::did_you_mean(key, known));
     }
   }
   bool has(const char* key) const { return json_.contains(key); }

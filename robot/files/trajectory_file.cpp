@@ -4,6 +4,7 @@
 #include "robot/files/internal/text_lines.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/nearest_name.h"
 #include "spheretree/text.h"
 
 #include <algorithm>
@@ -81,7 +82,12 @@ class Reader {
   int variable_of(std::string_view word) const {
     const std::string name(word);
     const int index = robot_.find_joint(name);
-    if (index < 0) refuse("the robot has no joint " + internal::in_quotes(name));
+    if (index < 0) {
+      std::vector<std::string> names;
+      for (const Joint& joint : robot_.joints()) names.push_back(joint.name);
+      refuse("the robot has no joint " + internal::in_quotes(name) +
+             internal::did_you_mean(name, names));
+    }
     const Joint& joint = robot_.joints()[static_cast<std::size_t>(index)];
     if (!joint.moves())
       refuse("joint " + internal::in_quotes(name) + " is fixed and has no position");

@@ -43,17 +43,21 @@ struct UrdfOptions {
 // then for each joint below it, in the order of the file, what hangs on it. Inertias, materials and
 // whatever else the file holds are not examined.
 //
+// A file whose name ends in .xacro is given to the program `xacro`, without arguments, and what
+// that writes is read in its place; lines that errors name are then lines of that.
+//
 // Mesh files are named package://PACKAGE/..., file://..., or by a path from the URDF file's folder;
 // they must exist, as far as the options require it, and are not read. An axis that is not given is
 // (1, 0, 0), and a limit 0. Of a fixed joint, axis, limits and mimic mean nothing.
 //
 // Throws Error, whose subject is the file and whose reason names the line where there is one: for a
-// file that cannot be read, is no URDF or needs xacro first; a number that is malformed or not
-// finite, and attributes beside those that give a pose, an axis, a mimic or a shape; two origins or
-// shapes where one belongs, other shapes, and shapes without extent; planar and floating joints, a
-// moving joint whose axis is zero or whose limits are missing or reversed, mimics of what does not
-// move or of themselves; names that are not unique, a link below two joints or above itself, none
-// or several roots; and missing meshes and packages.
+// file that cannot be read, is no URDF, needs xacro (under another name), or is one for xacro where
+// that fails or is not found; a number that is malformed or not finite, and attributes beside those
+// that give a pose, an axis, a mimic or a shape; two origins or shapes where one belongs, other
+// shapes, and shapes without extent; planar and floating joints, a moving joint whose axis is zero
+// or whose limits are missing or reversed, mimics of what does not move or of themselves; names
+// that are not unique, a link below two joints or above itself, none or several roots; and missing
+// meshes and packages.
 RobotDescription read_urdf(const std::filesystem::path& path, const UrdfOptions& options = {});
 
 }  // namespace spherule

@@ -216,6 +216,8 @@ SphereFormatFile read_sphere_json(std::string_view text, const std::filesystem::
       reader.gathered.spheres.links.back().spheres = load_spheres(path).spheres;
     } else {
       format = SphereFormat::kSpherule;
+      reader.gathered.unless(*named != "spherule-scene", {},
+                             "is a scene, not spheres (spherule check --view shows it)");
       reader.gathered.unless(*named == kFormat, {}, "has the unknown format " + text_of(*named));
       read_own(document, reader);
     }

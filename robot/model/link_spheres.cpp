@@ -11,9 +11,7 @@ namespace spherule {
 
 RobotModel with_spheres(RobotModel robot, std::span<const LinkSpheres> spheres) {
   for (const LinkSpheres& link : spheres) {
-    if (robot.find_link(link.link) < 0) {
-      throw Error("link " + link.link, "the robot has no such link");
-    }
+    robot.require_link(link.link);
     if (!link.spheres.empty()) {
       robot.attach(link.link, std::make_shared<const SphereTree>(build_tree(link.spheres)));
     }

@@ -4,6 +4,7 @@
 #include "collide/kernels/check_cache.h"
 #include "spheretree/error.h"
 #include "spheretree/moved_from.h"
+#include "spheretree/nearest_name.h"
 
 #include <cmath>
 #include <numbers>
@@ -145,8 +146,7 @@ void RobotModel::number_variables() {
 }
 
 void RobotModel::attach(std::string_view link, std::shared_ptr<const SphereTree> tree) {
-  const int index = find_link(link);
-  if (index < 0) throw Error("link " + std::string(link), "there is no such link");
+  const int index = require_link(link);
   if (!tree) throw Error("link " + std::string(link), "the tree to attach is null");
   internal::require_content(tree->node_count() > 0, "SphereTree");
   links_[static_cast<std::size_t>(index)].trees.push_back(std::move(tree));
@@ -155,6 +155,15 @@ void RobotModel::attach(std::string_view link, std::shared_ptr<const SphereTree>
 int RobotModel::find_link(std::string_view name) const {
   const auto found = link_index_.find(name);
   return found == link_index_.end() ? -1 : found->second;
+}
+
+int RobotModel::require_link(std::string_view name) const {
+  const int index = find_link(name);
+  if (index >= 0) return index;
+  std::vector<std::string> names;
+  for (const Link& link : links_) names.push_back(link.name);
+  throw Error("link " + std::string(name),
+              "the robot has no such link" + internal::did_you_mean(name, names));
 }
 
 int RobotModel::find_joint(std::string_view name) const {

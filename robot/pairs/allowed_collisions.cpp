@@ -5,6 +5,7 @@
 #include "robot/pairs/internal/proof_scope.h"
 #include "robot/pairs/link_pairs.h"
 #include "spheretree/error.h"
+#include "spheretree/nearest_name.h"
 
 #include <algorithm>
 
@@ -65,7 +66,10 @@ AllowedCollisions::AllowedCollisions(const RobotModel& robot)
 
 int AllowedCollisions::link(std::string_view name) const {
   const auto found = std::find(names_.begin(), names_.end(), name);
-  if (found == names_.end()) throw Error("link " + std::string(name), "there is no such link");
+  if (found == names_.end()) {
+    throw Error("link " + std::string(name),
+                "the robot has no such link" + internal::did_you_mean(name, names_));
+  }
   return static_cast<int>(found - names_.begin());
 }
 

@@ -149,8 +149,9 @@ std::string internal::encode_link_pairs(const LinkPairs& pairs) {
 
 LinkPairs internal::decode_link_pairs(std::string_view bytes, const std::string& name) {
   if (bytes.substr(0, kMagic.size()) != kMagic) {
-    throw Error(name, kMagic.starts_with(bytes) ? "the file is cut short"
-                                                : "is not a file of pairs of links");
+    throw Error(name, kMagic.starts_with(bytes)
+                          ? "the file is cut short"
+                          : "is not a file of pairs of links (NAME.pairs of spherule robot)");
   }
   if (bytes.size() < kMagic.size() + 4 + kChecksumSize) throw Error(name, "the file is cut short");
   const std::string_view content = bytes.substr(0, bytes.size() - kChecksumSize);

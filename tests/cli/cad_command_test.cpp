@@ -11,7 +11,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
 #include <limits>
 #include <random>
 #include <string>
@@ -71,7 +70,7 @@ TEST_F(CadCommand, WhatIsReadIsSentExactly) {
   std::vector<CadBody> sent = read_cad_bodies(folder_ / "all.step", {.scale = 0.001});
   sent.front().part.unproved = {{"face 1", "a reason with a byte that is not UTF-8: \xff"}};
   sent.front().part.reached = std::numeric_limits<double>::denorm_min();
-  const std::vector<std::uint8_t> message = packed(sent);
+  const std::string message = packed(sent);
   const std::vector<CadBody> received = unpacked(message);
   ASSERT_EQ(received.size(), sent.size());
   bool has_copy = false;
@@ -87,7 +86,7 @@ TEST_F(CadCommand, WhatIsReadIsSentExactly) {
   }
   EXPECT_TRUE(has_copy);
   for (const std::size_t size : {std::size_t{0}, std::size_t{1}, message.size() - 1}) {
-    EXPECT_THROW(unpacked(std::span(message).first(size)), std::exception) << size;
+    EXPECT_THROW(unpacked(message.substr(0, size)), std::exception) << size;
   }
   try {
     unpacked(packed_error("the subject", "the reason \xfe"));

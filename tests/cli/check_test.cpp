@@ -28,6 +28,13 @@ TEST_F(CheckTest, ConfigurationsOrMotions) {
   EXPECT_EQ(contact["second"]["name"], "wall");
   EXPECT_EQ(contact["second"]["kind"], "obstacle");
 
+  // Not only where the motion first touches: at most 0.0505 deep, where the sphere is on the wall.
+  EXPECT_NEAR(contact["depth"].get<double>(), 0.0, 1e-3);
+  EXPECT_GT(motions["worst_contact"]["depth"], 0.03);
+  EXPECT_LE(motions["worst_contact"]["depth"], 0.0506);
+  EXPECT_GT(motions["worst_contact"]["fraction"], contact["fraction"]);
+  EXPECT_EQ(motions["pairs"][0]["count"], 1);
+
   write("path.csv", "turn,slide\n0,1\n90,0.5\n");
   EXPECT_EQ(checked(0, {"--edges"})["verdict"], "free");
 }
@@ -47,6 +54,34 @@ TEST_F(CheckTest, FirstAndDeepestContacts) {
   EXPECT_NE(table.out.find("collision: 5 configurations, 3 of them collide"), std::string::npos)
       << table.out;
   EXPECT_NE(table.out.find("40.5"), std::string::npos) << table.out;
+}
+
+// What a motion meets behind its first contact is a pair, too.
+TEST_F(CheckTest, AllThatAMotionTouchesIsNamed) {
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "near", "ball": {"radius": 0.1}, "pose": {"position": [-0.5, 0, 0]}},
+    {"name": "far", "ball": {"radius": 0.1}, "pose": {"position": [0.5, 0, 0]}}]})");
+  const json report = checked(1, {"--edges"});
+  ASSERT_EQ(report["pairs"].size(), 2u);
+  for (const std::size_t i : {0, 1}) {
+    const json& pair = report["pairs"][i];
+    EXPECT_EQ(pair["second"], i == 0 ? "near" : "far");
+    EXPECT_EQ(pair["count"], 1);
+    EXPECT_GT(pair["worst_contact"]["depth"], 0.1);
+    EXPECT_NEAR(pair["worst_contact"]["fraction"].get<double>(), i == 0 ? 0.25 : 0.75, 0.03);
+  }
+}
+
+TEST_F(CheckTest, AnObstacleThatIsFarAwayLooksLikeMillimetres) {
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "table", "box": {"size": [600, 800, 50]}, "pose": {"position": [600, 0, 0]}}]})");
+  const Outcome outcome = run(command({}));
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(
+      outcome.err.find("cell.json: obstacle table is 600 m from the origin: lengths in scenes "
+                       "are metres"),
+      std::string::npos)
+      << outcome.err;
 }
 
 TEST_F(CheckTest, GrazingIsNotProved) {
@@ -179,7 +214,8 @@ TEST_F(CheckTest, PairsThatAreLeftOut) {
   write("three.yml", spheres + "self_collision_ignore: {a: [c]}\ncollision_sphere_buffer: 0.01\n");
   const Outcome ignored = run(line);
   EXPECT_EQ(ignored.exit_code, 0) << ignored.out;
-  EXPECT_NE(ignored.err.find("1 pairs of links are not tested"), std::string::npos) << ignored.err;
+  EXPECT_NE(ignored.err.find("1 of the pairs of links are ignored"), std::string::npos)
+      << ignored.err;
   EXPECT_NE(ignored.err.find("its buffers are not added"), std::string::npos) << ignored.err;
   write("three.yml", spheres);
   write("cell.json", scene + R"(, "robot": {"srdf": "three.srdf"}})");

@@ -120,10 +120,21 @@ TEST_F(MessagesTest, NameTheUsersFile) {
   expect_refusal({"check", "cube.urdf", "cell.json", "path.csv", "--spheres", "hand.json"},
                  "spherule: cell.json: arm: there is no link or attached object of that name");
   write("cell.json", R"({"format": "spherule-scene", "version": 1,
+    "allowed_contacts": [{"body": "hnad", "other": "base"}]})");
+  expect_refusal({"check", "cube.urdf", "cell.json", "path.csv", "--spheres", "hand.json"},
+                 "of that name; did you mean hand?");
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstcales": []})");
+  expect_refusal({"check", "cube.urdf", "cell.json", "path.csv", "--spheres", "hand.json"},
+                 "the key 'obstcales' is not known here; did you mean obstacles?");
+  expect_refusal({"robot", "cube.urdf", "-o", "out", "--link", "bsae:max-error=0.01"},
+                 "link 'bsae': the robot has no such link; did you mean base?");
+  expect_refusal({"robot", "cube.urdf", "-o", "out", "--max-error", "20"},
+                 "max error: 20 m is far more than any link is across");
+  write("cell.json", R"({"format": "spherule-scene", "version": 1,
     "attached": [{"name": "tool", "link": "gone", "spheres": {"file": "tool.json"}}]})");
   write_spheres("tool.json", {{0.0, 0.0, 0.0, 0.1}});
   expect_refusal({"check", "cube.urdf", "cell.json", "path.csv", "--spheres", "hand.json"},
-                 "spherule: cell.json: link gone: there is no such link");
+                 "spherule: cell.json: link gone: the robot has no such link");
 }
 
 // A mesh that is not used may be missing.

@@ -150,6 +150,21 @@ TEST_F(OutputTest, InterruptedSearchWritesWhatIsProved) {
   EXPECT_EQ(run({"audit", "box.stl", "out.json"}).exit_code, 0);
 }
 
+// As a shell has programs in the background ignore it.
+TEST_F(OutputTest, WhatTheParentIgnoresStaysIgnored) {
+  const auto before = ::signal(SIGINT, SIG_IGN);
+  const pid_t process =
+      start({"fit", "box.stl", "-o", "out.json", "--max-error", "2", "--seconds", "2"});
+  ::signal(SIGINT, before);
+  for (int i = 0; i < 15; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    kill(process, SIGINT);
+  }
+  const Outcome outcome = finish(process);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
+}
+
 // Interrupted at any moment, a command that writes leaves the old file, or the new one whole.
 TEST_F(OutputTest, InterruptionWhileWriting) {
   std::vector<std::array<double, 4>> many;

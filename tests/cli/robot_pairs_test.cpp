@@ -56,7 +56,7 @@ TEST_F(RobotPairsTest, WithoutProofsSpheresThatTouchAtRestAreAWarning) {
   write("gantry.urdf", gantry("0"));
   const Outcome result = cover({"--proofs", "none"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.err.find("in the rest posture tool and block touch by their spheres alone"),
+  EXPECT_NE(result.err.find("in the zero posture tool and block touch by their spheres alone"),
             std::string::npos)
       << result.err;
   EXPECT_FALSE(exists("out/gantry.pairs"));

@@ -120,7 +120,7 @@ TEST_F(RobotTest, WritesEveryFormatSoThatItReadsBack) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   // No progress bar: not a terminal.
   EXPECT_EQ(result.err,
-            "spherule: warning: in the rest posture finger and base touch, by their meshes, too\n");
+            "spherule: warning: in the zero posture finger and base touch, by their meshes, too\n");
   EXPECT_EQ(files_in("out"),
             (std::vector<std::string>{"arm_1.base.tree", "arm_1.curobo.yml", "arm_1.finger.tree",
                                       "arm_1.foam.json", "arm_1.pairs", "arm_1.report.json",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/internal/xml_file.h"
 
+#include "robot/files/internal/xacro.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "spheretree/text.h"
@@ -155,7 +156,7 @@ void XmlElement::refuse(const std::string& reason) const {
 
 XmlFile::XmlFile(const std::filesystem::path& path, std::string_view tag)
     : name_(path.string()), document_(std::make_unique<tinyxml2::XMLDocument>()) {
-  const std::string text = read_file(path);
+  const std::string text = is_xacro(path) ? xacro_output(path) : read_file(path);
   if (text.find('\0') != std::string::npos) throw Error(name_, "it holds a zero byte");
   if (document_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw Error(name_, "line " + std::to_string(document_->ErrorLineNum()) + ": it is no XML (" +

@@ -62,7 +62,8 @@ class XmlElement {
 
 class XmlFile {
  public:
-  // Throws Error for a file that cannot be read, is no XML, or has another root than `tag`.
+  // Of a file for xacro, what that makes of it. Throws Error for a file that cannot be read, is no
+  // XML, or has another root than `tag`.
   XmlFile(const std::filesystem::path& path, std::string_view tag);
   ~XmlFile();
 

@@ -33,9 +33,16 @@ BoxRobot slide(double lower) {
   return robot;
 }
 
-TEST(NamedPostures, RestIsAtZeroOrTheNearestLimit) {
+TEST(NamedPostures, ZeroIsTheNearestLimitWhereItIsBeyond) {
+  EXPECT_EQ(zero_posture(slide(-1.0).model).configuration, std::vector<double>{0.0});
+  EXPECT_EQ(zero_posture(slide(0.3).model).configuration, std::vector<double>{0.3});
+}
+
+TEST(NamedPostures, RestIsAtZeroOrInTheMiddleWhereThatIsCloseToALimit) {
   EXPECT_EQ(rest_posture(slide(-1.0).model).configuration, std::vector<double>{0.0});
-  EXPECT_EQ(rest_posture(slide(0.3).model).configuration, std::vector<double>{0.3});
+  EXPECT_EQ(rest_posture(slide(-0.12).model).configuration, std::vector<double>{0.0});
+  EXPECT_EQ(rest_posture(slide(-0.1).model).configuration, std::vector<double>{0.45});
+  EXPECT_EQ(rest_posture(slide(0.3).model).configuration, std::vector<double>{0.65});
 }
 
 TEST(NamedPostures, StatesOfGroupsPassOverWhatIsNotThere) {

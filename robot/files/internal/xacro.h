@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace spherule::internal {
+
+// Whether the name of the file says that it is one for the program `xacro`: it ends in .xacro.
+bool is_xacro(const std::filesystem::path& path);
+
+// What `xacro`, as the PATH has it, makes of such a file without arguments. What xacro has to say
+// goes to standard error. Throws Error, naming the file, where there is no such program or it
+// fails.
+std::string xacro_output(const std::filesystem::path& path);
+
+}  // namespace spherule::internal

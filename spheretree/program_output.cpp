@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/program_output.h"
+
+#include "spheretree/error.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <vector>
+
+extern char** environ;
+
+namespace spherule::internal {
+namespace {
+
+// Both ends of a pipe, closed at the end and in programs that are started meanwhile.
+class Pipe {
+ public:
+  explicit Pipe(const std::string& program) {
+    if (::pipe(ends_.data()) != 0) {
+      throw Error(program, std::string("cannot be run: ") + std::strerror(errno));
+    }
+    for (const int end : ends_) ::fcntl(end, F_SETFD, FD_CLOEXEC);
+  }
+  ~Pipe() {
+    ::close(ends_[0]);
+    close_writing();
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  int writing() const { return ends_[1]; }
+  void close_writing() {
+    if (ends_[1] >= 0) ::close(ends_[1]);
+    ends_[1] = -1;
+  }
+
+  std::string read_all() const {
+    std::string bytes;
+    std::vector<char> part(std::size_t{1} << 16U);
+    for (;;) {
+      const ssize_t count = ::read(ends_[0], part.data(), part.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return bytes;
+      bytes.append(part.data(), static_cast<std::size_t>(count));
+    }
+  }
+
+ private:
+  std::array<int, 2> ends_{-1, -1};
+};
+
+}  // namespace
+
+ProgramOutput run_program(const std::string& program, std::span<const std::string> arguments,
+                          int descriptor) {
+  // posix_spawn() takes them as C does, and writes to none of them.
+  std::vector<char*> pointers{const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments) {
+    pointers.push_back(const_cast<char*>(argument.c_str()));
+  }
+  pointers.push_back(nullptr);
+  Pipe pipe(program);
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  if (descriptor != STDOUT_FILENO) {
+    ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  }
+  ::posix_spawn_file_actions_adddup2(&actions, pipe.writing(), descriptor);
+  pid_t child = 0;
+  const int error =
+      ::posix_spawnp(&child, program.c_str(), &actions, nullptr, pointers.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  ProgramOutput result;
+  if (error != 0) {
+    result.not_started = std::strerror(error);
+    return result;
+  }
+  pipe.close_writing();
+  result.bytes = pipe.read_all();
+  while (::waitpid(child, &result.status, 0) < 0 && errno == EINTR) {
+  }
+  return result;
+}
+
+}  // namespace spherule::internal
