@@ -18,14 +18,25 @@ extern char** environ;
 namespace spherule::internal {
 namespace {
 
-// Both ends of a pipe, closed at the end and in programs that are started meanwhile.
+// A pipe whose ends other programs that are started meanwhile do not have, at once where the system
+// can make it so.
+bool make_pipe(std::array<int, 2>& ends) {
+#ifdef __linux__
+  return ::pipe2(ends.data(), O_CLOEXEC) == 0;
+#else
+  if (::pipe(ends.data()) != 0) return false;
+  for (const int end : ends) ::fcntl(end, F_SETFD, FD_CLOEXEC);
+  return true;
+#endif
+}
+
+// Both ends are closed with it.
 class Pipe {
  public:
   explicit Pipe(const std::string& program) {
-    if (::pipe(ends_.data()) != 0) {
+    if (!make_pipe(ends_)) {
       throw Error(program, std::string("cannot be run: ") + std::strerror(errno));
     }
-    for (const int end : ends_) ::fcntl(end, F_SETFD, FD_CLOEXEC);
   }
   ~Pipe() {
     ::close(ends_[0]);

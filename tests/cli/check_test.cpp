@@ -63,7 +63,7 @@ TEST_F(CheckTest, AllThatAMotionTouchesIsNamed) {
     {"name": "far", "ball": {"radius": 0.1}, "pose": {"position": [0.5, 0, 0]}}]})");
   const json report = checked(1, {"--edges"});
   ASSERT_EQ(report["pairs"].size(), 2u);
-  for (const std::size_t i : {0, 1}) {
+  for (const std::size_t i : {0U, 1U}) {
     const json& pair = report["pairs"][i];
     EXPECT_EQ(pair["second"], i == 0 ? "near" : "far");
     EXPECT_EQ(pair["count"], 1);
