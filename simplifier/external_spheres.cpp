@@ -269,14 +269,15 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance, con
 // With steps that are coarser where there would be many cells, and as many cells as are allowed
 // where that is not enough.
 void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
-                     const ExternalOptions& options, ExternalSpheres& result) {
+                     const ExternalOptions& options, std::size_t most_grid_cells,
+                     ExternalSpheres& result) {
   constexpr double kMargin = 1.1;  // of the steps
   const bool is_chosen = options.grid_step == 0.0;
   // With zones, cells are counted only as they are made.
   const bool is_foreseen = options.zones.empty() && !options.keep_concave_edges;
   Steps steps{&options};
-  std::size_t grid_cells =
-      is_chosen ? std::min(options.max_cells, ExternalOptions::kManyCells) : options.max_cells;
+  const std::size_t most = std::min(options.max_cells, most_grid_cells);
+  std::size_t grid_cells = is_chosen ? std::min(most, ExternalOptions::kManyCells) : most;
   for (;;) {
     try {
       return place_reachable(mesh, distance, steps, grid_cells, result);
@@ -284,8 +285,8 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
       if (is_chosen && steps.coarsening < Steps::kCoarsest) {
         const double needed = kMargin * std::sqrt(too_many.factor()) * steps.coarsening;
         steps.coarsening = is_foreseen ? std::min(Steps::kCoarsest, needed) : Steps::kCoarsest;
-      } else if (grid_cells < options.max_cells) {
-        grid_cells = options.max_cells;
+      } else if (grid_cells < most) {
+        grid_cells = most;
       } else {
         throw;
       }
@@ -303,7 +304,8 @@ ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalO
 
 ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
                                                  const MeshDistance& distance,
-                                                 const ExternalOptions& options) {
+                                                 const ExternalOptions& options,
+                                                 std::size_t most_grid_cells) {
   require_rounding_to_nearest();
   check_options(options);
   const ThreadLimit threads(options.threads);
@@ -313,7 +315,7 @@ ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
   result.box = inflated_outwards(distance.box(), result.padding);
   switch (options.placement) {
     case ExternalPlacement::kReachable:
-      place_reachable(mesh, distance, options, result);
+      place_reachable(mesh, distance, options, most_grid_cells, result);
       break;
     case ExternalPlacement::kRandom: {
       internal::RandomPlacement placement = internal::place_random(
@@ -334,21 +336,20 @@ ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
 
 ExternalSpheres internal::place_with_default_diameter(const TriangleMesh& mesh,
                                                       const MeshDistance& distance,
-                                                      ExternalOptions options) {
+                                                      const ExternalOptions& options) {
   constexpr double kMargin = 1.1;
   constexpr double kLargest = 0.1;  // of the diagonal of the box
   const double largest = kLargest * distance.box().diagonal().norm();
   const bool is_foreseen = options.zones.empty() && !options.keep_concave_edges;
-  if (is_foreseen) options.max_cells = std::min(options.max_cells, ExternalOptions::kMostCells / 4);
-  for (;;) {
+  ExternalOptions chosen = options;
+  while (is_foreseen && chosen.min_external_diameter <= largest) {
     try {
-      return place_external_spheres(mesh, distance, options);
+      return place_external_spheres(mesh, distance, chosen, options.max_cells / 4);
     } catch (const TooManyCells& too_many) {
-      const double larger = kMargin * std::sqrt(too_many.factor()) * options.min_external_diameter;
-      if (!is_foreseen || !(larger <= largest)) throw;
-      options.min_external_diameter = larger;
+      chosen.min_external_diameter *= kMargin * std::sqrt(too_many.factor());
     }
   }
+  return place_external_spheres(mesh, distance, options);
 }
 
 }  // namespace spherule

@@ -35,6 +35,7 @@ std::string nearest_name(std::string_view word, std::span<const std::string> kno
   const bool is_short_name = word.size() == 2 && word.front() != '-';
   std::size_t least = (is_short_name ? 1 : word.size() / 3) + 1;
   for (const std::string& name : known) {
+    if (name.size() >= word.size() + least) continue;  // at least as many letters differ
     const std::size_t distance = edit_distance(word, name);
     if (distance < least) {
       least = distance;

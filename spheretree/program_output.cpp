@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <fcntl.h>
 #include <spawn.h>
@@ -79,10 +80,12 @@ ProgramOutput run_program(const std::string& program, std::span<const std::strin
   Pipe pipe(program);
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
+  // In this order, as the pipe may be standard output where that was closed. Where it is the
+  // descriptor already, posix_spawn() keeps it open.
+  ::posix_spawn_file_actions_adddup2(&actions, pipe.writing(), descriptor);
   if (descriptor != STDOUT_FILENO) {
     ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   }
-  ::posix_spawn_file_actions_adddup2(&actions, pipe.writing(), descriptor);
   pid_t child = 0;
   const int error =
       ::posix_spawnp(&child, program.c_str(), &actions, nullptr, pointers.data(), environ);
@@ -94,7 +97,8 @@ ProgramOutput run_program(const std::string& program, std::span<const std::strin
   }
   pipe.close_writing();
   result.bytes = pipe.read_all();
-  while (::waitpid(child, &result.status, 0) < 0 && errno == EINTR) {
+  while (::waitpid(child, &result.status, 0) < 0) {
+    if (errno != EINTR) throw Error(program, "it is not known how it ended");
   }
   return result;
 }

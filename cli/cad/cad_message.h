@@ -16,7 +16,7 @@ namespace spherule {
 std::string packed(std::span<const CadBody> bodies);
 std::string packed_error(const std::string& subject, const std::string& reason);
 
-// The bodies. Throws the Error that was sent; std::runtime_error if the message is not whole.
+// The bodies. Throws the Error that was sent; std::exception if the message is not whole.
 std::vector<CadBody> unpacked(std::string_view message);
 
 }  // namespace spherule

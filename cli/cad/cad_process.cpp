@@ -41,13 +41,21 @@ long most_seconds(const std::filesystem::path& path, const CadReadOptions& optio
   return std::lround(options.chord_error > 0.0 ? kForAChordError * seconds : seconds);
 }
 
-// Throws unless the process ended well.
-void check_end(const internal::ProgramOutput& output, const std::string& subject, long seconds) {
+// Throws if the process was ended by a signal, or could not load its libraries.
+void check_end(const internal::ProgramOutput& output, const std::string& program,
+               const std::string& subject, long seconds) {
+  constexpr int kNoLibrary = 127;  // of the loader
+  if (WIFEXITED(output.status) && WEXITSTATUS(output.status) == kNoLibrary) {
+    throw Error(program, "cannot be run");
+  }
   if (!WIFSIGNALED(output.status)) return;
   const int signal = WTERMSIG(output.status);
   if (signal == SIGXCPU) {
     throw Error(subject, "takes more than " + std::to_string(seconds) +
                              " s of processor time to read: is it broken?");
+  }
+  if (signal == SIGKILL) {
+    throw Error(subject, "reading was killed: is there enough memory, or is it broken?");
   }
   if (signal == SIGINT || signal == SIGTERM) throw Error(subject, "reading was interrupted");
   throw Error(subject, std::string("OpenCASCADE cannot read it (") + ::strsignal(signal) +
@@ -66,7 +74,7 @@ std::vector<CadBody> read_apart(const char* function, const std::filesystem::pat
                                                                 std::to_string(seconds)};
   const internal::ProgramOutput output = internal::run_program(program, arguments, kCadAnswer);
   if (!output.not_started.empty()) throw Error(program, "cannot be run: " + output.not_started);
-  check_end(output, path.string(), seconds);
+  check_end(output, program, path.string(), seconds);
   try {
     return unpacked(output.bytes);
   } catch (const Error&) {

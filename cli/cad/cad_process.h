@@ -12,7 +12,7 @@ namespace spherule {
 // command's modules: OpenCASCADE's readers are not written for hostile files, which may make them
 // crash or go on without end. The process may take 30 s of processor time, and 60 s more for each
 // million bytes of the file; ten times that where a chord error is requested. It ends with this
-// process at the latest.
+// process, or soon after.
 //
 // Throws Error as these functions do, and, naming the file, where the process crashes, takes
 // longer, or runs out of memory.

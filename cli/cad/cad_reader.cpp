@@ -33,6 +33,7 @@ Number number(std::string_view text) {
 void limit(long seconds) {
   const auto most = static_cast<rlim_t>(seconds);
   struct rlimit limits = {};
+  ::signal(SIGXCPU, SIG_DFL);
   if (::getrlimit(RLIMIT_CPU, &limits) == 0 && limits.rlim_cur > most) {
     limits.rlim_cur = most;
     ::setrlimit(RLIMIT_CPU, &limits);

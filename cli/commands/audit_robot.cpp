@@ -94,8 +94,12 @@ void write_repaired(const AuditRobotArguments& arguments, const RobotAuditReport
 ViewScene page_of(const AuditRobotArguments& arguments, const RobotDescription& robot,
                   const RobotAuditReport& report, const Json& json) {
   if (report.repair) {
+    Json links = Json::array();
+    for (const LinkRepair& link : report.repair->links) {
+      links.push_back({{"link", link.link}, {"certificate", to_json(link.certificate)}});
+    }
     return covered_robot_scene(robot, arguments.geometry, repaired_spheres(report),
-                               arguments.repaired, Json::object());
+                               arguments.repaired, {{"links", std::move(links)}});
   }
   return covered_robot_scene(robot, arguments.geometry, report.file.spheres, arguments.spheres,
                              json);
@@ -252,7 +256,8 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
   command->add_flag("--json", arguments->json, "Print the certificates as JSON");
   command
       ->add_option("--view", arguments->view,
-                   "Write a page that shows the robot, the spheres and their leaks (HTML, as view "
+                   "Write a page that shows the robot, the spheres (with --repair those) and their "
+                   "leaks (HTML, as view "
                    "writes it)")
       ->type_name(kFile);
   command

@@ -27,9 +27,9 @@ class InterruptionHandler {
     action.sa_handler = handler;
     action.sa_flags = SA_RESTART;
     for (std::size_t i = 0; i < kInterruptions.size(); ++i) {
-      sigaction(kInterruptions[i], &action, &before_[i]);
+      sigaction(kInterruptions[i], nullptr, &before_[i]);
       // What the parent has this process ignore stays ignored.
-      if (before_[i].sa_handler == SIG_IGN) sigaction(kInterruptions[i], &before_[i], nullptr);
+      if (before_[i].sa_handler != SIG_IGN) sigaction(kInterruptions[i], &action, nullptr);
     }
   }
   ~InterruptionHandler() {

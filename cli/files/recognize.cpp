@@ -99,7 +99,7 @@ FileKind recognize(const std::filesystem::path& path) {
   const char first = start == std::string::npos ? '\0' : bytes[start];
   FileKind kind = FileKind::kUnknown;
   if (first == '{' || first == '[') kind = first_of(kJsonMarks, bytes);
-  if (first == '<') kind = kind_of_markup(bytes);
+  if (first == '<') kind = ending == ".xacro" ? FileKind::kUrdf : kind_of_markup(bytes);
   if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") {
     kind = first_of(kYamlMarks, bytes);
   }

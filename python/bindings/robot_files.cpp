@@ -194,7 +194,8 @@ void bind_robot_files(py::module_& module) {
              py::arg("require_collision_meshes") = true,
              Help("read_urdf(path, *, packages={}, require_visual_meshes=True, "
                   "require_collision_meshes=True)",
-                  "Reads a robot from a URDF file: a RobotDescription. `packages` are the roots of "
+                  "Reads a robot from a URDF file, or from a .xacro file by the program xacro: a "
+                  "RobotDescription. `packages` are the roots of "
                   "package://NAME/... by name.")
                  .c_str());
   module.def(

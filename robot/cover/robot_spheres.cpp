@@ -94,10 +94,12 @@ void check_options(const RobotDescription& robot, const RobotCoverOptions& optio
     const std::string& name = entry.first;
     const auto link = std::find_if(robot.links.begin(), robot.links.end(),
                                    [&](const LinkDescription& l) { return l.name == name; });
-    std::vector<std::string> names;
-    for (const LinkDescription& known : robot.links) names.push_back(known.name);
-    require(link != robot.links.end(), subject_of(name),
-            "the robot has no such link" + internal::did_you_mean(name, names));
+    if (link == robot.links.end()) {
+      std::vector<std::string> names;
+      for (const LinkDescription& known : robot.links) names.push_back(known.name);
+      throw Error(subject_of(name),
+                  "the robot has no such link" + internal::did_you_mean(name, names));
+    }
     require(!link_shapes(*link, options.geometry).empty(), subject_of(name),
             "has options and no geometry to cover");
   }
@@ -109,14 +111,16 @@ double diagonal_of(const TriangleMesh& mesh) {
   return box.diagonal().norm();
 }
 
-// An E far larger than every link was meant in another unit.
-void require_error_below_size(const std::vector<Task>& tasks, double max_error) {
+// Where the E of every link is far larger than the link, it was meant in another unit.
+void require_errors_below_sizes(const std::vector<Task>& tasks) {
+  constexpr double kFar = 10.0;
   double largest = 0.0;
   for (const Task& task : tasks) {
-    largest = std::max(largest, diagonal_of(task.mesh));
+    const double across = diagonal_of(task.mesh);
+    if (task.options.max_error <= kFar * across) return;
+    largest = std::max(largest, across);
   }
-  constexpr double kFar = 10.0;
-  if (max_error <= kFar * largest) return;
+  const double max_error = tasks.front().options.max_error;
   std::ostringstream reason;
   reason << max_error << " m is far more than any link is across (" << largest
          << " m at most): if it was meant in millimetres, it is " << max_error / 1000.0 << " m";
@@ -149,7 +153,7 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
            << " m: are its meshes in millimetres? Then they need a scale of 0.001";
     throw Error(subject_of(link.name), reason.str());
   });
-  require_error_below_size(tasks, options.max_error);
+  require_errors_below_sizes(tasks);
   return tasks;
 }
 

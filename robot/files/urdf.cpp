@@ -3,6 +3,7 @@
 
 #include "robot/files/internal/mesh_path.h"
 #include "robot/files/internal/urdf_tree.h"
+#include "robot/files/internal/xacro.h"
 #include "robot/files/internal/xml_file.h"
 #include "spheretree/error.h"
 #include "spheretree/text.h"
@@ -164,7 +165,7 @@ void add_mimic(RobotModel& robot, const XmlElement& joint) {
 }  // namespace
 
 RobotDescription read_urdf(const std::filesystem::path& path, const UrdfOptions& options) {
-  const internal::XmlFile file(path, "robot");
+  const internal::XmlFile file(path.string(), internal::urdf_text(path), "robot");
   const XmlElement robot = file.root();
   const auto version = robot.attribute("version");
   if (version && *version != "1.0") robot.refuse("only version 1.0 of URDF can be read");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/internal/format_text.h"
+#include "robot/files/internal/xacro.h"
 #include "robot/formats/internal/sphere_documents.h"
 #include "robot/formats/internal/sphere_leaves.h"
 #include "spheretree/atomic_file.h"
@@ -19,9 +20,8 @@ namespace fs = std::filesystem;
 using tinyxml2::XMLDocument;
 using tinyxml2::XMLElement;
 
-// A file that has been read as XML before.
-std::unique_ptr<XMLDocument> parsed(const fs::path& path) {
-  const std::string text = read_file(path);
+// The text of a file that has been read as XML before.
+std::unique_ptr<XMLDocument> parsed(const std::string& text, const fs::path& path) {
   auto document = std::make_unique<XMLDocument>();
   if (document->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw Error(path.string(), std::string("it is no XML (") + document->ErrorName() + ")");
@@ -109,9 +109,10 @@ fs::path folder_of(const fs::path& file) {
 
 std::string sphere_urdf(const RobotSpheres& spheres, const SphereFileContext& context,
                         const fs::path& path) {
-  const XmlFile file(context.urdf, "robot");
+  const std::string text = urdf_text(context.urdf);
+  const XmlFile file(context.urdf.string(), text, "robot");
   const auto leaves = sphere_leaves(file.root());
-  const auto document = parsed(context.urdf);
+  const auto document = parsed(text, context.urdf);
   XMLElement& robot = *document->RootElement();
   std::map<std::string, XMLElement*> links;
   for (auto* link = robot.FirstChildElement("link"); link;

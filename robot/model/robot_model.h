@@ -130,9 +130,9 @@ class RobotModel {
 
   // Index of a link or a joint, or -1; joints without a name are not found.
   int find_link(std::string_view name) const;
+  int find_joint(std::string_view name) const;
   // The index of a link. Throws Error where there is none, with the name that may have been meant.
   int require_link(std::string_view name) const;
-  int find_joint(std::string_view name) const;
 
   // For checkers: what they compute from the robot. Copies of a model share it.
   internal::CheckCache& check_cache() const {

@@ -18,15 +18,17 @@
 
 namespace spherule::internal {
 
+// The grid is made with at most `most_grid_cells`, and made tight with at most options.max_cells.
 ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const MeshDistance& distance,
-                                       const ExternalOptions& options);
+                                       const ExternalOptions& options,
+                                       std::size_t most_grid_cells = ExternalOptions::kMostCells);
 
-// The same where D is a default: if the grid would have too many cells, more than a quarter of what
-// a D that was requested may take, D becomes larger until it has not, up to a tenth of the diagonal
-// of the box. ExternalSpheres::min_external_diameter is the
-// one that was used. With zones of their own D it stays as it is: their cells are not foreseen.
+// Stage 1 where D is a default: if the grid would have more than a quarter of the cells that it may
+// have at most, D becomes larger until it has not. ExternalSpheres::min_external_diameter is the
+// one that was used. Where D would be above a tenth of the diagonal of the box, or there are zones,
+// whose cells are not foreseen, it stays as it is, and the grid may have as many cells as ever.
 ExternalSpheres place_with_default_diameter(const TriangleMesh& mesh, const MeshDistance& distance,
-                                            ExternalOptions options);
+                                            const ExternalOptions& options);
 
 // A solid that is divided into more cells than this for kCover is covered in blocks
 // (cover_blocks.h).

@@ -196,6 +196,18 @@ TEST_F(AuditRobotCommand, WhatIsOfferedForOneMeshWorks) {
   EXPECT_EQ(ours.out.find("spherule view"), ours.out.npos) << ours.out;
 }
 
+TEST_F(AuditRobotCommand, ThePageOfARepairShowsTheRepairedSpheres) {
+  write_robot_spheres(
+      {.robot = "two", .links = {{"base", {{{0, 0, 0}, 0.09}}}, {"arm", {{{0, 0, 0}, 0.05}}}}},
+      SphereFormat::kSpherule, {}, folder_ / "leaky.json");
+  const Outcome mended = run({"audit-robot", "two.urdf", "leaky.json", "--repair", "mended.json",
+                              "--max-error", "0.03", "--view", "page.html"});
+  EXPECT_EQ(mended.exit_code, 0) << mended.err;
+  const std::string page = read("page.html");
+  EXPECT_NE(page.find("mended.json"), std::string::npos);
+  EXPECT_NE(page.find("all links covered (proved)"), std::string::npos);
+}
+
 TEST_F(AuditRobotCommand, RepairKeepsTheFormat) {
   if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   const RobotSpheres leaky{.robot = "two",

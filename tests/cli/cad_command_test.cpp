@@ -120,6 +120,8 @@ TEST_F(CadCommand, AReaderThatCrashesOrNeverEndsIsAnError) {
   expect_end("kill -ABRT $$\n", "spherule: part.step: OpenCASCADE cannot read it (Abort");
   expect_end("kill -XCPU $$\n", "spherule: part.step: takes more than 30 s of processor time");
   expect_end("kill -INT $$\n", "spherule: part.step: reading was interrupted");
+  expect_end("kill -KILL $$\n", "spherule: part.step: reading was killed: is there enough memory");
+  expect_end("exit 127\n", "spherule_cad: cannot be run");
   expect_end("exit 1\n", "spherule: part.step: OpenCASCADE ended before it was read");
   expect_end("echo half an answer >&3\n", "spherule: part.step: OpenCASCADE ended before");
 }

@@ -256,8 +256,8 @@ TEST(ExternalSpheres, WhereCellsAreTooManyADefaultDiameterIsLarger) {
     return internal::place_with_default_diameter(cube_mesh(), distance, by);
   };
   EXPECT_EQ(used(options).min_external_diameter, 0.07);
-  options.max_cells = used(options).nodes_examined / 4;
-  EXPECT_THROW(place_external_spheres(cube_mesh(), options), Error);
+  // A quarter of the cells is for such grids.
+  options.max_cells = used(options).nodes_examined;
   const ExternalSpheres larger = used(options);
   EXPECT_LE(larger.nodes_examined, options.max_cells);
   EXPECT_GT(larger.min_external_diameter, 0.07);
@@ -265,11 +265,24 @@ TEST(ExternalSpheres, WhereCellsAreTooManyADefaultDiameterIsLarger) {
   for (const Sphere& sphere : larger.spheres) {
     EXPECT_GE(sphere.radius, larger.min_external_diameter / 2.0);
   }
+  // As with the same D requested.
+  ExternalOptions same = options;
+  same.min_external_diameter = larger.min_external_diameter;
+  const ExternalSpheres requested = place_external_spheres(cube_mesh(), same);
+  EXPECT_EQ(requested.spheres, larger.spheres);
+  EXPECT_EQ(requested.closing_slack, larger.closing_slack);
   ExternalOptions least = options;
   least.min_external_diameter = larger.min_external_diameter / 1.4;
+  least.max_cells = options.max_cells / 4;
   EXPECT_THROW(place_external_spheres(cube_mesh(), least), Error) << "more than was needed";
-  options.max_cells = 500;
-  EXPECT_THROW(used(options), Error) << "D above a tenth of the diagonal";
+  // Above a tenth of the diagonal D stays as it is, for which all the cells may be taken.
+  options.max_cells = 2000;
+  EXPECT_THROW(used(options), Error);
+  options.min_external_diameter = 0.5;
+  options.max_error = 0.2;
+  options.max_cells = ExternalOptions::kMostCells;
+  options.max_cells = place_external_spheres(cube_mesh(), options).nodes_examined;
+  EXPECT_EQ(used(options).min_external_diameter, 0.5);
 }
 
 TEST(ExternalSpheres, ThePaddingIsTheSumOfTheTwoGivenWhereThereAreTwo) {

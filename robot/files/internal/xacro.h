@@ -9,9 +9,9 @@ namespace spherule::internal {
 // Whether the name of the file says that it is one for the program `xacro`: it ends in .xacro.
 bool is_xacro(const std::filesystem::path& path);
 
-// What `xacro`, as the PATH has it, makes of such a file without arguments. What xacro has to say
-// goes to standard error. Throws Error, naming the file, where there is no such program or it
-// fails.
-std::string xacro_output(const std::filesystem::path& path);
+// The text of a URDF file; of one for xacro, what `xacro`, as the PATH has it, makes of it without
+// arguments. What xacro has to say goes to standard error. Throws Error, naming the file, where it
+// cannot be read, or there is no such program or it fails.
+std::string urdf_text(const std::filesystem::path& path);
 
 }  // namespace spherule::internal

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/internal/xml_file.h"
 
-#include "robot/files/internal/xacro.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "spheretree/text.h"
@@ -9,6 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <tinyxml2.h>
+#include <utility>
 
 namespace spherule::internal {
 namespace {
@@ -155,8 +155,10 @@ void XmlElement::refuse(const std::string& reason) const {
 }
 
 XmlFile::XmlFile(const std::filesystem::path& path, std::string_view tag)
-    : name_(path.string()), document_(std::make_unique<tinyxml2::XMLDocument>()) {
-  const std::string text = is_xacro(path) ? xacro_output(path) : read_file(path);
+    : XmlFile(path.string(), read_file(path), tag) {}
+
+XmlFile::XmlFile(std::string name, const std::string& text, std::string_view tag)
+    : name_(std::move(name)), document_(std::make_unique<tinyxml2::XMLDocument>()) {
   if (text.find('\0') != std::string::npos) throw Error(name_, "it holds a zero byte");
   if (document_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw Error(name_, "line " + std::to_string(document_->ErrorLineNum()) + ": it is no XML (" +

@@ -62,9 +62,10 @@ class XmlElement {
 
 class XmlFile {
  public:
-  // Of a file for xacro, what that makes of it. Throws Error for a file that cannot be read, is no
-  // XML, or has another root than `tag`.
+  // Throws Error for a file that cannot be read, is no XML, or has another root than `tag`.
   XmlFile(const std::filesystem::path& path, std::string_view tag);
+  // Of the text of a file of this name.
+  XmlFile(std::string name, const std::string& text, std::string_view tag);
   ~XmlFile();
 
   XmlElement root() const;
