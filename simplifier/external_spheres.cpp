@@ -339,6 +339,8 @@ ExternalSpheres internal::place_with_default_diameter(const TriangleMesh& mesh,
                                                       const ExternalOptions& options) {
   constexpr double kMargin = 1.1;
   constexpr double kLargest = 0.1;  // of the diagonal of the box
+  // So that the steps are those of the same D where it is requested: an audit finds the same S.
+  static_assert(ExternalOptions::kManyCells <= ExternalOptions::kMostCells / 4);
   const double largest = kLargest * distance.box().diagonal().norm();
   const bool is_foreseen = options.zones.empty() && !options.keep_concave_edges;
   ExternalOptions chosen = options;

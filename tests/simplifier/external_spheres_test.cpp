@@ -265,12 +265,6 @@ TEST(ExternalSpheres, WhereCellsAreTooManyADefaultDiameterIsLarger) {
   for (const Sphere& sphere : larger.spheres) {
     EXPECT_GE(sphere.radius, larger.min_external_diameter / 2.0);
   }
-  // As with the same D requested.
-  ExternalOptions same = options;
-  same.min_external_diameter = larger.min_external_diameter;
-  const ExternalSpheres requested = place_external_spheres(cube_mesh(), same);
-  EXPECT_EQ(requested.spheres, larger.spheres);
-  EXPECT_EQ(requested.closing_slack, larger.closing_slack);
   ExternalOptions least = options;
   least.min_external_diameter = larger.min_external_diameter / 1.4;
   least.max_cells = options.max_cells / 4;
