@@ -6,10 +6,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace spherule {
@@ -171,10 +169,8 @@ std::vector<double> levels_named(const std::string& text) {
 std::string name_of_levels(std::span<const double> levels) {
   std::string text;
   for (const double level : levels) {
-    std::array<char, 32> digits;
-    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), level);
     if (!text.empty()) text += ',';
-    text.append(digits.data(), end);
+    text += internal::number_text(level);
   }
   return text;
 }

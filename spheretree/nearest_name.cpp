@@ -28,8 +28,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return edits[a.size()][b.size()];
 }
 
-}  // namespace
-
 std::string nearest_name(std::string_view word, std::span<const std::string> known) {
   std::string best;
   const bool is_short_name = word.size() == 2 && word.front() != '-';
@@ -48,6 +46,8 @@ std::string nearest_name(std::string_view word, std::span<const std::string> kno
   });
   return longer == known.end() ? std::string() : *longer;
 }
+
+}  // namespace
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> known) {
   // Of long words no one means another, and each pair of letters costs time.

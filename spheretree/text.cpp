@@ -2,6 +2,7 @@
 #include "spheretree/text.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -27,6 +28,11 @@ std::optional<double> finite_number(std::string_view text) {
 
 std::optional<std::int64_t> whole_number(std::string_view text) {
   return parse<std::int64_t>(text);
+}
+
+std::string number_text(double number) {
+  std::array<char, 32> text{};  // the longest takes 24
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
 std::vector<std::string_view> words_of(std::string_view text) {

@@ -10,6 +10,7 @@
 //
 // assert(spherule::internal::finite_number("1.5e3") == 1500.0);
 // assert(!spherule::internal::finite_number("1.5 mm"));
+// assert(spherule::internal::number_text(0.1) == "0.1");
 // assert(spherule::internal::words_of("v 0.5  1 2").size() == 4);
 // @endcode
 
@@ -29,6 +30,9 @@ std::optional<double> finite_number(std::string_view text);
 // The value of a text that is one whole number and nothing else: digits only, with a minus sign
 // where it is negative. Nothing for other texts and what std::int64_t cannot hold.
 std::optional<std::int64_t> whole_number(std::string_view text);
+
+// The shortest decimal text from which finite_number() gets a finite number back, bit for bit.
+std::string number_text(double number);
 
 // The words of a text, apart by blanks, tabs and ends of lines.
 std::vector<std::string_view> words_of(std::string_view text);

@@ -6,9 +6,9 @@
 #include "cli/modules/module.h"
 #include "spheretree/error.h"
 #include "spheretree/program_output.h"
+#include "spheretree/text.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <csignal>
 #include <cstdint>
@@ -26,12 +26,6 @@ namespace {
 constexpr double kSeconds = 30.0;
 constexpr double kSecondsPerByte = 60.0 / 1e6;
 constexpr double kForAChordError = 10.0;
-
-std::string exact(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
 
 // Of processor time.
 long most_seconds(const std::filesystem::path& path, const CadReadOptions& options) {
@@ -66,12 +60,13 @@ std::vector<CadBody> read_apart(const char* function, const std::filesystem::pat
                                 const CadReadOptions& options) {
   const std::string program = module_path("spherule_cad").string();
   const long seconds = most_seconds(path, options);
-  const std::array<std::string, kCadArguments - 1> arguments = {function,
-                                                                path.string(),
-                                                                exact(options.scale),
-                                                                exact(options.chord_error),
-                                                                exact(options.angle),
-                                                                std::to_string(seconds)};
+  const std::array<std::string, kCadArguments - 1> arguments = {
+      function,
+      path.string(),
+      internal::number_text(options.scale),
+      internal::number_text(options.chord_error),
+      internal::number_text(options.angle),
+      std::to_string(seconds)};
   const internal::ProgramOutput output = internal::run_program(program, arguments, kCadAnswer);
   if (!output.not_started.empty()) throw Error(program, "cannot be run: " + output.not_started);
   check_end(output, program, path.string(), seconds);

@@ -4,14 +4,15 @@
 #include "cli/cad/cad_message.h"
 #include "simplifier/cad/cad_file.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <sys/prctl.h>
@@ -21,16 +22,15 @@
 namespace spherule {
 namespace {
 
-template <typename Number>
-Number number(std::string_view text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) std::exit(EXIT_FAILURE);
-  return value;
+// Of an argument that the command wrote.
+double number(std::string_view text) {
+  const std::optional<double> value = internal::finite_number(text);
+  if (!value) std::exit(EXIT_FAILURE);
+  return *value;
 }
 
 // The signal that ends a process at this limit leaves no file of its memory behind.
-void limit(long seconds) {
+void limit(double seconds) {
   const auto most = static_cast<rlim_t>(seconds);
   struct rlimit limits = {};
   ::signal(SIGXCPU, SIG_DFL);
@@ -73,9 +73,8 @@ int main(int argc, char** argv) {
   using namespace spherule;
   if (argc != kCadArguments) return EXIT_FAILURE;
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  limit(number<long>(argv[6]));
-  const CadReadOptions options = {.scale = number<double>(argv[3]),
-                                  .chord_error = number<double>(argv[4]),
-                                  .angle = number<double>(argv[5])};
+  limit(number(argv[6]));
+  const CadReadOptions options = {
+      .scale = number(argv[3]), .chord_error = number(argv[4]), .angle = number(argv[5])};
   return write_all(answer(argv[1], argv[2], options)) ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -32,9 +32,8 @@ std::string describe_extras(const CLI::App& app, const CommandSpecification& com
   }
   if (extras.empty()) return {};
   if (command.commands.empty()) return "unexpected argument: " + extras.front();
-  std::vector<std::string> names;
-  for (const CommandSpecification& inner : command.commands) names.push_back(inner.name);
-  return "unknown command: " + extras.front() + internal::did_you_mean(extras.front(), names);
+  return "unknown command: " + extras.front() +
+         internal::did_you_mean(extras.front(), command.commands, &CommandSpecification::name);
 }
 
 // The first of the examples.

@@ -8,6 +8,7 @@
 #include "cli/pages/view_leaks.h"
 #include "cli/pages/view_pairs.h"
 #include "cli/robots/sphere_input.h"
+#include "robot/check/named_postures.h"
 #include "robot/cover/link_mesh.h"
 #include "robot/formats/sphere_formats.h"
 #include "spheretree/atomic_file.h"
@@ -77,6 +78,8 @@ Json view_robot(const RobotDescription& robot) {
                               {"offset", joint.mimics < 0 ? 0.0 : joint.offset}});
   }
   json["variables"] = robot.model.variable_joints();
+  json["rest"] = rest_posture(robot.model).configuration;
+  json["zero"] = zero_posture(robot.model).configuration;
   return json;
 }
 

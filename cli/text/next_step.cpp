@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/text/next_step.h"
 
-#include <array>
+#include "spheretree/text.h"
+
 #include <cctype>
-#include <charconv>
 #include <filesystem>
 #include <string_view>
 
@@ -49,10 +49,7 @@ void repeat(const std::string& option, const std::string& value, std::vector<std
 
 void repeat(const std::string& option, std::optional<double> value,
             std::vector<std::string>& words) {
-  if (!value) return;
-  std::array<char, 32> text{};  // the longest double takes 24
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), *value).ptr;
-  repeat(option, std::string(text.data(), end), words);
+  if (value) repeat(option, internal::number_text(*value), words);
 }
 
 }  // namespace spherule

@@ -23,26 +23,29 @@ std::vector<LinkBody> bodies_of(std::span<const LinkBody> bodies, int link) {
   return result;
 }
 
+// Each variable where `position` puts its joint.
+template <class Position>
+NamedPosture posture(const char* name, const RobotModel& robot, Position position) {
+  NamedPosture result{name};
+  for (const int joint : robot.variable_joints()) {
+    result.configuration.push_back(position(robot.joints()[static_cast<std::size_t>(joint)]));
+  }
+  return result;
+}
+
 }  // namespace
 
 NamedPosture zero_posture(const RobotModel& robot) {
-  NamedPosture zero{"the zero posture"};
-  for (const int joint : robot.variable_joints()) {
-    const Joint& moving = robot.joints()[static_cast<std::size_t>(joint)];
-    zero.configuration.push_back(std::clamp(0.0, moving.lower, moving.upper));
-  }
-  return zero;
+  return posture("the zero posture", robot,
+                 [](const Joint& joint) { return std::clamp(0.0, joint.lower, joint.upper); });
 }
 
 NamedPosture rest_posture(const RobotModel& robot) {
-  NamedPosture rest{"the rest posture"};
-  for (const int joint : robot.variable_joints()) {
-    const Joint& moving = robot.joints()[static_cast<std::size_t>(joint)];
-    const double margin = kMargin * (moving.upper - moving.lower);
-    const bool is_within = moving.lower + margin < 0.0 && 0.0 < moving.upper - margin;
-    rest.configuration.push_back(is_within ? 0.0 : 0.5 * (moving.lower + moving.upper));
-  }
-  return rest;
+  return posture("the rest posture", robot, [](const Joint& joint) {
+    const double margin = kMargin * (joint.upper - joint.lower);
+    const bool is_within = joint.lower + margin < 0.0 && 0.0 < joint.upper - margin;
+    return is_within ? 0.0 : 0.5 * (joint.lower + joint.upper);
+  });
 }
 
 std::vector<NamedPosture> group_postures(const RobotModel& robot,

@@ -31,6 +31,7 @@ struct Task {
   std::size_t link = 0;  // index
   TriangleMesh mesh;
   SimplifyOptions options;
+  double across = 0.0;  // the diagonal of the mesh's box
 };
 
 std::string subject_of(const std::string& link) {
@@ -95,20 +96,13 @@ void check_options(const RobotDescription& robot, const RobotCoverOptions& optio
     const auto link = std::find_if(robot.links.begin(), robot.links.end(),
                                    [&](const LinkDescription& l) { return l.name == name; });
     if (link == robot.links.end()) {
-      std::vector<std::string> names;
-      for (const LinkDescription& known : robot.links) names.push_back(known.name);
       throw Error(subject_of(name),
-                  "the robot has no such link" + internal::did_you_mean(name, names));
+                  "the robot has no such link" +
+                      internal::did_you_mean(name, robot.links, &LinkDescription::name));
     }
     require(!link_shapes(*link, options.geometry).empty(), subject_of(name),
             "has options and no geometry to cover");
   }
-}
-
-double diagonal_of(const TriangleMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
-  return box.diagonal().norm();
 }
 
 // Where the E of every link is far larger than the link, it was meant in another unit.
@@ -116,9 +110,8 @@ void require_errors_below_sizes(const std::vector<Task>& tasks) {
   constexpr double kFar = 10.0;
   double largest = 0.0;
   for (const Task& task : tasks) {
-    const double across = diagonal_of(task.mesh);
-    if (task.options.max_error <= kFar * across) return;
-    largest = std::max(largest, across);
+    if (task.options.max_error <= kFar * task.across) return;
+    largest = std::max(largest, task.across);
   }
   const double max_error = tasks.front().options.max_error;
   std::ostringstream reason;
@@ -146,10 +139,12 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
     task.mesh = *link_mesh(link, {.geometry = options.geometry,
                                   .chord_error = kChordErrorOfError * max_error,
                                   .weld = options.weld});
-    const double across = diagonal_of(task.mesh);
-    if (across <= kMostErrorsAcross * max_error) return;
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& v : task.mesh.vertices) box.extend(v);
+    task.across = box.diagonal().norm();
+    if (task.across <= kMostErrorsAcross * max_error) return;
     std::ostringstream reason;
-    reason << "is " << across << " m across, too much for a max error of " << max_error
+    reason << "is " << task.across << " m across, too much for a max error of " << max_error
            << " m: are its meshes in millimetres? Then they need a scale of 0.001";
     throw Error(subject_of(link.name), reason.str());
   });

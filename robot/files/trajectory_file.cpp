@@ -83,10 +83,8 @@ class Reader {
     const std::string name(word);
     const int index = robot_.find_joint(name);
     if (index < 0) {
-      std::vector<std::string> names;
-      for (const Joint& joint : robot_.joints()) names.push_back(joint.name);
       refuse("the robot has no joint " + internal::in_quotes(name) +
-             internal::did_you_mean(name, names));
+             internal::did_you_mean(name, robot_.joints(), &Joint::name));
     }
     const Joint& joint = robot_.joints()[static_cast<std::size_t>(index)];
     if (!joint.moves())

@@ -160,10 +160,8 @@ int RobotModel::find_link(std::string_view name) const {
 int RobotModel::require_link(std::string_view name) const {
   const int index = find_link(name);
   if (index >= 0) return index;
-  std::vector<std::string> names;
-  for (const Link& link : links_) names.push_back(link.name);
   throw Error("link " + std::string(name),
-              "the robot has no such link" + internal::did_you_mean(name, names));
+              "the robot has no such link" + internal::did_you_mean(name, links_, &Link::name));
 }
 
 int RobotModel::find_joint(std::string_view name) const {

@@ -40,6 +40,14 @@ TEST(Text, WholeNumber) {
   }
 }
 
+TEST(Text, NumbersAndTheirTexts) {
+  for (const double number : {0.0, 0.1, -1.0 / 3.0, 1e300, 5e-324, 1.7976931348623157e308}) {
+    EXPECT_EQ(finite_number(internal::number_text(number)), number);
+  }
+  EXPECT_EQ(internal::number_text(0.1), "0.1");
+  EXPECT_EQ(internal::number_text(30.0), "30");
+}
+
 TEST(Text, WordsAndQuotes) {
   using Words = std::vector<std::string_view>;
   EXPECT_EQ(internal::words_of(" one\ttwo\r\n\nthree"), (Words{"one", "two", "three"}));

@@ -35,13 +35,8 @@ const frame_of = (link) => link >= 0 ? link_frames[link] : world;
 const variable_joints = robot_data
     ? robot_data.variables.map((index) => robot_data.joints[index]) : [];
 
-// At first and on request: zero where that is well within the limits, otherwise their middle.
-function rest_position(joint) {
-  const [low, high] = [joint.lower, joint.upper];
-  const margin = 0.1 * (high - low);
-  return low + margin < 0 && 0 < high - margin ? 0 : 0.5 * (low + high);
-}
-const configuration = variable_joints.map(rest_position);
+// At first the robot rests.
+const configuration = robot_data ? [...robot_data.rest] : [];
 
 // Called where the robot has moved.
 const pose_listeners = [];

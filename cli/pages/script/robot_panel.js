@@ -45,9 +45,8 @@ function add_joints() {
     return button;
   };
   panel_part("joint-actions").append(
-      action("rest", () => variable_joints.map(rest_position)),
-      action("zero", () => variable_joints.map(
-          (joint) => Math.min(joint.upper, Math.max(joint.lower, 0)))),
+      action("rest", () => robot_data.rest),
+      action("zero", () => robot_data.zero),
       action("random", () => variable_joints.map(
           (joint) => joint.lower + Math.random() * (joint.upper - joint.lower))));
 }
