@@ -39,8 +39,8 @@ struct Axes {
 // Where a line enters or leaves something, and by how much the winding number changes there.
 using Crossing = std::pair<double, int>;
 
-// Length of the line on which the winding number is not 0. The crossings are sorted.
-double length_inside(std::vector<Crossing>& crossings) {
+// Length of the line on which the winding number is not 0.
+double length_inside(std::vector<Crossing> crossings) {
   std::sort(crossings.begin(), crossings.end());
   double length = 0.0;
   int winding = 0;
@@ -69,14 +69,58 @@ void cross_triangle(const std::array<Vector3d, 3>& corners, const Axes& axes, co
   crossings.emplace_back(at / (weights[0] + weights[1] + weights[2]), is_front ? 1 : -1);
 }
 
-void cross_sphere(const Sphere& sphere, const Axes& axes, const Vector2d& line,
-                  std::vector<Crossing>& crossings) {
+struct Interval {
+  double low;
+  double high;
+};
+
+// A set of intervals of a line as disjoint ones. Of external spheres, which overlap by the
+// thousand, nearly each adds nothing, so that sorting all places where they are crossed would take
+// much longer.
+class IntervalUnion {
+ public:
+  void add(const Interval& added) {
+    const auto first =
+        std::lower_bound(parts_.begin(), parts_.end(), added.low,
+                         [](const Interval& part, double at) { return part.high < at; });
+    if (first == parts_.end() || first->low > added.high) {
+      parts_.insert(first, added);
+      return;
+    }
+    first->low = std::min(first->low, added.low);
+    if (first->high >= added.high) return;
+    first->high = added.high;
+    auto next = first + 1;
+    for (; next != parts_.end() && next->low <= first->high; ++next) {
+      first->high = std::max(first->high, next->high);
+    }
+    parts_.erase(first + 1, next);
+  }
+
+  double length() const {
+    double sum = 0.0;
+    for (const Interval& part : parts_) sum += part.high - part.low;
+    return sum;
+  }
+
+ private:
+  std::vector<Interval> parts_;  // in their order along the line
+};
+
+// What of the line lies in the sphere, as far as it is within the limits.
+void add_sphere(const Sphere& sphere, const Axes& axes, const Vector2d& line,
+                const Interval& limits, IntervalUnion& inside) {
   const double squared =
       sphere.radius * sphere.radius - (axes.across(sphere.center) - line).squaredNorm();
   if (!(squared > 0.0)) return;
   const double half = std::sqrt(squared);
-  crossings.emplace_back(sphere.center[axes.along] - half, 1);
-  crossings.emplace_back(sphere.center[axes.along] + half, -1);
+  const double middle = sphere.center[axes.along];
+  const Interval part{std::max(limits.low, middle - half), std::min(limits.high, middle + half)};
+  if (part.low < part.high) inside.add(part);
+}
+
+double sum_of(const std::vector<double>& lengths) {
+  return std::accumulate(lengths.begin(), lengths.end(), 0.0);
 }
 
 // One line through each cell of a grid across the shortest side of a box, so that none of them
@@ -104,16 +148,12 @@ struct Lines {
     return shortest;
   }
 
-  // Of each line, what lies in it; add_crossings(axes, line, crossings) notes where it is crossed.
-  template <typename Cross>
-  std::vector<double> lengths_inside(Cross add_crossings) const {
+  // The sum over all lines of length_on(axes, line).
+  template <typename Length>
+  double sum_of_lengths(Length length_on) const {
     std::vector<double> lengths(places.size());
-    parallel_for(0, places.size(), [&](std::size_t i) {
-      std::vector<Crossing> crossings;
-      add_crossings(axes, places[i], crossings);
-      lengths[i] = length_inside(crossings);
-    });
-    return lengths;
+    parallel_for(0, places.size(), [&](std::size_t i) { lengths[i] = length_on(axes, places[i]); });
+    return sum_of(lengths);
   }
 
   // Calls cross(place) for the places of a row that lie in a box across.
@@ -147,60 +187,62 @@ std::array<Vector3d, 3> corners_of(const TriangleMesh& mesh, const Eigen::Vector
   return {corner(0), corner(1), corner(2)};
 }
 
-double sum_of(const std::vector<double>& lengths) {
-  return std::accumulate(lengths.begin(), lengths.end(), 0.0);
-}
-
 }  // namespace
 
 double estimate_volume_ratio(const TriangleMesh& mesh, std::span<const Sphere> spheres) {
   const Lines through_mesh(box_of(mesh), number_of_lines(mesh.triangles.size()));
-  const std::vector<double> solid = through_mesh.lengths_inside(
-      [&](const Axes& axes, const Vector2d& line, std::vector<Crossing>& crossings) {
-        for (const Eigen::Vector3i& t : mesh.triangles) {
-          cross_triangle(corners_of(mesh, t), axes, line, crossings);
-        }
+  const double solid = through_mesh.sum_of_lengths([&](const Axes& axes, const Vector2d& line) {
+    std::vector<Crossing> crossings;
+    for (const Eigen::Vector3i& t : mesh.triangles) {
+      cross_triangle(corners_of(mesh, t), axes, line, crossings);
+    }
+    return length_inside(std::move(crossings));
+  });
+  const Eigen::AlignedBox3d box = box_of(spheres);
+  const Lines through_spheres(box, number_of_lines(spheres.size()));
+  const double covered =
+      through_spheres.sum_of_lengths([&](const Axes& axes, const Vector2d& line) {
+        const Interval limits{box.min()[axes.along], box.max()[axes.along]};
+        IntervalUnion inside;
+        for (const Sphere& sphere : spheres) add_sphere(sphere, axes, line, limits, inside);
+        return inside.length();
       });
-  const Lines through_spheres(box_of(spheres), number_of_lines(spheres.size()));
-  const std::vector<double> covered = through_spheres.lengths_inside(
-      [&](const Axes& axes, const Vector2d& line, std::vector<Crossing>& crossings) {
-        for (const Sphere& sphere : spheres) cross_sphere(sphere, axes, line, crossings);
-      });
-  return sum_of(covered) * through_spheres.area / (sum_of(solid) * through_mesh.area);
+  return covered * through_spheres.area / (solid * through_mesh.area);
 }
 
 EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh, const ExternalSpheres& external) {
   const Eigen::AlignedBox3d& box = external.box;
   const Lines lines(box, kMaxLines);
   const Axes& axes = lines.axes;
-  const double low = box.min()[axes.along];
-  const double high = box.max()[axes.along];
+  const Interval limits{box.min()[axes.along], box.max()[axes.along]};
   std::vector<double> filled(lines.places.size());
   parallel_for(0, lines.count, [&](std::size_t row) {
-    // External spheres and |M| are disjoint: one or the other changes the winding number.
-    std::vector<std::vector<Crossing>> crossings(lines.count);
-    const auto of = [&](std::size_t place) -> std::vector<Crossing>& {
-      return crossings[place - row * lines.count];
+    struct Line {
+      std::vector<Crossing> crossings;  // of M
+      IntervalUnion outside;            // of the external spheres
     };
+    std::vector<Line> inside(lines.count);
+    const std::size_t first = row * lines.count;
     for (const Eigen::Vector3i& t : mesh.triangles) {
       const std::array<Vector3d, 3> corners = corners_of(mesh, t);
       const Vector3d least = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
       const Vector3d greatest = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
       lines.for_each_in(row, axes.across(least), axes.across(greatest), [&](std::size_t place) {
-        cross_triangle(corners, axes, lines.places[place], of(place));
+        cross_triangle(corners, axes, lines.places[place], inside[place - first].crossings);
       });
     }
     for (const Sphere& sphere : external.spheres) {
       const Vector3d reach = Vector3d::Constant(sphere.radius);
-      lines.for_each_in(
-          row, axes.across(sphere.center - reach), axes.across(sphere.center + reach),
-          [&](std::size_t place) { cross_sphere(sphere, axes, lines.places[place], of(place)); });
+      lines.for_each_in(row, axes.across(sphere.center - reach), axes.across(sphere.center + reach),
+                        [&](std::size_t place) {
+                          add_sphere(sphere, axes, lines.places[place], limits,
+                                     inside[place - first].outside);
+                        });
     }
     for (std::size_t j = 0; j < lines.count; ++j) {
-      for (Crossing& crossing : crossings[j]) {
-        crossing.first = std::clamp(crossing.first, low, high);
-      }
-      filled[row * lines.count + j] = std::max(0.0, high - low - length_inside(crossings[j]));
+      // External spheres and |M| are disjoint.
+      filled[first + j] = std::max(0.0, limits.high - limits.low - inside[j].outside.length() -
+                                            length_inside(std::move(inside[j].crossings)));
     }
   });
   // Two cells side by side: the square of their difference is, on average, at least the variance of

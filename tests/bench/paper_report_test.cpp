@@ -46,7 +46,7 @@ TEST(FewestSpheres, AreThoseOfAnErrorThatNearlyReachesTheLimit) {
 
 TEST(FewestSpheres, GrowUntilTheyCover) {
   if (test::kSanitized) GTEST_SKIP() << "takes a minute under sanitizers";
-  const double limit = kThroughCorners + 0.05;
+  const double limit = kThroughCorners + 0.1;
   const CountEntry found = fewest_spheres(make_cube(1.0), concentric(-0.5), limit);
   EXPECT_GT(found.spheres, 0U);
   EXPECT_LE(found.protrusion, limit);

@@ -21,7 +21,7 @@ namespace {
 
 using test::FittedModel;
 
-constexpr std::size_t kPoses = test::effort(2000, 100);
+constexpr std::size_t kPoses = test::effort(1200, 100);
 
 CoveredMesh covered(const FittedModel& model) {
   return {model.triangles, std::make_shared<const SphereTree>(model.tree)};

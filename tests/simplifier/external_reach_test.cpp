@@ -96,7 +96,7 @@ TEST(ExternalReach, EverySphereCanBeReachedFromOutside) {
       options.placement = placement;
       options.min_external_diameter = 1.2;
       options.grid_step = kSanitized ? 0.4 : 0.3;
-      options.limit = static_cast<std::size_t>(effort(1500, 200));
+      options.limit = static_cast<std::size_t>(effort(800, 200));
       const ExternalSpheres external = place_external_spheres(mesh, options);
       EXPECT_EQ(reached(mesh, external), external.spheres.size());
     }

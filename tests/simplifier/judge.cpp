@@ -37,6 +37,15 @@ Real triangle_distance(const Vector3l& p, const std::array<Vector3l, 3>& t) {
   return above ? std::min(best, std::abs(normal.dot(p - t[0])) / normal.norm()) : best;
 }
 
+// By the triangle's bounding box, which takes a tenth of the time of the distance.
+bool surely_further(const Vector3l& p, const std::array<Vector3l, 3>& triangle, Real distance) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+    if (low - p[axis] > distance || p[axis] - high > distance) return true;
+  }
+  return false;
+}
+
 bool is_in_open_sphere(const Vector3l& p, const Sphere& sphere) {
   const Real radius = sphere.radius;
   return (p - wide(sphere.center)).squaredNorm() < radius * radius;
@@ -60,10 +69,13 @@ Real gap_to_spheres(const Vector3d& p, std::span<const Sphere> spheres) {
 }
 
 Real judged_mesh_distance(const Vector3d& p, const TriangleMesh& mesh) {
+  const Vector3l q = wide(p);
   Real best = std::numeric_limits<Real>::infinity();
   for (const Eigen::Vector3i& t : mesh.triangles) {
     const auto vertex = [&](int k) { return wide(mesh.vertices[static_cast<std::size_t>(t[k])]); };
-    best = std::min(best, triangle_distance(wide(p), {vertex(0), vertex(1), vertex(2)}));
+    const std::array<Vector3l, 3> triangle{vertex(0), vertex(1), vertex(2)};
+    if (surely_further(q, triangle, best)) continue;
+    best = std::min(best, triangle_distance(q, triangle));
   }
   return best;
 }

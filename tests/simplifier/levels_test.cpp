@@ -18,7 +18,7 @@ namespace spherule::test {
 namespace {
 
 // The finest error as a share of the size, with D the same multiple of it.
-constexpr double kFinest = kSanitized ? 0.09 : 0.06;
+constexpr double kFinest = kSanitized ? 0.09 : 0.075;
 
 Simplification fitted_levels(const TriangleMesh& mesh, CoverMethod method = CoverMethod::kCover,
                              double min_radius = 0.0, int threads = 0) {

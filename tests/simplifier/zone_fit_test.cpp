@@ -21,7 +21,7 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
 constexpr double kError = kSanitized ? 0.2 : 0.1;
-constexpr double kZoneError = kSanitized ? 0.04 : 0.01;
+constexpr double kZoneError = kSanitized ? 0.04 : 0.02;
 
 bool holds(const ZoneShape& shape, const Vector3d& p) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {

@@ -81,7 +81,7 @@ TEST(TriangleIntersectsCube, WithinRoundingOfTouching) {
   for (const double offset : {0.0, 1e3, 1e9}) {
     const Vector3d center = Vector3d(offset + 1.0 / 3.0, -offset, 0.7 * offset);
     const Tally tally = compare(
-        effort(10000, 1000),
+        effort(5000, 1000),
         [&] {
           Vector3d normal = random.direction();
           Vector3d corner;
