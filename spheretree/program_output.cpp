@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <cstring>
 #include <fcntl.h>
@@ -67,6 +68,34 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
+// A program that runs. It is ended with this object, unless that waited for its end.
+class Child {
+ public:
+  explicit Child(pid_t id) : id_(id) {}
+  ~Child() {
+    if (has_ended_) return;
+    ::kill(id_, SIGKILL);
+    int status = 0;
+    wait_for_end(status);
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  // How it ended, as waitpid() says; false if that is not known.
+  bool wait_for_end(int& status) {
+    pid_t found = 0;
+    do {
+      found = ::waitpid(id_, &status, 0);
+    } while (found < 0 && errno == EINTR);
+    has_ended_ = true;
+    return found == id_;
+  }
+
+ private:
+  pid_t id_;
+  bool has_ended_ = false;
+};
+
 }  // namespace
 
 ProgramOutput run_program(const std::string& program, std::span<const std::string> arguments,
@@ -86,20 +115,19 @@ ProgramOutput run_program(const std::string& program, std::span<const std::strin
   if (descriptor != STDOUT_FILENO) {
     ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   }
-  pid_t child = 0;
+  pid_t id = 0;
   const int error =
-      ::posix_spawnp(&child, program.c_str(), &actions, nullptr, pointers.data(), environ);
+      ::posix_spawnp(&id, program.c_str(), &actions, nullptr, pointers.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   ProgramOutput result;
   if (error != 0) {
     result.not_started = std::strerror(error);
     return result;
   }
+  Child child(id);
   pipe.close_writing();
   result.bytes = pipe.read_all();
-  while (::waitpid(child, &result.status, 0) < 0) {
-    if (errno != EINTR) throw Error(program, "it is not known how it ended");
-  }
+  if (!child.wait_for_end(result.status)) throw Error(program, "it is not known how it ended");
   return result;
 }
 

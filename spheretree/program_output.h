@@ -28,7 +28,9 @@ struct ProgramOutput {
 // Runs a program, looked for on the PATH unless its name has a slash, with these arguments, until
 // it ends, and returns what it writes to `descriptor`: to its standard output (1), or to another (3
 // or above), and standard output is discarded. Standard input and error are those of this process.
-// May be called from several threads. Throws Error where there can be no pipe.
+// May be called from several threads. Throws Error where there can be no pipe, and where it is not
+// known how the program ended (SIGCHLD is ignored); std::bad_alloc where its output takes more
+// memory than there is. No process is left behind in any case.
 ProgramOutput run_program(const std::string& program, std::span<const std::string> arguments,
                           int descriptor);
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/collide/counting_new.h"
 
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
@@ -8,14 +11,16 @@ namespace spherule::test {
 
 int allocations = 0;
 bool exhausted = false;
+std::size_t most_bytes = SIZE_MAX;
 
 }  // namespace spherule::test
 
 namespace {
 
 void* allocate(std::size_t size) {
-  ++spherule::test::allocations;
-  return spherule::test::exhausted ? nullptr : std::malloc(size);
+  ++std::atomic_ref(spherule::test::allocations);
+  const bool is_refused = spherule::test::exhausted || size > spherule::test::most_bytes;
+  return is_refused ? nullptr : std::malloc(size);
 }
 
 }  // namespace
