@@ -11,9 +11,12 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -52,7 +55,6 @@ void check_options(const SimplifyOptions& options) {
   check("min radius", options.min_radius);
   check("min internal diameter", options.min_internal_diameter);
   check("seconds", options.seconds);
-  check_phase(options);
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   if (options.seed > kLargest) throw Error("seed", "must be below 2^63");
 }
@@ -98,26 +100,52 @@ void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh) {
   }
 }
 
-Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
-  validate(mesh, "mesh");
-  check_options(options);
-  const internal::ThreadLimit threads(options.threads);
-  Simplification result;
+SimplifiedSolid internal::simplified_solid(const TriangleMesh& mesh, const MeshDistance& distance,
+                                           const SimplifyOptions& options, std::size_t max_cells) {
+  SimplifiedSolid result;
   SimplifyOptions& used = result.options = options;
   complete_levels(used);
   complete_lengths(used, mesh);
   check_zones(used.zones, used.max_error,
               used.external == ExternalPlacement::kNone ? std::numeric_limits<double>::infinity()
                                                         : used.min_external_diameter);
+  ExternalOptions stage1 = external_options(used);
+  stage1.max_cells = max_cells;
+  result.external = options.min_external_diameter == 0.0
+                        ? place_with_default_diameter(mesh, distance, stage1)
+                        : place_external_spheres(mesh, distance, stage1);
+  result.larger_diameter = result.external.min_external_diameter > used.min_external_diameter;
+  used.min_external_diameter = result.external.min_external_diameter;
+  return result;
+}
+
+SimplifiedSolid simplified_solid(const TriangleMesh& mesh, const SimplifyOptions& options,
+                                 std::size_t max_cells) {
+  validate(mesh, "mesh");
+  check_options(options);
+  const internal::ThreadLimit threads(options.threads);
+  return internal::simplified_solid(mesh, MeshDistance(mesh), options, max_cells);
+}
+
+Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
+  return internal::simplify(mesh, options, ExternalOptions::kMostCells);
+}
+
+Simplification internal::simplify(const TriangleMesh& mesh, const SimplifyOptions& options,
+                                  std::size_t max_cells) {
+  validate(mesh, "mesh");
+  check_options(options);
+  check_phase(options);
+  const internal::ThreadLimit threads(options.threads);
 
   const internal::Stopwatch external_time;
   const MeshDistance distance(mesh);
-  result.external =
-      options.min_external_diameter == 0.0
-          ? internal::place_with_default_diameter(mesh, distance, external_options(used))
-          : internal::place_external_spheres(mesh, distance, external_options(used));
-  result.larger_diameter = result.external.min_external_diameter > used.min_external_diameter;
-  used.min_external_diameter = result.external.min_external_diameter;
+  SimplifiedSolid solid = internal::simplified_solid(mesh, distance, options, max_cells);
+  Simplification result;
+  result.external = std::move(solid.external);
+  result.larger_diameter = solid.larger_diameter;
+  result.options = std::move(solid.options);
+  const SimplifyOptions& used = result.options;
   result.times.external = external_time.seconds();
 
   const internal::Stopwatch cover_time;

@@ -88,6 +88,14 @@ struct SimplifyOptions {
   std::stop_token stop = {};                        // CoverOptions::stop, of the levels, too
 };
 
+// S, as stage 1 of simplify() makes it.
+struct SimplifiedSolid {
+  ExternalSpheres external;
+  SimplifyOptions options;  // as used, the defaults filled in
+  // D was to be chosen, and is more than 4 E (SimplifyOptions::min_external_diameter).
+  bool larger_diameter = false;
+};
+
 // Wall-clock seconds of the parts.
 struct SimplifyTimes {
   double external = 0.0;
@@ -108,13 +116,21 @@ struct Simplification {
   SimplifyTimes times;
 };
 
-// Fills in E and D where they are 0, for this mesh.
+// Fills in E and D where they are 0, for this mesh: 1 % of its box diagonal, and 4 E. Stage 1 may
+// choose more than that for D (simplified_solid()).
 void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh);
 
 // Both stages and the certificate: the function that most users call. The certificate comes from a
 // second search, on the spheres returned, whatever the fit found out about them.
 // Throws Error for a mesh that validate() refuses and for options out of range.
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
+
+// Stage 1 as simplify() runs it: the S of these options, by the same choice of E and D where they
+// are 0. The grid has at most `max_cells` cells (ExternalOptions::max_cells), on which a D that is
+// chosen, and steps, may depend. Throws Error as simplify(), but not for the stage 2 method, which
+// is not used here.
+SimplifiedSolid simplified_solid(const TriangleMesh& mesh, const SimplifyOptions& options,
+                                 std::size_t max_cells = ExternalOptions::kMostCells);
 
 // Stage 2 as simplify() runs it: by the stage 2 method, where there is one, else by `method`. E
 // must be filled in. Errors as of cover() or the method; with the subject "method" for one

@@ -4,12 +4,14 @@
 #include "cli/files/model_file.h"
 #include "cli/files/model_unit.h"
 #include "cli/files/output.h"
+#include "cli/files/result_warnings.h"
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
 #include "cli/parts/audit_bodies.h"
 #include "cli/parts/audit_proof.h"
 #include "cli/text/exit_code.h"
 #include "cli/text/json.h"
+#include "cli/text/message.h"
 #include "cli/text/next_step.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
@@ -84,7 +86,6 @@ Repaired repaired(const AuditArguments& arguments, const ModelFile& model,
   result.file = {result.repair.spheres, record(result.certificate),
                  option_record(options, reading.scale)};
   store_reading(reading, model, result.file);
-  result.file.options.erase("levels");
   result.file.options["repair-max-error"] = result.repair.max_error;
   return result;
 }
@@ -198,14 +199,21 @@ int audit(const AuditArguments& arguments) {
 
   options.progress = bar.callback();
   const bool has_diameter = take_min_external(arguments.min_external, options);
-  if (mend) {
+  std::optional<SolidProof> proof;
+  bool has_larger_diameter = false;
+  const auto place = [&] {
+    if (!mend) {
+      proof.emplace(mesh, options, has_diameter || file.options.contains("min-external"));
+      return;
+    }
     // What is added or grown needs a solid to keep to.
     if (options.max_error == 0.0) options.max_error = arguments.max_error.value_or(0.0);
-    complete_lengths(options, mesh);
-  }
-  const bool against_solid = mend || has_diameter || file.options.contains("min-external");
-  std::optional<SolidProof> proof;
-  const auto place = [&] { proof.emplace(mesh, options, against_solid); };
+    options.levels.clear();
+    SimplifiedSolid solid = simplified_solid(mesh, options);
+    options = std::move(solid.options);
+    proof.emplace(options, std::move(solid.external));
+    has_larger_diameter = solid.larger_diameter;
+  };
   has_diameter ? place() : blaming_file(arguments, place);
   const std::optional<ExternalSpheres>& external = proof->external();
   const Certificate certificate = certify(mesh, file.spheres, proof->options());
@@ -216,6 +224,9 @@ int audit(const AuditArguments& arguments) {
   }
   bar.clear();
   print(arguments, mesh, file, reading.scale, certificate, external, mended);
+  if (has_larger_diameter) {
+    warn(arguments.models.front() + ": " + larger_diameter_warning(options.min_external_diameter));
+  }
   const bool covered = (mended ? mended->certificate : certificate).covered;
   return covered && !(model.cad && !model.cad->proved) ? kYes : kNo;
 }
@@ -246,8 +257,8 @@ void add_audit(CLI::App& app, int& exit_code) {
       command
           ->add_option("--repair", arguments->repaired,
                        "Where the spheres go (JSON), grown and with others added so that they "
-                       "cover; exit 0 then says that these do. Without D anywhere it is 4 E, E "
-                       "being --max-error or 1 % of the box diagonal")
+                       "cover; exit 0 then says that these do. Without D anywhere it is chosen as "
+                       "fit does, E being --max-error or 1 % of the box diagonal")
           ->type_name(kFile);
   arguments->lengths
       .add_positive(*command, "--max-error", arguments->max_error,

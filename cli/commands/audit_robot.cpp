@@ -131,6 +131,10 @@ std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, boo
   return steps;
 }
 
+void warn_of_link(const std::string& link, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) warn("link " + link + ": " + warning);
+}
+
 bool has_shrinking_buffers(const RobotSpheres& spheres) {
   return spheres.collision_buffer < 0.0 ||
          std::any_of(spheres.collision_buffers.begin(), spheres.collision_buffers.end(),
@@ -183,6 +187,10 @@ int audit(const AuditRobotArguments& arguments) {
   if (!arguments.view.empty()) {
     write_page(arguments.view, page_of(arguments, robot, report, json));
     if (!arguments.json) std::cout << page_line(arguments.view);
+  }
+  for (const LinkAudit& link : report.audit.links) warn_of_link(link.link, link.warnings);
+  if (report.repair) {
+    for (const LinkRepair& link : report.repair->links) warn_of_link(link.link, link.warnings);
   }
   if (report.pairs) {
     for (const std::string& warning : wrong_pairs(report.pairs->judgement, robot.model)) {
@@ -270,8 +278,10 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
       "E, metres: for which the spheres were made (default 0.01), and how far a repaired one may "
       "protrude (default: as far as half of the link's spheres do, and at least 1 % of its box "
       "diagonal)");
-  arguments->lengths.add_positive(*command, "--min-external", arguments->min_external,
-                                  "D, metres, for which the spheres were made (default: 4 E)");
+  arguments->lengths.add_positive(
+      *command, "--min-external", arguments->min_external,
+      "D, metres, for which the spheres were made (default: 4 E, or more "
+      "for links that are very large for their E)");
   command->footer(to_text(
       {.text =
            "Lengths are in metres, as in the URDF, or have a unit of their own (5mm); the table is "

@@ -13,17 +13,20 @@ constexpr double kLargestScallops = 0.025;
 
 }  // namespace
 
+std::string larger_diameter_warning(double min_external_diameter) {
+  std::ostringstream text;
+  text << "the part is so large for its max error that a min external diameter of "
+       << min_external_diameter
+       << " was chosen, instead of four times the max error: gaps that are narrower are filled; "
+          "for a smaller one fit the part in pieces, or with a larger max error";
+  return text.str();
+}
+
 std::vector<std::string> result_warnings(const Simplification& result) {
   std::vector<std::string> warnings;
   const ExternalSpheres& external = result.external;
   const double diameter = external.min_external_diameter;
-  if (result.larger_diameter) {
-    std::ostringstream text;
-    text << "the part is so large for its max error that a min external diameter of " << diameter
-         << " was chosen, instead of four times the max error: gaps that are narrower are filled; "
-            "for a smaller one fit the part in pieces, or with a larger max error";
-    warnings.push_back(text.str());
-  }
+  if (result.larger_diameter) warnings.push_back(larger_diameter_warning(diameter));
   const double step = external.grid_step;
   const double scallops = step > 0.0 ? step * step / (2.0 * diameter) : 0.0;
   if (scallops > kLargestScallops * result.options.max_error) {

@@ -8,6 +8,9 @@
 
 namespace spherule {
 
+// For a D that was chosen larger than 4 E.
+std::string larger_diameter_warning(double min_external_diameter);
+
 // Sentences about a fit whose user may have wanted another: a D that became larger than 4 E, a grid
 // of stage 1 that is coarser than its E asks for, both as the part is large; spheres of more than
 // five times the volume of the mesh.

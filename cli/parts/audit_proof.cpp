@@ -3,14 +3,20 @@
 
 #include "spheretree/error.h"
 
+#include <utility>
+
 namespace spherule {
 
 SolidProof::SolidProof(const TriangleMesh& mesh, const SimplifyOptions& options, bool has_diameter)
-    : zones_(options.zones) {
+    : SolidProof(options, has_diameter ? std::optional(place_external_spheres(
+                                             mesh, external_options(options)))
+                                       : std::nullopt) {}
+
+SolidProof::SolidProof(const SimplifyOptions& options, std::optional<ExternalSpheres> external)
+    : external_(std::move(external)), zones_(options.zones) {
   options_.padding = options.padding;
   options_.progress = options.progress;
-  if (!has_diameter) return;
-  external_ = place_external_spheres(mesh, external_options(options));
+  if (!external_) return;
   options_.external = &*external_;
   // A file that says how it was fitted was proved at this resolution.
   options_.resolution =

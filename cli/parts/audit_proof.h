@@ -12,10 +12,12 @@
 namespace spherule {
 
 // What spheres are proved against as they were fitted: the simplified solid, which is made anew,
-// where D is known, else the mesh and its inside. Not copied: the options refer to it.
+// where D is known, else the mesh and its inside; or one that was made already. Not copied: the
+// options refer to it.
 class SolidProof {
  public:
   SolidProof(const TriangleMesh& mesh, const SimplifyOptions& options, bool has_diameter);
+  SolidProof(const SimplifyOptions& options, std::optional<ExternalSpheres> external);
   SolidProof(const SolidProof&) = delete;
   SolidProof& operator=(const SolidProof&) = delete;
 

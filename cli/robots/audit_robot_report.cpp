@@ -101,6 +101,7 @@ Json json_of(const LinkAudit& link) {
   json["sphere_count"] = link.spheres;
   json["uncovered_share"] = link.uncovered_share;
   json["certificate"] = link.certificate ? to_json(*link.certificate) : Json(nullptr);
+  json["warnings"] = link.warnings;
   return json;
 }
 
@@ -154,7 +155,8 @@ Json audit_json(const RobotAuditReport& report) {
          {"grown", link.repair.inflated},
          {"largest_inflation", to_json(link.repair.largest_inflation)},
          {"added", link.repair.added},
-         {"certificate", to_json(link.certificate)}});
+         {"certificate", to_json(link.certificate)},
+         {"warnings", link.warnings}});
   }
   return json;
 }

@@ -25,7 +25,7 @@ void add_cover_options(CLI::App& command, RobotArguments& arguments) {
                                  "E in metres, how far the spheres may protrude (default: 0.01)");
   arguments.lengths.add(command, "--min-external", arguments.options.min_external_diameter,
                         "D in metres, diameter of the smallest object to be checked against the "
-                        "robot (default: 4 E)");
+                        "robot (default: 4 E, or more for links that are very large for their E)");
   command
       .add_option("--tightness", arguments.options.tightness,
                   "How much wider than D a way into a link may be and still be filled, as a share "

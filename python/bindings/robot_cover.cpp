@@ -68,7 +68,7 @@ py::object audit_object(const RobotAudit& audit) {
     links.append(make_result(
         "LinkAudit", link.link, link.spheres,
         link.certificate ? certificate_object(*link.certificate) : py::object(py::none()),
-        link.uncovered_share));
+        link.uncovered_share, py::tuple(py::cast(link.warnings))));
   }
   py::list configurations;
   for (const ConfigurationAudit& at : audit.configurations) {
@@ -118,7 +118,8 @@ py::object repaired_robot(const py::object& robot, const py::object& spheres_in,
   py::list links;
   for (LinkRepair& link : repair.links) {
     links.append(make_result("LinkRepair", link.link, repair_object(std::move(link.repair)),
-                             certificate_object(link.certificate)));
+                             certificate_object(link.certificate),
+                             py::tuple(py::cast(link.warnings))));
   }
   return make_result("RobotRepair", spheres_object(repair.spheres), py::tuple(links));
 }
@@ -139,8 +140,9 @@ void bind_cover(py::module_& module) {
            "threads=0, progress=None)",
            "Covers the geometry ('collision' or 'visual') of every link of a RobotDescription with "
            "spheres and certifies them: a RobotCover. Lengths in metres; `max_error` is E, "
-           "`min_external_diameter` D (0: 4 E). `links` are LinkCoverOptions by the link's name. "
-           "`progress` is called with a link's name.")
+           "`min_external_diameter` D (0: 4 E, or more for a link that is very large for its E, "
+           "with a warning). `links` are LinkCoverOptions by the link's name. `progress` is called "
+           "with a link's name.")
           .c_str());
 }
 
@@ -159,11 +161,14 @@ void bind_robot_cover(py::module_& module) {
       py::arg("min_external_diameter") = defaults.min_external_diameter,
       py::arg("configurations") = py::tuple(), py::arg("threads") = defaults.threads,
       py::arg("progress") = py::none(),
-      Help("audit_robot(robot, spheres, *, geometry='collision', max_error=0.01, "
-           "min_external_diameter=0.0, configurations=(), threads=0, progress=None)",
-           "Certifies the spheres of a robot, of any origin, against its own meshes: a RobotAudit. "
-           "`spheres` is RobotSpheres, or a dict of arrays of shape (n, 4) by link. In "
-           "`configurations`, shape (n, dof), the robot is judged as a whole.")
+      Help(
+          "audit_robot(robot, spheres, *, geometry='collision', max_error=0.01, "
+          "min_external_diameter=0.0, configurations=(), threads=0, progress=None)",
+          "Certifies the spheres of a robot, of any origin, against its own meshes: a RobotAudit. "
+          "`spheres` is RobotSpheres, or a dict of arrays of shape (n, 4) by link; `max_error` and "
+          "`min_external_diameter` are E and D for which they were made, as cover_robot() has "
+          "them. "
+          "In `configurations`, shape (n, dof), the robot is judged as a whole.")
           .c_str());
   module.def(
       "repair_robot", &repaired_robot, py::arg("robot"), py::arg("spheres"), py::kw_only(),

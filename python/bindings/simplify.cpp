@@ -89,7 +89,7 @@ py::object simplification_object(Simplification all) {
   return make_result("Simplification", sphere_cover_object(std::move(all.cover)),
                      std::make_shared<ExternalSpheres>(std::move(all.external)),
                      levels_object(std::move(all.levels)), certificate_object(all.certificate),
-                     file, times, broken);
+                     file, times, broken, all.larger_diameter);
 }
 
 void bind_simplify(py::module_& module) {

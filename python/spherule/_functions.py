@@ -46,10 +46,11 @@ def simplify(
     Lengths are in the unit of the mesh. `max_error` is E, how far the result may protrude from the
     simplified solid (0: 1 % of the box diagonal); `levels` are errors of levels of detail above the
     cover; `min_external_diameter` is D, the diameter of the smallest object to be checked against
-    the mesh (0: 4 E, or more where that would take too much memory: `result.external` has the one
-    that was used), and `tightness` how much wider than D a way may be and still be filled, as a share
-    of D. `padding` grows the mesh; no sphere is smaller than `min_radius`. In `zones`, and with
-    `keep_concave_edges` along sharp concave edges, E and D are smaller. `method` is 'cover' or
+    the mesh (0: 4 E, or more where that would take too much memory; `result.larger_diameter` says so,
+    and `result.external` has the one that was used), and `tightness` how much wider than D a way may
+    be and still be filled, as a share of D. `padding` grows the mesh; no sphere is smaller than
+    `min_radius`. In `zones`, and with `keep_concave_edges` along sharp concave edges, E and D are
+    smaller. `method` is 'cover' or
     'paper', `external` 'reachable', 'random' (of `external_limit` attempts) or 'none'. `effort` are
     rounds of searching for fewer spheres, `seconds` its limit in time (0: none). The result does
     not depend on `threads` (0: all).

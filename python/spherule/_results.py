@@ -217,6 +217,8 @@ class Simplification(Record):
     """Wall-clock seconds of the parts."""
     broken_promises: str
     """What was promised and is not proved, as a sentence; empty where all is proved."""
+    larger_diameter: bool
+    """D was left to be chosen, and is more than 4 E: the part is very large for its E."""
 
     @property
     def spheres(self) -> Floats:

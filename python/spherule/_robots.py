@@ -220,6 +220,7 @@ class LinkAudit(Record):
     certificate: Optional[Certificate]
     uncovered_share: float
     """Share of the surface that no sphere holds, estimated."""
+    warnings: Tuple[str, ...]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -248,6 +249,7 @@ class LinkRepair(Record):
     link: str
     repair: Repair
     certificate: Certificate
+    warnings: Tuple[str, ...]
 
 
 @dataclass(frozen=True, repr=False, eq=False)

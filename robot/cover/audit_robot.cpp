@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/audit_robot.h"
 
+#include "robot/cover/internal/link_solid.h"
 #include "robot/model/kinematics.h"
-#include "simplifier/simplify.h"
 #include "spheretree/error.h"
 
 #include <Eigen/Geometry>
@@ -179,25 +179,6 @@ ConfigurationAudit audit_placed(const PlacedRobot& placed, std::span<const LinkP
   return result;
 }
 
-// How simplify() makes S of a mesh, and examines its cover.
-struct SimplifiedSolid {
-  SimplifiedSolid(const TriangleMesh& mesh, SimplifyOptions& lengths) {
-    complete_lengths(lengths, mesh);
-    external = place_external_spheres(mesh, external_options(lengths));
-    certify_options = {
-        .external = &external,
-        .resolution = proof_resolution(lengths.max_error, external.box.diagonal().norm()),
-        .protrusion_tolerance = 0.0,
-        .volume = false,
-        .threads = lengths.threads};
-  }
-  SimplifiedSolid(const SimplifiedSolid&) = delete;
-  SimplifiedSolid& operator=(const SimplifiedSolid&) = delete;
-
-  ExternalSpheres external;
-  CertifyOptions certify_options;
-};
-
 // What `work` makes; an Error says of which link it is.
 template <typename Work>
 auto of_link(const std::string& link, Work work) {
@@ -208,32 +189,33 @@ auto of_link(const std::string& link, Work work) {
   }
 }
 
-Certificate audited(const LinkParts& part, const LinkDescription& link,
-                    const RobotAuditOptions& options) {
-  Certificate certificate = certify(*part.mesh, part.spheres, {.threads = options.threads});
-  if (certificate.covered || certificate.uncovered_depth.lower > 0.0 || part.spheres.empty()) {
-    return certificate;
-  }
+// The certificate and the warnings of a link with geometry.
+void certify_link(const LinkParts& part, const LinkDescription& link,
+                  const RobotAuditOptions& options, LinkAudit& audit) {
+  audit.certificate = certify(*part.mesh, part.spheres, {.threads = options.threads});
+  const Certificate& of_mesh = *audit.certificate;
+  if (of_mesh.covered || of_mesh.uncovered_depth.lower > 0.0 || part.spheres.empty()) return;
   const auto mesh = link_mesh(
       link, {.geometry = options.geometry, .chord_error = options.max_error * kChordErrorOfError});
-  SimplifyOptions lengths{.max_error = options.max_error,
-                          .min_external_diameter = options.min_external_diameter,
-                          .threads = options.threads};
-  const SimplifiedSolid solid(*mesh, lengths);
-  Certificate of_solid = certify(*mesh, part.spheres, solid.certify_options);
-  if (!of_solid.covered) return certificate;
-  of_solid.protrusion_over_mesh = certificate.protrusion_over_mesh;
-  of_solid.volume_ratio = certificate.volume_ratio;
-  return of_solid;
+  const internal::LinkSolid solid(*mesh, {.max_error = options.max_error,
+                                          .min_external_diameter = options.min_external_diameter,
+                                          .threads = options.threads});
+  audit.warnings = solid.warnings();
+  Certificate of_solid = certify(*mesh, part.spheres, solid.certify_options());
+  if (!of_solid.covered) return;
+  of_solid.protrusion_over_mesh = of_mesh.protrusion_over_mesh;
+  of_solid.volume_ratio = of_mesh.volume_ratio;
+  audit.certificate = std::move(of_solid);
 }
 
 LinkRepair repaired(const LinkParts& part, const RobotRepairOptions& options) {
-  SimplifyOptions lengths{.max_error = options.max_error, .threads = options.threads};
-  const SimplifiedSolid solid(*part.mesh, lengths);
-  LinkRepair result{.link = part.link, .repair = {}, .certificate = {}};
-  result.repair = repair(*part.mesh, solid.external, part.spheres,
+  const internal::LinkSolid solid(*part.mesh,
+                                  {.max_error = options.max_error, .threads = options.threads});
+  LinkRepair result{
+      .link = part.link, .repair = {}, .certificate = {}, .warnings = solid.warnings()};
+  result.repair = repair(*part.mesh, solid.external(), part.spheres,
                          {.max_error = options.max_error, .threads = options.threads});
-  result.certificate = certify(*part.mesh, result.repair.spheres, solid.certify_options);
+  result.certificate = certify(*part.mesh, result.repair.spheres, solid.certify_options());
   return result;
 }
 
@@ -270,10 +252,9 @@ RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSphere
   result.links_covered = true;
   for (const LinkParts& part : parts) {
     report(options.progress, part.index, steps, part.link);
-    LinkAudit audit{part.link, part.spheres.size(), std::nullopt, 0.0};
+    LinkAudit audit{.link = part.link, .spheres = part.spheres.size()};
     if (part.mesh) {
-      audit.certificate =
-          of_link(part.link, [&] { return audited(part, robot.links[part.index], options); });
+      of_link(part.link, [&] { certify_link(part, robot.links[part.index], options, audit); });
       if (!audit.certificate->covered) {
         audit.uncovered_share = uncovered_share(*part.mesh, part.spheres);
         result.links_covered = false;

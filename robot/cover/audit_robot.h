@@ -38,7 +38,8 @@ struct RobotAuditOptions {
   // Spheres that cover a simplified solid S with little to spare need not cover everything that
   // certify() cannot tell from |M|: it reaches the mesh to within some 1/256 of its diagonal. Where
   // it finds no leak and no proof, spheres are judged once more by S as cover_robot() makes it for
-  // this E and D (0: 4 E). S holds M and |M| whatever E and D are, so that this is proof as well.
+  // this E and D (0: chosen by the same rule, 4 E or more). S holds M and |M| whatever E and D are,
+  // so that this is proof as well.
   double max_error = 0.01;
   double min_external_diameter = 0.0;
   // Configurations in which the robot is judged as a whole (radians and metres).
@@ -53,9 +54,11 @@ struct LinkAudit {
   std::size_t spheres = 0;
   // Of the mesh and its inside, as written in the mesh files; of S (see the options) if that is
   // what is proved. Absent for a link without geometry.
-  std::optional<Certificate> certificate;
+  std::optional<Certificate> certificate = std::nullopt;
   // Share of the surface that no sphere holds, estimated from points spread evenly over it.
   double uncovered_share = 0.0;
+  // For a person: a D that was chosen larger than 4 E, for the S that was needed.
+  std::vector<std::string> warnings = {};
 };
 
 // The deepest leak of the robot in a configuration, all spheres of all links counted. Lengths in
@@ -102,9 +105,12 @@ struct RobotRepairOptions {
 struct LinkRepair {
   std::string link;
   Repair repair;  // its spheres are those of RobotRepair::spheres
-  // Of these spheres, against the simplified solid with D = 4 RobotRepairOptions::max_error or,
-  // where that is 0, with D = 4 % of the diagonal of the box of the link's mesh.
+  // Of these spheres, against the simplified solid that simplify() makes of the link's mesh for
+  // RobotRepairOptions::max_error: D is 4 E, or more for a link that is very large for its E; where
+  // max_error is 0, E is 1 % of the diagonal of the box of the mesh.
   Certificate certificate;
+  // For a person: a D that was chosen larger than 4 E.
+  std::vector<std::string> warnings = {};
 };
 
 // A robot's spheres, repaired.

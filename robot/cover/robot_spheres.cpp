@@ -2,6 +2,7 @@
 #include "robot/cover/robot_spheres.h"
 
 #include "mesh/mesh_report.h"
+#include "robot/cover/internal/link_solid.h"
 #include "robot/model/internal/link_paths.h"
 #include "robot/model/internal/shared_work.h"
 #include "spheretree/error.h"
@@ -175,10 +176,7 @@ std::vector<std::string> warnings_of(const MeshReport& report, const Simplificat
     warnings.push_back(text.str());
   }
   if (fit.larger_diameter) {
-    std::ostringstream text;
-    text << "it is so large for its max error that D is " << fit.options.min_external_diameter
-         << " m instead of 4 E: narrower gaps are filled";
-    warnings.push_back(text.str());
+    warnings.push_back(internal::larger_diameter_warning(fit.options.min_external_diameter));
   }
   const std::string broken = broken_promises(fit);
   if (!broken.empty()) warnings.push_back(broken);

@@ -32,8 +32,8 @@
 namespace spherule {
 
 // What is other for one link than for the rest; what is absent is as for the rest. Metres, zones in
-// the frame of the link. With a max error of its own and no D of its own, a link has D = 4 E,
-// unless the robot's D is given.
+// the frame of the link. With a max error of its own and no D of its own, a link has the D that is
+// chosen for this E, unless the robot's D is given.
 struct LinkCoverOptions {
   std::optional<double> max_error = std::nullopt;
   std::optional<double> min_external_diameter = std::nullopt;
@@ -48,7 +48,8 @@ struct RobotCoverOptions {
   double max_error = 0.01;
   // D of every link; 0 chooses 4 E, the natural ratio: 90-degree edges need spheres of radius 2
   // E, and what is narrower than the smallest sphere of a tool made with the same E need not be
-  // kept.
+  // kept. For a link that is very large for its E it chooses more, with a warning
+  // (SimplifyOptions::min_external_diameter).
   double min_external_diameter = 0.0;
   double tightness = SimplifyOptions{}.tightness;
   double padding = 0.0;

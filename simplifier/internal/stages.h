@@ -6,6 +6,7 @@
 #include "simplifier/cover.h"
 #include "simplifier/external_spheres.h"
 #include "simplifier/levels.h"
+#include "simplifier/simplify.h"
 #include "simplifier/solid/clearance.h"
 
 #include <cstddef>
@@ -29,6 +30,14 @@ ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const MeshDista
 // whose cells are not foreseen, it stays as it is, and the grid may have as many cells as ever.
 ExternalSpheres place_with_default_diameter(const TriangleMesh& mesh, const MeshDistance& distance,
                                             const ExternalOptions& options);
+
+// simplified_solid(); the options have passed the checks of simplify().
+SimplifiedSolid simplified_solid(const TriangleMesh& mesh, const MeshDistance& distance,
+                                 const SimplifyOptions& options, std::size_t max_cells);
+
+// simplify(), whose grid has at most `max_cells` (ExternalOptions::max_cells).
+Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options,
+                        std::size_t max_cells);
 
 // A solid that is divided into more cells than this for kCover is covered in blocks
 // (cover_blocks.h).

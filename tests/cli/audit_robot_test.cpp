@@ -67,6 +67,7 @@ TEST_F(AuditRobotCommand, Json) {
   const double depth = std::sqrt(0.01 + 2 * 0.000009) - 0.09;
   EXPECT_LE(base.at("certificate").at("uncovered_depth_surface").at(0), depth + 1e-9);
   EXPECT_GE(base.at("certificate").at("uncovered_depth_surface").at(1), depth - 1e-9);
+  EXPECT_EQ(base.at("warnings"), json::array());
   EXPECT_EQ(report.at("links").at(1).at("certificate").at("covered"), true);
 }
 

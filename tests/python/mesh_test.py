@@ -96,6 +96,12 @@ def test_files_of_spheres_keep_every_bit(fit, tmp_path):
     assert spherule.load_spheres(path).certificate is None
 
 
+def test_a_diameter_that_was_requested_is_no_larger_one(cube, fit):
+    assert fit.larger_diameter is False and "larger_diameter=False" in repr(fit)
+    chosen = spherule.simplify(cube, max_error=0.3, effort=0)
+    assert chosen.larger_diameter is False and chosen.external.min_external_diameter == 4 * 0.3
+
+
 def test_stage_1_alone(cube, fit):
     external = spherule.place_external_spheres(cube, min_external_diameter=0.8, max_error=0.2)
     assert external == fit.external and external.spheres.base is external

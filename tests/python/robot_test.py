@@ -71,8 +71,9 @@ def test_audits_find_leaks_and_repairs_close_them(bar):
     audit = spherule.audit_robot(bar, leaky, max_error=0.02)
     assert not audit.links_covered and audit.unknown_links == ("wing",)
     assert audit.links[1].uncovered_share > 0 and audit.links[0].certificate is None
+    assert all(link.warnings == () for link in audit.links)
     mended = spherule.repair_robot(bar, leaky, max_error=0.02)
-    assert mended.links[0].certificate.covered
+    assert mended.links[0].certificate.covered and mended.links[0].warnings == ()
     assert spherule.audit_robot(bar, mended.spheres, max_error=0.02).links_covered
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/simplify.h"
 
+#include "simplifier/internal/stages.h"
 #include "spheretree/error.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <set>
@@ -49,6 +51,34 @@ TEST(Simplify, ChoosesErrorAndDiameterFromTheSizeOfTheModel) {
   EXPECT_EQ(result.certificate.sphere_count, result.cover.spheres.size());
   EXPECT_LE(*result.certificate.protrusion_over_simplified_max, result.options.max_error);
   EXPECT_GE(*result.certificate.volume_ratio, 1.0);
+}
+
+// The limit of the grid's cells in the place of a part that is as large as the usual one needs.
+TEST(Simplify, SaysSoWhereADiameterThatItChoosesIsMoreThanFourErrors) {
+  constexpr double kError = 0.008;
+  const TriangleMesh bar = box_mesh({0, 0, 0}, {1, 0.03, 0.03});
+  const SimplifyOptions options{.max_error = kError, .effort = 0};
+  const SimplifiedSolid usual = simplified_solid(bar, options);
+  EXPECT_FALSE(usual.larger_diameter);
+  EXPECT_EQ(usual.options.min_external_diameter, 4.0 * kError);
+  // A quarter of the limit is for the grid of a D that is chosen.
+  const std::size_t limit = usual.external.nodes_examined;
+  const Simplification larger = internal::simplify(bar, options, limit);
+  EXPECT_TRUE(larger.larger_diameter);
+  EXPECT_GT(larger.options.min_external_diameter, 4.0 * kError);
+  EXPECT_EQ(larger.external.min_external_diameter, larger.options.min_external_diameter);
+  EXPECT_TRUE(larger.certificate.covered);
+  EXPECT_LE(*larger.certificate.protrusion_over_simplified_max, kError);
+  // The stage alone chooses the same. One that is requested is not larger.
+  const SimplifiedSolid solid = simplified_solid(bar, options, limit);
+  EXPECT_TRUE(solid.larger_diameter);
+  EXPECT_EQ(solid.external.spheres, larger.external.spheres);
+  EXPECT_EQ(solid.options.min_external_diameter, larger.options.min_external_diameter);
+  SimplifyOptions again = options;
+  again.min_external_diameter = larger.options.min_external_diameter;
+  const SimplifiedSolid requested = simplified_solid(bar, again);
+  EXPECT_FALSE(requested.larger_diameter);
+  EXPECT_EQ(requested.options.min_external_diameter, again.min_external_diameter);
 }
 
 TEST(Simplify, KeepsWhatIsGiven) {

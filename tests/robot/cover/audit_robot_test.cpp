@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/audit_robot.h"
 
+#include "robot/cover/internal/link_solid.h"
 #include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
 #include "spheretree/error.h"
@@ -13,8 +14,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -172,6 +175,22 @@ TEST_F(AuditRobot, RepairCovers) {
 }
 
 // What an independent judge measured: the deepest leak of all of VAMP's spheres for the Panda.
+// The limit of the grid's cells in the place of a link that is as large as the usual one needs.
+TEST_F(AuditRobot, TheSolidOfALinkIsThatOfACoverAndItsWarningToo) {
+  const auto mesh = link_mesh(robot_.links[0], {});
+  const SimplifyOptions lengths{.max_error = 0.001};
+  const internal::LinkSolid usual(*mesh, lengths);
+  EXPECT_EQ(usual.external().min_external_diameter, 4.0 * 0.001);
+  EXPECT_TRUE(usual.warnings().empty());
+  const std::size_t limit = 2 * usual.external().nodes_examined / 5;
+  const internal::LinkSolid larger(*mesh, lengths, limit);
+  const double diameter = simplified_solid(*mesh, lengths, limit).options.min_external_diameter;
+  EXPECT_GT(diameter, 4.0 * 0.001);
+  EXPECT_EQ(larger.external().min_external_diameter, diameter);
+  EXPECT_EQ(larger.certify_options().external, &larger.external());
+  EXPECT_EQ(larger.warnings(), std::vector{internal::larger_diameter_warning(diameter)});
+}
+
 TEST(AuditPublishedSpheres, LeakAsMeasuredBefore) {
   const auto models = test::models_dir();
   if (!models) GTEST_SKIP() << "SPHERULE_MODELS is not set";
