@@ -90,7 +90,8 @@ void write_repaired(const AuditRobotArguments& arguments, const RobotAuditReport
                       arguments.repaired);
 }
 
-// Of the repaired spheres, where they were requested, otherwise of those audited with their leaks.
+// Of the repaired spheres, where they were requested, otherwise of those audited with their leaks,
+// which are in `json`.
 ViewScene page_of(const AuditRobotArguments& arguments, const RobotDescription& robot,
                   const RobotAuditReport& report, const Json& json) {
   if (report.repair) {
@@ -181,7 +182,7 @@ int audit(const AuditRobotArguments& arguments) {
   if (mend) {
     write_uninterrupted([&] { write_repaired(arguments, report); });
   }
-  const bool needs_json = arguments.json || !arguments.view.empty();
+  const bool needs_json = arguments.json || (!arguments.view.empty() && !mend);
   const Json json = needs_json ? audit_json(report) : Json();
   std::cout << (arguments.json ? to_text(json) : audit_table(report));
   if (!arguments.view.empty()) {
