@@ -277,6 +277,10 @@ int cover_links(RobotArguments& arguments) {
     if (!arguments.json) std::cout << page_line(arguments.view);
   }
   print_warnings(result, wrong_pairs(judgement, robot.model), contacts);
+  if (plan.names_xacro_for_curobo(robot)) {
+    warn("urdf_path of the cuRobo file is " + arguments.urdf +
+         ", which cuRobo cannot read: with --format urdf,curobo it is the URDF that is written");
+  }
   if (!arguments.json) std::cout << describe(next_steps(arguments, plan.all(robot, links)));
   return keeps_promises(arguments.urdf, measured) ? kYes : kNo;
 }

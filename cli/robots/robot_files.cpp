@@ -56,7 +56,6 @@ std::string last_link(const RobotModel& model) {
 
 SphereFileContext context_of(const RobotFilePlan& plan, const RobotDescription& robot) {
   SphereFileContext context;
-  context.urdf = plan.urdf;
   context.base_link = robot.model.links().front().name;
   context.tool_link = plan.tool_link.empty() ? last_link(robot.model) : plan.tool_link;
   context.joint_positions = rest_posture(robot.model).configuration;
@@ -78,6 +77,15 @@ fs::path original(const RobotFilePlan& plan, SphereFormat format) {
     default:
       return {};
   }
+}
+
+bool writes(const RobotFilePlan& plan, SphereFormat format) {
+  return std::ranges::any_of(
+      plan.formats, [&](const std::string& name) { return sphere_format_named(name) == format; });
+}
+
+bool is_for_xacro(const fs::path& urdf) {
+  return urdf.extension() == ".xacro";
 }
 
 // The text with one folder in the place of another.
@@ -114,6 +122,15 @@ class ScratchFolder {
 
 std::vector<std::string> robot_format_names() {
   return {"urdf", "srdf", "curobo", "xrdf", "foam", "json", kTree, kPairsFormat};
+}
+
+fs::path RobotFilePlan::curobo_urdf(const RobotDescription& robot) const {
+  if (!is_for_xacro(urdf) || !writes(*this, SphereFormat::kUrdf)) return urdf;
+  return folder / sphere_file_name(robot.name, SphereFormat::kUrdf);
+}
+
+bool RobotFilePlan::names_xacro_for_curobo(const RobotDescription& robot) const {
+  return writes(*this, SphereFormat::kCurobo) && curobo.empty() && is_for_xacro(curobo_urdf(robot));
 }
 
 fs::path RobotFilePlan::report(const RobotDescription& robot) const {
@@ -190,6 +207,7 @@ void write_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
       continue;
     }
     const SphereFormat format = *sphere_format_named(name);
+    context.urdf = format == SphereFormat::kCurobo ? plan.curobo_urdf(robot) : plan.urdf;
     context.original = original(plan, format);
     write_robot_spheres(spheres, format, context,
                         plan.folder / sphere_file_name(robot.name, format));

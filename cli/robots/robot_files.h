@@ -28,6 +28,11 @@ struct RobotFilePlan {
   std::filesystem::path xrdf;
   std::string tool_link;  // empty: where the robot's chain of moving joints ends or branches
 
+  // What a cuRobo file names as its URDF. Of one for xacro, which cuRobo cannot read, that is the
+  // spherized URDF, which is expanded, if it is written, too.
+  std::filesystem::path curobo_urdf(const RobotDescription& robot) const;
+  // Whether a cuRobo file is written that names a URDF for xacro.
+  bool names_xacro_for_curobo(const RobotDescription& robot) const;
   std::filesystem::path report(const RobotDescription& robot) const;
   std::filesystem::path pairs(const RobotDescription& robot) const;
   std::filesystem::path tree(const RobotDescription& robot, const std::string& link) const;

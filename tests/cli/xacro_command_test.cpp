@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -47,6 +48,36 @@ TEST_F(XacroCommand, TakesItAsTheUrdf) {
       run({"view", "arm.urdf.xacro", "arm-spheres/arm.spheres.json", "-o", "arm.html"}).exit_code,
       0);
   EXPECT_EQ(run({"audit-robot", "arm.urdf.xacro", "arm-spheres/arm.spheres.urdf"}).exit_code, 0);
+}
+
+// cuRobo cannot read the other.
+TEST_F(XacroCommand, TheCuroboFileNamesTheUrdfThatIsWritten) {
+  const std::vector<std::string> cover = {"robot", "arm.urdf.xacro", "--max-error",
+                                          "0.2",   "--effort",       "0"};
+  const auto run_with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> line = cover;
+    line.insert(line.end(), more.begin(), more.end());
+    const Outcome outcome = run(line);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--format", "curobo,urdf"}}) {
+    EXPECT_EQ(run_with(more).find("cuRobo"), std::string::npos);
+    const std::string file = read("arm-spheres/arm.curobo.yml");
+    EXPECT_NE(file.find("urdf_path: arm-spheres/arm.spheres.urdf\n"), std::string::npos) << file;
+    EXPECT_NE(file.find("asset_root_path: arm-spheres\n"), std::string::npos) << file;
+    EXPECT_TRUE(exists("arm-spheres/arm.spheres.urdf"));
+  }
+  EXPECT_NE(run_with({"-o", "alone", "--format", "curobo"})
+                .find("warning: urdf_path of the cuRobo file is arm.urdf.xacro, which cuRobo "
+                      "cannot read"),
+            std::string::npos);
+  EXPECT_NE(read("alone/arm.curobo.yml").find("urdf_path: arm.urdf.xacro\n"), std::string::npos);
+  // A file that is kept names what it named.
+  write("mine.yml", read("alone/arm.curobo.yml"));
+  EXPECT_EQ(run_with({"-o", "kept", "--format", "curobo", "--curobo", "mine.yml"}).find("cuRobo"),
+            std::string::npos);
 }
 
 }  // namespace
