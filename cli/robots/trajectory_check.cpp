@@ -57,6 +57,9 @@ class TrajectoryCheck {
     report_.colliding = static_cast<std::size_t>(
         std::ranges::count(results, Verdict::kCollision, &EdgeResult::verdict));
     for (std::size_t i = 0; i < count; ++i) {
+      if (options_.progress && i % kMotionsAtATime == 0) {
+        options_.progress(static_cast<double>(i) / static_cast<double>(count), "finding contacts");
+      }
       if (results[i].verdict == Verdict::kCollision) {
         explain_motion(i, results[i].contact_at);
       } else if (results[i].verdict == Verdict::kUnknown) {
@@ -73,7 +76,7 @@ class TrajectoryCheck {
   // So many at a time that the bar moves and the threads have enough to do.
   template <typename Check>
   void in_blocks(std::size_t count, Check check) const {
-    const std::size_t block = std::max<std::size_t>(count / 50, 256);
+    const std::size_t block = std::max<std::size_t>(count / 50, kMotionsAtATime);
     for (std::size_t first = 0; first < count; first += block) {
       if (options_.progress) {
         options_.progress(static_cast<double>(first) / static_cast<double>(count), "checking");
@@ -99,12 +102,12 @@ class TrajectoryCheck {
   }
 
   // Where a motion first touches, and at places on the rest of it: of every two bodies that touch
-  // there the first and the deepest contact.
+  // there the first and the deepest contact. The places do not depend on the other motions: shards
+  // find what the whole does.
   void explain_motion(std::size_t motion, double contact_at) {
     std::vector<std::pair<FoundContact, FoundContact>> found;
-    const std::size_t places = std::min(kPlaces, kPlacesInAll / report_.colliding);
-    for (std::size_t k = 0; k <= places; ++k) {
-      const double share = k == 0 ? 0.0 : static_cast<double>(k) / static_cast<double>(places);
+    for (std::size_t k = 0; k <= kPlaces; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(kPlaces);
       const TrajectoryPoint at{.line = trajectory_.lines[motion],
                                .to_line = trajectory_.lines[motion + 1],
                                .fraction = contact_at + share * (1.0 - contact_at)};
@@ -125,9 +128,8 @@ class TrajectoryCheck {
     for (const auto& [first, deepest] : found) report_.add(first, deepest);
   }
 
-  // Of a motion, and of all of them.
-  static constexpr std::size_t kPlaces = 24;
-  static constexpr std::size_t kPlacesInAll = 20000;
+  static constexpr std::size_t kPlaces = 24;  // of a motion
+  static constexpr std::size_t kMotionsAtATime = 256;
 
   const RobotChecker& checker_;
   const Trajectory& trajectory_;

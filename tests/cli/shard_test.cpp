@@ -28,6 +28,13 @@ class ShardTest : public CheckTest {
   }
 };
 
+// As another process would see it: without what is told of the whole trajectory.
+json without_turns(json report) {
+  report.erase("continuous");
+  report.erase("more_than_half_a_turn");
+  return report;
+}
+
 // The first contacts of a pair are in the first part that has it, the worst ones in the deepest.
 void merge_pairs(const json& part, json& all) {
   for (const json& pair : part) {
@@ -76,9 +83,7 @@ TEST_F(ShardTest, ReportsTogetherAreThatOfTheWhole) {
   const std::vector<std::vector<std::string>> ways = {
       {}, {"--edges", "--resolution", "0.01"}, {"--edges", "--continuous", "shortest"}};
   for (const std::vector<std::string>& way : ways) {
-    json whole = checked(1, way);
-    whole.erase("continuous");
-    whole.erase("more_than_half_a_turn");
+    const json whole = without_turns(checked(1, way));
     ASSERT_GT(whole["limits"]["outside"], 0);
     ASSERT_GT(whole["colliding"], 2);
     if (way == ways[1]) {
@@ -92,15 +97,27 @@ TEST_F(ShardTest, ReportsTogetherAreThatOfTheWhole) {
                     {"--json", "--shard", std::to_string(i) + "/" + std::to_string(of)});
         const Outcome outcome = run(line);
         ASSERT_LE(outcome.exit_code, 1) << outcome.err;
-        parts.push_back(json::parse(outcome.out));
+        parts.push_back(without_turns(json::parse(outcome.out)));
         EXPECT_EQ(outcome.exit_code, parts.back()["verdict"] == "free" ? 0 : 1);
         EXPECT_EQ(parts.back()["shard"], (json{{"index", i}, {"of", of}}));
-        parts.back().erase("continuous");
-        parts.back().erase("more_than_half_a_turn");
       }
       EXPECT_EQ(merged(parts), whole) << of;
     }
   }
+}
+
+// Each motion goes through the wall, deepest on its way.
+TEST_F(ShardTest, TheDeepestContactsOfManyMotionsDoNotDependOnTheParts) {
+  std::string path;
+  for (int i = 0; i < 1001; ++i) path += "-0.3 0\n0.31 0\n";
+  write("path.csv", path);
+  const json whole = without_turns(checked(1, {"--edges"}));
+  ASSERT_EQ(whole["colliding"], 2001);
+  std::vector<json> parts;
+  for (const char* shard : {"1/2", "2/2"}) {
+    parts.push_back(without_turns(checked(1, {"--edges", "--shard", shard})));
+  }
+  EXPECT_EQ(merged(parts), whole);
 }
 
 TEST_F(ShardTest, WhatIsNoShardIsRefused) {
