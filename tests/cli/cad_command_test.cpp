@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // CAD files as the command reads them: in a process of its own, whose end is an error at most.
+#include "cli/cad/cad_arguments.h"
 #include "cli/cad/cad_message.h"
 #include "spheretree/error.h"
+#include "spheretree/program_output.h"
 #include "tests/cli/command_test_support.h"
 #include "tests/simplifier/cad/cad_assembly.h"
 #include "tests/simplifier/cad/cad_parts.h"
@@ -11,9 +13,13 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <cstddef>
 #include <limits>
 #include <random>
 #include <string>
+#include <sys/wait.h>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -118,12 +124,32 @@ TEST_F(CadCommand, ReadsAsTheLibraryDoes) {
 TEST_F(CadCommand, AReaderThatCrashesOrNeverEndsIsAnError) {
   expect_end("kill -SEGV $$\n", "spherule: part.step: OpenCASCADE cannot read it (Seg");
   expect_end("kill -ABRT $$\n", "spherule: part.step: OpenCASCADE cannot read it (Abort");
-  expect_end("kill -XCPU $$\n", "spherule: part.step: takes more than 30 s of processor time");
+  // It is given the limit that the message names.
+  expect_end("[ $6 = 30 ] && kill -XCPU $$\n",
+             "spherule: part.step: takes more than 30 s of processor time");
   expect_end("kill -INT $$\n", "spherule: part.step: reading was interrupted");
   expect_end("kill -KILL $$\n", "spherule: part.step: reading was killed: is there enough memory");
   expect_end("exit 127\n", "spherule_cad: cannot be run");
   expect_end("exit 1\n", "spherule: part.step: OpenCASCADE ended before it was read");
   expect_end("echo half an answer >&3\n", "spherule: part.step: OpenCASCADE ended before");
+}
+
+// The program itself, given a second for what takes it far longer.
+TEST_F(CadCommand, TheReaderEndsAtItsLimitOfProcessorTime) {
+  test::write_step(test::shape_named("torus"), folder_ / "part.step");
+  const auto read_within = [&](const std::string& seconds, const std::string& chord_error) {
+    const std::vector<std::string> arguments = {
+        "part", (folder_ / "part.step").string(), "1", chord_error, "0.5", seconds};
+    EXPECT_EQ(arguments.size(), std::size_t{kCadArguments - 1});
+    return internal::run_program(SPHERULE_CAD_READER, arguments, kCadAnswer);
+  };
+  const internal::ProgramOutput ended = read_within("1", "1e-4");
+  ASSERT_TRUE(WIFSIGNALED(ended.status)) << ended.status << ended.not_started;
+  EXPECT_EQ(WTERMSIG(ended.status), SIGXCPU);
+  EXPECT_EQ(ended.bytes, "");
+  const internal::ProgramOutput whole = read_within("60", "1");
+  EXPECT_EQ(whole.status, 0);
+  EXPECT_EQ(unpacked(whole.bytes).size(), 1U);
 }
 
 TEST_F(CadCommand, AMissingReaderIsNamed) {
