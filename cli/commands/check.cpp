@@ -235,7 +235,8 @@ int check(const CheckArguments& arguments) {
       .explained = proofs != nullptr ? explained_of(input) : 0,
       .threads = options.threads,
       .progress = bar.callback(),
-      .edge = {.resolution = arguments.resolution, .continuous = arguments.motion()}};
+      .edge = {.resolution = arguments.resolution, .continuous = arguments.motion()},
+      .configurations_in_all = input.of};
   CheckReport report = has_motions ? check_motions(checker, input.trajectory, how)
                                    : check_configurations(checker, input.trajectory, how);
   bar.clear();

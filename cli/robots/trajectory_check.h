@@ -17,6 +17,9 @@ struct TrajectoryCheckOptions {
   int threads = 0;
   Progress progress{};
   EdgeRequest edge{};  // of motions
+  // Of all parts of a trajectory together: of more motions fewer places are searched for contacts
+  // deeper than their first, so that each part finds what the whole would.
+  std::size_t configurations_in_all = 0;
 };
 
 // One for each thread: `threads` of them, or for 0 as many as the machine runs at once.

@@ -48,6 +48,7 @@ TrajectoryInput shard_of(const TrajectoryArguments& arguments, const Trajectory&
           .has_motions = has_motions,
           .first = range.first,
           .own = own,
+          .of = size,
           .outside = {}};
 }
 

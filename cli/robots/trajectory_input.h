@@ -36,6 +36,7 @@ struct TrajectoryInput {
   bool has_motions = false;
   std::size_t first = 0;  // in the file, of the first configuration
   std::size_t own = 0;    // configurations that are counted here
+  std::size_t of = 0;     // configurations of the file, whatever the shard
   OutsideLimits outside;
 };
 

@@ -174,7 +174,6 @@ TEST_F(AuditRobot, RepairCovers) {
   }
 }
 
-// What an independent judge measured: the deepest leak of all of VAMP's spheres for the Panda.
 // The limit of the grid's cells in the place of a link that is as large as the usual one needs.
 TEST_F(AuditRobot, TheSolidOfALinkIsThatOfACoverAndItsWarningToo) {
   const auto mesh = link_mesh(robot_.links[0], {});
@@ -191,6 +190,7 @@ TEST_F(AuditRobot, TheSolidOfALinkIsThatOfACoverAndItsWarningToo) {
   EXPECT_EQ(larger.warnings(), std::vector{internal::larger_diameter_warning(diameter)});
 }
 
+// What an independent judge measured: the deepest leak of all of VAMP's spheres for the Panda.
 TEST(AuditPublishedSpheres, LeakAsMeasuredBefore) {
   const auto models = test::models_dir();
   if (!models) GTEST_SKIP() << "SPHERULE_MODELS is not set";
