@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <string>
 
 namespace spherule::test::cad_refusal_test {
@@ -26,6 +27,11 @@ struct Lost {
   std::string item;      // of the shape's representation
   std::string named;     // in the refusal
 };
+
+// As the tests are called.
+void PrintTo(const Lost& lost, std::ostream* out) {
+  *out << lost.name;
+}
 
 class CadRefusal : public ::testing::TestWithParam<Lost> {};
 
