@@ -98,6 +98,7 @@ class Fitter {
     result.certificate = record(result.fit->certificate);
     result.broken = broken_promises(*result.fit);
     result.seconds = watch.seconds();
+    result.interrupted = result.fit->interrupted;
   }
 
   void tell() {
@@ -123,11 +124,13 @@ void place_copy(const BodyCopy& copy, const BodyFit& original, BodyFit& placed) 
   placed.spheres = moved_spheres(original.spheres, copy.pose);
   placed.certificate = moved_certificate(original.certificate, original.spheres, copy.pose);
   placed.broken = original.broken;
+  placed.interrupted = original.interrupted;
 }
 
 void mark_unfitted(BodyFit& fit) {
   fit.certificate.uncovered_depth_upper = std::numeric_limits<double>::infinity();
   fit.broken = "no spheres: the work was interrupted before";
+  fit.interrupted = true;
 }
 
 }  // namespace
@@ -185,7 +188,9 @@ SphereFile sphere_file(std::span<const Body> bodies, std::span<const BodyFit> fi
                     .sphere_count = fit.spheres.size(),
                     .certificate = fit.certificate,
                     .options = {},
-                    .copy = bodies[i].copy};
+                    .copy = bodies[i].copy,
+                    .interrupted = fit.interrupted};
+    file.interrupted = file.interrupted || fit.interrupted;
     if (fit.fit) body.options = option_record(fit.fit->options, scales[i]);
     file.bodies.push_back(std::move(body));
   }

@@ -45,6 +45,7 @@ struct BodyFit {
   std::optional<Simplification> fit;  // of a copy, and where it was stopped before: nothing
   std::string broken;                 // broken_promises(), of a copy those of its original
   double seconds = 0.0;
+  bool interrupted = false;  // Simplification::interrupted, or it was stopped before
 };
 
 // simplify() of every body by itself, and of copies once: the spheres of a copy are those of its

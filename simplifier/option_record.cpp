@@ -222,8 +222,10 @@ SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& re
 }
 
 SphereFile sphere_file(const Simplification& simplification, double scale) {
-  return {simplification.cover.spheres, record(simplification.certificate),
-          option_record(simplification.options, scale)};
+  return {.spheres = simplification.cover.spheres,
+          .certificate = record(simplification.certificate),
+          .options = option_record(simplification.options, scale),
+          .interrupted = simplification.interrupted};
 }
 
 }  // namespace spherule

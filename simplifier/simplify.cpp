@@ -164,6 +164,7 @@ Simplification internal::simplify(const TriangleMesh& mesh, const SimplifyOption
         internal::fit_levels(distance, clearance, result.cover.spheres, coarser, level_options);
   }
   result.times.levels = levels_time.seconds();
+  result.interrupted = used.stop.stop_requested();
 
   const internal::Stopwatch certify_time;
   CertifyOptions certify_options;

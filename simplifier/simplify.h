@@ -113,6 +113,9 @@ struct Simplification {
   SimplifyOptions options;  // as used, the defaults filled in
   // D was to be chosen, and is more than 4 E (SimplifyOptions::min_external_diameter).
   bool larger_diameter = false;
+  // A stop was requested before the searches were done: what is proved holds, but there may be more
+  // spheres than a whole search leaves.
+  bool interrupted = false;
   SimplifyTimes times;
 };
 

@@ -114,10 +114,19 @@ ordered_json written(const BodyRecord& body, const Refusal& refuse) {
   } else {
     object["options"] = written(body.options, refuse);
   }
+  if (body.interrupted) object["interrupted"] = true;
   return object;
 }
 
 // --- reading ---
+
+// Absent where it is false.
+bool read_interrupted(const json& object, const std::string& where, const Refusal& refuse) {
+  const auto found = object.find("interrupted");
+  if (found == object.end()) return false;
+  refuse.unless(found->is_boolean(), where + "\"interrupted\" is not true or false");
+  return found->get<bool>();
+}
 
 const json& member(const json& object, const char* key, const std::string& where,
                    const Refusal& refuse) {
@@ -245,6 +254,7 @@ BodyRecord read_body(const json& value, std::span<const BodyRecord> before, cons
     body.certificate = read_certificate(*certificate, body.sphere_count, refuse);
   }
   body.options = read_options(value, where + ": ", refuse);
+  body.interrupted = read_interrupted(value, where + ": ", refuse);
   if (const auto of = value.find("copy_of"); of != value.end()) {
     refuse.unless(of->is_number_unsigned() && of->get<std::uint64_t>() < before.size() &&
                       !before[of->get<std::size_t>()].copy,
@@ -297,6 +307,7 @@ std::string internal::encode_spheres(const SphereFile& file, const std::string& 
                 "the bodies have not as many spheres as the file");
   try {
     text += ",\n\"options\":" + written(file.options, refuse).dump();
+    if (file.interrupted) text += ",\n\"interrupted\":true";
     if (!file.bodies.empty()) text += ",\n\"bodies\":[";
     for (std::size_t i = 0; i < file.bodies.size(); ++i) {
       text += (i == 0 ? "\n" : ",\n") + written(file.bodies[i], refuse).dump();
@@ -335,6 +346,7 @@ SphereFile internal::decode_spheres(std::string_view text, const std::string& na
     file.certificate = read_certificate(*certificate, file.spheres.size(), refuse);
   }
   file.options = read_options(document, "", refuse);
+  file.interrupted = read_interrupted(document, "", refuse);
   if (const auto bodies = document.find("bodies"); bodies != document.end()) {
     file.bodies = read_bodies(*bodies, file.spheres.size(), refuse);
   }

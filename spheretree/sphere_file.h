@@ -69,6 +69,7 @@ struct BodyRecord {
   std::optional<CertificateRecord> certificate = std::nullopt;  // of these spheres, about this body
   std::map<std::string, OptionValue> options = {};              // of its fit; empty for a copy
   std::optional<BodyCopy> copy = std::nullopt;
+  bool interrupted = false;  // SphereFile::interrupted, of this body
 };
 
 // The content of a SPHERES.json file. Infinite values cannot be stored in JSON; they are written as
@@ -82,11 +83,15 @@ struct SphereFile {
   // `spheres`, in one frame, and `certificate` is about all bodies; `options` are those that all of
   // them have. Programs that know nothing of bodies may pass over them.
   std::vector<BodyRecord> bodies = {};
+  // The search for few spheres was interrupted: the certificate holds, but there may be more
+  // spheres than a whole search leaves, and bodies that it did not come to have none.
+  bool interrupted = false;
 };
 
 // Writes {"format":"spherule-spheres","version":1,...}, and for several bodies "bodies":
 // [{"name","sphere_count","certificate","options","copy_of","pose":[x,y,z,qx,qy,qz,qw]},...], the
-// last two of copies only; doubles survive the round trip bit for bit.
+// last two of copies only; "interrupted":true where it is, beside "spheres" and in bodies; doubles
+// survive the round trip bit for bit.
 // The file appears whole or not at all. Equal content gives equal bytes. Throws Error naming the
 // file if it cannot be written or holds something that load_spheres() would refuse.
 void save_spheres(const SphereFile& file, const std::filesystem::path& path);

@@ -83,8 +83,10 @@ Repaired repaired(const AuditArguments& arguments, const ModelFile& model,
                           .effort = std::min(options.effort, SimplifyOptions{}.effort),
                           .progress = options.progress});
   result.certificate = certify(model.mesh, result.repair.spheres, certify_options);
-  result.file = {result.repair.spheres, record(result.certificate),
-                 option_record(options, reading.scale)};
+  result.file = {.spheres = result.repair.spheres,
+                 .certificate = record(result.certificate),
+                 .options = option_record(options, reading.scale),
+                 .interrupted = file.interrupted};
   store_reading(reading, model, result.file);
   result.file.options["repair-max-error"] = result.repair.max_error;
   return result;

@@ -142,6 +142,7 @@ void print_result(const std::string& file, const Simplification& result,
               << "\n";
   }
   std::cout << file << ": " << result.cover.spheres.size() << " spheres\n"
+            << (result.interrupted ? std::string(kInterruptedSearch) + "\n" : "")
             << describe(result.certificate, "the simplified solid") << describe(result.levels)
             << (breakdown ? describe(*breakdown) : "") << describe_lower_bound(result)
             << "seconds: external " << result.times.external << ", cover " << result.times.cover

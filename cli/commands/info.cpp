@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands/command.h"
+#include "cli/files/interruption.h"
 #include "cli/files/model_file.h"
 #include "cli/files/model_unit.h"
 #include "cli/files/recognize.h"
@@ -7,9 +8,13 @@
 #include "cli/help/help.h"
 #include "cli/robots/info_robot.h"
 #include "cli/text/exit_code.h"
+#include "cli/text/json.h"
 #include "mesh/mesh_report.h"
+#include "spheretree/atomic_file.h"
 #include "spheretree/check.h"
 #include "spheretree/enclosing_sphere.h"
+#include "spheretree/error.h"
+#include "spheretree/parse_json.h"
 #include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 
@@ -38,11 +43,13 @@ void print_spheres(const SphereFile& file) {
     std::cout << "radius: " << smallest->radius << " to " << largest->radius << "\n";
     print_sphere("enclosing sphere", enclosing_sphere(file.spheres));
   }
+  if (file.interrupted) std::cout << kInterruptedSearch << "\n";
   if (!file.bodies.empty()) std::cout << "bodies: " << file.bodies.size() << "\n";
   for (const BodyRecord& body : file.bodies) {
     std::cout << "  " << body.name << ": " << body.sphere_count << " spheres, "
               << (body.certificate && body.certificate->covered ? "covered" : "not covered");
     if (body.copy) std::cout << ", copy of " << file.bodies[body.copy->of].name;
+    if (body.interrupted) std::cout << ", interrupted";
     std::cout << "\n";
   }
   for (const auto& [name, value] : file.options) {
@@ -90,6 +97,12 @@ void print_model(const std::string& file) {
   std::cout << describe(unit) << describe(mesh_report(model.mesh)) << "\n";
 }
 
+bool is_interrupted_report(const std::string& file) {
+  const auto refuse = [&](const std::string& reason) { throw Error(file, reason); };
+  const auto report = internal::parse_json<Json>(read_file(file), refuse);
+  return report.root().is_object() && report.root().value("interrupted", Json()) == true;
+}
+
 int info(const std::string& file) {
   const FileKind kind = recognize(file);
   switch (kind) {
@@ -114,6 +127,10 @@ int info(const std::string& file) {
     case FileKind::kCad:
     case FileKind::kUnknown:  // the reader of meshes says what it takes
       print_model(file);
+      break;
+    case FileKind::kReport:
+      std::cout << offer_for(kind, file) << "\n";
+      if (is_interrupted_report(file)) std::cout << kInterruptedSearch << "\n";
       break;
     default:
       std::cout << offer_for(kind, file) << "\n";

@@ -147,8 +147,14 @@ std::vector<PostureContact> contacts_in_postures(const RobotDescription& robot,
 }
 
 std::string describe_pairs(const MeasuredCover& measured) {
-  if (measured.pairs == nullptr) return {};
-  return describe_link_pairs(*measured.pairs, measured.pair_seconds);
+  std::string text;
+  if (measured.pairs != nullptr) {
+    text = describe_link_pairs(*measured.pairs, measured.pair_seconds);
+  }
+  if (measured.pairs_interrupted) {
+    text += "pairs of links: the search for proofs was interrupted; what is unknown stays tested\n";
+  }
+  return text;
 }
 
 // Whether all that was promised holds; says on standard error what does not.
@@ -193,6 +199,10 @@ Json summary_of(const std::string& urdf, const RobotModel& model, const Measured
   Json summary = robot_summary(urdf, measured.cover, seconds);
   if (measured.pairs != nullptr) {
     summary["link_pairs"] = pair_summary(*measured.pairs, model, measured.pair_seconds);
+    if (measured.pairs_interrupted) summary["link_pairs"]["interrupted"] = true;
+  }
+  if (measured.pairs_interrupted || !links_interrupted(measured.cover).empty()) {
+    summary["interrupted"] = true;
   }
   summary["false_alarms"] = false_alarm_summary(measured, model);
   summary["posture_contacts"] = to_json(contacts);

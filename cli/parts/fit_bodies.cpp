@@ -77,6 +77,7 @@ std::string table(const ModelBodies& model, std::span<const BodyFit> fits, doubl
   std::size_t spheres = 0;
   double largest = 0.0;
   bool is_proved = true;
+  bool is_interrupted = false;
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const std::optional<BodyCopy>& copy = model.bodies[i].copy;
     const std::size_t own = model.bodies[copy ? copy->of : i].mesh.triangles.size();
@@ -84,7 +85,9 @@ std::string table(const ModelBodies& model, std::span<const BodyFit> fits, doubl
     rows.push_back({model.bodies[i].name, std::to_string(own),
                     std::to_string(fits[i].spheres.size()), number(protrusion, 4),
                     copy ? "copy of " + model.bodies[copy->of].name : number(fits[i].seconds, 3),
-                    fits[i].broken.empty() ? "yes" : "no"});
+                    std::string(fits[i].broken.empty() ? "yes" : "no") +
+                        (fits[i].interrupted ? " (interrupted)" : "")});
+    is_interrupted = is_interrupted || fits[i].interrupted;
     copies += copy ? 1 : 0;
     triangles += own;
     spheres += fits[i].spheres.size();
@@ -95,7 +98,7 @@ std::string table(const ModelBodies& model, std::span<const BodyFit> fits, doubl
   if (copies > 0) all += ", " + std::to_string(copies) + " of them copies";
   rows.push_back({all, std::to_string(triangles), std::to_string(spheres), number(largest, 4),
                   number(seconds, 3), is_proved ? "yes" : "no"});
-  return aligned(rows);
+  return aligned(rows) + (is_interrupted ? std::string(kInterruptedSearch) + "\n" : "");
 }
 
 std::string report_text(const ModelBodies& model,
@@ -118,6 +121,7 @@ std::string report_text(const ModelBodies& model,
     one["sphere_count"] = fits[i].spheres.size();
     one["total_seconds"] = fits[i].seconds;
     one["broken_promises"] = fits[i].broken;
+    if (fits[i].interrupted) json["interrupted"] = one["interrupted"] = true;
     if (body.copy) one["copy_of"] = body.copy->of;
     json["bodies"].push_back(std::move(one));
   }

@@ -35,12 +35,13 @@ std::vector<std::string> outputs_of(const FitArguments& arguments) {
   return outputs;
 }
 
-// Whether there are spheres that are proved to cover, with whatever options they were made.
+// Whether there are spheres that are proved to cover, with whatever options they were made, by a
+// search that was not interrupted.
 bool has_cover(const std::string& file) {
   if (!fs::exists(file)) return false;
   try {
     const SphereFile found = load_spheres(file);
-    return found.certificate && found.certificate->covered;
+    return found.certificate && found.certificate->covered && !found.interrupted;
   } catch (const Error&) {
     return false;
   }

@@ -88,6 +88,7 @@ Json to_json(const FittedModel& model, const Simplification& result, ReportConte
   json["simplified_solid"] = to_json(result.external, content);
   json["cover"] = to_json(result.cover);
   json["levels"] = to_json(result.levels);
+  if (result.interrupted) json["interrupted"] = true;
   return json;
 }
 

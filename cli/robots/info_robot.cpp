@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/info_robot.h"
 
+#include "cli/files/interruption.h"
 #include "robot/files/srdf.h"
 #include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
@@ -79,6 +80,7 @@ std::string describe_robot_spheres(const std::string& file) {
        << (spheres.robot.empty() ? "" : ": " + spheres.robot) << "\n"
        << "spheres: " << count_spheres(spheres.links) << " on " << spheres.links.size()
        << " links\n";
+  if (spheres.interrupted) text << kInterruptedSearch << "\n";
   for (const LinkSpheres& link : spheres.links) {
     text << "  " << link.link << ": " << link.spheres.size() << "\n";
   }

@@ -108,6 +108,7 @@ void FalseAlarmRun::prove(const RobotCoverOptions& options, MeasuredCover& resul
                                                           .progress = options.progress}));
   result.pair_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.pairs_interrupted = options.stop.stop_requested();
 }
 
 void FalseAlarmRun::cover_to_goal(const RobotCoverOptions& options, bool has_max_error,
@@ -146,7 +147,11 @@ MeasuredCover FalseAlarmRun::cover(
     return result;
   }
   result.cover = cover_robot(robot_, options);
-  if (robot_.model.variable_count() == 0 || options.stop.stop_requested()) return result;
+  if (robot_.model.variable_count() == 0) return result;
+  if (options.stop.stop_requested()) {
+    result.pairs_interrupted = proofs_ != PairProofs::kNone;
+    return result;
+  }
   prove(options, result);
   const RobotModel model = with_spheres(robot_.model, robot_spheres(robot_, result.cover).links);
   if (options.stop.stop_requested()) return result;

@@ -37,6 +37,7 @@ struct MeasuredCover {
   std::vector<LinkBody> bodies{};            // that are covered
   std::shared_ptr<const LinkPairs> pairs{};  // of these; null if none were to be proved
   double pair_seconds = 0.0;                 // that this took
+  bool pairs_interrupted = false;            // a stop came before all pairs were examined
   std::optional<double> goal = std::nullopt;
   std::optional<LinkErrorChoice> choice = std::nullopt;  // if there is a goal
   FalseAlarms random{};      // of the cover; of no postures if not judged

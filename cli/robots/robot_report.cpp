@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/robot_report.h"
 
+#include "cli/files/interruption.h"
 #include "cli/options/robot_options.h"
 #include "cli/text/units.h"
 
@@ -56,6 +57,7 @@ Json summary_of(const LinkCover& link) {
   json["options"] = to_json(option_record(fit.options, 1.0));
   json["certificate"] = to_json(fit.certificate);
   json["warnings"] = link.warnings;
+  if (fit.interrupted) json["interrupted"] = true;
   json["seconds"] = {{"external", fit.times.external},
                      {"cover", fit.times.cover},
                      {"certify", fit.times.certify},
@@ -182,10 +184,12 @@ std::string robot_table(const RobotCover& cover, double seconds) {
     } else {
       out << std::setw(9) << "-";
     }
-    out << Cell(link.seconds, 9, 1) << "\n";
+    out << Cell(link.seconds, 9, 1) << (link.fit->interrupted ? " *" : "") << "\n";
   }
   write_row(out, padded("total"), cover.options.max_error, Totals(cover.links));
-  out << std::setw(17) << "" << Cell(seconds, 9, 1) << "\n" << describe_filling(cover);
+  out << std::setw(17) << "" << Cell(seconds, 9, 1) << "\n";
+  if (!links_interrupted(cover).empty()) out << "* " << kInterruptedSearch << "\n";
+  out << describe_filling(cover);
   return out.str();
 }
 

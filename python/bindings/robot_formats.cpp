@@ -35,6 +35,7 @@ RobotSpheres robot_spheres_of(const py::object& spheres) {
   result.self_collision_buffer = attribute<Buffers>(spheres, "self_collision_buffer", {});
   result.collision_buffer = attribute(spheres, "collision_buffer", 0.0);
   result.collision_buffers = attribute<Buffers>(spheres, "collision_buffers", {});
+  result.interrupted = attribute(spheres, "interrupted", false);
   return result;
 }
 
@@ -84,7 +85,7 @@ py::object robot_spheres_object(const RobotSpheres& spheres, std::string_view fo
                      pairs_object(spheres.self_collision_ignore),
                      py::cast(spheres.self_collision_buffer), spheres.collision_buffer,
                      py::cast(spheres.collision_buffers), spheres.switched_off,
-                     spheres.other_shapes, std::string(format));
+                     spheres.other_shapes, std::string(format), spheres.interrupted);
 }
 
 void bind_robot_formats(py::module_& module) {

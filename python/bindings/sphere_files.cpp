@@ -16,7 +16,8 @@ py::object pose_or_none(const std::optional<BodyCopy>& copy) {
 
 py::object body_object(const BodyRecord& body) {
   return make_result("BodyRecord", body.name, body.sphere_count, record_object(body.certificate),
-                     py::cast(body.options), copy_of(body.copy), pose_or_none(body.copy));
+                     py::cast(body.options), copy_of(body.copy), pose_or_none(body.copy),
+                     body.interrupted);
 }
 
 std::vector<BodyRecord> bodies_of(const py::object& bodies) {
@@ -27,6 +28,7 @@ std::vector<BodyRecord> bodies_of(const py::object& bodies) {
     record.sphere_count = body.attr("sphere_count").cast<std::size_t>();
     record.certificate = record_of(body.attr("certificate"));
     record.options = body.attr("options").cast<std::map<std::string, OptionValue>>();
+    record.interrupted = body.attr("interrupted").cast<bool>();
     if (body.attr("copy_of").is_none()) continue;
     record.copy = {body.attr("copy_of").cast<std::size_t>(), pose_of(body.attr("pose"), "pose")};
   }
@@ -48,14 +50,16 @@ py::object file_object(SphereFile file) {
   py::list bodies;
   for (const BodyRecord& body : file.bodies) bodies.append(body_object(body));
   return make_result("SphereFile", array_of(std::move(file.spheres)),
-                     record_object(file.certificate), py::cast(file.options), py::tuple(bodies));
+                     record_object(file.certificate), py::cast(file.options), py::tuple(bodies),
+                     file.interrupted);
 }
 
 SphereFile file_of(const py::object& file) {
   return {.spheres = spheres(file.attr("spheres"), "spheres").copy(),
           .certificate = record_of(file.attr("certificate")),
           .options = file.attr("options").cast<std::map<std::string, OptionValue>>(),
-          .bodies = bodies_of(file.attr("bodies"))};
+          .bodies = bodies_of(file.attr("bodies")),
+          .interrupted = file.attr("interrupted").cast<bool>()};
 }
 
 void bind_sphere_files(py::module_& module) {

@@ -149,6 +149,8 @@ class BodyRecord(Record):
     options: Dict[str, OptionValue] = field(default_factory=dict)
     copy_of: Optional[int] = None
     pose: Optional[Pose] = None
+    interrupted: bool = False
+    """The search for few spheres was interrupted: what is proved holds, of perhaps too many."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -160,6 +162,8 @@ class SphereFile(Record):
     options: Dict[str, OptionValue] = field(default_factory=dict)
     """Those of the fit under their command-line names without dashes."""
     bodies: Tuple[BodyRecord, ...] = ()
+    interrupted: bool = False
+    """The search for few spheres of the body, or of one of the bodies, was interrupted."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -168,6 +168,8 @@ class RobotSpheres(Record):
     other_shapes: int = 0
     format: str = ""
     """What the file was found to be; empty if there was none."""
+    interrupted: bool = False
+    """The search for few spheres was interrupted (in files of spherule's own format)."""
 
     @property
     def count(self) -> int:

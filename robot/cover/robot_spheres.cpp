@@ -253,9 +253,18 @@ std::vector<std::string> links_not_proved(const RobotCover& cover) {
   return names;
 }
 
+std::vector<std::string> links_interrupted(const RobotCover& cover) {
+  std::vector<std::string> names;
+  for (const LinkCover& link : cover.links) {
+    if (link.fit && link.fit->interrupted) names.push_back(link.link);
+  }
+  return names;
+}
+
 RobotSpheres robot_spheres(const RobotDescription& robot, const RobotCover& cover) {
   RobotSpheres result;
   result.robot = cover.robot;
+  result.interrupted = !links_interrupted(cover).empty();
   for (const LinkCover& link : cover.links) result.links.push_back({link.link, link.spheres});
   const auto has_spheres = [&](int link) {
     return !cover.links[static_cast<std::size_t>(link)].spheres.empty();

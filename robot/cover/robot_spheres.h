@@ -102,6 +102,9 @@ RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& o
 // Names of the links for which not everything promised is proved, in their order.
 std::vector<std::string> links_not_proved(const RobotCover& cover);
 
+// Names of the links whose search for few spheres was interrupted, in their order.
+std::vector<std::string> links_interrupted(const RobotCover& cover);
+
 // Why pairs of links are not to be checked, in lists of ignored pairs.
 inline constexpr std::string_view kAdjacentReason = "Adjacent";
 inline constexpr std::string_view kRigidReason = "Rigid (no joint moves them)";

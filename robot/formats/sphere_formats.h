@@ -48,6 +48,8 @@ struct RobotSpheres {
   std::size_t switched_off = 0;
   // Shapes other than spheres in the <collision> elements of a URDF; not in `links`.
   std::size_t other_shapes = 0;
+  // The search for few spheres was interrupted; kSpherule alone has it.
+  bool interrupted = false;
 };
 
 // The files in which tools keep the spheres of a robot. The first six are written too.

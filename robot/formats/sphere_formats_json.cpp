@@ -159,6 +159,10 @@ void read_own(const Json& document, Reader& reader) {
   if (const auto buffer = document.find("collision_buffer"); buffer != document.end()) {
     spheres.collision_buffer = reader.number(*buffer, "\"collision_buffer\"");
   }
+  if (const auto interrupted = document.find("interrupted"); interrupted != document.end()) {
+    reader.gathered.unless(interrupted->is_boolean(), "\"interrupted\"", "is not true or false");
+    spheres.interrupted = interrupted->get<bool>();
+  }
 }
 
 // Of an object without a format of its own: by what it holds.
@@ -266,7 +270,8 @@ std::string sphere_json(const RobotSpheres& spheres) {
   return text + "\n],\n\"self_collision_ignore\":" + text_of(pairs) +
          ",\n\"self_collision_buffer\":" + text_of(Json(spheres.self_collision_buffer)) +
          ",\n\"collision_buffer\":" + text_of(spheres.collision_buffer) +
-         ",\n\"collision_buffers\":" + text_of(Json(spheres.collision_buffers)) + "}\n";
+         ",\n\"collision_buffers\":" + text_of(Json(spheres.collision_buffers)) +
+         (spheres.interrupted ? ",\n\"interrupted\":true}\n" : "}\n");
 }
 
 }  // namespace spherule::internal

@@ -115,6 +115,7 @@ TEST_F(OutputTest, SuccessReplacesTheOlderFileAndLeavesNothingBeside) {
   write("out.json", "old");
   ASSERT_EQ(run({"fit", "box.stl", "-o", "out.json", "--max-error", "12"}).exit_code, 0);
   EXPECT_EQ(read_json("out.json").at("format"), "spherule-spheres");
+  EXPECT_FALSE(read_json("out.json").contains("interrupted"));
   EXPECT_EQ(files(), (Files{"box.stl", "out.json"}));
 }
 
@@ -136,7 +137,7 @@ TEST_F(OutputTest, InterruptedSearchWritesWhatIsProved) {
   for (int milliseconds = 500;; milliseconds *= 2) {
     ASSERT_LT(milliseconds, 100000);
     const pid_t process = start({"fit", "box.stl", "-o", "out.json", "--max-error", "2", "--effort",
-                                 "1000000", "--tree", "out.tree"});
+                                 "1000000", "--tree", "out.tree", "--report", "report.json"});
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     kill(process, SIGINT);
     const Outcome outcome = finish(process);
@@ -144,10 +145,18 @@ TEST_F(OutputTest, InterruptedSearchWritesWhatIsProved) {
     if (!exists("out.json")) continue;  // there was no answer yet
     EXPECT_NE(outcome.err.find("spherule: interrupted: "), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.out.find("(proved)"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("\ninterrupted: the search"), std::string::npos) << outcome.out;
     break;
   }
-  EXPECT_EQ(files(), (Files{"box.stl", "out.json", "out.tree"}));
+  EXPECT_EQ(files(), (Files{"box.stl", "out.json", "out.tree", "report.json"}));
   EXPECT_EQ(run({"audit", "box.stl", "out.json"}).exit_code, 0);
+  // Who finds the files later is told.
+  EXPECT_EQ(read_json("out.json").at("interrupted"), true);
+  EXPECT_EQ(read_json("report.json").at("interrupted"), true);
+  for (const char* file : {"out.json", "report.json"}) {
+    const std::string told = run({"info", file}).out;
+    EXPECT_NE(told.find("\ninterrupted: the search"), std::string::npos) << told;
+  }
 }
 
 // As a shell has programs in the background ignore it.

@@ -233,9 +233,19 @@ TEST_F(RobotTest, InterruptedSearchWritesWhatIsProvedOfEveryLink) {
     ASSERT_EQ(outcome.exit_code, -SIGTERM) << outcome.out << outcome.err;
     if (!exists("out/arm_1.report.json")) continue;  // no link was begun yet
     EXPECT_NE(outcome.err.find("spherule: interrupted: "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.out.find(" *\n"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("\n* interrupted: the search"), std::string::npos) << outcome.out;
     break;
   }
   const json report = read_json("out/arm_1.report.json");
+  EXPECT_EQ(report.at("interrupted"), true);
+  for (const json& link : report.at("links")) {
+    EXPECT_EQ(link.contains("interrupted"), link.contains("certificate")) << link.at("link");
+  }
+  for (const char* file : {"out/arm_1.report.json", "out/arm_1.spheres.json"}) {
+    const std::string told = run({"info", file}).out;
+    EXPECT_NE(told.find("\ninterrupted: the search"), std::string::npos) << told;
+  }
   EXPECT_EQ(report.at("total").at("covered"), true);
   EXPECT_EQ(report.at("total").at("links"), 3);
   EXPECT_EQ(run({"audit-robot", "arm.urdf", "out/arm_1.spheres.json", "--max-error", "0.015",

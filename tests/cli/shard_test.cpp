@@ -172,6 +172,10 @@ TEST_F(FitEachTest, ShardsDivideThemAndWhatIsThereIsLeft) {
   EXPECT_NE(again.out.find("covers/a.json: is there"), std::string::npos) << again.out;
   EXPECT_EQ(again.out.find("covers/d.json: is there"), std::string::npos) << again.out;
   EXPECT_EQ(read_json("covers/d.json")["certificate"]["covered"], true);
+  // What an interruption left is made again.
+  write("covers/a.json", whole.substr(0, whole.rfind('}')) + ",\n\"interrupted\":true}\n");
+  fit({"-o", "covers", "--skip-existing"});
+  EXPECT_EQ(read("covers/a.json"), whole);
 }
 
 TEST_F(FitEachTest, WhatIsOfOneFileIsRefused) {

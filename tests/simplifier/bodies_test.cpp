@@ -82,6 +82,7 @@ TEST(Bodies, WhatIsNotBegunWhenStoppedIsNotCovered) {
     EXPECT_TRUE(fit.spheres.empty());
     EXPECT_FALSE(fit.certificate.covered);
     EXPECT_NE(fit.broken, "");
+    EXPECT_TRUE(fit.interrupted);
   }
   EXPECT_FALSE(sphere_file(bodies, fits, std::vector<double>(3, 1.0)).certificate->covered);
 }
@@ -98,6 +99,21 @@ TEST(Bodies, AStopKeepsWhatIsProved) {
   EXPECT_EQ(fits[0].broken, "");
   EXPECT_EQ(fits[1].broken, "");
   EXPECT_NE(fits[2].broken, "");
+  const SphereFile file = sphere_file(bodies, fits, std::vector<double>(3, 1.0));
+  EXPECT_TRUE(file.interrupted);
+  for (const BodyRecord& body : file.bodies) EXPECT_TRUE(body.interrupted) << body.name;
+}
+
+TEST(Bodies, AStopAfterTheSearchMarksNothing) {
+  const std::vector<Body> bodies = bracket_and_copy();
+  std::stop_source stop;
+  SimplifyOptions options = coarse();
+  options.stop = stop.get_token();
+  const std::vector<BodyFit> fits = fit_bodies(bodies, options);
+  stop.request_stop();
+  const SphereFile file = sphere_file(bodies, fits, std::vector<double>(3, 1.0));
+  EXPECT_FALSE(file.interrupted);
+  for (const BodyRecord& body : file.bodies) EXPECT_FALSE(body.interrupted) << body.name;
 }
 
 TEST(Bodies, WhatIsWrongNamesTheBody) {

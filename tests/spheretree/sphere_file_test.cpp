@@ -144,6 +144,18 @@ TEST_F(SphereFiles, IsTheDocumentedJson) {
             "\"options\":{\"seed\":7}}\n");
 }
 
+TEST_F(SphereFiles, AnInterruptedSearchIsMarkedAndNoOtherIs) {
+  SphereFile file = full_file();
+  const std::string whole = internal::encode_spheres(file, "a.json");
+  EXPECT_EQ(whole.find("interrupted"), std::string::npos);
+  EXPECT_FALSE(read(whole).interrupted);
+  file.interrupted = true;
+  const std::string marked = internal::encode_spheres(file, "a.json");
+  EXPECT_EQ(marked, whole.substr(0, whole.rfind('}')) + ",\n\"interrupted\":true}\n");
+  EXPECT_TRUE(read(marked).interrupted);
+  expect_refused(text_with("[]", R"(,"interrupted":1)"), "\"interrupted\" is not true or false");
+}
+
 TEST_F(SphereFiles, ToleratesWhatItDoesNotKnowAndOtherOrders) {
   const SphereFile file = read(
       "\n{ \"spheres\" : [ {\"radius\":1, \"center\":[1,2,3], \"name\":\"tip\"} ], "
@@ -287,13 +299,16 @@ SphereFile two_bodies() {
 }
 
 TEST_F(SphereFiles, BodiesSurviveTheRoundTrip) {
-  const SphereFile file = two_bodies();
+  SphereFile file = two_bodies();
+  file.bodies[1].interrupted = true;
   const SphereFile read = internal::decode_spheres(internal::encode_spheres(file, "file"), "file");
   expect_same(file, read);
   ASSERT_EQ(read.bodies.size(), 2u);
   EXPECT_EQ(read.bodies[0].name, "bolt");
   EXPECT_EQ(read.bodies[0].options, file.bodies[0].options);
   EXPECT_FALSE(read.bodies[0].copy);
+  EXPECT_FALSE(read.bodies[0].interrupted);
+  EXPECT_TRUE(read.bodies[1].interrupted);
   EXPECT_EQ(read.bodies[1].certificate->protrusion_over_simplified_max, 0.5);
   ASSERT_TRUE(read.bodies[1].copy);
   EXPECT_EQ(read.bodies[1].copy->of, 0u);

@@ -77,6 +77,18 @@ TEST_F(SphereFormats, EveryFormatReadsBackBitForBit) {
   }
 }
 
+TEST_F(SphereFormats, OurOwnFormatMarksAnInterruptedSearch) {
+  test::Random random(12);
+  RobotSpheres spheres = random_spheres(random, 4);
+  const SphereFileContext context = context_for(spheres);
+  for (const bool interrupted : {false, true}) {
+    spheres.interrupted = interrupted;
+    write_robot_spheres(spheres, SphereFormat::kSpherule, context, file("out"));
+    EXPECT_EQ(read_robot_spheres(file("out")).spheres.interrupted, interrupted);
+    EXPECT_EQ(read_file(file("out")).find("interrupted") != std::string::npos, interrupted);
+  }
+}
+
 TEST_F(SphereFormats, ManySpheres) {
   test::Random random(12);
   RobotSpheres spheres{.robot = "many", .links = {{"a", {}}, {"b", {}}}};
