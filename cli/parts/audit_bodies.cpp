@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <utility>
@@ -28,6 +29,7 @@ struct BodyVerdict {
   std::string name;
   CertificateRecord certificate;
   std::string note;  // for a person
+  std::optional<Eigen::Vector3d> deepest_leak = std::nullopt;
 };
 
 bool flag_of(const SphereFile& file, const char* name) {
@@ -101,7 +103,10 @@ class Auditor {
     const bool has_diameter = take_min_external(arguments_.min_external, options) ||
                               record.options.contains("min-external");
     const SolidProof proof(mesh, options, has_diameter);
-    return {record.name, spherule::record(certify(mesh, spheres_[body], proof.options())), ""};
+    const Certificate certificate = certify(mesh, spheres_[body], proof.options());
+    BodyVerdict verdict{record.name, spherule::record(certificate), ""};
+    if (certificate.uncovered_depth.lower > 0.0) verdict.deepest_leak = certificate.deepest_leak;
+    return verdict;
   }
 
   BodyVerdict copied(std::size_t body) const {
@@ -109,6 +114,8 @@ class Auditor {
     BodyVerdict verdict{file_.bodies[body].name, verdicts_[copy.of].certificate,
                         "copy of " + file_.bodies[copy.of].name};
     verdict.certificate = moved_certificate(verdict.certificate, spheres_[copy.of], copy.pose);
+    const std::optional<Eigen::Vector3d>& leak = verdicts_[copy.of].deepest_leak;
+    if (leak) verdict.deepest_leak = copy.pose * *leak;
     const std::vector<Sphere> moved = moved_spheres(spheres_[copy.of], copy.pose);
     if (!std::ranges::equal(spheres_[body], moved, holds)) {
       verdict.certificate.covered = false;
@@ -131,10 +138,15 @@ std::string text_of(double value) {
   return text.str();
 }
 
+std::string text_of(const Eigen::Vector3d& point) {
+  return "(" + text_of(point.x()) + ", " + text_of(point.y()) + ", " + text_of(point.z()) + ")";
+}
+
 void print(std::span<const BodyVerdict> verdicts, bool as_json) {
   Json list = Json::array();
   std::vector<std::vector<std::string>> rows = {
       {"body", "spheres", "covered", "none deeper than", "protrusion", ""}};
+  std::vector<std::vector<std::string>> places;
   std::size_t covered = 0;
   for (const BodyVerdict& verdict : verdicts) {
     const CertificateRecord& record = verdict.certificate;
@@ -151,13 +163,17 @@ void print(std::span<const BodyVerdict> verdicts, bool as_json) {
          {"protrusion_over_simplified_max", protrusion ? to_json(*protrusion) : Json(nullptr)},
          {"sphere_count", record.sphere_count},
          {"note", verdict.note}});
+    if (!verdict.deepest_leak) continue;
+    list.back()["deepest_leak"] = to_json(*verdict.deepest_leak);
+    places.push_back({"  " + verdict.name, text_of(*verdict.deepest_leak)});
   }
   if (as_json) {
     std::cout << to_text(Json{{"covered", covered == verdicts.size()}, {"bodies", list}});
     return;
   }
-  std::cout << aligned(rows) << covered << " of " << verdicts.size()
-            << " bodies are covered (proved)\n";
+  std::cout << aligned(rows);
+  if (!places.empty()) std::cout << "deepest leaks at:\n" << aligned(places);
+  std::cout << covered << " of " << verdicts.size() << " bodies are covered (proved)\n";
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/audit_robot_report.h"
 
+#include "cli/text/print.h"
 #include "cli/text/units.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -21,6 +23,20 @@ std::string in_mm(double metres) {
 std::string in_mm(const Bounds& depth) {
   if (depth.upper == 0.0) return "0";
   return in_mm(depth.lower) + " to " + in_mm(depth.upper);
+}
+
+std::string in_mm(const Eigen::Vector3d& point) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(1);
+  const auto put = [&](double metres) -> std::ostream& {
+    constexpr double kDigit = 10.0;  // adding 0 makes a zero of -0
+    return out << std::round(metres * kMillimetresPerMetre * kDigit) / kDigit + 0.0;
+  };
+  out << "(";
+  put(point.x()) << ", ";
+  put(point.y()) << ", ";
+  put(point.z()) << ")";
+  return out.str();
 }
 
 std::string yes(bool value) {
@@ -82,6 +98,17 @@ void put_links(std::ostream& out, const std::vector<LinkAudit>& links) {
       yes(covered));
 }
 
+// Where the links leak; the columns have no room for it.
+void put_places(std::ostream& out, const std::vector<LinkAudit>& links) {
+  std::vector<std::vector<std::string>> rows;
+  for (const LinkAudit& link : links) {
+    if (!link.certificate || !(link.certificate->uncovered_depth.lower > 0.0)) continue;
+    rows.push_back({"  " + link.link, in_mm(link.certificate->deepest_leak)});
+  }
+  if (!rows.empty())
+    out << "deepest leaks at (x, y, z), in the frame of the link:\n" << aligned(rows);
+}
+
 void put_repair(std::ostream& out, const RobotAuditReport& report) {
   if (!report.repair) return;
   out << "repaired into " << report.repaired_file << "\n";
@@ -111,6 +138,7 @@ std::string audit_table(const RobotAuditReport& report) {
   std::ostringstream out;
   out << name_of(report.file.format) << "; lengths in mm\n";
   put_links(out, report.audit.links);
+  put_places(out, report.audit.links);
   put_notes(out, report);
   std::size_t number = 0;
   for (const ConfigurationAudit& configuration : report.audit.configurations) {
@@ -119,7 +147,11 @@ std::string audit_table(const RobotAuditReport& report) {
       out << "all links are covered (proved)\n";
     } else {
       out << "leak " << in_mm(configuration.uncovered_depth) << ", at "
-          << configuration.deepest_link << "\n";
+          << configuration.deepest_link;
+      if (configuration.deepest_leak) {
+        out << ", " << in_mm(*configuration.deepest_leak) << " in the frame of the root";
+      }
+      out << "\n";
     }
   }
   put_repair(out, report);
@@ -141,6 +173,9 @@ Json audit_json(const RobotAuditReport& report) {
     for (const ConfigurationAudit& configuration : report.audit.configurations) {
       json["configurations"].push_back({{"uncovered_depth", to_json(configuration.uncovered_depth)},
                                         {"deepest_link", configuration.deepest_link}});
+      if (configuration.deepest_leak) {
+        json["configurations"].back()["deepest_leak"] = to_json(*configuration.deepest_leak);
+      }
     }
   }
   if (report.pairs) json.update(to_json(*report.pairs));

@@ -72,8 +72,9 @@ py::object audit_object(const RobotAudit& audit) {
   }
   py::list configurations;
   for (const ConfigurationAudit& at : audit.configurations) {
-    configurations.append(
-        make_result("ConfigurationAudit", bounds_object(at.uncovered_depth), at.deepest_link));
+    configurations.append(make_result(
+        "ConfigurationAudit", bounds_object(at.uncovered_depth), at.deepest_link,
+        at.deepest_leak ? py::object(array_of(*at.deepest_leak)) : py::object(py::none())));
   }
   return make_result("RobotAudit", py::tuple(links), py::tuple(configurations),
                      py::tuple(py::cast(audit.unknown_links)), audit.links_covered,

@@ -231,6 +231,8 @@ class ConfigurationAudit(Record):
 
     uncovered_depth: Bounds
     deepest_link: str
+    deepest_leak: Optional[Floats] = None
+    """A point of that link that leaks so deep, in the frame of the root."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)

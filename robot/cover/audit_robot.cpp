@@ -172,6 +172,8 @@ ConfigurationAudit audit_placed(const PlacedRobot& placed, std::span<const LinkP
         std::pair(depth.lower, depth.upper) > std::pair(deepest.lower, deepest.upper)) {
       deepest = depth;
       result.deepest_link = part.link;
+      result.deepest_leak.reset();
+      if (depth.lower > 0.0) result.deepest_leak = certificate.deepest_leak;
     }
     result.uncovered_depth.lower = std::max(result.uncovered_depth.lower, depth.lower);
     result.uncovered_depth.upper = std::max(result.uncovered_depth.upper, depth.upper);

@@ -66,6 +66,9 @@ struct LinkAudit {
 struct ConfigurationAudit {
   Bounds uncovered_depth;    // over all links, of their meshes and insides
   std::string deepest_link;  // by the lower bound, else by the upper; empty if all are covered
+  // A point of it that is no less deep than the lower bound, in the frame of the root; absent
+  // unless that is above 0.
+  std::optional<Eigen::Vector3d> deepest_leak = std::nullopt;
 };
 
 // What is proved of a robot's spheres.

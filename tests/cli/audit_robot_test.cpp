@@ -103,6 +103,30 @@ TEST_F(AuditRobotCommand, TheLastRowIsOfAllLinks) {
   EXPECT_EQ(rest.substr(rest.find_last_of(' ')), " NO");
 }
 
+// The half edges of the base are 100, 3 and 3 mm, its sphere of 90 mm is about the middle.
+TEST_F(AuditRobotCommand, TheTextSaysWhereLinksLeak) {
+  write("leaks.yml", spheres(0.09, 0.05));
+  const std::string text = run({"audit-robot", "two.urdf", "leaks.yml"}).out;
+  const std::string heading = "\ndeepest leaks at (x, y, z), in the frame of the link:\n";
+  const std::size_t places = text.find(heading);
+  ASSERT_NE(places, text.npos) << text;
+  std::istringstream row(text.substr(places + heading.size()));
+  std::string link, x, y, z;
+  row >> link >> x >> y >> z;
+  EXPECT_EQ(link, "base");
+  EXPECT_NEAR(std::abs(std::stod(x.substr(1))), 100.0, 0.1) << text;
+  EXPECT_NEAR(std::abs(std::stod(y)), 2.9, 0.2) << text;
+  EXPECT_NEAR(std::abs(std::stod(z)), 2.9, 0.2) << text;
+  row >> link;
+  EXPECT_EQ(link, "next:") << "the arm does not leak: " << text;
+  for (std::istringstream lines(text); std::getline(lines, link);) {
+    const bool is_step = link.find("spherule ") != link.npos;
+    EXPECT_TRUE(is_step || link.size() <= 100u) << link;
+  }
+  write("good.yml", spheres(0.12, 0.05));
+  EXPECT_EQ(run({"audit-robot", "two.urdf", "good.yml"}).out.find("deepest leaks"), text.npos);
+}
+
 TEST_F(AuditRobotCommand, LevelsAreChosen) {
   const auto level = [](const char* radius) {
     return std::string(R"({"spheres": [{"origin": [0, 0, 0], "radius": )") + radius + "}]}";
@@ -135,6 +159,12 @@ TEST_F(AuditRobotCommand, PosesDecide) {
   EXPECT_NE(radians.err.find("its angles look like degrees"), std::string::npos) << radians.err;
   const json poses = json::parse(bad.out).at("configurations");
   EXPECT_EQ(poses.at(0).at("deepest_link"), "");
+  EXPECT_FALSE(poses.at(0).contains("deepest_leak"));
+  // In the second the arm's spheres are all beyond 0.195 on the x axis.
+  EXPECT_NEAR(poses.at(1).at("deepest_leak").at(0).get<double>(), -0.1, 1e-3);
+  const std::string text = run({"audit-robot", "two.urdf", "arm.json", "--poses", "bad.csv"}).out;
+  EXPECT_NE(text.find(", at base, (-100.0, "), text.npos) << text;
+  EXPECT_NE(text.find(") in the frame of the root\n"), text.npos) << text;
   EXPECT_EQ(poses.at(1).at("deepest_link"), "base");
 }
 

@@ -75,6 +75,13 @@ TEST_F(FitBodiesTest, OtherCommandsReadTheFile) {
   EXPECT_FALSE(verdict.at("covered").get<bool>());
   EXPECT_TRUE(verdict.at("bodies").at(0).at("covered").get<bool>());
   EXPECT_FALSE(verdict.at("bodies").at(1).at("covered").get<bool>());
+  EXPECT_FALSE(verdict.at("bodies").at(0).contains("deepest_leak"));
+  const json& at = verdict.at("bodies").at(1).at("deepest_leak");
+  std::ostringstream place;
+  place << "deepest leaks at:\n  b  (" << at.at(0).get<double>() << ", " << at.at(1).get<double>()
+        << ", " << at.at(2).get<double>() << ")\n1 of 2 bodies";
+  outcome = run({"audit", "a.stl", "b.stl", "leaky.json"});
+  EXPECT_NE(outcome.out.find(place.str()), std::string::npos) << outcome.out << place.str();
 }
 
 TEST_F(FitBodiesTest, Refusals) {

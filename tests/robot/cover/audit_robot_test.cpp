@@ -138,6 +138,10 @@ TEST_F(AuditRobot, NeighboursCoverInSomeConfigurations) {
       continue;
     }
     EXPECT_EQ(found.deepest_link, "base");
+    ASSERT_TRUE(found.deepest_leak.has_value()) << q;
+    const double left = std::min((*found.deepest_leak - far.center).norm() - far.radius,
+                                 (*found.deepest_leak - near.center).norm() - near.radius);
+    EXPECT_NEAR(left, found.uncovered_depth.lower, 1e-9) << q;
     EXPECT_LE(found.uncovered_depth.lower, most + 1e-12) << q;
     EXPECT_GE(found.uncovered_depth.lower, least - 1e-3) << q;
     EXPECT_GE(found.uncovered_depth.upper, least - 1e-12) << q;
