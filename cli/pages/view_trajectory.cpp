@@ -73,7 +73,8 @@ class Recording {
   void examine_share(std::size_t thread) {
     for (std::size_t j = thread; j < shown_.size(); j += scratches_.size()) {
       const std::span configuration = trajectory_.configuration(shown_[j]);
-      clearances_[j] = checker_.clearance(configuration, scratches_[thread]);
+      clearances_[j] =
+          checker_.clearance(configuration, scratches_[thread], {.skip_proved_free = true});
       contacts_[j] = checker_.explain(configuration, scratches_[thread]);
       if (thread == 0 && view_.progress && j % 64 == 0) {
         view_.progress(static_cast<double>(j) / static_cast<double>(shown_.size()),
@@ -102,6 +103,7 @@ class Recording {
     json["positions"] = encode_words(positions);
     json["clearance"] = encode_words(clearance);
     json["nearest"] = encode_words(nearest);
+    json["skipped"] = std::ranges::any_of(clearances_, &RobotClearance::skipped);
   }
 
   // The verdict of each step and the points with contacts, in their order.

@@ -29,13 +29,13 @@ struct TrajectoryView {
 
 // A trajectory as the page takes it, `report` with the verdicts of it. Of n shown configurations:
 // `lines` of the file, `positions`, `clearance` (its lower bound, metres) and `nearest` (two
-// indices into `bodies`), as 32-bit words; `verdicts`, a letter for each configuration, or for each
-// step from one to the next where motions were proved: f free, c collision, u not proved, l outside
-// the joint limits where these are enforced. `points`
-// are what was examined and touches: "at" on the scale of the shown configurations, line, next line
-// (0 for a configuration of the file), fraction, "configuration" unless it is a shown one, and
-// contacts, 12 floats each: the two bodies, depth, point, and of either body link, tree and sphere,
-// -1 for what has none.
+// indices into `bodies`), as 32-bit words, and `skipped`, whether two links were anywhere left out
+// of a clearance because they are proved free there; `verdicts`, a letter for each configuration,
+// or for each step from one to the next where motions were proved: f free, c collision, u not
+// proved, l outside the joint limits where these are enforced. `points` are what was examined and
+// touches: "at" on the scale of the shown configurations, line, next line (0 for a configuration of
+// the file), fraction, "configuration" unless it is a shown one, and contacts, 12 floats each: the
+// two bodies, depth, point, and of either body link, tree and sphere, -1 for what has none.
 Json view_trajectory(const RobotChecker& checker, const Trajectory& trajectory,
                      const CheckReport& report, const TrajectoryView& view);
 

@@ -91,6 +91,13 @@ struct CheckedContact {
   bool is_proved_free = false;
 };
 
+// Of what a clearance is.
+struct ClearanceRequest {
+  // Pass over two bodies while they are proved free of each other (RobotScene::set_link_pairs()).
+  // Their spheres may overlap there, and would leave a clearance of 0 that says nothing.
+  bool skip_proved_free = false;
+};
+
 // How far a robot is from the nearest contact, between two bounds.
 struct RobotClearance {
   // No two of the spheres and solids that are tested against each other come nearer than this to
@@ -100,6 +107,7 @@ struct RobotClearance {
   double upper = std::numeric_limits<double>::infinity();  // the nearest two are not further apart
   CheckedBody first;  // the pair that attains `upper`, empty names if nothing is tested
   CheckedBody second;
+  bool skipped = false;  // two bodies were passed over, as requested: no bound is of them
 };
 
 // Is a robot free of obstacles and of itself? A snapshot of a RobotScene, immutable: threads may
@@ -206,8 +214,10 @@ class RobotChecker {
   bool within(std::span<const double> configuration, double clearance, Scratch& scratch) const;
 
   // How far the robot is from the nearest contact, and of which two: of the spheres, where contacts
-  // are confirmed or pairs proved free, too, so that `lower` holds for the meshes. Allocates.
-  RobotClearance clearance(std::span<const double> configuration, Scratch& scratch) const;
+  // are confirmed or, unless these are skipped, pairs proved free, too, so that `lower` holds for
+  // the meshes. Allocates.
+  RobotClearance clearance(std::span<const double> configuration, Scratch& scratch,
+                           const ClearanceRequest& request = {}) const;
 
   // What touches what: one contact, the deepest, for each two bodies, and each body and obstacle,
   // that touch. Empty exactly if all are free of each other, unless what is proved free is

@@ -86,18 +86,22 @@ bool RobotChecker::within(std::span<const double> configuration, double clearanc
 // The pairs that may be nearest come first; a search ends where its pair cannot be nearer than the
 // nearest so far. What is apart under the computed poses is apart by no less than twice the error
 // of a pose under those of the exact mechanism, a bound that holds for usual positions alone.
-RobotClearance RobotChecker::clearance(std::span<const double> configuration,
-                                       Scratch& scratch) const {
+RobotClearance RobotChecker::clearance(std::span<const double> configuration, Scratch& scratch,
+                                       const ClearanceRequest& request) const {
   require_own(scratch);
   internal::BodyPairs::Memory& memory = scratch.memory_->pairs;
   const internal::BodyPairs& pairs = parts_->pairs;
   pairs.place(configuration, memory);
+  RobotClearance result;
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < pairs.pairs().size(); ++i) {
-    order.emplace_back(pairs.gap_bound(i, memory), i);
+    if (request.skip_proved_free && pairs.is_proved_free(i, memory)) {
+      result.skipped = true;
+    } else {
+      order.emplace_back(pairs.gap_bound(i, memory), i);
+    }
   }
   std::sort(order.begin(), order.end());
-  RobotClearance result;
   for (const auto& [bound, i] : order) {
     if (bound > result.upper) break;
     const DistanceResult found = pairs.distance(i, memory, {.enough = result.upper});

@@ -4,6 +4,7 @@
 #include "tests/cli/view_scene.h"
 #include "tests/support/effort.h"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -124,6 +125,24 @@ TEST_F(RobotPairsTest, CheckSaysOfWhatKindPairsAre) {
   EXPECT_EQ(without["pairs"][0]["count"], 2);
   EXPECT_FALSE(without["pairs"][0].contains("kind"));
   EXPECT_TRUE(without["proved_free"].empty());
+}
+
+TEST_F(RobotPairsTest, TheClearanceOfThePageIsOfWhatIsNotProved) {
+  write("gantry.urdf", gantry("-0.05"));
+  ASSERT_EQ(cover().exit_code, 0);
+  const auto page = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--view", "page.html"});
+    check(more, "slide, turn\n-0.04, 0\n0, 0\n");
+    return scene_of(read("page.html")).at("trajectory");
+  };
+  const json spheres = page({});
+  EXPECT_EQ(spheres.at("skipped"), false);
+  EXPECT_EQ(floats_of(spheres.at("clearance")), (std::vector<float>{0.0F, 0.0F}));
+  // The first configuration is in contact, the second is proved free, and there are no others.
+  const json proved = page({"--pairs", "out/gantry.pairs"});
+  EXPECT_EQ(proved.at("skipped"), true);
+  EXPECT_EQ(floats_of(proved.at("clearance")),
+            (std::vector<float>{0.0F, std::numeric_limits<float>::infinity()}));
 }
 
 TEST_F(RobotPairsTest, AuditTellsPairsApart) {

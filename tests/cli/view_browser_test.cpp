@@ -227,6 +227,8 @@ TEST_F(CheckedPageTest, ShowsWhatTouchesAndHowFarTheRestIs) {
   const Shown free = show("page.html", "theme=light&at=2");
   expect_text(free, "hand – wall 20.5 mm", false);
   expect_text(free, "clearance ≥ 949 mm in line 3, hand – wall");
+  expect_text(free, "curve: how far the spheres are apart at least, to 9");
+  expect_text(free, "proved free of each other", false);
   expect_text(free, "class=\"verdict f\">free<");
   // Halfway between two lines: there the joint is, too.
   const Shown between = show("page.html", "theme=light&at=1.5");

@@ -50,7 +50,9 @@ function tell_place(point, contacts) {
 
 function clearance_text(k) {
   const value = trajectory.clearance[k];
-  if (!Number.isFinite(value)) return "nothing is tested";
+  if (!Number.isFinite(value)) {
+    return trajectory.skipped ? "proved free: no clearance is known" : "nothing is tested";
+  }
   const [a, b] = [trajectory.nearest[2 * k], trajectory.nearest[2 * k + 1]];
   const pair = a < 0 || b < 0 ? ""
       : `, ${plain_name(trajectory.bodies[a])} – ${plain_name(trajectory.bodies[b])}`;
@@ -119,7 +121,8 @@ function tell_summary() {
   if (counts.l) parts.push(`${counts.l.toLocaleString("en-US")} outside the joint limits`);
   if (finite.length) {
     const least = lower_distance_text(finite.reduce((a, b) => Math.min(a, b)));
-    parts.push(`spheres at least ${least} apart in each configuration shown`);
+    parts.push(`spheres at least ${least} apart in each configuration shown` +
+               (trajectory.skipped ? " (but for links proved free of each other)" : ""));
   }
   if (trajectory.shown < trajectory.configurations) {
     parts.push(`${trajectory.shown.toLocaleString("en-US")} of ` +
@@ -127,7 +130,8 @@ function tell_summary() {
   }
   panel_part("summary").textContent = parts.join(", ");
   panel_part("scale-note").textContent = greatest_clearance > 0
-      ? `clearance to ${distance_text(greatest_clearance)}` : "";
+      ? `curve: how far the spheres are apart at least, to ${distance_text(greatest_clearance)}` +
+        (trajectory.skipped ? "; without links that are proved free of each other there" : "") : "";
 }
 
 function add_player() {
