@@ -15,6 +15,8 @@
 // assert(document.root()["radius"] == 2.5);
 // @endcode
 
+#include "spheretree/text_fault.h"
+
 #include <cstddef>
 #include <set>
 #include <string>
@@ -73,8 +75,9 @@ JsonDocument<Json> parse_json(std::string_view text, const Refuse& refuse) {
   Json document;
   try {
     document = Json::parse(text, watch);
-  } catch (const typename Json::exception& error) {
-    refuse(std::string("is not JSON: ") + error.what());
+  } catch (const typename Json::exception&) {
+    const std::string fault = json_fault(text);
+    refuse(fault.empty() ? "is not JSON" : fault);
   }
   if (!duplicate.empty()) refuse("the key " + duplicate + " appears twice");
   return JsonDocument<Json>(std::move(document));

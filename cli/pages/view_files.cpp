@@ -8,6 +8,7 @@
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "spheretree/sphere_file.h"
+#include "spheretree/text_fault.h"
 #include "spheretree/tree_file.h"
 
 #include <algorithm>
@@ -127,8 +128,11 @@ std::vector<LeakPoint> leaks_of(const Json& certificate, const std::string& file
 
 Json json_in(const std::filesystem::path& file) {
   if (file.extension() != ".json") return nullptr;
-  Json json = Json::parse(read_file(file), nullptr, false);
-  return json.is_discarded() ? Json(nullptr) : json;
+  const std::string text = read_file(file);
+  Json json = Json::parse(text, nullptr, false);
+  if (!json.is_discarded()) return json;
+  const std::string fault = internal::json_fault(text);
+  throw Error(file.string(), fault.empty() ? "is not JSON" : fault);
 }
 
 std::vector<ViewItem> view_items(const std::string& file, const std::string& units) {

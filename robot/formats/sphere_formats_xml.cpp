@@ -24,7 +24,7 @@ using tinyxml2::XMLElement;
 std::unique_ptr<XMLDocument> parsed(const std::string& text, const fs::path& path) {
   auto document = std::make_unique<XMLDocument>();
   if (document->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    throw Error(path.string(), std::string("it is no XML (") + document->ErrorName() + ")");
+    throw Error(path.string(), "is not XML");
   }
   return document;
 }

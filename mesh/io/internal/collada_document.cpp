@@ -3,9 +3,11 @@
 
 #include "spheretree/error.h"
 #include "spheretree/text.h"
+#include "spheretree/text_fault.h"
 
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace spherule::internal {
@@ -28,8 +30,10 @@ ColladaDocument::ColladaDocument(std::string_view text, const std::string& subje
     throw Error(subject_, "not a mesh: XML elements are nested too deep");
   }
   if (fault != tinyxml2::XML_SUCCESS) {
-    throw Error(subject_, "line " + std::to_string(document_.ErrorLineNum()) +
-                              ": not a mesh: " + document_.ErrorName());
+    const std::string reason = xml_fault(text);
+    throw Error(subject_, !reason.empty() ? reason
+                                          : "line " + std::to_string(document_.ErrorLineNum()) +
+                                                ": is not XML");
   }
   root_ = document_.RootElement();
   if (root_ == nullptr || local_name(*root_) != "COLLADA") {

@@ -2,6 +2,7 @@
 #include "mesh/io/internal/gltf_document.h"
 
 #include "spheretree/error.h"
+#include "spheretree/text_fault.h"
 
 #include <array>
 #include <cmath>
@@ -29,6 +30,10 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
 GltfDocument::GltfDocument(std::string_view bytes, const std::string& subject) : subject_(subject) {
   split_container(bytes);
   root_ = Json::parse(json_, nullptr, false);
+  if (root_.is_discarded()) {
+    const std::string fault = json_fault(json_);
+    if (!fault.empty()) fail((json_.size() < bytes.size() ? "its JSON, " : "") + fault);
+  }
   if (!root_.is_object()) fail("not a glTF file");
   const Json* const asset = member(root_, "asset");
   if (asset == nullptr || !text(*asset, "version").starts_with("2.")) fail("not glTF of version 2");

@@ -2,8 +2,12 @@
 #include "robot/formats/internal/yaml_nodes.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <yaml-cpp/eventhandler.h>
 
 namespace spherule::internal {
@@ -35,6 +39,44 @@ class DocumentCounter : public YAML::EventHandler {
   int documents_ = 0;
 };
 
+std::string place_of(const YAML::Mark& mark) {
+  if (mark.is_null()) return {};
+  const std::string line = "line " + std::to_string(mark.line + 1);
+  // At the end of a text yaml-cpp tells no column.
+  return mark.column == 0 ? line : line + ", column " + std::to_string(mark.column + 1);
+}
+
+// Whether the line at a place is indented by a tab, which yaml-cpp refuses in other words.
+bool is_indented_by_tab(const YAML::Mark& mark, std::string_view text) {
+  for (int line = 0; line < mark.line; ++line) {
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+    if (text.empty()) return false;
+  }
+  return text.substr(0, text.find_first_not_of(" \t")).find('\t') != std::string_view::npos;
+}
+
+// What yaml-cpp says of the faults that are common, for those who write files by hand.
+std::string plain_words(const YAML::Exception& error, std::string_view text) {
+  const std::array<std::pair<std::string_view, const char*>, 11> words{{
+      {YAML::ErrorMsg::END_OF_SEQ_FLOW, "a '[' before is not closed"},
+      {YAML::ErrorMsg::END_OF_MAP_FLOW, "a '{' before is not closed"},
+      {YAML::ErrorMsg::END_OF_SEQ, "the indentation does not fit the lines before"},
+      {YAML::ErrorMsg::END_OF_MAP, "the indentation does not fit the lines before"},
+      {YAML::ErrorMsg::MAP_VALUE, "a ':' where no key can stand"},
+      {YAML::ErrorMsg::MAP_KEY, "a '?' where no key can stand"},
+      {YAML::ErrorMsg::BLOCK_ENTRY, "a '-' where no entry of a list can stand"},
+      {YAML::ErrorMsg::UNKNOWN_TOKEN, "no value begins so; put a text in quotes"},
+      {YAML::ErrorMsg::EOF_IN_SCALAR, "a text in quotes is not ended"},
+      {YAML::ErrorMsg::UNKNOWN_ANCHOR, "an alias (*) names no anchor (&) before it"},
+      {YAML::ErrorMsg::FLOW_END, "a ']' or '}' that closes nothing"},
+  }};
+  if (is_indented_by_tab(error.mark, text)) return "a tab in the indentation; use blanks";
+  for (const auto& [theirs, ours] : words) {
+    if (error.msg == theirs) return ours;
+  }
+  return error.msg;
+}
+
 }  // namespace
 
 std::optional<Node> only_document(const std::string& text) {
@@ -57,7 +99,7 @@ Node yaml_document(std::string_view text, const SphereGatherer& gathered) {
     gathered.unless(document.has_value(), {}, "does not hold exactly one YAML document");
     return *document;
   } catch (const YAML::Exception& error) {
-    gathered.refuse("line " + std::to_string(error.mark.line + 1), "is not YAML: " + error.msg);
+    gathered.refuse(place_of(error.mark), "is not YAML: " + plain_words(error, text));
   }
 }
 

@@ -124,8 +124,8 @@ TEST(ReadSrdf, RefusesBadFiles) {
   };
   const std::string group = "<group name='g'/>";
   const std::vector<BadFile> files = {
-      {"", {"no XML"}},
-      {"<robot name='r'>", {"no XML"}},
+      {"", {"not XML"}},
+      {"<robot name='r'>", {"not XML"}},
       {"<srdf/>", {"no <robot>"}},
       {"<robot/>", {"no name"}},
       {robot_of("<group/>"), {"<group>", "no name"}},

@@ -202,9 +202,9 @@ TEST(ReadUrdf, RefusesBadFiles) {
     return link_of("<" + tag + "><geometry>" + geometry + "</geometry></" + tag + ">");
   };
   const std::vector<BadFile> files = {
-      {"", {"no XML"}},
-      {"<robot name='r'>", {"line 1", "no XML"}},
-      {"<robot name='r'><link name='a'/>\n<link name='b</robot>", {"no XML"}},
+      {"", {"not XML"}},
+      {"<robot name='r'>", {"line 1", "not XML"}},
+      {"<robot name='r'><link name='a'/>\n<link name='b</robot>", {"not XML"}},
       {std::string("<robot name='r'><link name='a'/></robot>\0", 41), {"zero byte"}},
       {"<model/>", {"no <robot>"}},
       {"<robot name='r'><link name='a'/></robot><robot name='s'/>", {"more than one root"}},
@@ -335,7 +335,7 @@ TEST(ReadUrdf, NamesTheLine) {
 TEST(ReadUrdf, RefusesElementsWithinElements) {
   std::string text;
   for (int i = 0; i < 100000; ++i) text += "<robot name='r'>";
-  EXPECT_NE(refusal_of(text).find("no XML"), std::string::npos);
+  EXPECT_NE(refusal_of(text).find("line 1: elements are nested too deep"), std::string::npos);
 }
 
 TEST(ReadUrdf, TakesALongChain) {

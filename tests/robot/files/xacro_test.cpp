@@ -65,7 +65,7 @@ TEST_F(Xacro, WhatFailsNamesTheFile) {
   install("kill -TERM $$\n");
   expect_refusal(file, "xacro was ended by a signal");
   install("true\n");
-  expect_refusal(file, "no XML");
+  expect_refusal(file, "not XML");
   ::setenv("PATH", folder_.path().c_str(), 1);
   expect_refusal(file,
                  "needs the program xacro, which makes a URDF of it and cannot be run: No such");

@@ -60,7 +60,7 @@ TEST_F(SphereFormatFaults, Files) {
 }
 
 TEST_F(SphereFormatFaults, Xml) {
-  expect_refusal("<robot>", "no XML");
+  expect_refusal("<robot>", "line 1, column 8: is not XML: it ends before <robot>");
   expect_refusal("<other/>", "no <robot>");
   expect_refusal("<robot/><robot/>", "more than one root");
   expect_refusal(robot("<link/>"), "line 2: <link>: it has no name");
@@ -98,7 +98,15 @@ TEST_F(SphereFormatFaults, Xml) {
 
 TEST_F(SphereFormatFaults, Yaml) {
   const std::string head = "collision_spheres:\n  a:\n";
-  expect_refusal("a: [1", "line 1: is not YAML");
+  expect_refusal("a: [1", "line 1: is not YAML: a '[' before is not closed");
+  expect_refusal("a: {b: 1", "is not YAML: a '{' before is not closed");
+  expect_refusal("a:\n\tb: 1",
+                 "line 2, column 3: is not YAML: a tab in the indentation; use blanks");
+  expect_refusal("a:\n  b: 1\n c: 1",
+                 "line 3, column 2: is not YAML: the indentation does not fit");
+  expect_refusal("a: b: c", "line 1, column 5: is not YAML: a ':' where no key can stand");
+  expect_refusal("a: @b", "line 1, column 4: is not YAML: no value begins so");
+  expect_refusal("a: *b", "is not YAML: an alias (*) names no anchor (&) before it");
   expect_refusal("just words", "the file is not a map");
   expect_refusal("a: 1\n---\nb: 2", "exactly one YAML document");
   expect_refusal("a: 1", "has no \"collision_spheres\"");
