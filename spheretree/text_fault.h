@@ -11,7 +11,7 @@
 // using namespace spherule::internal;
 // assert(json_fault("{\"a\": 1}").empty());
 // assert(json_fault("{\"a\": 1,}") == "line 1, column 9: is not JSON: a comma before '}'");
-// assert(xml_fault("<a>\n</b>") == "line 2, column 1: is not XML: </b> where </a> is due");
+// assert(xml_fault("<a></b>") == "line 1, column 4: is not XML: </b> where </a> is due");
 // @endcode
 
 #include <cstddef>

@@ -93,7 +93,10 @@ def test_files_of_spheres_keep_every_bit(fit, tmp_path):
     spherule.save_spheres(fit.file, path)
     assert spherule.load_spheres(path) == fit.file
     spherule.save_spheres(spherule.SphereFile(fit.spheres), path)
-    assert spherule.load_spheres(path).certificate is None
+    read = spherule.load_spheres(path)
+    assert read.certificate is None and not read.interrupted
+    spherule.save_spheres(spherule.SphereFile(fit.spheres, interrupted=True), path)
+    assert spherule.load_spheres(path).interrupted
 
 
 def test_a_diameter_that_was_requested_is_no_larger_one(cube, fit):
