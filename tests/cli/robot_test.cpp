@@ -239,9 +239,13 @@ TEST_F(RobotTest, InterruptedSearchWritesWhatIsProvedOfEveryLink) {
   }
   const json report = read_json("out/arm_1.report.json");
   EXPECT_EQ(report.at("interrupted"), true);
+  // The search of a simple link may be done before.
+  std::size_t interrupted = 0;
   for (const json& link : report.at("links")) {
-    EXPECT_EQ(link.contains("interrupted"), link.contains("certificate")) << link.at("link");
+    interrupted += link.contains("interrupted") ? 1 : 0;
+    EXPECT_TRUE(link.contains("certificate") || !link.contains("interrupted")) << link.at("link");
   }
+  EXPECT_GT(interrupted, 0U);
   for (const char* file : {"out/arm_1.report.json", "out/arm_1.spheres.json"}) {
     const std::string told = run({"info", file}).out;
     EXPECT_NE(told.find("\ninterrupted: the search"), std::string::npos) << told;
