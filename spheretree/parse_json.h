@@ -15,7 +15,7 @@
 // assert(document.root()["radius"] == 2.5);
 // @endcode
 
-#include "spheretree/text_fault.h"
+#include "spheretree/parser_fault.h"
 
 #include <cstddef>
 #include <set>
@@ -75,9 +75,8 @@ JsonDocument<Json> parse_json(std::string_view text, const Refuse& refuse) {
   Json document;
   try {
     document = Json::parse(text, watch);
-  } catch (const typename Json::exception&) {
-    const std::string fault = json_fault(text);
-    refuse(fault.empty() ? "is not JSON" : fault);
+  } catch (const typename Json::exception& error) {
+    refuse(json_fault(error.what()));
   }
   if (!duplicate.empty()) refuse("the key " + duplicate + " appears twice");
   return JsonDocument<Json>(std::move(document));

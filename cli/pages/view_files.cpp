@@ -7,8 +7,8 @@
 #include "cli/text/print.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/parser_fault.h"
 #include "spheretree/sphere_file.h"
-#include "spheretree/text_fault.h"
 #include "spheretree/tree_file.h"
 
 #include <algorithm>
@@ -128,11 +128,11 @@ std::vector<LeakPoint> leaks_of(const Json& certificate, const std::string& file
 
 Json json_in(const std::filesystem::path& file) {
   if (file.extension() != ".json") return nullptr;
-  const std::string text = read_file(file);
-  Json json = Json::parse(text, nullptr, false);
-  if (!json.is_discarded()) return json;
-  const std::string fault = internal::json_fault(text);
-  throw Error(file.string(), fault.empty() ? "is not JSON" : fault);
+  try {
+    return Json::parse(read_file(file));
+  } catch (const Json::exception& error) {
+    throw Error(file.string(), internal::json_fault(error.what()));
+  }
 }
 
 std::vector<ViewItem> view_items(const std::string& file, const std::string& units) {

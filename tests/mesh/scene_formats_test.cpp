@@ -57,8 +57,9 @@ TEST_F(SceneFormats, Collada) {
   EXPECT_TRUE(refused("dae", replaced(good, "<p>0 2 3", "<p>0 <b/>2 3"), "between its numbers"));
   EXPECT_TRUE(refused("dae", replaced(good, "<p>0 2 3", "<p>0 2"), "count of triangles"));
   EXPECT_TRUE(refused("dae", good.substr(0, good.size() / 2), "is not XML"));
-  EXPECT_TRUE(refused("dae", "<COLLADA>\n<a>\n</COLLADA>", "line 3, column 1: is not XML: </COL"));
-  EXPECT_TRUE(refused("gltf", "{\"asset\": {}\n 1}", "line 2, column 2: is not JSON: a comma or"));
+  EXPECT_TRUE(refused("dae", "<COLLADA>\n<a>\n</COLLADA>", "line 3: is not XML: a closing tag"));
+  EXPECT_TRUE(
+      refused("gltf", "{\"asset\": {}\n 1}", "line 2, column 2: is not JSON: unexpected number"));
   EXPECT_TRUE(refused("dae", "<html/>", "not COLLADA"));
   EXPECT_TRUE(
       refused("dae", replaced(good, "<instance_geometry url=\"#g\"/>", ""), "no triangles"));

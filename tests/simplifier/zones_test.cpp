@@ -159,7 +159,7 @@ TEST(Zones, FaultsAreNamedWithFileAndEntry) {
   const auto expect = [&](const std::string& text, const std::string& part) {
     EXPECT_NE(reason(text).find(part), std::string::npos) << text << ": " << reason(text);
   };
-  expect("", "line 1, column 1: is not JSON: nothing is in it");
+  expect("", "line 1, column 1: is not JSON: unexpected end of input");
   expect("[]", "is not an object");
   expect("{}", "\"format\" is missing");
   expect(R"({"format":"other","version":1,"zones":[]})", "is not of format");

@@ -2,12 +2,11 @@
 #include "mesh/io/internal/collada_document.h"
 
 #include "spheretree/error.h"
+#include "spheretree/parser_fault.h"
 #include "spheretree/text.h"
-#include "spheretree/text_fault.h"
 
 #include <limits>
 #include <optional>
-#include <string>
 #include <utility>
 
 namespace spherule::internal {
@@ -30,10 +29,7 @@ ColladaDocument::ColladaDocument(std::string_view text, const std::string& subje
     throw Error(subject_, "not a mesh: XML elements are nested too deep");
   }
   if (fault != tinyxml2::XML_SUCCESS) {
-    const std::string reason = xml_fault(text);
-    throw Error(subject_, !reason.empty() ? reason
-                                          : "line " + std::to_string(document_.ErrorLineNum()) +
-                                                ": is not XML");
+    throw Error(subject_, xml_fault(document_.ErrorName(), document_.ErrorLineNum()));
   }
   root_ = document_.RootElement();
   if (root_ == nullptr || local_name(*root_) != "COLLADA") {

@@ -2,7 +2,7 @@
 #include "mesh/io/internal/gltf_document.h"
 
 #include "spheretree/error.h"
-#include "spheretree/text_fault.h"
+#include "spheretree/parser_fault.h"
 
 #include <array>
 #include <cmath>
@@ -29,10 +29,10 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
 
 GltfDocument::GltfDocument(std::string_view bytes, const std::string& subject) : subject_(subject) {
   split_container(bytes);
-  root_ = Json::parse(json_, nullptr, false);
-  if (root_.is_discarded()) {
-    const std::string fault = json_fault(json_);
-    if (!fault.empty()) fail((json_.size() < bytes.size() ? "its JSON, " : "") + fault);
+  try {
+    root_ = Json::parse(json_);
+  } catch (const Json::exception& error) {
+    fail((json_.size() < bytes.size() ? "its JSON, " : "") + json_fault(error.what()));
   }
   if (!root_.is_object()) fail("not a glTF file");
   const Json* const asset = member(root_, "asset");

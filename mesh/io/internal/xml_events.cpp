@@ -2,13 +2,11 @@
 #include "mesh/io/internal/xml_events.h"
 
 #include "spheretree/error.h"
-#include "spheretree/text_fault.h"
 
 #include <exception>
 #include <expat.h>
 #include <limits>
 #include <memory>
-#include <string>
 
 namespace spherule::internal {
 namespace {
@@ -43,8 +41,6 @@ class Parser {
         XML_Parse(parser_.get(), text.data(), static_cast<int>(text.size()), XML_TRUE);
     if (fault_) std::rethrow_exception(fault_);
     if (status != XML_STATUS_OK) {
-      const std::string fault = xml_fault(text);
-      if (!fault.empty()) throw Error(subject_, fault);
       throw Error(subject_,
                   "line " + std::to_string(XML_GetCurrentLineNumber(parser_.get())) +
                       ": is not XML: " + XML_ErrorString(XML_GetErrorCode(parser_.get())));

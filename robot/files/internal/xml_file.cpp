@@ -3,8 +3,8 @@
 
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/parser_fault.h"
 #include "spheretree/text.h"
-#include "spheretree/text_fault.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -161,12 +161,8 @@ XmlFile::XmlFile(const std::filesystem::path& path, std::string_view tag)
 XmlFile::XmlFile(std::string name, const std::string& text, std::string_view tag)
     : name_(std::move(name)), document_(std::make_unique<tinyxml2::XMLDocument>()) {
   if (text.find('\0') != std::string::npos) throw Error(name_, "it holds a zero byte");
-  if (const auto code = document_->Parse(text.data(), text.size()); code != tinyxml2::XML_SUCCESS) {
-    const bool is_deep = code == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED;
-    const std::string fault = is_deep ? std::string() : xml_fault(text);
-    if (!fault.empty()) throw Error(name_, fault);
-    throw Error(name_, "line " + std::to_string(document_->ErrorLineNum()) +
-                           (is_deep ? ": elements are nested too deep" : ": is not XML"));
+  if (document_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    throw Error(name_, xml_fault(document_->ErrorName(), document_->ErrorLineNum()));
   }
   const tinyxml2::XMLElement* const root = document_->RootElement();
   if (root == nullptr || tag != root->Name()) {

@@ -129,7 +129,8 @@ TEST_F(SceneFileTest, RollPitchYawIsThatOfUrdf) {
 
 TEST_F(SceneFileTest, RefusesOtherFiles) {
   expect_fault("", "is not JSON");
-  expect_fault("{\n\n 1}", "line 3, column 2: is not JSON: a key in double quotes is due");
+  expect_fault("{\n\n 1}",
+               "line 3, column 2: is not JSON: unexpected number literal; expected string literal");
   expect_fault("[]", "is not an object");
   expect_fault("{}", "is no scene");
   expect_fault(R"({"format": "spherule-spheres", "version": 1})", "is no scene");

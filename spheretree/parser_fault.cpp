@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spheretree/parser_fault.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kXmlFaults{{
+    {"XML_ERROR_PARSING_ELEMENT", "a tag is not complete"},
+    {"XML_ERROR_PARSING_ATTRIBUTE",
+     "an attribute is there twice, or not written as name=\"value\""},
+    {"XML_ERROR_PARSING_TEXT", "a text has no tag after it"},
+    {"XML_ERROR_PARSING_CDATA", "a CDATA section is not ended"},
+    {"XML_ERROR_PARSING_COMMENT", "a comment is not ended"},
+    {"XML_ERROR_PARSING_DECLARATION", "a declaration is not ended, or not at the beginning"},
+    {"XML_ERROR_PARSING_UNKNOWN", "a tag that begins with <! is not ended"},
+    {"XML_ERROR_EMPTY_DOCUMENT", "nothing is in it"},
+    {"XML_ERROR_MISMATCHED_ELEMENT", "a closing tag is not that of the element that is open"},
+    {"XML_ERROR_PARSING", "it ends before its elements are closed"},
+    {"XML_ELEMENT_DEPTH_EXCEEDED", "elements are nested too deep"},
+}};
+
+// Removes what is before the end of `mark`, and returns it; nothing if the mark is not there.
+std::string_view take_to(std::string_view& text, std::string_view mark) {
+  const std::size_t at = text.find(mark);
+  if (at == std::string_view::npos) return {};
+  const std::string_view taken = text.substr(0, at + mark.size());
+  text.remove_prefix(taken.size());
+  return taken;
+}
+
+}  // namespace
+
+std::string json_fault(std::string_view what) {
+  if (what.starts_with("[json.exception.")) take_to(what, "] ");
+  std::string place;
+  constexpr std::string_view kPlace = "parse error at ";
+  if (what.starts_with(kPlace)) {
+    what.remove_prefix(kPlace.size());
+    place = take_to(what, ": ");
+  }
+  if (what.starts_with("syntax error while ")) take_to(what, " - ");
+  return place + "is not JSON: " + std::string(what.substr(0, what.find("; last read: ")));
+}
+
+std::string xml_fault(std::string_view error_name, int line) {
+  std::string text = line > 0 ? "line " + std::to_string(line) + ": is not XML" : "is not XML";
+  const auto known = std::find_if(kXmlFaults.begin(), kXmlFaults.end(),
+                                  [&](const auto& fault) { return fault.first == error_name; });
+  if (known != kXmlFaults.end()) text.append(": ").append(known->second);
+  return text;
+}
+
+}  // namespace spherule::internal
