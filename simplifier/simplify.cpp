@@ -30,7 +30,7 @@ double box_diagonal(const TriangleMesh& mesh) {
   return internal::box_of(mesh).diagonal().norm();
 }
 
-void check_phase(const SimplifyOptions& options) {
+void check_stage2_method(const SimplifyOptions& options) {
   if (!options.stage2_method) return;
   const std::string& name = options.stage2_method->name;
   const std::vector<std::string> taken = method_names();
@@ -135,7 +135,7 @@ Simplification internal::simplify(const TriangleMesh& mesh, const SimplifyOption
                                   std::size_t max_cells) {
   validate(mesh, "mesh");
   check_options(options);
-  check_phase(options);
+  check_stage2_method(options);
   const internal::ThreadLimit threads(options.threads);
 
   const internal::Stopwatch external_time;
@@ -182,7 +182,7 @@ Simplification internal::simplify(const TriangleMesh& mesh, const SimplifyOption
 
 SphereCover cover_solid(const TriangleMesh& mesh, const ExternalSpheres& external,
                         const SimplifyOptions& options) {
-  check_phase(options);
+  check_stage2_method(options);
   const CoverOptions passed = cover_options(options);
   return options.stage2_method ? options.stage2_method->run(mesh, external, passed)
                                : cover(mesh, external, passed);

@@ -129,9 +129,9 @@ void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh);
 Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options = {});
 
 // Stage 1 as simplify() runs it: the S of these options, by the same choice of E and D where they
-// are 0. The grid has at most `max_cells` cells (ExternalOptions::max_cells), on which a D that is
-// chosen, and steps, may depend. Throws Error as simplify(), but not for the stage 2 method, which
-// is not used here.
+// are 0. The grid has at most `max_cells` cells (ExternalOptions::max_cells): with fewer of them a
+// D that is chosen, and the step of the grid, may be larger. Throws Error as simplify(), but not
+// for the stage 2 method, which is not used here.
 SimplifiedSolid simplified_solid(const TriangleMesh& mesh, const SimplifyOptions& options,
                                  std::size_t max_cells = ExternalOptions::kMostCells);
 

@@ -8,7 +8,7 @@
 namespace spherule::internal {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kXmlFaults{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kXmlFaults{{
     {"XML_ERROR_PARSING_ELEMENT", "a tag is not complete"},
     {"XML_ERROR_PARSING_ATTRIBUTE",
      "an attribute is there twice, or not written as name=\"value\""},
@@ -18,9 +18,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kXmlFaul
     {"XML_ERROR_PARSING_DECLARATION", "a declaration is not ended, or not at the beginning"},
     {"XML_ERROR_PARSING_UNKNOWN", "a tag that begins with <! is not ended"},
     {"XML_ERROR_EMPTY_DOCUMENT", "nothing is in it"},
-    {"XML_ERROR_MISMATCHED_ELEMENT", "a closing tag is not that of the element that is open"},
-    {"XML_ERROR_PARSING", "it ends before its elements are closed"},
-    {"XML_ELEMENT_DEPTH_EXCEEDED", "elements are nested too deep"},
+    {"XML_ERROR_MISMATCHED_ELEMENT", "an element is not closed, or by the tag of another"},
 }};
 
 // Removes what is before the end of `mark`, and returns it; nothing if the mark is not there.
@@ -43,11 +41,16 @@ std::string json_fault(std::string_view what) {
     place = take_to(what, ": ");
   }
   if (what.starts_with("syntax error while ")) take_to(what, " - ");
-  return place + "is not JSON: " + std::string(what.substr(0, what.find("; last read: ")));
+  for (const char* before_token : {"; last read: ", " parsing '"}) {
+    what = what.substr(0, what.find(before_token));
+  }
+  return place + "is not JSON: " + std::string(what);
 }
 
 std::string xml_fault(std::string_view error_name, int line) {
-  std::string text = line > 0 ? "line " + std::to_string(line) + ": is not XML" : "is not XML";
+  std::string text = line > 0 ? "line " + std::to_string(line) + ": " : "";
+  if (error_name == "XML_ELEMENT_DEPTH_EXCEEDED") return text + "elements are nested too deep";
+  text += "is not XML";
   const auto known = std::find_if(kXmlFaults.begin(), kXmlFaults.end(),
                                   [&](const auto& fault) { return fault.first == error_name; });
   if (known != kXmlFaults.end()) text.append(": ").append(known->second);

@@ -19,8 +19,8 @@
 
 namespace spherule::internal {
 
-// Of what() of an exception of nlohmann::json, on one line. What was read last, which may be long
-// and any bytes, is left out.
+// Of what() of an exception of nlohmann::json, on one line. What was read last of the text, which
+// may be long and any bytes, is left out.
 std::string json_fault(std::string_view what);
 
 // Of the name and the line of an error of tinyxml2; no line is named if it is 0.

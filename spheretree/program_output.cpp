@@ -73,7 +73,7 @@ class Child {
  public:
   explicit Child(pid_t id) : id_(id) {}
   ~Child() {
-    if (has_ended_) return;
+    if (is_waited_for_) return;
     ::kill(id_, SIGKILL);
     int status = 0;
     wait_for_end(status);
@@ -87,13 +87,13 @@ class Child {
     do {
       found = ::waitpid(id_, &status, 0);
     } while (found < 0 && errno == EINTR);
-    has_ended_ = true;
+    is_waited_for_ = true;
     return found == id_;
   }
 
  private:
   pid_t id_;
-  bool has_ended_ = false;
+  bool is_waited_for_ = false;
 };
 
 }  // namespace

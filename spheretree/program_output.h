@@ -30,7 +30,8 @@ struct ProgramOutput {
 // or above), and standard output is discarded. Standard input and error are those of this process.
 // May be called from several threads. Throws Error where there can be no pipe, and where it is not
 // known how the program ended (SIGCHLD is ignored); std::bad_alloc where its output takes more
-// memory than there is. No process is left behind in any case.
+// memory than there is. The program itself is
+// not left behind in any case; what it started may be.
 ProgramOutput run_program(const std::string& program, std::span<const std::string> arguments,
                           int descriptor);
 

@@ -68,6 +68,7 @@ struct Repaired {
   SphereFile file;
   Repair repair;
   Certificate certificate;
+  std::vector<std::string> warnings = {};
 };
 
 Repaired repaired(const AuditArguments& arguments, const ModelFile& model,
@@ -133,7 +134,8 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
                         {"largest_inflation", to_json(mended->repair.largest_inflation)},
                         {"total_inflation", to_json(mended->repair.total_inflation)},
                         {"added", mended->repair.added},
-                        {"certificate", json_of(mended->certificate, external)}};
+                        {"certificate", json_of(mended->certificate, external)},
+                        {"warnings", mended->warnings}};
     }
     std::cout << to_text(json);
     return;
@@ -222,12 +224,17 @@ int audit(const AuditArguments& arguments) {
   std::optional<Repaired> mended;
   if (mend) {
     mended = repaired(arguments, model, reading, file, options, proof->options());
+    if (has_larger_diameter) {
+      mended->warnings.push_back(larger_diameter_warning(options.min_external_diameter));
+    }
     write_uninterrupted([&] { save_spheres(mended->file, arguments.repaired); });
   }
   bar.clear();
   print(arguments, mesh, file, reading.scale, certificate, external, mended);
-  if (has_larger_diameter) {
-    warn(arguments.models.front() + ": " + larger_diameter_warning(options.min_external_diameter));
+  if (mended) {
+    for (const std::string& warning : mended->warnings) {
+      warn(arguments.models.front() + ": " + warning);
+    }
   }
   const bool covered = (mended ? mended->certificate : certificate).covered;
   return covered && !(model.cad && !model.cad->proved) ? kYes : kNo;

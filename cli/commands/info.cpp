@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands/command.h"
-#include "cli/files/interruption.h"
 #include "cli/files/model_file.h"
 #include "cli/files/model_unit.h"
 #include "cli/files/recognize.h"
+#include "cli/files/result_warnings.h"
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
 #include "cli/robots/info_robot.h"

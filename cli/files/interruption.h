@@ -7,10 +7,6 @@
 
 namespace spherule {
 
-// What is said of spheres whose file says that the search for few was interrupted.
-inline constexpr const char* kInterruptedSearch =
-    "interrupted: the search for fewer spheres was not finished; all that is called proved holds";
-
 // Runs `write`, which writes files beside their place and renames them, to its end even if the user
 // interrupts, and obeys the interruption afterwards: Ctrl-C leaves no half-written file.
 void write_uninterrupted(const std::function<void()>& write);

@@ -8,6 +8,10 @@
 
 namespace spherule {
 
+// What is said of spheres, and reports of them, whose making was interrupted.
+inline constexpr const char* kInterruptedSearch =
+    "interrupted: the search was not finished; all that is called proved holds";
+
 // For a D that was chosen larger than 4 E.
 std::string larger_diameter_warning(double min_external_diameter);
 

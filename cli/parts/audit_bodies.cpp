@@ -114,12 +114,12 @@ class Auditor {
     BodyVerdict verdict{file_.bodies[body].name, verdicts_[copy.of].certificate,
                         "copy of " + file_.bodies[copy.of].name};
     verdict.certificate = moved_certificate(verdict.certificate, spheres_[copy.of], copy.pose);
-    const std::optional<Eigen::Vector3d>& leak = verdicts_[copy.of].deepest_leak;
-    if (leak) verdict.deepest_leak = copy.pose * *leak;
     const std::vector<Sphere> moved = moved_spheres(spheres_[copy.of], copy.pose);
     if (!std::ranges::equal(spheres_[body], moved, holds)) {
       verdict.certificate.covered = false;
       verdict.note += ", whose spheres these are not, moved";
+    } else if (const std::optional<Eigen::Vector3d>& leak = verdicts_[copy.of].deepest_leak) {
+      verdict.deepest_leak = copy.pose * *leak;
     }
     return verdict;
   }
@@ -172,7 +172,9 @@ void print(std::span<const BodyVerdict> verdicts, bool as_json) {
     return;
   }
   std::cout << aligned(rows);
-  if (!places.empty()) std::cout << "deepest leaks at:\n" << aligned(places);
+  if (!places.empty())
+    std::cout << "deepest leaks at (x, y, z), in the frame and unit of the file:\n"
+              << aligned(places);
   std::cout << covered << " of " << verdicts.size() << " bodies are covered (proved)\n";
 }
 

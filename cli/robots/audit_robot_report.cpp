@@ -105,8 +105,8 @@ void put_places(std::ostream& out, const std::vector<LinkAudit>& links) {
     if (!link.certificate || !(link.certificate->uncovered_depth.lower > 0.0)) continue;
     rows.push_back({"  " + link.link, in_mm(link.certificate->deepest_leak)});
   }
-  if (!rows.empty())
-    out << "deepest leaks at (x, y, z), in the frame of the link:\n" << aligned(rows);
+  if (rows.empty()) return;
+  out << "deepest leaks at (x, y, z), in the frame of the link:\n" << aligned(rows);
 }
 
 void put_repair(std::ostream& out, const RobotAuditReport& report) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/info_robot.h"
 
-#include "cli/files/interruption.h"
+#include "cli/files/result_warnings.h"
 #include "robot/files/srdf.h"
 #include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/robot_report.h"
 
-#include "cli/files/interruption.h"
+#include "cli/files/result_warnings.h"
 #include "cli/options/robot_options.h"
 #include "cli/text/units.h"
 

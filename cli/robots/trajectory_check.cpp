@@ -18,7 +18,9 @@ class TrajectoryCheck {
       : checker_(checker),
         trajectory_(trajectory),
         options_(options),
-        scratches_(make_scratches(checker, options.threads)) {
+        scratches_(make_scratches(checker, options.threads)),
+        places_(places_of(options.configurations_in_all > 0 ? options.configurations_in_all
+                                                            : trajectory.size())) {
     report_.configurations = trajectory.size();
   }
 
@@ -57,7 +59,7 @@ class TrajectoryCheck {
     report_.colliding = static_cast<std::size_t>(
         std::ranges::count(results, Verdict::kCollision, &EdgeResult::verdict));
     for (std::size_t i = 0; i < count; ++i) {
-      if (options_.progress && i % kMotionsAtATime == 0) {
+      if (options_.progress && i % kLeastBlock == 0) {
         options_.progress(static_cast<double>(i) / static_cast<double>(count), "finding contacts");
       }
       if (results[i].verdict == Verdict::kCollision) {
@@ -76,7 +78,7 @@ class TrajectoryCheck {
   // So many at a time that the bar moves and the threads have enough to do.
   template <typename Check>
   void in_blocks(std::size_t count, Check check) const {
-    const std::size_t block = std::max<std::size_t>(count / 50, kMotionsAtATime);
+    const std::size_t block = std::max<std::size_t>(count / 50, kLeastBlock);
     for (std::size_t first = 0; first < count; first += block) {
       if (options_.progress) {
         options_.progress(static_cast<double>(first) / static_cast<double>(count), "checking");
@@ -105,10 +107,8 @@ class TrajectoryCheck {
   // there the first and the deepest contact.
   void explain_motion(std::size_t motion, double contact_at) {
     std::vector<std::pair<FoundContact, FoundContact>> found;
-    const std::size_t places =
-        std::min(kPlaces, kPlacesInAll / std::max<std::size_t>(options_.configurations_in_all, 1));
-    for (std::size_t k = 0; k <= places; ++k) {
-      const double share = k == 0 ? 0.0 : static_cast<double>(k) / static_cast<double>(places);
+    for (std::size_t k = 0; k <= places_; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(places_);
       const TrajectoryPoint at{.line = trajectory_.lines[motion],
                                .to_line = trajectory_.lines[motion + 1],
                                .fraction = contact_at + share * (1.0 - contact_at)};
@@ -129,15 +129,20 @@ class TrajectoryCheck {
     for (const auto& [first, deepest] : found) report_.add(first, deepest);
   }
 
-  // Of a motion, and of all of the trajectory if each collides: some 7 microseconds each.
-  static constexpr std::size_t kPlaces = 24;
-  static constexpr std::size_t kPlacesInAll = 40000;
-  static constexpr std::size_t kMotionsAtATime = 256;
+  // How many places of a motion are searched: 24, of trajectories of more than 1,666 configurations
+  // fewer, so that this takes a fraction of a second, but at least 4.
+  static std::size_t places_of(std::size_t configurations) {
+    constexpr std::size_t kInAll = 40000;
+    return std::clamp<std::size_t>(kInAll / std::max<std::size_t>(configurations, 1), 4, 24);
+  }
+
+  static constexpr std::size_t kLeastBlock = 256;
 
   const RobotChecker& checker_;
   const Trajectory& trajectory_;
   const TrajectoryCheckOptions& options_;
   std::vector<RobotChecker::Scratch> scratches_;
+  const std::size_t places_;
   CheckReport report_;
 };
 

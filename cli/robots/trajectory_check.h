@@ -17,8 +17,9 @@ struct TrajectoryCheckOptions {
   int threads = 0;
   Progress progress{};
   EdgeRequest edge{};  // of motions
-  // Of all parts of a trajectory together: of more motions fewer places are searched for contacts
-  // deeper than their first, so that each part finds what the whole would.
+  // Of all parts of a trajectory together; 0: of what is given. How many places of a motion are
+  // searched for contacts deeper than its first depends on it alone, so that each part finds what
+  // the whole does.
   std::size_t configurations_in_all = 0;
 };
 

@@ -102,12 +102,13 @@ struct ClearanceRequest {
 struct RobotClearance {
   // No two of the spheres and solids that are tested against each other come nearer than this to
   // touching, in exact arithmetic; 0 where they touch or nearly, and where a joint's position is
-  // beyond 100 in magnitude, for which no error is known. Infinite if nothing is tested.
+  // beyond 100 in magnitude, for which no error is known. Metres. Infinite if nothing is tested, or
+  // all of it is passed over: then no distance is known.
   double lower = std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();  // the nearest two are not further apart
   CheckedBody first;  // the pair that attains `upper`, empty names if nothing is tested
   CheckedBody second;
-  bool skipped = false;  // two bodies were passed over, as requested: no bound is of them
+  bool skipped = false;  // some bodies were passed over, as requested: no bound is of these
 };
 
 // Is a robot free of obstacles and of itself? A snapshot of a RobotScene, immutable: threads may

@@ -202,12 +202,12 @@ void certify_link(const LinkParts& part, const LinkDescription& link,
   const internal::LinkSolid solid(*mesh, {.max_error = options.max_error,
                                           .min_external_diameter = options.min_external_diameter,
                                           .threads = options.threads});
-  audit.warnings = solid.warnings();
   Certificate of_solid = certify(*mesh, part.spheres, solid.certify_options());
   if (!of_solid.covered) return;
   of_solid.protrusion_over_mesh = of_mesh.protrusion_over_mesh;
   of_solid.volume_ratio = of_mesh.volume_ratio;
   audit.certificate = std::move(of_solid);
+  audit.warnings = solid.warnings();
 }
 
 LinkRepair repaired(const LinkParts& part, const RobotRepairOptions& options) {

@@ -57,7 +57,7 @@ struct LinkAudit {
   std::optional<Certificate> certificate = std::nullopt;
   // Share of the surface that no sphere holds, estimated from points spread evenly over it.
   double uncovered_share = 0.0;
-  // For a person: a D that was chosen larger than 4 E, for the S that was needed.
+  // For a person: a D that was chosen larger than 4 E, for the S that is proved to be covered.
   std::vector<std::string> warnings = {};
 };
 

@@ -176,7 +176,7 @@ std::vector<std::string> warnings_of(const MeshReport& report, const Simplificat
     warnings.push_back(text.str());
   }
   if (fit.larger_diameter) {
-    warnings.push_back(internal::larger_diameter_warning(fit.options.min_external_diameter));
+    warnings.push_back(internal::link_diameter_warning(fit.options.min_external_diameter));
   }
   const std::string broken = broken_promises(fit);
   if (!broken.empty()) warnings.push_back(broken);

@@ -78,8 +78,9 @@ TEST_F(FitBodiesTest, OtherCommandsReadTheFile) {
   EXPECT_FALSE(verdict.at("bodies").at(0).contains("deepest_leak"));
   const json& at = verdict.at("bodies").at(1).at("deepest_leak");
   std::ostringstream place;
-  place << "deepest leaks at:\n  b  (" << at.at(0).get<double>() << ", " << at.at(1).get<double>()
-        << ", " << at.at(2).get<double>() << ")\n1 of 2 bodies";
+  place << "deepest leaks at (x, y, z), in the frame and unit of the file:\n  b  ("
+        << at.at(0).get<double>() << ", " << at.at(1).get<double>() << ", "
+        << at.at(2).get<double>() << ")\n1 of 2 bodies";
   outcome = run({"audit", "a.stl", "b.stl", "leaky.json"});
   EXPECT_NE(outcome.out.find(place.str()), std::string::npos) << outcome.out << place.str();
 }

@@ -57,7 +57,8 @@ TEST_F(SceneFormats, Collada) {
   EXPECT_TRUE(refused("dae", replaced(good, "<p>0 2 3", "<p>0 <b/>2 3"), "between its numbers"));
   EXPECT_TRUE(refused("dae", replaced(good, "<p>0 2 3", "<p>0 2"), "count of triangles"));
   EXPECT_TRUE(refused("dae", good.substr(0, good.size() / 2), "is not XML"));
-  EXPECT_TRUE(refused("dae", "<COLLADA>\n<a>\n</COLLADA>", "line 3: is not XML: a closing tag"));
+  EXPECT_TRUE(
+      refused("dae", "<COLLADA>\n<a>\n</COLLADA>", "line 2: is not XML: an element is not closed"));
   EXPECT_TRUE(
       refused("gltf", "{\"asset\": {}\n 1}", "line 2, column 2: is not JSON: unexpected number"));
   EXPECT_TRUE(refused("dae", "<html/>", "not COLLADA"));

@@ -199,12 +199,14 @@ TEST(Certificate, AHollowSetIsNotACoverEvenWithoutExternalSpheres) {
       }
     }
   }
-  const Certificate certificate = certify(inverted(cube_mesh()), spheres);
-  EXPECT_FALSE(certificate.covered);
-  EXPECT_EQ(certificate.surface_depth.upper, 0.0);
-  EXPECT_NEAR(certificate.solid_depth.lower, 0.38, 0.005);
-  EXPECT_NEAR(certificate.solid_depth.upper, 0.38, 0.01);
-  EXPECT_NEAR((certificate.deepest_leak - kMiddle).norm(), 0.0, 0.01);
+  for (const TriangleMesh& mesh : {inverted(cube_mesh()), cube_mesh()}) {
+    const Certificate certificate = certify(mesh, spheres);
+    EXPECT_FALSE(certificate.covered);
+    EXPECT_EQ(certificate.surface_depth.upper, 0.0);
+    EXPECT_NEAR(certificate.solid_depth.lower, 0.38, 0.005);
+    EXPECT_NEAR(certificate.solid_depth.upper, 0.38, 0.01);
+    EXPECT_NEAR((certificate.deepest_leak - kMiddle).norm(), 0.0, 0.01);
+  }
   // Of a double-sided one nothing says that the middle is inside, but it cannot be reached.
   const TriangleMesh twice = with_duplicates(cube_mesh());
   const Certificate of_twice = certify(joined(twice, inverted(twice)), spheres);

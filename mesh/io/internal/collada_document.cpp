@@ -24,11 +24,7 @@ std::string_view local_name(const Element& element) {
 
 ColladaDocument::ColladaDocument(std::string_view text, const std::string& subject)
     : subject_(subject), document_(true, tinyxml2::PRESERVE_WHITESPACE) {
-  const tinyxml2::XMLError fault = document_.Parse(text.data(), text.size());
-  if (fault == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) {
-    throw Error(subject_, "not a mesh: XML elements are nested too deep");
-  }
-  if (fault != tinyxml2::XML_SUCCESS) {
+  if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw Error(subject_, xml_fault(document_.ErrorName(), document_.ErrorLineNum()));
   }
   root_ = document_.RootElement();

@@ -32,7 +32,7 @@ GltfDocument::GltfDocument(std::string_view bytes, const std::string& subject) :
   try {
     root_ = Json::parse(json_);
   } catch (const Json::exception& error) {
-    fail((json_.size() < bytes.size() ? "its JSON, " : "") + json_fault(error.what()));
+    fail((json_.size() < bytes.size() ? "in its JSON: " : "") + json_fault(error.what()));
   }
   if (!root_.is_object()) fail("not a glTF file");
   const Json* const asset = member(root_, "asset");

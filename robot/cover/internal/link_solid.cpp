@@ -5,7 +5,7 @@
 
 namespace spherule::internal {
 
-std::string larger_diameter_warning(double min_external_diameter) {
+std::string link_diameter_warning(double min_external_diameter) {
   std::ostringstream text;
   text << "it is so large for its max error that D is " << min_external_diameter
        << " m instead of 4 E: narrower gaps are filled";
@@ -22,7 +22,7 @@ LinkSolid::LinkSolid(const TriangleMesh& mesh, const SimplifyOptions& lengths,
                       .volume = false,
                       .threads = lengths.threads};
   if (solid_.larger_diameter) {
-    warnings_.push_back(larger_diameter_warning(solid_.options.min_external_diameter));
+    warnings_.push_back(link_diameter_warning(solid_.options.min_external_diameter));
   }
 }
 

@@ -11,7 +11,7 @@
 namespace spherule::internal {
 
 // For a person: D was to be chosen for a link, and is more than 4 E.
-std::string larger_diameter_warning(double min_external_diameter);
+std::string link_diameter_warning(double min_external_diameter);
 
 // S of a link's mesh, by the rule of simplify() for lengths that are 0, and how a cover of it is
 // examined. Not copied: the options refer to it.

@@ -42,11 +42,11 @@ class DocumentCounter : public YAML::EventHandler {
 std::string place_of(const YAML::Mark& mark) {
   if (mark.is_null()) return {};
   const std::string line = "line " + std::to_string(mark.line + 1);
-  // At the end of a text yaml-cpp tells no column.
+  // Column 0 is also what yaml-cpp says where it knows none, at the end of a text.
   return mark.column == 0 ? line : line + ", column " + std::to_string(mark.column + 1);
 }
 
-// Whether the line at a place is indented by a tab, which yaml-cpp refuses in other words.
+// Whether the line at a place is indented by a tab, which yaml-cpp does not say.
 bool is_indented_by_tab(const YAML::Mark& mark, std::string_view text) {
   for (int line = 0; line < mark.line; ++line) {
     text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
@@ -70,11 +70,12 @@ std::string plain_words(const YAML::Exception& error, std::string_view text) {
       {YAML::ErrorMsg::UNKNOWN_ANCHOR, "an alias (*) names no anchor (&) before it"},
       {YAML::ErrorMsg::FLOW_END, "a ']' or '}' that closes nothing"},
   }};
-  if (is_indented_by_tab(error.mark, text)) return "a tab in the indentation; use blanks";
-  for (const auto& [theirs, ours] : words) {
-    if (error.msg == theirs) return ours;
-  }
-  return error.msg;
+  const auto known =
+      std::ranges::find_if(words, [&](const auto& word) { return word.first == error.msg; });
+  const std::string reason = known != words.end() ? known->second : error.msg;
+  return is_indented_by_tab(error.mark, text)
+             ? reason + "; the line is indented by a tab, where YAML takes blanks"
+             : reason;
 }
 
 }  // namespace

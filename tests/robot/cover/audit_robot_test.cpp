@@ -191,7 +191,7 @@ TEST_F(AuditRobot, TheSolidOfALinkIsThatOfACoverAndItsWarningToo) {
   EXPECT_GT(diameter, 4.0 * 0.001);
   EXPECT_EQ(larger.external().min_external_diameter, diameter);
   EXPECT_EQ(larger.certify_options().external, &larger.external());
-  EXPECT_EQ(larger.warnings(), std::vector{internal::larger_diameter_warning(diameter)});
+  EXPECT_EQ(larger.warnings(), std::vector{internal::link_diameter_warning(diameter)});
 }
 
 // What an independent judge measured: the deepest leak of all of VAMP's spheres for the Panda.

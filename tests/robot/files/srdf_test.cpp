@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
 #include <vector>
 
 namespace spherule::test::srdf_test {
@@ -183,6 +184,26 @@ TEST(ReadSrdf, RefusesBadFiles) {
     }
   }
   EXPECT_THROW(read_srdf("no such file.srdf"), Error);
+}
+
+// Each fault that the parser of XML tells apart has its own words.
+TEST(ReadSrdf, SaysWhatIsNotXml) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", "is not XML: nothing is in it"},
+      {"<robot>\n<group></robot>",
+       "line 2: is not XML: an element is not closed, or by the tag of another"},
+      {"<robot>", "line 1: is not XML: an element is not closed"},
+      {"<robot><link name='a' name='b'/></robot>", "an attribute is there twice, or not written"},
+      {"<robot><link name=a/></robot>", "an attribute is there twice, or not written"},
+      {"<robot><!-- </robot>", "a comment is not ended"},
+      {"<robot><![CDATA[ </robot>", "a CDATA section is not ended"},
+      {"<robot><? </robot>", "a declaration is not ended, or not at the beginning"},
+      {"<robot><! </robot", "a tag that begins with <! is not ended"},
+      {"<robot", "a tag is not complete"}};
+  for (const auto& [text, words] : cases) {
+    const std::string refusal = refusal_of(text);
+    EXPECT_NE(refusal.find(words), std::string::npos) << text << ": " << refusal;
+  }
 }
 
 }  // namespace
