@@ -43,7 +43,7 @@ void check_stage2_method(const SimplifyOptions& options) {
 }
 
 // What the stages would refuse under other names, and what option_record() could not store.
-void check_options(const SimplifyOptions& options) {
+void check_simplify_options(const SimplifyOptions& options) {
   const auto check = [](const char* name, double value) {
     if (!(value >= 0.0 && value <= kMaxCoordinate)) {
       throw Error(name, "must be finite and not negative");
@@ -122,7 +122,7 @@ SimplifiedSolid internal::simplified_solid(const TriangleMesh& mesh, const MeshD
 SimplifiedSolid simplified_solid(const TriangleMesh& mesh, const SimplifyOptions& options,
                                  std::size_t max_cells) {
   validate(mesh, "mesh");
-  check_options(options);
+  check_simplify_options(options);
   const internal::ThreadLimit threads(options.threads);
   return internal::simplified_solid(mesh, MeshDistance(mesh), options, max_cells);
 }
@@ -134,7 +134,7 @@ Simplification simplify(const TriangleMesh& mesh, const SimplifyOptions& options
 Simplification internal::simplify(const TriangleMesh& mesh, const SimplifyOptions& options,
                                   std::size_t max_cells) {
   validate(mesh, "mesh");
-  check_options(options);
+  check_simplify_options(options);
   check_stage2_method(options);
   const internal::ThreadLimit threads(options.threads);
 
