@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <utility>
 
 namespace spherule::internal {
@@ -41,9 +42,10 @@ std::string json_fault(std::string_view what) {
     place = take_to(what, ": ");
   }
   if (what.starts_with("syntax error while ")) take_to(what, " - ");
-  for (const char* before_token : {"; last read: ", " parsing '"}) {
-    what = what.substr(0, what.find(before_token));
-  }
+  what = what.substr(0, what.find("; last read: "));
+  // A number that is out of range stands in the message, however long it is.
+  constexpr std::size_t kLongest = 60;
+  if (what.size() > kLongest) what = what.substr(0, what.find(" parsing '"));
   return place + "is not JSON: " + std::string(what);
 }
 

@@ -32,12 +32,12 @@ TEST(ParserFault, OfJsonHasNoWordsForProgrammers) {
       {"[NaN]", "line 1, column 2: is not JSON: invalid literal"},
       {"[\"a\tb\"]", "is not JSON: invalid string: control character U+0009 (HT) must be escaped"},
       {"[\"\xFF\"]", "is not JSON: invalid string: ill-formed UTF-8 byte"},
-      {"[1e999]", "is not JSON: number overflow"},
+      {"[1e999]", "is not JSON: number overflow parsing '1e999'"},
       {"{} {}", "line 1, column 4: is not JSON: unexpected '{'; expected end of input"}};
   for (const auto& [text, expected] : cases) {
     const std::string fault = fault_of(text);
     EXPECT_NE(fault.find(expected), std::string::npos) << fault;
-    EXPECT_EQ(fault.starts_with("line"), !expected.ends_with("overflow")) << fault;
+    EXPECT_EQ(fault.starts_with("line"), expected.find("overflow") == std::string::npos) << fault;
     for (const char* theirs : {"json.exception", "syntax error", "parse error", "last read"}) {
       EXPECT_EQ(fault.find(theirs), std::string::npos) << fault;
     }
