@@ -152,6 +152,19 @@ TEST_F(AuditRobot, NeighboursCoverInSomeConfigurations) {
   EXPECT_TRUE(good.configurations_covered);
 }
 
+// Of the arm, turned by a right angle, the ends, which lie along y in the frame of the root.
+TEST_F(AuditRobot, TheLeakOfATurnedLinkIsInTheFrameOfTheRoot) {
+  const std::vector<LinkSpheres> spheres = {{"base", {{{0, 0, 0}, 0.12}}},
+                                            {"arm", {{{0, 0, 0}, 0.02}}}};
+  const RobotAudit audit =
+      audit_robot(robot_, spheres, {.configurations = {{std::numbers::pi / 2.0}}});
+  ASSERT_EQ(audit.configurations.size(), 1U);
+  EXPECT_EQ(audit.configurations[0].deepest_link, "arm");
+  const Vector3d leak = audit.configurations[0].deepest_leak.value();
+  EXPECT_NEAR(leak.x(), 0.3, 0.002);
+  EXPECT_NEAR(std::abs(leak.y()), 0.04, 0.001);
+}
+
 TEST_F(AuditRobot, RepairCovers) {
   test::Random random(6);
   for (int round = 0; round < test::effort(2, 1); ++round) {
