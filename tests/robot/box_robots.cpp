@@ -88,6 +88,23 @@ BoxRobot random_box_robot(SceneRandom& random, int joints, bool branching, bool 
   return robot;
 }
 
+BoxRobot two_turning_bars(double height) {
+  BoxRobot robot{RobotModel("base")};
+  for (const char* const name : {"first", "second"}) {
+    robot.model.add_link(name, "base",
+                         {.name = std::string(name) + "_turns",
+                          .type = JointType::kRevolute,
+                          .axis = Vector3d::UnitZ(),
+                          .lower = -1.0,
+                          .upper = 1.0});
+  }
+  for (const int link : {1, 2}) {
+    const double low = height + 0.03 * (link - 1);
+    robot.add_boxes(link, {{Vector3d(0.2, -0.01, low), Vector3d(0.6, 0.01, low + 0.02)}});
+  }
+  return robot;
+}
+
 bool boxes_touch(const BoxRobot& robot, int first, int second, std::span<const Pose> poses,
                  double margin) {
   const auto a = static_cast<std::size_t>(first);

@@ -24,6 +24,10 @@ struct BoxRobot {
 // Joints of all types with limits, mimics where `mimics`, rods and blocks as links.
 BoxRobot random_box_robot(SceneRandom& random, int joints, bool branching, bool mimics);
 
+// Two bars, links 1 and 2, along x, one above the other, that turn about the z axis of the base;
+// the lower one begins at this height. They touch in no configuration.
+BoxRobot two_turning_bars(double height);
+
 // Whether solid boxes of two links have a point in common, by the separating axes of boxes, under
 // poses of all links; boxes are shrunk by `margin` on each side first. Nothing of it is shared with
 // the library.

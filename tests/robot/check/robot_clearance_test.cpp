@@ -9,7 +9,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace spherule::test {
@@ -22,18 +21,8 @@ using Configuration = std::vector<double>;
 class ClearanceScene : public testing::Test {
  protected:
   ClearanceScene() {
-    for (const char* const name : {"first", "second"}) {
-      robot_.model.add_link(name, "base",
-                            {.name = std::string(name) + "_turns",
-                             .type = JointType::kRevolute,
-                             .axis = Eigen::Vector3d::UnitZ(),
-                             .lower = -1.0,
-                             .upper = 1.0});
-    }
     for (const int link : {1, 2}) {
       const double height = 0.03 * link;
-      robot_.add_boxes(
-          link, {{Eigen::Vector3d(0.2, -0.01, height), Eigen::Vector3d(0.6, 0.01, height + 0.02)}});
       robot_.model.attach(robot_.model.links()[static_cast<std::size_t>(link)].name,
                           std::make_shared<const SphereTree>(build_tree(
                               std::vector<Sphere>{{{0.4, 0.0, height + 0.01}, kRadius}})));
@@ -49,7 +38,7 @@ class ClearanceScene : public testing::Test {
   }
 
   static constexpr double kRadius = 0.21;
-  BoxRobot robot_{RobotModel("base")};
+  BoxRobot robot_ = two_turning_bars(0.03);
   std::optional<RobotScene> scene_;
 };
 

@@ -226,16 +226,6 @@ TEST_F(ProvedRobot, MotionsAreFreeByProofsOrSpheres) {
 class TwoBarScene : public testing::Test {
  protected:
   TwoBarScene() {
-    for (const char* const name : {"first", "second"}) {
-      robot_.model.add_link(name, "base",
-                            {.name = std::string(name) + "_turns",
-                             .type = JointType::kRevolute,
-                             .axis = Eigen::Vector3d::UnitZ(),
-                             .lower = -1.0,
-                             .upper = 1.0});
-    }
-    robot_.add_boxes(1, {{Eigen::Vector3d(0.2, -0.01, 0.0), Eigen::Vector3d(0.6, 0.01, 0.02)}});
-    robot_.add_boxes(2, {{Eigen::Vector3d(0.2, -0.01, 0.03), Eigen::Vector3d(0.6, 0.01, 0.05)}});
     for (const int link : {1, 2}) {
       const auto index = static_cast<std::size_t>(link);
       robot_.model.attach(robot_.model.links()[index].name,
@@ -244,7 +234,7 @@ class TwoBarScene : public testing::Test {
     pairs_ = std::make_shared<const LinkPairs>(prove_link_pairs(robot_.model, robot_.bodies));
   }
 
-  BoxRobot robot_{RobotModel("base")};
+  BoxRobot robot_ = two_turning_bars(0.0);
   std::shared_ptr<const LinkPairs> pairs_;
 };
 
