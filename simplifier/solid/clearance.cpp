@@ -58,4 +58,10 @@ ClearanceAt Clearance::operator()(const Vector3d& point, double tolerance, doubl
   return result;
 }
 
+bool Clearance::is_at_least(const Vector3d& point, double least) const {
+  const double to_faces =
+      std::min((point - box_.min()).minCoeff(), (box_.max() - point).minCoeff());
+  return to_faces >= least && !cells_->is_any_nearer(point, least);
+}
+
 }  // namespace spherule::internal

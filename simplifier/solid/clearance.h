@@ -32,6 +32,9 @@ class Clearance {
   ClearanceAt operator()(const Eigen::Vector3d& point, double tolerance = 0.0,
                          double limit = std::numeric_limits<double>::infinity()) const;
 
+  // Whether it is at least `least`, in plain double: for searches, never for a proof.
+  bool is_at_least(const Eigen::Vector3d& point, double least) const;
+
   const Eigen::AlignedBox3d& box() const { return box_; }
   // Radius of the smallest external sphere; infinite if there is none.
   double least_external() const { return least_external_; }

@@ -204,7 +204,7 @@ void NearestCells::fill(Cell& cell, const Cell* parent) const {
     return cell.listed;
   };
   if (parent == nullptr || !parent->listed) {
-    hierarchy_.for_each_within(middle, farthest, consider);
+    hierarchy_.for_each_below(cell.box, first.gap + first.bend, first.direction, consider);
   } else {
     for (const std::int32_t i : parent->list) consider(i);
   }

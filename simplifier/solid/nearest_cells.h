@@ -37,6 +37,12 @@ class NearestCells {
   // Which points these are depends on spheres and box only.
   NearestSphere nearest(const Eigen::Vector3d& point, double limit, double tolerance) const;
 
+  // What SphereHierarchy::is_any_nearer() answers. For points that are not asked about again: makes
+  // no cells.
+  bool is_any_nearer(const Eigen::Vector3d& point, double value) const {
+    return hierarchy_.is_any_nearer(point, value);
+  }
+
   const std::vector<Sphere>& spheres() const { return spheres_; }
   // Bytes that cells take, beside that of the whole box.
   std::size_t memory_used() const { return used_.load(std::memory_order_relaxed); }

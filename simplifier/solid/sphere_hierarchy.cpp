@@ -23,7 +23,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::int32_t kLeafSize = 8;
 // Halved at every level, so at most 32 deep; one waiting sibling a level.
 constexpr std::size_t kStackSize = 40;
-constexpr double kNodeSlack = 512.0 * kUnitRoundoff;  // see nearest()
+constexpr double kNodeSlack = 512.0 * kUnitRoundoff;  // see search()
 
 // Frames are right-angled and of length 1 up to 16 u, and shrunk by more, so that no vector is
 // shorter than its part in a frame.
@@ -178,7 +178,20 @@ NearestSphere SphereHierarchy::nearest(const Vector3d& point, double limit,
   LeastGap least(limit);
   const double length = length_at(point);
   if (nodes_.empty()) return least.bounds(0.0, length);
-  const double node_slack = kNodeSlack * length + kUnderflow;
+  search(point, tolerance, least, [] { return false; });
+  return least.bounds(tolerance, length);
+}
+
+bool SphereHierarchy::is_any_nearer(const Vector3d& point, double value) const {
+  LeastGap least(value);
+  if (!nodes_.empty()) search(point, 0.0, least, [&] { return least.index() >= 0; });
+  return least.index() >= 0;
+}
+
+template <typename Done>
+void SphereHierarchy::search(const Vector3d& point, double tolerance, LeastGap& least,
+                             const Done& is_done) const {
+  const double node_slack = kNodeSlack * length_at(point) + kUnderflow;
   struct Waiting {
     double bound;
     std::int32_t index;
@@ -196,6 +209,7 @@ NearestSphere SphereHierarchy::nearest(const Vector3d& point, double limit,
     const Node& node = nodes_[static_cast<std::size_t>(top.index)];
     if (node.children < 0) {
       for (const Entry& entry : spheres_of(node)) least.examine(point, entry.sphere, entry.index);
+      if (is_done()) return;
       continue;
     }
     Waiting near = waiting(node.children);
@@ -204,19 +218,50 @@ NearestSphere SphereHierarchy::nearest(const Vector3d& point, double limit,
     if (far.bound < least.value() - tolerance) stack[size++] = far;
     if (near.bound < least.value() - tolerance) stack[size++] = near;
   }
-  return least.bounds(tolerance, length);
 }
 
-void SphereHierarchy::for_each_within(const Vector3d& point, double value,
-                                      const std::function<bool(std::int32_t)>& visit) const {
+// With unit vectors of which the parts in the frame of the node are not negative, w, a sphere of
+// centre c and radius r has |c - x| >= w_n (ahead + r) + w_a beyond_a + w_s beyond_s, each of which
+// is at least an affine function of x; less r, that shrinks with r, as w_n <= 1. Likewise with the
+// excess over the box along the normal, and without r, in place of ahead + r.
+bool SphereHierarchy::is_above(const Node& node, const BoxCell& cell, double value,
+                               const Vector3d& slope) const {
+  struct Excess {
+    double value;
+    Vector3d slope;
+  };
+  const auto excess = [&](const Vector3d& way, double low, double high) -> Excess {
+    const double at = way.dot(cell.center);
+    if (at < low) return {low - at, -way};
+    if (at > high) return {at - high, way};
+    return {0.0, Vector3d::Zero()};
+  };
+  const double ahead = node.offset - node.normal.dot(cell.center);
+  const bool by_plane = ahead + node.max_radius > 0.0;
+  const Excess along = excess(node.axis, node.low.y(), node.high.y());
+  const Excess aside = excess(node.side, node.low.z(), node.high.z());
+  const Excess first = by_plane ? Excess{ahead + node.max_radius, -node.normal}
+                                : excess(node.normal, node.low.x(), node.high.x());
+  const double norm = Vector3d(first.value, along.value, aside.value).norm();
+  if (norm == 0.0) return false;
+  const Vector3d rise =
+      (first.value * first.slope + along.value * along.slope + aside.value * aside.slope) / norm;
+  return norm - node.max_radius - (rise - slope).cwiseAbs().dot(cell.half) > value;
+}
+
+// The affine function at c takes the place of a value, so that both sides err by as much as in
+// search().
+void SphereHierarchy::for_each_below(const BoxCell& cell, double value, const Vector3d& slope,
+                                     const std::function<bool(std::int32_t)>& visit) const {
   if (nodes_.empty()) return;
-  const double enough = value + (kNodeSlack * length_at(point) + kUnderflow);
+  const double length = length_at(cell.center) + cell.reach();
+  const double enough = value + 2.0 * (kNodeSlack * length + kUnderflow);
   std::array<std::int32_t, kStackSize> stack;
   std::size_t size = 0;
   stack[size++] = 0;
   while (size > 0) {
     const Node& node = nodes_[static_cast<std::size_t>(stack[--size])];
-    if (bound(node, point, enough) >= enough) continue;
+    if (is_above(node, cell, enough, slope)) continue;
     if (node.children >= 0) {
       stack[size++] = node.children + 1;
       stack[size++] = node.children;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/nearest_sphere.h"
 #include "spheretree/sphere.h"
 
@@ -31,10 +32,14 @@ class SphereHierarchy {
                         double limit = std::numeric_limits<double>::infinity(),
                         double tolerance = 0.0) const;
 
-  // Calls visit(index) for all spheres whose value, as LeastGap computes it, is at most `value`,
-  // and some others, in a fixed order, until it returns false.
-  void for_each_within(const Eigen::Vector3d& point, double value,
-                       const std::function<bool(std::int32_t)>& visit) const;
+  // Whether the value of a sphere, as LeastGap computes it, is below `value`.
+  bool is_any_nearer(const Eigen::Vector3d& point, double value) const;
+
+  // Calls visit(index) for all spheres whose value at some point of the cell, as LeastGap computes
+  // it, is at most `value` + slope . (point - centre of the cell), and some others, in a fixed
+  // order, until it returns false. The slope is no longer than 1.
+  void for_each_below(const BoxCell& cell, double value, const Eigen::Vector3d& slope,
+                      const std::function<bool(std::int32_t)>& visit) const;
 
   // At least |p|, the largest norm of a centre and the largest radius in all; 0 for no spheres.
   double length_at(const Eigen::Vector3d& point) const;
@@ -67,6 +72,13 @@ class SphereHierarchy {
   std::span<const Entry> spheres_of(const Node& node) const;
   Eigen::Vector3d regressed_normal(const Node& node) const;
   void fit_box(Node& node) const;
+  // Branch and bound, nearer children first, until is_done() after a leaf.
+  template <typename Done>
+  void search(const Eigen::Vector3d& point, double tolerance, LeastGap& least,
+              const Done& is_done) const;
+  // Whether all values of the node are above the affine function of for_each_below() in the cell.
+  bool is_above(const Node& node, const BoxCell& cell, double value,
+                const Eigen::Vector3d& slope) const;
   double bound(const Node& node, const Eigen::Vector3d& point, double enough) const;
 
   std::vector<Entry> spheres_;

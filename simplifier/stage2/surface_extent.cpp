@@ -4,8 +4,7 @@
 namespace spherule::internal {
 namespace {
 
-constexpr double kSlack = 0.2;      // of E: the sphere may protrude by so much
-constexpr double kTolerance = 0.1;  // of E, of the clearance
+constexpr double kSlack = 0.2;  // of E: the sphere may protrude by so much
 constexpr double kFactor = 1.4;
 
 }  // namespace
@@ -14,10 +13,7 @@ bool touched_by(const Clearance& clearance, const Eigen::Vector3d& point, const 
                 double inside, double max_error) {
   const double way = inside - at.lower;
   if (way <= 0.0) return true;
-  const double tolerance = kTolerance * max_error;
-  const double least = inside - kSlack * max_error;
-  const ClearanceAt there = clearance(point + way * at.away, tolerance, least + 2.0 * tolerance);
-  return there.lower >= least;
+  return clearance.is_at_least(point + way * at.away, inside - kSlack * max_error);
 }
 
 double cap_width_at(const Clearance& clearance, const Eigen::Vector3d& point, const ClearanceAt& at,

@@ -141,11 +141,50 @@ TEST(NearestCells, AnswersWithTheLeastOfAllValues) {
       ASSERT_EQ(searched.index, least.index);
       ASSERT_EQ(searched.lower, cells.nearest(p, limit, 0.0).lower);
       ASSERT_EQ(searched.upper, cells.nearest(p, limit, 0.0).upper);
+      ASSERT_FALSE(cells.is_any_nearer(p, value));
+      ASSERT_TRUE(cells.is_any_nearer(p, std::nextafter(value, kInfinity)));
     }
     cells_made += cells.memory_used() > 0 ? 1 : 0;
     EXPECT_EQ(no_room.memory_used(), 0U);
   }
   EXPECT_GT(cells_made, 0U);
+}
+
+// Those that are left out are above the affine function all over the cell.
+TEST(NearestCells, GathersAllSpheresThatAreSomewhereBelowAnAffineFunction) {
+  Random random(75);
+  const Eigen::AlignedBox3d box(Vector3d::Zero(), Vector3d::Constant(4));
+  std::size_t left_out = 0;
+  for (int i = 0; i < effort(300, 60); ++i) {
+    const auto kind = static_cast<Kind>(i % static_cast<int>(Kind::kCount));
+    const std::vector<Sphere> spheres = spheres_of(kind, 1 + random.index(600), random);
+    const SphereHierarchy hierarchy(spheres);
+    const Vector3d half = std::pow(0.1, random.between(0.0, 3.0)) *
+                          random.in_box({Vector3d::Constant(0.1), Vector3d::Constant(1)});
+    const internal::BoxCell cell{random.in_box(box), half};
+    const double value = random.between(-0.5, 1.5);
+    const Vector3d slope = random.between(0.0, 1.0) * random.direction();
+    std::vector<char> visited(spheres.size(), 0);
+    hierarchy.for_each_below(cell, value, slope, [&](std::int32_t k) {
+      visited[static_cast<std::size_t>(k)] = 1;
+      return true;
+    });
+    for (std::size_t k = 0; k < spheres.size(); ++k) {
+      if (visited[k] != 0) continue;
+      ++left_out;
+      // The lowest corner, the centre, the point nearest to the centre of the sphere, and others.
+      for (int j = 0; j < 12; ++j) {
+        const Vector3d to_sphere = spheres[k].center - cell.center;
+        const Vector3d out = j == 0   ? Vector3d::Zero()
+                             : j == 1 ? Vector3d(to_sphere.cwiseMin(half).cwiseMax(-half))
+                             : j == 2 ? Vector3d(half.cwiseProduct(to_sphere.cwiseSign()))
+                                      : random.in_box({-half, half});
+        const double gap = (cell.center + out - spheres[k].center).norm() - spheres[k].radius;
+        ASSERT_GT(gap, value + slope.dot(out)) << "set " << i << ", sphere " << k;
+      }
+    }
+  }
+  EXPECT_GT(left_out, 1000U);
 }
 
 TEST(NearestCells, SearchesOutsideOfTheBoxAndWhereTooManyAreTied) {
