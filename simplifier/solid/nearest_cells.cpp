@@ -15,9 +15,10 @@ using Eigen::Vector3d;
 constexpr std::size_t kShort = 128;     // lists that are not made shorter
 constexpr std::size_t kMiddling = 768;  // longer ones are, as soon as a query comes
 constexpr std::size_t kLongest = 4096;  // what a list holds at most
-constexpr int kPatience = 64;  // queries that use a middling list before its cell is halved
-constexpr int kPerCell = 64;   // spheres for each of the first cells that have a list
-constexpr int kDeepest = 36;   // halvings
+constexpr int kFirstPatience = 24;      // searches in a cell before its halves get the first lists
+constexpr int kPatience = 64;           // uses of a middling list before its cell is halved
+constexpr int kPerCell = 64;            // spheres for each of the first cells that have a list
+constexpr int kDeepest = 36;            // halvings
 
 // Bytes.
 constexpr std::size_t kPerSphere = 256;
@@ -103,14 +104,18 @@ struct NearestCells::Cell {
     for (const std::atomic<const Cell*>& half : halves) delete half.load();
   }
 
-  // Whether a query should go on to a half that has not been made. To shorten lists, only half of
-  // the memory is used: lists that are missing cost each query more.
-  bool is_to_be_halved(bool is_room_left) const {
+  // Whether a query should go on to a half that has not been made. A search in the hierarchy costs
+  // a twentieth of a first list, more or less. To shorten lists, only half of the memory is used:
+  // lists that are missing cost each query more.
+  bool is_to_be_halved(int first_listed, bool is_room_left) const {
+    const auto was_patient = [&](int patience) {
+      return queries.fetch_add(1, std::memory_order_relaxed) >= patience;
+    };
     if (depth == kDeepest) return false;
-    if (!listed) return true;
+    if (!listed) return depth + 1 < first_listed || was_patient(kFirstPatience);
     if (!is_room_left) return false;
     if (list.size() > kMiddling) return true;
-    return list.size() > kShort && queries.fetch_add(1, std::memory_order_relaxed) >= kPatience;
+    return list.size() > kShort && was_patient(kPatience);
   }
   std::size_t bytes() const { return sizeof(Cell) + list.size() * sizeof(list[0]); }
 };
@@ -137,15 +142,17 @@ NearestCells::~NearestCells() = default;
 NearestSphere NearestCells::nearest(const Vector3d& point, double limit, double tolerance) const {
   if (!box_.contains(point)) return hierarchy_.nearest(point, limit, tolerance);
   const Cell* cell = root_.get();
-  std::unique_ptr<Cell> passing;
   for (;;) {
     const int axis = cell->box.longest();
     const std::size_t side = point[axis] < cell->box.center[axis] ? 0 : 1;
     const Cell* half = cell->halves[side].load(std::memory_order_acquire);
-    if (half == nullptr && !cell->is_to_be_halved(memory_used() < memory_ / 2)) break;
-    cell = half != nullptr ? half : &make_half(*cell, side, passing);
+    if (half == nullptr && cell->is_to_be_halved(first_listed_, memory_used() < memory_ / 2)) {
+      half = make_half(*cell, side);
+    }
+    if (half == nullptr) break;
+    cell = half;
   }
-  if (!cell->listed) return hierarchy_.nearest(point, limit, tolerance);
+  if (!cell->listed) return hierarchy_.nearest(point, limit);
   LeastGap least(limit);
   for (const std::int32_t i : cell->list) {
     least.examine(point, spheres_[static_cast<std::size_t>(i)], i);
@@ -153,24 +160,23 @@ NearestSphere NearestCells::nearest(const Vector3d& point, double limit, double 
   return least.bounds(0.0, hierarchy_.length_at(point));
 }
 
-const NearestCells::Cell& NearestCells::make_half(const Cell& cell, std::size_t side,
-                                                  std::unique_ptr<Cell>& passing) const {
+const NearestCells::Cell* NearestCells::make_half(const Cell& cell, std::size_t side) const {
+  constexpr std::size_t kMostBytes = sizeof(Cell) + kLongest * sizeof(std::int32_t);
+  if (used_.fetch_add(kMostBytes) + kMostBytes > memory_) {
+    used_ -= kMostBytes;
+    return nullptr;
+  }
   auto made = std::make_unique<Cell>();
   made->box = cell.box.halves()[side];
   made->depth = cell.depth + 1;
   fill(*made, &cell);
-  const std::size_t bytes = made->bytes();
-  if (!passing && used_.fetch_add(bytes) + bytes <= memory_) {
-    const Cell* other = nullptr;
-    if (cell.halves[side].compare_exchange_strong(other, made.get(), std::memory_order_acq_rel)) {
-      return *made.release();
-    }
-    used_ -= bytes;
-    return *other;
+  used_ -= kMostBytes - made->bytes();
+  const Cell* other = nullptr;
+  if (cell.halves[side].compare_exchange_strong(other, made.get(), std::memory_order_acq_rel)) {
+    return made.release();
   }
-  if (!passing) used_ -= bytes;
-  passing = std::move(made);
-  return *passing;
+  used_ -= made->bytes();
+  return other;
 }
 
 // Spheres are left out that are beaten by the nearest at the middle, or by the one that is nearest

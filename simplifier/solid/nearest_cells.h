@@ -19,7 +19,7 @@ namespace spherule::internal {
 // The nearest sphere from short lists: cells of a box, halved where queries come, list every sphere
 // that is nearest to some point of the cell, as LeastGap computes it, and few others. The list of a
 // cell is gathered from a hierarchy of the spheres or, where its parent has one, from that. Faster
-// than a search where many queries come to a cell.
+// than a search where many queries come to a cell, and until then the hierarchy is searched.
 //
 // Safe to share between threads. The answers do not depend on which cells were made before.
 class NearestCells {
@@ -28,13 +28,11 @@ class NearestCells {
   // least 64 MiB and at most 4 GiB.
   NearestCells(std::vector<Sphere> spheres, const Eigen::AlignedBox3d& box);
   // Cells take up to `memory` bytes in all, beside that of the whole box; where that is used up,
-  // lists stay as long as they are, and those that are missing are made for each query again.
+  // lists stay as long as they are, and the hierarchy is searched where one is missing.
   NearestCells(std::vector<Sphere> spheres, const Eigen::AlignedBox3d& box, std::size_t memory);
   ~NearestCells();
 
-  // What SphereHierarchy::nearest() answers without a tolerance, except where that is called, with
-  // the tolerance: for points outside of the box, and where too many spheres are tied for a list.
-  // Which points these are depends on spheres and box only.
+  // What SphereHierarchy::nearest() answers: without a tolerance in the box, with it outside.
   NearestSphere nearest(const Eigen::Vector3d& point, double limit, double tolerance) const;
 
   // What SphereHierarchy::is_any_nearer() answers. For points that are not asked about again: makes
@@ -50,8 +48,8 @@ class NearestCells {
  private:
   struct Cell;
 
-  // A half that cannot be kept stands in `passing`, and so do those that are made from it.
-  const Cell& make_half(const Cell& cell, std::size_t side, std::unique_ptr<Cell>& passing) const;
+  // Null if there is no room for it.
+  const Cell* make_half(const Cell& cell, std::size_t side) const;
   void fill(Cell& cell, const Cell* parent) const;
   // A sphere that is nearest to the middle of a cell, or nearly; -1 if there is none.
   std::int32_t nearest_at(const BoxCell& box, const Cell* parent) const;
