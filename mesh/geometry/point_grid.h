@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 namespace spherule::internal {
@@ -22,14 +21,18 @@ class PointGrid {
     if (points.empty()) return;
     const Eigen::Array3d extent = (box_.sizes() / edge_).array().floor();
     size_ = extent.cast<std::int64_t>() + 1;
+    entries_.reserve(points.size());
     for (std::uint32_t i = 0; i < points.size(); ++i) {
-      cubes_[key(cube_of(points[i]))].push_back({points[i], i});
+      entries_.push_back({key(cube_of(points[i])), points[i], i});
     }
+    std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+      return a.cube != b.cube ? a.cube < b.cube : a.index < b.index;
+    });
   }
 
   // Appends the indices of the points within `radius` of `center`, in a fixed order.
   void find(const Eigen::Vector3d& center, double radius, std::vector<std::uint32_t>& found) const {
-    if (cubes_.empty()) return;
+    if (entries_.empty()) return;
     const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
     const Index low = cube_of(center - reach);
     const Index high = cube_of(center + reach);
@@ -43,12 +46,12 @@ class PointGrid {
     }
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          const auto it = cubes_.find(key({x, y, z}));
-          if (it == cubes_.end()) continue;
-          for (const Entry& e : it->second) {
-            if ((e.point - center).squaredNorm() <= squared) found.push_back(e.index);
-          }
+        const std::int64_t last = key({x, y, high[2]});
+        auto e = std::lower_bound(
+            entries_.begin(), entries_.end(), key({x, y, low[2]}),
+            [](const Entry& entry, std::int64_t cube) { return entry.cube < cube; });
+        for (; e != entries_.end() && e->cube <= last; ++e) {
+          if ((e->point - center).squaredNorm() <= squared) found.push_back(e->index);
         }
       }
     }
@@ -57,6 +60,7 @@ class PointGrid {
  private:
   using Index = Eigen::Array<std::int64_t, 3, 1>;
   struct Entry {
+    std::int64_t cube;
     Eigen::Vector3d point;
     std::uint32_t index;
   };
@@ -74,7 +78,7 @@ class PointGrid {
   double edge_;
   Eigen::AlignedBox3d box_;
   Index size_ = Index::Zero();
-  std::unordered_map<std::int64_t, std::vector<Entry>> cubes_;
+  std::vector<Entry> entries_;  // by cube; those of a row along z follow each other
 };
 
 }  // namespace spherule::internal
