@@ -249,18 +249,18 @@ TEST(ExternalSpheres, WhereCellsAreTooManyTheGridIsCoarser) {
 
 // One that was requested is not changed; of one that was not, no more than is needed.
 TEST(ExternalSpheres, WhereCellsAreTooManyADefaultDiameterIsLarger) {
-  ExternalOptions options = options_for(ExternalPlacement::kReachable, 0.07);
-  options.max_error = 0.07 / 4.0;
+  ExternalOptions options = options_for(ExternalPlacement::kReachable, 0.1);
+  options.max_error = 0.1 / 4.0;
   const MeshDistance distance(cube_mesh());
   const auto used = [&](const ExternalOptions& by) {
     return internal::place_with_default_diameter(cube_mesh(), distance, by);
   };
-  EXPECT_EQ(used(options).min_external_diameter, 0.07);
+  EXPECT_EQ(used(options).min_external_diameter, 0.1);
   // A quarter of the cells is for such grids.
   options.max_cells = used(options).nodes_examined;
   const ExternalSpheres larger = used(options);
   EXPECT_LE(larger.nodes_examined, options.max_cells);
-  EXPECT_GT(larger.min_external_diameter, 0.07);
+  EXPECT_GT(larger.min_external_diameter, 0.1);
   EXPECT_LE(larger.min_external_diameter, 0.1 * distance.box().diagonal().norm());
   for (const Sphere& sphere : larger.spheres) {
     EXPECT_GE(sphere.radius, larger.min_external_diameter / 2.0);

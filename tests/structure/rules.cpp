@@ -180,6 +180,13 @@ std::vector<std::string> check_file(const std::string& path, std::string_view te
   return problems;
 }
 
+std::vector<std::string> check_first_include(const std::string& path, std::string_view text) {
+  const std::string own = path.substr(0, path.rfind('.')) + ".h";
+  const std::size_t first = text.find("\n#include ");
+  if (first != text.npos && text.substr(first).starts_with("\n#include \"" + own + "\"")) return {};
+  return {path + ": does not include " + own + " before all others"};
+}
+
 std::vector<std::string> check_public_headers(const std::string& folder, std::string_view cmake,
                                               const std::vector<std::string>& headers) {
   static const std::regex kList(R"(\bHEADERS\s([^)]*?)\bSOURCES\b)");
@@ -221,8 +228,12 @@ std::vector<std::string> check_sources(const fs::path& root, std::size_t& files)
   const auto check = [&](const fs::path& path) {
     const std::string text = text_of(path);
     const std::string name = fs::relative(path, root).generic_string();
-    const auto found = check_file(name, text);
+    auto found = check_file(name, text);
     problems.insert(problems.end(), found.begin(), found.end());
+    if (name.ends_with(".cpp") && fs::exists(fs::path(path).replace_extension(".h"))) {
+      found = check_first_include(name, text);
+      problems.insert(problems.end(), found.begin(), found.end());
+    }
     ++files;
     if (name.ends_with(".h")) headers.push_back(name);
     if (name.ends_with("/CMakeLists.txt") && text.find("\nspherule_library(") != text.npos) {

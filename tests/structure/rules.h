@@ -17,13 +17,17 @@ inline constexpr std::size_t kMaxLines = 400;
 // names file and line.
 std::vector<std::string> check_file(const std::string& path, std::string_view text);
 
+// A source that has a header of its name includes it before all others, so that the compiler shows
+// what the header lacks. Empty if this one does.
+std::vector<std::string> check_first_include(const std::string& path, std::string_view text);
+
 // A header of a library is public exactly if its CMakeLists.txt lists it under HEADERS; private
 // ones live in internal/. What is wrong with the `headers` of the library in `folder`, whose paths
 // are relative to it, given the text of its CMakeLists.txt.
 std::vector<std::string> check_public_headers(const std::string& folder, std::string_view cmake,
                                               const std::vector<std::string>& headers);
 
-// Both for all sources below `root`; `files` counts them.
+// All of these for all sources below `root`; `files` counts them.
 std::vector<std::string> check_sources(const std::filesystem::path& root, std::size_t& files);
 
 }  // namespace spherule

@@ -106,6 +106,15 @@ TEST(Structure, HeadersThatAreNeitherPublicNorInternalAreFound) {
   EXPECT_EQ(check_public_headers("room", "spherule_library(room SOURCES a.cpp)", {}).size(), 1u);
 }
 
+TEST(Structure, SourcesThatDoNotIncludeTheirHeaderFirstAreFound) {
+  const std::string own = "\n#include \"room/a.h\"\n";
+  const std::string other = "\n#include \"room/b.h\"\n";
+  EXPECT_TRUE(check_first_include("room/a.cpp", kLicence + own + other).empty());
+  EXPECT_FALSE(check_first_include("room/a.cpp", kLicence + other + own).empty());
+  EXPECT_FALSE(check_first_include("room/a.cpp", kLicence + "\n#include <a>\n" + own).empty());
+  EXPECT_FALSE(check_first_include("room/a.cpp", kLicence).empty());
+}
+
 TEST(Structure, FormFaultsAreFound) {
   EXPECT_TRUE(check_file("collide/a.h", kLicence + "#pragma once\n").empty());
   EXPECT_FALSE(check_file("collide/a.h", kLicence).empty());
