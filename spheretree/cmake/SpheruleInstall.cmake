@@ -40,6 +40,8 @@ if(SPHERULE_OMPL)
 endif()
 
 # The pages that helps and messages name, with what their links lead to.
+# Where ROS looks for that of a package without ament (REP 136).
+install(FILES package.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/spherule)
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
         FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
