@@ -104,7 +104,7 @@ Zone read_zone(const Json& entry, const std::string& subject, const std::string&
   } else if (shape == "capsule") {
     zone.shape = read_capsule(entry, subject, where);
   } else {
-    read.fail("unknown shape \"" + shape + "\": sphere, box or capsule");
+    read.fail("unknown shape \"" + shape + "\": ball, box or capsule");
   }
   zone.max_error = read.number_if_there("max_error");
   zone.min_external_diameter = read.number_if_there("min_external");

@@ -39,7 +39,6 @@ constexpr std::size_t kMaxSites = 20000;
 // Of E: what is kept of it for the margins of the proof; how closely clearances are told; how near
 // to the boundary of S a sample is a site; and how far apart leaks become samples.
 constexpr double kReserve = 2.0 * internal::kProofMargin;
-constexpr double kTolerance = 0.02;
 constexpr double kAtBoundary = 0.05;
 constexpr double kLeakSpacing = 0.2;
 
@@ -60,7 +59,7 @@ class MedialCover {
               const CoverOptions& options)
       : options_(options),
         solid_(mesh, external, options, "medial"),
-        probe_(solid_.clearance, solid_.distance, kTolerance * options.max_error),
+        probe_(solid_.clearance, solid_.distance),
         samples_(solid_.samples(mesh)),
         axis_(probe_, sites_among(samples_), samples_) {}
 

@@ -27,7 +27,7 @@ Clearance::Clearance(const ExternalSpheres& external)
       least_external_(least_radius(external.spheres)) {}
 
 // A face of the box is an external sphere of infinite radius; its gap is a single difference.
-ClearanceAt Clearance::operator()(const Vector3d& point, double tolerance, double limit) const {
+ClearanceAt Clearance::operator()(const Vector3d& point, double limit) const {
   ClearanceAt result;
   double nearest = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -45,7 +45,7 @@ ClearanceAt Clearance::operator()(const Vector3d& point, double tolerance, doubl
   // The difference of two doubles is rounded to zero only if they are equal.
   result.lower = nearest == 0.0 ? 0.0 : next_down(nearest);
   result.upper = nearest == 0.0 ? 0.0 : next_up(nearest);
-  const NearestSphere sphere = cells_->nearest(point, std::min(nearest, limit), tolerance);
+  const NearestSphere sphere = cells_->nearest(point, std::min(nearest, limit));
   if (sphere.index < 0) {
     if (!cells_->spheres().empty()) result.lower = std::min(result.lower, sphere.lower);
     return result;

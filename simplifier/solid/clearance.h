@@ -27,12 +27,12 @@ class Clearance {
  public:
   explicit Clearance(const ExternalSpheres& external);
 
-  // With a tolerance the bounds may be that far apart; with a limit, clearances beyond it are not
-  // told apart (`lower` is then at most the limit). Both make the search much faster.
-  ClearanceAt operator()(const Eigen::Vector3d& point, double tolerance = 0.0,
+  // With a limit, clearances beyond it are not told apart (`lower` is then at most the limit),
+  // which makes the search faster.
+  ClearanceAt operator()(const Eigen::Vector3d& point,
                          double limit = std::numeric_limits<double>::infinity()) const;
 
-  // Whether it is at least `least`, in plain double: for searches, never for a proof.
+  // Whether the clearance is at least `least`, in plain double: for searches, never for a proof.
   bool is_at_least(const Eigen::Vector3d& point, double least) const;
 
   const Eigen::AlignedBox3d& box() const { return box_; }

@@ -17,8 +17,6 @@ struct AscentOptions {
   double first_step = 0.0;
   // Steps shorter than this are not tried.
   double least_step = 0.0;
-  // The clearance may be off by this much (see Clearance).
-  double tolerance = 0.0;
 };
 
 // Moves a point of S away from its contact, as the paper moves an internal sphere "away from the

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/solid/nearest_cells.h"
 
+#include "spheretree/rounding.h"
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -13,10 +15,10 @@ using Eigen::Vector3d;
 // Looking through a sphere of a list costs a tenth of what it costs to decide whether a half needs
 // it, and most cells get few queries, so that long lists pay.
 constexpr std::size_t kShort = 128;     // lists that are not made shorter
-constexpr std::size_t kMiddling = 768;  // longer ones are, as soon as a query comes
+constexpr std::size_t kMedium = 768;    // longer ones are, as soon as a query comes
 constexpr std::size_t kLongest = 4096;  // what a list holds at most
 constexpr int kFirstPatience = 24;      // searches in a cell before its halves get the first lists
-constexpr int kPatience = 64;           // uses of a middling list before its cell is halved
+constexpr int kPatience = 64;           // uses of a medium list before its cell is halved
 constexpr int kPerCell = 64;            // spheres for each of the first cells that have a list
 constexpr int kDeepest = 36;            // halvings
 
@@ -24,6 +26,9 @@ constexpr int kDeepest = 36;            // halvings
 constexpr std::size_t kPerSphere = 256;
 constexpr std::size_t kLeastMemory = std::size_t{1} << 26;
 constexpr std::size_t kMostMemory = std::size_t{1} << 32;
+
+// Of a shorter vector no direction can be computed: its square underflows.
+constexpr double kTiny = 1e-100;
 
 // A sphere as seen from the middle of a cell.
 struct Seen {
@@ -41,7 +46,7 @@ struct Seen {
         from_center(cell.center - sphere.center),
         distance(from_center.norm()),
         gap(distance - radius),
-        direction(distance > 0.0 ? Vector3d(from_center / distance) : Vector3d::Zero()),
+        direction(distance > kTiny ? Vector3d(from_center / distance) : Vector3d::Zero()),
         bend(std::min(2.0 * reach, 0.5 * reach * reach / distance)) {}
 };
 
@@ -104,18 +109,19 @@ struct NearestCells::Cell {
     for (const std::atomic<const Cell*>& half : halves) delete half.load();
   }
 
-  // Whether a query should go on to a half that has not been made. A search in the hierarchy costs
-  // a twentieth of a first list, more or less. To shorten lists, only half of the memory is used:
-  // lists that are missing cost each query more.
-  bool is_to_be_halved(int first_listed, bool is_room_left) const {
-    const auto was_patient = [&](int patience) {
+  // Whether a query should go on to a half that has not been made. Counts it where that depends on
+  // how many there were, in either half. A search in the hierarchy costs about a twentieth of what
+  // making a first list costs. To shorten lists, only half of the memory is used: lists that are
+  // missing cost each query more.
+  bool counts_and_is_to_be_halved(int first_listed, bool is_room_left) const {
+    const auto is_beyond = [&](int patience) {
       return queries.fetch_add(1, std::memory_order_relaxed) >= patience;
     };
     if (depth == kDeepest) return false;
-    if (!listed) return depth + 1 < first_listed || was_patient(kFirstPatience);
+    if (!listed) return depth + 1 < first_listed || is_beyond(kFirstPatience);
     if (!is_room_left) return false;
-    if (list.size() > kMiddling) return true;
-    return list.size() > kShort && was_patient(kPatience);
+    if (list.size() > kMedium) return true;
+    return list.size() > kShort && is_beyond(kPatience);
   }
   std::size_t bytes() const { return sizeof(Cell) + list.size() * sizeof(list[0]); }
 };
@@ -139,14 +145,15 @@ NearestCells::NearestCells(std::vector<Sphere> spheres, const Eigen::AlignedBox3
 
 NearestCells::~NearestCells() = default;
 
-NearestSphere NearestCells::nearest(const Vector3d& point, double limit, double tolerance) const {
-  if (!box_.contains(point)) return hierarchy_.nearest(point, limit, tolerance);
+NearestSphere NearestCells::nearest(const Vector3d& point, double limit) const {
+  if (!box_.contains(point)) return hierarchy_.nearest(point, limit);
   const Cell* cell = root_.get();
   for (;;) {
     const int axis = cell->box.longest();
     const std::size_t side = point[axis] < cell->box.center[axis] ? 0 : 1;
     const Cell* half = cell->halves[side].load(std::memory_order_acquire);
-    if (half == nullptr && cell->is_to_be_halved(first_listed_, memory_used() < memory_ / 2)) {
+    if (half == nullptr &&
+        cell->counts_and_is_to_be_halved(first_listed_, memory_used() < memory_ / 2)) {
       half = make_half(*cell, side);
     }
     if (half == nullptr) break;
@@ -161,21 +168,24 @@ NearestSphere NearestCells::nearest(const Vector3d& point, double limit, double 
 }
 
 const NearestCells::Cell* NearestCells::make_half(const Cell& cell, std::size_t side) const {
-  constexpr std::size_t kMostBytes = sizeof(Cell) + kLongest * sizeof(std::int32_t);
-  if (used_.fetch_add(kMostBytes) + kMostBytes > memory_) {
-    used_ -= kMostBytes;
-    return nullptr;
-  }
+  const bool has_list = cell.depth + 1 >= first_listed_;
+  const std::size_t most = sizeof(Cell) + (has_list ? kLongest * sizeof(std::int32_t) : 0);
+  if (memory_used() + most > memory_) return nullptr;
   auto made = std::make_unique<Cell>();
   made->box = cell.box.halves()[side];
   made->depth = cell.depth + 1;
   fill(*made, &cell);
-  used_ -= kMostBytes - made->bytes();
+  const std::size_t bytes = made->bytes();
+  // Others may have used it up since.
+  if (used_.fetch_add(bytes) + bytes > memory_) {
+    used_ -= bytes;
+    return nullptr;
+  }
   const Cell* other = nullptr;
   if (cell.halves[side].compare_exchange_strong(other, made.get(), std::memory_order_acq_rel)) {
     return made.release();
   }
-  used_ -= made->bytes();
+  used_ -= bytes;
   return other;
 }
 
@@ -194,7 +204,9 @@ void NearestCells::fill(Cell& cell, const Cell* parent) const {
   const std::int32_t best = nearest_at(cell.box, parent);
   if (best < 0) return;
   const Seen first(cell.box, reach, best, sphere(best));
-  const double farthest = first.gap + 2.0 * reach + 64.0 * kUnitRoundoff * length + kUnderflow;
+  // Of what the gap of the first is at most in the cell, and of the values to compare with.
+  const double rounding = 64.0 * kUnitRoundoff * length + kUnderflow;
+  const double farthest = first.gap + 2.0 * reach + rounding;
   std::vector<Seen> left;
   std::vector<std::size_t> corners;
   const auto consider = [&](std::int32_t i) {
@@ -210,7 +222,8 @@ void NearestCells::fill(Cell& cell, const Cell* parent) const {
     return cell.listed;
   };
   if (parent == nullptr || !parent->listed) {
-    hierarchy_.for_each_below(cell.box, first.gap + first.bend, first.direction, consider);
+    hierarchy_.for_each_below(cell.box, first.gap + first.bend + rounding, first.direction,
+                              consider);
   } else {
     for (const std::int32_t i : parent->list) consider(i);
   }

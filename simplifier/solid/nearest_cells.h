@@ -28,12 +28,13 @@ class NearestCells {
   // least 64 MiB and at most 4 GiB.
   NearestCells(std::vector<Sphere> spheres, const Eigen::AlignedBox3d& box);
   // Cells take up to `memory` bytes in all, beside that of the whole box; where that is used up,
-  // lists stay as long as they are, and the hierarchy is searched where one is missing.
+  // lists stay as long as they are, and the hierarchy is searched where one is missing: slower by
+  // far where very many spheres are nearly tied.
   NearestCells(std::vector<Sphere> spheres, const Eigen::AlignedBox3d& box, std::size_t memory);
   ~NearestCells();
 
-  // What SphereHierarchy::nearest() answers: without a tolerance in the box, with it outside.
-  NearestSphere nearest(const Eigen::Vector3d& point, double limit, double tolerance) const;
+  // What SphereHierarchy::nearest() answers without a tolerance. Outside of the box it is searched.
+  NearestSphere nearest(const Eigen::Vector3d& point, double limit) const;
 
   // What SphereHierarchy::is_any_nearer() answers. For points that are not asked about again: makes
   // no cells.

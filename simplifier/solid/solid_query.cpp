@@ -9,8 +9,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Clearances are requested to this share of the cell's half diagonal.
-constexpr double kClearanceTolerance = 0.125;
 // Steps towards S are at least this share of it.
 constexpr double kLeastStep = 1.0 / 32.0;
 
@@ -22,7 +20,7 @@ double least_reach(const Eigen::AlignedBox3d& box) {
 
 CellState classify(const Clearance& clearance, const BoxCell& cell) {
   const double reach = cell.reach();
-  return state_of(clearance(cell.center, kClearanceTolerance * reach, 2.0 * reach), reach);
+  return state_of(clearance(cell.center, 2.0 * reach), reach);
 }
 
 std::optional<Vector3d> mesh_point_in(const MeshDistance& distance, const BoxCell& cell) {

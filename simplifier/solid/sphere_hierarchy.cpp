@@ -29,10 +29,13 @@ constexpr double kNodeSlack = 512.0 * kUnitRoundoff;  // see search()
 // shorter than its part in a frame.
 constexpr double kShrink = 1.0 - 64.0 * kUnitRoundoff;
 
+// Of a shorter vector no direction can be computed: its square underflows.
+constexpr double kTiny = 1e-100;
+
 // The direction of `v`, or if it has none that can be relied on, of `other`.
 Vector3d direction_of(const Vector3d& v, const Vector3d& other) {
   const double norm = v.norm();
-  return norm > 1e-100 && norm < 1e100 ? Vector3d(v / norm) : other;
+  return norm > kTiny && norm < 1e100 ? Vector3d(v / norm) : other;
 }
 
 Vector3d any_across(const Vector3d& normal) {
@@ -168,11 +171,6 @@ double SphereHierarchy::length_at(const Vector3d& point) const {
   return nodes_.empty() ? 0.0 : point.norm() + magnitude_ + nodes_[0].max_radius;
 }
 
-// Values are compared as LeastGap computes them, which err by at most 8 u L, L being length_at(p).
-// The bounds of nodes take some 60 operations on vectors no longer than |p| + 2 |c|_max + R_max,
-// none of which magnifies an error, and the frame is shrunk by 64 u: 256 u of
-// that length, at most 2 L, are charged to each. So no sphere of a node that is passed over has a
-// value as small as what the node's bound was compared with.
 NearestSphere SphereHierarchy::nearest(const Vector3d& point, double limit,
                                        double tolerance) const {
   LeastGap least(limit);
@@ -188,6 +186,11 @@ bool SphereHierarchy::is_any_nearer(const Vector3d& point, double value) const {
   return least.index() >= 0;
 }
 
+// Values are compared as LeastGap computes them, which err by at most 8 u L, L being length_at(p).
+// The bounds of nodes take some 60 operations on vectors no longer than |p| + 2 |c|_max + R_max,
+// none of which magnifies an error, and the frame is shrunk by 64 u: 256 u of that length, at most
+// 2 L, are charged to each. So no sphere of a node that is passed over has a value as small as what
+// the node's bound was compared with.
 template <typename Done>
 void SphereHierarchy::search(const Vector3d& point, double tolerance, LeastGap& least,
                              const Done& is_done) const {
@@ -220,10 +223,13 @@ void SphereHierarchy::search(const Vector3d& point, double tolerance, LeastGap& 
   }
 }
 
-// With unit vectors of which the parts in the frame of the node are not negative, w, a sphere of
-// centre c and radius r has |c - x| >= w_n (ahead + r) + w_a beyond_a + w_s beyond_s, each of which
-// is at least an affine function of x; less r, that shrinks with r, as w_n <= 1. Likewise with the
-// excess over the box along the normal, and without r, in place of ahead + r.
+// Let w be a unit vector with components w_n, w_a, w_s >= 0 in the frame of the node. For all x a
+// sphere of centre c and radius r has |c - x| >= w_n (ahead(x) + r) + w_a excess_a(x) + w_s
+// excess_s(x), where `ahead` is affine, and an excess over the box at least the affine function
+// that it is about the centre of the cell. Less r, this falls as r grows, as w_n <= 1: the largest
+// radius gives a bound for all. Where ahead + the largest radius is not positive at the centre of
+// the cell, the excess along the normal stands in place of ahead + r. Of all w, the best at that
+// centre.
 bool SphereHierarchy::is_above(const Node& node, const BoxCell& cell, double value,
                                const Vector3d& slope) const {
   struct Excess {
@@ -243,14 +249,14 @@ bool SphereHierarchy::is_above(const Node& node, const BoxCell& cell, double val
   const Excess first = by_plane ? Excess{ahead + node.max_radius, -node.normal}
                                 : excess(node.normal, node.low.x(), node.high.x());
   const double norm = Vector3d(first.value, along.value, aside.value).norm();
-  if (norm == 0.0) return false;
+  if (norm <= kTiny) return false;
   const Vector3d rise =
       (first.value * first.slope + along.value * along.slope + aside.value * aside.slope) / norm;
   return norm - node.max_radius - (rise - slope).cwiseAbs().dot(cell.half) > value;
 }
 
-// The affine function at c takes the place of a value, so that both sides err by as much as in
-// search().
+// As in search(), twice: once for the bound, at c and where it is carried to in the cell, and once
+// for the values that are computed there. L is no less than length_at() anywhere in the cell.
 void SphereHierarchy::for_each_below(const BoxCell& cell, double value, const Vector3d& slope,
                                      const std::function<bool(std::int32_t)>& visit) const {
   if (nodes_.empty()) return;

@@ -76,7 +76,8 @@ class SphereHierarchy {
   template <typename Done>
   void search(const Eigen::Vector3d& point, double tolerance, LeastGap& least,
               const Done& is_done) const;
-  // Whether all values of the node are above the affine function of for_each_below() in the cell.
+  // True only if all values of the node are above the affine function of for_each_below() all over
+  // the cell.
   bool is_above(const Node& node, const BoxCell& cell, double value,
                 const Eigen::Vector3d& slope) const;
   double bound(const Node& node, const Eigen::Vector3d& point, double enough) const;

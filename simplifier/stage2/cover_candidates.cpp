@@ -14,7 +14,6 @@
 namespace spherule::internal {
 namespace {
 
-constexpr double kClearanceTolerance = 0.02;  // of E
 constexpr double kContained = 0.97;
 // Of how far a sphere reaches along a plane: those of the best size for an edge, which have a
 // clearance of E, stand this share of E apart.
@@ -45,7 +44,7 @@ std::vector<Candidate> thinned(const std::vector<Candidate>& candidates, double 
 // Where on the way from one step to the next, between which the error that is allowed changes, it
 // begins to.
 Candidate turning_point(const Clearance& clearance, const LocalError& error, const AscentStep& from,
-                        const AscentStep& to, double allowed, double tolerance) {
+                        const AscentStep& to, double allowed) {
   constexpr int kHalvings = 5;
   Candidate found{from.point, from.clearance};
   double low = 0.0;
@@ -53,7 +52,7 @@ Candidate turning_point(const Clearance& clearance, const LocalError& error, con
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = (low + high) / 2.0;
     const Eigen::Vector3d point = from.point + middle * (to.point - from.point);
-    const double d = clearance(point, tolerance).lower;
+    const double d = clearance(point).lower;
     if (d >= 0.0 && error.allowance(point, d) == allowed) {
       low = middle;
       found = {point, d};
@@ -74,12 +73,10 @@ std::vector<Candidate> candidates_from(const Clearance& clearance,
     Random random(seed_of(seed, i));
     const double error = max_error * local.scale(points[i]);
     const double depth = random.between(0.2, 1.5) * error;
-    const Eigen::Vector3d start =
-        points[i] + depth * clearance(points[i], kClearanceTolerance * error).away;
-    const std::vector<AscentStep> path = ascend(clearance, start,
-                                                {.first_step = random.between(0.1, 0.4) * error,
-                                                 .least_step = 0.05 * error,
-                                                 .tolerance = kClearanceTolerance * error});
+    const Eigen::Vector3d start = points[i] + depth * clearance(points[i]).away;
+    const std::vector<AscentStep> path =
+        ascend(clearance, start,
+               {.first_step = random.between(0.1, 0.4) * error, .least_step = 0.05 * error});
     for (std::size_t k = 0; k < path.size(); ++k) {
       if (path[k].clearance < 0.0) continue;
       if (k + 1 == path.size()) {
@@ -96,8 +93,7 @@ std::vector<Candidate> candidates_from(const Clearance& clearance,
         each[i].push_back({path[k].point, path[k].clearance});
       }
       if (allowed_next != allowed) {
-        each[i].push_back(
-            turning_point(clearance, local, path[k], next, allowed, kClearanceTolerance * error));
+        each[i].push_back(turning_point(clearance, local, path[k], next, allowed));
       }
     }
   });

@@ -50,7 +50,6 @@ constexpr double kLeakDisc = 0.015;
 // Shares of E.
 constexpr double kFinest = 0.01;       // smallest cell of the proof
 constexpr double kLeakSpacing = 0.15;  // leaks become rows this far apart
-constexpr double kTolerance = 0.02;    // of the clearances of rows
 
 constexpr std::size_t kStartsPerRow = 10;  // a start for so many rows
 constexpr std::size_t kMinStarts = 2000;
@@ -336,7 +335,7 @@ void CoverFitter::add_rows(CoverProblem& problem, const Points& points,
   parallel_for(0, points.size(), [&](std::size_t i) {
     const Vector3d& p = points[i];
     const double error = error_ * local_.scale(p);
-    const ClearanceAt at = clearance_(p, kTolerance * error);
+    const ClearanceAt at = clearance_(p);
     const double width = cap_width_at(clearance_, p, at, error);
     const double disc = std::min(surroundings.disc * (width - error), kLargestDisc * error);
     rows[i] = {p, surroundings.radius * error, disc, at.away};

@@ -107,10 +107,9 @@ std::vector<Candidate> perturbed(const Clearance& clearance, const CoverProblem&
     const double size = kLargestMove * share * share * cap_width(inside, error);
     const Eigen::Vector3d by =
         random.in({Eigen::Vector3d::Constant(-size), Eigen::Vector3d::Constant(size)});
-    const AscentStep end =
-        ascend(clearance, from.center + by,
-               {.first_step = 0.1 * error, .least_step = 0.005 * error, .tolerance = 0.01 * error})
-            .back();
+    const AscentStep end = ascend(clearance, from.center + by,
+                                  {.first_step = 0.1 * error, .least_step = 0.005 * error})
+                               .back();
     found[i] = {end.point, end.clearance};
   });
   std::erase_if(found, [](const Candidate& c) { return c.clearance < 0.0; });

@@ -12,7 +12,6 @@ using Eigen::Vector3d;
 // Shares of E.
 constexpr double kFirstStep = 0.2;
 constexpr double kLeastStep = 0.01;
-constexpr double kTolerance = 0.01;  // of the clearance
 constexpr int kMaxSteps = 40;
 
 struct Worst {
@@ -37,8 +36,7 @@ Candidate shift(const Clearance& clearance, const CoverProblem& problem, const C
                 std::span<const std::uint32_t> rows) {
   if (rows.empty()) return start;
   const double max_error = problem.error().allowance(start.center, std::max(0.0, start.clearance));
-  const double tolerance = kTolerance * max_error;
-  ClearanceAt at = clearance(start.center, tolerance);
+  ClearanceAt at = clearance(start.center);
   Candidate here{start.center, std::max(start.clearance, at.lower)};
   Worst worst = worst_row(problem, here, rows);
   double step = kFirstStep * max_error;
@@ -50,7 +48,7 @@ Candidate shift(const Clearance& clearance, const CoverProblem& problem, const C
     if (direction.norm() < 1e-3) break;
     direction.normalize();
     const Vector3d next = here.center + step * direction;
-    const ClearanceAt there = clearance(next, tolerance, at.upper + step * (1.0 + 1e-9));
+    const ClearanceAt there = clearance(next, at.upper + step * (1.0 + 1e-9));
     const Candidate moved{next, there.lower};
     const Worst then = worst_row(problem, moved, rows);
     if (there.lower >= 0.0 && then.margin > worst.margin) {

@@ -20,7 +20,6 @@ constexpr std::size_t kEnoughLeaks = 3;
 constexpr double kGrading = 0.5;  // of the clearance, by which deeper cells are larger
 // Shares of the cells' spacing.
 constexpr double kThinning = 1.2;  // edge of the cubes with one boundary point each
-constexpr double kSampleTolerance = 0.01;
 // Halving the longest edge of a box that is no more than twice as long as another divides its half
 // diagonal by this at most, so that those of the largest cells that are small enough are at least
 // so much less. (Flatter ones may be missed: it decides where rows stand, not what is proved.)
@@ -61,7 +60,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
     parallel_for(0, level.size(), [&](std::size_t i) {
       Cell& cell = level[i];
       const double reach = cell.box.reach();
-      const ClearanceAt at = clearance_(cell.box.center, 0.125 * reach, 4.0 * reach);
+      const ClearanceAt at = clearance_(cell.box.center, 4.0 * reach);
       const CellState state = state_of(at, reach);
       if (state.outside) return;
       cell.inside = state.inside;
@@ -97,13 +96,12 @@ std::vector<Vector3d> SolidCells::sample() const {
     usable[i] = 1;
     if (cells_[i].inside) return;
     // Onto the boundary: by the clearance towards the contact, or away from it.
-    const double tolerance = kSampleTolerance * spacing_ * error_.scale(points[i]);
-    const ClearanceAt at = clearance_(points[i], tolerance);
+    const ClearanceAt at = clearance_(points[i]);
     points[i] -= at.away * at.lower;
-    const ClearanceAt there = clearance_(points[i], tolerance);
+    const ClearanceAt there = clearance_(points[i]);
     if (there.lower >= 0.0) return;
     points[i] += there.away * (-2.0 * there.lower);
-    if (clearance_(points[i], tolerance).lower >= 0.0) return;
+    if (clearance_(points[i]).lower >= 0.0) return;
     const auto on_mesh = mesh_point_in(distance_, cells_[i].box);
     usable[i] = on_mesh ? 1 : 0;
     if (on_mesh) points[i] = *on_mesh;

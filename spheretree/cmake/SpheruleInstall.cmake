@@ -39,9 +39,10 @@ if(SPHERULE_OMPL)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/SpheruleOmpl.cmake DESTINATION ${destination})
 endif()
 
-# The pages that helps and messages name, with what their links lead to.
-# Where ROS looks for that of a package without ament (REP 136).
+# Where ROS looks for it in a package without ament (REP 136).
 install(FILES package.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/spherule)
+
+# The pages that helps and messages name, with what their links lead to.
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
         FILES_MATCHING PATTERN "*.md" PATTERN "*.png")

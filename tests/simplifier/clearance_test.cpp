@@ -181,7 +181,7 @@ TEST(Clearance, BoundsContainTheExactValue) {
   }
 }
 
-TEST(Clearance, ToleranceAndLimitKeepTheBoundsTrue) {
+TEST(Clearance, ALimitKeepsTheBoundsTrue) {
   Random random(44);
   for (int i = 0; i < effort(60, 12); ++i) {
     const ExternalSpheres external = random_external(random, i);
@@ -189,21 +189,30 @@ TEST(Clearance, ToleranceAndLimitKeepTheBoundsTrue) {
     for (int k = 0; k < 40; ++k) {
       const Vector3d p = random.in_box(kAround);
       const Digits50 exact = exact_clearance(p, external);
-      const double tolerance = random.between(0.0, 0.3);
-      const ClearanceAt loose = clearance(p, tolerance);
-      ASSERT_LE(Digits50(loose.lower), exact);
-      ASSERT_GE(Digits50(loose.upper), exact);
-      ASSERT_LE(loose.upper - loose.lower, tolerance + 1e-12);
       const double limit = random.between(0.0, 1.0);
-      const ClearanceAt limited = clearance(p, tolerance, limit);
+      const ClearanceAt limited = clearance(p, limit);
       ASSERT_LE(Digits50(limited.lower), exact);
       ASSERT_GE(Digits50(limited.upper), exact);
-      if (exact < limit - tolerance - 1e-12) {
-        ASSERT_LE(limited.upper - limited.lower, tolerance + 1e-12);
+      if (exact < limit - 1e-12) {
+        ASSERT_LE(limited.upper - limited.lower, 1e-12);
       } else if (!external.spheres.empty()) {
         ASSERT_LE(limited.lower, limit);
-        ASSERT_GE(limited.lower, std::min(limit, static_cast<double>(exact)) - tolerance - 1e-12);
+        ASSERT_GE(limited.lower, std::min(limit, static_cast<double>(exact)) - 1e-12);
       }
+    }
+  }
+}
+
+TEST(Clearance, IsAtLeastWhatItsBoundsSay) {
+  Random random(46);
+  for (int i = 0; i < effort(60, 12); ++i) {
+    const ExternalSpheres external = random_external(random, i);
+    const Clearance clearance(external);
+    for (int k = 0; k < 40; ++k) {
+      const Vector3d p = random.in_box(kAround);
+      const ClearanceAt at = clearance(p);
+      EXPECT_TRUE(clearance.is_at_least(p, at.lower - 1e-12));
+      EXPECT_FALSE(clearance.is_at_least(p, at.upper + 1e-12));
     }
   }
 }

@@ -2,6 +2,8 @@
 // The answers have to be those of a loop over all spheres, to the last bit.
 #include "simplifier/solid/nearest_cells.h"
 
+#include "simplifier/solid/box_cell.h"
+#include "simplifier/solid/sphere_hierarchy.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 
@@ -132,15 +134,18 @@ TEST(NearestCells, AnswersWithTheLeastOfAllValues) {
       if (k % 5 == 0) limit = k % 10 == 0 ? value : std::nextafter(value, kInfinity);
       const Least least = least_of_all(spheres, p, limit);
       const double length = length_of(spheres, p);
-      // In the box a tolerance is of no account.
-      ASSERT_NO_FATAL_FAILURE(expect_least(cells.nearest(p, limit, 0.1 * scale), least, length))
+      // First by a search, where few queries have come; then from lists.
+      ASSERT_NO_FATAL_FAILURE(expect_least(cells.nearest(p, limit), least, length))
           << "set " << i << ", point " << k;
+      for (int again = 0; again < 30; ++again) cells.nearest(p, limit);
+      ASSERT_NO_FATAL_FAILURE(expect_least(cells.nearest(p, limit), least, length))
+          << "set " << i << ", point " << k << ", from a list";
       if (k % 23 != 0) continue;
-      ASSERT_NO_FATAL_FAILURE(expect_least(no_room.nearest(p, limit, 0.1 * scale), least, length));
+      ASSERT_NO_FATAL_FAILURE(expect_least(no_room.nearest(p, limit), least, length));
       const NearestSphere searched = hierarchy.nearest(p, limit);
       ASSERT_EQ(searched.index, least.index);
-      ASSERT_EQ(searched.lower, cells.nearest(p, limit, 0.0).lower);
-      ASSERT_EQ(searched.upper, cells.nearest(p, limit, 0.0).upper);
+      ASSERT_EQ(searched.lower, cells.nearest(p, limit).lower);
+      ASSERT_EQ(searched.upper, cells.nearest(p, limit).upper);
       ASSERT_FALSE(cells.is_any_nearer(p, value));
       ASSERT_TRUE(cells.is_any_nearer(p, std::nextafter(value, kInfinity)));
     }
@@ -172,12 +177,15 @@ TEST(NearestCells, GathersAllSpheresThatAreSomewhereBelowAnAffineFunction) {
     for (std::size_t k = 0; k < spheres.size(); ++k) {
       if (visited[k] != 0) continue;
       ++left_out;
-      // The lowest corner, the centre, the point nearest to the centre of the sphere, and others.
-      for (int j = 0; j < 12; ++j) {
-        const Vector3d to_sphere = spheres[k].center - cell.center;
-        const Vector3d out = j == 0   ? Vector3d::Zero()
-                             : j == 1 ? Vector3d(to_sphere.cwiseMin(half).cwiseMax(-half))
-                             : j == 2 ? Vector3d(half.cwiseProduct(to_sphere.cwiseSign()))
+      // The corners, the centre, the point nearest to the centre of the sphere, and others.
+      for (int j = 0; j < 16; ++j) {
+        const Vector3d corner((j & 1) != 0 ? half.x() : -half.x(),
+                              (j & 2) != 0 ? half.y() : -half.y(),
+                              (j & 4) != 0 ? half.z() : -half.z());
+        const Vector3d nearest = (spheres[k].center - cell.center).cwiseMin(half).cwiseMax(-half);
+        const Vector3d out = j < 8    ? corner
+                             : j == 8 ? Vector3d::Zero()
+                             : j == 9 ? nearest
                                       : random.in_box({-half, half});
         const double gap = (cell.center + out - spheres[k].center).norm() - spheres[k].radius;
         ASSERT_GT(gap, value + slope.dot(out)) << "set " << i << ", sphere " << k;
@@ -187,7 +195,7 @@ TEST(NearestCells, GathersAllSpheresThatAreSomewhereBelowAnAffineFunction) {
   EXPECT_GT(left_out, 1000U);
 }
 
-TEST(NearestCells, SearchesWithTheToleranceOutsideOfTheBoxOnly) {
+TEST(NearestCells, SearchesOutsideOfTheBoxAndWhereTooManyAreTied) {
   Random random(72);
   std::vector<Sphere> spheres;
   for (int i = 0; i < 6000; ++i)
@@ -199,9 +207,8 @@ TEST(NearestCells, SearchesWithTheToleranceOutsideOfTheBoxOnly) {
     // More spheres than a list holds are nearly tied here.
     if (k % 2 == 0) p = Vector3d::Constant(2) + 1e-6 * p;
     const double limit = k % 3 == 0 ? 1.0 : kInfinity;
-    const bool is_in_box = p.minCoeff() >= 0.0 && p.maxCoeff() <= 4.0;
-    const NearestSphere searched = hierarchy.nearest(p, limit, is_in_box ? 0.0 : 0.01);
-    const NearestSphere found = cells.nearest(p, limit, 0.01);
+    const NearestSphere searched = hierarchy.nearest(p, limit);
+    const NearestSphere found = cells.nearest(p, limit);
     ASSERT_EQ(found.index, searched.index);
     ASSERT_EQ(found.lower, searched.lower);
     ASSERT_EQ(found.upper, searched.upper);
@@ -217,8 +224,8 @@ TEST(NearestCells, KeepsToItsMemory) {
   const NearestCells much(spheres, box);
   for (int k = 0; k < 2000; ++k) {
     const Vector3d p = random.in_box(box);
-    const NearestSphere found = little.nearest(p, kInfinity, 0.0);
-    const NearestSphere expected = much.nearest(p, kInfinity, 0.0);
+    const NearestSphere found = little.nearest(p, kInfinity);
+    const NearestSphere expected = much.nearest(p, kInfinity);
     ASSERT_EQ(found.index, expected.index);
     ASSERT_EQ(found.lower, expected.lower);
     ASSERT_LE(little.memory_used(), kMemory);
@@ -239,11 +246,12 @@ TEST(NearestCells, AnswersThreadsAlike) {
     threads.emplace_back([&, t] {
       for (std::size_t i = 0; i < points.size(); ++i) {
         const std::size_t k = (i + t * 7) % points.size();
-        found[t][k] = cells.nearest(points[k], kInfinity, 0.0).index;
+        found[t][k] = cells.nearest(points[k], kInfinity).index;
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
+  EXPECT_LE(cells.memory_used(), 200000U);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const std::int32_t expected = least_of_all(spheres, points[k], kInfinity).index;
     for (const std::vector<std::int32_t>& by_thread : found) ASSERT_EQ(by_thread[k], expected);
@@ -252,9 +260,9 @@ TEST(NearestCells, AnswersThreadsAlike) {
 
 TEST(NearestCells, AnEmptySetIsInfinitelyFar) {
   const NearestCells cells({}, {Vector3d::Zero(), Vector3d::Constant(4)});
-  EXPECT_EQ(cells.nearest({1, 1, 1}, kInfinity, 0.0).index, -1);
-  EXPECT_EQ(cells.nearest({1, 1, 1}, kInfinity, 0.0).lower, kInfinity);
-  EXPECT_EQ(cells.nearest({9, 1, 1}, kInfinity, 0.0).upper, kInfinity);
+  EXPECT_EQ(cells.nearest({1, 1, 1}, kInfinity).index, -1);
+  EXPECT_EQ(cells.nearest({1, 1, 1}, kInfinity).lower, kInfinity);
+  EXPECT_EQ(cells.nearest({9, 1, 1}, kInfinity).upper, kInfinity);
 }
 
 }  // namespace

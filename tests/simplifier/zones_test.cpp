@@ -168,7 +168,8 @@ TEST(Zones, FaultsAreNamedWithFileAndEntry) {
   expect(R"({"format":"spherule-zones","version":1,"zones":[],"more":1})", "unknown key \"more\"");
   const std::string good = R"({"shape":"ball","center":[0,0,0],"radius":1,"max_error":1})";
   expect(file(good + ",7"), "zone 1: is not an object");
-  expect(file(good + R"(,{"shape":"cone","max_error":1})"), "zone 1: unknown shape \"cone\"");
+  expect(file(good + R"(,{"shape":"cone","max_error":1})"),
+         "zone 1: unknown shape \"cone\": ball, box or capsule");
   expect(file(R"({"center":[0,0,0],"radius":1,"max_error":1})"), "zone 0: \"shape\" is missing");
   expect(file(R"({"shape":3})"), "zone 0: \"shape\" is not a text");
   const auto sphere = [&](const std::string& rest) {

@@ -18,7 +18,7 @@ inline constexpr std::size_t kMaxLines = 400;
 std::vector<std::string> check_file(const std::string& path, std::string_view text);
 
 // A source that has a header of its name includes it before all others, so that the compiler shows
-// what the header lacks. Empty if this one does.
+// what the header lacks where sources are not joined. Empty if this one does.
 std::vector<std::string> check_first_include(const std::string& path, std::string_view text);
 
 // A header of a library is public exactly if its CMakeLists.txt lists it under HEADERS; private

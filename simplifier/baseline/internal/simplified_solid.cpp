@@ -14,12 +14,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Shares of E: half diagonal of cells; how far apart points on edges are, how deep inside of S at
-// most, and how closely that is told.
+// Shares of E: half diagonal of cells; how far apart points on edges are, and how deep inside of S
+// at most.
 constexpr double kCells = 0.4;
 constexpr double kEdgeSpacing = 0.4;
 constexpr double kAtBoundary = 0.2;
-constexpr double kTolerance = 0.01;
 
 constexpr double kMostEdgePoints = 1e6;
 
@@ -53,7 +52,7 @@ std::vector<Vector3d> SimplifiedSolid::samples(const TriangleMesh& mesh) const {
   std::set<Cube> taken;
   for (const Vector3d& p : edge_samples(mesh, static_cast<std::size_t>(count))) {
     if (!taken.insert(cube_of(p, spacing)).second) continue;
-    const ClearanceAt at = clearance(p, kTolerance * max_error, max_error);
+    const ClearanceAt at = clearance(p, max_error);
     if (at.lower <= kAtBoundary * max_error) points.push_back(p);
   }
   if (points.empty()) {

@@ -22,8 +22,7 @@ constexpr double kDeep = 0.5;     // that they are larger by where S is deep, of
 constexpr double kCube = 0.75;    // edge of the cubes that points are sorted into
 
 // Shares of a cell's half diagonal.
-constexpr double kTolerance = 0.1;  // of the clearance
-constexpr double kAhead = 2.0;      // of the step at which another contact is searched for
+constexpr double kAhead = 2.0;  // of the step at which another contact is searched for
 
 constexpr std::size_t kTasks = 512;
 constexpr std::size_t kPart = 8;  // tasks in sequence
@@ -50,7 +49,7 @@ class HeaviestSpheres::Descent {
   void run(const BoxCell& cell, const Held* near, double limit) {
     if (search_.stop.stop_requested()) return;
     const double reach = cell.reach();
-    const ClearanceAt at = of_.clearance_(cell.center, kTolerance * reach, limit);
+    const ClearanceAt at = of_.clearance_(cell.center, limit);
     if (at.upper + reach < -of_.error_) return;
     const bool closely =
         near != nullptr || reach <= kClosely * of_.error_ + kDeep * std::max(0.0, at.lower);
@@ -83,7 +82,7 @@ class HeaviestSpheres::Descent {
     if (weight <= 1.0) return false;
     // On the medial axis another contact limits the clearance beyond.
     const Vector3d ahead = kAhead * reach * at.away;
-    const ClearanceAt there = of_.clearance_(cell.center + ahead, kTolerance * reach);
+    const ClearanceAt there = of_.clearance_(cell.center + ahead);
     slopes[1] = slope_at(there, ahead, reach);
     slopes[2] = {(slopes[0].value + slopes[1].value) / 2.0,
                  (slopes[0].slope + slopes[1].slope) / 2.0,

@@ -31,8 +31,7 @@ Sphere SphereInflater::operator()(const Vector3d& seed, std::size_t& rejected) c
   const std::vector<AscentStep> path =
       ascend(clearance_, seed,
              {.first_step = std::max(seed_radius_, kLeastStep * max_error_),
-              .least_step = std::min(seed_radius_, kLeastStep * max_error_),
-              .tolerance = kErrorTolerance * max_error_});
+              .least_step = std::min(seed_radius_, kLeastStep * max_error_)});
   const Sphere inflated = sphere_at(path.back().point);
   if (is_near(inflated, seed, kNearAtEnd)) return inflated;
   // The gap grows along the way, from at most zero; take the last position that keeps it small.

@@ -256,7 +256,7 @@ TEST(SimplifiedProbe, TellsTheClearanceInS) {
   const MeshDistance distance(mesh);
   const Clearance clearance(external);
   constexpr double kTolerance = 1e-3;
-  const internal::SimplifiedProbe probe(clearance, distance, kTolerance);
+  const internal::SimplifiedProbe probe(clearance, distance);
   const auto judged = [&](const Vector3d& p) {
     Real least = gap_to_spheres(p, external.spheres);
     for (int axis = 0; axis < 3; ++axis) {
