@@ -197,6 +197,7 @@ TEST_F(AuditRobotCommand, WhatIsOfferedRepeatsTheOptions) {
 
 // The spheres of one mesh are those of the only link; `view` would take our own for a part's.
 TEST_F(AuditRobotCommand, WhatIsOfferedForOneMeshWorks) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   write("one.urdf", R"(<robot name="one"><link name="flange"/><link name="tool">
     <collision><geometry><box size="0.2 0.02 0.02"/></geometry></collision></link>
     <joint name="fix" type="fixed"><parent link="flange"/><child link="tool"/></joint></robot>)");

@@ -157,7 +157,7 @@ TEST_F(BaselineSpheresTest, TreesStandOverTheSpheresOfTheFile) {
       {"octree", "--depth", "3"},
       {"medial", "--tree", "--branching", "3", "--depth", "2", "--reduction", "merge"}};
   for (const Words& method : test::effort(methods, 1)) {
-    for (const Words& inflated : std::vector<Words>{{}, {"--conservative"}}) {
+    for (const Words& inflated : test::effort(std::vector<Words>{{"--conservative"}, {}}, 1)) {
       Words more = {"--tree-file", "out.tree"};
       more.insert(more.end(), inflated.begin(), inflated.end());
       const Outcome outcome = make(method, more);
@@ -209,7 +209,7 @@ TEST_F(BaselineSpheresTest, EqualOptionsGiveEqualBytesOnAnyNumberOfThreads) {
 TEST_F(BaselineSpheresTest, BadOptionsAreRefused) {
   refuse({"voxelise"}, "--step");
   refuse({"voxelise", "--step", "1", "--max-error", "1"}, "--step");
-  for (const char* value : {"0", "-1", "nan", "inf", "long"}) {
+  for (const std::string& value : test::effort(Words{"0", "long", "-1", "nan", "inf"}, 2)) {
     refuse({"voxelise", "--step", value}, "--step");
     refuse({"octree", "--max-error", value}, "--max-error");
     refuse({"pack", "--max-error", value}, "--max-error");
@@ -234,7 +234,8 @@ TEST_F(BaselineSpheresTest, BadOptionsAreRefused) {
   refuse({"octree"}, "--depth");
   refuse({"octree", "--depth", "21"}, "depth");
   refuse({"octree", "--depth", "3", "--max-error", "1"}, "--depth");
-  for (const char* counts : {"8,1", "0,8", "1,2.5", "many", "-1", "1;8", ""}) {
+  for (const std::string& counts :
+       test::effort(Words{"8,1", "", "0,8", "1,2.5", "many", "-1", "1;8"}, 2)) {
     refuse({"hubbard", "--counts", counts}, "counts");
   }
   EXPECT_EQ(files(), Words{"bar.stl"});
