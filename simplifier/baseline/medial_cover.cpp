@@ -36,8 +36,8 @@ constexpr int kMendingRounds = 12;
 constexpr double kErrorFactor = 2.0;
 constexpr std::size_t kFirstSites = 4000;
 constexpr std::size_t kMaxSites = 20000;
-// Of E: what is kept of it for the margins of the proof; how closely clearances are told; how near
-// to the boundary of S a sample is a site; and how far apart leaks become samples.
+// Of E: what is kept of it for the margins of the proof; how near to the boundary of S a sample is
+// a site; and how far apart leaks become samples.
 constexpr double kReserve = 2.0 * internal::kProofMargin;
 constexpr double kAtBoundary = 0.05;
 constexpr double kLeakSpacing = 0.2;

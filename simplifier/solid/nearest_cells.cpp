@@ -27,9 +27,6 @@ constexpr std::size_t kPerSphere = 256;
 constexpr std::size_t kLeastMemory = std::size_t{1} << 26;
 constexpr std::size_t kMostMemory = std::size_t{1} << 32;
 
-// Of a shorter vector no direction can be computed: its square underflows.
-constexpr double kTiny = 1e-100;
-
 // A sphere as seen from the middle of a cell.
 struct Seen {
   std::int32_t index;
@@ -46,7 +43,7 @@ struct Seen {
         from_center(cell.center - sphere.center),
         distance(from_center.norm()),
         gap(distance - radius),
-        direction(distance > kTiny ? Vector3d(from_center / distance) : Vector3d::Zero()),
+        direction(distance > kLeastNorm ? Vector3d(from_center / distance) : Vector3d::Zero()),
         bend(std::min(2.0 * reach, 0.5 * reach * reach / distance)) {}
 };
 

@@ -10,6 +10,9 @@
 
 namespace spherule::internal {
 
+// Of a shorter vector no direction can be computed: its square underflows.
+inline constexpr double kLeastNorm = 1e-100;
+
 // The least of |p - c| - r over a set of spheres: negative inside of the union, where its absolute
 // value is the depth in the deepest sphere; outside, the distance to the union.
 struct NearestSphere {

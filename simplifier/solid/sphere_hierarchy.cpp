@@ -29,13 +29,10 @@ constexpr double kNodeSlack = 512.0 * kUnitRoundoff;  // see search()
 // shorter than its part in a frame.
 constexpr double kShrink = 1.0 - 64.0 * kUnitRoundoff;
 
-// Of a shorter vector no direction can be computed: its square underflows.
-constexpr double kTiny = 1e-100;
-
 // The direction of `v`, or if it has none that can be relied on, of `other`.
 Vector3d direction_of(const Vector3d& v, const Vector3d& other) {
   const double norm = v.norm();
-  return norm > kTiny && norm < 1e100 ? Vector3d(v / norm) : other;
+  return norm > kLeastNorm && norm < 1e100 ? Vector3d(v / norm) : other;
 }
 
 Vector3d any_across(const Vector3d& normal) {
@@ -249,7 +246,7 @@ bool SphereHierarchy::is_above(const Node& node, const BoxCell& cell, double val
   const Excess first = by_plane ? Excess{ahead + node.max_radius, -node.normal}
                                 : excess(node.normal, node.low.x(), node.high.x());
   const double norm = Vector3d(first.value, along.value, aside.value).norm();
-  if (norm <= kTiny) return false;
+  if (norm <= kLeastNorm) return false;
   const Vector3d rise =
       (first.value * first.slope + along.value * along.slope + aside.value * aside.slope) / norm;
   return norm - node.max_radius - (rise - slope).cwiseAbs().dot(cell.half) > value;

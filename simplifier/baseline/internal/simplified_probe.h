@@ -8,8 +8,8 @@
 namespace spherule::internal {
 
 // The simplified solid S: its boundary is made of external spheres and faces of the box. Clearances
-// inside are lower bounds; outside, the distance to a point of S found beyond
-// the contact, or else to the mesh.
+// inside are lower bounds; outside, the distance to a point of S found beyond the contact, or else
+// to the mesh.
 class SimplifiedProbe final : public SolidProbe {
  public:
   // Both must stay while this lives.
