@@ -7,7 +7,7 @@
 #include "cli/text/print.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
-#include "spheretree/parser_fault.h"
+#include "spheretree/parse_json.h"
 #include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 
@@ -128,11 +128,8 @@ std::vector<LeakPoint> leaks_of(const Json& certificate, const std::string& file
 
 Json json_in(const std::filesystem::path& file) {
   if (file.extension() != ".json") return nullptr;
-  try {
-    return Json::parse(read_file(file));
-  } catch (const Json::exception& error) {
-    throw Error(file.string(), internal::json_fault(error.what()));
-  }
+  const auto refuse = [&](const std::string& reason) { throw Error(file.string(), reason); };
+  return internal::parse_json<Json>(read_file(file), refuse).root();
 }
 
 std::vector<ViewItem> view_items(const std::string& file, const std::string& units) {

@@ -130,6 +130,8 @@ TEST_F(ViewTest, BadInput) {
   expect_refusal({"view", "audit.json", "-o", "page.html"}, "audit.json: ");
   write("report.json", R"({"format": "spherule-report"})");
   expect_refusal({"view", "report.json", "-o", "page.html"}, "report.json: ");
+  write("twice.json", R"({"format": "spherule-report", "links": [], "links": []})");
+  expect_refusal({"view", "twice.json", "-o", "page.html"}, "the key \"links\" appears twice");
   expect_refusal({"view", "none.json", "-o", "none.json"}, "named twice");
   EXPECT_FALSE(exists("page.html"));
 }

@@ -173,6 +173,9 @@ TEST_F(SceneFormats, Gltf) {
   EXPECT_TRUE(refused("gltf", replaced(good, "[1]", "[0]"), "two parents"));
   EXPECT_TRUE(refused("gltf", replaced(good, "[1]", "[7]"), "not there"));
   EXPECT_TRUE(refused("gltf", replaced(good, "\"2.0\"", "\"1.0\""), "version 2"));
+  // Names within an object are unique (the specification, "JSON Encoding").
+  EXPECT_TRUE(refused("gltf", replaced(good, "\"scene\":0", "\"scene\":0,\"scene\":0"),
+                      "\"scene\" appears twice"));
   EXPECT_TRUE(refused("gltf",
                       replaced(good, "\"scene\":0",
                                "\"scene\":0,\"extensionsRequired\":[\"KHR_draco_"
@@ -199,6 +202,8 @@ TEST_F(SceneFormats, Gltf) {
   EXPECT_EQ(box("glb", glb).min(), Vector3d(2, 4, 6));
   EXPECT_TRUE(refused("glb", glb.substr(0, glb.size() - 1), "cut short"));
   EXPECT_TRUE(refused("glb", glb.substr(0, 15), "cut short"));
+  EXPECT_TRUE(refused("glb", replaced(glb, "\"scene\":", "\"asset\":"),
+                      "in its JSON: the key \"asset\" appears twice"));
 }
 
 TEST_F(SceneFormats, GltfSkinsAndMorphTargetsArePlacedAsTheFileSays) {

@@ -2,7 +2,6 @@
 #include "mesh/io/internal/gltf_document.h"
 
 #include "spheretree/error.h"
-#include "spheretree/parser_fault.h"
 
 #include <array>
 #include <cmath>
@@ -29,13 +28,11 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
 
 GltfDocument::GltfDocument(std::string_view bytes, const std::string& subject) : subject_(subject) {
   split_container(bytes);
-  try {
-    root_ = Json::parse(json_);
-  } catch (const Json::exception& error) {
-    fail((json_.size() < bytes.size() ? "in its JSON: " : "") + json_fault(error.what()));
-  }
-  if (!root_.is_object()) fail("not a glTF file");
-  const Json* const asset = member(root_, "asset");
+  document_.emplace(parse_json<Json>(json_, [&](const std::string& reason) {
+    fail((json_.size() < bytes.size() ? "in its JSON: " : "") + reason);
+  }));
+  if (!root().is_object()) fail("not a glTF file");
+  const Json* const asset = member(root(), "asset");
   if (asset == nullptr || !text(*asset, "version").starts_with("2.")) fail("not glTF of version 2");
   check_extensions();
 }
@@ -67,8 +64,8 @@ void GltfDocument::split_container(std::string_view bytes) {
 // Extensions that change the appearance are no matter; any other that a reader must know may change
 // where things are.
 void GltfDocument::check_extensions() {
-  const auto required = root_.find("extensionsRequired");
-  if (required == root_.end()) return;
+  const auto required = root().find("extensionsRequired");
+  if (required == root().end()) return;
   if (!required->is_array()) fail("'extensionsRequired' is not a list");
   for (const Json& entry : *required) {
     const std::string name = entry.is_string() ? entry.get<std::string>() : "?";
@@ -141,8 +138,8 @@ const Json& GltfDocument::list(const Json& object, const char* key) const {
 }
 
 const Json& GltfDocument::item(const char* list, std::uint64_t index) const {
-  const auto it = root_.find(list);
-  if (it == root_.end() || !it->is_array() || index >= it->size() ||
+  const auto it = root().find(list);
+  if (it == root().end() || !it->is_array() || index >= it->size() ||
       !(*it)[static_cast<std::size_t>(index)].is_object()) {
     fail(std::string("it refers to an entry of '") + list + "' that is not there");
   }

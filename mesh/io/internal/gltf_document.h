@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "spheretree/parse_json.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
@@ -18,10 +20,11 @@ class GltfDocument {
   using Json = nlohmann::json;
 
   // `subject` names the file in an Error; it and `bytes` have to outlive the document. Throws Error
-  // if the file is not glTF 2 or requires an extension that may change where its meshes are.
+  // if the file is not glTF 2, names a member of an object twice or requires an extension that may
+  // change where its meshes are.
   GltfDocument(std::string_view bytes, const std::string& subject);
 
-  const Json& root() const { return root_; }
+  const Json& root() const { return document_->root(); }
   // The binary chunk of a GLB file.
   std::optional<std::string_view> binary_chunk() const { return binary_chunk_; }
   // Whether the file requires KHR_mesh_quantization: positions may be whole numbers.
@@ -51,7 +54,7 @@ class GltfDocument {
   const std::string& subject_;
   std::string_view json_;
   std::optional<std::string_view> binary_chunk_;
-  Json root_;
+  std::optional<JsonDocument<Json>> document_;
   bool is_quantized_ = false;
 };
 
