@@ -47,6 +47,8 @@ CoverageProof prove_surface(const TriangleMesh& mesh, const SpheresToProve& sphe
 
 // X = S. Cells of its box are halved until one lies in a single sphere or outside of S, or is
 // smaller than `finest` (where its centre is outside of S, than the shares of it in solid_query.h).
+// How deep a cell may be uncovered is bounded by its points outside of the external sphere that is
+// nearest to its centre.
 // `is_witness` tells whether a point of S may be reported as a leak.
 CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
                           const SpheresToProve& spheres, double finest,

@@ -8,7 +8,6 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -38,6 +37,32 @@ struct Cell {
 
 bool below(const Cell& a, const Cell& b) {
   return a.upper < b.upper;
+}
+
+struct Protruding {
+  double upper;  // no sphere protrudes further over |M|
+  Vector3d tip;  // of the sphere that may protrude as far
+  bool is_tip_in_sphere;
+};
+
+// About a centre in |M| the sphere that comes as near as M lies in |M|, as in
+// protrusions_over_solid(). Where M is flat, the sphere protrudes as far at the other side of the
+// point that is nearest to its centre.
+Protruding greatest_over_mesh(const MeshDistance& distance, const ClosedShells& shells,
+                              std::span<const Sphere> spheres) {
+  const auto is_inside = [&](const Sphere& s) { return shells.contain(s.center); };
+  std::vector<double> each(spheres.size());
+  parallel_for(0, spheres.size(), [&](std::size_t i) {
+    const SurfaceDistance d = distance(spheres[i].center);
+    each[i] = is_inside(spheres[i]) ? sub_up(spheres[i].radius, d.lower)
+                                    : add_up(spheres[i].radius, d.upper);
+  });
+  const auto furthest = std::max_element(each.begin(), each.end());
+  const Sphere& sphere = spheres[static_cast<std::size_t>(furthest - each.begin())];
+  const Vector3d way = distance(sphere.center).closest - sphere.center;
+  const double share = (is_inside(sphere) ? 1.0 : -1.0) * (1.0 - 1e-12) * sphere.radius;
+  const Vector3d tip = sphere.center + share * way.stableNormalized();
+  return {std::max(*furthest, 0.0), tip, certainly_contains(sphere, tip)};
 }
 
 }  // namespace
@@ -78,8 +103,8 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
                             double tolerance) {
   Bounds result;
   if (spheres.spheres.empty()) return result;
-  std::vector<Cell> heap{
-      {BoxCell::around(box_of(spheres.spheres)), std::numeric_limits<double>::infinity(), false}};
+  const Protruding most = greatest_over_mesh(distance, shells, spheres.spheres);
+  std::vector<Cell> heap{{BoxCell::around(box_of(spheres.spheres)), most.upper, false}};
   // The greatest distance met in the spheres at a point that is not known to be inside: where the
   // search for the upper bound may stop. It goes on for the lower one, whose witnesses are outside
   // of S, while the inside of an open mesh has been examined by then.
@@ -88,6 +113,11 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
   const auto is_near = [tolerance](double upper, double lower) {
     return upper <= lower + std::max(tolerance, kRelativeTolerance * lower);
   };
+  const auto note = [&](const Vector3d& point, double away, bool is_outside) {
+    if (away > met && (is_outside || !shells.contain(point))) met = away;
+    if (away > result.lower && clearance(point).upper < 0.0) result.lower = away;
+  };
+  if (most.is_tip_in_sphere) note(most.tip, distance(most.tip).lower, false);
   while (!heap.empty()) {
     std::pop_heap(heap.begin(), heap.end(), below);
     Cell cell = heap.back();
@@ -107,10 +137,7 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
       cell.outside = true;
     }
     cell.upper = std::min(cell.upper, add_up(d.upper, reach));
-    if (gap.upper <= 0.0) {
-      if (d.lower > met && (cell.outside || !shells.contain(q))) met = d.lower;
-      if (d.lower > result.lower && clearance(q).upper < 0.0) result.lower = d.lower;
-    }
+    if (gap.upper <= 0.0) note(q, d.lower, cell.outside);
     // Small cells are left as they are: S may come to a point that no centre gets beyond.
     if (is_bounded && (reach <= tolerance / 2.0 || clearance(q).lower >= reach)) continue;
     for (const BoxCell& half : cell.box.halves()) {

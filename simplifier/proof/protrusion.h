@@ -23,7 +23,8 @@ double greatest(std::span<const double> protrusions);
 double greatest_in(const Zone& zone, std::span<const Sphere> spheres,
                    std::span<const double> protrusions);
 
-// Bounds of the protrusion over |M|, the largest distance from a point of the spheres to |M|,
+// Bounds of the protrusion over |M|, the largest distance from a point of the spheres to |M|: of
+// whole spheres, which meet where the sphere that reaches furthest does so over a flat place, else
 // searched best-first until they are `tolerance` (or 2 % of their value) apart. The upper bound is
 // proved: it counts a point as inside only where a closed shell says so, and measures from the
 // surface elsewhere, so open meshes, and hollows that several parts seal together, can make it too

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "simplifier/proof/furthest_outside.h"
 #include "simplifier/proof/proof.h"
 #include "simplifier/proof/subdivision.h"
 #include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/solid_query.h"
 #include "spheretree/rounding.h"
 
+#include <limits>
 #include <vector>
 
 namespace spherule::internal {
@@ -16,10 +18,6 @@ struct Cell {
   BoxCell box;
   bool inside = false;  // wholly in S
 };
-
-void halve(const Cell& cell, std::vector<Cell>& parts) {
-  for (const BoxCell& half : cell.box.halves()) parts.push_back({half, cell.inside});
-}
 
 }  // namespace
 
@@ -35,10 +33,13 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
     found.point = cell.box.center;
     const double reach = cell.box.reach();
     const NearestSphere gap = spheres.hierarchy.nearest(found.point);
-    if (gap.index >= 0 && certainly_contains(spheres.spheres[static_cast<std::size_t>(gap.index)],
-                                             found.point, reach)) {
-      found.settled = true;
-      return found;
+    const Sphere* const nearest =
+        gap.index < 0 ? nullptr : &spheres.spheres[static_cast<std::size_t>(gap.index)];
+    double furthest = std::numeric_limits<double>::infinity();  // from its centre
+    if (nearest != nullptr) {
+      furthest = cell.box.furthest(nearest->center);
+      found.settled = furthest <= nearest->radius;
+      if (found.settled) return found;
     }
     bool center_inside = cell.inside;
     if (!cell.inside) {
@@ -46,11 +47,14 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
       found.settled = state.outside;
       cell.inside = state.inside;
       center_inside = state.center_inside;
+      if (nearest != nullptr && state.contact != nullptr) {
+        furthest = furthest_outside(cell.box, nearest->center, *state.contact);
+      }
     }
+    found.upper = nearest == nullptr ? gap.upper : sub_up(furthest, nearest->radius);
     const auto note = [&](const Vector3d& point, double depth) {
       found.point = point;
       found.depth = depth;
-      found.witness = depth > 0.0 && is_witness(point);
     };
     if (center_inside) {
       note(cell.box.center, gap.lower);
@@ -67,11 +71,14 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
     } else {
       found.smallest = reach <= least;
     }
-    found.upper = add_up(gap.upper, reach);
     return found;
   };
-  return Subdivision<Cell, decltype(examine), decltype(&halve)>(finest, examine, &halve)
-      .prove({{BoxCell::around(clearance.box())}});
+  const auto split = [](const Cell& cell, std::vector<Cell>& parts) {
+    for (const BoxCell& half : cell.box.halves()) parts.push_back({half, cell.inside});
+  };
+  return Subdivision(std::vector{Cell{BoxCell::around(clearance.box())}}, finest, examine, split,
+                     is_witness)
+      .prove();
 }
 
 }  // namespace spherule::internal

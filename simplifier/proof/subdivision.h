@@ -20,28 +20,33 @@ struct Finding {
   double upper = 0.0;     // no point of the piece is further from the spheres
   double depth = -std::numeric_limits<double>::infinity();  // of `point`, if that is in X
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  bool witness = false;  // `point` may be reported
 };
 
 // Proves the coverage of X (G1), given as pieces, by splitting what `examine` leaves open with
-// `split` (which appends the parts of a piece to a list). A piece that is proved not to be deeper
+// `split` (which appends the parts of a piece to a list); points are reported of which `is_witness`
+// is true. A piece that is proved not to be deeper
 // than the deepest point met, within `finest` or kDepthTolerance of that depth, is left as it is:
 // it changes neither verdict nor depth.
 //
 // The deepest pieces are examined first, so that a leak is soon known; what remains after
 // kBestFirst pieces is divided into fixed blocks for the threads, so that the result does not
 // depend on their number.
-template <typename Piece, typename Examine, typename Split>
+template <typename Piece, typename Examine, typename Split, typename IsWitness>
 class Subdivision {
  public:
-  Subdivision(double finest, Examine examine, Split split)
-      : finest_(finest), examine_(std::move(examine)), split_(std::move(split)) {}
+  Subdivision(std::vector<Piece> pieces, double finest, Examine examine, Split split,
+              IsWitness is_witness)
+      : pieces_(std::move(pieces)),
+        finest_(finest),
+        examine_(std::move(examine)),
+        split_(std::move(split)),
+        is_witness_(std::move(is_witness)) {}
 
-  CoverageProof prove(const std::vector<Piece>& pieces) const {
+  CoverageProof prove() const {
     State state;
     std::vector<Open> heap;
     std::uint64_t made = 0;
-    for (const Piece& piece : pieces) {
+    for (const Piece& piece : pieces_) {
       heap.push_back({piece, std::numeric_limits<double>::infinity(), made++});
     }
     const auto below = [](const Open& a, const Open& b) {
@@ -49,7 +54,7 @@ class Subdivision {
     };
     std::make_heap(heap.begin(), heap.end(), below);
     std::vector<Piece> parts;
-    while (!heap.empty() && state.proof.examined < std::max(kBestFirst, 2 * pieces.size())) {
+    while (!heap.empty() && state.proof.examined < std::max(kBestFirst, 2 * pieces_.size())) {
       std::pop_heap(heap.begin(), heap.end(), below);
       const Open open = std::move(heap.back());
       heap.pop_back();
@@ -87,7 +92,7 @@ class Subdivision {
     const Finding found = examine_(open);
     if (found.settled) return false;
     if (found.depth > state.seen) state.seen = found.depth;
-    if (found.witness && found.depth > state.proof.lower) {
+    if (found.depth > state.proof.lower && is_witness_(found.point)) {
       state.proof.lower = found.depth;
       state.proof.deepest = found.point;
     }
@@ -103,8 +108,9 @@ class Subdivision {
   }
 
   void prove_in_blocks(const std::vector<Open>& open, State& state) const {
-    std::vector<State> states(std::min(kBlocks, open.size()));
-    for (State& s : states) s.seen = state.seen;
+    State start = state;
+    start.proof.examined = 0;
+    std::vector<State> states(std::min(kBlocks, open.size()), start);
     parallel_for(0, states.size(), [&](std::size_t block) {
       std::vector<Piece> waiting;
       std::vector<Piece> parts;
@@ -123,9 +129,11 @@ class Subdivision {
     for (const State& s : states) state.proof.join(s.proof);
   }
 
+  std::vector<Piece> pieces_;
   double finest_;
   Examine examine_;
   Split split_;
+  IsWitness is_witness_;
 };
 
 }  // namespace spherule::internal

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "mesh/triangle_mesh.h"
+#include "spheretree/rounding.h"
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -19,6 +21,12 @@ struct SurfacePiece {
 inline SurfacePiece piece_of(const TriangleMesh& mesh, const Eigen::Vector3i& triangle) {
   const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(triangle[k])]; };
   return {{corner(0), corner(1), corner(2)}};
+}
+
+// No point of the piece is further from `point`: a distance is convex, and so largest at a corner.
+inline double furthest(const SurfacePiece& piece, const Eigen::Vector3d& point) {
+  const auto& [a, b, c] = piece.corner;
+  return std::max({distance_upper(point, a), distance_upper(point, b), distance_upper(point, c)});
 }
 
 // The edge from this corner to the next is as long as any.

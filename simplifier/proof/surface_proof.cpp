@@ -5,6 +5,7 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace spherule::internal {
@@ -30,21 +31,25 @@ CoverageProof prove_surface(const TriangleMesh& mesh, const SpheresToProve& sphe
                             double finest) {
   const double error = subdivision_error(mesh);
   const auto examine = [&](const SurfacePiece& piece) {
-    const auto& [a, b, c] = piece.corner;
     Finding found;
-    found.point = (a + b + c) / 3.0;
+    found.point = (piece.corner[0] + piece.corner[1] + piece.corner[2]) / 3.0;
+    found.smallest = furthest(piece, found.point) <= finest;
     const NearestSphere gap = spheres.hierarchy.nearest(found.point);
-    if (gap.index >= 0) {
-      const Sphere& sphere = spheres.spheres[static_cast<std::size_t>(gap.index)];
-      found.settled = std::ranges::all_of(
-          piece.corner, [&](const Vector3d& p) { return certainly_contains(sphere, p, error); });
-    }
-    const double radius = std::max({distance_upper(found.point, a), distance_upper(found.point, b),
-                                    distance_upper(found.point, c)});
-    found.smallest = radius <= finest;
-    found.upper = add_up(gap.upper, add_up(radius, error));
+    found.upper = gap.upper;
     found.depth = sub_down(gap.lower, error);
-    found.witness = true;
+    if (gap.index < 0) return found;
+    const Sphere& sphere = spheres.spheres[static_cast<std::size_t>(gap.index)];
+    const double reach = add_up(furthest(piece, sphere.center), error);
+    found.settled = reach <= sphere.radius;
+    found.upper = sub_up(reach, sphere.radius);
+    if (found.depth <= 0.0) return found;
+    for (const Vector3d& corner : piece.corner) {
+      const double depth = sub_down(spheres.hierarchy.nearest(corner).lower, error);
+      if (depth > found.depth) {
+        found.depth = depth;
+        found.point = corner;
+      }
+    }
     return found;
   };
   std::vector<SurfacePiece> pieces;
@@ -53,8 +58,12 @@ CoverageProof prove_surface(const TriangleMesh& mesh, const SpheresToProve& sphe
     const auto vertex = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
     pieces.push_back({{vertex(0), vertex(1), vertex(2)}});
   }
-  return Subdivision<SurfacePiece, decltype(examine), decltype(&halve)>(finest, examine, &halve)
-      .prove(pieces);
+  const auto split = [](const SurfacePiece& piece, std::vector<SurfacePiece>& parts) {
+    halve(piece, parts);
+  };
+  return Subdivision(std::move(pieces), finest, examine, split,
+                     [](const Vector3d&) { return true; })
+      .prove();
 }
 
 }  // namespace spherule::internal

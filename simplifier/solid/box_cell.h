@@ -29,6 +29,12 @@ struct BoxCell {
   // Every point of the cell is within this of the centre.
   double reach() const { return norm_upper(half); }
 
+  // No point of the cell is further from `point`. Each component is rounded once more than in
+  // distance_upper(), whose factor has room for 2.5 u more than it needs.
+  double furthest(const Eigen::Vector3d& point) const {
+    return norm_upper((center - point).cwiseAbs() + half);
+  }
+
   // The axis across which halves() are cut, at the centre; the lower one is the first.
   int longest() const {
     int axis = 0;

@@ -52,7 +52,8 @@ ClearanceAt Clearance::operator()(const Vector3d& point, double limit) const {
   }
   result.lower = std::min(result.lower, sphere.lower);
   result.upper = std::min(result.upper, sphere.upper);
-  const Vector3d d = point - cells_->spheres()[static_cast<std::size_t>(sphere.index)].center;
+  result.contact = &cells_->spheres()[static_cast<std::size_t>(sphere.index)];
+  const Vector3d d = point - result.contact->center;
   const double norm = d.norm();
   if (norm > 0.0) result.away = d / norm;
   return result;

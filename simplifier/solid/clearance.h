@@ -3,6 +3,7 @@
 
 #include "simplifier/external_spheres.h"
 #include "simplifier/solid/nearest_cells.h"
+#include "spheretree/sphere.h"
 
 #include <Eigen/Geometry>
 
@@ -20,6 +21,9 @@ struct ClearanceAt {
   // Unit direction away from the nearest contact: moving there raises the clearance at rate 1 until
   // another contact takes over.
   Eigen::Vector3d away = Eigen::Vector3d::UnitX();
+  // The external sphere that is nearest; null where that is a face of the box, or all clearances
+  // are beyond the limit. As long-lived as the Clearance.
+  const Sphere* contact = nullptr;
 };
 
 // Safe to share between threads.

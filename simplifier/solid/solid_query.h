@@ -29,14 +29,15 @@ double least_reach(const Eigen::AlignedBox3d& box);
 
 // Where a cell lies. A cell of S may be neither wholly inside nor have its centre inside.
 struct CellState {
-  bool outside = false;        // no point of it is in S
-  bool inside = false;         // all of it is in S
-  bool center_inside = false;  // its centre is in S
+  bool outside = false;             // no point of it is in S
+  bool inside = false;              // all of it is in S
+  bool center_inside = false;       // its centre is in S
+  const Sphere* contact = nullptr;  // of ClearanceAt, at the centre
 };
 
 // From the clearance at the centre of a cell of half diagonal `reach`.
 inline CellState state_of(const ClearanceAt& at, double reach) {
-  return {at.upper <= -reach, at.lower >= reach, at.lower >= 0.0};
+  return {at.upper <= -reach, at.lower >= reach, at.lower >= 0.0, at.contact};
 }
 
 // As closely as it matters for a cell of this size.

@@ -88,11 +88,25 @@ TEST(Certificate, ACubeIsCoveredByItsCircumscribedSphereAndByNoSmallerOne) {
     EXPECT_FALSE(leak.covered);
     EXPECT_LE(leak.surface_depth.lower, kRoot3 / 2 - 0.8);
     EXPECT_GE(leak.surface_depth.upper, kRoot3 / 2 - 0.8);
-    EXPECT_LE(leak.surface_depth.upper - leak.surface_depth.lower, 0.01);
+    EXPECT_LE(leak.surface_depth.upper - leak.surface_depth.lower, 1e-9);
     EXPECT_EQ(leak.sphere_count, 1U);
     EXPECT_GT(leak.pieces, 0U);
     EXPECT_GT(leak.cells, 0U);
   }
+}
+
+// All vertices are equally far out. What bounds a cell by its size alone takes millions of them.
+TEST(Certificate, ALeakAllOverASurfaceIsBoundedInFewCells) {
+  const TriangleMesh ball = icosphere(2);
+  const ExternalSpheres external = place_external_spheres(ball, {.min_external_diameter = 0.5});
+  CertifyOptions options;
+  options.external = &external;
+  const Certificate leak = certify(ball, std::vector<Sphere>{{Vector3d::Zero(), 0.95}}, options);
+  EXPECT_NEAR(leak.surface_depth.lower, 0.05, 1e-9);
+  EXPECT_NEAR(leak.surface_depth.upper, 0.05, 1e-9);
+  EXPECT_LE(leak.solid_depth.upper, 0.052);
+  EXPECT_LE(leak.pieces, 2U * ball.triangles.size());
+  EXPECT_LE(leak.cells, 100'000U);
 }
 
 // Without the sphere of one cell, the point of that cell that is furthest from the other spheres is

@@ -92,6 +92,20 @@ TEST(ProtrusionOverMesh, IsWitnessedBeyondAnOpenMeshToo) {
   EXPECT_LE(protrusion.lower, 0.2);
 }
 
+// The sphere says by itself how far it protrudes: a search would stop at 2 %.
+TEST(ProtrusionOverMesh, OfASphereOverAFaceIsExact) {
+  const TriangleMesh cube = box_mesh({0, 0, 0}, {1, 1, 1});
+  const ExternalSpheres box = place_external_spheres(cube, {.placement = ExternalPlacement::kNone});
+  CertifyOptions options;
+  options.external = &box;
+  for (const double radius : {0.5, 0.7, 0.9}) {
+    const std::vector<Sphere> spheres{{Vector3d::Constant(0.5), radius}, {{0.4, 0.5, 0.6}, 0.3}};
+    const Bounds protrusion = certify(cube, spheres, options).protrusion_over_mesh.value();
+    EXPECT_NEAR(protrusion.upper, radius - 0.5, 1e-9);
+    EXPECT_NEAR(protrusion.lower, radius - 0.5, 1e-9);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, Protrusion,
                          testing::Values(CoverMethod::kCover, CoverMethod::kPaper),
                          [](const auto& tested) { return name_of(tested.param); });
