@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/solid/sphere_hierarchy.h"
 
+#include "simplifier/support/parallel.h"
 #include "spheretree/median_split.h"
 #include "spheretree/rounding.h"
 
@@ -17,10 +18,13 @@ namespace spherule::internal {
 namespace {
 
 using Eigen::Matrix3d;
+using Eigen::Matrix4d;
 using Eigen::Vector3d;
+using Eigen::Vector4d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::int32_t kLeafSize = 8;
+constexpr std::size_t kLeafSize = 8;
+constexpr std::size_t kLeastShared = 4096;  // by two threads
 // Halved at every level, so at most 32 deep; one waiting sibling a level.
 constexpr std::size_t kStackSize = 40;
 constexpr double kNodeSlack = 512.0 * kUnitRoundoff;  // see search()
@@ -41,6 +45,23 @@ Vector3d any_across(const Vector3d& normal) {
   return normal.cross(Vector3d::Unit(least)).normalized();
 }
 
+// How many nodes stand above that many spheres, halved down to leaves.
+std::size_t nodes_above(std::size_t spheres) {
+  if (spheres <= kLeafSize) return 1;
+  return 1 + nodes_above(spheres / 2) + nodes_above(spheres - spheres / 2);
+}
+
+Vector4d numbers_of(const Sphere& s) {
+  return {s.center.x(), s.center.y(), s.center.z(), s.radius};
+}
+
+// Of spheres whose numbers have this covariance, times their count. Those that touch a flat wall
+// have radii that are an affine function of their centres, with the wall's normal for a gradient.
+Vector3d regressed_normal(const Matrix4d& scatter) {
+  const Matrix3d of_centers = scatter.topLeftCorner<3, 3>();
+  return of_centers.inverse() * scatter.topRightCorner<3, 1>();
+}
+
 // Least gap to spheres with radii up to max_radius whose centres are at least `ahead` plus their
 // radius away in one direction and `squared_aside`, squared, in others: it shrinks with the radius.
 // `ahead` plus each radius must be positive.
@@ -57,45 +78,51 @@ SphereHierarchy::SphereHierarchy(std::span<const Sphere> spheres) {
     spheres_.push_back({s, static_cast<std::int32_t>(spheres_.size())});
     magnitude_ = std::max(magnitude_, s.center.norm());
   }
-  nodes_.reserve(spheres_.size() / 2 + 1);
   if (spheres_.empty()) return;
-  nodes_.push_back({.end = static_cast<std::int32_t>(spheres_.size())});
-  build(0);
+  nodes_.resize(nodes_above(spheres_.size()));
+  nodes_[0].end = static_cast<std::int32_t>(spheres_.size());
+  build(0, 1);
 }
 
 // Halved where the spheres differ most, in centre or radius.
-void SphereHierarchy::build(std::size_t self) {
+void SphereHierarchy::build(std::size_t self, std::size_t children) {
   Node& node = nodes_[self];
-  const auto [begin, end] = std::pair(node.begin, node.end);
+  const auto count = static_cast<std::size_t>(node.end - node.begin);
+  const std::span<Entry> part =
+      std::span(spheres_).subspan(static_cast<std::size_t>(node.begin), count);
   node.min_radius = kInfinity;
-  for (const Entry& e : spheres_of(node)) {
+  Vector4d mean = Vector4d::Zero();
+  for (const Entry& e : part) {
     node.min_radius = std::min(node.min_radius, e.sphere.radius);
     node.max_radius = std::max(node.max_radius, e.sphere.radius);
+    mean += numbers_of(e.sphere);
   }
-  fit_box(node);
-  if (end - begin <= kLeafSize) return;
-  const auto key = [&](const Entry& e) -> Eigen::Vector4d {
-    const Vector3d& c = e.sphere.center;
-    return {c.x(), c.y(), c.z(), e.sphere.radius};
-  };
-  Eigen::Array4d mean = Eigen::Array4d::Zero();
-  Eigen::Array4d spread = Eigen::Array4d::Zero();
-  for (const Entry& e : spheres_of(node)) mean += key(e).array();
-  mean /= static_cast<double>(end - begin);
-  for (const Entry& e : spheres_of(node)) spread += (key(e).array() - mean).square();
+  mean /= static_cast<double>(count);
+  Matrix4d scatter = Matrix4d::Zero();
+  for (const Entry& e : part) {
+    const Vector4d d = numbers_of(e.sphere) - mean;
+    scatter += d * d.transpose();
+  }
+  fit_box(node, regressed_normal(scatter));
+  if (count <= kLeafSize) return;
   Eigen::Index widest = 0;
-  spread.maxCoeff(&widest);
-  const auto part = std::span(spheres_).subspan(static_cast<std::size_t>(begin),
-                                                static_cast<std::size_t>(end - begin));
-  const std::int32_t middle =
-      begin + static_cast<std::int32_t>(split_at_median(
-                  part, [&](const Entry& e) { return std::pair(key(e)[widest], e.index); }));
-  const std::size_t children = nodes_.size();
+  scatter.diagonal().maxCoeff(&widest);
+  const std::size_t half = split_at_median(
+      part, [&](const Entry& e) { return std::pair(numbers_of(e.sphere)[widest], e.index); });
+  const std::int32_t middle = node.begin + static_cast<std::int32_t>(half);
   node.children = static_cast<std::int32_t>(children);
-  nodes_.push_back({.begin = begin, .end = middle});
-  nodes_.push_back({.begin = middle, .end = end});
-  build(children);
-  build(children + 1);
+  nodes_[children].begin = node.begin;
+  nodes_[children].end = nodes_[children + 1].begin = middle;
+  nodes_[children + 1].end = node.end;
+  // Below the children stand the nodes below the first, then those below the second.
+  const std::array<std::size_t, 2> below = {children + 2, children + 1 + nodes_above(half)};
+  const auto build_child = [&](std::size_t i) { build(children + i, below[i]); };
+  if (count >= kLeastShared) {
+    parallel_for(0, 2, build_child);
+  } else {
+    build_child(0);
+    build_child(1);
+  }
 }
 
 std::span<const SphereHierarchy::Entry> SphereHierarchy::spheres_of(const Node& node) const {
@@ -103,30 +130,8 @@ std::span<const SphereHierarchy::Entry> SphereHierarchy::spheres_of(const Node& 
                                      static_cast<std::size_t>(node.end - node.begin));
 }
 
-// Spheres that touch a flat wall have radii that are an affine function of their centres, with the
-// wall's normal for a gradient.
-Vector3d SphereHierarchy::regressed_normal(const Node& node) const {
-  const std::span<const Entry> spheres = spheres_of(node);
-  Vector3d mean = Vector3d::Zero();
-  double mean_radius = 0.0;
-  for (const Entry& e : spheres) {
-    mean += e.sphere.center;
-    mean_radius += e.sphere.radius;
-  }
-  mean /= static_cast<double>(spheres.size());
-  mean_radius /= static_cast<double>(spheres.size());
-  Matrix3d covariance = Matrix3d::Zero();
-  Vector3d slope = Vector3d::Zero();
-  for (const Entry& e : spheres) {
-    const Vector3d d = e.sphere.center - mean;
-    covariance += d * d.transpose();
-    slope += d * (e.sphere.radius - mean_radius);
-  }
-  return covariance.inverse() * slope;
-}
-
-void SphereHierarchy::fit_box(Node& node) const {
-  const Vector3d n = direction_of(regressed_normal(node), Vector3d::UnitX());
+void SphereHierarchy::fit_box(Node& node, const Vector3d& normal) const {
+  const Vector3d n = direction_of(normal, Vector3d::UnitX());
   const Vector3d a = any_across(n);
   node.normal = kShrink * n;
   node.axis = kShrink * (a - n.dot(a) * n).normalized();

@@ -68,10 +68,10 @@ class SphereHierarchy {
     std::int32_t index;
   };
 
-  void build(std::size_t self);
+  // The node and those below it; its children stand at `children`, what is below them behind.
+  void build(std::size_t self, std::size_t children);
   std::span<const Entry> spheres_of(const Node& node) const;
-  Eigen::Vector3d regressed_normal(const Node& node) const;
-  void fit_box(Node& node) const;
+  void fit_box(Node& node, const Eigen::Vector3d& normal) const;
   // Branch and bound, nearer children first, until is_done() after a leaf.
   template <typename Done>
   void search(const Eigen::Vector3d& point, double tolerance, LeastGap& least,
