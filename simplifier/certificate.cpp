@@ -9,6 +9,7 @@
 #include "simplifier/proof/volume_ratio.h"
 #include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/clearance.h"
+#include "simplifier/solid/solid_query.h"
 #include "simplifier/support/thread_limit.h"
 #include "simplifier/support/usable_spheres.h"
 #include "spheretree/error.h"
@@ -130,11 +131,20 @@ Certificate proved(const TriangleMesh& mesh, const MeshDistance& distance,
   internal::CoverageProof surface = internal::prove_surface(mesh, to_prove, finest);
   if (options.progress) options.progress(-1.0, "proving the solid");
   const internal::ClosedShells shells(mesh, distance);
-  // Every point of S is a witness against S; against |M| itself only one that is proved to be
-  // inside.
+  // Every point of S is a witness against S, as are points of the mesh where these are in S;
+  // against |M| itself the mesh, and what is proved to be inside.
+  const double mesh_error = internal::mesh_point_error(distance);
+  const auto is_in_solid = [&](const Vector3d& p) { return clearance(p).upper >= -mesh_error; };
+  const bool is_solid_given = options.external != nullptr;
+  internal::CoverageProof known;
+  if (surface.lower > 0.0 && (!is_solid_given || is_in_solid(surface.deepest))) {
+    known.lower = surface.lower;
+    known.deepest = surface.deepest;
+  }
   const internal::CoverageProof solid = internal::prove_solid(
       clearance, distance, to_prove, finest,
-      [&](const Vector3d& p) { return options.external != nullptr || shells.contain(p); });
+      [&](const Vector3d& p) { return is_solid_given ? is_in_solid(p) : shells.contain(p); },
+      known);
   bound_by_solid(surface, solid, distance, external);
   result.surface_depth = {surface.lower, surface.upper};
   result.solid_depth = {solid.lower, solid.upper};

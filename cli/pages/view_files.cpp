@@ -7,7 +7,6 @@
 #include "cli/text/print.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
-#include "spheretree/parse_json.h"
 #include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 
@@ -126,10 +125,10 @@ std::vector<LeakPoint> leaks_of(const Json& certificate, const std::string& file
   });
 }
 
-Json json_in(const std::filesystem::path& file) {
-  if (file.extension() != ".json") return nullptr;
+internal::JsonDocument<Json> json_in(const std::filesystem::path& file) {
+  if (file.extension() != ".json") return internal::JsonDocument<Json>(nullptr);
   const auto refuse = [&](const std::string& reason) { throw Error(file.string(), reason); };
-  return internal::parse_json<Json>(read_file(file), refuse).root();
+  return internal::parse_json<Json>(read_file(file), refuse);
 }
 
 std::vector<ViewItem> view_items(const std::string& file, const std::string& units) {
@@ -141,8 +140,9 @@ std::vector<ViewItem> view_items(const std::string& file, const std::string& uni
     return {{.name = file, .parts = {{std::move(spheres.spheres)}}, .facts = facts}};
   }
   if (kind == FileKind::kTree) return {{.name = file, .parts = {{load_tree(file)}}}};
-  const Json json = json_in(file);
+  const auto document = json_in(file);
   return reading(file, [&]() -> std::vector<ViewItem> {
+    const Json& json = document.root();
     if (json.is_object() && json.value("format", "") == "spherule-report") {
       return report_items(json, file);
     }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "cli/pages/view_page.h"
+#include "cli/text/json.h"
+#include "spheretree/parse_json.h"
 #include "spheretree/sphere.h"
 
 #include <filesystem>
@@ -23,8 +25,9 @@ std::vector<LeakPoint> leaks_of(const Json& certificate, const std::string& file
 // A list of {"center", "radius"}. Throws as above, and for spheres that are not usable.
 std::vector<Sphere> spheres_of(const Json& list, const std::string& file);
 
-// The JSON in a file whose name ends with .json; null for other files and for what is no JSON.
-Json json_in(const std::filesystem::path& file);
+// The JSON in a file whose name ends with .json; null for other files. Throws Error, naming the
+// file, for what internal::parse_json() refuses.
+internal::JsonDocument<Json> json_in(const std::filesystem::path& file);
 
 // What a file holds that is of no robot: a mesh, SPHERES.json, a tree, the report of a fit
 // (external spheres, levels, the leak), or what `audit --json` printed. Throws Error, naming the

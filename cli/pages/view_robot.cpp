@@ -193,7 +193,8 @@ bool is_robot_file(const std::string& file) {
   if (has_mesh_ending(file)) return false;
   const std::string ending = lower_ending(file);
   if (ending == ".json") {
-    const Json json = json_in(file);
+    const auto document = json_in(file);
+    const Json& json = document.root();
     if (is_by_links(json)) return true;
     const bool ours = json.is_object() && (json.contains("deepest_leak") ||
                                            json.value("format", Json()) == "spherule-report" ||
@@ -239,9 +240,9 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
       source = file;
       continue;
     }
-    if (const Json json = json_in(file); is_by_links(json)) {
+    if (const auto document = json_in(file); is_by_links(document.root())) {
       try {
-        std::vector<ViewItem> items = report_items(robot, json, file);
+        std::vector<ViewItem> items = report_items(robot, document.root(), file);
         std::move(items.begin(), items.end(), std::back_inserter(scene.items));
       } catch (const Json::exception& error) {
         throw Error(file, error.what());

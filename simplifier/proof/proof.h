@@ -45,13 +45,14 @@ struct SpheresToProve {
 // `finest`, at least 2^-40 of the largest coordinate.
 CoverageProof prove_surface(const TriangleMesh& mesh, const SpheresToProve& spheres, double finest);
 
-// X = S. Cells of its box are halved until one lies in a single sphere or outside of S, or is
-// smaller than `finest` (where its centre is outside of S, than the shares of it in solid_query.h).
-// How deep a cell may be uncovered is bounded by its points outside of the external sphere that is
-// nearest to its centre.
-// `is_witness` tells whether a point of S may be reported as a leak.
+// X = S. Cells of its box are halved until one, as far as it is in S, lies in a single sphere, or
+// is smaller than `finest` (where its centre is outside of S, than the shares of it in
+// solid_query.h). What S is in a cell is bounded by the external sphere that is nearest to its
+// centre. `is_witness` tells whether a point, of S or of the mesh, may be reported as a leak; it is
+// called by several threads. `known` is a leak that is known already, if there is one.
 CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
                           const SpheresToProve& spheres, double finest,
-                          const std::function<bool(const Eigen::Vector3d&)>& is_witness);
+                          const std::function<bool(const Eigen::Vector3d&)>& is_witness,
+                          const CoverageProof& known = {});
 
 }  // namespace spherule::internal

@@ -4,11 +4,14 @@
 #include "mesh/geometry/mesh_box.h"
 #include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/medial_ascent.h"
+#include "simplifier/solid/nearest_sphere.h"
+#include "simplifier/solid/solid_query.h"
 #include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace spherule::internal {
@@ -31,7 +34,7 @@ double distance_to_solid(const Clearance& clearance, const MeshDistance& distanc
 
 struct Cell {
   BoxCell box;
-  double upper;  // no point of the cell is further from M
+  double upper;  // no point of the spheres in the cell is further from |M|
   bool outside;  // known to be free of M and in no shell
 };
 
@@ -39,30 +42,37 @@ bool below(const Cell& a, const Cell& b) {
   return a.upper < b.upper;
 }
 
-struct Protruding {
-  double upper;  // no sphere protrudes further over |M|
-  Vector3d tip;  // of the sphere that may protrude as far
-  bool is_tip_in_sphere;
+struct SphereBound {
+  double upper;                     // no sphere protrudes further over |M|
+  std::optional<Vector3d> witness;  // a point of the sphere that may protrude as far
 };
 
-// About a centre in |M| the sphere that comes as near as M lies in |M|, as in
-// protrusions_over_solid(). Where M is flat, the sphere protrudes as far at the other side of the
-// point that is nearest to its centre.
-Protruding greatest_over_mesh(const MeshDistance& distance, const ClosedShells& shells,
-                              std::span<const Sphere> spheres) {
-  const auto is_inside = [&](const Sphere& s) { return shells.contain(s.center); };
+// The open sphere about a centre in |M| that just touches M lies in |M|, so that no point of the
+// sphere itself protrudes by more than r - d. The witness is the point of the sphere that is
+// furthest along the direction to the nearest point of M or, where the centre is outside, against
+// it; it falls short by the rounding of its coordinates.
+SphereBound bound_of_spheres(const MeshDistance& distance, const ClosedShells& shells,
+                             std::span<const Sphere> spheres) {
+  const double surface = mesh_point_error(distance);
   std::vector<double> each(spheres.size());
+  std::vector<Vector3d> outward(spheres.size());
   parallel_for(0, spheres.size(), [&](std::size_t i) {
-    const SurfaceDistance d = distance(spheres[i].center);
-    each[i] = is_inside(spheres[i]) ? sub_up(spheres[i].radius, d.lower)
-                                    : add_up(spheres[i].radius, d.upper);
+    const auto& [center, radius] = spheres[i];
+    const SurfaceDistance d = distance(center);
+    const bool is_inside = d.lower > surface && shells.contain(center);
+    each[i] = is_inside ? sub_up(radius, d.lower) : add_up(radius, d.upper);
+    outward[i] = is_inside ? Vector3d(d.closest - center) : Vector3d(center - d.closest);
   });
-  const auto furthest = std::max_element(each.begin(), each.end());
-  const Sphere& sphere = spheres[static_cast<std::size_t>(furthest - each.begin())];
-  const Vector3d way = distance(sphere.center).closest - sphere.center;
-  const double share = (is_inside(sphere) ? 1.0 : -1.0) * (1.0 - 1e-12) * sphere.radius;
-  const Vector3d tip = sphere.center + share * way.stableNormalized();
-  return {std::max(*furthest, 0.0), tip, certainly_contains(sphere, tip)};
+  const auto i =
+      static_cast<std::size_t>(std::max_element(each.begin(), each.end()) - each.begin());
+  SphereBound result{std::max(each[i], 0.0), std::nullopt};
+  const auto& [center, radius] = spheres[i];
+  const double short_by = 8.0 * kUnitRoundoff * (radius + center.norm());
+  if (outward[i].norm() > kLeastNorm) {
+    const Vector3d tip = center + (radius - short_by) * outward[i].normalized();
+    if (certainly_contains(spheres[i], tip)) result.witness = tip;
+  }
+  return result;
 }
 
 }  // namespace
@@ -103,8 +113,8 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
                             double tolerance) {
   Bounds result;
   if (spheres.spheres.empty()) return result;
-  const Protruding most = greatest_over_mesh(distance, shells, spheres.spheres);
-  std::vector<Cell> heap{{BoxCell::around(box_of(spheres.spheres)), most.upper, false}};
+  const SphereBound bound = bound_of_spheres(distance, shells, spheres.spheres);
+  std::vector<Cell> heap{{BoxCell::around(box_of(spheres.spheres)), bound.upper, false}};
   // The greatest distance met in the spheres at a point that is not known to be inside: where the
   // search for the upper bound may stop. It goes on for the lower one, whose witnesses are outside
   // of S, while the inside of an open mesh has been examined by then.
@@ -117,7 +127,7 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
     if (away > met && (is_outside || !shells.contain(point))) met = away;
     if (away > result.lower && clearance(point).upper < 0.0) result.lower = away;
   };
-  if (most.is_tip_in_sphere) note(most.tip, distance(most.tip).lower, false);
+  if (bound.witness) note(*bound.witness, distance(*bound.witness).lower, false);
   while (!heap.empty()) {
     std::pop_heap(heap.begin(), heap.end(), below);
     Cell cell = heap.back();

@@ -23,13 +23,14 @@ double greatest(std::span<const double> protrusions);
 double greatest_in(const Zone& zone, std::span<const Sphere> spheres,
                    std::span<const double> protrusions);
 
-// Bounds of the protrusion over |M|, the largest distance from a point of the spheres to |M|: of
-// whole spheres, which meet where the sphere that reaches furthest does so over a flat place, else
-// searched best-first until they are `tolerance` (or 2 % of their value) apart. The upper bound is
-// proved: it counts a point as inside only where a closed shell says so, and measures from the
-// surface elsewhere, so open meshes, and hollows that several parts seal together, can make it too
-// large. The lower bound is witnessed by points outside of S; where the upper one is too large, the
-// two bracket what is inside and cannot be proved to be so.
+// Bounds of the protrusion over |M|, the largest distance from a point of the spheres to |M|. The
+// sphere that may protrude most, by its centre and radius, gives both to begin with, and they meet
+// up to rounding where its furthest point is over a flat place. Where they are further apart than
+// `tolerance` (or 2 % of their value), cells are searched best-first until they are not. The upper
+// bound is proved: it counts a point as inside only where a closed shell says so, and measures from
+// the surface elsewhere, so open meshes, and hollows that several parts seal together, can make it
+// too large. The lower bound is witnessed by points outside of S; where the upper one is too large,
+// the two bracket what is inside and cannot be proved to be so.
 Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& shells,
                             const Clearance& clearance, const SpheresToProve& spheres,
                             double tolerance);

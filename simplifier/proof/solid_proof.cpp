@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/proof/furthest_outside.h"
 #include "simplifier/proof/proof.h"
 #include "simplifier/proof/subdivision.h"
 #include "simplifier/solid/box_cell.h"
+#include "simplifier/solid/furthest_outside.h"
 #include "simplifier/solid/solid_query.h"
 #include "spheretree/rounding.h"
 
-#include <limits>
 #include <vector>
 
 namespace spherule::internal {
@@ -21,11 +20,12 @@ struct Cell {
 
 }  // namespace
 
-// G1 of S: a cell lies in a single sphere, or outside of S, or is halved; one that cannot be halved
-// further is no proof.
+// G1 of S: a cell lies in a single sphere, as far as it is in S, or is halved; one that cannot be
+// halved further is no proof.
 CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
                           const SpheresToProve& spheres, double finest,
-                          const std::function<bool(const Vector3d&)>& is_witness) {
+                          const std::function<bool(const Vector3d&)>& is_witness,
+                          const CoverageProof& known) {
   const double rounding = mesh_point_error(distance);
   const double least = std::max(kFinestPinch * finest, least_reach(clearance.box()));
   const auto examine = [&](Cell& cell) {
@@ -35,23 +35,26 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
     const NearestSphere gap = spheres.hierarchy.nearest(found.point);
     const Sphere* const nearest =
         gap.index < 0 ? nullptr : &spheres.spheres[static_cast<std::size_t>(gap.index)];
-    double furthest = std::numeric_limits<double>::infinity();  // from its centre
-    if (nearest != nullptr) {
-      furthest = cell.box.furthest(nearest->center);
+    found.upper = gap.upper;
+    // Where no point of S in the cell is further than this from the centre of the nearest sphere.
+    const auto is_settled = [&](double furthest) {
+      found.upper = sub_up(furthest, nearest->radius);
       found.settled = furthest <= nearest->radius;
-      if (found.settled) return found;
-    }
+      return found.settled;
+    };
+    if (nearest != nullptr && is_settled(cell.box.furthest(nearest->center))) return found;
     bool center_inside = cell.inside;
     if (!cell.inside) {
       const CellState state = classify(clearance, cell.box);
       found.settled = state.outside;
+      if (found.settled) return found;
       cell.inside = state.inside;
       center_inside = state.center_inside;
-      if (nearest != nullptr && state.contact != nullptr) {
-        furthest = furthest_outside(cell.box, nearest->center, *state.contact);
+      if (nearest != nullptr && state.contact != nullptr &&
+          is_settled(furthest_outside(cell.box, nearest->center, *state.contact))) {
+        return found;
       }
     }
-    found.upper = nearest == nullptr ? gap.upper : sub_up(furthest, nearest->radius);
     const auto note = [&](const Vector3d& point, double depth) {
       found.point = point;
       found.depth = depth;
@@ -78,7 +81,7 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
   };
   return Subdivision(std::vector{Cell{BoxCell::around(clearance.box())}}, finest, examine, split,
                      is_witness)
-      .prove();
+      .prove(known);
 }
 
 }  // namespace spherule::internal

@@ -17,16 +17,16 @@ namespace spherule::internal {
 struct Finding {
   bool settled = false;   // in a single sphere, or no part of X: nothing remains to be proved
   bool smallest = false;  // not to be split further
-  double upper = 0.0;     // no point of the piece is further from the spheres
+  double upper = 0.0;     // no point of X in the piece is further from the spheres
   double depth = -std::numeric_limits<double>::infinity();  // of `point`, if that is in X
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
 };
 
 // Proves the coverage of X (G1), given as pieces, by splitting what `examine` leaves open with
-// `split` (which appends the parts of a piece to a list); points are reported of which `is_witness`
-// is true. A piece that is proved not to be deeper
-// than the deepest point met, within `finest` or kDepthTolerance of that depth, is left as it is:
-// it changes neither verdict nor depth.
+// `split` (which appends the parts of a piece to a list). Only points for which `is_witness` is
+// true are reported. All three are called by several threads. A piece that is proved not to be
+// deeper than the deepest point met, within `finest` or kDepthTolerance of that depth (a tenth of
+// these as long as that is cheap), is left as it is: it changes neither verdict nor depth.
 //
 // The deepest pieces are examined first, so that a leak is soon known; what remains after
 // kBestFirst pieces is divided into fixed blocks for the threads, so that the result does not
@@ -42,8 +42,9 @@ class Subdivision {
         split_(std::move(split)),
         is_witness_(std::move(is_witness)) {}
 
-  CoverageProof prove() const {
-    State state;
+  // `known` is what is known already: a leak, or nothing.
+  CoverageProof prove(const CoverageProof& known = {}) const {
+    State state{known, known.lower};
     std::vector<Open> heap;
     std::uint64_t made = 0;
     for (const Piece& piece : pieces_) {
@@ -59,7 +60,8 @@ class Subdivision {
       const Open open = std::move(heap.back());
       heap.pop_back();
       double upper = open.upper;
-      if (!step(open.piece, state, upper, parts)) continue;
+      const bool is_cheap = state.proof.examined < kCheap + pieces_.size();
+      if (!step(open.piece, state, is_cheap ? 0.1 : 1.0, upper, parts)) continue;
       for (const Piece& part : parts) {
         heap.push_back({part, upper, made++});
         std::push_heap(heap.begin(), heap.end(), below);
@@ -74,6 +76,7 @@ class Subdivision {
   static constexpr std::size_t kBestFirst = 20'000;
   static constexpr std::size_t kBlocks = 64;
   static constexpr double kDepthTolerance = 0.02;
+  static constexpr std::size_t kCheap = 4'000;
 
   struct Open {
     Piece piece;
@@ -85,8 +88,9 @@ class Subdivision {
     double seen = 0.0;  // greatest depth met, whether or not its point may be reported
   };
 
-  // Examines one piece; true if it was split into `parts`.
-  bool step(const Piece& piece, State& state, double& upper, std::vector<Piece>& parts) const {
+  // Examines one piece; true if it was split into `parts`. `share`: of the tolerance.
+  bool step(const Piece& piece, State& state, double share, double& upper,
+            std::vector<Piece>& parts) const {
     ++state.proof.examined;
     Piece open = piece;
     const Finding found = examine_(open);
@@ -97,7 +101,7 @@ class Subdivision {
       state.proof.deepest = found.point;
     }
     upper = std::min(upper, std::max(0.0, found.upper));
-    const double close = std::max(finest_, kDepthTolerance * state.seen);
+    const double close = share * std::max(finest_, kDepthTolerance * state.seen);
     if (found.smallest || (state.seen > 0.0 && upper <= state.seen + close)) {
       state.proof.upper = std::max({state.proof.upper, upper, kUnderflow});
       return false;
@@ -112,17 +116,15 @@ class Subdivision {
     start.proof.examined = 0;
     std::vector<State> states(std::min(kBlocks, open.size()), start);
     parallel_for(0, states.size(), [&](std::size_t block) {
-      std::vector<Piece> waiting;
+      std::vector<std::pair<Piece, double>> waiting;
       std::vector<Piece> parts;
       for (std::size_t i = block; i < open.size(); i += states.size()) {
-        waiting.assign(1, open[i].piece);
+        waiting.assign(1, {open[i].piece, open[i].upper});
         while (!waiting.empty()) {
-          const Piece piece = waiting.back();
+          auto [piece, upper] = std::move(waiting.back());
           waiting.pop_back();
-          double upper = std::numeric_limits<double>::infinity();
-          if (step(piece, states[block], upper, parts)) {
-            waiting.insert(waiting.end(), parts.begin(), parts.end());
-          }
+          if (!step(piece, states[block], 1.0, upper, parts)) continue;
+          for (const Piece& part : parts) waiting.emplace_back(part, upper);
         }
       }
     });

@@ -23,10 +23,17 @@ inline SurfacePiece piece_of(const TriangleMesh& mesh, const Eigen::Vector3i& tr
   return {{corner(0), corner(1), corner(2)}};
 }
 
-// No point of the piece is further from `point`: a distance is convex, and so largest at a corner.
+// The corner that is furthest from `point`, up to rounding. A distance is convex, so that no point
+// of the piece is further from it than the furthest corner.
+inline const Eigen::Vector3d& furthest_corner(const SurfacePiece& piece,
+                                              const Eigen::Vector3d& point) {
+  return *std::ranges::max_element(piece.corner, {}, [&](const Eigen::Vector3d& corner) {
+    return distance_upper(point, corner);
+  });
+}
+
 inline double furthest(const SurfacePiece& piece, const Eigen::Vector3d& point) {
-  const auto& [a, b, c] = piece.corner;
-  return std::max({distance_upper(point, a), distance_upper(point, b), distance_upper(point, c)});
+  return distance_upper(point, furthest_corner(piece, point));
 }
 
 // The edge from this corner to the next is as long as any.

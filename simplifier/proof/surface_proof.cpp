@@ -39,16 +39,15 @@ CoverageProof prove_surface(const TriangleMesh& mesh, const SpheresToProve& sphe
     found.depth = sub_down(gap.lower, error);
     if (gap.index < 0) return found;
     const Sphere& sphere = spheres.spheres[static_cast<std::size_t>(gap.index)];
-    const double reach = add_up(furthest(piece, sphere.center), error);
+    const Vector3d& corner = furthest_corner(piece, sphere.center);
+    const double reach = add_up(distance_upper(sphere.center, corner), error);
     found.settled = reach <= sphere.radius;
+    if (found.settled) return found;
     found.upper = sub_up(reach, sphere.radius);
-    if (found.depth <= 0.0) return found;
-    for (const Vector3d& corner : piece.corner) {
-      const double depth = sub_down(spheres.hierarchy.nearest(corner).lower, error);
-      if (depth > found.depth) {
-        found.depth = depth;
-        found.point = corner;
-      }
+    const double depth = sub_down(spheres.hierarchy.nearest(corner).lower, error);
+    if (depth > found.depth) {
+      found.depth = depth;
+      found.point = corner;
     }
     return found;
   };

@@ -22,7 +22,7 @@ struct ClearanceAt {
   // another contact takes over.
   Eigen::Vector3d away = Eigen::Vector3d::UnitX();
   // The external sphere that is nearest; null where that is a face of the box, or all clearances
-  // are beyond the limit. As long-lived as the Clearance.
+  // are beyond the limit. As long-lived as the Clearance and its copies.
   const Sphere* contact = nullptr;
 };
 

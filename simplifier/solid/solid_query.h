@@ -4,6 +4,7 @@
 #include "mesh/mesh_distance.h"
 #include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/clearance.h"
+#include "spheretree/sphere.h"
 
 #include <Eigen/Geometry>
 
@@ -32,7 +33,7 @@ struct CellState {
   bool outside = false;             // no point of it is in S
   bool inside = false;              // all of it is in S
   bool center_inside = false;       // its centre is in S
-  const Sphere* contact = nullptr;  // of ClearanceAt, at the centre
+  const Sphere* contact = nullptr;  // the external sphere nearest to its centre, as in ClearanceAt
 };
 
 // From the clearance at the centre of a cell of half diagonal `reach`.

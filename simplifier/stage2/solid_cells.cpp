@@ -2,6 +2,7 @@
 #include "simplifier/stage2/solid_cells.h"
 
 #include "simplifier/solid/cube.h"
+#include "simplifier/solid/furthest_outside.h"
 #include "simplifier/solid/solid_query.h"
 #include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
@@ -65,6 +66,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
       if (state.outside) return;
       cell.inside = state.inside;
       cell.center_inside = state.center_inside;
+      cell.contact = state.contact;
       cell.classified = true;
       const double local_error = max_error * error_.scale(cell.box.center, reach);
       const double deep = kGrading * std::max(0.0, at.lower);
@@ -126,6 +128,7 @@ bool SolidCells::intersects_solid(Cell& cell) const {
   cell.classified = true;
   cell.inside = state.inside;
   cell.center_inside = state.center_inside;
+  cell.contact = state.contact;
   return !state.outside;
 }
 
@@ -150,9 +153,12 @@ SolidCells::Refined SolidCells::refine(const Cell& start, const SpheresToProve& 
   Refined result;
   std::vector<Cell> waiting{start};
   const auto in_its_sphere = [&](const Cell& cell) {
-    return cell.sphere >= 0 &&
-           certainly_contains(spheres.spheres[static_cast<std::size_t>(cell.sphere)],
-                              cell.box.center, cell.box.reach());
+    if (cell.sphere < 0) return false;
+    const Sphere& sphere = spheres.spheres[static_cast<std::size_t>(cell.sphere)];
+    const double furthest = cell.contact == nullptr
+                                ? cell.box.furthest(sphere.center)
+                                : furthest_outside(cell.box, sphere.center, *cell.contact);
+    return furthest <= sphere.radius;
   };
   while (!waiting.empty()) {
     Cell cell = waiting.back();
@@ -167,7 +173,13 @@ SolidCells::Refined SolidCells::refine(const Cell& start, const SpheresToProve& 
       result.cells.push_back(cell);
       continue;
     }
-    if (!cell.classified && !intersects_solid(cell)) continue;
+    if (!cell.classified) {
+      if (!intersects_solid(cell)) continue;
+      if (in_its_sphere(cell)) {
+        result.cells.push_back(cell);
+        continue;
+      }
+    }
     if (const auto leak = leak_in(cell, gap, finest)) {
       result.cells.push_back(cell);
       result.leaks.push_back(*leak);

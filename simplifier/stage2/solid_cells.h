@@ -63,7 +63,8 @@ class SolidCells {
     bool center_inside = false;  // the centre is in S
     bool classified =
         false;  // whether it intersects S at all is looked up where no sphere contains it
-    std::int32_t sphere = -1;  // the nearest when it was last searched for
+    std::int32_t sphere = -1;         // the nearest when it was last searched for
+    const Sphere* contact = nullptr;  // the external sphere nearest to the centre, if near
   };
   struct Leak {
     Eigen::Vector3d point;

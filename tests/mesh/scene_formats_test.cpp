@@ -176,6 +176,8 @@ TEST_F(SceneFormats, Gltf) {
   // Names within an object are unique (the specification, "JSON Encoding").
   EXPECT_TRUE(refused("gltf", replaced(good, "\"scene\":0", "\"scene\":0,\"scene\":0"),
                       "\"scene\" appears twice"));
+  const std::string deep = "\"extras\":" + std::string(300, '[') + std::string(300, ']') + ",";
+  EXPECT_TRUE(refused("gltf", replaced(good, "\"scene\":0", deep + "\"scene\":0"), "too deeply"));
   EXPECT_TRUE(refused("gltf",
                       replaced(good, "\"scene\":0",
                                "\"scene\":0,\"extensionsRequired\":[\"KHR_draco_"

@@ -49,7 +49,7 @@ def test_certify_a_published_robot(tmp_path):
     link = f'<link name="panda_leftfinger"><collision>{mesh}</collision></link>'
     (tmp_path / "finger.urdf").write_text(f'<robot name="finger">{link}</robot>')
     out = run(tmp_path, "certify_robot.py", "finger.urdf", panda / "peer_spheres" / "curobo_franka.yml")
-    assert "leaks 14.2 to 14.3 mm deep" in out and out.endswith("2 spheres, covered\n")
+    assert "leaks 14.2 to 14.2 mm deep" in out and out.endswith("2 spheres, covered\n")
 
 
 def test_replace_a_sampled_check(tmp_path):

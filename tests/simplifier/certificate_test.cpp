@@ -95,20 +95,6 @@ TEST(Certificate, ACubeIsCoveredByItsCircumscribedSphereAndByNoSmallerOne) {
   }
 }
 
-// All vertices are equally far out. What bounds a cell by its size alone takes millions of them.
-TEST(Certificate, ALeakAllOverASurfaceIsBoundedInFewCells) {
-  const TriangleMesh ball = icosphere(2);
-  const ExternalSpheres external = place_external_spheres(ball, {.min_external_diameter = 0.5});
-  CertifyOptions options;
-  options.external = &external;
-  const Certificate leak = certify(ball, std::vector<Sphere>{{Vector3d::Zero(), 0.95}}, options);
-  EXPECT_NEAR(leak.surface_depth.lower, 0.05, 1e-9);
-  EXPECT_NEAR(leak.surface_depth.upper, 0.05, 1e-9);
-  EXPECT_LE(leak.solid_depth.upper, 0.052);
-  EXPECT_LE(leak.pieces, 2U * ball.triangles.size());
-  EXPECT_LE(leak.cells, 100'000U);
-}
-
 // Without the sphere of one cell, the point of that cell that is furthest from the other spheres is
 // known: the corner of the cube, or the middle of the cell, as far as its neighbours leave it.
 TEST(Certificate, AMissingSphereIsALeakOfTheExactDepth) {

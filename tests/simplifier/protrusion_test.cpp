@@ -92,7 +92,7 @@ TEST(ProtrusionOverMesh, IsWitnessedBeyondAnOpenMeshToo) {
   EXPECT_LE(protrusion.lower, 0.2);
 }
 
-// The sphere says by itself how far it protrudes: a search would stop at 2 %.
+// The bounds of the whole sphere meet; a search alone stops at 2 %.
 TEST(ProtrusionOverMesh, OfASphereOverAFaceIsExact) {
   const TriangleMesh cube = box_mesh({0, 0, 0}, {1, 1, 1});
   const ExternalSpheres box = place_external_spheres(cube, {.placement = ExternalPlacement::kNone});

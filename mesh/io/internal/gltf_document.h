@@ -20,8 +20,8 @@ class GltfDocument {
   using Json = nlohmann::json;
 
   // `subject` names the file in an Error; it and `bytes` have to outlive the document. Throws Error
-  // if the file is not glTF 2, names a member of an object twice or requires an extension that may
-  // change where its meshes are.
+  // if the file is not glTF 2, names a member of an object twice, is nested deeper than
+  // kDeepestJson or requires an extension that may change where its meshes are.
   GltfDocument(std::string_view bytes, const std::string& subject);
 
   const Json& root() const { return document_->root(); }
