@@ -9,7 +9,6 @@
 #include "simplifier/proof/volume_ratio.h"
 #include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/clearance.h"
-#include "simplifier/solid/solid_query.h"
 #include "simplifier/support/thread_limit.h"
 #include "simplifier/support/usable_spheres.h"
 #include "spheretree/error.h"
@@ -131,19 +130,18 @@ Certificate proved(const TriangleMesh& mesh, const MeshDistance& distance,
   internal::CoverageProof surface = internal::prove_surface(mesh, to_prove, finest);
   if (options.progress) options.progress(-1.0, "proving the solid");
   const internal::ClosedShells shells(mesh, distance);
-  // Every point of S is a witness against S, as are points of the mesh where these are in S;
-  // against |M| itself the mesh, and what is proved to be inside.
-  const double mesh_error = internal::mesh_point_error(distance);
-  const auto is_in_solid = [&](const Vector3d& p) { return clearance(p).upper >= -mesh_error; };
-  const bool is_solid_given = options.external != nullptr;
-  internal::CoverageProof known;
-  if (surface.lower > 0.0 && (!is_solid_given || is_in_solid(surface.deepest))) {
-    known.lower = surface.lower;
-    known.deepest = surface.deepest;
-  }
+  // Every point of S is a witness against S, and against |M| itself one that is proved to be
+  // inside. So are points of the mesh, as computed, against |M| and against an S that holds the
+  // mesh.
+  const bool is_of_mesh = options.external == nullptr;
+  const bool has_mesh = is_of_mesh || (surface.lower > 0.0 && solid_holds_mesh(distance, external));
+  internal::KnownLeak known;
+  if (has_mesh) known = {surface.lower, surface.deepest};
   const internal::CoverageProof solid = internal::prove_solid(
       clearance, distance, to_prove, finest,
-      [&](const Vector3d& p) { return is_solid_given ? is_in_solid(p) : shells.contain(p); },
+      [&](const Vector3d& p) {
+        return is_of_mesh ? shells.contain(p) : has_mesh || clearance(p).lower >= 0.0;
+      },
       known);
   bound_by_solid(surface, solid, distance, external);
   result.surface_depth = {surface.lower, surface.upper};

@@ -62,7 +62,7 @@ JsonDocument<Json> parse_json(std::string_view text, const Refuse& refuse) {
   std::string duplicate;
   const auto watch = [&](int depth, Event event, const Json& parsed) {
     const auto level = static_cast<std::size_t>(depth);
-    if (depth > kDeepestJson) refuse("it is nested too deeply");
+    if (depth > kDeepestJson) refuse("is nested too deeply");
     if (event == Event::object_start) {
       keys.resize(level + 1);
       keys[level].clear();

@@ -45,14 +45,20 @@ struct SpheresToProve {
 // `finest`, at least 2^-40 of the largest coordinate.
 CoverageProof prove_surface(const TriangleMesh& mesh, const SpheresToProve& spheres, double finest);
 
+// A point of X outside of the spheres; none if the depth is 0.
+struct KnownLeak {
+  double depth = 0.0;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+};
+
 // X = S. Cells of its box are halved until one, as far as it is in S, lies in a single sphere, or
-// is smaller than `finest` (where its centre is outside of S, than the shares of it in
-// solid_query.h). What S is in a cell is bounded by the external sphere that is nearest to its
-// centre. `is_witness` tells whether a point, of S or of the mesh, may be reported as a leak; it is
-// called by several threads. `known` is a leak that is known already, if there is one.
+// is smaller than `finest`; where its centre is outside of S, than a share of `finest` that
+// solid_query.h states. The part of S in a cell is bounded by the external sphere that is nearest
+// to its centre. `is_witness` tells whether a point, of S or of the mesh, may be reported as a
+// leak; it is called by several threads. The search starts from the leak that is known.
 CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
                           const SpheresToProve& spheres, double finest,
                           const std::function<bool(const Eigen::Vector3d&)>& is_witness,
-                          const CoverageProof& known = {});
+                          const KnownLeak& known = {});
 
 }  // namespace spherule::internal

@@ -10,8 +10,10 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace spherule::internal {
@@ -42,7 +44,7 @@ bool below(const Cell& a, const Cell& b) {
   return a.upper < b.upper;
 }
 
-struct SphereBound {
+struct SpheresBound {
   double upper;                     // no sphere protrudes further over |M|
   std::optional<Vector3d> witness;  // a point of the sphere that may protrude as far
 };
@@ -50,28 +52,31 @@ struct SphereBound {
 // The open sphere about a centre in |M| that just touches M lies in |M|, so that no point of the
 // sphere itself protrudes by more than r - d. The witness is the point of the sphere that is
 // furthest along the direction to the nearest point of M or, where the centre is outside, against
-// it; it falls short by the rounding of its coordinates.
-SphereBound bound_of_spheres(const MeshDistance& distance, const ClosedShells& shells,
-                             std::span<const Sphere> spheres) {
-  const double surface = mesh_point_error(distance);
+// it. It falls short of the sphere by 32 u of the radius and the largest coordinate: certainly_
+// contains() charges 8 u, the direction and its product take 6 u, the coordinates of the sum 2 u.
+SpheresBound bound_of_spheres(const MeshDistance& distance, const ClosedShells& shells,
+                              std::span<const Sphere> spheres) {
+  // Nearer to M, rounding may take the shells for either side.
+  const double mesh_error = mesh_point_error(distance);
+  const auto is_inside = [&](const Vector3d& center, const SurfaceDistance& d) {
+    return d.lower > mesh_error && shells.contain(center);
+  };
   std::vector<double> each(spheres.size());
-  std::vector<Vector3d> outward(spheres.size());
   parallel_for(0, spheres.size(), [&](std::size_t i) {
     const auto& [center, radius] = spheres[i];
     const SurfaceDistance d = distance(center);
-    const bool is_inside = d.lower > surface && shells.contain(center);
-    each[i] = is_inside ? sub_up(radius, d.lower) : add_up(radius, d.upper);
-    outward[i] = is_inside ? Vector3d(d.closest - center) : Vector3d(center - d.closest);
+    each[i] = is_inside(center, d) ? sub_up(radius, d.lower) : add_up(radius, d.upper);
   });
-  const auto i =
-      static_cast<std::size_t>(std::max_element(each.begin(), each.end()) - each.begin());
-  SphereBound result{std::max(each[i], 0.0), std::nullopt};
-  const auto& [center, radius] = spheres[i];
-  const double short_by = 8.0 * kUnitRoundoff * (radius + center.norm());
-  if (outward[i].norm() > kLeastNorm) {
-    const Vector3d tip = center + (radius - short_by) * outward[i].normalized();
-    if (certainly_contains(spheres[i], tip)) result.witness = tip;
-  }
+  const auto furthest = std::ranges::max_element(each);
+  SpheresBound result{std::max(*furthest, 0.0), std::nullopt};
+  const Sphere& sphere = spheres[static_cast<std::size_t>(furthest - each.begin())];
+  const SurfaceDistance d = distance(sphere.center);
+  const Vector3d way = d.closest - sphere.center;
+  if (way.norm() < kLeastNorm) return result;
+  const Vector3d direction = (is_inside(sphere.center, d) ? 1.0 : -1.0) * way.normalized();
+  const double short_by = 32.0 * kUnitRoundoff * (sphere.radius + sphere.center.norm());
+  const Vector3d tip = sphere.center + (sphere.radius - short_by) * direction;
+  if (certainly_contains(sphere, tip)) result.witness = tip;
   return result;
 }
 
@@ -113,7 +118,7 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
                             double tolerance) {
   Bounds result;
   if (spheres.spheres.empty()) return result;
-  const SphereBound bound = bound_of_spheres(distance, shells, spheres.spheres);
+  const SpheresBound bound = bound_of_spheres(distance, shells, spheres.spheres);
   std::vector<Cell> heap{{BoxCell::around(box_of(spheres.spheres)), bound.upper, false}};
   // The greatest distance met in the spheres at a point that is not known to be inside: where the
   // search for the upper bound may stop. It goes on for the lower one, whose witnesses are outside

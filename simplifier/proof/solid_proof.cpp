@@ -6,6 +6,10 @@
 #include "simplifier/solid/solid_query.h"
 #include "spheretree/rounding.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <optional>
 #include <vector>
 
 namespace spherule::internal {
@@ -25,7 +29,7 @@ struct Cell {
 CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distance,
                           const SpheresToProve& spheres, double finest,
                           const std::function<bool(const Vector3d&)>& is_witness,
-                          const CoverageProof& known) {
+                          const KnownLeak& known) {
   const double rounding = mesh_point_error(distance);
   const double least = std::max(kFinestPinch * finest, least_reach(clearance.box()));
   const auto examine = [&](Cell& cell) {
@@ -50,7 +54,7 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
       if (found.settled) return found;
       cell.inside = state.inside;
       center_inside = state.center_inside;
-      if (nearest != nullptr && state.contact != nullptr &&
+      if (nearest != nullptr && state.contact != nullptr && !cell.inside &&
           is_settled(furthest_outside(cell.box, nearest->center, *state.contact))) {
         return found;
       }
@@ -64,7 +68,10 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
       found.smallest = reach <= finest;
     } else if (const auto on_mesh =
                    reach <= finest ? mesh_point_in(distance, cell.box) : std::nullopt) {
-      note(*on_mesh, sub_down(spheres.hierarchy.nearest(*on_mesh).lower, rounding));
+      // External spheres may take away what they pierce of the mesh.
+      if (clearance(*on_mesh).upper >= -rounding) {
+        note(*on_mesh, sub_down(spheres.hierarchy.nearest(*on_mesh).lower, rounding));
+      }
       found.smallest = true;
     } else if (const auto in_solid = reach <= kFinestOutside * finest
                                          ? solid_point_near(clearance, cell.box, finest)

@@ -15,7 +15,7 @@ namespace spherule::internal {
 
 // What was found out about a piece of the set X to be covered.
 struct Finding {
-  bool settled = false;   // in a single sphere, or no part of X: nothing remains to be proved
+  bool settled = false;   // what X is in it is in a single sphere: nothing remains to be proved
   bool smallest = false;  // not to be split further
   double upper = 0.0;     // no point of X in the piece is further from the spheres
   double depth = -std::numeric_limits<double>::infinity();  // of `point`, if that is in X
@@ -25,8 +25,9 @@ struct Finding {
 // Proves the coverage of X (G1), given as pieces, by splitting what `examine` leaves open with
 // `split` (which appends the parts of a piece to a list). Only points for which `is_witness` is
 // true are reported. All three are called by several threads. A piece that is proved not to be
-// deeper than the deepest point met, within `finest` or kDepthTolerance of that depth (a tenth of
-// these as long as that is cheap), is left as it is: it changes neither verdict nor depth.
+// deeper than the deepest point found, within `finest` or kDepthTolerance of that depth, is left as
+// it is: it does not change the verdict, nor the depth by more than that. The first kCloserPieces
+// are split on to a tenth of these tolerances, which leaks of simple shapes reach.
 //
 // The deepest pieces are examined first, so that a leak is soon known; what remains after
 // kBestFirst pieces is divided into fixed blocks for the threads, so that the result does not
@@ -42,9 +43,8 @@ class Subdivision {
         split_(std::move(split)),
         is_witness_(std::move(is_witness)) {}
 
-  // `known` is what is known already: a leak, or nothing.
-  CoverageProof prove(const CoverageProof& known = {}) const {
-    State state{known, known.lower};
+  CoverageProof prove(const KnownLeak& known = {}) const {
+    State state{{.lower = known.depth, .deepest = known.point}, known.depth};
     std::vector<Open> heap;
     std::uint64_t made = 0;
     for (const Piece& piece : pieces_) {
@@ -60,8 +60,8 @@ class Subdivision {
       const Open open = std::move(heap.back());
       heap.pop_back();
       double upper = open.upper;
-      const bool is_cheap = state.proof.examined < kCheap + pieces_.size();
-      if (!step(open.piece, state, is_cheap ? 0.1 : 1.0, upper, parts)) continue;
+      const bool is_early = state.proof.examined < kCloserPieces + pieces_.size();
+      if (!step(open.piece, state, is_early ? kCloserShare : 1.0, upper, parts)) continue;
       for (const Piece& part : parts) {
         heap.push_back({part, upper, made++});
         std::push_heap(heap.begin(), heap.end(), below);
@@ -76,7 +76,8 @@ class Subdivision {
   static constexpr std::size_t kBestFirst = 20'000;
   static constexpr std::size_t kBlocks = 64;
   static constexpr double kDepthTolerance = 0.02;
-  static constexpr std::size_t kCheap = 4'000;
+  static constexpr double kCloserShare = 0.1;
+  static constexpr std::size_t kCloserPieces = 4'000;
 
   struct Open {
     Piece piece;
@@ -88,7 +89,7 @@ class Subdivision {
     double seen = 0.0;  // greatest depth met, whether or not its point may be reported
   };
 
-  // Examines one piece; true if it was split into `parts`. `share`: of the tolerance.
+  // Examines one piece; true if it was split into `parts`. `share` multiplies the tolerances.
   bool step(const Piece& piece, State& state, double share, double& upper,
             std::vector<Piece>& parts) const {
     ++state.proof.examined;

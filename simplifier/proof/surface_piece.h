@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -23,17 +22,18 @@ inline SurfacePiece piece_of(const TriangleMesh& mesh, const Eigen::Vector3i& tr
   return {{corner(0), corner(1), corner(2)}};
 }
 
-// The corner that is furthest from `point`, up to rounding. A distance is convex, so that no point
-// of the piece is further from it than the furthest corner.
-inline const Eigen::Vector3d& furthest_corner(const SurfacePiece& piece,
-                                              const Eigen::Vector3d& point) {
-  return *std::ranges::max_element(piece.corner, {}, [&](const Eigen::Vector3d& corner) {
-    return distance_upper(point, corner);
-  });
-}
+struct FurthestCorner {
+  Eigen::Vector3d corner;
+  double distance;  // no point of the piece is further: a distance is convex
+};
 
-inline double furthest(const SurfacePiece& piece, const Eigen::Vector3d& point) {
-  return distance_upper(point, furthest_corner(piece, point));
+inline FurthestCorner furthest_corner(const SurfacePiece& piece, const Eigen::Vector3d& point) {
+  FurthestCorner furthest{piece.corner[0], distance_upper(point, piece.corner[0])};
+  for (std::size_t k = 1; k < 3; ++k) {
+    const double distance = distance_upper(point, piece.corner[k]);
+    if (distance > furthest.distance) furthest = {piece.corner[k], distance};
+  }
+  return furthest;
 }
 
 // The edge from this corner to the next is as long as any.

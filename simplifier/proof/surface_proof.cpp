@@ -33,14 +33,15 @@ CoverageProof prove_surface(const TriangleMesh& mesh, const SpheresToProve& sphe
   const auto examine = [&](const SurfacePiece& piece) {
     Finding found;
     found.point = (piece.corner[0] + piece.corner[1] + piece.corner[2]) / 3.0;
-    found.smallest = furthest(piece, found.point) <= finest;
+    found.smallest = furthest_corner(piece, found.point).distance <= finest;
     const NearestSphere gap = spheres.hierarchy.nearest(found.point);
     found.upper = gap.upper;
-    found.depth = sub_down(gap.lower, error);
+    found.depth = gap.lower;
     if (gap.index < 0) return found;
+    found.depth = sub_down(gap.lower, error);
     const Sphere& sphere = spheres.spheres[static_cast<std::size_t>(gap.index)];
-    const Vector3d& corner = furthest_corner(piece, sphere.center);
-    const double reach = add_up(distance_upper(sphere.center, corner), error);
+    const auto [corner, corner_distance] = furthest_corner(piece, sphere.center);
+    const double reach = add_up(corner_distance, error);
     found.settled = reach <= sphere.radius;
     if (found.settled) return found;
     found.upper = sub_up(reach, sphere.radius);

@@ -24,7 +24,7 @@ using Eigen::Vector4d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kLeafSize = 8;
-constexpr std::size_t kLeastShared = 4096;  // by two threads
+constexpr std::size_t kLeastShared = 4096;  // the halves of fewer spheres are built in turn
 // Halved at every level, so at most 32 deep; one waiting sibling a level.
 constexpr std::size_t kStackSize = 40;
 constexpr double kNodeSlack = 512.0 * kUnitRoundoff;  // see search()
@@ -45,18 +45,18 @@ Vector3d any_across(const Vector3d& normal) {
   return normal.cross(Vector3d::Unit(least)).normalized();
 }
 
-// How many nodes stand above that many spheres, halved down to leaves.
-std::size_t nodes_above(std::size_t spheres) {
+// How many nodes that many spheres make, halved down to leaves.
+std::size_t node_count(std::size_t spheres) {
   if (spheres <= kLeafSize) return 1;
-  return 1 + nodes_above(spheres / 2) + nodes_above(spheres - spheres / 2);
+  return 1 + node_count(spheres / 2) + node_count(spheres - spheres / 2);
 }
 
 Vector4d numbers_of(const Sphere& s) {
   return {s.center.x(), s.center.y(), s.center.z(), s.radius};
 }
 
-// Of spheres whose numbers have this covariance, times their count. Those that touch a flat wall
-// have radii that are an affine function of their centres, with the wall's normal for a gradient.
+// Of spheres whose numbers have this scatter matrix. Those that touch a flat wall have radii that
+// are an affine function of their centres, with the wall's normal for a gradient.
 Vector3d regressed_normal(const Matrix4d& scatter) {
   const Matrix3d of_centers = scatter.topLeftCorner<3, 3>();
   return of_centers.inverse() * scatter.topRightCorner<3, 1>();
@@ -79,7 +79,7 @@ SphereHierarchy::SphereHierarchy(std::span<const Sphere> spheres) {
     magnitude_ = std::max(magnitude_, s.center.norm());
   }
   if (spheres_.empty()) return;
-  nodes_.resize(nodes_above(spheres_.size()));
+  nodes_.resize(node_count(spheres_.size()));
   nodes_[0].end = static_cast<std::int32_t>(spheres_.size());
   build(0, 1);
 }
@@ -115,7 +115,7 @@ void SphereHierarchy::build(std::size_t self, std::size_t children) {
   nodes_[children].end = nodes_[children + 1].begin = middle;
   nodes_[children + 1].end = node.end;
   // Below the children stand the nodes below the first, then those below the second.
-  const std::array<std::size_t, 2> below = {children + 2, children + 1 + nodes_above(half)};
+  const std::array<std::size_t, 2> below = {children + 2, children + 1 + node_count(half)};
   const auto build_child = [&](std::size_t i) { build(children + i, below[i]); };
   if (count >= kLeastShared) {
     parallel_for(0, 2, build_child);

@@ -20,8 +20,9 @@ namespace spherule::internal {
 class SphereHierarchy {
  public:
   SphereHierarchy() = default;
-  // Of any spheres: split in centre and radius; the wall that the spheres of a node touch is
-  // guessed by regression, as their radii are then an affine function of their centres.
+  // Of any spheres, built by several threads where these are many: split in centre and radius; the
+  // wall that the spheres of a node touch is guessed by regression, as their radii are then an
+  // affine function of their centres.
   explicit SphereHierarchy(std::span<const Sphere> spheres);
 
   // Only values below `limit` are searched for; without one, both bounds are the limit. Without a
@@ -68,7 +69,8 @@ class SphereHierarchy {
     std::int32_t index;
   };
 
-  // The node and those below it; its children stand at `children`, what is below them behind.
+  // The subtree of the node `self`; its two children are stored at `children`, their descendants
+  // from `children` + 2 on.
   void build(std::size_t self, std::size_t children);
   std::span<const Entry> spheres_of(const Node& node) const;
   void fit_box(Node& node, const Eigen::Vector3d& normal) const;

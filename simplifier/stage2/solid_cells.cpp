@@ -3,7 +3,6 @@
 
 #include "simplifier/solid/cube.h"
 #include "simplifier/solid/furthest_outside.h"
-#include "simplifier/solid/solid_query.h"
 #include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
 
@@ -64,10 +63,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
       const ClearanceAt at = clearance_(cell.box.center, 4.0 * reach);
       const CellState state = state_of(at, reach);
       if (state.outside) return;
-      cell.inside = state.inside;
-      cell.center_inside = state.center_inside;
-      cell.contact = state.contact;
-      cell.classified = true;
+      cell.classify(state);
       const double local_error = max_error * error_.scale(cell.box.center, reach);
       const double deep = kGrading * std::max(0.0, at.lower);
       const bool fine = reach <= share * local_error + deep || is_flat(cell.box, at, local_error);
@@ -123,12 +119,16 @@ std::vector<Vector3d> SolidCells::sample() const {
   return kept;
 }
 
+void SolidCells::Cell::classify(const CellState& state) {
+  inside = state.inside;
+  center_inside = state.center_inside;
+  contact = state.inside ? nullptr : state.contact;
+  classified = true;
+}
+
 bool SolidCells::intersects_solid(Cell& cell) const {
-  const CellState state = classify(clearance_, cell.box);
-  cell.classified = true;
-  cell.inside = state.inside;
-  cell.center_inside = state.center_inside;
-  cell.contact = state.contact;
+  const CellState state = internal::classify(clearance_, cell.box);
+  cell.classify(state);
   return !state.outside;
 }
 
@@ -175,7 +175,7 @@ SolidCells::Refined SolidCells::refine(const Cell& start, const SpheresToProve& 
     }
     if (!cell.classified) {
       if (!intersects_solid(cell)) continue;
-      if (in_its_sphere(cell)) {
+      if (cell.contact != nullptr && in_its_sphere(cell)) {
         result.cells.push_back(cell);
         continue;
       }

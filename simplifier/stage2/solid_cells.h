@@ -5,6 +5,7 @@
 #include "simplifier/proof/proof.h"
 #include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/clearance.h"
+#include "simplifier/solid/solid_query.h"
 #include "simplifier/stage2/local_error.h"
 #include "simplifier/stage2/surface_extent.h"
 #include "spheretree/sphere.h"
@@ -45,9 +46,10 @@ class SolidCells {
   std::vector<Eigen::Vector3d> sample() const;
 
   // Where the spheres do not cover S, at most one point per cube of edge `spacing`. None only if S
-  // is proved to be covered: cells that no single sphere contains are halved until one does, or
-  // they lie outside of S. A cell is given up as a leak where its centre is an uncovered point of S
-  // or it is smaller than `finest` (much smaller where no point of S is found near its centre).
+  // is proved to be covered: cells are halved until a single sphere contains what S has in them,
+  // or they lie outside of S. A cell is given up as a leak where its centre is an uncovered point
+  // of S or it is smaller than `finest` (much smaller where no point of S is found near its
+  // centre).
   struct Leaks {
     std::vector<Eigen::Vector3d> in_solid;
     // Cells that external spheres only just close, if at all: no point of S is known near these.
@@ -59,12 +61,13 @@ class SolidCells {
  private:
   struct Cell {
     BoxCell box;
-    bool inside = false;         // wholly in S
-    bool center_inside = false;  // the centre is in S
-    bool classified =
-        false;  // whether it intersects S at all is looked up where no sphere contains it
+    bool inside = false;              // wholly in S
+    bool center_inside = false;       // the centre is in S
+    bool classified = false;          // whether these two and the contact are known
     std::int32_t sphere = -1;         // the nearest when it was last searched for
-    const Sphere* contact = nullptr;  // the external sphere nearest to the centre, if near
+    const Sphere* contact = nullptr;  // of CellState, where the cell is not wholly in S
+
+    void classify(const CellState& state);
   };
   struct Leak {
     Eigen::Vector3d point;

@@ -11,12 +11,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 namespace spherule::test::furthest_outside_test {
 namespace {
-
-static_assert(std::numeric_limits<long double>::digits >= 64, "the oracle needs more than double");
 
 using Eigen::Vector3d;
 using internal::BoxCell;

@@ -92,17 +92,22 @@ TEST(ProtrusionOverMesh, IsWitnessedBeyondAnOpenMeshToo) {
   EXPECT_LE(protrusion.lower, 0.2);
 }
 
-// The bounds of the whole sphere meet; a search alone stops at 2 %.
+// The bounds of the whole sphere meet; a search alone stops at 2 %. About the origin, and turned.
 TEST(ProtrusionOverMesh, OfASphereOverAFaceIsExact) {
-  const TriangleMesh cube = box_mesh({0, 0, 0}, {1, 1, 1});
-  const ExternalSpheres box = place_external_spheres(cube, {.placement = ExternalPlacement::kNone});
-  CertifyOptions options;
-  options.external = &box;
-  for (const double radius : {0.5, 0.7, 0.9}) {
-    const std::vector<Sphere> spheres{{Vector3d::Constant(0.5), radius}, {{0.4, 0.5, 0.6}, 0.3}};
-    const Bounds protrusion = certify(cube, spheres, options).protrusion_over_mesh.value();
-    EXPECT_NEAR(protrusion.upper, radius - 0.5, 1e-9);
-    EXPECT_NEAR(protrusion.lower, radius - 0.5, 1e-9);
+  Random random(41);
+  for (int i = 0; i < effort(3, 1); ++i) {
+    TriangleMesh cube = box_mesh({-1, -1, -1}, {1, 1, 1});
+    const Eigen::Matrix3d turn = random.rotation().toRotationMatrix();
+    for (Vector3d& vertex : cube.vertices) vertex = turn * vertex;
+    const ExternalSpheres external = place_external_spheres(cube, {.min_external_diameter = 1.0});
+    CertifyOptions options;
+    options.external = &external;
+    for (const double radius : {1.0, 1.3, 1.7}) {
+      const std::vector<Sphere> spheres{{Vector3d::Zero(), radius}, {turn.col(0) * 0.2, 0.5}};
+      const Bounds protrusion = certify(cube, spheres, options).protrusion_over_mesh.value();
+      EXPECT_NEAR(protrusion.upper, radius - 1.0, 1e-12);
+      EXPECT_NEAR(protrusion.lower, radius - 1.0, 1e-12);
+    }
   }
 }
 
