@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,8 +44,8 @@ bool below(const Cell& a, const Cell& b) {
 }
 
 struct SpheresBound {
-  double upper;                     // no sphere protrudes further over |M|
-  std::optional<Vector3d> witness;  // a point of the sphere that may protrude as far
+  double upper;      // no sphere protrudes further over |M|
+  Vector3d witness;  // a point of the sphere that may protrude as far
 };
 
 // The open sphere about a centre in |M| that just touches M lies in |M|, so that no point of the
@@ -68,8 +67,8 @@ SpheresBound bound_of_spheres(const MeshDistance& distance, const ClosedShells& 
     each[i] = is_inside(center, d) ? sub_up(radius, d.lower) : add_up(radius, d.upper);
   });
   const auto furthest = std::ranges::max_element(each);
-  SpheresBound result{std::max(*furthest, 0.0), std::nullopt};
   const Sphere& sphere = spheres[static_cast<std::size_t>(furthest - each.begin())];
+  SpheresBound result{std::max(*furthest, 0.0), sphere.center};
   const SurfaceDistance d = distance(sphere.center);
   const Vector3d way = d.closest - sphere.center;
   if (way.norm() < kLeastNorm) return result;
@@ -119,7 +118,9 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
   Bounds result;
   if (spheres.spheres.empty()) return result;
   const SpheresBound bound = bound_of_spheres(distance, shells, spheres.spheres);
-  std::vector<Cell> heap{{BoxCell::around(box_of(spheres.spheres)), bound.upper, false}};
+  const Eigen::AlignedBox3d box = box_of(spheres.spheres);
+  const double least = least_reach(box);
+  std::vector<Cell> heap{{BoxCell::around(box), bound.upper, false}};
   // The greatest distance met in the spheres at a point that is not known to be inside: where the
   // search for the upper bound may stop. It goes on for the lower one, whose witnesses are outside
   // of S, while the inside of an open mesh has been examined by then.
@@ -132,7 +133,7 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
     if (away > met && (is_outside || !shells.contain(point))) met = away;
     if (away > result.lower && clearance(point).upper < 0.0) result.lower = away;
   };
-  if (bound.witness) note(*bound.witness, distance(*bound.witness).lower, false);
+  note(bound.witness, distance(bound.witness).lower, false);
   while (!heap.empty()) {
     std::pop_heap(heap.begin(), heap.end(), below);
     Cell cell = heap.back();
@@ -153,8 +154,15 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
     }
     cell.upper = std::min(cell.upper, add_up(d.upper, reach));
     if (gap.upper <= 0.0) note(q, d.lower, cell.outside);
+    // No cell that is left has a greater bound than this one.
+    if (!is_bounded && reach <= least) {
+      result.upper = std::max(cell.upper, 0.0);
+      is_bounded = true;
+    }
     // Small cells are left as they are: S may come to a point that no centre gets beyond.
-    if (is_bounded && (reach <= tolerance / 2.0 || clearance(q).lower >= reach)) continue;
+    if (is_bounded && (reach <= std::max(tolerance / 2.0, least) || clearance(q).lower >= reach)) {
+      continue;
+    }
     for (const BoxCell& half : cell.box.halves()) {
       heap.push_back({half, cell.upper, cell.outside});
       std::push_heap(heap.begin(), heap.end(), below);

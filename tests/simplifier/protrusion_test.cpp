@@ -111,6 +111,23 @@ TEST(ProtrusionOverMesh, OfASphereOverAFaceIsExact) {
   }
 }
 
+// Cells that are as small as the resolution of coordinates contain no point that is computed to be
+// in such spheres.
+TEST(ProtrusionOverMesh, OfPointsFarFromTheOriginEnds) {
+  const Vector3d far(4e7, -3e7, 7e7);
+  const TriangleMesh cube = box_mesh(far, far + Vector3d::Ones());
+  const ExternalSpheres box = place_external_spheres(cube, {.placement = ExternalPlacement::kNone});
+  CertifyOptions options;
+  options.external = &box;
+  for (const double radius : {0.0, 1e-9, 1e-7}) {
+    const std::vector<Sphere> spheres{{far + Vector3d(0.5, 0.5, 3.0), radius},
+                                      {far + Vector3d(0.5, 0.5, 0.5), radius}};
+    const Bounds protrusion = certify(cube, spheres, options).protrusion_over_mesh.value();
+    EXPECT_NEAR(protrusion.upper, 2.0, 1e-6);
+    EXPECT_NEAR(protrusion.lower, 2.0, 1e-6);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, Protrusion,
                          testing::Values(CoverMethod::kCover, CoverMethod::kPaper),
                          [](const auto& tested) { return name_of(tested.param); });
