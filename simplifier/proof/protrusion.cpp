@@ -138,13 +138,14 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
     std::pop_heap(heap.begin(), heap.end(), below);
     Cell cell = heap.back();
     heap.pop_back();
-    if (!is_bounded && is_near(cell.upper, met)) {
+    const Vector3d& q = cell.box.center;
+    const double reach = cell.box.reach();
+    // Before its bound is made tighter: no cell that is left has a greater one.
+    if (!is_bounded && (is_near(cell.upper, met) || reach <= least)) {
       result.upper = std::max(cell.upper, 0.0);
       is_bounded = true;
     }
     if (is_bounded && is_near(cell.upper, result.lower)) break;
-    const Vector3d& q = cell.box.center;
-    const double reach = cell.box.reach();
     const NearestSphere gap = spheres.hierarchy.nearest(q);
     if (gap.lower > reach) continue;
     const SurfaceDistance d = distance(q);
@@ -154,11 +155,6 @@ Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& sh
     }
     cell.upper = std::min(cell.upper, add_up(d.upper, reach));
     if (gap.upper <= 0.0) note(q, d.lower, cell.outside);
-    // No cell that is left has a greater bound than this one.
-    if (!is_bounded && reach <= least) {
-      result.upper = std::max(cell.upper, 0.0);
-      is_bounded = true;
-    }
     // Small cells are left as they are: S may come to a point that no centre gets beyond.
     if (is_bounded && (reach <= std::max(tolerance / 2.0, least) || clearance(q).lower >= reach)) {
       continue;

@@ -63,7 +63,7 @@ SolidCells::SolidCells(const Clearance& clearance, const MeshDistance& distance,
       const ClearanceAt at = clearance_(cell.box.center, 4.0 * reach);
       const CellState state = state_of(at, reach);
       if (state.outside) return;
-      cell.classify(state);
+      cell.note(state);
       const double local_error = max_error * error_.scale(cell.box.center, reach);
       const double deep = kGrading * std::max(0.0, at.lower);
       const bool fine = reach <= share * local_error + deep || is_flat(cell.box, at, local_error);
@@ -119,7 +119,7 @@ std::vector<Vector3d> SolidCells::sample() const {
   return kept;
 }
 
-void SolidCells::Cell::classify(const CellState& state) {
+void SolidCells::Cell::note(const CellState& state) {
   inside = state.inside;
   center_inside = state.center_inside;
   contact = state.inside ? nullptr : state.contact;
@@ -127,8 +127,8 @@ void SolidCells::Cell::classify(const CellState& state) {
 }
 
 bool SolidCells::intersects_solid(Cell& cell) const {
-  const CellState state = internal::classify(clearance_, cell.box);
-  cell.classify(state);
+  const CellState state = classify(clearance_, cell.box);
+  cell.note(state);
   return !state.outside;
 }
 

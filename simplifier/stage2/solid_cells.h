@@ -67,7 +67,7 @@ class SolidCells {
     std::int32_t sphere = -1;         // the nearest when it was last searched for
     const Sphere* contact = nullptr;  // of CellState, where the cell is not wholly in S
 
-    void classify(const CellState& state);
+    void note(const CellState& state);
   };
   struct Leak {
     Eigen::Vector3d point;

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace spherule::test {
@@ -125,6 +126,29 @@ TEST(ProtrusionOverMesh, OfPointsFarFromTheOriginEnds) {
     const Bounds protrusion = certify(cube, spheres, options).protrusion_over_mesh.value();
     EXPECT_NEAR(protrusion.upper, 2.0, 1e-6);
     EXPECT_NEAR(protrusion.lower, 2.0, 1e-6);
+  }
+}
+
+// The bound of the large sphere, whose centre is near a hollow, is far too large, so that cells
+// about the point have to be searched, whatever their size.
+TEST(ProtrusionOverMesh, OfAPointFarFromTheOriginIsBoundedByItsCells) {
+  const Vector3d far(4e7, -3e7, 7e7);
+  TriangleMesh hollow = box_mesh(far + Vector3d::Constant(4.75), far + Vector3d::Constant(5.25));
+  for (Eigen::Vector3i& triangle : hollow.triangles) std::swap(triangle[0], triangle[1]);
+  const TriangleMesh mesh = joined(box_mesh(far, far + Vector3d::Constant(10.0)), hollow);
+  const ExternalSpheres box = place_external_spheres(mesh, {.placement = ExternalPlacement::kNone});
+  CertifyOptions options;
+  options.external = &box;
+  Random random(43);
+  for (int i = 0; i < effort(40, 10); ++i) {
+    const Vector3d point =
+        far + Vector3d(random.between(1, 9), random.between(1, 9), random.between(10.9, 11.1));
+    const double away = point.z() - (far.z() + 10.0);
+    const std::vector<Sphere> spheres{{far + Vector3d(5.0, 5.0, 5.55), 2.0}, {point, 0.0}};
+    const Bounds protrusion = certify(mesh, spheres, options).protrusion_over_mesh.value();
+    EXPECT_GE(protrusion.upper, away);
+    EXPECT_LE(protrusion.upper, away + 1e-3);
+    EXPECT_LE(protrusion.lower, away);
   }
 }
 
