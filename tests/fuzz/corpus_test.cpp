@@ -26,7 +26,7 @@ class FuzzCorpus : public testing::TestWithParam<FuzzTarget> {
   // Whether the bytes were read rather than refused.
   bool reads(const std::string& bytes) {
     std::filesystem::remove(file_);
-    folder_.write(file_.filename().string(), bytes);
+    folder_.write(file_.filename().string(), GetParam().file_of(bytes));
     try {
       GetParam().read(file_);
       return true;

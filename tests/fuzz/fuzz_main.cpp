@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const FuzzTarget& target = requested();
   static const spherule::test::TempDir folder;
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  const auto file = folder.write("input" + std::string(target.extension), bytes);
+  const auto file = folder.write("input" + std::string(target.extension), target.file_of(bytes));
   try {
     target.read(file);
   } catch (const spherule::Error&) {

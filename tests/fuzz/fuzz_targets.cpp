@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fuzz/fuzz_targets.h"
 
+#include "mesh/io/length_unit.h"
 #include "mesh/io/mesh_io.h"
 #include "mesh/mesh_report.h"
 #include "robot/files/point_cloud_file.h"
@@ -17,6 +18,8 @@
 #include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 #include "tests/fuzz/fuzz_seeds.h"
+#include "tests/fuzz/kept_file_targets.h"
+#include "tests/fuzz/sealed_content.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,6 +38,7 @@ void read_as_mesh(const fs::path& file) {
   const TriangleMesh mesh = read_mesh(file);
   validate(mesh, "what was read");
   if (mesh.triangles.size() <= 2000) describe(mesh_report(mesh));
+  stated_unit(file);
 }
 
 void read_as_spheres(const fs::path& file) {
@@ -63,7 +67,8 @@ void read_as_points(const fs::path& file) {
 }
 
 void read_as_urdf(const fs::path& file) {
-  const RobotDescription robot = read_urdf(file);
+  const RobotDescription robot =
+      read_urdf(file, {.require_visual_meshes = false, .require_collision_meshes = false});
   expect(robot.links.size() == robot.model.links().size(), "links differ");
   for (const Joint& joint : robot.model.joints()) {
     expect(joint.axis.allFinite() && joint.lower <= joint.upper, "a joint is not sound");
@@ -105,6 +110,7 @@ void read_as_robot_spheres(const fs::path& file) {
 
 constexpr const char* kXml = "xml.dict";
 constexpr const char* kJson = "json.dict";
+constexpr const char* kYaml = "yaml.dict";
 
 const FuzzTarget kTargets[] = {
     {"stl", ".stl", read_as_mesh, stl_seeds, ""},
@@ -112,11 +118,13 @@ const FuzzTarget kTargets[] = {
     {"ply", ".ply", read_as_mesh, ply_seeds, ""},
     {"off", ".off", read_as_mesh, off_seeds, ""},
     {"3mf", ".3mf", read_as_mesh, threemf_seeds, ""},
+    {"3mf_model", ".3mf", read_as_mesh, threemf_model_seeds, kXml, threemf_around},
     {"dae", ".dae", read_as_mesh, dae_seeds, kXml},
     {"gltf", ".gltf", read_as_mesh, gltf_seeds, kJson},
     {"glb", ".glb", read_as_mesh, glb_seeds, kJson},
     {"spheres", ".json", read_as_spheres, sphere_file_seeds, kJson},
     {"tree", ".tree", read_as_tree, tree_seeds, ""},
+    {"tree_content", ".tree", read_as_tree, tree_content_seeds, "", with_checksum},
     {"zones", ".json", read_as_zones, zone_seeds, kJson},
     {"scene", ".json", read_as_scene, scene_seeds, kJson},
     {"trajectory", ".csv", read_as_trajectory, trajectory_seeds, ""},
@@ -125,10 +133,14 @@ const FuzzTarget kTargets[] = {
     {"urdf", ".urdf", read_as_urdf, urdf_seeds, kXml},
     {"srdf", ".srdf", read_as_srdf, srdf_seeds, kXml},
     {"pairs", ".pairs", read_as_pairs, pair_seeds, ""},
+    {"pairs_content", ".pairs", read_as_pairs, pair_content_seeds, "", with_checksum},
     {"spheres_xml", ".urdf", read_as_robot_spheres, sphere_xml_seeds, kXml},
-    {"spheres_yaml", ".yml", read_as_robot_spheres, sphere_yaml_seeds, "yaml.dict"},
+    {"spheres_yaml", ".yml", read_as_robot_spheres, sphere_yaml_seeds, kYaml},
     {"spheres_json", ".json", read_as_robot_spheres, sphere_json_seeds, kJson},
     {"spheres_sph", ".sph", read_as_robot_spheres, bradshaw_seeds, ""},
+    {"into_yaml", ".yml", write_into_yaml, into_yaml_seeds, kYaml},
+    {"into_srdf", ".srdf", write_into_srdf, into_srdf_seeds, kXml},
+    {"into_urdf", ".urdf", write_into_urdf, into_urdf_seeds, kXml},
 };
 
 }  // namespace

@@ -9,7 +9,8 @@
 
 namespace spherule::test {
 
-// A format that is read, for coverage-guided fuzzing and for the test of its corpus.
+// A format that is read or written into, for coverage-guided fuzzing and for the test of its
+// corpus.
 struct FuzzTarget {
   std::string_view name;
   std::string_view extension;  // of a file of the format, with its dot
@@ -17,10 +18,16 @@ struct FuzzTarget {
   // an Error about this file or the robot in it; throws std::logic_error where what was read is not
   // sound, and what else a reader throws.
   void (*read)(const std::filesystem::path& file);
-  // Valid files from which mutation starts.
+  // Valid inputs from which mutation starts.
   std::vector<std::string> (*seeds)();
   // A dictionary for libFuzzer in tests/fuzz/dictionaries/; empty: none.
   std::string_view dictionary;
+  // Makes the file of an input that is only its content. Null: the input is the file.
+  std::string (*sealed)(std::string_view content) = nullptr;
+
+  std::string file_of(std::string_view input) const {
+    return sealed ? sealed(input) : std::string(input);
+  }
 };
 
 std::span<const FuzzTarget> fuzz_targets();

@@ -3,6 +3,7 @@
 #include "robot/pairs/link_pairs_file.h"
 #include "spheretree/atomic_file.h"
 #include "tests/fuzz/fuzz_seeds.h"
+#include "tests/fuzz/sealed_content.h"
 #include "tests/robot/box_robots.h"
 #include "tests/robot/files/random_urdf.h"
 #include "tests/robot/formats/sphere_sets.h"
@@ -40,7 +41,19 @@ std::vector<std::string> scene_seeds() {
                   "max_error": 0.002}],
     "regions": [{"body": "torch", "name": "tip", "ball": {"center": [0, 0, 0.31], "radius": 0.01}}],
     "allowed_contacts": [{"body": "torch", "region": "tip", "other": "part"}],
-    "padding": [{"body": "torch", "distance": 0.002}]})"};
+    "padding": [{"body": "torch", "distance": 0.002}]})",
+          R"({"format": "spherule-scene", "version": 1, "robot": {"pose": {"rpy": [0, 0, 1.5]}},
+    "obstacles": [{"name": "a", "ball": {"radius": 1},
+                   "pose": {"position": [0, 0, 1], "quaternion": [0, 0, 0, 2]}},
+      {"name": "b", "cylinder": {"radius": 1, "length": 2}, "pose": {"rpy": [1, 0, 0]}},
+      {"name": "c", "capsule": {"radius": 1, "length": 2}},
+      {"name": "d", "spheres": {"file": "part.json"}}, {"name": "e", "tree": {"file": "part.tree"}},
+      {"name": "f", "mesh": {"file": "part.obj", "scale": [1, -1, 0.001]}},
+      {"name": "g", "points": {"file": "scan.xyz", "radius": 0.01, "scale": 0.001}}],
+    "attached": [{"name": "hand", "link": "tool0", "spheres": {"file": "hand.json"}},
+      {"name": "tool", "link": "hand", "tree": {"file": "t.tree"}, "pose": {"position": [1, 0, 0]}}],
+    "allowed_contacts": [{"body": "hand", "other": "a"}],
+    "padding": [{"body": "hand", "distance": -0.01, "other": "b"}]})"};
 }
 
 std::vector<std::string> trajectory_seeds() {
@@ -55,6 +68,13 @@ std::vector<std::string> urdf_seeds() {
   Random random(4);
   std::vector<std::string> seeds;
   for (int joints = 1; joints <= 4; ++joints) seeds.push_back(random_urdf(random, joints));
+  seeds.emplace_back(R"(<robot name="arm" version="1.0"><material name="m"/>
+    <link name="base"><visual name="v"><geometry>
+        <mesh filename="package://arm/meshes/base.dae" scale="1 -1 1e-3"/></geometry></visual>
+      <collision><geometry><mesh filename="../base.stl"/></geometry></collision>
+      <collision><geometry><mesh filename="file:///base.stl"/></geometry></collision></link>
+    <link name="hand"/><joint name="j" type="revolute"><parent link="base"/><child link="hand"/>
+      <axis xyz="0 0 1"/><limit lower="-1" upper="1"/><safety_controller/></joint></robot>)");
   return seeds;
 }
 
@@ -64,8 +84,18 @@ std::vector<std::string> srdf_seeds() {
     <group name="both"><group name="left"/><joint name="j2"/></group>
     <group name="left"><chain base_link="base" tip_link="l1"/><link name="l2"/></group>
     <group_state name="home" group="left"><joint name="j1" value="0.5"/></group_state>
+    <virtual_joint name="world" type="fixed" parent_frame="world" child_link="base"/>
+    <group_state name="there" group="both"><joint name="j2" value="1 2 3"/></group_state>
+    <end_effector name="tool" parent_link="l2" group="left" parent_group="both"/>
+    <link_sphere_approximation link="l2"><sphere center="0 0 0" radius="0"/>
+    </link_sphere_approximation>
     <disable_collisions link1="l1" link2="l2" reason="Never"/></robot>)");
   return seeds;
+}
+
+std::vector<std::string> pair_content_seeds() {
+  const std::string file = pair_seeds().front();
+  return {file.substr(0, file.size() - with_checksum("").size())};
 }
 
 std::vector<std::string> pair_seeds() {

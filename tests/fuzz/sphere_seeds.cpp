@@ -4,6 +4,7 @@
 #include "spheretree/internal/file_content.h"
 #include "spheretree/sphere_file.h"
 #include "tests/fuzz/fuzz_seeds.h"
+#include "tests/fuzz/sealed_content.h"
 
 namespace spherule::test {
 namespace {
@@ -26,6 +27,11 @@ std::vector<std::string> sphere_file_seeds() {
 
 std::vector<std::string> tree_seeds() {
   return {internal::encode_tree(build_tree(kSpheres))};
+}
+
+std::vector<std::string> tree_content_seeds() {
+  const std::string file = internal::encode_tree(build_tree(kSpheres));
+  return {file.substr(0, file.size() - with_checksum("").size())};
 }
 
 std::vector<std::string> zone_seeds() {

@@ -48,6 +48,12 @@ std::string_view XmlElement::text() const {
   return text == nullptr ? std::string_view() : text;
 }
 
+std::string XmlElement::printed() const {
+  tinyxml2::XMLPrinter printer;
+  element_->Accept(&printer);
+  return printer.CStr();
+}
+
 std::vector<XmlElement> XmlElement::children(std::string_view tag) const {
   std::vector<XmlElement> result;
   for (const auto* child = element_->FirstChildElement(); child != nullptr;
@@ -169,6 +175,10 @@ XmlFile::XmlFile(std::string name, const std::string& text, std::string_view tag
     throw Error(name_, "its root is no <" + std::string(tag) + ">");
   }
   if (root->NextSiblingElement() != nullptr) throw Error(name_, "it has more than one root");
+  for (const tinyxml2::XMLNode* node = document_->FirstChild(); node; node = node->NextSibling()) {
+    if (node->ToText() == nullptr) continue;
+    throw Error(name_, "line " + std::to_string(node->GetLineNum()) + ": text beside the root");
+  }
 }
 
 XmlFile::~XmlFile() = default;

@@ -30,6 +30,7 @@ class XmlElement {
 
   std::string_view tag() const;
   std::string_view text() const;  // up to the first element in it
+  std::string printed() const;    // with all that is in it
   // Of this tag, or all; in the order of the file.
   std::vector<XmlElement> children(std::string_view tag = {}) const;
   // The only child of this tag, which may be missing, or is needed.
@@ -62,7 +63,8 @@ class XmlElement {
 
 class XmlFile {
  public:
-  // Throws Error for a file that cannot be read, is no XML, or has another root than `tag`.
+  // Throws Error for a file that cannot be read, is no XML, or has another root than `tag`,
+  // or text beside it.
   XmlFile(const std::filesystem::path& path, std::string_view tag);
   // Of the text of a file of this name.
   XmlFile(std::string name, const std::string& text, std::string_view tag);

@@ -23,7 +23,7 @@ struct XmlPart {
   std::size_t end = 0;
 };
 
-// What stands where in a well-formed document.
+// What stands where in a well-formed document; of another one, anything.
 struct XmlParts {
   std::vector<XmlPart> children;
   std::size_t root_end = 0;  // where the root's end tag starts, or the "/>" of a root without one
@@ -79,7 +79,7 @@ XmlParts parts_of(std::string_view text) {
       const std::string_view tag = text.substr(at + 1, end - at - 1);
       parts.children.push_back({tag.substr(0, tag.find_first_of(" \t\r\n/>")), at, end});
     }
-    if (depth == 1 && closes) parts.children.back().end = end;
+    if (depth == 1 && closes && !parts.children.empty()) parts.children.back().end = end;
     if (!closes && !is_whole) ++depth;
     at = end;
   }
@@ -135,15 +135,46 @@ std::string changed(std::string_view text, std::vector<Change> changes) {
 using Names = std::pair<std::string, std::string>;
 
 // Pairs of which the file says that they are not tested, or that they are.
-std::set<Names> decided_pairs(const std::filesystem::path& path) {
-  const XmlFile file(path, "robot");
+std::set<Names> decided_pairs(const XmlElement& robot) {
   std::set<Names> pairs;
   for (const char* const tag : {"disable_collisions", "enable_collisions"}) {
-    for (const XmlElement& element : file.root().children(tag)) {
+    for (const XmlElement& element : robot.children(tag)) {
       pairs.insert(std::minmax(element.needed("link1"), element.needed("link2")));
     }
   }
   return pairs;
+}
+
+// The children of the root as they read: how many are pairs and spheres, and the text of the rest.
+struct Census {
+  std::size_t pairs = 0;
+  std::size_t spheres = 0;
+  std::vector<std::string> rest{};
+
+  bool operator==(const Census&) const = default;
+};
+
+Census census_of(const XmlElement& robot) {
+  Census census;
+  for (const XmlElement& child : robot.children()) {
+    if (child.tag() == "disable_collisions") {
+      ++census.pairs;
+    } else if (child.tag() == "link_sphere_approximation") {
+      ++census.spheres;
+    } else {
+      census.rest.push_back(child.printed());
+    }
+  }
+  return census;
+}
+
+// The parser takes texts that are not well-formed ("< group>"), where parts_of() finds anything.
+bool reads_as(const Census& expected, const std::string& text, const std::string& name) {
+  try {
+    return census_of(XmlFile(name, text, "robot").root()) == expected;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -175,13 +206,14 @@ std::string srdf_spheres(std::span<const LinkSpheres> links, const std::string& 
 }
 
 std::string kept_srdf(const RobotSpheres& spheres, const std::filesystem::path& original) {
-  const std::set<Names> decided = decided_pairs(original);  // refuses what is no SRDF
+  const std::string text = read_file(original);
+  const XmlFile file(original.string(), text, "robot");
+  const XmlParts parts = parts_of(text);
+  const std::set<Names> decided = decided_pairs(file.root());
   std::vector<DisabledPair> missing;
   for (const DisabledPair& pair : spheres.self_collision_ignore) {
     if (!decided.contains(std::minmax(pair.link_a, pair.link_b))) missing.push_back(pair);
   }
-  const std::string text = read_file(original);
-  const XmlParts parts = parts_of(text);
   std::vector<Change> changes;
   std::size_t end = parts.root_end;
   if (!parts.has_end_tag) {
@@ -214,7 +246,14 @@ std::string kept_srdf(const RobotSpheres& spheres, const std::filesystem::path& 
   changes.push_back({pairs_at, pairs_at, srdf_pairs(missing, pairs_indent)});
   changes.push_back({spheres_at, spheres_at, srdf_spheres(spheres.links, indent)});
   if (!parts.has_end_tag) changes.push_back({end, end, "</robot>", true});
-  return changed(text, std::move(changes));
+  std::string result = changed(text, std::move(changes));
+  Census expected = census_of(file.root());
+  expected.pairs += missing.size();
+  expected.spheres = spheres.links.size();
+  if (!reads_as(expected, result, original.string())) {
+    throw Error(original.string(), "is not well-formed XML, so that its text cannot be kept");
+  }
+  return result;
 }
 
 }  // namespace spherule::internal

@@ -259,6 +259,18 @@ TEST_F(KeptFiles, SrdfOfOneLineOrOfNone) {
   }
 }
 
+// The parser reads more than what is well-formed; old spheres were kept beside the new ones.
+TEST_F(KeptFiles, SrdfThatIsNotWellFormedIsRefused) {
+  const auto original =
+      folder_.write("original",
+                    "<robot name=\"arm\">< link_sphere_approximation link=\"old\">"
+                    "<sphere center=\"0 0 0\" radius=\"9\"/></link_sphere_approximation></robot>");
+  ASSERT_EQ(read_srdf(original).sphere_approximations.size(), 1u);
+  EXPECT_THROW(write_robot_spheres(spheres_, SphereFormat::kSrdf, {.original = original},
+                                   folder_.path() / "kept"),
+               Error);
+}
+
 // Somebody wants them to be tested.
 TEST_F(KeptFiles, PairsThatAnSrdfEnablesAreNotDisabled) {
   const auto original = folder_.write(

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/fuzz/kept_file_targets.h"
+
+#include "robot/files/srdf.h"
+#include "robot/files/urdf.h"
+#include "spheretree/atomic_file.h"
+#include "spheretree/error.h"
+#include "tests/robot/formats/sphere_sets.h"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What the reader returns, or nothing where it refuses the file.
+template <class Read>
+auto unless_refused(Read read) -> std::optional<decltype(read())> {
+  try {
+    return read();
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+std::vector<LinkSpheres> without_empty(std::vector<LinkSpheres> links) {
+  std::erase_if(links, [](const LinkSpheres& link) { return link.spheres.empty(); });
+  return links;
+}
+
+void expect_spheres(const std::vector<LinkSpheres>& links) {
+  const std::string fault =
+      difference(without_empty(links), without_empty(spheres_to_keep().links));
+  if (!fault.empty()) throw std::logic_error("other spheres were written: " + fault);
+}
+
+// What is read of a file that was written; a refusal is no answer here.
+template <class Read>
+auto read_again(Read read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    throw std::logic_error(std::string("what was written cannot be read: ") + error.what());
+  }
+}
+
+// A line end of old Macs, which before a new line makes one of Windows.
+bool has_lone_return(const std::string& text) {
+  for (std::size_t at = text.find('\r'); at != std::string::npos; at = text.find('\r', at + 1)) {
+    if (at + 1 == text.size() || text[at + 1] != '\n') return true;
+  }
+  return false;
+}
+
+// Writes the spheres into the file. The place of the result, beside it.
+fs::path written_into(const fs::path& file, SphereFormat format) {
+  const auto write = [&](const fs::path& original, const char* name) {
+    fs::path result = file.parent_path() / name;
+    write_robot_spheres(spheres_to_keep(), format, {.original = original}, result);
+    return result;
+  };
+  const fs::path kept = write(file, "kept");
+  const fs::path again = read_again([&] { return write(kept, "again"); });
+  if (read_file(again) != read_file(kept) && !has_lone_return(read_file(file))) {
+    throw std::logic_error("the second time it changes");
+  }
+  return kept;
+}
+
+// What an SRDF says beside pairs and spheres.
+auto rest_of(const SemanticDescription& semantics) {
+  std::vector<std::tuple<std::string, std::vector<std::string>, std::vector<std::string>,
+                         std::vector<std::string>>>
+      groups;
+  for (const JointGroup& group : semantics.groups) {
+    groups.emplace_back(group.name, group.links, group.joints, group.subgroups);
+  }
+  std::vector<std::tuple<std::string, std::string, std::size_t>> states;
+  for (const GroupState& state : semantics.group_states) {
+    states.emplace_back(state.name, state.group, state.joints.size());
+  }
+  std::vector<std::tuple<std::string, std::string, std::string, std::string>> tools;
+  for (const EndEffector& tool : semantics.end_effectors) {
+    tools.emplace_back(tool.name, tool.group, tool.parent_link, tool.parent_group);
+  }
+  return std::tuple(semantics.robot_name, groups, states, tools);
+}
+
+}  // namespace
+
+const RobotSpheres& spheres_to_keep() {
+  static const RobotSpheres kSpheres{
+      .robot = "arm",
+      .links = {{"base", {{{0, 0, 0}, 0.5}}}, {"arm", {{{1, -2, 3e-5}, 0.25}}}, {"hand", {}}},
+      .self_collision_ignore = {
+          {"base", "arm", "Adjacent"}, {"hand", "base", "Never"}, {"arm", "hand", {}}}};
+  return kSpheres;
+}
+
+void write_into_yaml(const fs::path& file) {
+  const auto before = unless_refused([&] { return read_robot_spheres(file); });
+  bool is_written = false;
+  for (const SphereFormat format : {SphereFormat::kCurobo, SphereFormat::kXrdf}) {
+    const auto kept = unless_refused([&] { return written_into(file, format); });
+    if (!kept) continue;
+    is_written = true;
+    if (!before || before->format != format) continue;
+    const SphereFormatFile after = read_again([&] { return read_robot_spheres(*kept); });
+    if (after.format != format) throw std::logic_error("another format was written");
+    expect_spheres(after.spheres.links);
+  }
+  if (!is_written) throw Error(file.string(), "takes no spheres");
+}
+
+void write_into_srdf(const fs::path& file) {
+  const auto before = unless_refused([&] { return read_srdf(file); });
+  const fs::path kept = written_into(file, SphereFormat::kSrdf);
+  if (!before) return;
+  const SemanticDescription after = read_again([&] { return read_srdf(kept); });
+  expect_spheres(after.sphere_approximations);
+  if (rest_of(after) != rest_of(*before)) throw std::logic_error("other groups were written");
+  for (const DisabledPair& pair : before->disabled_pairs) {
+    const bool is_kept = std::ranges::any_of(after.disabled_pairs, [&](const DisabledPair& other) {
+      return pair.link_a == other.link_a && pair.link_b == other.link_b &&
+             pair.reason == other.reason;
+    });
+    if (!is_kept) throw std::logic_error("a pair is lost");
+  }
+}
+
+void write_into_urdf(const fs::path& file) {
+  const UrdfOptions any_mesh{.require_visual_meshes = false, .require_collision_meshes = false};
+  const auto before = unless_refused([&] { return read_urdf(file, any_mesh); });
+  const fs::path kept = file.parent_path() / "kept";
+  write_robot_spheres(spheres_to_keep(), SphereFormat::kUrdf, {.urdf = file}, kept);
+  if (!before) return;
+  std::vector<LinkSpheres> after =
+      read_again([&] { return read_robot_spheres(kept); }).spheres.links;
+  std::erase_if(after, [](const LinkSpheres& link) {
+    return std::ranges::none_of(spheres_to_keep().links, [&](const LinkSpheres& written) {
+      return written.link == link.link;
+    });
+  });
+  expect_spheres(after);
+  read_again([&] { return read_urdf(kept, any_mesh); });
+}
+
+}  // namespace spherule::test
