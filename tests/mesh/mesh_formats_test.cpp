@@ -250,7 +250,7 @@ TEST_F(Formats, ThreeMfComponents) {
     if (i < 40) doubled += object(std::to_string(i), {before, before});
     chain += object(std::to_string(i), {before});
   }
-  EXPECT_TRUE(refused("3mf", with_objects(doubled, "39"), "more than 2^26"));
+  EXPECT_TRUE(refused("3mf", with_objects(doubled, "39"), "more than 2^18 nodes"));
   EXPECT_EQ(read("3mf", with_objects(doubled, "3")).triangles.size(), 48u);
   EXPECT_TRUE(refused("3mf", with_objects(chain, "79"), "64 deep"));
 }

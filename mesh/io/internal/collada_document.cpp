@@ -20,10 +20,18 @@ std::string_view local_name(const Element& element) {
   return name.substr(name.rfind(':') + 1);
 }
 
+// Attributes are searched for one after the other. The schema has far fewer for each element.
+bool has_few_attributes(const Element& element) {
+  int count = 0;
+  for (auto* at = element.FirstAttribute(); at != nullptr && count <= 64; at = at->Next()) ++count;
+  return count <= 64;
+}
+
 }  // namespace
 
-ColladaDocument::ColladaDocument(std::string_view text, const std::string& subject)
-    : subject_(subject), document_(true, tinyxml2::PRESERVE_WHITESPACE) {
+ColladaDocument::ColladaDocument(std::string_view text, const std::string& subject,
+                                 SceneBudget& budget)
+    : subject_(subject), budget_(budget), document_(true, tinyxml2::PRESERVE_WHITESPACE) {
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw Error(subject_, xml_fault(document_.ErrorName(), document_.ErrorLineNum()));
   }
@@ -38,6 +46,7 @@ void ColladaDocument::index(const Element& element) {
   for (const Element* at = element.FirstChildElement(); at != nullptr;
        at = at->NextSiblingElement()) {
     if (local_name(*at) != at->Name()) fail(*at, "a namespace prefix is not supported");
+    if (!has_few_attributes(*at)) fail(*at, "has more than 64 attributes");
     if (const char* id = at->Attribute("id")) {
       const auto [it, is_new] = ids_.try_emplace({at->Name(), id}, at);
       if (!is_new) it->second = nullptr;
@@ -49,6 +58,7 @@ void ColladaDocument::index(const Element& element) {
 const Element& ColladaDocument::referred(const char* name, const Element& from,
                                          const char* attribute) const {
   const std::string reference = text_attribute(from, attribute);
+  budget_.take_steps(reference.size() / 16);
   if (!reference.starts_with('#')) {
     fail(from, "refers to " + in_quotes(reference) + ", which is not in this file");
   }
@@ -103,9 +113,15 @@ std::string_view ColladaDocument::text(const Element& element) const {
   return content->Value();
 }
 
+std::vector<std::string_view> ColladaDocument::split(const Element& element) const {
+  std::vector<std::string_view> words = words_of(text(element));
+  budget_.take_steps(words.size());
+  return words;
+}
+
 std::vector<double> ColladaDocument::numbers(const Element& element) const {
   std::vector<double> result;
-  for (const std::string_view word : words_of(text(element))) {
+  for (const std::string_view word : split(element)) {
     const std::optional<double> value = finite_number(word);
     if (!value) fail(element, in_quotes(word) + " is not a finite number");
     result.push_back(*value);
@@ -115,7 +131,7 @@ std::vector<double> ColladaDocument::numbers(const Element& element) const {
 
 std::vector<std::int64_t> ColladaDocument::whole_numbers(const Element& element) const {
   std::vector<std::int64_t> result;
-  for (const std::string_view word : words_of(text(element))) {
+  for (const std::string_view word : split(element)) {
     const std::optional<std::int64_t> value = whole_number(word);
     if (!value) fail(element, in_quotes(word) + " is not a whole number");
     result.push_back(*value);
@@ -124,7 +140,7 @@ std::vector<std::int64_t> ColladaDocument::whole_numbers(const Element& element)
 }
 
 std::vector<std::string> ColladaDocument::words(const Element& element) const {
-  const std::vector<std::string_view> found = words_of(text(element));
+  const std::vector<std::string_view> found = split(element);
   return {found.begin(), found.end()};
 }
 

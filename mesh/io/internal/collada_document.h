@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "mesh/io/internal/scene_file.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -19,9 +21,9 @@ class ColladaDocument {
  public:
   using Element = tinyxml2::XMLElement;
 
-  // `subject` names the file in an Error and has to outlive the document. Throws Error if the text
-  // is not well-formed XML, or is not COLLADA.
-  ColladaDocument(std::string_view text, const std::string& subject);
+  // `subject` names the file in an Error; it and the budget have to outlive the document. Throws
+  // Error if the text is not well-formed XML, or is not COLLADA.
+  ColladaDocument(std::string_view text, const std::string& subject, SceneBudget& budget);
 
   const Element& root() const { return *root_; }
 
@@ -36,7 +38,7 @@ class ColladaDocument {
   // A whole number that is not negative, `absent` if there is no such attribute.
   std::size_t whole_attribute(const Element& element, const char* name, std::size_t absent) const;
 
-  // What stands in an element: nothing but white space between.
+  // What stands in an element, nothing but white space between; each is a step of the budget.
   std::vector<double> numbers(const Element& element) const;
   std::vector<std::int64_t> whole_numbers(const Element& element) const;
   std::vector<std::string> words(const Element& element) const;
@@ -47,8 +49,10 @@ class ColladaDocument {
  private:
   void index(const Element& element);
   std::string_view text(const Element& element) const;
+  std::vector<std::string_view> split(const Element& element) const;
 
   const std::string& subject_;
+  SceneBudget& budget_;
   tinyxml2::XMLDocument document_;
   const Element* root_ = nullptr;
   // By name and id; null if several elements share them.

@@ -24,6 +24,10 @@ constexpr std::uint64_t kInt8 = 5120, kUint8 = 5121, kInt16 = 5122, kUint16 = 51
 
 // Elements of one accessor: more than any mesh that is read has corners.
 constexpr std::uint64_t kMaxCount = std::uint64_t{1} << 27;
+// Numbers that are zero because no buffer holds them.
+constexpr std::size_t kMaxZeros = std::size_t{1} << 24;
+// What it costs to find an accessor, in numbers read.
+constexpr std::size_t kLookup = 32;
 
 std::size_t size_of(std::uint64_t type) {
   switch (type) {
@@ -92,8 +96,9 @@ bool is_allowed(const GltfElements& elements, std::uint64_t type, bool is_normal
 
 }  // namespace
 
-GltfAccessors::GltfAccessors(const GltfDocument& document, const std::filesystem::path& file)
-    : document_(document), file_(file) {}
+GltfAccessors::GltfAccessors(const GltfDocument& document, const std::filesystem::path& file,
+                             SceneBudget& budget)
+    : document_(document), file_(file), budget_(budget) {}
 
 GltfValues GltfAccessors::read(std::uint64_t index, const GltfElements& elements) {
   const Json& accessor = document_.item("accessors", index);
@@ -110,6 +115,7 @@ GltfValues GltfAccessors::read(std::uint64_t index, const GltfElements& elements
   const auto count = static_cast<std::size_t>(stated);
   GltfValues result{.numbers = {}, .components = components_of(elements.type)};
   result.is_exact = !is_normalized;
+  budget_.take_steps(kLookup + count * result.components);
   if (accessor.contains("bufferView")) {
     const Layout layout = this->layout(accessor, size * result.components, count, true);
     result.numbers.reserve(count * result.components);
@@ -121,6 +127,7 @@ GltfValues GltfAccessors::read(std::uint64_t index, const GltfElements& elements
     }
   } else {
     if (!accessor.contains("sparse")) document_.fail("an accessor without data");
+    if (count * result.components > kMaxZeros) document_.fail("an accessor of too many zeros");
     result.numbers.assign(count * result.components, 0.0);
   }
   if (const Json* sparse = document_.member(accessor, "sparse")) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/io/internal/gltf_document.h"
+#include "mesh/io/internal/scene_file.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -36,8 +37,9 @@ struct GltfElements {
 // files in the folder of the glTF file or below it; others are refused.
 class GltfAccessors {
  public:
-  // Both have to outlive the object.
-  GltfAccessors(const GltfDocument& document, const std::filesystem::path& file);
+  // All have to outlive the object.
+  GltfAccessors(const GltfDocument& document, const std::filesystem::path& file,
+                SceneBudget& budget);
 
   GltfValues read(std::uint64_t accessor, const GltfElements& elements);
 
@@ -57,6 +59,7 @@ class GltfAccessors {
 
   const GltfDocument& document_;
   const std::filesystem::path& file_;
+  SceneBudget& budget_;
   std::map<std::uint64_t, std::string> loaded_;
 };
 

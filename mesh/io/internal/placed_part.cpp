@@ -13,6 +13,9 @@
 
 namespace spherule::internal {
 
+Affine::Affine(const Eigen::Matrix3d& of_linear, const Eigen::Vector3d& of_offset)
+    : linear(of_linear), offset(of_offset), gain(linear.operatorNorm() * (1.0 + 0x1p-40)) {}
+
 std::optional<Affine> affine_from(const Eigen::Matrix4d& matrix) {
   const bool is_affine = matrix.row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
   if (!is_affine || !matrix.allFinite()) return std::nullopt;
@@ -28,9 +31,8 @@ void place(TriangleMesh& part, std::span<const Affine> chain, double coordinate_
   double error = part.vertex_error + coordinate_error * size;
   for (std::size_t i = chain.size(); i-- > 0;) {
     const Affine& affine = chain[i];
-    const double gain = affine.linear.operatorNorm() * (1.0 + 0x1p-40);
-    const double inflated = gain * (size + error) + affine.offset.norm();
-    error = gain * error + (entry_error + 0x1p-50) * inflated;
+    const double inflated = affine.gain * (size + error) + affine.offset.norm();
+    error = affine.gain * error + (entry_error + 0x1p-50) * inflated;
     size = inflated;
     for (Eigen::Vector3d& v : part.vertices) v = affine.linear * v + affine.offset;
   }

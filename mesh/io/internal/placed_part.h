@@ -16,8 +16,12 @@
 namespace spherule::internal {
 
 struct Affine {
+  Affine() : Affine(Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()) {}
+  Affine(const Eigen::Matrix3d& linear, const Eigen::Vector3d& offset);
+
   Eigen::Matrix3d linear;
   Eigen::Vector3d offset;
+  double gain;  // a bound on the norm of `linear`
 };
 
 // The transform of a matrix for column vectors; nothing if it is not affine or not finite.

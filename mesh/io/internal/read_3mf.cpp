@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/io/internal/mesh_readers.h"
 #include "mesh/io/internal/placed_part.h"
+#include "mesh/io/internal/scene_file.h"
 #include "mesh/io/internal/xml_events.h"
 #include "mesh/io/internal/zip_member.h"
 #include "mesh/io/length_unit.h"
@@ -39,8 +40,6 @@ constexpr std::string_view kPath(
 constexpr std::string_view kTriangleSets(
     "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07|");
 
-// Components of components may multiply without bound; what they show may not, all counted.
-constexpr std::uint64_t kMaxShown = std::uint64_t{1} << 26;
 constexpr int kMaxDepth = 64;
 
 struct Component {
@@ -51,8 +50,7 @@ struct Component {
 struct Object {
   TriangleMesh mesh;
   std::vector<Component> components;
-  std::uint64_t shown = 1;  // objects, vertices and triangles, components' too; up to kMaxShown + 1
-  int depth = 0;            // of components below
+  int depth = 0;  // of components below
 };
 
 // Finds the part that holds the model in the relations of the package.
@@ -93,7 +91,7 @@ std::string model_text(std::string_view bytes, const std::string& subject) {
 class ModelReader : public XmlHandler {
  public:
   ModelReader(std::string_view text, const std::string& subject)
-      : in_(text, subject), subject_(subject) {}
+      : in_(text, subject), subject_(subject), budget_(subject, 0) {}
 
   void open(std::string_view name, const XmlAttributes& attributes, std::size_t position) override {
     in_.seek(position);
@@ -123,14 +121,9 @@ class ModelReader : public XmlHandler {
     path_.pop_back();
   }
 
-  TriangleMesh shown() const {
+  // Components of components may multiply without bound; what they show may not.
+  TriangleMesh shown() {
     TriangleMesh result;
-    std::uint64_t total = 0;
-    for (const Component& item : items_) {
-      total += item.object->shown;
-      if (total > kMaxShown)
-        throw Error(subject_, "it shows more than 2^26 vertices and triangles");
-    }
     std::vector<Affine> chain;
     for (const Component& item : items_) show(item, chain, result);
     return result;
@@ -173,9 +166,7 @@ class ModelReader : public XmlHandler {
     for (const auto& corners : triangles_) {
       add_polygon(mesh, corners, mesh.vertices.size(), subject_);
     }
-    object_->shown += mesh.vertices.size() + mesh.triangles.size();
     for (const Component& part : object_->components) {
-      object_->shown = std::min(object_->shown + part.object->shown, kMaxShown + 1);
       object_->depth = std::max(object_->depth, part.object->depth + 1);
     }
     if (object_->depth > kMaxDepth) in_.fail("components more than 64 deep");
@@ -196,16 +187,17 @@ class ModelReader : public XmlHandler {
   // Twelve numbers: the rows of a matrix that points, as rows, are multiplied by from the left.
   Affine transform(std::string_view text) const {
     TextScanner list(text, subject_);
-    Affine result;
+    Eigen::Matrix3d linear;
+    Eigen::Vector3d offset;
     for (int row = 0; row < 4; ++row) {
       for (int k = 0; k < 3; ++k) {
         const double entry = in_.number(list.token());
         if (std::abs(entry) > kMaxCoordinate) in_.fail("a transform beyond 1e15");
-        (row < 3 ? result.linear(k, row) : result.offset[k]) = entry;
+        (row < 3 ? linear(k, row) : offset[k]) = entry;
       }
     }
     if (!list.token().empty()) in_.fail("a transform of more than twelve numbers");
-    return result;
+    return {linear, offset};
   }
 
   // An object may have shapes that are no mesh, and a mesh more than triangles: to leave them out
@@ -222,7 +214,9 @@ class ModelReader : public XmlHandler {
     }
   }
 
-  void show(const Component& shown, std::vector<Affine>& chain, TriangleMesh& result) const {
+  void show(const Component& shown, std::vector<Affine>& chain, TriangleMesh& result) {
+    budget_.take_node();
+    budget_.take(shown.object->mesh, chain.size() + 1);
     if (shown.transform) chain.push_back(*shown.transform);
     TriangleMesh part = shown.object->mesh;
     place(part, chain, kUnitRoundoff, kUnitRoundoff);
@@ -239,6 +233,7 @@ class ModelReader : public XmlHandler {
   Object* object_ = nullptr;             // that is open, or was last
   std::vector<std::array<std::int64_t, 3>> triangles_;  // of it: vertices may come after them
   std::vector<Component> items_;
+  SceneBudget budget_;
 };
 
 }  // namespace

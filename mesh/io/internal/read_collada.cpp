@@ -24,7 +24,12 @@ using Element = ColladaDocument::Element;
 class ColladaReader {
  public:
   ColladaReader(std::string_view bytes, const std::string& subject)
-      : subject_(subject), document_(bytes, subject), budget_(subject) {}
+      : subject_(subject), budget_(subject, steps_of(bytes)), document_(bytes, subject, budget_) {}
+
+  // Every number can be read, and some again: a word takes two bytes.
+  static std::size_t steps_of(std::string_view bytes) {
+    return (std::size_t{1} << 24) + bytes.size();
+  }
 
   TriangleMesh run() {
     scene_ = &shown_scene();
@@ -63,6 +68,7 @@ class ColladaReader {
   void visit_children(const Element& parent) {
     for (const Element* at = parent.FirstChildElement(); at != nullptr;
          at = at->NextSiblingElement()) {
+      budget_.take_steps(1);
       const std::string_view name = at->Name();
       if (name == "node") {
         visit(*at);
@@ -86,9 +92,8 @@ class ColladaReader {
   void visit(const Element& node) {
     budget_.take_node();
     const std::size_t before = chain_.size();
-    for (const Affine& transform : collada_transforms(document_, node)) {
-      chain_.push_back(transform);
-    }
+    const std::vector<Affine>& own = transforms_of(node);
+    chain_.insert(chain_.end(), own.begin(), own.end());
     budget_.check_depth(chain_.size());
     open_.push_back(&node);
     budget_.check_depth(open_.size());
@@ -97,21 +102,39 @@ class ColladaReader {
     chain_.erase(chain_.begin() + static_cast<std::ptrdiff_t>(before), chain_.end());
   }
 
-  // Parsed once however often it is shown.
+  // What follows is parsed once however often it is shown.
   const TriangleMesh& mesh_of(const Element& geometry) {
     const auto [it, is_new] = meshes_.try_emplace(&geometry);
     if (is_new) it->second = collada_mesh(document_, geometry, subject_);
     return it->second;
   }
 
-  void show_controller(const Element& instance) {
-    const Element& controller = document_.referred("controller", instance, "url");
+  const std::vector<Affine>& transforms_of(const Element& node) {
+    const auto [it, is_new] = transforms_.try_emplace(&node);
+    if (is_new) it->second = collada_transforms(document_, node);
+    return it->second;
+  }
+
+  struct BoundMesh {
+    const TriangleMesh* rest = nullptr;
+    ColladaSkin skin;
+  };
+
+  const BoundMesh& bound_mesh_of(const Element& controller) {
+    const auto [it, is_new] = bound_meshes_.try_emplace(&controller);
+    if (!is_new) return it->second;
     const Element* const skin = controller.FirstChildElement("skin");
-    if (skin == nullptr) {
-      document_.fail(controller, "is no skin: morphs are not supported");
-    }
-    const TriangleMesh& rest = mesh_of(document_.referred("geometry", *skin, "source"));
-    const ColladaSkin bound = collada_skin(document_, *skin, rest.vertices.size());
+    if (skin == nullptr) document_.fail(controller, "is no skin: morphs are not supported");
+    it->second.rest = &mesh_of(document_.referred("geometry", *skin, "source"));
+    it->second.skin = collada_skin(document_, *skin, it->second.rest->vertices.size());
+    return it->second;
+  }
+
+  void show_controller(const Element& instance) {
+    const BoundMesh& bound_mesh = bound_mesh_of(document_.referred("controller", instance, "url"));
+    const TriangleMesh& rest = *bound_mesh.rest;
+    const ColladaSkin& bound = bound_mesh.skin;
+    budget_.take_steps(bound.joints.size() + rest.vertices.size());
     SkinnedPart part(rest, kColladaEntryError);
     for (std::size_t j = 0; j <= bound.joints.size(); ++j) {
       if (bound.weights[j].empty()) continue;
@@ -127,11 +150,13 @@ class ColladaReader {
     append(result_, part.take(), subject_);
   }
 
-  const Element& joint_of(const ColladaSkin& skin, std::size_t j, const Element& instance) const {
+  const Element& joint_of(const ColladaSkin& skin, std::size_t j, const Element& instance) {
     if (skin.are_ids) return document_.with_id("node", skin.joints[j], instance);
     for (const Element* at = instance.FirstChildElement("skeleton"); at != nullptr;
          at = at->NextSiblingElement("skeleton")) {
-      const std::string id = document_.words(*at).empty() ? "" : document_.words(*at).front();
+      budget_.take_steps(1);
+      const std::vector<std::string> words = document_.words(*at);
+      const std::string id = words.empty() ? "" : words.front();
       if (!id.starts_with('#')) document_.fail(*at, "names no node of this file");
       const Element& root = document_.with_id("node", id.substr(1), *at);
       if (const Element* const found = with_sid(root, skin.joints[j])) return *found;
@@ -139,22 +164,27 @@ class ColladaReader {
     document_.fail(instance, "has no skeleton with the joint " + skin.joints[j]);
   }
 
-  static const Element* with_sid(const Element& node, const std::string& sid) {
-    const char* const own = node.Attribute("sid");
-    if (own != nullptr && own == sid) return &node;
-    for (const Element* at = node.FirstChildElement("node"); at != nullptr;
-         at = at->NextSiblingElement("node")) {
+  const Element* with_sid(const Element& node, const std::string& sid) {
+    if (const char* const attribute = node.Attribute("sid")) {
+      const std::string_view own = attribute;
+      budget_.take_steps(own.size() / 16);
+      if (own == sid) return &node;
+    }
+    for (const Element* at = node.FirstChildElement(); at != nullptr;
+         at = at->NextSiblingElement()) {
+      budget_.take_steps(1);
+      if (std::string_view(at->Name()) != "node") continue;
       if (const Element* const found = with_sid(*at, sid)) return found;
     }
     return nullptr;
   }
 
-  std::vector<Affine> chain_of_joint(const Element& joint, const Element& instance) const {
+  std::vector<Affine> chain_of_joint(const Element& joint, const Element& instance) {
     std::vector<Affine> upward;
     const tinyxml2::XMLElement* at = &joint;
     for (; at != nullptr && at != scene_;
          at = at->Parent() == nullptr ? nullptr : at->Parent()->ToElement()) {
-      const std::vector<Affine> own = collada_transforms(document_, *at);
+      const std::vector<Affine>& own = transforms_of(*at);
       upward.insert(upward.end(), own.rbegin(), own.rend());
     }
     if (at == nullptr) document_.fail(instance, "has a joint that is not in the scene shown");
@@ -165,13 +195,15 @@ class ColladaReader {
   }
 
   const std::string& subject_;
-  ColladaDocument document_;
   SceneBudget budget_;
+  ColladaDocument document_;
   const Element* scene_ = nullptr;
   std::vector<const Element*> open_;  // nodes
   std::vector<Affine> chain_;
   std::vector<Affine> root_chain_;
   std::map<const Element*, TriangleMesh> meshes_;
+  std::map<const Element*, std::vector<Affine>> transforms_;
+  std::map<const Element*, BoundMesh> bound_meshes_;
   TriangleMesh result_;
 };
 
@@ -182,7 +214,8 @@ TriangleMesh read_collada(std::string_view bytes, const std::string& subject) {
 }
 
 double collada_unit(std::string_view text, const std::string& subject) {
-  return ColladaReader::metres(ColladaDocument(text, subject));
+  SceneBudget budget(subject, ColladaReader::steps_of(text));
+  return ColladaReader::metres(ColladaDocument(text, subject, budget));
 }
 
 }  // namespace spherule::internal

@@ -28,6 +28,8 @@ using Json = GltfDocument::Json;
 
 constexpr std::uint64_t kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;
 constexpr std::size_t kNone = ~std::size_t{0};
+// Of all accessors, each time they are read; the largest mesh that is shown has 3 * 2^25.
+constexpr std::size_t kMaxNumbers = std::size_t{1} << 27;
 // Of decimal numbers, and of the few products and the square root that make a matrix of them.
 constexpr double kEntryError = 0x1p-50;
 
@@ -49,8 +51,8 @@ class GltfReader {
   GltfReader(std::string_view bytes, const std::filesystem::path& path, const std::string& subject)
       : subject_(subject),
         document_(bytes, subject),
-        accessors_(document_, path),
-        budget_(subject) {}
+        budget_(subject, kMaxNumbers),
+        accessors_(document_, path, budget_) {}
 
   TriangleMesh run() {
     find_nodes();
@@ -58,11 +60,12 @@ class GltfReader {
       const Json& entry = document_.item("nodes", node);
       const std::optional<std::uint64_t> mesh = document_.index(entry, "mesh");
       if (!mesh) continue;
+      const std::optional<std::uint64_t> skin = document_.index(entry, "skin");
+      const std::vector<Affine> chain = skin ? std::vector<Affine>() : chain_of(node);
       for (Primitive primitive : primitives_of(*mesh, entry)) {
-        if (const auto skin = document_.index(entry, "skin")) {
+        if (skin) {
           bend(primitive, document_.item("skins", *skin));
         } else {
-          const std::vector<Affine> chain = chain_of(node);
           budget_.take(primitive.mesh, chain.size());
           place(primitive.mesh, chain, 0.0, kEntryError);
         }
@@ -247,8 +250,7 @@ class GltfReader {
   // 3.7.3): v = sum over joints of weight * joint * inverse bind matrix * v.
   void bend(Primitive& primitive, const Json& skin) {
     const std::vector<std::uint64_t> joints = document_.indices(skin, "joints");
-    std::vector<Affine> inverse_bind(joints.size(),
-                                     {Eigen::Matrix3d::Identity(), Vector3d::Zero()});
+    std::vector<Affine> inverse_bind(joints.size());
     if (const auto accessor = document_.index(skin, "inverseBindMatrices")) {
       const GltfValues matrices =
           accessors_.read(*accessor, {.type = "MAT4", .is_float_allowed = true});
@@ -308,8 +310,8 @@ class GltfReader {
 
   const std::string& subject_;
   GltfDocument document_;
-  GltfAccessors accessors_;
   SceneBudget budget_;
+  GltfAccessors accessors_;
   std::vector<std::size_t> shown_;
   std::vector<Node> nodes_;
   std::map<std::uint64_t, std::vector<Primitive>> meshes_;

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Small files that show their parts, or refer to their numbers, very many times. Each took minutes
+// or gigabytes before it had a limit.
+#include "mesh/io/internal/scene_file.h"
+#include "tests/mesh/mesh_files.h"
+#include "tests/mesh/read_files.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace spherule::scene_limits_test {
+namespace {
+
+using test::replaced;
+
+std::string repeated(const std::string& text, int times) {
+  std::string result;
+  for (int i = 0; i < times; ++i) result += text;
+  return result;
+}
+
+class SceneLimits : public test::ReadFiles {
+ protected:
+  // The cube as geometry #g; `nodes` stands in a library, `shown` in the scene.
+  std::string collada(const std::string& nodes, const std::string& shown) const {
+    const std::string text = replaced(test::dae_text(cube_, Eigen::Matrix4d::Identity()),
+                                      "<instance_geometry url=\"#g\"/>", shown);
+    return replaced(text, "<library_visual_scenes>",
+                    "<library_nodes>" + nodes + "</library_nodes><library_visual_scenes>");
+  }
+
+  // A node that shows a node that shows ... each twice, and in the last one `leaf`.
+  static std::string doubled(int levels, const std::string& leaf) {
+    std::string nodes;
+    for (int i = 0; i < levels; ++i) {
+      const std::string next = "<instance_node url=\"#n" + std::to_string(i + 1) + "\"/>";
+      nodes += "<node id=\"n" + std::to_string(i) + "\">" + next + next + "</node>";
+    }
+    return nodes + "<node id=\"n" + std::to_string(levels) + "\">" + leaf + "</node>";
+  }
+
+  // The cube under `chain` objects that move it, and `levels` that show the one before twice.
+  std::string threemf(int chain, int levels) const {
+    const std::string moved = R"( transform="1 0 0 0 1 0 0 0 1 0.5 0 0"/>)";
+    std::string objects;
+    int last = 1;
+    for (int i = 0; i < chain + levels; ++i, ++last) {
+      const std::string part = "<component objectid=\"" + std::to_string(last) + "\"" + moved;
+      objects += "<object id=\"" + std::to_string(last + 1) + "\"><components>" + part +
+                 (i < chain ? "" : part) + "</components></object>";
+    }
+    const std::string model =
+        replaced(test::threemf_model(cube_), "</resources>", objects + "</resources>");
+    return test::threemf_bytes(
+        replaced(model, "<item objectid=\"1\"", "<item objectid=\"" + std::to_string(last) + "\""));
+  }
+
+  TriangleMesh cube_ = test::cube_mesh();
+};
+
+const std::string kMatrix = "<matrix>1 0 0 0.5 0 1 0 0 0 0 1 0 0 0 0 1</matrix>";
+const std::string kShown = "<instance_geometry url=\"#g\"/>";
+const std::string kRoot = "<instance_node url=\"#n0\"/>";
+
+TEST(SceneBudget, CountsWhatIsShownAndMoved) {
+  const std::string file = "scene";
+  TriangleMesh mesh;
+  mesh.vertices.resize((1 << 20) - 1);
+  internal::SceneBudget shown(file, 0), moved(file, 0);
+  for (int i = 0; i < 32; ++i) shown.take(mesh, 0);
+  EXPECT_THROW(shown.take(mesh, 0), Error);
+  moved.take(mesh, 512);
+  EXPECT_THROW(moved.take({}, 1), Error);
+}
+
+TEST_F(SceneLimits, ThreeMfComponents) {
+  EXPECT_EQ(read("3mf", threemf(40, 10)).triangles.size(), 1024u * 12u);
+  EXPECT_TRUE(refused("3mf", threemf(46, 18), "more than 2^18 nodes"));
+}
+
+TEST_F(SceneLimits, ColladaNodes) {
+  const std::string leaf = repeated(kMatrix, 200) + kShown;
+  EXPECT_EQ(read("dae", collada(doubled(10, leaf), kRoot)).triangles.size(), 1024u * 12u);
+  EXPECT_TRUE(
+      refused("dae", collada(doubled(17, repeated(kMatrix, 490)), kRoot), "too many times"));
+  EXPECT_TRUE(
+      refused("dae", collada(doubled(17, repeated("<extra/>", 10000)), kRoot), "too many times"));
+}
+
+TEST_F(SceneLimits, ColladaSourcesAndNames) {
+  std::string geometries =
+      "<geometry id=\"h\"><mesh><source id=\"t\"><float_array id=\"u\">" + repeated("0 ", 30000) +
+      "</float_array><technique_common><accessor source=\"#u\" count=\"10000\" "
+      "stride=\"3\"><param name=\"X\"/><param name=\"Y\"/><param name=\"Z\"/>"
+      "</accessor></technique_common></source><vertices id=\"w\">"
+      "<input semantic=\"POSITION\" source=\"#t\"/></vertices></mesh></geometry>";
+  std::string shown;
+  for (int i = 0; i < 800; ++i) {
+    const std::string id = "h" + std::to_string(i);
+    geometries += "<geometry id=\"" + id + "\"><mesh><vertices id=\"w" + id +
+                  "\"><input semantic=\"POSITION\" source=\"#t\"/></vertices></mesh></geometry>";
+    shown += "<instance_geometry url=\"#" + id + "\"/>";
+  }
+  const auto with_geometries = [&](const std::string& instances) {
+    return replaced(collada("", instances + kShown), "<library_geometries>",
+                    "<library_geometries>" + geometries);
+  };
+  EXPECT_EQ(read("dae", with_geometries("")).triangles.size(), 12u);
+  EXPECT_TRUE(refused("dae", with_geometries(shown), "too many times"));
+
+  const std::string name(100000, 'x');
+  const std::string node = "<instance_node url=\"#" + name + "\"/>";
+  EXPECT_TRUE(
+      refused("dae", collada("<node id=\"" + name + "\"/>" + doubled(16, repeated(node, 8)), kRoot),
+              "too many times"));
+  std::string attributes;
+  for (int i = 0; i < 65; ++i) attributes += " a" + std::to_string(i) + "=\"\"";
+  EXPECT_TRUE(refused("dae", collada("<node" + attributes + "/>", kShown), "64 attributes"));
+}
+
+// A skin of many joints, of which one moves all vertices; the last joint of its skeleton.
+TEST_F(SceneLimits, ColladaSkins) {
+  constexpr int kJoints = 2000;
+  std::string names, skeleton;
+  for (int i = 0; i < kJoints; ++i) {
+    const std::string joint = "j" + std::to_string(i);
+    names += joint + " ";
+    skeleton += "<node sid=\"" + joint + "\"/>";
+  }
+  const std::string joint = std::to_string(kJoints - 1);
+  const std::string skin =
+      "<library_controllers><controller id=\"c\"><skin source=\"#g\"><source "
+      "id=\"jn\"><Name_array>" +
+      names + "</Name_array></source><source id=\"jm\"><float_array id=\"ja\">" +
+      repeated("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 ", kJoints) +
+      "</float_array><technique_common><accessor source=\"#ja\" stride=\"16\" count=\"" +
+      std::to_string(kJoints) +
+      "\"><param type=\"float4x4\"/></accessor></technique_common></source>"
+      "<source id=\"ws\"><float_array id=\"wa\">1</float_array><technique_common><accessor "
+      "source=\"#wa\" count=\"1\"><param name=\"W\"/></accessor></technique_common></source>"
+      "<joints><input semantic=\"JOINT\" source=\"#jn\"/><input semantic=\"INV_BIND_MATRIX\" "
+      "source=\"#jm\"/></joints><vertex_weights><input semantic=\"JOINT\" source=\"#jn\" "
+      "offset=\"0\"/><input semantic=\"WEIGHT\" source=\"#ws\" offset=\"1\"/><vcount>" +
+      repeated("1 ", 8) + "</vcount><v>" + repeated(joint + " 0 ", 8) +
+      "</v></vertex_weights></skin></controller></library_controllers>";
+  const auto with_instances = [&](int levels) {
+    const std::string instance =
+        "<instance_controller url=\"#c\"><skeleton>#root</skeleton></instance_controller>";
+    return replaced(
+        collada(doubled(levels, instance), "<node id=\"root\">" + skeleton + "</node>" + kRoot),
+        "<library_nodes>", skin + "<library_nodes>");
+  };
+  EXPECT_EQ(read("dae", with_instances(4)).triangles.size(), 16u * 12u);
+  EXPECT_TRUE(refused("dae", with_instances(14), "too many times"));
+}
+
+TEST_F(SceneLimits, GltfAccessors) {
+  const std::string good = test::gltf_text(cube_, Eigen::Vector3d::Zero());
+  const auto zeros = [&](const std::string& count) {
+    return replaced(good, R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":8)",
+                    R"({"componentType":5126,"type":"VEC3","count":)" + count +
+                        R"(,"sparse":{"count":1,"indices":{"bufferView":1,"componentType":5125},)"
+                        R"("values":{"bufferView":0}})");
+  };
+  EXPECT_EQ(read("gltf", zeros("8")).vertices.size(), 1u);  // all are at the same place
+  EXPECT_TRUE(refused("gltf", zeros("5592406"), "too many zeros"));
+  EXPECT_TRUE(refused("gltf", zeros("134217726"), "too many times"));
+}
+
+}  // namespace
+}  // namespace spherule::scene_limits_test
