@@ -225,7 +225,8 @@ void add_fit(CLI::App& app, int& exit_code) {
            "Lengths are numbers, in output units (mesh units times --scale, or --units), or have "
            "a unit of their own: 1mm, 10cm, 0.5in. Smaller errors need more spheres, about three "
            "times as many for half of E. Of scenes (COLLADA, glTF, 3MF) at most 2^25 vertices and "
-           "triangles and 2^18 nodes are read, faces have at most four times as many corners as "
+           "triangles are read, and 2^18 nodes or objects; faces have at most four times as many "
+           "corners as "
            "the mesh has vertices; other formats need about ten times their size of memory.",
        .exit_codes = "0 proved to cover and to protrude by at most E; 1 not proved (the files are "
                      "written and say so)",

@@ -151,7 +151,8 @@ struct SphereFileContext {
 //   <collision>.
 // Throws Error for spheres that are not usable or (but for kSpherule) have no extent,
 // names that are empty, twice, not UTF-8 or have control characters, numbers that are not finite,
-// links that the URDF does not have, and files that cannot be read or written.
+// links that the URDF does not have, an SRDF whose text cannot be kept as it is not well-formed
+// XML, and files that cannot be read or written.
 void write_robot_spheres(const RobotSpheres& spheres, SphereFormat format,
                          const SphereFileContext& context, const std::filesystem::path& path);
 

@@ -8,10 +8,10 @@
 #include "tests/robot/formats/sphere_sets.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <vector>
 
 namespace spherule::test {
@@ -29,8 +29,10 @@ auto unless_refused(Read read) -> std::optional<decltype(read())> {
   }
 }
 
+// By name: a URDF keeps its own order.
 std::vector<LinkSpheres> without_empty(std::vector<LinkSpheres> links) {
   std::erase_if(links, [](const LinkSpheres& link) { return link.spheres.empty(); });
+  std::ranges::sort(links, {}, &LinkSpheres::link);
   return links;
 }
 
@@ -50,7 +52,8 @@ auto read_again(Read read) {
   }
 }
 
-// A line end of old Macs, which before a new line makes one of Windows.
+// A carriage return without a line feed: a line that is added behind one makes CR LF, which the
+// second writing takes for the line end of the file.
 bool has_lone_return(const std::string& text) {
   for (std::size_t at = text.find('\r'); at != std::string::npos; at = text.find('\r', at + 1)) {
     if (at + 1 == text.size() || text[at + 1] != '\n') return true;
@@ -74,22 +77,27 @@ fs::path written_into(const fs::path& file, SphereFormat format) {
 }
 
 // What an SRDF says beside pairs and spheres.
-auto rest_of(const SemanticDescription& semantics) {
-  std::vector<std::tuple<std::string, std::vector<std::string>, std::vector<std::string>,
-                         std::vector<std::string>>>
-      groups;
+std::vector<std::string> rest_of(const SemanticDescription& semantics) {
+  std::vector<std::string> rest = {semantics.robot_name};
+  const auto put = [&](const auto& texts) { rest.insert(rest.end(), texts.begin(), texts.end()); };
   for (const JointGroup& group : semantics.groups) {
-    groups.emplace_back(group.name, group.links, group.joints, group.subgroups);
+    rest.push_back("group " + group.name);
+    put(group.links);
+    put(group.joints);
+    put(group.subgroups);
+    for (const LinkChain& chain : group.chains) put(std::array{chain.base_link, chain.tip_link});
   }
-  std::vector<std::tuple<std::string, std::string, std::size_t>> states;
   for (const GroupState& state : semantics.group_states) {
-    states.emplace_back(state.name, state.group, state.joints.size());
+    put(std::array{"state " + state.name, state.group});
+    for (const JointState& joint : state.joints) {
+      rest.push_back(joint.joint);
+      for (const double position : joint.position) rest.push_back(std::to_string(position));
+    }
   }
-  std::vector<std::tuple<std::string, std::string, std::string, std::string>> tools;
   for (const EndEffector& tool : semantics.end_effectors) {
-    tools.emplace_back(tool.name, tool.group, tool.parent_link, tool.parent_group);
+    put(std::array{"tool " + tool.name, tool.group, tool.parent_link, tool.parent_group});
   }
-  return std::tuple(semantics.robot_name, groups, states, tools);
+  return rest;
 }
 
 }  // namespace
@@ -124,7 +132,8 @@ void write_into_srdf(const fs::path& file) {
   if (!before) return;
   const SemanticDescription after = read_again([&] { return read_srdf(kept); });
   expect_spheres(after.sphere_approximations);
-  if (rest_of(after) != rest_of(*before)) throw std::logic_error("other groups were written");
+  if (rest_of(after) != rest_of(*before))
+    throw std::logic_error("groups, states or end effectors differ");
   for (const DisabledPair& pair : before->disabled_pairs) {
     const bool is_kept = std::ranges::any_of(after.disabled_pairs, [&](const DisabledPair& other) {
       return pair.link_a == other.link_a && pair.link_b == other.link_b &&
@@ -137,9 +146,10 @@ void write_into_srdf(const fs::path& file) {
 void write_into_urdf(const fs::path& file) {
   const UrdfOptions any_mesh{.require_visual_meshes = false, .require_collision_meshes = false};
   const auto before = unless_refused([&] { return read_urdf(file, any_mesh); });
+  const auto spheres_before = unless_refused([&] { return read_robot_spheres(file); });
   const fs::path kept = file.parent_path() / "kept";
   write_robot_spheres(spheres_to_keep(), SphereFormat::kUrdf, {.urdf = file}, kept);
-  if (!before) return;
+  if (!before || !spheres_before) return;
   std::vector<LinkSpheres> after =
       read_again([&] { return read_robot_spheres(kept); }).spheres.links;
   std::erase_if(after, [](const LinkSpheres& link) {

@@ -6,8 +6,8 @@
 #include <filesystem>
 
 // Files of the user into which the spheres of a robot are written, as `read` of FuzzTarget: where
-// the file could be read before, the result reads back to these spheres; YAML and SRDF do not
-// change when they are written into once more.
+// the file could be read before, the result reads back to these spheres; YAML and SRDF (without
+// carriage returns alone) do not change when they are written into once more.
 
 namespace spherule::test {
 

@@ -53,7 +53,7 @@ std::vector<std::string> scene_seeds() {
     "attached": [{"name": "hand", "link": "tool0", "spheres": {"file": "hand.json"}},
       {"name": "tool", "link": "hand", "tree": {"file": "t.tree"}, "pose": {"position": [1, 0, 0]}}],
     "allowed_contacts": [{"body": "hand", "other": "a"}],
-    "padding": [{"body": "hand", "distance": -0.01, "other": "b"}]})"};
+    "padding": [{"body": "hand", "distance": 0.01, "other": "b"}]})"};
 }
 
 std::vector<std::string> trajectory_seeds() {
@@ -94,8 +94,7 @@ std::vector<std::string> srdf_seeds() {
 }
 
 std::vector<std::string> pair_content_seeds() {
-  const std::string file = pair_seeds().front();
-  return {file.substr(0, file.size() - with_checksum("").size())};
+  return {without_checksum(pair_seeds().front())};
 }
 
 std::vector<std::string> pair_seeds() {

@@ -15,6 +15,10 @@ std::string with_checksum(std::string_view content) {
   return file;
 }
 
+std::string without_checksum(std::string_view file) {
+  return std::string(file.substr(0, file.size() - 8));
+}
+
 std::string threemf_around(std::string_view model) {
   return threemf_bytes(std::string(model));
 }

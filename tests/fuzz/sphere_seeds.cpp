@@ -30,8 +30,7 @@ std::vector<std::string> tree_seeds() {
 }
 
 std::vector<std::string> tree_content_seeds() {
-  const std::string file = internal::encode_tree(build_tree(kSpheres));
-  return {file.substr(0, file.size() - with_checksum("").size())};
+  return {without_checksum(internal::encode_tree(build_tree(kSpheres)))};
 }
 
 std::vector<std::string> zone_seeds() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Small files that show their parts, or refer to their numbers, very many times. Each took minutes
 // or gigabytes before it had a limit.
-#include "mesh/io/internal/scene_file.h"
+#include "mesh/io/internal/scene_budget.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/mesh/read_files.h"
 #include "tests/support/zoo.h"
@@ -64,15 +64,19 @@ const std::string kMatrix = "<matrix>1 0 0 0.5 0 1 0 0 0 0 1 0 0 0 0 1</matrix>"
 const std::string kShown = "<instance_geometry url=\"#g\"/>";
 const std::string kRoot = "<instance_node url=\"#n0\"/>";
 
-TEST(SceneBudget, CountsWhatIsShownAndMoved) {
+TEST(SceneBudget, Counts) {
   const std::string file = "scene";
+  internal::SceneBudget budget(file, 2);
+  budget.take_steps(2);
+  EXPECT_THROW(budget.take_steps(1), Error);
   TriangleMesh mesh;
-  mesh.vertices.resize((1 << 20) - 1);
-  internal::SceneBudget shown(file, 0), moved(file, 0);
-  for (int i = 0; i < 32; ++i) shown.take(mesh, 0);
-  EXPECT_THROW(shown.take(mesh, 0), Error);
-  moved.take(mesh, 512);
-  EXPECT_THROW(moved.take({}, 1), Error);
+  mesh.vertices.resize(1 << 20);
+  for (int i = 0; i < 32; ++i) budget.take(mesh);
+  EXPECT_THROW(budget.take(mesh), Error);
+  budget.take_moves((1 << 20) - 1, 512);
+  EXPECT_THROW(budget.take_moves(0, 1), Error);
+  for (int i = 0; i < 1 << 18; ++i) budget.take_node();
+  EXPECT_THROW(budget.take_node(), Error);
 }
 
 TEST_F(SceneLimits, ThreeMfComponents) {
@@ -165,8 +169,22 @@ TEST_F(SceneLimits, GltfAccessors) {
                         R"("values":{"bufferView":0}})");
   };
   EXPECT_EQ(read("gltf", zeros("8")).vertices.size(), 1u);  // all are at the same place
-  EXPECT_TRUE(refused("gltf", zeros("5592406"), "too many zeros"));
-  EXPECT_TRUE(refused("gltf", zeros("134217726"), "too many times"));
+  EXPECT_TRUE(refused("gltf", zeros("5592406"), "more than 2^24 numbers"));
+  const auto with_primitives = [&](const std::string& text, const std::string& primitive,
+                                   int times) {
+    return replaced(text, R"("primitives":[)", R"("primitives":[)" + repeated(primitive, times));
+  };
+  const std::string primitive = R"({"attributes":{"POSITION":0},"indices":1},)";
+  EXPECT_EQ(read("gltf", with_primitives(good, primitive, 9)).triangles.size(), 120u);
+  EXPECT_TRUE(refused("gltf", with_primitives(zeros("5592405"), primitive, 9), "too many times"));
+}
+
+// A character of many vertices and many joints, of which each moves a few.
+TEST_F(SceneLimits, VerticesCountOnlyForTheJointsThatMoveThem) {
+  const TriangleMesh ball = test::icosphere(5);
+  const std::string skin = replaced(test::skinned_gltf(ball), R"("joints":[1])",
+                                    R"("joints":[1)" + repeated(",1", 2000) + "]");
+  EXPECT_EQ(read("gltf", skin).triangles.size(), ball.triangles.size());
 }
 
 }  // namespace

@@ -20,11 +20,18 @@ std::string_view local_name(const Element& element) {
   return name.substr(name.rfind(':') + 1);
 }
 
-// Attributes are searched for one after the other. The schema has far fewer for each element.
+// Attributes are searched for one after the other; the schema has far fewer for any element.
+constexpr int kMaxAttributes = 64;
+
 bool has_few_attributes(const Element& element) {
   int count = 0;
-  for (auto* at = element.FirstAttribute(); at != nullptr && count <= 64; at = at->Next()) ++count;
-  return count <= 64;
+  for (auto* at = element.FirstAttribute(); at != nullptr; at = at->Next()) ++count;
+  return count <= kMaxAttributes;
+}
+
+// Steps of the budget for the length of a text that is copied or compared.
+std::size_t steps_for(std::string_view text) {
+  return text.size() / 16;
 }
 
 }  // namespace
@@ -46,7 +53,9 @@ void ColladaDocument::index(const Element& element) {
   for (const Element* at = element.FirstChildElement(); at != nullptr;
        at = at->NextSiblingElement()) {
     if (local_name(*at) != at->Name()) fail(*at, "a namespace prefix is not supported");
-    if (!has_few_attributes(*at)) fail(*at, "has more than 64 attributes");
+    if (!has_few_attributes(*at)) {
+      fail(*at, "has more than " + std::to_string(kMaxAttributes) + " attributes");
+    }
     if (const char* id = at->Attribute("id")) {
       const auto [it, is_new] = ids_.try_emplace({at->Name(), id}, at);
       if (!is_new) it->second = nullptr;
@@ -58,7 +67,6 @@ void ColladaDocument::index(const Element& element) {
 const Element& ColladaDocument::referred(const char* name, const Element& from,
                                          const char* attribute) const {
   const std::string reference = text_attribute(from, attribute);
-  budget_.take_steps(reference.size() / 16);
   if (!reference.starts_with('#')) {
     fail(from, "refers to " + in_quotes(reference) + ", which is not in this file");
   }
@@ -67,6 +75,7 @@ const Element& ColladaDocument::referred(const char* name, const Element& from,
 
 const Element& ColladaDocument::with_id(const char* name, const std::string& id,
                                         const Element& from) const {
+  budget_.take_steps(steps_for(id));
   const auto it = ids_.find({name, id});
   if (it == ids_.end()) {
     fail(from, "refers to the " + std::string(name) + " " + in_quotes(id) + ", which is not there");
@@ -78,18 +87,28 @@ const Element& ColladaDocument::with_id(const char* name, const std::string& id,
   return *it->second;
 }
 
-const Element& ColladaDocument::child(const Element& parent, const char* name) const {
-  const Element* const found = parent.FirstChildElement(name);
-  if (found == nullptr) fail(parent, "has no <" + std::string(name) + ">");
-  if (found->NextSiblingElement(name) != nullptr) {
-    fail(parent, "has more than one <" + std::string(name) + ">");
+std::vector<const Element*> ColladaDocument::children(const Element& parent,
+                                                      const char* name) const {
+  std::vector<const Element*> result;
+  for (const Element* at = parent.FirstChildElement(); at != nullptr;
+       at = at->NextSiblingElement()) {
+    budget_.take_steps(1);
+    if (name == nullptr || std::string_view(at->Name()) == name) result.push_back(at);
   }
-  return *found;
+  return result;
+}
+
+const Element& ColladaDocument::child(const Element& parent, const char* name) const {
+  const std::vector<const Element*> found = children(parent, name);
+  if (found.empty()) fail(parent, "has no <" + std::string(name) + ">");
+  if (found.size() > 1) fail(parent, "has more than one <" + std::string(name) + ">");
+  return *found.front();
 }
 
 std::string ColladaDocument::text_attribute(const Element& element, const char* name) const {
   const char* const text = element.Attribute(name);
   if (text == nullptr) fail(element, "has no attribute " + in_quotes(name));
+  budget_.take_steps(steps_for(text));
   return text;
 }
 
@@ -97,6 +116,7 @@ std::size_t ColladaDocument::whole_attribute(const Element& element, const char*
                                              std::size_t absent) const {
   const char* const text = element.Attribute(name);
   if (text == nullptr) return absent;
+  budget_.take_steps(steps_for(text));
   const std::optional<std::int64_t> value = whole_number(text);
   if (!value || *value < 0 || *value > std::numeric_limits<std::uint32_t>::max()) {
     fail(element, "the attribute " + in_quotes(name) + " is not a whole number below 2^32");
@@ -114,7 +134,9 @@ std::string_view ColladaDocument::text(const Element& element) const {
 }
 
 std::vector<std::string_view> ColladaDocument::split(const Element& element) const {
-  std::vector<std::string_view> words = words_of(text(element));
+  const std::string_view content = text(element);
+  budget_.take_steps(steps_for(content));
+  std::vector<std::string_view> words = words_of(content);
   budget_.take_steps(words.size());
   return words;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/io/internal/scene_file.h"
+#include "mesh/io/internal/scene_budget.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -32,13 +32,15 @@ class ColladaDocument {
   const Element& referred(const char* name, const Element& from, const char* attribute) const;
   const Element& with_id(const char* name, const std::string& id, const Element& from) const;
 
+  // The children of this name, or all. Every child is a step of the budget.
+  std::vector<const Element*> children(const Element& parent, const char* name = nullptr) const;
   // The only child of this name, which has to be there.
   const Element& child(const Element& parent, const char* name) const;
   std::string text_attribute(const Element& element, const char* name) const;
   // A whole number that is not negative, `absent` if there is no such attribute.
   std::size_t whole_attribute(const Element& element, const char* name, std::size_t absent) const;
 
-  // What stands in an element, nothing but white space between; each is a step of the budget.
+  // What stands in an element, nothing but white space between. Each is a step of the budget.
   std::vector<double> numbers(const Element& element) const;
   std::vector<std::int64_t> whole_numbers(const Element& element) const;
   std::vector<std::string> words(const Element& element) const;

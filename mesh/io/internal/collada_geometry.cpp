@@ -172,8 +172,7 @@ ColladaValues collada_values(const ColladaDocument& document, const Element& sou
   }
   std::vector<std::size_t> picked;
   std::size_t width = 0;
-  for (const Element* param = accessor.FirstChildElement("param"); param != nullptr;
-       param = param->NextSiblingElement("param")) {
+  for (const Element* param : document.children(accessor, "param")) {
     const char* const type = param->Attribute("type");
     const bool is_matrix = type != nullptr && std::string_view(type) == "float4x4";
     const std::size_t size = is_matrix ? 16 : 1;

@@ -25,7 +25,7 @@ void read_joints(const ColladaDocument& document, const Element& skin, ColladaSk
   const Element& joints = document.child(skin, "joints");
   const Element& names =
       document.referred("source", needed_input(document, joints, "JOINT"), "source");
-  result.are_ids = names.FirstChildElement("IDREF_array") != nullptr;
+  result.are_ids = !document.children(names, "IDREF_array").empty();
   result.joints =
       document.words(document.child(names, result.are_ids ? "IDREF_array" : "Name_array"));
   const Element& matrices =

@@ -24,7 +24,7 @@ constexpr std::uint64_t kInt8 = 5120, kUint8 = 5121, kInt16 = 5122, kUint16 = 51
 
 // Elements of one accessor: more than any mesh that is read has corners.
 constexpr std::uint64_t kMaxCount = std::uint64_t{1} << 27;
-// Numbers that are zero because no buffer holds them.
+// Numbers of a sparse accessor that are zero because no buffer holds them.
 constexpr std::size_t kMaxZeros = std::size_t{1} << 24;
 // What it costs to find an accessor, in numbers read.
 constexpr std::size_t kLookup = 32;
@@ -115,9 +115,9 @@ GltfValues GltfAccessors::read(std::uint64_t index, const GltfElements& elements
   const auto count = static_cast<std::size_t>(stated);
   GltfValues result{.numbers = {}, .components = components_of(elements.type)};
   result.is_exact = !is_normalized;
-  budget_.take_steps(kLookup + count * result.components);
   if (accessor.contains("bufferView")) {
     const Layout layout = this->layout(accessor, size * result.components, count, true);
+    budget_.take_steps(kLookup + count * result.components);
     result.numbers.reserve(count * result.components);
     for (std::size_t i = 0; i < count; ++i) {
       const char* element = layout.bytes.data() + i * layout.stride;
@@ -127,7 +127,10 @@ GltfValues GltfAccessors::read(std::uint64_t index, const GltfElements& elements
     }
   } else {
     if (!accessor.contains("sparse")) document_.fail("an accessor without data");
-    if (count * result.components > kMaxZeros) document_.fail("an accessor of too many zeros");
+    if (count * result.components > kMaxZeros) {
+      document_.fail("a sparse accessor of more than 2^24 numbers without a buffer view");
+    }
+    budget_.take_steps(kLookup + count * result.components);
     result.numbers.assign(count * result.components, 0.0);
   }
   if (const Json* sparse = document_.member(accessor, "sparse")) {
@@ -195,7 +198,7 @@ std::string_view GltfAccessors::buffer(std::uint64_t index) {
   const std::uint64_t size = document_.whole(entry, "byteLength", 0);
   std::string_view bytes;
   if (entry.contains("uri")) {
-    const auto [it, is_new] = loaded_.try_emplace(index);
+    const auto [it, is_new] = buffers_.try_emplace(index);
     if (is_new) it->second = load(document_.text(entry, "uri"));
     bytes = it->second;
   } else if (index == 0 && document_.binary_chunk()) {
@@ -207,17 +210,21 @@ std::string_view GltfAccessors::buffer(std::uint64_t index) {
   return bytes.substr(0, static_cast<std::size_t>(size));
 }
 
-std::string GltfAccessors::load(const std::string& uri) const {
+std::string_view GltfAccessors::load(const std::string& uri) {
   if (uri.starts_with("data:")) {
     std::optional<std::string> bytes = bytes_of_data_uri(uri);
     if (!bytes) document_.fail("a data URI that is not base64");
-    return *std::move(bytes);
+    return decoded_.emplace_back(*std::move(bytes));
   }
-  const std::optional<std::filesystem::path> file = file_below(file_.parent_path(), uri);
-  if (!file) {
-    document_.fail("the buffer " + uri.substr(0, 60) + " is not a file in its folder or below");
+  const auto [it, is_new] = files_.try_emplace(uri);
+  if (is_new) {
+    const std::optional<std::filesystem::path> file = file_below(file_.parent_path(), uri);
+    if (!file) {
+      document_.fail("the buffer " + uri.substr(0, 60) + " is not a file in its folder or below");
+    }
+    it->second = read_regular_file(*file);
   }
-  return read_regular_file(*file);
+  return it->second;
 }
 
 }  // namespace spherule::internal

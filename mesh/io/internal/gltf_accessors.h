@@ -2,11 +2,12 @@
 #pragma once
 
 #include "mesh/io/internal/gltf_document.h"
-#include "mesh/io/internal/scene_file.h"
+#include "mesh/io/internal/scene_budget.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <list>
 #include <map>
 #include <string>
 #include <string_view>
@@ -51,7 +52,8 @@ class GltfAccessors {
   };
 
   std::string_view buffer(std::uint64_t index);
-  std::string load(const std::string& uri) const;
+  // The bytes of a URI, which stay with the object; a file is read once.
+  std::string_view load(const std::string& uri);
   Layout layout(const GltfDocument::Json& place, std::size_t size, std::size_t count,
                 bool may_stride);
   void add_sparse(const GltfDocument::Json& sparse, std::uint64_t type, std::size_t count,
@@ -60,7 +62,9 @@ class GltfAccessors {
   const GltfDocument& document_;
   const std::filesystem::path& file_;
   SceneBudget& budget_;
-  std::map<std::uint64_t, std::string> loaded_;
+  std::map<std::uint64_t, std::string_view> buffers_;  // by number
+  std::map<std::string, std::string> files_;           // by URI
+  std::list<std::string> decoded_;                     // of data URIs
 };
 
 }  // namespace spherule::internal

@@ -15,13 +15,15 @@
 
 namespace spherule::internal {
 
+// Not to be changed once it is made, or `gain` is wrong.
 struct Affine {
-  Affine() : Affine(Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()) {}
-  Affine(const Eigen::Matrix3d& linear, const Eigen::Vector3d& offset);
+  Affine() = default;
+  Affine(const Eigen::Matrix3d& of_linear, const Eigen::Vector3d& of_offset);
 
-  Eigen::Matrix3d linear;
-  Eigen::Vector3d offset;
-  double gain;  // a bound on the norm of `linear`
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  // An upper bound of the spectral norm of `linear`, found once, as every instance needs it.
+  double gain = 1.0;
 };
 
 // The transform of a matrix for column vectors; nothing if it is not affine or not finite.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/io/internal/mesh_readers.h"
 #include "mesh/io/internal/placed_part.h"
-#include "mesh/io/internal/scene_file.h"
+#include "mesh/io/internal/scene_budget.h"
 #include "mesh/io/internal/xml_events.h"
 #include "mesh/io/internal/zip_member.h"
 #include "mesh/io/length_unit.h"
@@ -216,8 +216,9 @@ class ModelReader : public XmlHandler {
 
   void show(const Component& shown, std::vector<Affine>& chain, TriangleMesh& result) {
     budget_.take_node();
-    budget_.take(shown.object->mesh, chain.size() + 1);
     if (shown.transform) chain.push_back(*shown.transform);
+    budget_.take(shown.object->mesh);
+    budget_.take_moves(shown.object->mesh.vertices.size(), chain.size());
     TriangleMesh part = shown.object->mesh;
     place(part, chain, kUnitRoundoff, kUnitRoundoff);
     append(result, part, subject_);

@@ -4,6 +4,7 @@
 #include "mesh/io/internal/collada_nodes.h"
 #include "mesh/io/internal/collada_skin.h"
 #include "mesh/io/internal/placed_part.h"
+#include "mesh/io/internal/scene_budget.h"
 #include "mesh/io/internal/scene_file.h"
 #include "spheretree/text.h"
 
@@ -21,12 +22,15 @@ namespace {
 
 using Element = ColladaDocument::Element;
 
+// What an entry of a map costs, in steps of the budget.
+constexpr std::size_t kMapEntry = 16;
+
 class ColladaReader {
  public:
   ColladaReader(std::string_view bytes, const std::string& subject)
       : subject_(subject), budget_(subject, steps_of(bytes)), document_(bytes, subject, budget_) {}
 
-  // Every number can be read, and some again: a word takes two bytes.
+  // A number takes two bytes or more, so each can be read at least twice.
   static std::size_t steps_of(std::string_view bytes) {
     return (std::size_t{1} << 24) + bytes.size();
   }
@@ -66,9 +70,7 @@ class ColladaReader {
   }
 
   void visit_children(const Element& parent) {
-    for (const Element* at = parent.FirstChildElement(); at != nullptr;
-         at = at->NextSiblingElement()) {
-      budget_.take_steps(1);
+    for (const Element* at : document_.children(parent)) {
       const std::string_view name = at->Name();
       if (name == "node") {
         visit(*at);
@@ -80,7 +82,8 @@ class ColladaReader {
         visit(node);
       } else if (name == "instance_geometry") {
         TriangleMesh part = mesh_of(document_.referred("geometry", *at, "url"));
-        budget_.take(part, chain_.size());
+        budget_.take(part);
+        budget_.take_moves(part.vertices.size(), chain_.size());
         place(part, chain_, 0.0, kColladaEntryError);
         append(result_, part, subject_);
       } else if (name == "instance_controller") {
@@ -102,7 +105,7 @@ class ColladaReader {
     chain_.erase(chain_.begin() + static_cast<std::ptrdiff_t>(before), chain_.end());
   }
 
-  // What follows is parsed once however often it is shown.
+  // The results of the following are kept: each element is parsed once however often it is shown.
   const TriangleMesh& mesh_of(const Element& geometry) {
     const auto [it, is_new] = meshes_.try_emplace(&geometry);
     if (is_new) it->second = collada_mesh(document_, geometry, subject_);
@@ -115,13 +118,13 @@ class ColladaReader {
     return it->second;
   }
 
-  struct BoundMesh {
+  struct SkinnedMesh {
     const TriangleMesh* rest = nullptr;
     ColladaSkin skin;
   };
 
-  const BoundMesh& bound_mesh_of(const Element& controller) {
-    const auto [it, is_new] = bound_meshes_.try_emplace(&controller);
+  const SkinnedMesh& skinned_mesh_of(const Element& controller) {
+    const auto [it, is_new] = skinned_meshes_.try_emplace(&controller);
     if (!is_new) return it->second;
     const Element* const skin = controller.FirstChildElement("skin");
     if (skin == nullptr) document_.fail(controller, "is no skin: morphs are not supported");
@@ -130,53 +133,56 @@ class ColladaReader {
     return it->second;
   }
 
+  using Joints = std::map<std::string_view, const Element*>;
+
+  // The first node of each sid at or below `root`.
+  const Joints& joints_below(const Element& root) {
+    const auto [it, is_new] = joints_.try_emplace(&root);
+    if (is_new) gather_joints(root, it->second);
+    return it->second;
+  }
+
+  void gather_joints(const Element& node, Joints& joints) {
+    if (const char* const sid = node.Attribute("sid")) {
+      const std::string_view name = sid;
+      budget_.take_steps(kMapEntry + name.size());
+      joints.try_emplace(name, &node);
+    }
+    for (const Element* at : document_.children(node, "node")) gather_joints(*at, joints);
+  }
+
   void show_controller(const Element& instance) {
-    const BoundMesh& bound_mesh = bound_mesh_of(document_.referred("controller", instance, "url"));
-    const TriangleMesh& rest = *bound_mesh.rest;
-    const ColladaSkin& bound = bound_mesh.skin;
-    budget_.take_steps(bound.joints.size() + rest.vertices.size());
+    const SkinnedMesh& shown = skinned_mesh_of(document_.referred("controller", instance, "url"));
+    const TriangleMesh& rest = *shown.rest;
+    const ColladaSkin& skin = shown.skin;
+    budget_.take(rest);
+    budget_.take_steps(skin.joints.size());
     SkinnedPart part(rest, kColladaEntryError);
-    for (std::size_t j = 0; j <= bound.joints.size(); ++j) {
-      if (bound.weights[j].empty()) continue;
+    for (std::size_t j = 0; j <= skin.joints.size(); ++j) {
+      if (skin.weights[j].empty()) continue;
       std::vector<Affine> chain = root_chain_;
-      if (j < bound.joints.size()) {
-        chain = chain_of_joint(joint_of(bound, j, instance), instance);
-        chain.push_back(bound.inverse_bind[j]);
+      if (j < skin.joints.size()) {
+        chain = chain_of_joint(joint_of(skin, j, instance), instance);
+        chain.push_back(skin.inverse_bind[j]);
       }
-      chain.push_back(bound.bind_shape);
-      budget_.take(rest, chain.size());
-      part.add(chain, bound.weights[j]);
+      chain.push_back(skin.bind_shape);
+      budget_.take_moves(skin.weights[j].size(), chain.size());
+      part.add(chain, skin.weights[j]);
     }
     append(result_, part.take(), subject_);
   }
 
   const Element& joint_of(const ColladaSkin& skin, std::size_t j, const Element& instance) {
     if (skin.are_ids) return document_.with_id("node", skin.joints[j], instance);
-    for (const Element* at = instance.FirstChildElement("skeleton"); at != nullptr;
-         at = at->NextSiblingElement("skeleton")) {
-      budget_.take_steps(1);
+    for (const Element* at : document_.children(instance, "skeleton")) {
       const std::vector<std::string> words = document_.words(*at);
       const std::string id = words.empty() ? "" : words.front();
       if (!id.starts_with('#')) document_.fail(*at, "names no node of this file");
-      const Element& root = document_.with_id("node", id.substr(1), *at);
-      if (const Element* const found = with_sid(root, skin.joints[j])) return *found;
+      const Joints& joints = joints_below(document_.with_id("node", id.substr(1), *at));
+      const auto found = joints.find(skin.joints[j]);
+      if (found != joints.end()) return *found->second;
     }
     document_.fail(instance, "has no skeleton with the joint " + skin.joints[j]);
-  }
-
-  const Element* with_sid(const Element& node, const std::string& sid) {
-    if (const char* const attribute = node.Attribute("sid")) {
-      const std::string_view own = attribute;
-      budget_.take_steps(own.size() / 16);
-      if (own == sid) return &node;
-    }
-    for (const Element* at = node.FirstChildElement(); at != nullptr;
-         at = at->NextSiblingElement()) {
-      budget_.take_steps(1);
-      if (std::string_view(at->Name()) != "node") continue;
-      if (const Element* const found = with_sid(*at, sid)) return found;
-    }
-    return nullptr;
   }
 
   std::vector<Affine> chain_of_joint(const Element& joint, const Element& instance) {
@@ -184,6 +190,7 @@ class ColladaReader {
     const tinyxml2::XMLElement* at = &joint;
     for (; at != nullptr && at != scene_;
          at = at->Parent() == nullptr ? nullptr : at->Parent()->ToElement()) {
+      budget_.take_steps(1);
       const std::vector<Affine>& own = transforms_of(*at);
       upward.insert(upward.end(), own.rbegin(), own.rend());
     }
@@ -203,7 +210,8 @@ class ColladaReader {
   std::vector<Affine> root_chain_;
   std::map<const Element*, TriangleMesh> meshes_;
   std::map<const Element*, std::vector<Affine>> transforms_;
-  std::map<const Element*, BoundMesh> bound_meshes_;
+  std::map<const Element*, SkinnedMesh> skinned_meshes_;
+  std::map<const Element*, Joints> joints_;
   TriangleMesh result_;
 };
 

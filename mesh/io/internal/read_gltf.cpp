@@ -4,6 +4,7 @@
 #include "mesh/io/internal/gltf_document.h"
 #include "mesh/io/internal/mesh_readers.h"
 #include "mesh/io/internal/placed_part.h"
+#include "mesh/io/internal/scene_budget.h"
 #include "mesh/io/internal/scene_file.h"
 #include "spheretree/rounding.h"
 
@@ -28,8 +29,11 @@ using Json = GltfDocument::Json;
 
 constexpr std::uint64_t kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;
 constexpr std::size_t kNone = ~std::size_t{0};
-// Of all accessors, each time they are read; the largest mesh that is shown has 3 * 2^25.
+// Numbers read from accessors, each reading counted: positions and indices of the largest mesh that
+// can be shown are 3 * 2^25.
 constexpr std::size_t kMaxNumbers = std::size_t{1} << 27;
+// What a primitive, or a joint of a skin, costs without its numbers.
+constexpr std::size_t kPrimitive = 32;
 // Of decimal numbers, and of the few products and the square root that make a matrix of them.
 constexpr double kEntryError = 0x1p-50;
 
@@ -45,6 +49,22 @@ struct Node {
   std::size_t moved_by = kNone;  // the nearest of it and those above it that has a transform
   std::optional<Affine> transform{};
 };
+
+void remove_unused_vertices(TriangleMesh& mesh) {
+  std::vector<int> place(mesh.vertices.size(), -1);
+  std::vector<Vector3d> used;
+  for (Eigen::Vector3i& triangle : mesh.triangles) {
+    for (int& corner : triangle) {
+      int& to = place[static_cast<std::size_t>(corner)];
+      if (to < 0) {
+        to = static_cast<int>(used.size());
+        used.push_back(mesh.vertices[static_cast<std::size_t>(corner)]);
+      }
+      corner = to;
+    }
+  }
+  mesh.vertices = std::move(used);
+}
 
 class GltfReader {
  public:
@@ -66,7 +86,8 @@ class GltfReader {
         if (skin) {
           bend(primitive, document_.item("skins", *skin));
         } else {
-          budget_.take(primitive.mesh, chain.size());
+          budget_.take(primitive.mesh);
+          budget_.take_moves(primitive.mesh.vertices.size(), chain.size());
           place(primitive.mesh, chain, 0.0, kEntryError);
         }
         append(result_, primitive.mesh, subject_);
@@ -168,6 +189,7 @@ class GltfReader {
   std::vector<Primitive> read_primitives(const Json& mesh, std::span<const double> weights) {
     std::vector<Primitive> result;
     for (const Json& primitive : document_.list(mesh, "primitives")) {
+      budget_.take_steps(kPrimitive);
       const std::uint64_t mode = document_.whole(primitive, "mode", kTriangles);
       if (mode < kTriangles) continue;  // points and lines
       if (mode > kTriangleFan) document_.fail("an unknown kind of primitive");
@@ -176,6 +198,8 @@ class GltfReader {
       if (made.attributes == nullptr) document_.fail("a mesh without positions");
       add_vertices(primitive, weights, made);
       add_triangles(primitive, mode, made.mesh);
+      // Parts often share one long list of vertices; joints are given for all of them.
+      if (!made.attributes->contains("JOINTS_0")) remove_unused_vertices(made.mesh);
     }
     return result;
   }
@@ -250,6 +274,8 @@ class GltfReader {
   // 3.7.3): v = sum over joints of weight * joint * inverse bind matrix * v.
   void bend(Primitive& primitive, const Json& skin) {
     const std::vector<std::uint64_t> joints = document_.indices(skin, "joints");
+    budget_.take(primitive.mesh);
+    budget_.take_steps(kPrimitive * joints.size());
     std::vector<Affine> inverse_bind(joints.size());
     if (const auto accessor = document_.index(skin, "inverseBindMatrices")) {
       const GltfValues matrices =
@@ -263,9 +289,10 @@ class GltfReader {
     const std::vector<std::vector<JointWeight>> weights = joint_weights(primitive, joints.size());
     for (std::size_t j = 0; j < joints.size(); ++j) {
       document_.item("nodes", joints[j]);
+      if (weights[j].empty()) continue;
       std::vector<Affine> chain = chain_of(static_cast<std::size_t>(joints[j]));
       chain.push_back(inverse_bind[j]);
-      budget_.take(primitive.mesh, chain.size());
+      budget_.take_moves(weights[j].size(), chain.size());
       part.add(chain, weights[j]);
     }
     primitive.mesh = part.take();

@@ -177,7 +177,8 @@ XmlFile::XmlFile(std::string name, const std::string& text, std::string_view tag
   if (root->NextSiblingElement() != nullptr) throw Error(name_, "it has more than one root");
   for (const tinyxml2::XMLNode* node = document_->FirstChild(); node; node = node->NextSibling()) {
     if (node->ToText() == nullptr) continue;
-    throw Error(name_, "line " + std::to_string(node->GetLineNum()) + ": text beside the root");
+    throw Error(
+        name_, "line " + std::to_string(node->GetLineNum()) + ": text outside of the root element");
   }
 }
 

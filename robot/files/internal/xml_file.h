@@ -63,8 +63,8 @@ class XmlElement {
 
 class XmlFile {
  public:
-  // Throws Error for a file that cannot be read, is no XML, or has another root than `tag`,
-  // or text beside it.
+  // Throws Error for a file that cannot be read, is no XML, or has another root than `tag`
+  // or text outside of it.
   XmlFile(const std::filesystem::path& path, std::string_view tag);
   // Of the text of a file of this name.
   XmlFile(std::string name, const std::string& text, std::string_view tag);

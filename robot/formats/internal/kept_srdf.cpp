@@ -23,7 +23,7 @@ struct XmlPart {
   std::size_t end = 0;
 };
 
-// What stands where in a well-formed document; of another one, anything.
+// Positions of the elements of a well-formed document; meaningless of any other.
 struct XmlParts {
   std::vector<XmlPart> children;
   std::size_t root_end = 0;  // where the root's end tag starts, or the "/>" of a root without one
@@ -145,33 +145,35 @@ std::set<Names> decided_pairs(const XmlElement& robot) {
   return pairs;
 }
 
-// The children of the root as they read: how many are pairs and spheres, and the text of the rest.
-struct Census {
+// What the parser finds below the root: the number of pairs and of spheres, and the other elements
+// as text.
+struct RootContent {
   std::size_t pairs = 0;
   std::size_t spheres = 0;
   std::vector<std::string> rest{};
 
-  bool operator==(const Census&) const = default;
+  bool operator==(const RootContent&) const = default;
 };
 
-Census census_of(const XmlElement& robot) {
-  Census census;
+RootContent content_of(const XmlElement& robot) {
+  RootContent content;
   for (const XmlElement& child : robot.children()) {
     if (child.tag() == "disable_collisions") {
-      ++census.pairs;
+      ++content.pairs;
     } else if (child.tag() == "link_sphere_approximation") {
-      ++census.spheres;
+      ++content.spheres;
     } else {
-      census.rest.push_back(child.printed());
+      content.rest.push_back(child.printed());
     }
   }
-  return census;
+  return content;
 }
 
-// The parser takes texts that are not well-formed ("< group>"), where parts_of() finds anything.
-bool reads_as(const Census& expected, const std::string& text, const std::string& name) {
+// The parser accepts texts that are not well-formed ("< group>"), in which the positions of
+// parts_of() are meaningless.
+bool reads_as(const RootContent& expected, const std::string& text, const std::string& name) {
   try {
-    return census_of(XmlFile(name, text, "robot").root()) == expected;
+    return content_of(XmlFile(name, text, "robot").root()) == expected;
   } catch (const Error&) {
     return false;
   }
@@ -247,11 +249,13 @@ std::string kept_srdf(const RobotSpheres& spheres, const std::filesystem::path& 
   changes.push_back({spheres_at, spheres_at, srdf_spheres(spheres.links, indent)});
   if (!parts.has_end_tag) changes.push_back({end, end, "</robot>", true});
   std::string result = changed(text, std::move(changes));
-  Census expected = census_of(file.root());
+  RootContent expected = content_of(file.root());
   expected.pairs += missing.size();
   expected.spheres = spheres.links.size();
   if (!reads_as(expected, result, original.string())) {
-    throw Error(original.string(), "is not well-formed XML, so that its text cannot be kept");
+    throw Error(original.string(),
+                "cannot be kept: with the new spheres it does not read back as before (is it "
+                "well-formed XML?)");
   }
   return result;
 }

@@ -30,10 +30,11 @@ KeptPlaces places_in(const YamlMembers& root, SphereFormat format, const SphereG
     if (has_self) places.ignored = {"self_collision", "ignore"};
     return places;
   }
-  Keys way;
-  if (find_member(root, "robot_cfg")) way.push_back("robot_cfg");
+  Keys way;  // as read_curobo() goes
   const YamlMembers inner = members_if_there(root, "robot_cfg", gathered);
-  const bool has_kinematics = find_member(inner.empty() ? root : inner, "kinematics").has_value();
+  const bool has_kinematics =
+      !members_if_there(inner.empty() ? root : inner, "kinematics", gathered).empty();
+  if (has_kinematics && !inner.empty()) way.push_back("robot_cfg");
   if (has_kinematics) way.push_back("kinematics");
   const auto below = [&](const char* key) {
     Keys keys = way;

@@ -62,7 +62,8 @@ std::string sphere_urdf(const RobotSpheres& spheres, const SphereFileContext& co
                         const std::filesystem::path& path);
 std::string sphere_srdf(const RobotSpheres& spheres, const SphereFileContext& context);
 // An SRDF with other spheres, and with the pairs that it neither disables nor enables yet; all
-// other bytes as they are.
+// other bytes as they are. Throws Error where these do not read back as before, of a text that is
+// not well-formed XML.
 std::string kept_srdf(const RobotSpheres& spheres, const std::filesystem::path& original);
 // Its elements for pairs and spheres, each line indented and ended.
 std::string srdf_pairs(std::span<const DisabledPair> pairs, const std::string& indent);

@@ -208,6 +208,8 @@ TEST(ReadUrdf, RefusesBadFiles) {
       {std::string("<robot name='r'><link name='a'/></robot>\0", 41), {"zero byte"}},
       {"<model/>", {"no <robot>"}},
       {"<robot name='r'><link name='a'/></robot><robot name='s'/>", {"more than one root"}},
+      {"x<robot name='r'><link name='a'/></robot>", {"line 1", "outside of the root"}},
+      {"<robot name='r'><link name='a'/></robot>\nx", {"line 2", "not XML"}},
       {"<robot><link name='a'/></robot>", {"no name"}},
       {robot_of(""), {"line 1", "no <link>"}},
       {"<robot name='r' version='2.0'><link name='a'/></robot>", {"version 1.0"}},

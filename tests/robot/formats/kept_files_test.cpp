@@ -261,14 +261,30 @@ TEST_F(KeptFiles, SrdfOfOneLineOrOfNone) {
 
 // The parser reads more than what is well-formed; old spheres were kept beside the new ones.
 TEST_F(KeptFiles, SrdfThatIsNotWellFormedIsRefused) {
-  const auto original =
-      folder_.write("original",
-                    "<robot name=\"arm\">< link_sphere_approximation link=\"old\">"
-                    "<sphere center=\"0 0 0\" radius=\"9\"/></link_sphere_approximation></robot>");
-  ASSERT_EQ(read_srdf(original).sphere_approximations.size(), 1u);
-  EXPECT_THROW(write_robot_spheres(spheres_, SphereFormat::kSrdf, {.original = original},
-                                   folder_.path() / "kept"),
-               Error);
+  for (const char* const text :
+       {"<robot name=\"arm\">< link_sphere_approximation link=\"old\"><sphere center=\"0 0 0\" "
+        "radius=\"9\"/></link_sphere_approximation></robot>",
+        "<robot name=\"arm\">< /robot>"}) {
+    const auto original = folder_.write("original", text);
+    try {
+      write_robot_spheres(spheres_, SphereFormat::kSrdf, {.original = original},
+                          folder_.path() / "kept");
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("XML"), std::string::npos) << error.what();
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "kept"));
+  }
+}
+
+// Spheres are written where they are read.
+TEST_F(KeptFiles, CuroboWhoseConfigurationIsBesideItsSpheres) {
+  spheres_.self_collision_ignore.clear();
+  for (const std::string head :
+       {"robot_cfg: {collision_spheres: {x: []}}\n", "robot_cfg: {kinematics: }\n"}) {
+    const std::string text = kept(SphereFormat::kCurobo, head + "collision_spheres:\n  base: []\n");
+    EXPECT_TRUE(text.starts_with(head)) << text;
+  }
 }
 
 // Somebody wants them to be tested.
