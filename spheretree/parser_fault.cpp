@@ -59,4 +59,36 @@ std::string xml_fault(std::string_view error_name, int line) {
   return text;
 }
 
+std::string fault_of_large_tag(std::string_view xml) {
+  constexpr std::size_t kMaxSize = std::size_t{1} << 16;
+  constexpr int kMaxAttributes = 256;
+  constexpr std::pair<std::string_view, std::string_view> kOthers[] = {
+      {"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}, {"<!", ">"}};
+  std::size_t at = 0;
+  while ((at = xml.find('<', at)) < xml.size()) {
+    const auto other = std::ranges::find_if(
+        kOthers, [&](const auto& pair) { return xml.substr(at).starts_with(pair.first); });
+    if (other != std::end(kOthers)) {
+      at = xml.find(other->second, at + other->first.size());
+      continue;
+    }
+    const std::size_t begin = at;
+    int attributes = 0;
+    char quote = 0;
+    for (; at < xml.size() && (quote != 0 || xml[at] != '>'); ++at) {
+      if (quote != 0) {
+        if (xml[at] == quote) quote = 0;
+      } else if (xml[at] == '"' || xml[at] == '\'') {
+        quote = xml[at];
+      } else if (xml[at] == '=') {
+        ++attributes;
+      }
+    }
+    if (at - begin <= kMaxSize && attributes <= kMaxAttributes) continue;
+    const auto line = 1 + std::ranges::count(xml.substr(0, begin), '\n');
+    return "line " + std::to_string(line) + ": a tag of more than 2^16 bytes or 256 attributes";
+  }
+  return {};
+}
+
 }  // namespace spherule::internal

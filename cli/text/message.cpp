@@ -44,6 +44,17 @@ std::string escaped(unsigned byte) {
   return {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15U]};
 }
 
+// Without its middle where it is long: files may hold names and texts of any length.
+std::string shortened(std::string_view message) {
+  constexpr std::size_t kKept = 2000;  // at both ends
+  if (message.size() <= 2 * kKept) return std::string(message);
+  std::size_t head = kKept;
+  for (int i = 0; i < 3 && continues(byte_at(message, head)); ++i) --head;
+  std::size_t tail = message.size() - kKept;
+  for (int i = 0; i < 3 && continues(byte_at(message, tail)); ++i) ++tail;
+  return std::string(message.substr(0, head)) + " [...] " + std::string(message.substr(tail));
+}
+
 }  // namespace
 
 std::string one_line(std::string_view text) {
@@ -60,7 +71,7 @@ std::string one_line(std::string_view text) {
 }
 
 void tell(std::string_view message) {
-  std::cerr << "spherule: " + one_line(message) + "\n";
+  std::cerr << "spherule: " + one_line(shortened(message)) + "\n";
 }
 
 void warn(std::string_view message) {

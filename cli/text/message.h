@@ -10,7 +10,8 @@ namespace spherule {
 // links may hold, and what is not UTF-8 as "\n", "\t", "\r" or "\x1b".
 std::string one_line(std::string_view text);
 
-// A line of its own on standard error: "spherule: MESSAGE", and "spherule: warning: MESSAGE".
+// A line of its own on standard error: "spherule: MESSAGE", and "spherule: warning: MESSAGE". Of a
+// message of more than 4000 bytes the middle is left out.
 void tell(std::string_view message);
 void warn(std::string_view message);
 

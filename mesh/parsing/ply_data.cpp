@@ -11,6 +11,12 @@
 #include <cstring>
 
 namespace spherule::internal {
+namespace {
+
+// Of elements, and of properties of an element; a name is compared with all before it.
+constexpr std::size_t kMaxNames = 1000;
+
+}  // namespace
 
 PlyData::PlyData(std::string_view bytes, const std::string& subject)
     : bytes_(bytes), in_(bytes, subject) {
@@ -71,6 +77,7 @@ void PlyData::read_element() {
     in_.fail("the file cannot hold " + std::to_string(count) + " items of " + in_quotes(name));
   }
   const auto is_same = [&](const PlyElement& other) { return other.name == name; };
+  if (elements_.size() == kMaxNames) in_.fail("more than 1000 elements");
   if (std::ranges::any_of(elements_, is_same)) {
     in_.fail("the element " + in_quotes(name) + " is there twice");
   }
@@ -91,6 +98,7 @@ void PlyData::read_property() {
   if (property.name.empty()) in_.fail("a property without a name");
   std::vector<PlyProperty>& properties = elements_.back().properties;
   const auto is_same = [&](const PlyProperty& other) { return other.name == property.name; };
+  if (properties.size() == kMaxNames) in_.fail("an element of more than 1000 properties");
   if (std::ranges::any_of(properties, is_same)) {
     in_.fail("the property " + in_quotes(property.name) + " is there twice");
   }

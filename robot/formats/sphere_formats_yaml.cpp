@@ -51,6 +51,7 @@ void read_ignored(const YamlMembers& ignored, SphereGatherer& gathered) {
   for (const auto& [link, key, others] : ignored) {
     if (others.IsNull()) continue;
     gathered.unless(others.IsSequence(), place_of(others), "ignored links are not a list");
+    gathered.take(others.size(), place_of(others));
     for (const auto& other : others) {
       gathered.ignore(link, yaml_scalar(other, "an ignored link", gathered));
     }

@@ -13,6 +13,8 @@
 namespace spherule {
 namespace {
 
+constexpr int kLongestMimic = 16;  // joints between the first and the one that moves
+
 Eigen::Vector3d unit_axis(const Eigen::Vector3d& axis, const std::string& name) {
   const double scale = axis.cwiseAbs().maxCoeff();
   if (!axis.allFinite() || !(scale > 0.0)) {
@@ -133,7 +135,10 @@ void RobotModel::number_variables() {
     if (joint.mimics < 0) continue;
     has_mimics_ = true;
     std::size_t at = i;
-    while (joints_[at].mimics >= 0) {
+    for (int length = 0; joints_[at].mimics >= 0; ++length) {
+      if (length == kLongestMimic) {
+        throw Error("joint " + joint.name, "it mimics through more than 16 joints");
+      }
       joint.offset += joint.multiplier * follow_[at].offset;
       joint.multiplier *= follow_[at].multiplier;
       at = static_cast<std::size_t>(joints_[at].mimics);

@@ -76,6 +76,16 @@ TEST_F(MessagesTest, AreOneLineWhateverNamesHold) {
                   "cell.json: the key 'obsta\\ncles'");
 }
 
+TEST_F(MessagesTest, AreExcerptsOfLongTexts) {
+  std::string name;
+  for (int i = 0; i < 100000; ++i) name += "\xc3\xb6";
+  write("long.yml", "collision_spheres: " + name + "x\n");
+  expect_readable({"info", "long.yml"}, "spherule: long.yml: ");
+  const std::string err = run({"info", "long.yml"}).err;
+  EXPECT_LT(err.size(), 5000u);
+  EXPECT_NE(err.find("\xc3\xb6 [...] \xc3\xb6"), std::string::npos) << err;
+}
+
 TEST_F(MessagesTest, WarningsAreOneLineToo) {
   write("cube.urdf", urdf_of("<link name=\"ba&#10;se\"><collision>" + std::string(kCube) +
                              R"(</collision></link><link name="hand"/>

@@ -166,6 +166,9 @@ TEST_F(Formats, Ply) {
       refused("ply", replaced(good, "3 0 2 3", "3 0 2 3 1"), "face 0 has too many numbers"));
   EXPECT_TRUE(refused("ply", replaced(good, "ascii 1.0", "ascii 1.1"), "version 1.0"));
   EXPECT_TRUE(refused("ply", replaced(good, "float y", "float x"), "'x' is there twice"));
+  std::string properties = "float y";
+  for (int i = 0; i < 1000; ++i) properties += "\nproperty float p" + std::to_string(i);
+  EXPECT_TRUE(refused("ply", replaced(good, "float y", properties), "more than 1000 properties"));
   const std::string binary = test::ply_bytes(cube_, test::PlyForm::kLittleEndian, true);
   EXPECT_TRUE(refused("ply", binary.substr(0, binary.size() - 1), "cut short"));
   EXPECT_TRUE(refused("ply", binary + "x", "more data"));

@@ -84,6 +84,19 @@ TEST_F(SceneLimits, ThreeMfComponents) {
   EXPECT_TRUE(refused("3mf", threemf(46, 18), "more than 2^18 nodes"));
 }
 
+TEST_F(SceneLimits, ThreeMfElements) {
+  const std::string good = test::threemf_model(cube_);
+  const auto with_metadata = [&](const std::string& text) {
+    return test::threemf_bytes(replaced(good, "<build>", text + "<build>"));
+  };
+  EXPECT_EQ(
+      read("3mf", with_metadata(repeated("<m>", 100) + repeated("</m>", 100))).triangles.size(),
+      12u);
+  EXPECT_TRUE(refused("3mf", with_metadata(repeated("<m>", 100000)), "200 deep"));
+  const std::string name = "<m xmlns:x=\"" + std::string(2000, 'u') + "\">";
+  EXPECT_TRUE(refused("3mf", with_metadata(name + "<m x:a=\"\"/></m>"), "more than 1000 bytes"));
+}
+
 TEST_F(SceneLimits, ColladaNodes) {
   const std::string leaf = repeated(kMatrix, 200) + kShown;
   EXPECT_EQ(read("dae", collada(doubled(10, leaf), kRoot)).triangles.size(), 1024u * 12u);
@@ -91,6 +104,8 @@ TEST_F(SceneLimits, ColladaNodes) {
       refused("dae", collada(doubled(17, repeated(kMatrix, 490)), kRoot), "too many times"));
   EXPECT_TRUE(
       refused("dae", collada(doubled(17, repeated("<extra/>", 10000)), kRoot), "too many times"));
+  EXPECT_TRUE(
+      refused("dae", collada(doubled(17, repeated("<!>", 10000)), kRoot), "too many times"));
 }
 
 TEST_F(SceneLimits, ColladaSourcesAndNames) {
@@ -120,8 +135,8 @@ TEST_F(SceneLimits, ColladaSourcesAndNames) {
       refused("dae", collada("<node id=\"" + name + "\"/>" + doubled(16, repeated(node, 8)), kRoot),
               "too many times"));
   std::string attributes;
-  for (int i = 0; i < 65; ++i) attributes += " a" + std::to_string(i) + "=\"\"";
-  EXPECT_TRUE(refused("dae", collada("<node" + attributes + "/>", kShown), "64 attributes"));
+  for (int i = 0; i < 257; ++i) attributes += " a" + std::to_string(i) + "=\"\"";
+  EXPECT_TRUE(refused("dae", collada("<node" + attributes + "/>", kShown), "256 attributes"));
 }
 
 // A skin of many joints, of which one moves all vertices; the last joint of its skeleton.

@@ -11,6 +11,7 @@
 namespace spherule {
 namespace {
 
+using internal::fault_of_large_tag;
 using internal::json_fault;
 using internal::xml_fault;
 
@@ -54,6 +55,28 @@ TEST(ParserFault, OfXmlNamesTheLine) {
   EXPECT_EQ(xml_fault("XML_ERROR_EMPTY_DOCUMENT", 0), "is not XML: nothing is in it");
   EXPECT_EQ(xml_fault("XML_ELEMENT_DEPTH_EXCEEDED", 1), "line 1: elements are nested too deep");
   EXPECT_EQ(xml_fault("XML_ERROR_OF_LATER_VERSIONS", 2), "line 2: is not XML");
+}
+
+// Texts of which a large tag is no tag, and tags that are just large enough.
+TEST(ParserFault, OfLargeTags) {
+  const auto attributes = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += " a" + std::to_string(i) + "='='";
+    return text;
+  };
+  const std::string many = attributes(257);
+  const std::string blanks(1 << 16, ' ');
+  for (const std::string& good :
+       {"<a" + attributes(256) + "/>", "<!--<a" + many + "-->", "<![CDATA[<a" + many + "]]>",
+        "<?a" + many + "?>", "<!x \"><a/>" + many, "<a b='" + many + "'/>",
+        "<a" + blanks.substr(2) + ">", std::string("<"), std::string()}) {
+    EXPECT_EQ(fault_of_large_tag(good), "") << good.substr(0, 20);
+  }
+  const std::string fault = "line 2: a tag of more than 2^16 bytes or 256 attributes";
+  for (const std::string& bad : {"\n<a" + many + "/>", "\n<a" + many, "\n<a" + blanks + ">",
+                                 "<!-- <a>\n--><b" + many + ">", "<!x '>\n<a" + many + "'>"}) {
+    EXPECT_EQ(fault_of_large_tag(bad), fault) << bad.substr(0, 20);
+  }
 }
 
 }  // namespace

@@ -20,15 +20,6 @@ std::string_view local_name(const Element& element) {
   return name.substr(name.rfind(':') + 1);
 }
 
-// Attributes are searched for one after the other; the schema has far fewer for any element.
-constexpr int kMaxAttributes = 64;
-
-bool has_few_attributes(const Element& element) {
-  int count = 0;
-  for (auto* at = element.FirstAttribute(); at != nullptr; at = at->Next()) ++count;
-  return count <= kMaxAttributes;
-}
-
 // Steps of the budget for the length of a text that is copied or compared.
 std::size_t steps_for(std::string_view text) {
   return text.size() / 16;
@@ -39,6 +30,8 @@ std::size_t steps_for(std::string_view text) {
 ColladaDocument::ColladaDocument(std::string_view text, const std::string& subject,
                                  SceneBudget& budget)
     : subject_(subject), budget_(budget), document_(true, tinyxml2::PRESERVE_WHITESPACE) {
+  const std::string large = fault_of_large_tag(text);
+  if (!large.empty()) throw Error(subject_, large);
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw Error(subject_, xml_fault(document_.ErrorName(), document_.ErrorLineNum()));
   }
@@ -53,9 +46,6 @@ void ColladaDocument::index(const Element& element) {
   for (const Element* at = element.FirstChildElement(); at != nullptr;
        at = at->NextSiblingElement()) {
     if (local_name(*at) != at->Name()) fail(*at, "a namespace prefix is not supported");
-    if (!has_few_attributes(*at)) {
-      fail(*at, "has more than " + std::to_string(kMaxAttributes) + " attributes");
-    }
     if (const char* id = at->Attribute("id")) {
       const auto [it, is_new] = ids_.try_emplace({at->Name(), id}, at);
       if (!is_new) it->second = nullptr;
@@ -90,10 +80,11 @@ const Element& ColladaDocument::with_id(const char* name, const std::string& id,
 std::vector<const Element*> ColladaDocument::children(const Element& parent,
                                                       const char* name) const {
   std::vector<const Element*> result;
-  for (const Element* at = parent.FirstChildElement(); at != nullptr;
-       at = at->NextSiblingElement()) {
+  for (auto* at = parent.FirstChild(); at != nullptr; at = at->NextSibling()) {
     budget_.take_steps(1);
-    if (name == nullptr || std::string_view(at->Name()) == name) result.push_back(at);
+    const Element* const element = at->ToElement();
+    if (element == nullptr) continue;  // a comment or text
+    if (name == nullptr || std::string_view(element->Name()) == name) result.push_back(element);
   }
   return result;
 }

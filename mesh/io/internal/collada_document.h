@@ -32,7 +32,7 @@ class ColladaDocument {
   const Element& referred(const char* name, const Element& from, const char* attribute) const;
   const Element& with_id(const char* name, const std::string& id, const Element& from) const;
 
-  // The children of this name, or all. Every child is a step of the budget.
+  // The child elements of this name, or all. Every child, comments too, is a step of the budget.
   std::vector<const Element*> children(const Element& parent, const char* name = nullptr) const;
   // The only child of this name, which has to be there.
   const Element& child(const Element& parent, const char* name) const;

@@ -2,6 +2,7 @@
 #include "mesh/io/internal/xml_events.h"
 
 #include "spheretree/error.h"
+#include "spheretree/parser_fault.h"
 
 #include <exception>
 #include <expat.h>
@@ -10,6 +11,9 @@
 
 namespace spherule::internal {
 namespace {
+
+constexpr std::size_t kMaxNamespace = 1000;
+constexpr int kMaxDepth = 200;
 
 // Exceptions must not pass through the parser, which is C: they are kept until it has stopped.
 class Parser {
@@ -26,6 +30,14 @@ class Parser {
           static_cast<Parser*>(self)->open(name, attributes);
         },
         [](void* self, const char*) { static_cast<Parser*>(self)->close(); });
+    // expat copies the namespace for each name that has its prefix.
+    XML_SetStartNamespaceDeclHandler(parser_.get(), [](void* self, const char*, const char* uri) {
+      static_cast<Parser*>(self)->guarded([&](Parser& p) {
+        if (uri != nullptr && std::string_view(uri).size() > kMaxNamespace) {
+          throw Error(p.subject_, "an XML namespace of more than 1000 bytes");
+        }
+      });
+    });
     XML_SetStartDoctypeDeclHandler(
         parser_.get(), [](void* self, const char*, const char*, const char*, int) {
           static_cast<Parser*>(self)->guarded(
@@ -37,6 +49,8 @@ class Parser {
     if (text.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
       throw Error(subject_, "XML of more than 2^31 bytes");
     }
+    const std::string large = fault_of_large_tag(text);
+    if (!large.empty()) throw Error(subject_, large);
     const XML_Status status =
         XML_Parse(parser_.get(), text.data(), static_cast<int>(text.size()), XML_TRUE);
     if (fault_) std::rethrow_exception(fault_);
@@ -50,13 +64,17 @@ class Parser {
  private:
   void open(const char* name, const char* const* attributes) {
     guarded([&](Parser& p) {
+      if (++p.depth_ > kMaxDepth) throw Error(p.subject_, "XML nested more than 200 deep");
       const XML_Index position = XML_GetCurrentByteIndex(p.parser_.get());
       p.handler_.open(name, XmlAttributes(attributes), static_cast<std::size_t>(position));
     });
   }
 
   void close() {
-    guarded([](Parser& p) { p.handler_.close(); });
+    guarded([](Parser& p) {
+      --p.depth_;
+      p.handler_.close();
+    });
   }
 
   template <class Call>
@@ -74,6 +92,7 @@ class Parser {
   const std::string& subject_;
   XmlHandler& handler_;
   std::exception_ptr fault_;
+  int depth_ = 0;  // of the open elements
 };
 
 }  // namespace

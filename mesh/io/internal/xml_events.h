@@ -31,8 +31,9 @@ class XmlHandler {
   virtual void close() = 0;
 };
 
-// Throws Error if the text is not well-formed XML or has a document type (which may define
-// entities; the formats that are read here forbid it), and what the handler throws.
+// Throws Error if the text is not well-formed XML, is nested more than 200 deep, has a namespace of
+// more than 1000 bytes or a large tag (fault_of_large_tag()), or has a document type (which may
+// define entities; the formats that are read here forbid it), and what the handler throws.
 void parse_xml(std::string_view text, const std::string& subject, XmlHandler& handler);
 
 }  // namespace spherule::internal

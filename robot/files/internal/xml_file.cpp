@@ -167,6 +167,8 @@ XmlFile::XmlFile(const std::filesystem::path& path, std::string_view tag)
 XmlFile::XmlFile(std::string name, const std::string& text, std::string_view tag)
     : name_(std::move(name)), document_(std::make_unique<tinyxml2::XMLDocument>()) {
   if (text.find('\0') != std::string::npos) throw Error(name_, "it holds a zero byte");
+  const std::string large = fault_of_large_tag(text);
+  if (!large.empty()) throw Error(name_, large);
   if (document_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw Error(name_, xml_fault(document_->ErrorName(), document_->ErrorLineNum()));
   }

@@ -6,6 +6,7 @@
 #include "spheretree/error.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -86,15 +87,11 @@ XmlParts parts_of(std::string_view text) {
   return parts;
 }
 
-// The line around a place: where it starts, and behind its end.
-std::size_t line_start(std::string_view text, std::size_t at) {
-  const std::size_t found = at == 0 ? std::string_view::npos : text.rfind('\n', at - 1);
-  return found == std::string_view::npos ? 0 : found + 1;
-}
-
-bool is_first_on_line(std::string_view text, std::size_t at) {
-  const std::size_t start = line_start(text, at);
-  return text.substr(start, at - start).find_first_not_of(kBlank) == std::string_view::npos;
+// Where the line of a place starts, if nothing but blanks stands before it there.
+std::optional<std::size_t> blank_line_start(std::string_view text, std::size_t at) {
+  while (at > 0 && kBlank.find(text[at - 1]) != std::string_view::npos) --at;
+  if (at > 0 && text[at - 1] != '\n') return std::nullopt;
+  return at;
 }
 
 // Behind the end of the line if nothing more stands on it, else `at`.
@@ -104,8 +101,8 @@ std::size_t behind_line(std::string_view text, std::size_t at) {
 }
 
 std::string indent_at(std::string_view text, std::size_t at) {
-  const std::size_t start = line_start(text, at);
-  return std::string(is_first_on_line(text, at) ? text.substr(start, at - start) : kIndent);
+  const auto start = blank_line_start(text, at);
+  return std::string(start ? text.substr(*start, at - *start) : kIndent);
 }
 
 // Replaces [begin, end) of a text, by lines of their own unless `is_raw`.
@@ -221,8 +218,8 @@ std::string kept_srdf(const RobotSpheres& spheres, const std::filesystem::path& 
   if (!parts.has_end_tag) {
     end += 2;
     changes.push_back({parts.root_end, end, ">", true});
-  } else if (is_first_on_line(text, end)) {
-    end = line_start(text, end);
+  } else {
+    end = blank_line_start(text, end).value_or(end);
   }
   std::size_t pairs_at = end;
   std::size_t spheres_at = end;
@@ -235,8 +232,9 @@ std::string kept_srdf(const RobotSpheres& spheres, const std::filesystem::path& 
       pairs_indent = indent_at(text, part.begin);
     } else if (part.tag == "link_sphere_approximation") {
       Change removal{part.begin, behind_line(text, part.end)};
-      const bool is_whole_line = removal.end > part.end && is_first_on_line(text, part.begin);
-      if (is_whole_line) removal.begin = line_start(text, part.begin);
+      const auto start = blank_line_start(text, part.begin);
+      const bool is_whole_line = removal.end > part.end && start;
+      if (is_whole_line) removal.begin = *start;
       if (!is_whole_line) removal.end = part.end;
       if (spheres_at == end) {
         spheres_at = removal.begin;

@@ -22,11 +22,12 @@ namespace spherule::internal {
 // ("line 7", "link arm, sphere 2"); an Error names the file, then the place.
 class SphereGatherer {
  public:
-  // Of a file of so many bytes: more spheres than that are aliases of each other, which a reader
-  // would not come to an end with.
+  // Of a file of so many bytes: more spheres than that, or eight times as many names, are aliases
+  // of each other, which a reader would not come to an end with. (Some maps are read several
+  // times.)
   explicit SphereGatherer(std::string file,
-                          std::size_t bytes = std::numeric_limits<std::size_t>::max())
-      : file_(std::move(file)), left_(bytes) {}
+                          std::size_t bytes = std::numeric_limits<std::size_t>::max() / 8)
+      : file_(std::move(file)), left_(bytes), names_left_(8 * bytes) {}
 
   [[noreturn]] void refuse(const std::string& place, const std::string& reason) const;
   void unless(bool good, const std::string& place, const std::string& reason) const {
@@ -35,6 +36,8 @@ class SphereGatherer {
 
   // The link to which the next spheres belong.
   void begin_link(const std::string& name, const std::string& place);
+  // Before so many names, of members or of links, are read.
+  void take(std::size_t count, const std::string& place) const;
   // Leaves out and counts a sphere that is switched off.
   void add(const Eigen::Vector3d& center, double radius, const std::string& place);
   // Once for each two links, in whatever order.
@@ -46,6 +49,7 @@ class SphereGatherer {
  private:
   std::string file_;
   std::size_t left_;  // how many spheres may still come
+  mutable std::size_t names_left_;
   std::set<std::string> links_;
   std::set<std::pair<std::string, std::string>> ignored_;
 };

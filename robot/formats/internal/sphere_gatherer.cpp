@@ -30,6 +30,11 @@ void SphereGatherer::add(const Eigen::Vector3d& center, double radius, const std
   spheres.links.back().spheres.push_back(sphere);
 }
 
+void SphereGatherer::take(std::size_t count, const std::string& place) const {
+  unless(count <= names_left_, place, "aliases make far more names than the file has characters");
+  names_left_ -= count;
+}
+
 void SphereGatherer::ignore(const std::string& link_a, const std::string& link_b) {
   if (link_a == link_b || !ignored_.insert(std::minmax(link_a, link_b)).second) return;
   spheres.self_collision_ignore.push_back({link_a, link_b, {}});

@@ -68,14 +68,13 @@ std::map<std::string, SphereLeaf> sphere_leaves(const XmlElement& robot) {
     const std::string child = joint.needed_child("child").needed("link");
     parents.insert(parent);
     const auto link = links.find(child);
-    if (joint.needed("type") != "fixed" || !is_named_after(child, parent) || link == links.end() ||
-        !is_one_sphere(link->second)) {
+    if (joint.needed("type") != "fixed" || !is_named_after(child, parent) || link == links.end()) {
       continue;
     }
+    if (leaves.contains(child)) joint.refuse("it is the second joint to \"" + child + "\"");
+    if (!is_one_sphere(link->second)) continue;
     if (!links.contains(parent)) joint.refuse("there is no link \"" + parent + "\"");
-    if (!leaves.insert({child, {link->second, joint, parent}}).second) {
-      joint.refuse("it is the second joint to \"" + child + "\"");
-    }
+    leaves.insert({child, {link->second, joint, parent}});
   }
   std::erase_if(leaves, [&](const auto& leaf) { return parents.contains(leaf.first); });
   return leaves;

@@ -17,6 +17,7 @@ Node unshared(const Node& node, std::size_t& nodes_left, int depth = 0) {
   if (nodes_left == 0 || depth > kDeepest) return copy;
   --nodes_left;
   if (node.IsScalar()) {
+    nodes_left -= std::min(nodes_left, node.Scalar().size() / 16);
     copy = node.Scalar();
     copy.SetTag(node.Tag());
   } else if (node.IsSequence()) {

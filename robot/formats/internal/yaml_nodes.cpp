@@ -95,6 +95,10 @@ std::string place_of(const Node& node) {
 }
 
 Node yaml_document(std::string_view text, const SphereGatherer& gathered) {
+  // yaml-cpp copies the whole tag to each node that has its handle.
+  const bool has_handles =
+      text.starts_with("%TAG") || text.find("\n%TAG") != std::string_view::npos;
+  gathered.unless(!has_handles, {}, "%TAG directives are not read");
   try {
     const std::optional<Node> document = only_document(std::string(text));
     gathered.unless(document.has_value(), {}, "does not hold exactly one YAML document");
@@ -112,6 +116,7 @@ std::string yaml_scalar(const Node& node, const std::string& what, const SphereG
 YamlMembers yaml_members(const Node& node, const std::string& what,
                          const SphereGatherer& gathered) {
   gathered.unless(node.IsMap(), place_of(node), what + " is not a map");
+  gathered.take(node.size(), place_of(node));
   YamlMembers found;
   std::set<std::string> keys;
   for (const auto& member : node) {

@@ -139,6 +139,9 @@ TEST_F(SceneFileTest, RefusesOtherFiles) {
   expect_fault(scene(R"("obstacle": [])"), "the key 'obstacle' is not known here");
   expect_fault(scene(R"("obstacles": [], "obstacles": [])"), "\"obstacles\" appears twice");
   expect_fault(scene(R"("obstacles": {})"), "obstacles: is not a list");
+  std::string keys;
+  for (int i = 0; i <= 1 << 13; ++i) keys += "\"k" + std::to_string(i) + "\": 0, ";
+  expect_fault(scene(R"("robot": {)" + keys + R"("k": 0})"), "too many keys");
   EXPECT_THROW(read_scene(folder_.path() / "none.json"), Error);
 }
 

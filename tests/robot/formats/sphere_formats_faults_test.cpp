@@ -332,6 +332,23 @@ TEST_F(SphereFormatFaults, MutatedFiles) {
   }
 }
 
+// Names, too, may be aliases of each other, and tags of one handle copies of it.
+TEST_F(SphereFormatFaults, NamesOfAliasesAreCounted) {
+  std::string names = "[a0";
+  for (int i = 1; i < 1000; ++i) names += ", a" + std::to_string(i);
+  std::string text =
+      "kinematics:\n  collision_spheres: {a0: []}\n  self_collision_ignore:\n    b: &l " + names +
+      "]\n";
+  for (int i = 0; i < 1000; ++i) text += "    c" + std::to_string(i) + ": *l\n";
+  expect_refusal(text, "aliases make far more names");
+  std::string keys = "- &s {center: [0, 0, 0], radius: 1";
+  for (int i = 0; i < 1000; ++i) keys += ", k" + std::to_string(i) + ": 0";
+  text = "collision_spheres:\n  a:\n  " + keys + "}\n";
+  for (int i = 0; i < 1000; ++i) text += "  - *s\n";
+  expect_refusal(text, "aliases make far more names");
+  expect_refusal("%TAG !e! xyz\n---\ncollision_spheres: {}\n", "%TAG directives");
+}
+
 // Some thousand lines of aliases are as many million spheres.
 TEST_F(SphereFormatFaults, AliasesThatMultiplySpheresAreRefused) {
   const auto aliases = [](int spheres, int links) {

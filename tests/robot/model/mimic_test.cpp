@@ -20,6 +20,7 @@
 #include <memory>
 #include <numbers>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace spherule::test {
@@ -88,6 +89,21 @@ RobotModel random_follower(SceneRandom& random, double size) {
   RobotModel robot = random_robot_with_trees(random, size);
   add_random_mimics(random, robot, 3.0);
   return robot;
+}
+
+// Each mimic is multiplied out anew when another is added.
+TEST(Mimic, ChainsEndSomewhere) {
+  RobotModel robot("0");
+  const auto name = [](int i) { return "j" + std::to_string(i); };
+  for (int i = 0; i < 18; ++i) {
+    robot.add_link(std::to_string(i + 1), std::to_string(i),
+                   {.name = name(i), .type = JointType::kRevolute});
+  }
+  for (int i = 1; i <= 16; ++i) robot.mimic(name(i), name(i - 1), 2.0);
+  EXPECT_EQ(robot.joints()[16].multiplier, 65536.0);
+  EXPECT_THROW(robot.mimic(name(17), name(16)), Error);
+  EXPECT_EQ(robot.joints()[16].multiplier, 65536.0);
+  EXPECT_EQ(robot.joints()[17].mimics, -1);
 }
 
 TEST(Mimic, ObstacleCheckerAnswersAsThePairsDo) {
