@@ -129,7 +129,7 @@ TEST_F(SceneLimits, ColladaSourcesAndNames) {
   EXPECT_EQ(read("dae", with_geometries("")).triangles.size(), 12u);
   EXPECT_TRUE(refused("dae", with_geometries(shown), "too many times"));
 
-  const std::string name(100000, 'x');
+  const std::string name(60000, 'x');
   const std::string node = "<instance_node url=\"#" + name + "\"/>";
   EXPECT_TRUE(
       refused("dae", collada("<node id=\"" + name + "\"/>" + doubled(16, repeated(node, 8)), kRoot),
