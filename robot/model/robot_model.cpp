@@ -13,8 +13,6 @@
 namespace spherule {
 namespace {
 
-constexpr int kLongestMimic = 16;  // joints between the first and the one that moves
-
 Eigen::Vector3d unit_axis(const Eigen::Vector3d& axis, const std::string& name) {
   const double scale = axis.cwiseAbs().maxCoeff();
   if (!axis.allFinite() || !(scale > 0.0)) {
@@ -130,22 +128,26 @@ void RobotModel::number_variables() {
     joint.variable = variable_count();
     variable_joints_.push_back(static_cast<int>(i));
   }
+  // Along each chain from the joint that is not resolved yet and is nearest to the leader.
+  std::vector<bool> is_resolved(joints_.size());
+  std::vector<std::size_t> chain;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
-    Joint& joint = joints_[i];
-    if (joint.mimics < 0) continue;
-    has_mimics_ = true;
-    std::size_t at = i;
-    for (int length = 0; joints_[at].mimics >= 0; ++length) {
-      if (length == kLongestMimic) {
-        throw Error("joint " + joint.name, "it mimics through more than 16 joints");
-      }
-      joint.offset += joint.multiplier * follow_[at].offset;
-      joint.multiplier *= follow_[at].multiplier;
+    for (std::size_t at = i; joints_[at].mimics >= 0 && !is_resolved[at];) {
+      has_mimics_ = true;
+      chain.push_back(at);
       at = static_cast<std::size_t>(joints_[at].mimics);
     }
-    joint.variable = joints_[at].variable;
-    if (!std::isfinite(joint.multiplier) || !std::isfinite(joint.offset)) {
-      throw Error("joint " + joint.name, "the multipliers of what it mimics are too large");
+    for (; !chain.empty(); chain.pop_back()) {
+      Joint& joint = joints_[chain.back()];
+      const Joint& leader = joints_[static_cast<std::size_t>(joint.mimics)];
+      const Mimic& factors = follow_[chain.back()];
+      joint.multiplier = factors.multiplier * leader.multiplier;
+      joint.offset = factors.multiplier * leader.offset + factors.offset;
+      joint.variable = leader.variable;
+      is_resolved[chain.back()] = true;
+      if (!std::isfinite(joint.multiplier) || !std::isfinite(joint.offset)) {
+        throw Error("joint " + joint.name, "the multipliers of what it mimics are too large");
+      }
     }
   }
 }

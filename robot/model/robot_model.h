@@ -102,8 +102,8 @@ class RobotModel {
   // From now on `joint` stands at multiplier * (position of `other`) + offset. `other` may mimic a
   // third, and may come later; then the factors of the chain are multiplied out, rounded, and what
   // stands in Joint is what counts. Variables are numbered anew. Throws Error for a joint that does
-  // not exist or is fixed, mimics one already, would mimic itself, mimics through
-  // more than 16 joints, and for numbers that are not finite.
+  // not exist or is fixed, mimics one already, would mimic itself, and for numbers that are not
+  // finite.
   void mimic(std::string_view joint, std::string_view other, double multiplier = 1.0,
              double offset = 0.0);
 
