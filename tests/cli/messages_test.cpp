@@ -80,7 +80,7 @@ TEST_F(MessagesTest, AreExcerptsOfLongTexts) {
   std::string name;
   for (int i = 0; i < 100000; ++i) name += "\xc3\xb6";
   write("long.yml", "collision_spheres: " + name + "x\n");
-  expect_readable({"info", "long.yml"}, "spherule: long.yml: ");
+  expect_readable({"info", "long.yml"}, "spherule: ");  // of the file that it names
   const std::string err = run({"info", "long.yml"}).err;
   EXPECT_LT(err.size(), 5000u);
   EXPECT_NE(err.find("\xc3\xb6 [...] \xc3\xb6"), std::string::npos) << err;
