@@ -17,13 +17,10 @@
 
 #include "spheretree/parser_fault.h"
 
-#include <nlohmann/json.hpp>
-
 #include <cstddef>
 #include <set>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -113,7 +110,10 @@ class JsonCheck : public Json::json_sax_t {
 // keeps their order, as it searches them one after the other: `refuse(reason)` has to throw.
 template <class Json, class Refuse>
 JsonDocument<Json> parse_json(std::string_view text, const Refuse& refuse) {
-  constexpr bool is_ordered = std::is_same_v<Json, nlohmann::ordered_json>;
+  // An ordered object is a vector.
+  constexpr bool is_ordered = requires(typename Json::object_t object) {
+    object.capacity();
+  };
   JsonCheck<Json> check(is_ordered ? kMostOrderedKeys : ~std::size_t{0});
   Json::sax_parse(text, &check);
   if (!check.fault().empty()) refuse(check.fault());
