@@ -63,6 +63,7 @@ void remove_unused_vertices(TriangleMesh& mesh) {
       corner = to;
     }
   }
+  used.shrink_to_fit();  // many primitives may be kept
   mesh.vertices = std::move(used);
 }
 
