@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/parser_fault.h"
 
+#include "spheretree/xml_markup.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -29,6 +31,21 @@ std::string_view take_to(std::string_view& text, std::string_view mark) {
   const std::string_view taken = text.substr(0, at + mark.size());
   text.remove_prefix(taken.size());
   return taken;
+}
+
+// How many equals signs stand outside of quotes.
+std::ptrdiff_t attributes_of(std::string_view tag) {
+  std::ptrdiff_t count = 0;
+  std::size_t at = 0;
+  while ((at = tag.find_first_of("=\"'", at)) < tag.size()) {
+    if (tag[at] == '=') {
+      ++count;
+    } else {
+      at = std::min(tag.find(tag[at], at + 1), tag.size() - 1);
+    }
+    ++at;
+  }
+  return count;
 }
 
 }  // namespace
@@ -61,30 +78,16 @@ std::string xml_fault(std::string_view error_name, int line) {
 
 std::string fault_of_large_tag(std::string_view xml) {
   constexpr std::size_t kMaxSize = std::size_t{1} << 16;
-  constexpr int kMaxAttributes = 256;
-  constexpr std::pair<std::string_view, std::string_view> kOthers[] = {
-      {"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}, {"<!", ">"}};
+  constexpr std::ptrdiff_t kMaxAttributes = 256;
   std::size_t at = 0;
   while ((at = xml.find('<', at)) < xml.size()) {
-    const auto other = std::ranges::find_if(
-        kOthers, [&](const auto& pair) { return xml.substr(at).starts_with(pair.first); });
-    if (other != std::end(kOthers)) {
-      at = xml.find(other->second, at + other->first.size());
-      continue;
-    }
     const std::size_t begin = at;
-    int attributes = 0;
-    char quote = 0;
-    for (; at < xml.size() && (quote != 0 || xml[at] != '>'); ++at) {
-      if (quote != 0) {
-        if (xml[at] == quote) quote = 0;
-      } else if (xml[at] == '"' || xml[at] == '\'') {
-        quote = xml[at];
-      } else if (xml[at] == '=') {
-        ++attributes;
-      }
-    }
-    if (at - begin <= kMaxSize && attributes <= kMaxAttributes) continue;
+    at = end_of_other_markup(xml, begin);
+    if (at != begin) continue;
+    at = end_of_tag(xml, begin);
+    const bool is_closed = xml[at - 1] == '>';
+    const std::string_view tag = xml.substr(begin, at - begin - (is_closed ? 1 : 0));
+    if (tag.size() <= kMaxSize && attributes_of(tag) <= kMaxAttributes) continue;
     const auto line = 1 + std::ranges::count(xml.substr(0, begin), '\n');
     return "line " + std::to_string(line) + ": a tag of more than 2^16 bytes or 256 attributes";
   }

@@ -4,6 +4,7 @@
 #include "robot/formats/internal/sphere_documents.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/xml_markup.h"
 
 #include <algorithm>
 #include <optional>
@@ -31,43 +32,16 @@ struct XmlParts {
   bool has_end_tag = true;
 };
 
-// Behind the end of a tag that starts before `at`; its values may hold what would end it.
-std::size_t behind_tag(std::string_view text, std::size_t at) {
-  char quote = 0;
-  for (; at < text.size(); ++at) {
-    if (quote != 0) {
-      if (text[at] == quote) quote = 0;
-    } else if (text[at] == '"' || text[at] == '\'') {
-      quote = text[at];
-    } else if (text[at] == '>') {
-      return at + 1;
-    }
-  }
-  return at;
-}
-
-// Behind a comment, a declaration or another thing that is no element, if one starts at `at`.
-std::size_t behind_other(std::string_view text, std::size_t at) {
-  constexpr std::pair<std::string_view, std::string_view> kOthers[] = {
-      {"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}, {"<!", ">"}};
-  for (const auto& [start, stop] : kOthers) {
-    if (!text.substr(at).starts_with(start)) continue;
-    const std::size_t found = text.find(stop, at + start.size());
-    return found == std::string_view::npos ? text.size() : found + stop.size();
-  }
-  return at;
-}
-
 XmlParts parts_of(std::string_view text) {
   XmlParts parts;
   int depth = 0;
   for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at)) {
-    const std::size_t other = behind_other(text, at);
+    const std::size_t other = end_of_other_markup(text, at);
     if (other != at) {
       at = other;
       continue;
     }
-    const std::size_t end = behind_tag(text, at);
+    const std::size_t end = end_of_tag(text, at);
     const bool closes = text[at + 1] == '/';
     const bool is_whole = !closes && text[end - 2] == '/';
     if (closes) --depth;
