@@ -134,14 +134,16 @@ TEST(RobotSolidLanes, MotionsAreFreeWhereTheCanonicalTestsAre) {
   int hits = 0;
   for (int n = 0; n < effort(20, 6); ++n) {
     const auto [scene, oracle] = scene_with_meshes(random);
+    const SceneRandom motions(random.bits());  // the same on every instruction set
     for (const InstructionSet set : instruction_sets()) {
       CheckerOfSet tested(scene, set);
+      SceneRandom motion = motions;
       for (int i = 0; i < 4; ++i) {
-        const std::vector<double> from = random_configuration(random, oracle.robot, 3.0);
+        const std::vector<double> from = random_configuration(motion, oracle.robot, 3.0);
         const std::vector<double> to =
-            between(from, random_configuration(random, oracle.robot, 3.0), i < 2 ? 0.05 : 1.0);
+            between(from, random_configuration(motion, oracle.robot, 3.0), i < 2 ? 0.05 : 1.0);
         const EdgeResult result =
-            tested.checker.check_edge(from, to, tested.scratch, {.first = random.whole(0, 9) < 3});
+            tested.checker.check_edge(from, to, tested.scratch, {.first = motion.whole(0, 9) < 3});
         (result.verdict == Verdict::kFree ? free : hits) += 1;
         const double until = result.verdict == Verdict::kFree ? 1.0 : result.free_until;
         for (int step = 0; step < effort(40, 15) && until > 0.0; ++step) {

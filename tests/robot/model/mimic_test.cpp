@@ -121,17 +121,19 @@ TEST(Mimic, ObstacleCheckerAnswersAsThePairsDo) {
     const std::vector<PlacedTree> obstacles = random_obstacles(random);
     ObstacleOptions options{.world_from_root = i % 2 == 0 ? Pose() : random_root(random, 3.0)};
     const double clearance = random.uniform(0.0, 0.2);
+    const SceneRandom way(random.bits());  // the same on every instruction set
     for (const InstructionSet set : instruction_sets()) {
       options.instructions = set;
       const ObstacleChecker checker(robot, obstacles, options);
       RobotChecker::Scratch scratch(checker);
       std::vector<double> configurations;
       std::vector<std::uint8_t> expected;
-      std::vector<double> q = random_configuration(random, robot, 3.0);
+      SceneRandom steps = way;
+      std::vector<double> q = random_configuration(steps, robot, 3.0);
       for (int k = 0; k < 50; ++k) {
         // Along a path, then jumping, and some beyond the range of the fast check.
         const double step = k < 30 ? 0.02 : k < 45 ? 3.0 : 150.0;
-        const std::vector<double> change = random_configuration(random, robot, step);
+        const std::vector<double> change = random_configuration(steps, robot, step);
         for (std::size_t n = 0; n < q.size(); ++n) q[n] += change[n];
         expected.push_back(answer(robot, obstacles, q, options) ? 1 : 0);
         configurations.insert(configurations.end(), q.begin(), q.end());
