@@ -270,16 +270,14 @@ RobotSpheres robot_spheres(const RobotDescription& robot, const RobotCover& cove
     return !cover.links[static_cast<std::size_t>(link)].spheres.empty();
   };
   const int count = static_cast<int>(cover.links.size());
+  const internal::LinkRelations relations(robot.model);
   for (int first = 0; first < count; ++first) {
+    if (!has_spheres(first)) continue;
+    const auto related = relations.of(first, has_spheres);
     for (int second = first + 1; second < count; ++second) {
-      if (!has_spheres(first) || !has_spheres(second)) continue;
-      if (internal::how_joined(robot.model, first, second, has_spheres) ==
-          internal::Joined::kFurther) {
-        continue;
-      }
-      const std::string_view reason =
-          internal::are_neighbours(robot.model, first, second, has_spheres) ? kAdjacentReason
-                                                                            : kRigidReason;
+      const auto& relation = related[static_cast<std::size_t>(second)];
+      if (!has_spheres(second) || relation.joined == internal::Joined::kFurther) continue;
+      const std::string_view reason = relation.are_neighbours ? kAdjacentReason : kRigidReason;
       result.self_collision_ignore.push_back({cover.links[static_cast<std::size_t>(first)].link,
                                               cover.links[static_cast<std::size_t>(second)].link,
                                               std::string(reason)});

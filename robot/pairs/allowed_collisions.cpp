@@ -12,11 +12,8 @@
 namespace spherule {
 namespace {
 
-AllowedReason by_structure(const RobotModel& robot, int first, int second) {
-  const auto has_spheres = [&](int link) {
-    return !robot.links()[static_cast<std::size_t>(link)].trees.empty();
-  };
-  switch (internal::how_joined(robot, first, second, has_spheres)) {
+AllowedReason reason_of(internal::Joined joined) {
+  switch (joined) {
     case internal::Joined::kRigidly:
       return AllowedReason::kRigid;
     case internal::Joined::kByOneJoint:
@@ -53,13 +50,22 @@ std::string_view name_of(AllowedReason reason) {
 
 AllowedCollisions::AllowedCollisions(const RobotModel& robot)
     : mechanism_(mechanism_fingerprint(robot)), limits_(internal::position_limits(robot)) {
+  if (robot.links().size() > kMaxLinks) {
+    throw Error("robot", "it has more than " + std::to_string(kMaxLinks) +
+                             " links, too many for a table of their pairs");
+  }
   for (const Link& link : robot.links()) names_.push_back(link.name);
   const int count = static_cast<int>(names_.size());
   bits_.resize((names_.size() * names_.size() + 63) / 64);
   reasons_.resize(names_.size() * names_.size(), AllowedReason::kTested);
+  const internal::LinkRelations relations(robot);
+  const auto has_spheres = [&](int link) {
+    return !robot.links()[static_cast<std::size_t>(link)].trees.empty();
+  };
   for (int first = 0; first < count; ++first) {
+    const auto related = relations.of(first, has_spheres);
     for (int second = first; second < count; ++second) {
-      set(first, second, by_structure(robot, first, second));
+      set(first, second, reason_of(related[static_cast<std::size_t>(second)].joined));
     }
   }
 }

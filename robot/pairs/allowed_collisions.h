@@ -50,9 +50,13 @@ std::string_view name_of(AllowedReason reason);
 // itself are never tested. A copy is a value of its own.
 class AllowedCollisions {
  public:
+  static constexpr std::size_t kMaxLinks = 4096;
+
   // All pairs are tested but those of links that no joint moves against each other, and those that
   // one joint joins: directly, or past links that carry no spheres and that other joints do not
   // move.
+  //
+  // Throws Error for a robot of more than kMaxLinks links: the matrix has their square.
   explicit AllowedCollisions(const RobotModel& robot);
 
   // The links, in the order of their indices.

@@ -60,6 +60,10 @@ SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& sem
   const auto has_body = [&](int link) { return with_body.contains(link); };
   SrdfJudgement result;
   std::set<std::pair<int, int>> listed;
+  const internal::LinkRelations relations(robot);
+  // Of one link; a file lists the pairs of a link one after the other.
+  int related_to = -1;
+  std::vector<internal::LinkRelations::Relation> related;
   for (const DisabledPair& pair : semantics.disabled_pairs) {
     JudgedPair& judged = result.pairs.emplace_back();
     judged.pair = pair;
@@ -70,7 +74,11 @@ SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& sem
       continue;
     }
     listed.insert(std::minmax(first, second));
-    const internal::Joined joined = internal::how_joined(robot, first, second, has_body);
+    if (first != related_to) {
+      related = relations.of(first, has_body);
+      related_to = first;
+    }
+    const internal::Joined joined = related[static_cast<std::size_t>(second)].joined;
     const LinkPair* const proved = proofs.find(first, second);
     if (joined == internal::Joined::kRigidly) {
       judged.verdict = DisabledVerdict::kRigid;

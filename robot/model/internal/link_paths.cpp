@@ -31,26 +31,41 @@ std::vector<int> joints_between(const RobotModel& robot, int first, int second) 
   return up;
 }
 
-bool are_neighbours(const RobotModel& robot, int first, int second,
-                    const std::function<bool(int)>& has_spheres) {
-  int link = first;
-  for (const int index : joints_between(robot, first, second)) {
-    const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
-    link = joint.child_link == link ? joint.parent_link : joint.child_link;
-    if (link != second && has_spheres(link)) return false;
+LinkRelations::LinkRelations(const RobotModel& robot)
+    : robot_(robot), joints_of_(robot.links().size()) {
+  for (std::size_t joint = 0; joint < robot.joints().size(); ++joint) {
+    for (const int link : {robot.joints()[joint].parent_link, robot.joints()[joint].child_link}) {
+      joints_of_[static_cast<std::size_t>(link)].push_back(static_cast<int>(joint));
+    }
   }
-  return true;
 }
 
-Joined how_joined(const RobotModel& robot, int first, int second,
-                  const std::function<bool(int)>& has_spheres) {
-  const std::vector<int> joints = joints_between(robot, first, second);
-  const auto moving = std::count_if(joints.begin(), joints.end(), [&](int index) {
-    return robot.joints()[static_cast<std::size_t>(index)].moves();
-  });
-  if (moving == 0) return Joined::kRigidly;
-  const bool is_next = moving == 1 && are_neighbours(robot, first, second, has_spheres);
-  return is_next ? Joined::kByOneJoint : Joined::kFurther;
+std::vector<LinkRelations::Relation> LinkRelations::of(
+    int first, const std::function<bool(int)>& has_spheres) const {
+  struct Reached {
+    int link, by_joint;
+    int moving;     // joints on the way
+    bool is_clear;  // no link before this one has spheres
+  };
+  std::vector<Relation> relations(joints_of_.size());
+  std::vector<Reached> reached{{first, -1, 0, true}};
+  while (!reached.empty()) {
+    const Reached at = reached.back();
+    reached.pop_back();
+    const bool is_next = at.moving == 1 && at.is_clear;
+    relations[static_cast<std::size_t>(at.link)] = {at.moving == 0 ? Joined::kRigidly
+                                                    : is_next      ? Joined::kByOneJoint
+                                                                   : Joined::kFurther,
+                                                    at.is_clear};
+    const bool is_clear = at.is_clear && (at.link == first || !has_spheres(at.link));
+    for (const int index : joints_of_[static_cast<std::size_t>(at.link)]) {
+      if (index == at.by_joint) continue;
+      const Joint& joint = robot_.joints()[static_cast<std::size_t>(index)];
+      reached.push_back({joint.parent_link == at.link ? joint.child_link : joint.parent_link, index,
+                         at.moving + (joint.moves() ? 1 : 0), is_clear});
+    }
+  }
+  return relations;
 }
 
 }  // namespace spherule::internal

@@ -18,13 +18,24 @@ enum class Joined {
   kFurther,     // neither
 };
 
-// Whether two links follow each other along the joints: no link between them has spheres.
-// `has_spheres` is called with indices of links.
-bool are_neighbours(const RobotModel& robot, int first, int second,
-                    const std::function<bool(int)>& has_spheres);
+// How the links of a robot hang together.
+class LinkRelations {
+ public:
+  struct Relation {
+    Joined joined = Joined::kRigidly;
+    bool are_neighbours = true;  // no link between them has spheres
+  };
 
-// How two links hang together; `has_spheres` is called with indices of links between them.
-Joined how_joined(const RobotModel& robot, int first, int second,
-                  const std::function<bool(int)>& has_spheres);
+  // Of a robot that outlives it.
+  explicit LinkRelations(const RobotModel& robot);
+
+  // Of one link to every other, by the index of the other. One traversal, linear in the links: a
+  // path for each pair makes long chains cubic. `has_spheres` is called with indices of links.
+  std::vector<Relation> of(int first, const std::function<bool(int)>& has_spheres) const;
+
+ private:
+  const RobotModel& robot_;
+  std::vector<std::vector<int>> joints_of_;  // of each link, to its parent and its children
+};
 
 }  // namespace spherule::internal
