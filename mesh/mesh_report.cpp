@@ -152,7 +152,10 @@ MeshReport mesh_report(const TriangleMesh& input, const MeshReportOptions& optio
     report.inverted_components += part.closed && part.volume < -rounding;
   }
   if (options.self_intersections) {
-    report.self_intersections = internal::count_self_intersections(mesh, kMaxSelfIntersections);
+    const internal::SelfIntersections found =
+        internal::count_self_intersections(mesh, kMaxSelfIntersections);
+    report.self_intersections = found.pairs;
+    report.self_intersections_complete = found.complete;
   }
   return report;
 }
@@ -178,9 +181,13 @@ std::string describe(const MeshReport& report) {
            " between triangles of opposite orientation");
   add_line(out, report.inverted_components, "closed piece is", "closed pieces are",
            " turned inside out (a cavity, or the wrong way round)");
-  if (report.self_intersections >= kMaxSelfIntersections) out << "\nat least";
+  const bool is_complete = report.self_intersections_complete;
   add_line(out, report.self_intersections, "pair", "pairs",
-           " of triangles that intersect without a common corner");
+           is_complete ? " of triangles that intersect without a common corner"
+                       : " or more of triangles that intersect without a common corner");
+  if (!is_complete && report.self_intersections == 0) {
+    out << "\nintersecting triangles not found, but too many lie side by side to examine them all";
+  }
   return out.str();
 }
 

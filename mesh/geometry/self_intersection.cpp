@@ -18,6 +18,10 @@ using Box = Eigen::AlignedBox3d;
 
 constexpr double kTouching = 1e-14;
 constexpr std::size_t kLeafTriangles = 4;
+// Pairs in leaves whose boxes meet are 10 to 85 for each triangle of CAD meshes and scans; in a fan
+// of slivers every pair is one.
+constexpr std::size_t kSmallestBudget = std::size_t{1} << 24;
+constexpr std::size_t kPairsPerTriangle = 128;
 
 // Whether the projections on `axis` are apart by more than rounding. Coordinates are relative to a
 // corner of `a`, so that `size` bounds what they can lose.
@@ -42,11 +46,11 @@ class BoxTree {
     build(0, order_.size());
   }
 
-  std::size_t count_pairs(std::size_t limit) {
+  SelfIntersections count_pairs(std::size_t limit) {
     limit_ = limit;
-    count_ = 0;
+    budget_ = kSmallestBudget + kPairsPerTriangle * order_.size();
     within(0);
-    return count_;
+    return {count_, count_ < limit_ && budget_ > 0};
   }
 
  private:
@@ -90,7 +94,7 @@ class BoxTree {
   void between(std::size_t i, std::size_t j) {
     const Node& a = nodes_[i];
     const Node& b = nodes_[j];
-    if (count_ >= limit_ || !a.box.intersects(b.box)) return;
+    if (count_ >= limit_ || budget_ == 0 || !a.box.intersects(b.box)) return;
     if (a.second == 0 && b.second == 0) {
       leaf_pairs(i, j);
     } else if (b.second == 0 || (a.second != 0 && a.end - a.begin >= b.end - b.begin)) {
@@ -105,7 +109,9 @@ class BoxTree {
   void leaf_pairs(std::size_t i, std::size_t j) {
     for (std::size_t p = nodes_[i].begin; p < nodes_[i].end; ++p) {
       for (std::size_t q = i == j ? p + 1 : nodes_[j].begin; q < nodes_[j].end; ++q) {
-        if (count_ < limit_ && is_intersection(order_[p], order_[q])) ++count_;
+        if (count_ >= limit_ || budget_ == 0) return;
+        --budget_;
+        if (is_intersection(order_[p], order_[q])) ++count_;
       }
     }
   }
@@ -130,6 +136,7 @@ class BoxTree {
   std::vector<Box> boxes_;
   std::vector<Node> nodes_;
   std::size_t limit_ = 0;
+  std::size_t budget_ = 0;  // of pairs to examine
   std::size_t count_ = 0;
 };
 
@@ -163,7 +170,7 @@ bool triangles_meet(const Corners& a, const Corners& b) {
   return true;
 }
 
-std::size_t count_self_intersections(const TriangleMesh& mesh, std::size_t limit) {
+SelfIntersections count_self_intersections(const TriangleMesh& mesh, std::size_t limit) {
   return BoxTree(mesh).count_pairs(limit);
 }
 

@@ -14,8 +14,14 @@ using Corners = std::array<Eigen::Vector3d, 3>;
 // 1e-14 of their size count as touching. Of triangles without area it may say so wrongly.
 bool triangles_meet(const Corners& a, const Corners& b);
 
-// Number of pairs of triangles without a common vertex that intersect, at most `limit`. Vertices
-// must be welded.
-std::size_t count_self_intersections(const TriangleMesh& mesh, std::size_t limit);
+struct SelfIntersections {
+  std::size_t pairs = 0;
+  bool complete = true;  // otherwise there may be more
+};
+
+// Number of pairs of triangles without a common vertex that intersect. Counting stops at `limit`,
+// and where the pairs that are close enough to be examined are more than linear in the triangles.
+// Vertices must be welded.
+SelfIntersections count_self_intersections(const TriangleMesh& mesh, std::size_t limit);
 
 }  // namespace spherule::internal

@@ -66,6 +66,8 @@ class MeshReport(Record):
     components: int
     inverted_components: int
     self_intersections: int
+    self_intersections_complete: bool
+    """Otherwise counting stopped, and there may be more."""
     closed: bool
     box: Floats
     """Low and high corner, shape (2, 3)."""

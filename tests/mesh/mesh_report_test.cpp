@@ -195,8 +195,28 @@ TEST(SelfIntersection, HierarchyFindsAllPairs) {
     }
   }
   EXPECT_GT(expected, 100u);
-  EXPECT_EQ(internal::count_self_intersections(soup, 1'000'000), expected);
-  EXPECT_EQ(internal::count_self_intersections(soup, 100), 100u);
+  const internal::SelfIntersections all = internal::count_self_intersections(soup, 1'000'000);
+  EXPECT_EQ(all.pairs, expected);
+  EXPECT_TRUE(all.complete);
+  const internal::SelfIntersections some = internal::count_self_intersections(soup, 100);
+  EXPECT_EQ(some.pairs, 100u);
+  EXPECT_FALSE(some.complete);
+}
+
+// Every two triangles of a fan lie side by side, 50 million pairs here.
+TEST(SelfIntersection, OfAFanIsNotLookedForAmongAllPairs) {
+  TriangleMesh fan{{{0, 0, 0}, {1, 0, 0}}, {}};
+  for (int i = 0; i < 10'000; ++i) {
+    fan.vertices.emplace_back(1.0, i + 1.0, 0.0);
+    fan.triangles.emplace_back(0, i + 1, i + 2);
+  }
+  MeshReport report = mesh_report(fan);
+  EXPECT_EQ(report.self_intersections, 0u);
+  EXPECT_FALSE(report.self_intersections_complete);
+  EXPECT_NE(describe(report).find("too many lie side by side to examine them all"),
+            std::string::npos);
+  report.self_intersections = 7;
+  EXPECT_NE(describe(report).find("7 pairs or more of triangles"), std::string::npos);
 }
 
 TEST(Validate, NamesSubjectAndFault) {
