@@ -13,8 +13,16 @@
 #include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 
+#include <array>
+#include <filesystem>
+#include <map>
 #include <memory>
+#include <set>
+#include <string>
+#include <type_traits>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -30,6 +38,41 @@ LinkDescription link_of(const std::string& name, const MeshFile& mesh) {
   return {.name = name, .visual = {}, .collision = {LinkShape{{}, Pose(), mesh}}};
 }
 
+// What a scene names again, as one bottle on every shelf, is read and made once, and shared.
+template <class Made>
+class MadeOnce {
+ public:
+  using Key = std::pair<std::filesystem::path, std::array<double, 4>>;  // a file and how it is read
+
+  template <class Make>
+  const Made& get(const Key& key, const Make& make) {
+    const auto found = made_.find(key);
+    return found != made_.end() ? found->second : made_.emplace(key, make()).first->second;
+  }
+
+ private:
+  std::map<Key, Made> made_;
+};
+
+MadeOnce<SharedTree>::Key key_of(const MeshFile& file, double max_error = 0.0) {
+  return {file.path, {file.scale.x(), file.scale.y(), file.scale.z(), max_error}};
+}
+
+constexpr std::size_t kMostAgain = std::size_t{1} << 22;
+
+std::size_t nodes_of(const SphereTree& tree) {
+  return tree.node_count();
+}
+
+std::size_t nodes_of(const SolidMesh& solid) {
+  return solid.mesh().tree().node_count();
+}
+
+struct CoveredFile {
+  SharedTree tree;
+  std::vector<std::string> warnings;
+};
+
 // Makes what is queried from the robot's scene.
 class Preparation {
  public:
@@ -41,11 +84,13 @@ class Preparation {
     for (const SceneObstacle& obstacle : description_.obstacles) {
       ObstacleShape shape = std::visit(
           [&](const auto& source) { return shape_of(obstacle.name, source); }, obstacle.shape);
+      count_again(obstacle.name, shape);
       scene_.add(obstacle.name, std::move(shape), obstacle.world_from_shape);
     }
     for (const SceneAttachment& object : description_.attached) {
       SharedTree tree =
           std::visit([&](const auto& source) { return tree_of(object, source); }, object.shape);
+      count_again(object.name, tree);
       scene_.attach(object.name, object.link, std::move(tree), object.link_from_object);
     }
     for (const SceneRegion& region : description_.regions) {
@@ -80,35 +125,62 @@ class Preparation {
     scene_.set_allowed_collisions(std::move(allowed));
   }
 
+  // Queries hold a shape for each place where it stands.
+  void count_again(const std::string& name, const ObstacleShape& shape) {
+    std::visit(
+        [&](const auto& shared) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(shared)>, Primitive>) {
+            if (!seen_.insert(shared.get()).second) again_ += nodes_of(*shared);
+          }
+        },
+        shape);
+    if (again_ > kMostAgain) {
+      throw Error(name,
+                  "the trees, clouds and meshes that the scene repeats have more than 2^22 nodes");
+    }
+  }
+
   ObstacleShape shape_of(const std::string&, const Primitive& primitive) { return primitive; }
   ObstacleShape shape_of(const std::string& name, const MeshFile& file) {
-    auto solid = std::make_shared<const SolidMesh>(*link_mesh(link_of(name, file)));
+    const auto& solid = solids_.get(key_of(file), [&] {
+      return std::make_shared<const SolidMesh>(*link_mesh(link_of(name, file)));
+    });
     if (!solid->is_closed()) {
       warnings_.push_back(name + ": the mesh is open; what is in it without touching it is free");
     }
     return solid;
   }
   ObstacleShape shape_of(const std::string&, const PointsSource& source) {
-    return shared(build_tree(point_spheres(source)));
+    return clouds_.get({source.path, {source.scale, source.radius, source.voxel, 0.0}},
+                       [&] { return shared(build_tree(point_spheres(source))); });
   }
   ObstacleShape shape_of(const std::string&, const SpheresSource& source) {
-    return read_spheres(source);
+    return tree_of(source);
   }
-  ObstacleShape shape_of(const std::string&, const TreeSource& source) {
-    return shared(load_tree(source.path));
-  }
+  ObstacleShape shape_of(const std::string&, const TreeSource& source) { return tree_of(source); }
 
-  static SharedTree read_spheres(const SpheresSource& source) {
-    return shared(build_tree(load_spheres(source.path).spheres));
+  SharedTree tree_of(const SpheresSource& source) {
+    return spheres_.get({source.path, {}},
+                        [&] { return shared(build_tree(load_spheres(source.path).spheres)); });
+  }
+  SharedTree tree_of(const TreeSource& source) {
+    return trees_.get({source.path, {}}, [&] { return shared(load_tree(source.path)); });
   }
 
   SharedTree tree_of(const SceneAttachment&, const SpheresSource& source) {
-    return read_spheres(source);
+    return tree_of(source);
   }
-  SharedTree tree_of(const SceneAttachment&, const TreeSource& source) {
-    return shared(load_tree(source.path));
-  }
+  SharedTree tree_of(const SceneAttachment&, const TreeSource& source) { return tree_of(source); }
   SharedTree tree_of(const SceneAttachment& object, const MeshFile& file) {
+    const CoveredFile& covered =
+        covered_.get(key_of(file, object.max_error), [&] { return cover(object, file); });
+    for (const std::string& warning : covered.warnings) {
+      warnings_.push_back(object.name + ": " + warning);
+    }
+    return covered.tree;
+  }
+
+  CoveredFile cover(const SceneAttachment& object, const MeshFile& file) const {
     RobotCoverOptions options = cover_;
     options.geometry = LinkGeometry::kCollision;
     options.links = {};
@@ -122,16 +194,18 @@ class Preparation {
     if (!link.fit || !link.fit->certificate.covered) {
       throw Error(file.path.string(), "its spheres are not proved to cover all of it");
     }
-    for (const std::string& warning : link.warnings) {
-      warnings_.push_back(object.name + ": " + warning);
-    }
-    return shared(build_tree(link.spheres));
+    return {shared(build_tree(link.spheres)), link.warnings};
   }
 
   const SceneDescription& description_;
   const RobotCoverOptions& cover_;
   RobotScene scene_;
   std::vector<std::string> warnings_;
+  MadeOnce<std::shared_ptr<const SolidMesh>> solids_;
+  MadeOnce<SharedTree> clouds_, spheres_, trees_;
+  MadeOnce<CoveredFile> covered_;
+  std::set<const void*> seen_;
+  std::size_t again_ = 0;  // nodes of shapes beyond the first place of each
 };
 
 }  // namespace

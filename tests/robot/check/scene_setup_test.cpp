@@ -2,6 +2,7 @@
 #include "robot/check/scene_setup.h"
 
 #include "robot/check/robot_checker.h"
+#include "spheretree/error.h"
 #include "tests/support/effort.h"
 #include "tests/support/temp_dir.h"
 
@@ -10,8 +11,11 @@
 
 #include <array>
 #include <cstdlib>
+#include <memory>
 #include <ostream>
 #include <sstream>
+#include <string>
+#include <variant>
 #include <vector>
 
 namespace spherule::test::scene_setup_test {
@@ -74,6 +78,50 @@ TEST(PrepareScene, AttachedMeshesHaveTheirOwnErrorAndD) {
   EXPECT_FALSE(is_free());
   scene.attached.front().max_error = 0.03;
   EXPECT_TRUE(is_free());
+}
+
+TEST(PrepareScene, SharesWhatIsNamedAgain) {
+  const TempDir folder;
+  std::ostringstream obj;
+  put_box({Eigen::Vector3d(-1.0, -1.0, -1.0), Eigen::Vector3d(1.0, 1.0, 1.0)}, 1, obj);
+  const MeshFile box{.path = folder.write("box.obj", obj.str())};
+  const MeshFile stretched{.path = box.path, .scale = {2.0, 1.0, 1.0}};
+  const PointsSource scan{.path = folder.write("scan.xyz", "1 1 1\n"), .radius = 0.01};
+  PointsSource thicker = scan;
+  thicker.radius = 0.02;
+  SceneDescription scene;
+  const auto add = [&](const char* name, const auto& shape) {
+    scene.obstacles.push_back({.name = name, .shape = shape});
+  };
+  add("box", box);
+  add("again", box);
+  add("stretched", stretched);
+  add("scan", scan);
+  add("rescan", scan);
+  add("thicker", thicker);
+  const RobotScene made = prepare_scene(RobotModel("base"), scene, {}).scene;
+  const auto solid = [&](const char* name) {
+    return std::get<std::shared_ptr<const SolidMesh>>(made.obstacle(name).shape);
+  };
+  EXPECT_EQ(solid("box"), solid("again"));
+  EXPECT_NE(solid("box"), solid("stretched"));
+  const auto tree = [&](const char* name) {
+    return std::get<std::shared_ptr<const SphereTree>>(made.obstacle(name).shape);
+  };
+  EXPECT_EQ(tree("scan"), tree("rescan"));
+  EXPECT_NE(tree("scan"), tree("thicker"));
+}
+
+TEST(PrepareScene, RefusesALargeShapeInManyPlaces) {
+  const TempDir folder;
+  std::string points;
+  for (int i = 0; i < 20'000; ++i) points += std::to_string(i) + " 0 0\n";
+  const PointsSource cloud{.path = folder.write("scan.xyz", points), .radius = 0.01};
+  SceneDescription scene;
+  for (int i = 0; i < 300; ++i) {
+    scene.obstacles.push_back({.name = std::to_string(i), .shape = cloud});
+  }
+  EXPECT_THROW(prepare_scene(RobotModel("base"), scene, {}), Error);
 }
 
 // Decimals are rounded when they are read and again when they are scaled: by less than one part in
