@@ -105,13 +105,17 @@ class NameCheck {
       : robot_(robot), unknown_(unknown) {}
 
   void link(const std::string& where, const std::string& name) const {
-    if (robot_.find_link(name) < 0) unknown_.push_back(where + ": there is no link " + name);
+    if (robot_.find_link(name) < 0) add(where, ": there is no link ", name);
   }
   void joint(const std::string& where, const std::string& name) const {
-    if (robot_.find_joint(name) < 0) unknown_.push_back(where + ": there is no joint " + name);
+    if (robot_.find_joint(name) < 0) add(where, ": there is no joint ", name);
   }
 
  private:
+  void add(const std::string& where, const char* what, const std::string& name) const {
+    if (unknown_.size() < kMostUnknownNames) unknown_.push_back(where + what + name);
+  }
+
   const RobotModel& robot_;
   std::vector<std::string>& unknown_;
 };

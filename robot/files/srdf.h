@@ -20,6 +20,7 @@
 #include "robot/model/link_spheres.h"
 #include "robot/model/robot_model.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -90,9 +91,12 @@ struct SemanticDescription {
 // itself, and two groups, states of a group, end effectors or sphere approximations of one name.
 SemanticDescription read_srdf(const std::filesystem::path& path);
 
+// At most so many lines of unknown_names(): a long name of a group would stand in many.
+inline constexpr std::size_t kMostUnknownNames = 1000;
+
 // What the description names and the robot has not got, a line each ("group arm: there is no joint
-// elbow"); empty if they fit. Files for a robot with and without its hand name more than there is,
-// so that it is for the caller to say whether this is an error.
+// elbow"), the first of them; empty if they fit. Files for a robot with and without its hand name
+// more than there is, so that it is for the caller to say whether this is an error.
 std::vector<std::string> unknown_names(const SemanticDescription& semantics,
                                        const RobotModel& robot);
 

@@ -90,7 +90,13 @@ void read_curobo(const YamlMembers& root, const fs::path& path, SphereGatherer& 
   if (!spheres) gathered.refuse({}, "has no \"collision_spheres\" and is no XRDF");
   if (spheres->IsScalar()) {
     const fs::path side = path.parent_path() / spheres->Scalar();
-    const std::string text = read_file(side);
+    const std::string text = [&] {
+      try {
+        return read_file(side);
+      } catch (const Error& error) {
+        gathered.refuse("\"collision_spheres\"", error.what());
+      }
+    }();
     SphereGatherer beside(side.string(), text.size());
     const YamlMembers there = yaml_members(yaml_document(text, beside), "the file", beside);
     const auto found = find_member(there, "collision_spheres");

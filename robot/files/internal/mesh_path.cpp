@@ -20,15 +20,15 @@ bool is_file(const fs::path& path) {
 }
 
 // One that cannot be read is the root of nothing that is searched for.
-bool is_package(const fs::path& folder, const std::string& name) {
+std::string package_name(const fs::path& folder) {
   const fs::path manifest = folder / "package.xml";
-  if (!is_file(manifest)) return false;
+  if (!is_file(manifest)) return {};
   try {
     const XmlFile file(manifest, "package");
     const auto element = file.root().child("name");
-    return element && element->text() == name;
+    return element ? std::string(element->text()) : std::string();
   } catch (const Error&) {
-    return false;
+    return {};
   }
 }
 
@@ -37,11 +37,19 @@ bool is_package(const fs::path& folder, const std::string& name) {
 MeshPaths::MeshPaths(const fs::path& urdf, const UrdfOptions& options)
     : folder_(fs::absolute(urdf).parent_path()), packages_(options.packages) {}
 
-fs::path MeshPaths::package_root(const std::string& package) const {
-  for (fs::path at = folder_;; at = at.parent_path()) {
-    if (is_package(at, package)) return at;
-    if (is_package(at / package, package)) return at / package;
-    if (at == at.parent_path()) break;
+fs::path MeshPaths::package_root(const std::string& package) {
+  if (above_.empty()) {
+    for (fs::path at = folder_;; at = at.parent_path()) {
+      above_.emplace_back(at, package_name(at));
+      if (at == at.parent_path()) break;
+    }
+  }
+  if (!missing_.contains(package)) {
+    for (const auto& [folder, name] : above_) {
+      if (name == package) return folder;
+      if (package_name(folder / package) == package) return folder / package;
+    }
+    missing_.insert(package);
   }
   throw Error("package://" + package,
               "the folder of this package is not given (--package " + package +

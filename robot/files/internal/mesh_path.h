@@ -5,7 +5,10 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace spherule::internal {
 
@@ -18,9 +21,12 @@ class MeshPaths {
   std::filesystem::path find(const std::string& name);
 
  private:
-  std::filesystem::path package_root(const std::string& package) const;
+  std::filesystem::path package_root(const std::string& package);
 
   std::filesystem::path folder_;
+  // The folder of the file and those above it, with the package that each is, often none.
+  std::vector<std::pair<std::filesystem::path, std::string>> above_;
+  std::set<std::string> missing_;
   std::map<std::string, std::filesystem::path> packages_;  // given, and found since
 };
 

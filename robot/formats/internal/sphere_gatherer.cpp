@@ -6,14 +6,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace spherule::internal {
+namespace {
+
+constexpr std::size_t kLongestLinkName = 4096;
+
+}  // namespace
 
 void SphereGatherer::refuse(const std::string& place, const std::string& reason) const {
   throw Error(file_, place.empty() ? reason : place + ": " + reason);
 }
 
 void SphereGatherer::begin_link(const std::string& name, const std::string& place) {
+  // It stands in the place of each of its spheres.
+  unless(name.size() <= kLongestLinkName, {}, "the name of a link has more than 4096 bytes");
   unless(links_.insert(name).second, place, "the link \"" + name + "\" is there twice");
   spheres.links.push_back({name, {}});
 }

@@ -113,6 +113,14 @@ TEST(ReadSrdf, TellsWhatTheRobotHasNotGot) {
                 "disabled pair: there is no link i", "sphere approximation: there is no link k"}));
 }
 
+TEST(ReadSrdf, TellsOfSoManyNamesOnly) {
+  std::string links;
+  for (std::size_t i = 0; i <= kMostUnknownNames; ++i) links += "<link name='a'/>";
+  const SemanticDescription semantics =
+      read_text(robot_of("<group name='g'>" + links + "</group>"));
+  EXPECT_EQ(unknown_names(semantics, RobotModel("base")).size(), kMostUnknownNames);
+}
+
 struct BadFile {
   std::string text;
   std::vector<std::string> reasons;

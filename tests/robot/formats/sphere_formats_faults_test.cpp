@@ -57,6 +57,8 @@ TEST_F(SphereFormatFaults, Files) {
   expect_refusal(" \n\t", "is empty");
   EXPECT_THROW(read_robot_spheres(folder_.path() / "missing"), Error);
   EXPECT_THROW(read_robot_spheres(folder_.path()), Error);
+  expect_refusal("collision_spheres: gone.yml", "gone.yml: cannot be read");
+  expect_refusal("{\"" + std::string(5000, 'n') + "\":[{\"spheres\":[]}]}", "more than 4096 bytes");
 }
 
 TEST_F(SphereFormatFaults, Xml) {
