@@ -183,35 +183,40 @@ const char* verdict_of(const CheckReport& report) {
   return report.is_free() ? "free" : "not proved";
 }
 
-bool is_same_pair(const FoundContact& a, const FoundContact& b) {
-  return a.contact.first.name == b.contact.first.name &&
-         a.contact.second.name == b.contact.second.name;
+std::optional<std::size_t> PairIndex::find_or_add(const CheckedContact& contact, std::size_t next) {
+  const auto [place, is_new] = places_.try_emplace({contact.first.name, contact.second.name}, next);
+  return is_new ? std::nullopt : std::optional(place->second);
 }
 
 void CheckReport::add(const FoundContact& first, const FoundContact& deepest) {
-  std::vector<TouchingPair>& list = first.contact.is_proved_free ? proved_free : pairs;
-  const auto known = std::ranges::find_if(
-      list, [&](const TouchingPair& pair) { return is_same_pair(pair.first, first); });
+  const bool is_proved = first.contact.is_proved_free;
+  std::vector<TouchingPair>& list = is_proved ? proved_free : pairs;
+  PairIndex& index = is_proved ? place_in_proved_free : place_in_pairs;
+  const std::optional<std::size_t> known = index.find_or_add(first.contact, list.size());
   const std::size_t at_start = first.at.fraction == 0.0 ? 1 : 0;
-  if (known == list.end()) {
+  if (!known) {
     list.push_back({1, at_start, first, deepest});
     return;
   }
-  ++known->count;
-  known->at_start += at_start;
-  if (deepest.contact.overlap_depth > known->worst.contact.overlap_depth) known->worst = deepest;
+  TouchingPair& pair = list[*known];
+  ++pair.count;
+  pair.at_start += at_start;
+  if (deepest.contact.overlap_depth > pair.worst.contact.overlap_depth) pair.worst = deepest;
 }
 
 void CheckReport::tell_kinds(const RobotModel& robot, const std::vector<PairStatus>& statuses) {
+  std::map<std::pair<int, int>, const PairStatus*> status_of;
+  for (const PairStatus& status : statuses) {
+    status_of.try_emplace({status.first, status.second}, &status);
+  }
   for (std::vector<TouchingPair>* const list : {&pairs, &proved_free}) {
     for (TouchingPair& pair : *list) {
       const std::pair<int, int> links = std::minmax(link_of(robot, pair.first.contact.first),
                                                     link_of(robot, pair.first.contact.second));
-      const auto status = std::find_if(statuses.begin(), statuses.end(), [&](const auto& other) {
-        return links == std::pair(other.first, other.second);
-      });
-      if (status == statuses.end() || !status->verdict) continue;
-      pair.kind = list == &proved_free ? std::string(kind_of(*status)) : kind_of_contact(*status);
+      const auto status = status_of.find(links);
+      if (status == status_of.end() || !status->second->verdict) continue;
+      pair.kind = list == &proved_free ? std::string(kind_of(*status->second))
+                                       : kind_of_contact(*status->second);
     }
   }
 }

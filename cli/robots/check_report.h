@@ -8,8 +8,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -26,8 +28,16 @@ struct FoundContact {
   CheckedContact contact;
 };
 
-// Whether two contacts are of the same bodies.
-bool is_same_pair(const FoundContact& a, const FoundContact& b);
+// Finds two bodies again in a list of their contacts.
+class PairIndex {
+ public:
+  // Where the bodies of the contact stand; nothing where they are new, and stand at `next` from
+  // then on.
+  std::optional<std::size_t> find_or_add(const CheckedContact& contact, std::size_t next);
+
+ private:
+  std::map<std::pair<std::string, std::string>, std::size_t> places_;
+};
 
 // Two bodies, or a body and an obstacle, that touch somewhere.
 struct TouchingPair {
@@ -80,6 +90,10 @@ struct CheckReport {
   void add(const FoundContact& found) { add(found, found); }
   // Says of the pairs of links of what kind they are.
   void tell_kinds(const RobotModel& robot, const std::vector<PairStatus>& statuses);
+
+  // For add().
+  PairIndex place_in_pairs{};
+  PairIndex place_in_proved_free{};
 };
 
 // "free", "collision", "not proved" or "outside limits".

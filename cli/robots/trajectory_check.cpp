@@ -107,6 +107,7 @@ class TrajectoryCheck {
   // there the first and the deepest contact.
   void explain_motion(std::size_t motion, double contact_at) {
     std::vector<std::pair<FoundContact, FoundContact>> found;
+    PairIndex index;
     for (std::size_t k = 0; k <= places_; ++k) {
       const double share = static_cast<double>(k) / static_cast<double>(places_);
       const TrajectoryPoint at{.line = trajectory_.lines[motion],
@@ -117,12 +118,12 @@ class TrajectoryCheck {
           options_.edge.continuous);
       for (const CheckedContact& contact : checker_.explain(configuration, scratches_.front())) {
         const FoundContact here{at, contact};
-        const auto known = std::ranges::find_if(
-            found, [&](const auto& pair) { return is_same_pair(pair.first, here); });
-        if (known == found.end()) {
+        const auto known = index.find_or_add(contact, found.size());
+        if (!known) {
           found.emplace_back(here, here);
-        } else if (contact.overlap_depth > known->second.contact.overlap_depth) {
-          known->second = here;
+        } else if (FoundContact& deepest = found[*known].second;
+                   contact.overlap_depth > deepest.contact.overlap_depth) {
+          deepest = here;
         }
       }
     }

@@ -259,14 +259,18 @@ void CompiledPlan<Real>::compile_tests(const PlanSource& source, const Reach& re
   for (const PlanSource::Obstacle& obstacle : source.obstacles) {
     exact_boxes.push_back(compiled_box<double>(obstacle, reach.largest));
   }
+  std::vector<std::vector<std::size_t>> obstacle_tests(bodies_.size());
+  for (std::size_t t = 0; t < source.tests.size(); ++t) {
+    const PlanSource::Test& test = source.tests[t];
+    if (test.is_obstacle) obstacle_tests[static_cast<std::size_t>(test.body)].push_back(t);
+  }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Sphere around = reachable(source, b, reach.reach[b]);
     const double limit = around.radius + kSlack * reach.reach[b] + 4.0 * source.pose_error;
     bodies_[b].first_group = static_cast<std::int32_t>(groups_.size());
     int lane = kPlanLanes;
-    for (std::size_t t = 0; t < source.tests.size(); ++t) {
+    for (const std::size_t t : obstacle_tests[b]) {
       const PlanSource::Test& test = source.tests[t];
-      if (!test.is_obstacle || test.body != static_cast<int>(b)) continue;
       const auto obstacle = static_cast<std::size_t>(test.other);
       if (distance_from_box(around.center, exact_boxes[obstacle]) > limit) continue;
       const PlanBoxes<Real>& box = obstacle_boxes_[obstacle];

@@ -70,30 +70,35 @@ void CompiledWidePlan::compile_partners(const CheckPlan<float>& plan, std::size_
     return static_cast<std::size_t>(k == 0 ? plan.pairs[pair].first : plan.pairs[pair].second);
   };
   std::vector<int> from(pairs, -1);  // which side searches for the other
+  std::vector<std::vector<std::size_t>> pairs_of(bodies);
+  for (std::size_t p = 0; p < pairs; ++p) {
+    for (const int k : {0, 1}) pairs_of[side(p, k)].push_back(p);
+  }
   for (const std::size_t end : {static_cast<std::size_t>(plan.first_never), pairs}) {
+    std::vector<std::size_t> counts(bodies, 0);
+    for (std::size_t p = 0; p < end; ++p) {
+      if (from[p] >= 0) continue;
+      for (const int k : {0, 1}) ++counts[side(p, k)];
+    }
     while (true) {
-      std::vector<std::size_t> counts(bodies, 0);
-      for (std::size_t p = 0; p < end; ++p) {
-        if (from[p] >= 0) continue;
-        for (const int k : {0, 1}) ++counts[side(p, k)];
-      }
       const auto most = std::max_element(counts.begin(), counts.end());
       if (most == counts.end() || *most == 0) break;
       const auto body = static_cast<std::size_t>(most - counts.begin());
-      for (std::size_t p = 0; p < end; ++p) {
-        for (const int k : {0, 1}) {
-          if (from[p] < 0 && side(p, k) == body) from[p] = k;
-        }
+      for (const std::size_t p : pairs_of[body]) {
+        if (p >= end || from[p] >= 0) continue;
+        from[p] = side(p, 0) == body ? 0 : 1;
+        for (const int k : {0, 1}) --counts[side(p, k)];
       }
     }
   }
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> partners(
+      bodies);  // and their pairs
+  for (std::size_t p = 0; p < pairs; ++p) {
+    partners[side(p, from[p])].emplace_back(side(p, 1 - from[p]), p);
+  }
   for (std::size_t body = 0; body < bodies; ++body) {
-    std::vector<std::pair<std::size_t, std::size_t>> partners;  // with their pairs
-    for (std::size_t p = 0; p < pairs; ++p) {
-      if (side(p, from[p]) == body) partners.emplace_back(side(p, 1 - from[p]), p);
-    }
-    std::sort(partners.begin(), partners.end());
-    for (const auto& [other, pair] : partners) {
+    std::sort(partners[body].begin(), partners[body].end());
+    for (const auto& [other, pair] : partners[body]) {
       const auto group = static_cast<std::int32_t>(other / WidePartners::kGroup);
       const auto index = static_cast<std::int32_t>(body);
       if (partners_.empty() || partners_.back().body != index || partners_.back().group != group) {

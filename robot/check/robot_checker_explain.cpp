@@ -8,7 +8,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <map>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 namespace spherule {
 
@@ -40,6 +44,11 @@ std::vector<CheckedContact> RobotChecker::explain(std::span<const double> config
                                                   const ExplainRequest& request) const {
   require_own(scratch);
   std::vector<CheckedContact> result;
+  const auto body = [&](int piece) {
+    return parts_->pairs.pieces()[static_cast<std::size_t>(piece)].body;
+  };
+  // Of a body with another one or an obstacle, by their indices: its place in the result.
+  std::map<std::tuple<std::size_t, bool, std::size_t>, std::size_t> places;
   internal::BodyPairs::Memory& memory = scratch.memory_->pairs;
   parts_->pairs.place(configuration, memory);
   for (std::size_t i = 0; i < parts_->pairs.pairs().size(); ++i) {
@@ -55,13 +64,15 @@ std::vector<CheckedContact> RobotChecker::explain(std::span<const double> config
                          padding_of(i),
                          contact->world_point,
                          is_proved_free};
-    const auto known = std::find_if(result.begin(), result.end(), [&](const CheckedContact& other) {
-      return other.first.name == found.first.name && other.second.name == found.second.name;
-    });
-    if (known == result.end()) {
+    const std::size_t other =
+        pair.is_obstacle ? static_cast<std::size_t>(pair.other) : body(pair.other);
+    const auto [known, is_new] =
+        places.try_emplace({body(pair.piece), pair.is_obstacle, other}, result.size());
+    if (is_new) {
       result.push_back(std::move(found));
-    } else if (found.overlap_depth > known->overlap_depth) {
-      *known = std::move(found);
+    } else if (CheckedContact& deepest = result[known->second];
+               found.overlap_depth > deepest.overlap_depth) {
+      deepest = std::move(found);
     }
   }
   std::stable_partition(result.begin(), result.end(),

@@ -190,10 +190,14 @@ class RobotScene {
   // Contacts that allow_contact() allows and forbid_contact() has not forbidden since.
   const std::set<Intended>& intended_contacts() const { return intended_; }
 
+  // Pairs of bodies, and of bodies and obstacles, that a snapshot may have to test.
+  static constexpr std::size_t kMostBodyPairs = std::size_t{1} << 19;
+  static constexpr std::size_t kMostObstaclePairs = std::size_t{1} << 23;
+
   // What is queried, as of now: later edits do not change it. Trees and meshes are shared, not
   // copied, but for those of bodies that have padding or regions. Throws Error for what reaches
-  // too far to be computed with, a mesh of the options that is missing, and instructions that this
-  // machine has not got.
+  // too far to be computed with, more pairs than the limits above, a mesh of the options that is
+  // missing, and instructions that this machine has not got.
   RobotChecker snapshot(const RobotCheckerOptions& options = {}) const;
 
  private:

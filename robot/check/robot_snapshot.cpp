@@ -11,7 +11,9 @@
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
+#include <string>
 #include <tuple>
 
 namespace spherule {
@@ -163,6 +165,7 @@ class RobotScene::Snapshot {
              body, *left_out,
              internal::padding_sum(scene_.padding_of(name), scene_.padding_between(name, other)))) {
       const bool is_static = std::holds_alternative<Tree>(shapes_[obstacle].shape);
+      require(++with_obstacles_ <= kMostObstaclePairs, "of bodies and obstacles");
       (is_static ? static_pairs_ : pairs_).push_back({piece, static_cast<int>(obstacle), true});
     }
   }
@@ -179,8 +182,15 @@ class RobotScene::Snapshot {
     const std::vector<int> seconds = pieces_of(other, *of_second, scene_.padding_of(second.name));
     const double padding = internal::padding_sum(scene_.padding_of(first.name), between);
     for (const int a : pieces_of(body, *of_first, padding)) {
-      for (const int b : seconds) pairs_.push_back({a, b, false, boxes});
+      for (const int b : seconds) {
+        require(++of_bodies_ <= kMostBodyPairs, "of bodies");
+        pairs_.push_back({a, b, false, boxes});
+      }
     }
+  }
+
+  static void require(bool are_few, const char* pairs) {
+    if (!are_few) throw Error("robot checker", std::string("too many pairs ") + pairs + " to test");
   }
 
   // Where two bodies are proved free: without padding, which the proofs do not know of.
@@ -221,6 +231,8 @@ class RobotScene::Snapshot {
   std::vector<internal::CheckedPiece> pieces_;
   std::vector<internal::CheckedPair> pairs_;
   std::vector<internal::CheckedPair> static_pairs_;
+  std::size_t of_bodies_ = 0;       // pairs so far
+  std::size_t with_obstacles_ = 0;  // pairs so far
 };
 
 RobotChecker RobotScene::snapshot(const RobotCheckerOptions& options) const {

@@ -59,8 +59,9 @@ class CellsSource {
     margin_ = std::max(kLeastMargin, std::exp2(std::ceil(std::log2(8.0 * source.pose_error))));
   }
 
-  std::shared_ptr<const FreeCells> of(const CheckedPair& pair) const {
+  std::shared_ptr<const FreeCells> of(const CheckedPair& pair) {
     if (pair.boxes == nullptr) {
+      if (++searched_ > kMostSearched) return nullptr;
       return robot_.check_cache().free_cells.of(source_of(pair.piece, pair.other));
     }
     std::vector<int> positions;
@@ -97,12 +98,15 @@ class CellsSource {
   }
 
   static constexpr double kLeastMargin = 0x1p-33;
+  // Each search takes longer than a test of the pair, and is compared with all that are kept.
+  static constexpr int kMostSearched = 1024;
 
   const RobotModel& robot_;
   const PlanSource& source_;
   std::vector<const Joint*> joints_;    // that moves each frame
   std::vector<int> frame_of_variable_;  // whose position it is
   double margin_ = 0.0;
+  int searched_ = 0;  // pairs whose cells were searched for
 };
 
 }  // namespace
@@ -131,7 +135,7 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
   for (std::size_t i = 0; i < source.bodies.size(); ++i) {
     source.body_paths.push_back(steps_of(pairs.path_to_root(i), pairs.robot(), frames));
   }
-  const CellsSource cells(pairs.robot(), frames, source);
+  CellsSource cells(pairs.robot(), frames, source);
   for (std::size_t i = 0; i < count; ++i) {
     const CheckedPair& pair = pairs.pairs()[i];
     PlanSource::Path path = steps_of(pairs.path(i), pairs.robot(), frames);

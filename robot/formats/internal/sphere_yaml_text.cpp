@@ -3,8 +3,12 @@
 #include "robot/formats/internal/sphere_documents.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
+#include <string>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 namespace spherule::internal {
 namespace {
@@ -62,18 +66,22 @@ constexpr double kJerk = 500.0;
 
 std::vector<IgnoredLinks> ignored_links(std::span<const DisabledPair> pairs,
                                         const std::vector<std::string>& order) {
+  std::unordered_map<std::string, std::size_t> places;
+  for (const std::string& link : order) places.try_emplace(link, places.size());
   const auto place = [&](const std::string& link) {
-    return std::find(order.begin(), order.end(), link) - order.begin();
+    const auto found = places.find(link);
+    return found != places.end() ? found->second : places.size();
   };
   std::vector<IgnoredLinks> lists;
+  std::unordered_map<std::string, std::size_t> list_of;
   for (const DisabledPair& pair : pairs) {
     const bool is_turned = place(pair.link_b) < place(pair.link_a);
     const std::string& first = is_turned ? pair.link_b : pair.link_a;
-    auto list = std::find_if(lists.begin(), lists.end(),
-                             [&](const IgnoredLinks& entry) { return entry.first == first; });
-    if (list == lists.end()) list = lists.insert(lists.end(), {first});
-    list->others.push_back(is_turned ? pair.link_a : pair.link_b);
-    list->reasons.push_back(pair.reason.empty() ? "given" : pair.reason);
+    const auto [known, is_new] = list_of.try_emplace(first, lists.size());
+    if (is_new) lists.push_back({first});
+    IgnoredLinks& list = lists[known->second];
+    list.others.push_back(is_turned ? pair.link_a : pair.link_b);
+    list.reasons.push_back(pair.reason.empty() ? "given" : pair.reason);
   }
   return lists;
 }
