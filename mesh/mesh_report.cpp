@@ -155,7 +155,7 @@ MeshReport mesh_report(const TriangleMesh& input, const MeshReportOptions& optio
     const internal::SelfIntersections found =
         internal::count_self_intersections(mesh, kMaxSelfIntersections);
     report.self_intersections = found.pairs;
-    report.self_intersections_complete = found.complete;
+    report.self_intersections_stopped = found.stopped;
   }
   return report;
 }
@@ -181,11 +181,11 @@ std::string describe(const MeshReport& report) {
            " between triangles of opposite orientation");
   add_line(out, report.inverted_components, "closed piece is", "closed pieces are",
            " turned inside out (a cavity, or the wrong way round)");
-  const bool is_complete = report.self_intersections_complete;
+  const bool stopped = report.self_intersections_stopped;
   add_line(out, report.self_intersections, "pair", "pairs",
-           is_complete ? " of triangles that intersect without a common corner"
-                       : " or more of triangles that intersect without a common corner");
-  if (!is_complete && report.self_intersections == 0) {
+           stopped ? " or more of triangles that intersect without a common corner"
+                   : " of triangles that intersect without a common corner");
+  if (stopped && report.self_intersections == 0) {
     out << "\nintersecting triangles not found, but too many lie side by side to examine them all";
   }
   return out.str();

@@ -39,11 +39,12 @@ struct MeshReport {
   std::size_t misoriented_edges = 0;    // used twice in the same direction
   std::size_t components = 0;           // connected by shared vertices
   std::size_t inverted_components = 0;  // closed, with negative volume
-  // Pairs of triangles without a common vertex that intersect. Counting stops at
-  // kMaxSelfIntersections, and where so many triangles lie side by side that the pairs to examine
-  // are more than 2^24 + 128 times the triangles; then this is a lower bound.
+  // Pairs of triangles without a common vertex that intersect; 0 where the options ask for none.
   std::size_t self_intersections = 0;
-  bool self_intersections_complete = true;
+  // Whether counting stopped, so that there may be more: at kMaxSelfIntersections, or where so many
+  // triangles lie side by side that the pairs of them and of the boxes around several of them to
+  // examine are more than 2^24 + 128 times the triangles.
+  bool self_intersections_stopped = false;
   // Every edge is used as often in one direction as in the other, so that the winding number of a
   // point is a whole number, and one that is not zero proves the point to be inside.
   bool closed = false;

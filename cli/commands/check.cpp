@@ -163,9 +163,16 @@ PreparedScene prepare(SphereRobot robot, const SceneDescription& scene, RobotCov
 
 // With --spheres no mesh is needed, unless proofs are about meshes.
 RobotDescription read_checked_robot(const CheckArguments& arguments, LinkGeometry geometry) {
-  if (arguments.spheres.empty()) return read_robot(arguments.urdf, arguments.packages, geometry);
   const std::vector<LinkGeometry> needed(arguments.pairs.empty() ? 0 : 1, geometry);
-  return read_urdf(arguments.urdf, urdf_options(arguments.packages, needed));
+  RobotDescription robot =
+      arguments.spheres.empty()
+          ? read_robot(arguments.urdf, arguments.packages, geometry)
+          : read_urdf(arguments.urdf, urdf_options(arguments.packages, needed));
+  if (robot.links.size() > AllowedCollisions::kMaxLinks) {
+    throw Error(arguments.urdf, "has more than " + std::to_string(AllowedCollisions::kMaxLinks) +
+                                    " links, too many to be checked");
+  }
+  return robot;
 }
 
 void write_checked(const CheckArguments& arguments, const CheckedScene& checked, bool has_motions) {

@@ -20,7 +20,7 @@ Json to_json(const std::string& file, const TriangleMesh& mesh, const MeshReport
           {"components", report.components},
           {"inverted_components", report.inverted_components},
           {"self_intersections", report.self_intersections},
-          {"self_intersections_complete", report.self_intersections_complete},
+          {"self_intersections_stopped", report.self_intersections_stopped},
           {"closed", report.closed},
           {"box", spherule::to_json(report.box)},
           {"area", report.area},

@@ -50,7 +50,7 @@ class BoxTree {
     limit_ = limit;
     budget_ = kSmallestBudget + kPairsPerTriangle * order_.size();
     within(0);
-    return {count_, count_ < limit_ && budget_ > 0};
+    return {count_, count_ >= limit_ || budget_ == 0};
   }
 
  private:
@@ -95,6 +95,7 @@ class BoxTree {
     const Node& a = nodes_[i];
     const Node& b = nodes_[j];
     if (count_ >= limit_ || budget_ == 0 || !a.box.intersects(b.box)) return;
+    --budget_;
     if (a.second == 0 && b.second == 0) {
       leaf_pairs(i, j);
     } else if (b.second == 0 || (a.second != 0 && a.end - a.begin >= b.end - b.begin)) {
@@ -136,7 +137,7 @@ class BoxTree {
   std::vector<Box> boxes_;
   std::vector<Node> nodes_;
   std::size_t limit_ = 0;
-  std::size_t budget_ = 0;  // of pairs to examine
+  std::size_t budget_ = 0;  // of pairs of nodes and of triangles to examine
   std::size_t count_ = 0;
 };
 

@@ -16,7 +16,7 @@ bool triangles_meet(const Corners& a, const Corners& b);
 
 struct SelfIntersections {
   std::size_t pairs = 0;
-  bool complete = true;  // otherwise there may be more
+  bool stopped = false;  // there may be more
 };
 
 // Number of pairs of triangles without a common vertex that intersect. Counting stops at `limit`,

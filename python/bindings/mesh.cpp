@@ -62,7 +62,7 @@ py::object mesh_report_of(const py::object& mesh, bool self_intersections) {
   return make_result("MeshReport", r.vertices, r.triangles, r.degenerate_triangles,
                      r.duplicate_triangles, r.boundary_edges, r.non_manifold_edges,
                      r.misoriented_edges, r.components, r.inverted_components, r.self_intersections,
-                     r.self_intersections_complete, r.closed, array_of(r.box), r.area, r.volume,
+                     r.self_intersections_stopped, r.closed, array_of(r.box), r.area, r.volume,
                      describe(r));
 }
 

@@ -66,8 +66,8 @@ class MeshReport(Record):
     components: int
     inverted_components: int
     self_intersections: int
-    self_intersections_complete: bool
-    """Otherwise counting stopped, and there may be more."""
+    self_intersections_stopped: bool
+    """Whether counting stopped, so that there may be more."""
     closed: bool
     box: Floats
     """Low and high corner, shape (2, 3)."""

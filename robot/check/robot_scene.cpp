@@ -250,6 +250,10 @@ void RobotScene::define_region(Region region, std::span<const BodySphere> sphere
   std::vector<BodySphere> sorted(spheres.begin(), spheres.end());
   std::sort(sorted.begin(), sorted.end());
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  std::size_t all = sorted.size();
+  for (const auto& [names, named] : regions_) all += named.size();
+  if (all > kMostRegionSpheres)
+    throw Error(subject, "the regions of the scene have too many spheres");
   regions_.insert_or_assign({std::move(region.body), std::move(region.name)}, std::move(sorted));
 }
 

@@ -82,7 +82,8 @@ struct Region {
 class RobotScene {
  public:
   // The spheres are those that the robot's links carry. Allowed at first: what AllowedCollisions
-  // allows by itself.
+  // allows by itself, which throws Error for a robot of more than AllowedCollisions::kMaxLinks
+  // links.
   explicit RobotScene(RobotModel robot, const Pose& world_from_root = {});
 
   // What the scene was made with and what was set last.
@@ -193,6 +194,9 @@ class RobotScene {
   // Pairs of bodies, and of bodies and obstacles, that a snapshot may have to test.
   static constexpr std::size_t kMostBodyPairs = std::size_t{1} << 19;
   static constexpr std::size_t kMostObstaclePairs = std::size_t{1} << 23;
+  // Nodes of trees that it may make of bodies with padding or regions, and spheres of all regions.
+  static constexpr std::size_t kMostCopiedNodes = std::size_t{1} << 24;
+  static constexpr std::size_t kMostRegionSpheres = std::size_t{1} << 24;
 
   // What is queried, as of now: later edits do not change it. Trees and meshes are shared, not
   // copied, but for those of bodies that have padding or regions. Throws Error for what reaches

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 
@@ -98,14 +99,14 @@ class RobotScene::Snapshot {
 
   // The names of the regions of a body that may touch another; none if all of it may.
   std::optional<Regions> regions_left_out(const std::string& body, const std::string& other) const {
+    const std::set<Intended>& contacts = scene_.intended_;
+    if (contacts.contains({body, "", other}) || contacts.contains({other, "", body})) {
+      return std::nullopt;
+    }
     Regions regions;
-    for (const Intended& contact : scene_.intended_) {
-      if (contact.body == body && contact.other == other) {
-        if (contact.region.empty()) return std::nullopt;
-        regions.push_back(contact.region);
-      } else if (contact.body == other && contact.other == body && contact.region.empty()) {
-        return std::nullopt;
-      }
+    for (auto contact = contacts.lower_bound({body, "", ""});
+         contact != contacts.end() && contact->body == body; ++contact) {
+      if (contact->other == other) regions.push_back(contact->region);
     }
     return regions;
   }
@@ -136,6 +137,13 @@ class RobotScene::Snapshot {
       }
     }
     internal::CheckedPiece piece{tree, bodies_[body].link, body, index, {}, padding, nullptr};
+    if (!left_out.empty() || padding > 0.0) {
+      copied_ += tree->node_count();
+      if (copied_ > kMostCopiedNodes) {
+        throw Error(bodies_[body].name,
+                    "its paddings and regions make too many copies of its spheres");
+      }
+    }
     if (std::find(is_left_out.begin(), is_left_out.end(), true) != is_left_out.end()) {
       std::vector<Sphere> spheres;
       for (std::size_t i = 0; i < is_left_out.size(); ++i) {
@@ -233,6 +241,7 @@ class RobotScene::Snapshot {
   std::vector<internal::CheckedPair> static_pairs_;
   std::size_t of_bodies_ = 0;       // pairs so far
   std::size_t with_obstacles_ = 0;  // pairs so far
+  std::size_t copied_ = 0;          // nodes of trees that are other ones with padding or regions
 };
 
 RobotChecker RobotScene::snapshot(const RobotCheckerOptions& options) const {

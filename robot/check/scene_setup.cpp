@@ -14,12 +14,14 @@
 #include "spheretree/tree_file.h"
 
 #include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -38,27 +40,32 @@ LinkDescription link_of(const std::string& name, const MeshFile& mesh) {
   return {.name = name, .visual = {}, .collision = {LinkShape{{}, Pose(), mesh}}};
 }
 
+// A file and the numbers with which it is read, bit by bit.
+using SourceKey = std::pair<std::filesystem::path, std::array<std::uint64_t, 4>>;
+
+SourceKey key_of(const std::filesystem::path& file, const std::array<double, 4>& numbers = {}) {
+  return {file.lexically_normal(), std::bit_cast<std::array<std::uint64_t, 4>>(numbers)};
+}
+
+SourceKey key_of(const MeshFile& file, double max_error = 0.0) {
+  return key_of(file.path, {file.scale.x(), file.scale.y(), file.scale.z(), max_error});
+}
+
 // What a scene names again, as one bottle on every shelf, is read and made once, and shared.
 template <class Made>
 class MadeOnce {
  public:
-  using Key = std::pair<std::filesystem::path, std::array<double, 4>>;  // a file and how it is read
-
   template <class Make>
-  const Made& get(const Key& key, const Make& make) {
+  const Made& get(const SourceKey& key, const Make& make) {
     const auto found = made_.find(key);
     return found != made_.end() ? found->second : made_.emplace(key, make()).first->second;
   }
 
  private:
-  std::map<Key, Made> made_;
+  std::map<SourceKey, Made> made_;
 };
 
-MadeOnce<SharedTree>::Key key_of(const MeshFile& file, double max_error = 0.0) {
-  return {file.path, {file.scale.x(), file.scale.y(), file.scale.z(), max_error}};
-}
-
-constexpr std::size_t kMostAgain = std::size_t{1} << 22;
+constexpr std::size_t kMostRepeatedNodes = std::size_t{1} << 22;
 
 std::size_t nodes_of(const SphereTree& tree) {
   return tree.node_count();
@@ -67,6 +74,14 @@ std::size_t nodes_of(const SphereTree& tree) {
 std::size_t nodes_of(const SolidMesh& solid) {
   return solid.mesh().tree().node_count();
 }
+
+struct FileOf {
+  std::filesystem::path operator()(const Primitive&) const { return {}; }
+  template <class Source>
+  std::filesystem::path operator()(const Source& source) const {
+    return source.path.lexically_normal();
+  }
+};
 
 struct CoveredFile {
   SharedTree tree;
@@ -84,13 +99,14 @@ class Preparation {
     for (const SceneObstacle& obstacle : description_.obstacles) {
       ObstacleShape shape = std::visit(
           [&](const auto& source) { return shape_of(obstacle.name, source); }, obstacle.shape);
-      count_again(obstacle.name, shape);
+      const std::filesystem::path file = std::visit(FileOf(), obstacle.shape);
+      std::visit([&](const auto& made) { count_repeated(obstacle.name, file, made); }, shape);
       scene_.add(obstacle.name, std::move(shape), obstacle.world_from_shape);
     }
     for (const SceneAttachment& object : description_.attached) {
       SharedTree tree =
           std::visit([&](const auto& source) { return tree_of(object, source); }, object.shape);
-      count_again(object.name, tree);
+      count_repeated(object.name, std::visit(FileOf(), object.shape), tree);
       scene_.attach(object.name, object.link, std::move(tree), object.link_from_object);
     }
     for (const SceneRegion& region : description_.regions) {
@@ -119,26 +135,25 @@ class Preparation {
     AllowedCollisions allowed = scene_.allowed_collisions();
     for (const DisabledPair& pair : read_srdf(*description_.srdf).disabled_pairs) {
       const RobotModel& robot = scene_.robot();
-      if (robot.find_link(pair.link_a) < 0 || robot.find_link(pair.link_b) < 0) continue;
-      allowed.allow(pair.link_a, pair.link_b);
+      const int first = robot.find_link(pair.link_a);
+      const int second = robot.find_link(pair.link_b);
+      if (first >= 0 && second >= 0) allowed.allow(first, second, AllowedReason::kGiven);
     }
     scene_.set_allowed_collisions(std::move(allowed));
   }
 
-  // Queries hold a shape for each place where it stands.
-  void count_again(const std::string& name, const ObstacleShape& shape) {
-    std::visit(
-        [&](const auto& shared) {
-          if constexpr (!std::is_same_v<std::decay_t<decltype(shared)>, Primitive>) {
-            if (!seen_.insert(shared.get()).second) again_ += nodes_of(*shared);
-          }
-        },
-        shape);
-    if (again_ > kMostAgain) {
-      throw Error(name,
-                  "the trees, clouds and meshes that the scene repeats have more than 2^22 nodes");
+  // A small file that stands in many places, shared or read with other numbers each time, is held
+  // for each of them.
+  template <class Shape>
+  void count_repeated(const std::string& name, const std::filesystem::path& file,
+                      const std::shared_ptr<const Shape>& shape) {
+    if (!files_.insert(file).second) repeated_nodes_ += nodes_of(*shape);
+    if (repeated_nodes_ > kMostRepeatedNodes) {
+      throw Error(name, "the trees, clouds and meshes that the scene repeats have more than " +
+                            std::to_string(kMostRepeatedNodes) + " nodes");
     }
   }
+  void count_repeated(const std::string&, const std::filesystem::path&, const Primitive&) {}
 
   ObstacleShape shape_of(const std::string&, const Primitive& primitive) { return primitive; }
   ObstacleShape shape_of(const std::string& name, const MeshFile& file) {
@@ -151,7 +166,7 @@ class Preparation {
     return solid;
   }
   ObstacleShape shape_of(const std::string&, const PointsSource& source) {
-    return clouds_.get({source.path, {source.scale, source.radius, source.voxel, 0.0}},
+    return clouds_.get(key_of(source.path, {source.scale, source.radius, source.voxel, 0.0}),
                        [&] { return shared(build_tree(point_spheres(source))); });
   }
   ObstacleShape shape_of(const std::string&, const SpheresSource& source) {
@@ -160,11 +175,11 @@ class Preparation {
   ObstacleShape shape_of(const std::string&, const TreeSource& source) { return tree_of(source); }
 
   SharedTree tree_of(const SpheresSource& source) {
-    return spheres_.get({source.path, {}},
+    return spheres_.get(key_of(source.path),
                         [&] { return shared(build_tree(load_spheres(source.path).spheres)); });
   }
   SharedTree tree_of(const TreeSource& source) {
-    return trees_.get({source.path, {}}, [&] { return shared(load_tree(source.path)); });
+    return trees_.get(key_of(source.path), [&] { return shared(load_tree(source.path)); });
   }
 
   SharedTree tree_of(const SceneAttachment&, const SpheresSource& source) {
@@ -204,8 +219,8 @@ class Preparation {
   MadeOnce<std::shared_ptr<const SolidMesh>> solids_;
   MadeOnce<SharedTree> clouds_, spheres_, trees_;
   MadeOnce<CoveredFile> covered_;
-  std::set<const void*> seen_;
-  std::size_t again_ = 0;  // nodes of shapes beyond the first place of each
+  std::set<std::filesystem::path> files_;
+  std::size_t repeated_nodes_ = 0;  // of shapes from these files, beyond the first of each
 };
 
 }  // namespace

@@ -50,8 +50,9 @@ struct PreparedScene {
 // disables those of other robots' links are passed over.
 //
 // Throws Error naming the file, or what in the scene is of no use: as the readers, link_mesh(),
-// cover_robot(), point_cloud_tree() and RobotScene do, and for an attached mesh of which the
-// spheres are not proved to cover all.
+// cover_robot(), point_cloud_tree() and RobotScene do, for an attached mesh of which the
+// spheres are not proved to cover all, and where the trees, clouds and meshes that come from a file
+// that was named before have more than 2^22 nodes in all.
 PreparedScene prepare_scene(RobotModel robot, const SceneDescription& scene,
                             const RobotCoverOptions& cover = {});
 

@@ -178,7 +178,8 @@ std::vector<std::string> unknown_names(const SemanticDescription& semantics,
     }
   }
   for (const GroupState& state : semantics.group_states) {
-    for (const JointState& joint : state.joints) check.joint("state " + state.name, joint.joint);
+    const std::string where = "state " + state.name;
+    for (const JointState& joint : state.joints) check.joint(where, joint.joint);
   }
   for (const EndEffector& effector : semantics.end_effectors) {
     check.link("end effector " + effector.name, effector.parent_link);

@@ -54,6 +54,9 @@ void check_writable(const RobotSpheres& spheres, SphereFormat format, const std:
   std::set<std::string> names;
   for (const LinkSpheres& link : spheres.links) {
     check_name(link.link, "the name of a link", file);
+    if (link.link.size() > internal::kLongestName) {
+      throw Error(file, "the name of a link is too long: \"" + link.link + "\"");
+    }
     const std::string subject = "link \"" + link.link + "\"";
     if (!names.insert(link.link).second) throw Error(file, subject + " is there twice");
     for (const Sphere& sphere : link.spheres) {

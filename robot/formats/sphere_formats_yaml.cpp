@@ -53,7 +53,7 @@ void read_ignored(const YamlMembers& ignored, SphereGatherer& gathered) {
     gathered.unless(others.IsSequence(), place_of(others), "ignored links are not a list");
     gathered.take(others.size(), place_of(others));
     for (const auto& other : others) {
-      gathered.ignore(link, yaml_scalar(other, "an ignored link", gathered));
+      gathered.ignore(link, yaml_scalar(other, "an ignored link", gathered), place_of(other));
     }
   }
 }
@@ -61,6 +61,7 @@ void read_ignored(const YamlMembers& ignored, SphereGatherer& gathered) {
 std::map<std::string, double> read_buffers(const YamlMembers& buffers, SphereGatherer& gathered) {
   std::map<std::string, double> lengths;
   for (const auto& [link, key, length] : buffers) {
+    gathered.take_name(link, place_of(length));
     lengths[link] = number(length, "a buffer", gathered);
   }
   return lengths;
@@ -73,7 +74,12 @@ void switch_off_unlisted(const YamlMembers& kinematics, SphereGatherer& gathered
   gathered.unless(listed->IsSequence(), place_of(*listed),
                   "\"collision_link_names\" is not a list");
   std::set<std::string> names;
-  for (const auto& name : *listed) names.insert(yaml_scalar(name, "a link's name", gathered));
+  gathered.take(listed->size(), place_of(*listed));
+  for (const auto& name : *listed) {
+    const std::string link = yaml_scalar(name, "a link's name", gathered);
+    gathered.take_name(link, place_of(name));
+    names.insert(link);
+  }
   for (LinkSpheres& link : gathered.spheres.links) {
     if (names.contains(link.link)) continue;
     gathered.spheres.switched_off += link.spheres.size();

@@ -48,6 +48,7 @@ LinkPair prove(const RobotModel& robot, int first, int second,
   const auto is_over = [&] {
     return options.stop.stop_requested() || (options.seconds > 0.0 && Clock::now() >= end);
   };
+  if (is_over()) return result;
   const auto space =
       internal::make_pair_space(robot, first, second, pieces[static_cast<std::size_t>(first)],
                                 pieces[static_cast<std::size_t>(second)]);

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -55,15 +56,20 @@ std::string_view name_of(DisabledVerdict verdict) {
 SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& semantics,
                          const LinkPairs& proofs) {
   internal::require_never_holds(proofs, robot);
-  std::set<int> with_body;
-  for (const LinkPair& pair : proofs.pairs()) with_body.insert({pair.first, pair.second});
-  const auto has_body = [&](int link) { return with_body.contains(link); };
+  std::vector<bool> with_body(robot.links().size(), false);
+  for (const LinkPair& pair : proofs.pairs()) {
+    for (const int link : {pair.first, pair.second})
+      with_body[static_cast<std::size_t>(link)] = true;
+  }
+  const auto has_body = [&](int link) { return with_body[static_cast<std::size_t>(link)]; };
   SrdfJudgement result;
   std::set<std::pair<int, int>> listed;
   const internal::LinkRelations relations(robot);
-  // Of one link; a file lists the pairs of a link one after the other.
-  int related_to = -1;
-  std::vector<internal::LinkRelations::Relation> related;
+  struct Found {
+    int first, second;
+    std::size_t at;  // in the result
+  };
+  std::vector<Found> found;
   for (const DisabledPair& pair : semantics.disabled_pairs) {
     JudgedPair& judged = result.pairs.emplace_back();
     judged.pair = pair;
@@ -71,8 +77,17 @@ SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& sem
     const int second = robot.find_link(pair.link_b);
     if (first < 0 || second < 0) {
       judged.verdict = DisabledVerdict::kOtherRobot;
-      continue;
+    } else {
+      found.push_back({first, second, result.pairs.size() - 1});
     }
+  }
+  // Those of one link together: what is related to it is found once.
+  std::ranges::stable_sort(found, {}, &Found::first);
+  int related_to = -1;
+  std::vector<internal::LinkRelations::Relation> related;
+  for (const auto& [first, second, at] : found) {
+    JudgedPair& judged = result.pairs[at];
+    const DisabledPair& pair = judged.pair;
     listed.insert(std::minmax(first, second));
     if (first != related_to) {
       related = relations.of(first, has_body);

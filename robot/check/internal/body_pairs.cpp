@@ -11,11 +11,14 @@
 #include "robot/model/internal/link_paths.h"
 #include "robot/model/internal/moving_frames.h"
 #include "robot/model/kinematics.h"
+#include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -31,6 +34,9 @@
 
 namespace spherule::internal {
 namespace {
+
+// Each takes some 100 bytes. Arms and hands have a few thousand.
+constexpr std::size_t kMostSteps = std::size_t{1} << 24;
 
 constexpr double kSpherePad = 1024.0 * kUnitRoundoff;
 
@@ -136,10 +142,17 @@ BodyPairs::BodyPairs(RobotModel robot, const Pose& world_from_root,
 
 void BodyPairs::make_paths() {
   const std::vector<Pose> poses = poses_at_zero(robot_);
+  std::size_t steps = 0;
   const auto moving_joints = [&](int first, int second) {
     std::vector<int> joints;
     for (const int j : joints_between(robot_, first, second)) {
       if (robot_.joints()[static_cast<std::size_t>(j)].moves()) joints.push_back(j);
+    }
+    steps += joints.size();
+    if (steps > kMostSteps) {
+      throw Error("robot checker",
+                  "too many joints lie between the bodies of its pairs: more than " +
+                      std::to_string(kMostSteps) + " in all");
     }
     return joints;
   };

@@ -19,7 +19,7 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-// One that cannot be read is the root of nothing that is searched for.
+// As the package.xml of the folder says; empty where there is none that can be read.
 std::string package_name(const fs::path& folder) {
   const fs::path manifest = folder / "package.xml";
   if (!is_file(manifest)) return {};
@@ -38,16 +38,13 @@ MeshPaths::MeshPaths(const fs::path& urdf, const UrdfOptions& options)
     : folder_(fs::absolute(urdf).parent_path()), packages_(options.packages) {}
 
 fs::path MeshPaths::package_root(const std::string& package) {
-  if (above_.empty()) {
-    for (fs::path at = folder_;; at = at.parent_path()) {
-      above_.emplace_back(at, package_name(at));
-      if (at == at.parent_path()) break;
-    }
-  }
   if (!missing_.contains(package)) {
-    for (const auto& [folder, name] : above_) {
-      if (name == package) return folder;
-      if (package_name(folder / package) == package) return folder / package;
+    std::size_t height = 0;
+    for (fs::path at = folder_;; at = at.parent_path()) {
+      if (height == above_.size()) above_.push_back(package_name(at));
+      if (above_[height++] == package) return at;
+      if (package_name(at / package) == package) return at / package;
+      if (at == at.parent_path()) break;
     }
     missing_.insert(package);
   }

@@ -7,7 +7,6 @@
 #include <map>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace spherule::internal {
@@ -24,8 +23,8 @@ class MeshPaths {
   std::filesystem::path package_root(const std::string& package);
 
   std::filesystem::path folder_;
-  // The folder of the file and those above it, with the package that each is, often none.
-  std::vector<std::pair<std::filesystem::path, std::string>> above_;
+  // The packages that the folder of the file and those above it are, often none, as far as known.
+  std::vector<std::string> above_;
   std::set<std::string> missing_;
   std::map<std::string, std::filesystem::path> packages_;  // given, and found since
 };

@@ -129,11 +129,12 @@ class KeptYaml {
     if (!place || !place->value.IsSequence()) return;
     for (const Node& name : place->value) {
       order_.push_back(yaml_scalar(name, "a link's name", gathered_));
+      gathered_.take_name(order_.back(), place_of(name));
     }
+    const std::set<std::string> listed(order_.begin(), order_.end());
     std::vector<std::string> added;
     for (const LinkSpheres& link : spheres_.links) {
-      if (link.spheres.empty()) continue;
-      if (std::find(order_.begin(), order_.end(), link.link) != order_.end()) continue;
+      if (link.spheres.empty() || listed.contains(link.link)) continue;
       order_.push_back(link.link);
       added.push_back(yaml_text(link.link));
       parent_of(expected_, places_.names)[places_.names.back()].push_back(YAML::Load(added.back()));
@@ -148,7 +149,10 @@ class KeptYaml {
       gathered_.unless(others.IsSequence() || others.IsNull(), place_of(others),
                        "ignored links are not a list");
       for (const Node& other : others) {
-        known.insert(std::minmax(link, yaml_scalar(other, "an ignored link", gathered_)));
+        const std::string name = yaml_scalar(other, "an ignored link", gathered_);
+        gathered_.take_name(link, place_of(other));
+        gathered_.take_name(name, place_of(other));
+        known.insert(std::minmax(link, name));
       }
     }
     std::vector<DisabledPair> missing;
@@ -251,7 +255,7 @@ class KeptYaml {
 
 std::string with_spheres(std::string_view text, const std::filesystem::path& path,
                          const RobotSpheres& spheres, SphereFormat format) {
-  const SphereGatherer gathered(path.string());
+  const SphereGatherer gathered(path.string(), text.size());
   const Node document = yaml_document(text, gathered);
   const KeptPlaces places =
       places_in(yaml_members(document, "the file", gathered), format, gathered);

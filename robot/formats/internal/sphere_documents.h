@@ -18,16 +18,22 @@
 
 namespace spherule::internal {
 
+// Messages repeat the name of a link for each of its spheres.
+inline constexpr std::size_t kLongestName = 4096;
+
 // Gathers what a reader finds, and refuses what no format may hold. A place is where in the file
 // ("line 7", "link arm, sphere 2"); an Error names the file, then the place.
 class SphereGatherer {
  public:
-  // Of a file of so many bytes: more spheres than that, or eight times as many names, are aliases
-  // of each other, which a reader would not come to an end with. (Some maps are read several
-  // times.)
+  // Of a file of so many bytes: more spheres than that, eight times as many names, or 64 times as
+  // many bytes of names of links, are aliases of each other, which a reader would not come to an
+  // end with. (Some maps are read several times.)
   explicit SphereGatherer(std::string file,
-                          std::size_t bytes = std::numeric_limits<std::size_t>::max() / 8)
-      : file_(std::move(file)), left_(bytes), names_left_(8 * bytes) {}
+                          std::size_t bytes = std::numeric_limits<std::size_t>::max() / 64)
+      : file_(std::move(file)),
+        left_(bytes),
+        names_left_(8 * bytes),
+        name_bytes_left_(64 * bytes) {}
 
   [[noreturn]] void refuse(const std::string& place, const std::string& reason) const;
   void unless(bool good, const std::string& place, const std::string& reason) const {
@@ -38,10 +44,12 @@ class SphereGatherer {
   void begin_link(const std::string& name, const std::string& place);
   // Before so many names, of members or of links, are read.
   void take(std::size_t count, const std::string& place) const;
+  // Before the name of a link is kept.
+  void take_name(const std::string& name, const std::string& place) const;
   // Leaves out and counts a sphere that is switched off.
   void add(const Eigen::Vector3d& center, double radius, const std::string& place);
   // Once for each two links, in whatever order.
-  void ignore(const std::string& link_a, const std::string& link_b);
+  void ignore(const std::string& link_a, const std::string& link_b, const std::string& place = {});
 
   const std::string& file() const { return file_; }
   RobotSpheres spheres;
@@ -50,6 +58,7 @@ class SphereGatherer {
   std::string file_;
   std::size_t left_;  // how many spheres may still come
   mutable std::size_t names_left_;
+  mutable std::size_t name_bytes_left_;
   std::set<std::string> links_;
   std::set<std::pair<std::string, std::string>> ignored_;
 };

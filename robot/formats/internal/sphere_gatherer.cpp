@@ -7,21 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 
 namespace spherule::internal {
-namespace {
-
-constexpr std::size_t kLongestLinkName = 4096;
-
-}  // namespace
-
 void SphereGatherer::refuse(const std::string& place, const std::string& reason) const {
   throw Error(file_, place.empty() ? reason : place + ": " + reason);
 }
 
 void SphereGatherer::begin_link(const std::string& name, const std::string& place) {
-  // It stands in the place of each of its spheres.
-  unless(name.size() <= kLongestLinkName, {}, "the name of a link has more than 4096 bytes");
+  take_name(name, place);
   unless(links_.insert(name).second, place, "the link \"" + name + "\" is there twice");
   spheres.links.push_back({name, {}});
 }
@@ -43,7 +37,19 @@ void SphereGatherer::take(std::size_t count, const std::string& place) const {
   names_left_ -= count;
 }
 
-void SphereGatherer::ignore(const std::string& link_a, const std::string& link_b) {
+void SphereGatherer::take_name(const std::string& name, const std::string& place) const {
+  // The place may hold the name.
+  unless(name.size() <= kLongestName, place.size() <= kLongestName ? place : std::string(),
+         "the name of a link has more than " + std::to_string(kLongestName) + " bytes");
+  unless(name.size() <= name_bytes_left_, place,
+         "aliases make far more names than the file has characters");
+  name_bytes_left_ -= name.size();
+}
+
+void SphereGatherer::ignore(const std::string& link_a, const std::string& link_b,
+                            const std::string& place) {
+  take_name(link_a, place);
+  take_name(link_b, place);
   if (link_a == link_b || !ignored_.insert(std::minmax(link_a, link_b)).second) return;
   spheres.self_collision_ignore.push_back({link_a, link_b, {}});
 }

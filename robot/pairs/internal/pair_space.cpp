@@ -71,9 +71,9 @@ std::optional<PairSpace> make_pair_space(const RobotModel& robot, int first, int
                                          const LinkPieces& of_first, const LinkPieces& of_second) {
   PairSpace space{&robot, first,     second,     moving_joints(robot, first, second),
                   {},     &of_first, &of_second, 0.0};
+  if (space.joints.size() > PairBound::kMostJoints) return std::nullopt;
   space.variables = ranges_of(robot, space.joints);
-  if (space.joints.size() > PairBound::kMostJoints ||
-      space.variables.size() > FreeBoxes::kMostVariables ||
+  if (space.variables.size() > FreeBoxes::kMostVariables ||
       !positions_are_small(robot, space.variables)) {
     return std::nullopt;
   }

@@ -3,12 +3,14 @@
 // pairs.
 
 #include "robot/check/robot_scene.h"
+#include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "tests/collide/trees.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -42,9 +44,41 @@ TEST(RobotSize, AllTouchingPairsAreToldOnce) {
   EXPECT_FALSE(checker.check_config(zero, scratch));
 }
 
+std::string refusal(const RobotScene& scene) {
+  try {
+    (void)scene.snapshot();
+  } catch (const Error& error) {
+    return error.reason();
+  }
+  return "";
+}
+
 TEST(RobotSize, TooManyPairsAreRefused) {
-  const RobotScene scene(star(1025));
-  EXPECT_THROW((void)scene.snapshot(), Error);
+  EXPECT_NE(refusal(RobotScene(star(1025))).find("too many pairs of bodies"), std::string::npos);
+}
+
+// Each pair moves by all joints between its bodies.
+TEST(RobotSize, TooManyJointsBetweenPairsAreRefused) {
+  RobotModel robot("link_0");
+  const auto tree = one_sphere_tree({0, 0, 0}, 0.1);
+  for (int i = 1; i < 600; ++i) {
+    const std::string link = "link_" + std::to_string(i);
+    robot.add_link(link, "link_" + std::to_string(i - 1),
+                   {.name = link + "_joint", .type = JointType::kContinuous});
+    robot.attach(link, tree);
+  }
+  EXPECT_NE(refusal(RobotScene(robot)).find("too many joints lie between"), std::string::npos);
+}
+
+TEST(RobotSize, RegionsOfTooManySpheresAreRefused) {
+  RobotModel robot("base");
+  SceneRandom random(19);
+  robot.attach("base", std::make_shared<const SphereTree>(
+                           build_tree(random_spheres(random, 300'000, 1.0, 0.1))));
+  RobotScene scene(robot);
+  const Sphere all{Eigen::Vector3d::Zero(), 10.0};
+  for (int i = 0; i < 55; ++i) scene.define_region({"base", std::to_string(i)}, all);
+  EXPECT_THROW(scene.define_region({"base", "last"}, all), Error);
 }
 
 }  // namespace

@@ -118,10 +118,22 @@ TEST(PrepareScene, RefusesALargeShapeInManyPlaces) {
   for (int i = 0; i < 20'000; ++i) points += std::to_string(i) + " 0 0\n";
   const PointsSource cloud{.path = folder.write("scan.xyz", points), .radius = 0.01};
   SceneDescription scene;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 100; ++i) {
     scene.obstacles.push_back({.name = std::to_string(i), .shape = cloud});
   }
-  EXPECT_THROW(prepare_scene(RobotModel("base"), scene, {}), Error);
+  EXPECT_EQ(prepare_scene(RobotModel("base"), scene, {}).scene.obstacles().size(), 100U);
+  // The rest is read with a radius of its own each.
+  for (int i = 100; i < 300; ++i) {
+    PointsSource other = cloud;
+    other.radius = 0.01 + i;
+    scene.obstacles.push_back({.name = std::to_string(i), .shape = other});
+  }
+  try {
+    prepare_scene(RobotModel("base"), scene, {});
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_NE(error.reason().find("that the scene repeats"), std::string::npos) << error.what();
+  }
 }
 
 // Decimals are rounded when they are read and again when they are scaled: by less than one part in
