@@ -91,8 +91,8 @@ void CompiledWidePlan::compile_partners(const CheckPlan<float>& plan, std::size_
       }
     }
   }
-  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> partners(
-      bodies);  // and their pairs
+  // Of each body, with their pairs.
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> partners(bodies);
   for (std::size_t p = 0; p < pairs; ++p) {
     partners[side(p, from[p])].emplace_back(side(p, 1 - from[p]), p);
   }

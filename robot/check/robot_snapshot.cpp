@@ -223,10 +223,7 @@ class RobotScene::Snapshot {
     if (first.kind == CheckedBody::Kind::kLink && second.kind == CheckedBody::Kind::kLink) {
       return scene_.allowed_.allows(first.link, second.link);
     }
-    const std::vector<int> joints = internal::joints_between(carrier_, first.link, second.link);
-    return std::none_of(joints.begin(), joints.end(), [&](int joint) {
-      return carrier_.joints()[static_cast<std::size_t>(joint)].moves();
-    });
+    return internal::moving_joints(carrier_, first.link, second.link).empty();
   }
 
   const RobotScene& scene_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/pairs/link_pairs.h"
 
+#include "robot/model/internal/link_paths.h"
 #include "robot/model/internal/shared_work.h"
 #include "robot/pairs/internal/link_pieces.h"
 #include "robot/pairs/internal/pair_search.h"

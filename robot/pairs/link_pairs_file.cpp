@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/pairs/link_pairs_file.h"
 
+#include "robot/model/internal/link_paths.h"
 #include "robot/pairs/internal/pair_space.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/crc64.h"

@@ -143,11 +143,8 @@ BodyPairs::BodyPairs(RobotModel robot, const Pose& world_from_root,
 void BodyPairs::make_paths() {
   const std::vector<Pose> poses = poses_at_zero(robot_);
   std::size_t steps = 0;
-  const auto moving_joints = [&](int first, int second) {
-    std::vector<int> joints;
-    for (const int j : joints_between(robot_, first, second)) {
-      if (robot_.joints()[static_cast<std::size_t>(j)].moves()) joints.push_back(j);
-    }
+  const auto joints_of = [&](int first, int second) {
+    std::vector<int> joints = moving_joints(robot_, first, second);
     steps += joints.size();
     if (steps > kMostSteps) {
       throw Error("robot checker",
@@ -157,7 +154,7 @@ void BodyPairs::make_paths() {
     return joints;
   };
   for (const CheckedPiece& piece : pieces_) {
-    paths_.emplace_back(robot_, poses, pose_error_, moving_joints(piece.link, 0), piece.link,
+    paths_.emplace_back(robot_, poses, pose_error_, joints_of(piece.link, 0), piece.link,
                         piece.tree->sphere(0));
   }
   for (const CheckedPair& pair : pairs_) {
@@ -168,8 +165,8 @@ void BodyPairs::make_paths() {
     const CheckedPiece& first = pieces_[static_cast<std::size_t>(pair.piece)];
     const CheckedPiece& second = pieces_[static_cast<std::size_t>(pair.other)];
     path_of_.push_back(paths_.size());
-    paths_.emplace_back(robot_, poses, pose_error_, moving_joints(first.link, second.link),
-                        first.link, first.tree->sphere(0), second.link, second.tree->sphere(0));
+    paths_.emplace_back(robot_, poses, pose_error_, joints_of(first.link, second.link), first.link,
+                        first.tree->sphere(0), second.link, second.tree->sphere(0));
   }
 }
 

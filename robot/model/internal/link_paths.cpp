@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/model/internal/link_paths.h"
 
-#include <algorithm>
 #include <cstddef>
 
 namespace spherule::internal {
@@ -29,6 +28,13 @@ std::vector<int> joints_between(const RobotModel& robot, int first, int second) 
   }
   up.insert(up.end(), down.rbegin(), down.rend());
   return up;
+}
+
+std::vector<int> moving_joints(const RobotModel& robot, int first, int second) {
+  std::vector<int> joints = joints_between(robot, first, second);
+  std::erase_if(
+      joints, [&](int joint) { return !robot.joints()[static_cast<std::size_t>(joint)].moves(); });
+  return joints;
 }
 
 LinkRelations::LinkRelations(const RobotModel& robot)

@@ -11,6 +11,8 @@ namespace spherule::internal {
 // The joints between two links, by their indices, from the first link to the second: up to the last
 // link that both hang from, and down again.
 std::vector<int> joints_between(const RobotModel& robot, int first, int second);
+// Of these the ones that move.
+std::vector<int> moving_joints(const RobotModel& robot, int first, int second);
 
 enum class Joined {
   kRigidly,     // no joint moves them against each other

@@ -34,12 +34,6 @@ bool positions_are_small(const RobotModel& robot, std::span<const FreeBoxes::Var
 
 }  // namespace
 
-std::vector<int> moving_joints(const RobotModel& robot, int first, int second) {
-  std::vector<int> joints = joints_between(robot, first, second);
-  std::erase_if(joints, [&](int joint) { return !joint_of(robot, joint).moves(); });
-  return joints;
-}
-
 bool take_all_positions(const RobotModel& robot, std::span<const FreeBoxes::Variable> ranges) {
   return std::all_of(ranges.begin(), ranges.end(), [&](const FreeBoxes::Variable& range) {
     const auto variable = static_cast<std::size_t>(range.index);

@@ -24,9 +24,6 @@ struct PairSpace {
   double error = 0.0;  // kinematics_error_bound() for the larger reach
 };
 
-// The joints that move between two links.
-std::vector<int> moving_joints(const RobotModel& robot, int first, int second);
-
 // The variables of joints and the ranges that searches take: the limits of the joint that a
 // variable is the position of. One that may turn without limits wraps, unless one of the joints
 // mimics it.
