@@ -136,7 +136,8 @@ class RobotScene {
   void set_padding(std::string_view body, std::string_view other, double padding);
 
   // Names some spheres of a body; a region of that name that was there is replaced. Regions may
-  // share spheres. Throws Error for spheres that are not there, and for none.
+  // share spheres. Throws Error for spheres that are not there, for none, and for more than
+  // kMostRegionSpheres in all regions.
   void define_region(Region region, std::span<const BodySphere> spheres);
   // Names the spheres of a body whose centres lie in `around`, a sphere in the frame of the link,
   // or of the object; otherwise as above.
@@ -200,7 +201,7 @@ class RobotScene {
 
   // What is queried, as of now: later edits do not change it. Trees and meshes are shared, not
   // copied, but for those of bodies that have padding or regions. Throws Error for what reaches
-  // too far to be computed with, more pairs than the limits above, a mesh of the options that is
+  // too far to be computed with, more than the limits above, a mesh of the options that is
   // missing, and instructions that this machine has not got.
   RobotChecker snapshot(const RobotCheckerOptions& options = {}) const;
 

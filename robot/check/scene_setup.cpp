@@ -182,10 +182,10 @@ class Preparation {
     return trees_.get(key_of(source.path), [&] { return shared(load_tree(source.path)); });
   }
 
-  SharedTree tree_of(const SceneAttachment&, const SpheresSource& source) {
+  template <class Source>
+  SharedTree tree_of(const SceneAttachment&, const Source& source) {
     return tree_of(source);
   }
-  SharedTree tree_of(const SceneAttachment&, const TreeSource& source) { return tree_of(source); }
   SharedTree tree_of(const SceneAttachment& object, const MeshFile& file) {
     const CoveredFile& covered =
         covered_.get(key_of(file, object.max_error), [&] { return cover(object, file); });

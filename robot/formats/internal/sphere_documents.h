@@ -49,7 +49,7 @@ class SphereGatherer {
   // Leaves out and counts a sphere that is switched off.
   void add(const Eigen::Vector3d& center, double radius, const std::string& place);
   // Once for each two links, in whatever order.
-  void ignore(const std::string& link_a, const std::string& link_b, const std::string& place = {});
+  void ignore(const std::string& link_a, const std::string& link_b, const std::string& place);
 
   const std::string& file() const { return file_; }
   RobotSpheres spheres;
