@@ -43,7 +43,7 @@ struct MeshReport {
   std::size_t self_intersections = 0;
   // Whether counting stopped, so that there may be more: at kMaxSelfIntersections, or where so many
   // triangles lie side by side that the pairs of them and of the boxes around several of them to
-  // examine are more than 2^24 + 128 times the triangles.
+  // examine are more than 2^24 + 256 times the triangles.
   bool self_intersections_stopped = false;
   // Every edge is used as often in one direction as in the other, so that the winding number of a
   // point is a whole number, and one that is not zero proves the point to be inside.

@@ -18,10 +18,10 @@ using Box = Eigen::AlignedBox3d;
 
 constexpr double kTouching = 1e-14;
 constexpr std::size_t kLeafTriangles = 4;
-// Pairs in leaves whose boxes meet are 10 to 85 for each triangle of CAD meshes and scans; in a fan
-// of slivers every pair is one.
+// Pairs of nodes and of triangles that are examined: 8 to 114 for each triangle of CAD meshes and
+// scans; in a fan of slivers every pair of triangles.
 constexpr std::size_t kSmallestBudget = std::size_t{1} << 24;
-constexpr std::size_t kPairsPerTriangle = 128;
+constexpr std::size_t kPairsPerTriangle = 256;
 
 // Whether the projections on `axis` are apart by more than rounding. Coordinates are relative to a
 // corner of `a`, so that `size` bounds what they can lose.
