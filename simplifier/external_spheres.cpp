@@ -63,6 +63,9 @@ void check_options(const ExternalOptions& options) {
   }
 }
 
+// Of the coordinates of the box: how far a sphere that is left out may reach into it.
+constexpr double kBoxRounding = 1e-12;
+
 // Exact where one of the two is zero: users see the sum.
 double sum_up(double a, double b) {
   return a == 0.0 || b == 0.0 ? a + b : add_up(a, b);
@@ -139,8 +142,8 @@ class SnugSpheres {
 
   std::vector<Sphere> operator()(const FloodGrid::Frontier& frontier) const {
     std::vector<Sphere> found;
-    const FloodGrid::Cell& node = frontier.neighbour;
-    const double to_surface = node.clearance + padding_ + (frontier.center - node.center).norm();
+    const Sphere& node = frontier.neighbour;
+    const double to_surface = node.radius + padding_ + (frontier.center - node.center).norm();
     sample(frontier, frontier.center, to_surface, 0.5 * frontier.step, found);
     return found;
   }
@@ -183,7 +186,7 @@ class SnugSpheres {
       const double clearance = sub_down(d.lower, padding_);
       if (clearance >= rho) {
         const Sphere sphere{x, clearance};
-        const Sphere node{from, frontier.neighbour.clearance};
+        const Sphere& node = frontier.neighbour;
         const bool reached = push > 0 &&
                              takes_something(sphere, start, frontier.step, node, found) &&
                              diameter_.on_way(from, x) <= rho && way_.passes(node, sphere, rho);
@@ -252,10 +255,7 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance, con
   result.grid_step = step;
   result.nodes_examined = grid.evaluations();
   // Zones make the grid so fine that it pays to leave out what lies in a larger sphere.
-  for (const FloodGrid::Cell& cell :
-       zones.empty() ? grid.reached_cells() : grid.reached_cells_that_count()) {
-    result.spheres.push_back({cell.center, cell.clearance});
-  }
+  result.spheres = zones.empty() ? grid.reached_spheres() : grid.reached_spheres_that_count();
   const std::vector<FloodGrid::Frontier> frontier = grid.frontier();
   std::vector<std::vector<Sphere>> snug(frontier.size());
   const SnugSpheres place(distance, result.padding, diameter, result.spheres);
@@ -327,9 +327,13 @@ ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
     case ExternalPlacement::kNone:
       break;
   }
-  // What does not meet the box takes nothing from S.
+  // What does not meet the box, or by rounding only, as beside a face of the box that is one of the
+  // mesh, takes nothing from S.
+  const double magnitude =
+      result.box.min().cwiseAbs().cwiseMax(result.box.max().cwiseAbs()).maxCoeff();
   std::erase_if(result.spheres, [&](const Sphere& s) {
-    return result.box.exteriorDistance(s.center) * (1.0 - 1e-12) >= s.radius;
+    return result.box.exteriorDistance(s.center) + kBoxRounding * (magnitude + s.radius) >=
+           s.radius;
   });
   return result;
 }

@@ -88,23 +88,24 @@ struct ExternalOptions {
 // the open spheres. Every sphere is disjoint from M grown by `padding`, of diameter at least D, and
 // was reached from outside the box by a sphere of diameter D without touching M (in zones: of the
 // diameter that suffices there, see ExternalOptions::zones); hence M and |M| are subsets of S,
-// whatever spheres were kept.
+// whatever spheres were kept. Spheres that do not reach into the box by more than rounding (1e-12
+// of its coordinates and their radius) are left out: a box has none.
 struct ExternalSpheres {
   std::vector<Sphere> spheres;
   Eigen::AlignedBox3d box;             // of M grown by the padding, rounded outwards
   double min_external_diameter = 0.0;  // D
   double padding = 0.0;                // t, the mesh's vertex_error included
   double grid_step = 0.0;              // of the flood; 0 for the other placements
-  std::size_t nodes_examined = 0;      // distance evaluations
+  std::size_t nodes_examined = 0;      // cells of the grid; of the random placement, attempts
   // Proved: every place to which a sphere of diameter D + closing_slack can be moved from outside
-  // lies, as its centre, in a sphere of `spheres` that was reached, at most 2.6 grid steps from
-  // that one's centre. So a gap may be wider than D by no more than that and have been closed. It
-  // is the centre that is proved to be out of S, not all of the sphere of diameter D +
-  // closing_slack about it: S may reach into its rim. External spheres are added where it does,
-  // close to concave edges, corners and ends of ways, so that in samples on three models S reaches
-  // into it by a third of a grid step at most (bench/README.md); that is no proof. For the d of a
-  // zone the same share of d holds. At most `tightness` of D, unless memory ends first. 0 for the
-  // other placements, of which nothing is proved.
+  // lies, as its centre, outside of `box` (or inside, by no more than the rounding below), or in a
+  // sphere of `spheres` that was reached. So a gap may be wider than D by no more than that and
+  // have been closed. It is the centre that is proved to be out of S, not all of the sphere of
+  // diameter D + closing_slack about it: S may reach into its rim. External spheres are added where
+  // it does, close to concave edges, corners and ends of ways, so that in samples on three models S
+  // reaches into it by a third of a grid step at most (bench/README.md); that is no proof. For the
+  // d of a zone the same share of d holds. At most `tightness` of D, unless memory ends first. 0
+  // for the other placements, of which nothing is proved.
   double closing_slack = 0.0;
   // What keep_concave_edges added.
   std::vector<Zone> concave_edges;

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage1/flood_grid.h"
 
+#include "simplifier/stage1/place_sphere.h"
 #include "simplifier/stage1/too_many_cells.h"
 #include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 namespace spherule::internal {
 namespace {
@@ -17,13 +20,11 @@ namespace {
 // Width of the layer of nodes that is kept at the finest step, in steps (docs/covering.md, stage
 // 1).
 constexpr double kLayer = 1.2;
-// Of the step: rounding that a sphere may stick out of another by and still be taken for a part.
-constexpr double kContained = 1e-9;
 // Cells that are examined between two reports of progress: siblings stay together.
 constexpr std::size_t kPart = std::size_t{1} << 20;
-// How many levels ahead the number of cells is foreseen, and by how much that may be wrong.
-constexpr int kForeseen = 3;
-constexpr double kClearlyMore = 1.5;
+// From the finest level: where the number of cells is foreseen, and by how much too large that may
+// be. Large cells may turn out to be out of reach, or get a sphere of their own.
+constexpr std::array<double, 4> kForeseenOver = {1.0, 1.0, 2.0, 8.0};
 
 }  // namespace
 
@@ -41,20 +42,19 @@ FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDi
   }
   rounding_ = 16.0 * kUnitRoundoff * (shape_.origin.cwiseAbs().maxCoeff() + edge(0));
   cells_.push_back({});
-  level_begin_ = {0};
+  std::size_t begin = 0;
   for (int level = 0; level <= levels_; ++level) {
-    examine_level(level, progress);
-    level_begin_.push_back(cells_.size());
-    check_memory(level);
-    for (std::size_t i = level_begin_[static_cast<std::size_t>(level)];
-         i < level_begin_[static_cast<std::size_t>(level) + 1]; ++i) {
-      if (cells_[i].state == State::kRefined) halve(i);
-    }
+    examine_level(level, begin, progress);
+    std::vector<std::size_t> mixed = mixed_cells_in_reach(begin);
+    find_own_spheres(mixed);
+    std::erase_if(mixed, [&](std::size_t i) { return cells_[i].state != State::kMixed; });
+    check_memory(level, mixed.size());
+    begin = cells_.size();
+    for (const std::size_t i : mixed) halve(i);
   }
 }
 
-void FloodGrid::examine_level(int level, const Progress& progress) {
-  const std::size_t first = level_begin_[static_cast<std::size_t>(level)];
+void FloodGrid::examine_level(int level, std::size_t first, const Progress& progress) {
   const std::size_t count = cells_.size() - first;
   const double before = level == 0 ? 0.0 : std::ldexp(1.0, 2 * (level - 1 - levels_));
   const double after = std::ldexp(1.0, 2 * (level - levels_));
@@ -67,22 +67,45 @@ void FloodGrid::examine_level(int level, const Progress& progress) {
   }
 }
 
+std::vector<std::size_t> FloodGrid::mixed_cells_in_reach(std::size_t begin) const {
+  std::vector<std::size_t> mixed;
+  for (std::size_t i = begin; i < cells_.size(); ++i) {
+    if (cells_[i].state == State::kMixed) mixed.push_back(i);
+  }
+  if (mixed.empty()) return mixed;
+  DisjointSets sets(cells_.size() + 1);
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const Entry& cell = cells_[i];
+    if (cell.state == State::kBlocked || cell.state == State::kRefined) continue;
+    for_each_face_neighbour(cell.level, decode(cell.code), [&](std::size_t other, const Index&) {
+      if (other == cells_.size()) {
+        sets.unite(0, element(i));
+      } else if (cells_[other].state != State::kBlocked && may_share_places(cell, cells_[other])) {
+        sets.unite(element(i), element(other));
+      }
+    });
+  }
+  std::erase_if(mixed, [&](std::size_t i) { return sets.find(element(i)) != sets.find(0); });
+  return mixed;
+}
+
 // Cells around a surface become four times as many with every level once they are smaller than the
 // clearance that is requested; those of zones do not.
-void FloodGrid::check_memory(int level) const {
-  const auto begin = cells_.begin() + static_cast<std::ptrdiff_t>(level_begin_.end()[-2]);
-  const auto refined = static_cast<double>(std::count_if(
-      begin, cells_.end(), [](const Entry& e) { return e.state == State::kRefined; }));
-  double next = 8.0 * refined;
+void FloodGrid::check_memory(int level, std::size_t halved) const {
+  double next = 8.0 * static_cast<double>(halved);
   double total = static_cast<double>(cells_.size()) + next;
   const auto most = static_cast<double>(shape_.grid_cells);
-  const bool is_foreseeable = diameter_.most_halvings() == 0 && levels_ - level <= kForeseen;
-  for (int finer = level + 1; finer < levels_ && is_foreseeable; ++finer) {
-    next *= 4.0;
-    total += next;
+  const auto ahead = static_cast<std::size_t>(levels_ - level);
+  double over = 1.0;
+  if (diameter_.most_halvings() == 0 && ahead < kForeseenOver.size()) {
+    over = kForeseenOver[ahead];
+    for (int finer = level + 1; finer < levels_; ++finer) {
+      next *= 4.0;
+      total += next;
+    }
   }
-  if (total <= (is_foreseeable && level + 1 < levels_ ? kClearlyMore : 1.0) * most) return;
-  throw TooManyCells(total, edge(levels_), shape_.grid_cells);
+  if (total <= over * most) return;
+  throw TooManyCells(total, total / over, edge(levels_), shape_.grid_cells);
 }
 
 void FloodGrid::halve(std::size_t cell) {
@@ -129,7 +152,7 @@ void FloodGrid::classify(Entry& cell, const Eigen::Vector3d& middle,
   } else if (d.upper - padding_ + reach < rho.least) {
     cell.state = State::kBlocked;
   } else {
-    cell.state = State::kRefined;
+    cell.state = State::kMixed;
   }
 }
 
@@ -152,6 +175,74 @@ void FloodGrid::examine(std::size_t begin, std::size_t end) {
   });
 }
 
+void FloodGrid::examine_and_halve(std::size_t begin) {
+  while (begin < cells_.size()) {
+    const std::size_t end = cells_.size();
+    examine(begin, end);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (cells_[i].state == State::kMixed) halve(i);
+    }
+    begin = end;
+  }
+}
+
+FloodGrid::OwnSphere FloodGrid::own_sphere(const Entry& cell) const {
+  const Eigen::Vector3d middle = center(cell);
+  const LocalDiameter::Near rho = diameter_.near(middle, half_diagonal(cell.level));
+  const double step = std::ldexp(shape_.step, -rho.halvings);
+  if (edge(cell.level) > rho.least || edge(cell.level) < 1.5 * step) return {};
+  const std::optional<Sphere> sphere =
+      sphere_of_places(distance_, padding_,
+                       {.center = middle,
+                        .half_edge = 0.5 * edge(cell.level) * (1.0 + 1e-9) + rounding(),
+                        .half_diagonal = half_diagonal(cell.level),
+                        .least_radius = rho.least,
+                        .step = step});
+  if (!sphere) return {};
+  const Eigen::Array3d index = (sphere->center - shape_.origin).array() / edge(cell.level);
+  const double last = std::ldexp(1.0, cell.level);
+  if ((index < 0.0).any() || (index >= last).any()) return {*sphere, 0};
+  const std::size_t around = locate(
+      cell.level, {static_cast<std::uint32_t>(index[0]), static_cast<std::uint32_t>(index[1]),
+                   static_cast<std::uint32_t>(index[2])});
+  if (around >= cells_.size() || cells_[around].state != State::kFree || cells_[around].finest) {
+    return {};
+  }
+  return {*sphere, element(around)};
+}
+
+// The places of a cell with a sphere of its own lie in that.
+bool FloodGrid::may_share_places(const Entry& a, const Entry& b) const {
+  if (a.state != State::kOwnSphere && b.state != State::kOwnSphere) return true;
+  const auto box = [this](const Entry& cell) {
+    const Eigen::Vector3d half =
+        Eigen::Vector3d::Constant(0.5 * edge(cell.level) * (1.0 + 1e-9) + rounding());
+    return Eigen::AlignedBox3d(center(cell) - half, center(cell) + half);
+  };
+  const Eigen::AlignedBox3d face = box(a).intersection(box(b));
+  const auto meets = [&](const Entry& cell) {
+    if (cell.state != State::kOwnSphere) return true;
+    const Sphere& sphere = own_spheres_[cell.child_or_zone].sphere;
+    return face.exteriorDistance(sphere.center) * (1.0 - 1e-12) <= sphere.radius;
+  };
+  if (!meets(a) || !meets(b)) return false;
+  if (a.state != b.state) return true;
+  const Sphere& one = own_spheres_[a.child_or_zone].sphere;
+  const Sphere& other = own_spheres_[b.child_or_zone].sphere;
+  return distance_lower(one.center, other.center) <= add_up(one.radius, other.radius);
+}
+
+void FloodGrid::find_own_spheres(const std::vector<std::size_t>& mixed) {
+  std::vector<OwnSphere> found(mixed.size());
+  parallel_for(0, mixed.size(), [&](std::size_t k) { found[k] = own_sphere(cells_[mixed[k]]); });
+  for (std::size_t k = 0; k < mixed.size(); ++k) {
+    if (found[k].sphere.radius == 0.0) continue;
+    cells_[mixed[k]].state = State::kOwnSphere;
+    cells_[mixed[k]].child_or_zone = static_cast<std::uint32_t>(own_spheres_.size());
+    own_spheres_.push_back(found[k]);
+  }
+}
+
 std::size_t FloodGrid::locate(int level, const Index& index) const {
   std::size_t cell = 0;
   for (int l = 0; cells_[cell].state == State::kRefined; ++l) {
@@ -164,23 +255,6 @@ std::size_t FloodGrid::locate(int level, const Index& index) const {
   return cell;
 }
 
-template <typename Visit>
-void FloodGrid::for_each_face_neighbour(int level, const Index& index, Visit visit) const {
-  const std::uint32_t last = (std::uint32_t{1} << level) - 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const bool up : {false, true}) {
-      if (index[axis] == (up ? last : 0U)) {
-        visit(cells_.size(), index);
-        continue;
-      }
-      Index neighbour = index;
-      neighbour[axis] = up ? index[axis] + 1 : index[axis] - 1;
-      const std::size_t found = locate(level, neighbour);
-      if (found < cells_.size()) visit(found, neighbour);
-    }
-  }
-}
-
 double FloodGrid::needed_between(const Entry& a, const Entry& b) const {
   if (a.child_or_zone == LocalDiameter::kNoZone || b.child_or_zone == LocalDiameter::kNoZone) {
     return diameter_.radius();
@@ -190,6 +264,9 @@ double FloodGrid::needed_between(const Entry& a, const Entry& b) const {
 }
 
 bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& face) const {
+  if (a.state == State::kOwnSphere || b.state == State::kOwnSphere) {
+    return passes_between_centers(a, b, 0);
+  }
   if (!a.finest && !b.finest) return true;
   const auto suffices = [](double sum, double way, double rho) {
     return sub_down(sum, way) >= 2.0 * rho * kRelativeUp;
@@ -218,20 +295,23 @@ bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& fa
          (has_room(diameter_.least_radius()) && has_room(diameter_.on_way(start, face)));
 }
 
-bool FloodGrid::passes_by_bisection(const Entry& a, const Entry& b) const {
-  const Sphere from{center(a), a.clearance};
-  const Sphere to{center(b), b.clearance};
-  return way_.passes(from, to, diameter_.on_way(from.center, to.center));
+bool FloodGrid::passes_between_centers(const Entry& a, const Entry& b, int bisections) const {
+  const Sphere from = sphere_of(a);
+  const Sphere to = sphere_of(b);
+  return way_.passes(from, to, diameter_.on_way(from.center, to.center), bisections);
 }
 
 void FloodGrid::connect(std::size_t cell) {
   const Entry& self = cells_[cell];
-  if (self.state != State::kFree) return;
+  if (!self.is_open()) return;
+  if (self.state == State::kOwnSphere) {
+    sets_.unite(own_spheres_[self.child_or_zone].around, element(cell));
+  }
   const Index at = decode(self.code);
   for_each_face_neighbour(self.level, at, [&](std::size_t other, const Index& index) {
     if (other == cells_.size()) {
-      sets_.unite(0, element(cell));
-    } else if (cells_[other].state == State::kFree) {
+      if (self.state == State::kFree) sets_.unite(0, element(cell));
+    } else if (cells_[other].is_open()) {
       const Eigen::Vector3d face = (center(self) + center(self.level, index)) / 2.0;
       if (passes(self, cells_[other], face)) {
         sets_.unite(element(cell), element(other));
@@ -256,14 +336,17 @@ void FloodGrid::reach_on() {
     });
     passes.assign(tried.size(), 0);
     parallel_for(0, tried.size(), [&](std::size_t i) {
-      passes[i] = passes_by_bisection(cells_[tried[i].first], cells_[tried[i].second]) ? 1 : 0;
+      passes[i] = passes_between_centers(cells_[tried[i].first], cells_[tried[i].second],
+                                         SphereWay::kMostBisections)
+                      ? 1
+                      : 0;
     });
     for (std::size_t i = 0; i < tried.size(); ++i) {
       if (passes[i] != 0) sets_.unite(element(tried[i].first), element(tried[i].second));
     }
   } while (!tried.empty());
   for (std::size_t i = 0; i < cells_.size(); ++i) {
-    cells_[i].reached = cells_[i].state == State::kFree && is_reached(i);
+    cells_[i].reached = cells_[i].is_open() && is_reached(i);
   }
 }
 
@@ -271,79 +354,6 @@ void FloodGrid::flood() {
   sets_.grow(cells_.size() + 1);
   for (std::size_t i = 0; i < cells_.size(); ++i) connect(i);
   reach_on();
-}
-
-std::vector<FloodGrid::Cell> FloodGrid::reached_cells() const {
-  std::vector<Cell> result;
-  for (const Entry& cell : cells_) {
-    if (cell.reached) result.push_back({center(cell), cell.clearance});
-  }
-  return result;
-}
-
-bool FloodGrid::lies_in_neighbour(const Entry& node) const {
-  const Eigen::Vector3d middle = center(node);
-  bool found = false;
-  for_each_face_neighbour(node.level, decode(node.code), [&](std::size_t i, const Index&) {
-    if (found || i >= cells_.size() || !cells_[i].reached) return;
-    const double more = cells_[i].clearance - node.clearance;
-    found = more > 0.0 && (center(cells_[i]) - middle).norm() <= more + kContained * shape_.step;
-  });
-  return found;
-}
-
-std::vector<FloodGrid::Cell> FloodGrid::reached_cells_that_count() const {
-  std::vector<char> counts(cells_.size());
-  parallel_for(0, cells_.size(), [&](std::size_t i) {
-    counts[i] = cells_[i].reached && !(cells_[i].finest && lies_in_neighbour(cells_[i])) ? 1 : 0;
-  });
-  std::vector<Cell> result;
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    if (counts[i] != 0) result.push_back({center(cells_[i]), cells_[i].clearance});
-  }
-  return result;
-}
-
-std::vector<FloodGrid::Frontier> FloodGrid::frontier() const {
-  std::vector<Frontier> result;
-  std::vector<std::size_t> cells;  // of these
-  std::vector<bool> seen(cells_.size(), false);
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    if (!cells_[i].finest) continue;
-    const auto visit = [&](std::size_t other, const Index&) {
-      if (other >= cells_.size() || !cells_[other].finest) return;
-      if (cells_[other].reached == cells_[i].reached) return;
-      // Of two cells of one size each visits the other.
-      if (cells_[other].reached && cells_[other].level == cells_[i].level) return;
-      const std::size_t open = cells_[i].reached ? other : i;
-      const Entry& reached = cells_[i].reached ? cells_[i] : cells_[other];
-      if (seen[open]) return;
-      seen[open] = true;
-      cells.push_back(open);
-      result.push_back(
-          {center(cells_[open]), {center(reached), reached.clearance}, edge(cells_[open].level)});
-    };
-    for_each_face_neighbour(cells_[i].level, decode(cells_[i].code), visit);
-  }
-  // Those that share no more than an edge or a corner with a reached one: two rings.
-  std::size_t begin = 0;
-  for (int ring = 0; ring < 2; ++ring) {
-    const std::size_t end = cells.size();
-    for (std::size_t k = begin; k < end; ++k) {
-      const Entry& inner = cells_[cells[k]];
-      const Cell from = result[k].neighbour;
-      for_each_face_neighbour(inner.level, decode(inner.code), [&](std::size_t i, const Index&) {
-        if (i >= cells_.size() || seen[i] || !cells_[i].finest || cells_[i].reached) return;
-        const Entry& cell = cells_[i];
-        seen[i] = true;
-        if (cell.clearance + half_diagonal(cell.level) < diameter_.least_radius()) return;
-        cells.push_back(i);
-        result.push_back({center(cell), from, edge(cell.level)});
-      });
-    }
-    begin = end;
-  }
-  return result;
 }
 
 }  // namespace spherule::internal

@@ -6,6 +6,7 @@
 #include "simplifier/external_spheres.h"
 #include "simplifier/stage1/local_diameter.h"
 #include "simplifier/stage1/sphere_way.h"
+#include "spheretree/sphere.h"
 
 #include <Eigen/Geometry>
 
@@ -23,19 +24,19 @@ namespace spherule::internal {
 // surface over the square of the finest step, not with the volume:
 //  - a coarse cell all of whose points have clearance >= rho + 1.2 h is free as a whole;
 //  - a cell all of whose points have clearance < rho is blocked;
-//  - a finest cell, of edge h, is a node: free if the clearance at its centre is at least rho.
+//  - a finest cell, of edge h, is a node: free if the clearance at its centre is at least rho;
+//  - a larger one beside a flat or convex surface has a sphere of its own, if one is found that
+//    holds every point of clearance >= rho in the cell (place_sphere.h), and whose centre lies in a
+//    free coarse cell or outside of the cube. It is reached if its sphere is, and is not halved.
+// No cell is halved that blocked ones separate from the outside, as inside of a closed part.
 // Clearance is the proved lower bound of the distance to the mesh, less the padding.
 class FloodGrid {
  public:
-  struct Cell {
-    Eigen::Vector3d center;
-    double clearance = 0.0;  // lower bound at the centre
-  };
   // A finest cell that was not reached near one that was: beside it, or with a ring or two of such
   // cells between the two that are as near to it.
   struct Frontier {
     Eigen::Vector3d center;
-    Cell neighbour;
+    Sphere neighbour;   // about the centre of that cell
     double step = 0.0;  // h there
   };
   struct Shape {
@@ -69,21 +70,23 @@ class FloodGrid {
   // reached cell that touches its own. The proof is in flood_refinement.cpp.
   double tighten(double share, const Progress& progress);
 
-  // After flood(). Order: from coarse to fine, along the Morton curve.
-  std::vector<Cell> reached_cells() const;
+  // After flood(): a sphere for each reached cell, its own or about its centre. Order: from coarse
+  // to fine, along the Morton curve.
+  std::vector<Sphere> reached_spheres() const;
   // The same but for nodes whose sphere lies in that of a cell beside it, up to 1e-9 of the step:
   // such chains end at a larger sphere that is kept.
-  std::vector<Cell> reached_cells_that_count() const;
+  std::vector<Sphere> reached_spheres_that_count() const;
   std::vector<Frontier> frontier() const;
 
-  // Distances computed; all of them are kept, 24 bytes each.
+  // Cells examined; all of them are kept, 24 bytes each.
   std::size_t evaluations() const { return cells_.size(); }
 
  private:
   // Morton codes have room for 21.
   static constexpr int kMostLevels = 20;
 
-  enum class State : std::uint8_t { kBlocked, kRefined, kFree };
+  // Mixed: neither blocked nor free as a whole.
+  enum class State : std::uint8_t { kBlocked, kMixed, kRefined, kFree, kOwnSphere };
   using Index = std::array<std::uint32_t, 3>;
   // The index of a Morton code: every third of its bits, from each of the three on.
   static Index decode(std::uint64_t code) {
@@ -101,13 +104,20 @@ class FloodGrid {
   struct Entry {
     std::uint64_t code = 0;  // Morton code of the index within its level
     double clearance = 0.0;
-    // If refined, the first of its eight consecutive children; if finest, the zone that says how
-    // much room is needed at the centre (LocalDiameter::at).
+    // If refined, the first of its eight consecutive children; if it has a sphere of its own, the
+    // index of that; if finest, the zone that says how much room is needed at the centre
+    // (LocalDiameter::at).
     std::uint32_t child_or_zone = 0;
     State state = State::kBlocked;
     std::uint8_t level = 0;
     bool finest = false;
     bool reached = false;
+    bool is_open() const { return state == State::kFree || state == State::kOwnSphere; }
+  };
+  // Of a cell with a sphere of its own.
+  struct OwnSphere {
+    Sphere sphere;
+    std::uint32_t around = 0;  // element of the free cell that holds its centre, or of the outside
   };
 
   double edge(int level) const { return edges_[static_cast<std::size_t>(level)]; }
@@ -120,13 +130,28 @@ class FloodGrid {
   Eigen::Vector3d center(const Entry& cell) const { return center(cell.level, decode(cell.code)); }
   // Appends the eight children of a cell, which are to be examined.
   void halve(std::size_t cell);
-  // Measures and classifies the cells of a level, which are the last.
-  void examine_level(int level, const Progress& progress);
+  // Measures and classifies the cells of a level: those from the first on.
+  void examine_level(int level, std::size_t first, const Progress& progress);
   // The same for cells from one on, up to another.
   void examine(std::size_t begin, std::size_t end);
-  // Throws TooManyCells for those that the last level is halved into, or those of the finest that
-  // are foreseen.
-  void check_memory(int level) const;
+  // The same for the last cells, from one on, and for those that they are halved into.
+  void examine_and_halve(std::size_t begin);
+  // The mixed cells from one on, which are the last, that are connected with the outside of the
+  // cube through faces of cells that are not blocked: the sphere gets to no other.
+  std::vector<std::size_t> mixed_cells_in_reach(std::size_t begin) const;
+  // Gives those of the mixed cells a sphere of their own that can have one.
+  void find_own_spheres(const std::vector<std::size_t>& mixed);
+  OwnSphere own_sphere(const Entry& cell) const;  // of radius 0 if there is none
+  // About the centre of a cell, or its own.
+  Sphere sphere_of(const Entry& cell) const {
+    return cell.state == State::kOwnSphere ? own_spheres_[cell.child_or_zone].sphere
+                                           : Sphere{center(cell), cell.clearance};
+  }
+  // Whether a point of clearance >= rho may lie on the common face of two cells.
+  bool may_share_places(const Entry& a, const Entry& b) const;
+  // Throws TooManyCells for those that so many of a level are halved into, or those of the finest
+  // that are foreseen.
+  void check_memory(int level, std::size_t halved) const;
   void classify(Entry& cell, const Eigen::Vector3d& middle, const SurfaceDistance& d) const;
   // From the centre to a corner, and all that rounding adds.
   double half_diagonal(int level) const;
@@ -138,18 +163,18 @@ class FloodGrid {
   bool lies_in_neighbour(const Entry& node) const;
   // The same answer as from LocalDiameter::on_way(), between the centres of two nodes.
   double needed_between(const Entry& a, const Entry& b) const;
-  // Whether the sphere provably passes between two free cells that share a face; `face` is the
+  // Whether the sphere provably passes between two open cells that share a face; `face` is the
   // centre of that.
   bool passes(const Entry& a, const Entry& b, const Eigen::Vector3d& face) const;
   // Calls visit(cell, index) for the face neighbours of the same size or coarser, and
   // visit(cells_.size(), index) for each face on the boundary of the cube.
   template <typename Visit>
   void for_each_face_neighbour(int level, const Index& index, Visit visit) const;
-  // The same between the centres, by bisection.
-  bool passes_by_bisection(const Entry& a, const Entry& b) const;
-  // Two free cells.
+  // The same between the centres of their spheres, by bisection, or without it.
+  bool passes_between_centers(const Entry& a, const Entry& b, int bisections) const;
+  // Two open cells.
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
-  // Unites a free cell with the free ones at its faces to which the sphere passes by passes(), and
+  // Unites an open cell with the open ones at its faces to which the sphere passes by passes(), and
   // notes the others as uncertain.
   void connect(std::size_t cell);
   // Unites the uncertain pairs of which one alone is reached and between which the sphere passes by
@@ -171,11 +196,28 @@ class FloodGrid {
   double rounding_ = 0.0;
   int levels_;  // with the halvings of zones
   std::vector<Entry> cells_;
-  std::vector<std::size_t> level_begin_;
+  std::vector<OwnSphere> own_spheres_;
   std::atomic<double> widest_bounds_ = 0.0;  // of distances: upper less lower
   // Of the outside, 0, and each cell, one further: between which the sphere passes.
   DisjointSets sets_{1};
   std::vector<Pair> uncertain_;
 };
+
+template <typename Visit>
+void FloodGrid::for_each_face_neighbour(int level, const Index& index, Visit visit) const {
+  const std::uint32_t last = (std::uint32_t{1} << level) - 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const bool up : {false, true}) {
+      if (index[axis] == (up ? last : 0U)) {
+        visit(cells_.size(), index);
+        continue;
+      }
+      Index neighbour = index;
+      neighbour[axis] = up ? index[axis] + 1 : index[axis] - 1;
+      const std::size_t found = locate(level, neighbour);
+      if (found < cells_.size()) visit(found, neighbour);
+    }
+  }
+}
 
 }  // namespace spherule::internal

@@ -5,15 +5,19 @@
 // What is proved (G2). Let T(x) = (1 + s) rho(x), R the places to which a sphere of radius T can be
 // moved from outside the cube: its centre passes points of clearance >= T alone. A leaf is
 // *possible* if its clearance may be T somewhere: the clearance at its centre, rounded up, and half
-// its diagonal make the least T in it; a coarse leaf that is free is, one that is blocked is not.
+// its diagonal make the least T in it; a coarse leaf that is free is, one that is blocked, or that
+// blocked ones separate from the outside, is not. The places of a leaf with a sphere of its own lie
+// in that sphere (place_sphere.h), so that none is on a face of it which the sphere does not meet,
+// or, of two such leaves, on their common face if their spheres do not intersect.
 // The way of the centre to a place of R passes possible leaves alone. Points of clearance above (1
 // - 1e-9) T form an open set, in which the way can be moved off edges and corners, so that it
 // passes from leaf to leaf through faces. So each leaf that intersects R belongs to the possible
 // leaves that are connected with the outside through faces of possible or reached leaves: *open*
 // leaves. Once each open leaf is reached, or lies as a whole in the sphere of a reached leaf that
-// touches it, each place of R lies in a reached leaf or in such a sphere. That sphere's centre is
-// at most half a diagonal of its leaf and a diagonal of the open one away: 2.6 h, of the coarser of
-// the two (of a coarse free cell: its sphere holds more than its leaf).
+// touches it, each place of R lies in the sphere of a reached leaf. That sphere's centre is at most
+// half a diagonal of its leaf and a diagonal of the open one away: 2.6 h, of the coarser of the two
+// (of a coarse free cell: its sphere holds more than its leaf; one of a leaf's own is larger than 2
+// rho and may be further away).
 //
 // Where it is not so, those of the open leaves that are left and lie at the front of what is
 // reached are halved, with the possible leaves around them in two rings, so that what is reached
@@ -73,6 +77,7 @@ class FloodGrid::Refinement {
       const std::size_t k = waiting.back();
       waiting.pop_back();
       for_each_touching(uncertain_[k], true, [&](std::size_t other) {
+        if (!grid_.may_share_places(cells()[uncertain_[k]], cells()[other])) return;
         const auto found = std::lower_bound(uncertain_.begin(), uncertain_.end(), other);
         if (found == uncertain_.end() || *found != other) return;
         const auto at = static_cast<std::size_t>(found - uncertain_.begin());
@@ -98,7 +103,7 @@ class FloodGrid::Refinement {
     std::vector<std::size_t> chosen;
     const auto choose = [&](std::size_t i) {
       const Entry& cell = cells()[i];
-      if (is_chosen[i] != 0 || is_possible_[i] == 0 || !cell.finest || !can_be_halved(cell)) return;
+      if (is_chosen[i] != 0 || is_possible_[i] == 0 || !can_be_halved(cell)) return;
       is_chosen[i] = 1;
       chosen.push_back(i);
     };
@@ -111,7 +116,7 @@ class FloodGrid::Refinement {
     std::sort(chosen.begin(), chosen.end());
     const std::size_t begin = cells().size();
     for (const std::size_t i : chosen) grid_.halve(i);
-    grid_.examine(begin, cells().size());
+    grid_.examine_and_halve(begin);
     grid_.sets_.grow(cells().size() + 1);
     std::erase_if(grid_.uncertain_, [&](const Pair& pair) {
       return cells()[pair.first].state == State::kRefined ||
@@ -129,7 +134,8 @@ class FloodGrid::Refinement {
   const std::vector<Entry>& cells() const { return grid_.cells_; }
 
   bool can_be_halved(const Entry& cell) const {
-    return cell.level < kMostLevels && grid_.edge(cell.level + 1) > 1e3 * grid_.rounding();
+    return (cell.finest || cell.state == State::kOwnSphere) && cell.level < kMostLevels &&
+           grid_.edge(cell.level + 1) > 1e3 * grid_.rounding();
   }
 
   bool is_at_boundary(const Entry& cell) const {
@@ -145,7 +151,8 @@ class FloodGrid::Refinement {
     if (is_at_boundary(cells()[cell])) return true;
     bool found = false;
     for_each_touching(cell, true, [&](std::size_t other) {
-      found = found || cells()[other].reached ||
+      found = found ||
+              (cells()[other].reached && grid_.may_share_places(cells()[other], cells()[cell])) ||
               (is_possible_[other] != 0 &&
                !std::binary_search(uncertain_.begin(), uncertain_.end(), other));
     });
@@ -176,7 +183,7 @@ class FloodGrid::Refinement {
 
   bool is_possible(const Entry& cell) const {
     if (cell.reached || cell.state == State::kRefined) return false;
-    if (!cell.finest) return cell.state == State::kFree;
+    if (!cell.finest && cell.state != State::kOwnSphere) return cell.state == State::kFree;
     const double reach = grid_.half_diagonal(cell.level);
     const double most = add_up(cell.clearance + grid_.widest_bounds_, reach);
     const auto suffices = [&](double rho) { return most >= (1.0 + share_) * rho * (1.0 - 1e-9); };
@@ -195,8 +202,8 @@ class FloodGrid::Refinement {
     bool found = false;
     for_each_touching(cell, false, [&](std::size_t other) {
       if (found || !counts(cells()[other])) return;
-      found = add_up(distance_upper(middle, grid_.center(cells()[other])), reach) <=
-              cells()[other].clearance;
+      const Sphere sphere = grid_.sphere_of(cells()[other]);
+      found = add_up(distance_upper(middle, sphere.center), reach) <= sphere.radius;
     });
     return found;
   }
@@ -209,7 +216,7 @@ class FloodGrid::Refinement {
     const auto is_lost = [&](std::size_t i) {
       return std::binary_search(uncertain_.begin(), uncertain_.end(), i);
     };
-    const auto has_room = [](const Entry& other) { return other.state == State::kFree; };
+    const auto has_room = [](const Entry& other) { return other.is_open(); };
     std::vector<char> seen(cells().size());
     std::vector<std::size_t> waiting = front_;
     for (const std::size_t i : waiting) seen[i] = 1;
@@ -229,9 +236,9 @@ class FloodGrid::Refinement {
   // Connects new cells with finer ones at their faces that were there before.
   void connect_finer(std::size_t begin) const {
     for (std::size_t i = begin; i < cells().size(); ++i) {
-      if (cells()[i].state != State::kFree) continue;
+      if (!cells()[i].is_open()) continue;
       for_each_touching(i, true, [&](std::size_t other) {
-        if (other >= begin || cells()[other].state != State::kFree ||
+        if (other >= begin || !cells()[other].is_open() ||
             cells()[other].level <= cells()[i].level) {
           return;
         }
@@ -290,7 +297,9 @@ class FloodGrid::Refinement {
 
 double FloodGrid::tighten(double share, const Progress& progress) {
   const double uniform = kUniform * shape_.step / diameter_.radius();
-  if (uniform <= share) return uniform;
+  // What holds of the uniform grid without a proof does not of spheres that stand for parts of it.
+  if (uniform <= share && own_spheres_.empty()) return uniform;
+  share = std::min(share, uniform);
   Refinement refinement(*this);
   refinement.begin(share);
   while (true) {
@@ -299,12 +308,12 @@ double FloodGrid::tighten(double share, const Progress& progress) {
     if (!refinement.refine()) break;
   }
   // For how much more room it does hold.
-  while (share < uniform) {
+  while (share < uniform || !own_spheres_.empty()) {
     share *= 1.1;
     refinement.begin(share);
     if (refinement.lost().empty()) break;
   }
-  return std::min(share, uniform);
+  return own_spheres_.empty() ? std::min(share, uniform) : share;
 }
 
 }  // namespace spherule::internal

@@ -22,17 +22,18 @@ class SphereWay {
   SphereWay(const MeshDistance& distance, double padding)
       : distance_(distance), padding_(padding) {}
 
-  bool passes(const Sphere& a, const Sphere& b, double rho, int depth = 0) const {
-    constexpr int kMaxDepth = 8;
+  static constexpr int kMostBisections = 8;
+  bool passes(const Sphere& a, const Sphere& b, double rho,
+              int bisections = kMostBisections) const {
     const double gap = distance_upper(a.center, b.center);
     if (sub_down(add_down(a.radius, b.radius), gap) >= 2.0 * rho * kRelativeUp) return true;
-    if (depth == kMaxDepth) return false;
+    if (bisections == 0) return false;
     Sphere middle{(a.center + b.center) / 2.0, 0.0};
     // Usually the surface is no further from there.
     const double limit = (std::min(a.radius, b.radius) + padding_ + 0.5 * gap) * kLimitUp;
     middle.radius = sub_down(distance_(middle.center, limit).lower, padding_);
-    return middle.radius >= rho && passes(a, middle, rho, depth + 1) &&
-           passes(middle, b, rho, depth + 1);
+    return middle.radius >= rho && passes(a, middle, rho, bisections - 1) &&
+           passes(middle, b, rho, bisections - 1);
   }
 
  private:

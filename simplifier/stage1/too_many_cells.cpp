@@ -31,8 +31,8 @@ std::string too_many(double count, double edge, double most) {
 
 }  // namespace
 
-TooManyCells::TooManyCells(double count, double edge, std::size_t max_cells)
+TooManyCells::TooManyCells(double count, double least, double edge, std::size_t max_cells)
     : Error("grid step", too_many(count, edge, static_cast<double>(max_cells))),
-      factor_(count / static_cast<double>(max_cells)) {}
+      factor_(least / static_cast<double>(max_cells)) {}
 
 }  // namespace spherule::internal
