@@ -86,7 +86,8 @@ std::pair<std::int32_t, Eigen::AlignedBox3d> MeshDistance::build(std::int32_t be
   return {static_cast<std::int32_t>(self), left.second.merged(right.second)};
 }
 
-SurfaceDistance MeshDistance::operator()(const Vector3d& point, double limit) const {
+SurfaceDistance MeshDistance::operator()(const Vector3d& point, double limit,
+                                         std::size_t most_leaves) const {
   internal::require_content(!leaves_.empty(), "MeshDistance");
   SurfaceDistance best;
   best.lower = limit;
@@ -97,6 +98,10 @@ SurfaceDistance MeshDistance::operator()(const Vector3d& point, double limit) co
   std::size_t size = 0;
   for (std::int32_t child = root_;;) {
     if (child < 0) {
+      if (most_leaves-- == 0) {
+        best.lower = 0.0;
+        return best;
+      }
       const Leaf& leaf = leaves_[static_cast<std::size_t>(~child)];
       for (auto i = leaf.begin; i < leaf.end; ++i) {
         const Corners& t = corners_[static_cast<std::size_t>(i)];

@@ -51,9 +51,12 @@ class MeshDistance {
 
   // Bounds of the distance from `point` to the surface. With a `limit`, only triangles nearer than
   // it are searched for; if there are none, `triangle` is -1, `lower` is the limit (or the proved
-  // bound, a rounding below it) and `upper` infinite.
-  SurfaceDistance operator()(const Eigen::Vector3d& point,
-                             double limit = std::numeric_limits<double>::infinity()) const;
+  // bound, a rounding below it) and `upper` infinite. Where triangles in more than `most_leaves`
+  // leaves of the hierarchy (of a few each) would have to be examined, as about the centre of a
+  // round shape, `lower` is 0 and `upper` that of those which were.
+  SurfaceDistance operator()(
+      const Eigen::Vector3d& point, double limit = std::numeric_limits<double>::infinity(),
+      std::size_t most_leaves = std::numeric_limits<std::size_t>::max()) const;
 
   // Generalised winding number of the mesh about `point` (Van Oosterom and Strackee 1983): a whole
   // number up to rounding for a closed mesh, zero in the unbounded component of its complement.

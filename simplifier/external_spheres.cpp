@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -248,10 +249,17 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance, con
       grid_shape(result.box, diameter.radius(), step, diameter.most_halvings());
   shape.grid_cells = grid_cells;
   shape.max_cells = options.max_cells;
-  FloodGrid grid(distance, result.padding, diameter, shape, options.progress);
-  grid.flood();
-  result.closing_slack =
-      2.0 * diameter.radius() * grid.tighten(options.tightness, options.progress);
+  std::optional<FloodGrid> made;
+  std::optional<double> share;
+  for (const bool own_spheres : {true, false}) {
+    if (share) break;
+    shape.own_spheres = own_spheres;
+    made.emplace(distance, result.padding, diameter, shape, options.progress);
+    made->flood();
+    share = made->tighten(options.tightness, options.progress);
+  }
+  const FloodGrid& grid = *made;
+  result.closing_slack = 2.0 * diameter.radius() * share.value();
   result.grid_step = step;
   result.nodes_examined = grid.evaluations();
   // Zones make the grid so fine that it pays to leave out what lies in a larger sphere.

@@ -96,7 +96,7 @@ struct ExternalSpheres {
   double min_external_diameter = 0.0;  // D
   double padding = 0.0;                // t, the mesh's vertex_error included
   double grid_step = 0.0;              // of the flood; 0 for the other placements
-  std::size_t nodes_examined = 0;      // cells of the grid; of the random placement, attempts
+  std::size_t nodes_examined = 0;      // cells of the grid, or attempts of the random placement
   // Proved: every place to which a sphere of diameter D + closing_slack can be moved from outside
   // lies, as its centre, outside of `box` (or inside, by no more than the rounding below), or in a
   // sphere of `spheres` that was reached. So a gap may be wider than D by no more than that and

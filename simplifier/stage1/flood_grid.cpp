@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage1/flood_grid.h"
 
-#include "simplifier/stage1/place_sphere.h"
+#include "simplifier/stage1/sphere_of_places.h"
 #include "simplifier/stage1/too_many_cells.h"
 #include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
@@ -42,12 +42,11 @@ FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDi
   }
   rounding_ = 16.0 * kUnitRoundoff * (shape_.origin.cwiseAbs().maxCoeff() + edge(0));
   cells_.push_back({});
+  DisjointSets lasting(1);
   std::size_t begin = 0;
   for (int level = 0; level <= levels_; ++level) {
     examine_level(level, begin, progress);
-    std::vector<std::size_t> mixed = mixed_cells_in_reach(begin);
-    find_own_spheres(mixed);
-    std::erase_if(mixed, [&](std::size_t i) { return cells_[i].state != State::kMixed; });
+    const std::vector<std::size_t> mixed = mixed_cells_in_reach(begin, lasting);
     check_memory(level, mixed.size());
     begin = cells_.size();
     for (const std::size_t i : mixed) halve(i);
@@ -67,26 +66,42 @@ void FloodGrid::examine_level(int level, std::size_t first, const Progress& prog
   }
 }
 
-std::vector<std::size_t> FloodGrid::mixed_cells_in_reach(std::size_t begin) const {
+std::vector<std::size_t> FloodGrid::mixed_cells_in_reach(std::size_t begin, DisjointSets& lasting) {
+  lasting.grow(cells_.size() + 1);
   std::vector<std::size_t> mixed;
   for (std::size_t i = begin; i < cells_.size(); ++i) {
-    if (cells_[i].state == State::kMixed) mixed.push_back(i);
+    if (cells_[i].state == State::kMixed) {
+      mixed.push_back(i);
+    } else {
+      unite_neighbours(i, begin, lasting);
+    }
   }
-  if (mixed.empty()) return mixed;
-  DisjointSets sets(cells_.size() + 1);
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    const Entry& cell = cells_[i];
-    if (cell.state == State::kBlocked || cell.state == State::kRefined) continue;
-    for_each_face_neighbour(cell.level, decode(cell.code), [&](std::size_t other, const Index&) {
-      if (other == cells_.size()) {
-        sets.unite(0, element(i));
-      } else if (cells_[other].state != State::kBlocked && may_share_places(cell, cells_[other])) {
-        sets.unite(element(i), element(other));
-      }
-    });
-  }
+  DisjointSets sets = lasting;
+  for (const std::size_t i : mixed) unite_neighbours(i, cells_.size(), sets);
   std::erase_if(mixed, [&](std::size_t i) { return sets.find(element(i)) != sets.find(0); });
+  find_own_spheres(mixed);
+  for (const std::size_t i : mixed) {
+    if (cells_[i].state == State::kOwnSphere) unite_neighbours(i, begin, lasting);
+  }
+  std::erase_if(mixed, [&](std::size_t i) { return cells_[i].state != State::kMixed; });
   return mixed;
+}
+
+// Those of finer cells are united from there.
+void FloodGrid::unite_neighbours(std::size_t i, std::size_t mixed_from, DisjointSets& sets) const {
+  const Entry& cell = cells_[i];
+  if (cell.state == State::kBlocked) return;
+  for_each_face_neighbour(cell.level, decode(cell.code), [&](std::size_t other, const Index&) {
+    if (other == cells_.size()) {
+      sets.unite(0, element(i));
+      return;
+    }
+    const bool is_left_out = cells_[other].state == State::kBlocked ||
+                             (cells_[other].state == State::kMixed && other >= mixed_from);
+    if (!is_left_out && may_share_places(cell, cells_[other])) {
+      sets.unite(element(i), element(other));
+    }
+  });
 }
 
 // Cells around a surface become four times as many with every level once they are smaller than the
@@ -112,7 +127,7 @@ void FloodGrid::halve(std::size_t cell) {
   const Entry parent = cells_[cell];
   cells_[cell].state = State::kRefined;
   cells_[cell].finest = false;
-  cells_[cell].child_or_zone = static_cast<std::uint32_t>(cells_.size());
+  cells_[cell].index = static_cast<std::uint32_t>(cells_.size());
   for (std::uint64_t k = 0; k < 8; ++k) {
     cells_.push_back(
         {.code = parent.code << 3 | k, .level = static_cast<std::uint8_t>(parent.level + 1)});
@@ -144,7 +159,7 @@ void FloodGrid::classify(Entry& cell, const Eigen::Vector3d& middle,
   cell.finest = level >= shape_.levels + rho.halvings;
   if (cell.finest) {
     const LocalDiameter::Needed needed = diameter_.at(middle);
-    cell.child_or_zone = needed.zone;
+    cell.index = needed.zone;
     cell.state = cell.clearance >= needed.radius ? State::kFree : State::kBlocked;
   } else if (cell.clearance - reach >=
              rho.greatest + kLayer * std::ldexp(shape_.step, -rho.halvings)) {
@@ -190,55 +205,67 @@ FloodGrid::OwnSphere FloodGrid::own_sphere(const Entry& cell) const {
   const Eigen::Vector3d middle = center(cell);
   const LocalDiameter::Near rho = diameter_.near(middle, half_diagonal(cell.level));
   const double step = std::ldexp(shape_.step, -rho.halvings);
+  // Larger ones are held by no two balls, and a finest one has no finer ones.
   if (edge(cell.level) > rho.least || edge(cell.level) < 1.5 * step) return {};
-  const std::optional<Sphere> sphere =
-      sphere_of_places(distance_, padding_,
-                       {.center = middle,
-                        .half_edge = 0.5 * edge(cell.level) * (1.0 + 1e-9) + rounding(),
-                        .half_diagonal = half_diagonal(cell.level),
-                        .least_radius = rho.least,
-                        .step = step});
-  if (!sphere) return {};
-  const Eigen::Array3d index = (sphere->center - shape_.origin).array() / edge(cell.level);
-  const double last = std::ldexp(1.0, cell.level);
-  if ((index < 0.0).any() || (index >= last).any()) return {*sphere, 0};
-  const std::size_t around = locate(
-      cell.level, {static_cast<std::uint32_t>(index[0]), static_cast<std::uint32_t>(index[1]),
-                   static_cast<std::uint32_t>(index[2])});
-  if (around >= cells_.size() || cells_[around].state != State::kFree || cells_[around].finest) {
-    return {};
-  }
-  return {*sphere, element(around)};
+  const PlaceCell place{.center = middle,
+                        .half_edge = half_edge(cell.level),
+                        .rounding = rounding(),
+                        .rho = rho.least,
+                        .step = step,
+                        .surface_at_most = cell.clearance + padding_ + widest_bounds_};
+  const std::optional<SphereOfPlaces> wanted = wanted_sphere(distance_, padding_, place);
+  // A sphere that needs more room on its way to the cell than in it might not get there.
+  if (!wanted || diameter_.on_way(wanted->sphere.center, middle) > rho.least) return {};
+  const std::optional<std::uint32_t> around = free_cell_around(cell.level, wanted->sphere);
+  if (!around) return {};
+  const std::optional<Sphere> sphere = sphere_of_places(distance_, padding_, place, *wanted);
+  return sphere ? OwnSphere{*sphere, *around} : OwnSphere{};
+}
+
+std::optional<std::uint32_t> FloodGrid::free_cell_around(int level, const Sphere& wanted) const {
+  const Eigen::Array3d index = (wanted.center - shape_.origin).array() / edge(level);
+  if ((index < 0.0).any() || (index >= std::ldexp(1.0, level)).any()) return 0;
+  const std::size_t found =
+      locate(level, {static_cast<std::uint32_t>(index[0]), static_cast<std::uint32_t>(index[1]),
+                     static_cast<std::uint32_t>(index[2])});
+  if (found >= cells_.size()) return std::nullopt;
+  const Entry& cell = cells_[found];
+  const bool is_coarse_and_free = cell.state == State::kFree && !cell.finest;
+  // From its centre the surface is not so far that the sphere might be free.
+  const double most = cell.clearance + (wanted.center - center(cell)).norm() + shape_.step;
+  if (!is_coarse_and_free || most < wanted.radius) return std::nullopt;
+  return element(found);
 }
 
 // The places of a cell with a sphere of its own lie in that.
 bool FloodGrid::may_share_places(const Entry& a, const Entry& b) const {
   if (a.state != State::kOwnSphere && b.state != State::kOwnSphere) return true;
   const auto box = [this](const Entry& cell) {
-    const Eigen::Vector3d half =
-        Eigen::Vector3d::Constant(0.5 * edge(cell.level) * (1.0 + 1e-9) + rounding());
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(half_edge(cell.level));
     return Eigen::AlignedBox3d(center(cell) - half, center(cell) + half);
   };
   const Eigen::AlignedBox3d face = box(a).intersection(box(b));
   const auto meets = [&](const Entry& cell) {
     if (cell.state != State::kOwnSphere) return true;
-    const Sphere& sphere = own_spheres_[cell.child_or_zone].sphere;
-    return face.exteriorDistance(sphere.center) * (1.0 - 1e-12) <= sphere.radius;
+    const Sphere& sphere = own_spheres_[cell.index].sphere;
+    constexpr double kRounded = 1.0 - 1e-12;  // of the distance
+    return face.exteriorDistance(sphere.center) * kRounded <= sphere.radius;
   };
   if (!meets(a) || !meets(b)) return false;
   if (a.state != b.state) return true;
-  const Sphere& one = own_spheres_[a.child_or_zone].sphere;
-  const Sphere& other = own_spheres_[b.child_or_zone].sphere;
+  const Sphere& one = own_spheres_[a.index].sphere;
+  const Sphere& other = own_spheres_[b.index].sphere;
   return distance_lower(one.center, other.center) <= add_up(one.radius, other.radius);
 }
 
 void FloodGrid::find_own_spheres(const std::vector<std::size_t>& mixed) {
+  if (!shape_.own_spheres) return;
   std::vector<OwnSphere> found(mixed.size());
   parallel_for(0, mixed.size(), [&](std::size_t k) { found[k] = own_sphere(cells_[mixed[k]]); });
   for (std::size_t k = 0; k < mixed.size(); ++k) {
     if (found[k].sphere.radius == 0.0) continue;
     cells_[mixed[k]].state = State::kOwnSphere;
-    cells_[mixed[k]].child_or_zone = static_cast<std::uint32_t>(own_spheres_.size());
+    cells_[mixed[k]].index = static_cast<std::uint32_t>(own_spheres_.size());
     own_spheres_.push_back(found[k]);
   }
 }
@@ -250,16 +277,16 @@ std::size_t FloodGrid::locate(int level, const Index& index) const {
     const int shift = level - l - 1;
     const std::uint32_t child = ((index[0] >> shift) & 1U) | ((index[1] >> shift) & 1U) << 1 |
                                 ((index[2] >> shift) & 1U) << 2;
-    cell = cells_[cell].child_or_zone + child;
+    cell = cells_[cell].index + child;
   }
   return cell;
 }
 
 double FloodGrid::needed_between(const Entry& a, const Entry& b) const {
-  if (a.child_or_zone == LocalDiameter::kNoZone || b.child_or_zone == LocalDiameter::kNoZone) {
+  if (a.index == LocalDiameter::kNoZone || b.index == LocalDiameter::kNoZone) {
     return diameter_.radius();
   }
-  if (a.child_or_zone == b.child_or_zone) return diameter_.radius_of(a.child_or_zone);
+  if (a.index == b.index) return diameter_.radius_of(a.index);
   return diameter_.on_way(center(a), center(b));
 }
 
@@ -303,15 +330,15 @@ bool FloodGrid::passes_between_centers(const Entry& a, const Entry& b, int bisec
 
 void FloodGrid::connect(std::size_t cell) {
   const Entry& self = cells_[cell];
-  if (!self.is_open()) return;
+  if (!self.has_sphere()) return;
   if (self.state == State::kOwnSphere) {
-    sets_.unite(own_spheres_[self.child_or_zone].around, element(cell));
+    sets_.unite(own_spheres_[self.index].around, element(cell));
   }
   const Index at = decode(self.code);
   for_each_face_neighbour(self.level, at, [&](std::size_t other, const Index& index) {
     if (other == cells_.size()) {
       if (self.state == State::kFree) sets_.unite(0, element(cell));
-    } else if (cells_[other].is_open()) {
+    } else if (cells_[other].has_sphere()) {
       const Eigen::Vector3d face = (center(self) + center(self.level, index)) / 2.0;
       if (passes(self, cells_[other], face)) {
         sets_.unite(element(cell), element(other));
@@ -346,7 +373,7 @@ void FloodGrid::reach_on() {
     }
   } while (!tried.empty());
   for (std::size_t i = 0; i < cells_.size(); ++i) {
-    cells_[i].reached = cells_[i].is_open() && is_reached(i);
+    cells_[i].reached = cells_[i].has_sphere() && is_reached(i);
   }
 }
 

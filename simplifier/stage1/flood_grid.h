@@ -13,6 +13,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,8 +27,9 @@ namespace spherule::internal {
 //  - a cell all of whose points have clearance < rho is blocked;
 //  - a finest cell, of edge h, is a node: free if the clearance at its centre is at least rho;
 //  - a larger one beside a flat or convex surface has a sphere of its own, if one is found that
-//    holds every point of clearance >= rho in the cell (place_sphere.h), and whose centre lies in a
-//    free coarse cell or outside of the cube. It is reached if its sphere is, and is not halved.
+//    holds every point of clearance >= rho in the cell (sphere_of_places.h), and whose centre lies
+//    in a free coarse cell or outside of the cube. It is reached if its sphere is, and is not
+//    halved.
 // No cell is halved that blocked ones separate from the outside, as inside of a closed part.
 // Clearance is the proved lower bound of the distance to the mesh, less the padding.
 class FloodGrid {
@@ -45,6 +47,7 @@ class FloodGrid {
     int levels = 0;              // the cube has the edge h * 2^levels; with the halvings at most 20
     std::size_t grid_cells = 0;  // at most, as it is made
     std::size_t max_cells = 0;   // at most, as tighten() leaves it
+    bool own_spheres = true;     // whether cells may have them
   };
 
   // `progress` is called after every level and between parts of it. The share takes the finest
@@ -67,8 +70,9 @@ class FloodGrid {
   // are not reached yet, until it is proved that there are none, and floods on. Returns the share s
   // for which this holds, `share` unless memory is short: wherever a sphere of radius (1 + s) rho
   // can be moved from outside the cube, its centre lies in a reached cell, or in the sphere of a
-  // reached cell that touches its own. The proof is in flood_refinement.cpp.
-  double tighten(double share, const Progress& progress);
+  // reached cell that touches its own. The proof is in flood_refinement.cpp. None if cells with own
+  // spheres are in the way of a proof for any s that holds without them.
+  std::optional<double> tighten(double share, const Progress& progress);
 
   // After flood(): a sphere for each reached cell, its own or about its centre. Order: from coarse
   // to fine, along the Morton curve.
@@ -107,12 +111,12 @@ class FloodGrid {
     // If refined, the first of its eight consecutive children; if it has a sphere of its own, the
     // index of that; if finest, the zone that says how much room is needed at the centre
     // (LocalDiameter::at).
-    std::uint32_t child_or_zone = 0;
+    std::uint32_t index = 0;
     State state = State::kBlocked;
     std::uint8_t level = 0;
     bool finest = false;
     bool reached = false;
-    bool is_open() const { return state == State::kFree || state == State::kOwnSphere; }
+    bool has_sphere() const { return state == State::kFree || state == State::kOwnSphere; }
   };
   // Of a cell with a sphere of its own.
   struct OwnSphere {
@@ -136,15 +140,23 @@ class FloodGrid {
   void examine(std::size_t begin, std::size_t end);
   // The same for the last cells, from one on, and for those that they are halved into.
   void examine_and_halve(std::size_t begin);
-  // The mixed cells from one on, which are the last, that are connected with the outside of the
-  // cube through faces of cells that are not blocked: the sphere gets to no other.
-  std::vector<std::size_t> mixed_cells_in_reach(std::size_t begin) const;
+  // Of the cells from one on, which are the last, those that are to be halved: mixed, without a
+  // sphere of their own (this looks for them), and connected with the outside of the cube through
+  // faces of cells that are not blocked, as the sphere gets to no other. `lasting` connects what is
+  // not halved of all levels, and is carried on.
+  std::vector<std::size_t> mixed_cells_in_reach(std::size_t begin, DisjointSets& lasting);
+  // Unites a cell with what is not blocked at its faces, of its size or larger, and where places
+  // may be on these. Mixed cells from one on are left out.
+  void unite_neighbours(std::size_t cell, std::size_t mixed_from, DisjointSets& sets) const;
   // Gives those of the mixed cells a sphere of their own that can have one.
   void find_own_spheres(const std::vector<std::size_t>& mixed);
   OwnSphere own_sphere(const Entry& cell) const;  // of radius 0 if there is none
+  // The element of the coarse free cell that holds the centre of a sphere, or of the outside; none
+  // if there is no such cell, or the sphere cannot be free. Cells of `level` and coarser are known.
+  std::optional<std::uint32_t> free_cell_around(int level, const Sphere& wanted) const;
   // About the centre of a cell, or its own.
   Sphere sphere_of(const Entry& cell) const {
-    return cell.state == State::kOwnSphere ? own_spheres_[cell.child_or_zone].sphere
+    return cell.state == State::kOwnSphere ? own_spheres_[cell.index].sphere
                                            : Sphere{center(cell), cell.clearance};
   }
   // Whether a point of clearance >= rho may lie on the common face of two cells.
@@ -153,8 +165,9 @@ class FloodGrid {
   // that are foreseen.
   void check_memory(int level, std::size_t halved) const;
   void classify(Entry& cell, const Eigen::Vector3d& middle, const SurfaceDistance& d) const;
-  // From the centre to a corner, and all that rounding adds.
+  // From the centre to a corner, or a face, and all that rounding adds.
   double half_diagonal(int level) const;
+  double half_edge(int level) const { return 0.5 * edge(level) * (1.0 + 1e-9) + rounding(); }
   // The cell of `level` or coarser that holds the index and is not refined; cells_.size() if that
   // one is refined further.
   std::size_t locate(int level, const Index& index) const;

@@ -7,24 +7,27 @@
 // *possible* if its clearance may be T somewhere: the clearance at its centre, rounded up, and half
 // its diagonal make the least T in it; a coarse leaf that is free is, one that is blocked, or that
 // blocked ones separate from the outside, is not. The places of a leaf with a sphere of its own lie
-// in that sphere (place_sphere.h), so that none is on a face of it which the sphere does not meet,
-// or, of two such leaves, on their common face if their spheres do not intersect.
-// The way of the centre to a place of R passes possible leaves alone. Points of clearance above (1
+// in that sphere (sphere_of_places.h), so that none is on a face of it which the sphere does not
+// meet, or, of two such leaves, on their common face if their spheres do not intersect. The way of
+// the centre to a place of R passes possible leaves alone. Points of clearance above (1
 // - 1e-9) T form an open set, in which the way can be moved off edges and corners, so that it
 // passes from leaf to leaf through faces. So each leaf that intersects R belongs to the possible
 // leaves that are connected with the outside through faces of possible or reached leaves: *open*
 // leaves. Once each open leaf is reached, or lies as a whole in the sphere of a reached leaf that
 // touches it, each place of R lies in the sphere of a reached leaf. That sphere's centre is at most
 // half a diagonal of its leaf and a diagonal of the open one away: 2.6 h, of the coarser of the two
-// (of a coarse free cell: its sphere holds more than its leaf; one of a leaf's own is larger than 2
-// rho and may be further away).
+// (of a coarse free cell: its sphere holds more than its leaf), unless it is a leaf's own and so
+// has a radius above 2 rho.
 //
 // Where it is not so, those of the open leaves that are left and lie at the front of what is
 // reached are halved, with the possible leaves around them in two rings, so that what is reached
 // beside them can be followed. Between open leaves of edge h that share a face the clearance on the
 // straight way of their centres is at least T - 1.37 h: they are free and passed once 1.37 h is
-// less than s rho. Should halving end before (by memory, or the resolution of coordinates), a
-// larger s is stated for which no open leaf is left, at most that of the grid as it is.
+// less than s rho. A leaf with a sphere of its own that is not reached is halved like them, until
+// its cells are finest. Should halving end before (by memory, or the resolution of coordinates), a
+// larger s is stated for which no open leaf is left, at most that of a grid as it is that has no
+// own spheres. If none is proved up to there and there are own spheres, the grid is made anew
+// without them.
 
 #include "simplifier/stage1/flood_grid.h"
 #include "simplifier/support/parallel.h"
@@ -112,7 +115,9 @@ class FloodGrid::Refinement {
       const std::vector<std::size_t> inner = chosen;
       for (const std::size_t i : inner) for_each_touching(i, false, choose);
     }
-    if (chosen.empty() || cells().size() + 8 * chosen.size() > grid_.shape_.max_cells) return false;
+    std::size_t more = 0;
+    for (const std::size_t i : chosen) more += most_cells_within(cells()[i]);
+    if (chosen.empty() || cells().size() + more > grid_.shape_.max_cells) return false;
     std::sort(chosen.begin(), chosen.end());
     const std::size_t begin = cells().size();
     for (const std::size_t i : chosen) grid_.halve(i);
@@ -136,6 +141,17 @@ class FloodGrid::Refinement {
   bool can_be_halved(const Entry& cell) const {
     return (cell.finest || cell.state == State::kOwnSphere) && cell.level < kMostLevels &&
            grid_.edge(cell.level + 1) > 1e3 * grid_.rounding();
+  }
+
+  // That halving makes: a leaf with a sphere of its own is halved until its cells are finest.
+  std::size_t most_cells_within(const Entry& cell) const {
+    std::size_t most = 0;
+    std::size_t of_level = 1;
+    for (int level = cell.level; level == cell.level || level < grid_.levels_; ++level) {
+      of_level *= 8;
+      most += of_level;
+    }
+    return most;
   }
 
   bool is_at_boundary(const Entry& cell) const {
@@ -216,7 +232,7 @@ class FloodGrid::Refinement {
     const auto is_lost = [&](std::size_t i) {
       return std::binary_search(uncertain_.begin(), uncertain_.end(), i);
     };
-    const auto has_room = [](const Entry& other) { return other.is_open(); };
+    const auto has_room = [](const Entry& other) { return other.has_sphere(); };
     std::vector<char> seen(cells().size());
     std::vector<std::size_t> waiting = front_;
     for (const std::size_t i : waiting) seen[i] = 1;
@@ -236,9 +252,9 @@ class FloodGrid::Refinement {
   // Connects new cells with finer ones at their faces that were there before.
   void connect_finer(std::size_t begin) const {
     for (std::size_t i = begin; i < cells().size(); ++i) {
-      if (!cells()[i].is_open()) continue;
+      if (!cells()[i].has_sphere()) continue;
       for_each_touching(i, true, [&](std::size_t other) {
-        if (other >= begin || !cells()[other].is_open() ||
+        if (other >= begin || !cells()[other].has_sphere() ||
             cells()[other].level <= cells()[i].level) {
           return;
         }
@@ -282,7 +298,7 @@ class FloodGrid::Refinement {
         if (!touches[0][k & 1U] || !touches[1][k >> 1 & 1U] || !touches[2][k >> 2 & 1U]) continue;
         const Index child_low = {node_low[0] + (k & 1U) * half, node_low[1] + (k >> 1 & 1U) * half,
                                  node_low[2] + (k >> 2 & 1U) * half};
-        descend_on(descend_on, cells()[node].child_or_zone + k, child_low, half);
+        descend_on(descend_on, cells()[node].index + k, child_low, half);
       }
     };
     descend(descend, 0, {0, 0, 0}, std::uint32_t{1} << kMostLevels);
@@ -295,25 +311,28 @@ class FloodGrid::Refinement {
   std::vector<std::size_t> front_;      // those of them that meet the outside
 };
 
-double FloodGrid::tighten(double share, const Progress& progress) {
+std::optional<double> FloodGrid::tighten(double share, const Progress& progress) {
   const double uniform = kUniform * shape_.step / diameter_.radius();
-  // What holds of the uniform grid without a proof does not of spheres that stand for parts of it.
-  if (uniform <= share && own_spheres_.empty()) return uniform;
+  const bool is_as_it_is = share >= uniform;
+  if (is_as_it_is && own_spheres_.empty()) return uniform;
   share = std::min(share, uniform);
   Refinement refinement(*this);
   refinement.begin(share);
-  while (true) {
-    if (refinement.lost().empty()) return share;
+  bool is_proved = refinement.lost().empty();
+  while (!is_proved && !is_as_it_is) {
     if (progress) progress(0.95, "searching for narrow ways");
     if (!refinement.refine()) break;
+    is_proved = refinement.lost().empty();
   }
   // For how much more room it does hold.
-  while (share < uniform || !own_spheres_.empty()) {
-    share *= 1.1;
+  while (!is_proved && share < uniform) {
+    share = std::min(1.1 * share, uniform);
     refinement.begin(share);
-    if (refinement.lost().empty()) break;
+    is_proved = refinement.lost().empty();
   }
-  return own_spheres_.empty() ? std::min(share, uniform) : share;
+  // A grid without own spheres holds for that share, proved here or not.
+  if (is_proved || own_spheres_.empty()) return share;
+  return std::nullopt;
 }
 
 }  // namespace spherule::internal

@@ -17,7 +17,7 @@ constexpr double kMargin = 1.2;
 std::string too_many(double count, double edge, double most) {
   const double larger = kMargin * count / most;
   std::ostringstream reason;
-  reason << std::setprecision(3) << "too fine for a model of this size: about " << count
+  reason << std::setprecision(3) << "too fine for a model of this size: up to " << count
          << " cells with an edge of " << edge << " would be needed, and " << most
          << " is the most; with a min external diameter " << std::ceil(10.0 * larger) / 10.0
          << " times as large, or both it and the max error "
@@ -31,8 +31,9 @@ std::string too_many(double count, double edge, double most) {
 
 }  // namespace
 
-TooManyCells::TooManyCells(double count, double least, double edge, std::size_t max_cells)
-    : Error("grid step", too_many(count, edge, static_cast<double>(max_cells))),
-      factor_(least / static_cast<double>(max_cells)) {}
+TooManyCells::TooManyCells(double most_foreseen, double least_foreseen, double edge,
+                           std::size_t max_cells)
+    : Error("grid step", too_many(most_foreseen, edge, static_cast<double>(max_cells))),
+      factor_(least_foreseen / static_cast<double>(max_cells)) {}
 
 }  // namespace spherule::internal

@@ -104,6 +104,29 @@ TEST(MeshDistance, WithALimitOnlyNearerTrianglesAreFound) {
 }
 
 // The square of the limit vanishes.
+// About the centre of a ball all triangles are equally far.
+TEST(MeshDistance, WithFewLeavesNoMoreIsClaimedThanIsKnown) {
+  const TriangleMesh mesh = icosphere(3);
+  const MeshDistance distance(mesh);
+  Random random(24);
+  const double infinity = std::numeric_limits<double>::infinity();
+  int ended = 0;
+  for (int n = 0; n < 200; ++n) {
+    const Vector3d p = random.between(0.0, 0.9) * random.direction();
+    const SurfaceDistance all = distance(p);
+    for (const std::size_t most : {std::size_t{0}, std::size_t{3}, std::size_t{100000}}) {
+      const SurfaceDistance some = distance(p, infinity, most);
+      EXPECT_LE(some.lower, all.upper);
+      EXPECT_GE(some.upper, all.lower);
+      const bool is_complete = some.lower == all.lower && some.upper == all.upper;
+      EXPECT_TRUE(is_complete || some.lower == 0.0);
+      EXPECT_TRUE(is_complete || most < 100000);
+      ended += is_complete ? 0 : 1;
+    }
+  }
+  EXPECT_GT(ended, 200);
+}
+
 TEST(MeshDistance, ATinyLimitClaimsNothingOfAPointOnTheSurface) {
   const MeshDistance distance(cube_mesh());
   for (const double limit : {1e-150, 1e-170, 1e-310, 0.0}) {

@@ -108,7 +108,11 @@ def test_a_diameter_that_was_requested_is_no_larger_one(cube, fit):
 def test_stage_1_alone(cube, fit):
     external = spherule.place_external_spheres(cube, min_external_diameter=0.8, max_error=0.2)
     assert external == fit.external and external.spheres.base is external
-    assert external.spheres[:, 3].min() >= 0.4 and external.box.shape == (2, 3)
+    assert external.spheres.shape == (0, 4) and external.box.shape == (2, 3)  # S is the box
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    tetrahedron = spherule.TriangleMesh(corners, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+    beside = spherule.place_external_spheres(tetrahedron, min_external_diameter=0.8, max_error=0.2)
+    assert beside.spheres[:, 3].min() >= 0.4
     assert spherule.tool_diameter([[0, 0, 0, 0.5], [1, 0, 0, 0.25]]) == 0.5
     with pytest.raises(spherule.Error, match="max cells"):
         spherule.place_external_spheres(cube, min_external_diameter=0.8, max_cells=0)

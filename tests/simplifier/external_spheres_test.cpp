@@ -232,52 +232,54 @@ TEST(ExternalSpheres, TooManyCellsAreForeseenAndTheReasonSaysWhatToChoose) {
 TEST(ExternalSpheres, WhereCellsAreTooManyTheGridIsCoarser) {
   ExternalOptions options = options_for(ExternalPlacement::kReachable, 0.25);
   options.max_error = 0.01;
-  const ExternalSpheres fine = place_external_spheres(cube_mesh(), options);
+  const ExternalSpheres fine = place_external_spheres(l_bracket(), options);
   options.max_cells = fine.nodes_examined / 2;
-  const ExternalSpheres coarse = place_external_spheres(cube_mesh(), options);
+  const ExternalSpheres coarse = place_external_spheres(l_bracket(), options);
   EXPECT_LE(coarse.nodes_examined, options.max_cells);
   EXPECT_GT(coarse.grid_step, 1.2 * fine.grid_step);
   EXPECT_LT(coarse.grid_step, 2.51 * fine.grid_step);
   EXPECT_LE(coarse.closing_slack, 0.25 * options.tightness);
+  ASSERT_FALSE(coarse.spheres.empty());
   for (const Sphere& sphere : coarse.spheres) {
-    EXPECT_GE(judged_mesh_distance(sphere.center, cube_mesh()), sphere.radius);
+    EXPECT_GE(judged_mesh_distance(sphere.center, l_bracket()), sphere.radius);
   }
   options.grid_step = fine.grid_step;
-  EXPECT_THROW(place_external_spheres(cube_mesh(), options), Error);
+  EXPECT_THROW(place_external_spheres(l_bracket(), options), Error);
   options.grid_step = 0.0;
   options.max_cells = fine.nodes_examined / 50;
-  EXPECT_THROW(place_external_spheres(cube_mesh(), options), Error);
+  EXPECT_THROW(place_external_spheres(l_bracket(), options), Error);
 }
 
 // One that was requested is not changed; of one that was not, no more than is needed.
 TEST(ExternalSpheres, WhereCellsAreTooManyADefaultDiameterIsLarger) {
   ExternalOptions options = options_for(ExternalPlacement::kReachable, 0.1);
   options.max_error = 0.1 / 4.0;
-  const MeshDistance distance(cube_mesh());
+  const MeshDistance distance(l_bracket());
   const auto used = [&](const ExternalOptions& by) {
-    return internal::place_with_default_diameter(cube_mesh(), distance, by);
+    return internal::place_with_default_diameter(l_bracket(), distance, by);
   };
   EXPECT_EQ(used(options).min_external_diameter, 0.1);
   // A quarter of the cells is for such grids.
-  options.max_cells = 2 * used(options).nodes_examined;
+  options.max_cells = 29 * used(options).nodes_examined / 10;
   const ExternalSpheres larger = used(options);
   EXPECT_LE(larger.nodes_examined, options.max_cells);
   EXPECT_GT(larger.min_external_diameter, 0.1);
   EXPECT_LE(larger.min_external_diameter, 0.1 * distance.box().diagonal().norm());
+  ASSERT_FALSE(larger.spheres.empty());
   for (const Sphere& sphere : larger.spheres) {
     EXPECT_GE(sphere.radius, larger.min_external_diameter / 2.0);
   }
   ExternalOptions least = options;
   least.min_external_diameter = larger.min_external_diameter / 1.4;
   least.max_cells = options.max_cells / 4;
-  EXPECT_THROW(place_external_spheres(cube_mesh(), least), Error) << "more than was needed";
+  EXPECT_THROW(place_external_spheres(l_bracket(), least), Error) << "more than was needed";
   // Above a tenth of the diagonal D stays as it is, for which all the cells may be taken.
   options.max_cells = 2000;
   EXPECT_THROW(used(options), Error);
   options.min_external_diameter = 0.5;
   options.max_error = 0.2;
   options.max_cells = ExternalOptions::kMostCells;
-  options.max_cells = place_external_spheres(cube_mesh(), options).nodes_examined;
+  options.max_cells = place_external_spheres(l_bracket(), options).nodes_examined;
   EXPECT_EQ(used(options).min_external_diameter, 0.5);
 }
 

@@ -171,7 +171,8 @@ TriangleMesh random_blocks(Random& random) {
   return mesh;
 }
 
-// Every place lies in a sphere whose centre is within 2.6 steps.
+// Every place lies in a sphere whose centre is within 2.6 steps, or of what its radius is above D
+// / 2.
 TEST(TightReach, NoPlaceAmongBlocksIsLost) {
   Random random(73);
   std::size_t narrow = 0;

@@ -191,14 +191,15 @@ TEST_F(AuditRobot, RepairCovers) {
   }
 }
 
-// The limit of the grid's cells in the place of a link that is as large as the usual one needs.
+// The limit of the grid's cells in the place of a link that is as large as the usual one needs: a
+// quarter of it is for a diameter that is chosen.
 TEST_F(AuditRobot, TheSolidOfALinkIsThatOfACoverAndItsWarningToo) {
   const auto mesh = link_mesh(robot_.links[0], {});
   const SimplifyOptions lengths{.max_error = 0.001};
   const internal::LinkSolid usual(*mesh, lengths);
   EXPECT_EQ(usual.external().min_external_diameter, 4.0 * 0.001);
   EXPECT_TRUE(usual.warnings().empty());
-  const std::size_t limit = 2 * usual.external().nodes_examined / 5;
+  const std::size_t limit = 2 * usual.external().nodes_examined;
   const internal::LinkSolid larger(*mesh, lengths, limit);
   const double diameter = simplified_solid(*mesh, lengths, limit).options.min_external_diameter;
   EXPECT_GT(diameter, 4.0 * 0.001);

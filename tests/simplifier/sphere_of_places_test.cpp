@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Large spheres that stand for the finest cells beside flat and convex surfaces.
-#include "simplifier/stage1/place_sphere.h"
+#include "simplifier/stage1/sphere_of_places.h"
 
 #include "simplifier/external_spheres.h"
 #include "tests/simplifier/judge.h"
@@ -17,7 +17,7 @@
 #include <optional>
 #include <vector>
 
-namespace spherule::test::place_sphere_test {
+namespace spherule::test::sphere_of_places_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -40,7 +40,7 @@ std::vector<Vector3d> points_of(const PlaceCell& cell, Random& random) {
 }
 
 // The sphere is free of the padded mesh, and holds every place of its cell.
-TEST(PlaceSphere, HoldsEveryPlaceOfTheCellAndIsFree) {
+TEST(SphereOfPlaces, HoldsEveryPlaceOfTheCellAndIsFree) {
   Random random(81);
   std::size_t found = 0;
   std::size_t places = 0;
@@ -56,12 +56,17 @@ TEST(PlaceSphere, HoldsEveryPlaceOfTheCellAndIsFree) {
       const SurfaceDistance nearest = distance(start);
       const Vector3d away = (start - nearest.closest).normalized();
       if (!away.allFinite()) continue;
-      const PlaceCell cell{.center = nearest.closest + random.between(0.4, 1.6) * rho * away,
+      const Vector3d center = nearest.closest + random.between(0.4, 1.6) * rho * away;
+      const PlaceCell cell{.center = center,
                            .half_edge = half_edge,
-                           .half_diagonal = std::sqrt(3.0) * half_edge * (1.0 + 1e-9),
-                           .least_radius = rho,
-                           .step = 2.0 * half_edge / (n % 3 == 0 ? 4.0 : 2.0)};
-      const std::optional<Sphere> sphere = internal::sphere_of_places(distance, padding, cell);
+                           .rounding = 1e-15,
+                           .rho = rho,
+                           .step = 2.0 * half_edge / (n % 3 == 0 ? 4.0 : 2.0),
+                           .surface_at_most = distance(center).upper};
+      const auto wanted = internal::wanted_sphere(distance, padding, cell);
+      if (!wanted) continue;
+      const std::optional<Sphere> sphere =
+          internal::sphere_of_places(distance, padding, cell, *wanted);
       if (!sphere) continue;
       ++found;
       ASSERT_GE(sphere->radius, rho);
@@ -94,7 +99,7 @@ TriangleMesh turned_cube() {
 }
 
 // As many cells as a uniform grid takes for three layers beside the cube, instead of some seven.
-TEST(PlaceSphere, FewCellsAndSpheresAreNeededBesideFlatFaces) {
+TEST(SphereOfPlaces, FewCellsAndSpheresAreNeededBesideFlatFaces) {
   const ExternalSpheres external = placed(turned_cube());
   const double one_layer = 6.0 / (external.grid_step * external.grid_step);
   EXPECT_LT(static_cast<double>(external.nodes_examined), 3.0 * one_layer);
@@ -102,7 +107,7 @@ TEST(PlaceSphere, FewCellsAndSpheresAreNeededBesideFlatFaces) {
 }
 
 // Near a face, S ends where it does with the finest cells.
-TEST(PlaceSphere, TheyLeaveNoHigherScallops) {
+TEST(SphereOfPlaces, TheyLeaveNoHigherScallops) {
   Random random(82);
   const TriangleMesh cube = turned_cube();
   const ExternalSpheres external = placed(cube);
@@ -120,7 +125,7 @@ TEST(PlaceSphere, TheyLeaveNoHigherScallops) {
 }
 
 // The mesh that is its own box: nothing is taken from it, and nothing has to be kept for it.
-TEST(PlaceSphere, ABoxNeedsNoExternalSpheres) {
+TEST(SphereOfPlaces, ABoxNeedsNoExternalSpheres) {
   for (const Vector3d& at : {Vector3d(0, 0, 0), Vector3d(0.1, 1e3, -1e3)}) {
     const ExternalSpheres external = placed(box_mesh(at, at + Vector3d(1.0, 0.7, 0.3)));
     EXPECT_TRUE(external.spheres.empty());
@@ -129,7 +134,7 @@ TEST(PlaceSphere, ABoxNeedsNoExternalSpheres) {
 }
 
 // A ball that is closed takes fewer cells than with a way in.
-TEST(PlaceSphere, TheInsideOfAClosedPartIsNotHalved) {
+TEST(SphereOfPlaces, TheInsideOfAClosedPartIsNotHalved) {
   const TriangleMesh closed = icosphere(2);
   TriangleMesh open = closed;
   open.triangles.pop_back();
@@ -139,8 +144,26 @@ TEST(PlaceSphere, TheInsideOfAClosedPartIsNotHalved) {
   EXPECT_LT(examined(closed), 0.8 * examined(open));
 }
 
+// With own spheres in it too, where no finer cells are requested.
+TEST(SphereOfPlaces, TheSlackOfTheGridAsItIsIsProved) {
+  ExternalOptions options{.min_external_diameter = kDiameter, .max_error = kMaxError};
+  options.tightness = ExternalOptions::kNoTightness;
+  const ExternalSpheres external = place_external_spheres(turned_cube(), options);
+  EXPECT_LT(external.closing_slack, 2.7322 * external.grid_step * (1.0 + 1e-9));
+  EXPECT_LT(static_cast<double>(external.spheres.size()),
+            6.0 / (external.grid_step * external.grid_step));
+}
+
+// The large sphere in front of a zone needs more room on its way than in the zone.
+TEST(SphereOfPlaces, AZoneThatNothingReachesEndsTheSearch) {
+  ExternalOptions options{.min_external_diameter = 1.0, .max_error = 0.1};
+  options.zones = {{.shape = Sphere{{3.03, 3.01, 1.02}, 0.46}, .min_external_diameter = 0.25}};
+  const ExternalSpheres external = place_external_spheres(box_mesh({0, 0, 0}, {6, 6, 1}), options);
+  EXPECT_LE(external.closing_slack, 0.03 * (1.0 + 1e-12));
+}
+
 // Equal bits on every machine and any number of threads (G7). The corners are exact.
-TEST(PlaceSphere, AreEqualEverywhere) {
+TEST(SphereOfPlaces, AreEqualEverywhere) {
   const TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                  {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
   ExternalOptions options{.min_external_diameter = kDiameter, .max_error = kMaxError};
@@ -152,4 +175,4 @@ TEST(PlaceSphere, AreEqualEverywhere) {
 }
 
 }  // namespace
-}  // namespace spherule::test::place_sphere_test
+}  // namespace spherule::test::sphere_of_places_test
