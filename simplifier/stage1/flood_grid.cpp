@@ -46,7 +46,7 @@ FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDi
   std::size_t begin = 0;
   for (int level = 0; level <= levels_; ++level) {
     examine_level(level, begin, progress);
-    const std::vector<std::size_t> mixed = mixed_cells_in_reach(begin, lasting);
+    const std::vector<std::size_t> mixed = cells_to_halve(begin, lasting);
     check_memory(level, mixed.size());
     begin = cells_.size();
     for (const std::size_t i : mixed) halve(i);
@@ -66,15 +66,15 @@ void FloodGrid::examine_level(int level, std::size_t first, const Progress& prog
   }
 }
 
-std::vector<std::size_t> FloodGrid::mixed_cells_in_reach(std::size_t begin, DisjointSets& lasting) {
-  lasting.grow(cells_.size() + 1);
+std::vector<std::size_t> FloodGrid::cells_to_halve(std::size_t begin, DisjointSets& lasting) {
   std::vector<std::size_t> mixed;
   for (std::size_t i = begin; i < cells_.size(); ++i) {
-    if (cells_[i].state == State::kMixed) {
-      mixed.push_back(i);
-    } else {
-      unite_neighbours(i, begin, lasting);
-    }
+    if (cells_[i].state == State::kMixed) mixed.push_back(i);
+  }
+  if (mixed.empty()) return mixed;
+  lasting.grow(cells_.size() + 1);
+  for (std::size_t i = begin; i < cells_.size(); ++i) {
+    if (cells_[i].state != State::kMixed) unite_neighbours(i, begin, lasting);
   }
   DisjointSets sets = lasting;
   for (const std::size_t i : mixed) unite_neighbours(i, cells_.size(), sets);

@@ -144,7 +144,7 @@ class FloodGrid {
   // sphere of their own (this looks for them), and connected with the outside of the cube through
   // faces of cells that are not blocked, as the sphere gets to no other. `lasting` connects what is
   // not halved of all levels, and is carried on.
-  std::vector<std::size_t> mixed_cells_in_reach(std::size_t begin, DisjointSets& lasting);
+  std::vector<std::size_t> cells_to_halve(std::size_t begin, DisjointSets& lasting);
   // Unites a cell with what is not blocked at its faces, of its size or larger, and where places
   // may be on these. Mixed cells from one on are left out.
   void unite_neighbours(std::size_t cell, std::size_t mixed_from, DisjointSets& sets) const;
