@@ -139,7 +139,8 @@ TEST(SphereOfPlaces, TheInsideOfAClosedPartIsNotHalved) {
   TriangleMesh open = closed;
   open.triangles.pop_back();
   const auto examined = [](const TriangleMesh& mesh) {
-    return static_cast<double>(placed(mesh).nodes_examined);
+    const ExternalOptions options{.min_external_diameter = 0.1, .max_error = 0.025};
+    return static_cast<double>(place_external_spheres(mesh, options).nodes_examined);
   };
   EXPECT_LT(examined(closed), 0.8 * examined(open));
 }
