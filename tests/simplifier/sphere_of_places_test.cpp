@@ -84,6 +84,36 @@ TEST(SphereOfPlaces, HoldsEveryPlaceOfTheCellAndIsFree) {
   EXPECT_GT(places, effort(2000U, 400U));
 }
 
+// Small triangles at the origin and where the surface is sampled beside it, and nothing between: in
+// a cell of half edge rho the corners are places, and below the sphere.
+TEST(SphereOfPlaces, ACellWithPlacesBelowTheSphereHasNone) {
+  for (const double half_edge : {0.6, 1.0}) {
+    TriangleMesh mesh;
+    const double aside = std::sqrt(2.0) * half_edge;
+    for (const Vector3d& at : {Vector3d(0, 0, 0), Vector3d(aside, 0, 0), Vector3d(-aside, 0, 0),
+                               Vector3d(0, aside, 0), Vector3d(0, -aside, 0)}) {
+      const int first = static_cast<int>(mesh.vertices.size());
+      mesh.triangles.push_back({first, first + 1, first + 2});
+      for (const Vector3d& corner :
+           {Vector3d(-0.02, -0.02, 0), Vector3d(0.03, -0.02, 0), Vector3d(-0.02, 0.03, 0)}) {
+        mesh.vertices.push_back(at + corner);
+      }
+    }
+    const MeshDistance distance(mesh);
+    const PlaceCell cell{.center = {0, 0, half_edge},
+                         .half_edge = half_edge,
+                         .rounding = 1e-15,
+                         .rho = 1.0,
+                         .step = half_edge / 2.0,
+                         .surface_at_most = half_edge};
+    const auto wanted = internal::wanted_sphere(distance, 0.0, cell);
+    const bool is_held = half_edge < 0.7;
+    ASSERT_EQ(wanted.has_value(), is_held);
+    if (!is_held) continue;
+    EXPECT_TRUE(internal::sphere_of_places(distance, 0.0, cell, *wanted));
+  }
+}
+
 constexpr double kDiameter = 0.05;
 constexpr double kMaxError = 0.0125;
 
