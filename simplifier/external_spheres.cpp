@@ -5,6 +5,7 @@
 #include "mesh/mesh_report.h"
 #include "simplifier/concave_edges.h"
 #include "simplifier/internal/stages.h"
+#include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/sphere_hierarchy.h"
 #include "simplifier/stage1/flood_grid.h"
 #include "simplifier/stage1/local_diameter.h"
@@ -115,7 +116,7 @@ FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double s
   const double edge = box.sizes().maxCoeff() + 2.0 * (rho + 3.0 * step);
   FloodGrid::Shape shape{.origin = Vector3d::Zero(), .step = step};
   while (std::ldexp(step, shape.levels) < edge) ++shape.levels;
-  const double magnitude = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() + edge;
+  const double magnitude = internal::largest_coordinate(box) + edge;
   if (shape.levels + halvings > 20 ||
       std::ldexp(step, -halvings) < 1e6 * kUnitRoundoff * magnitude) {
     throw Error("grid step",
@@ -261,7 +262,7 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance, con
   const FloodGrid& grid = *made;
   result.closing_slack = 2.0 * diameter.radius() * share.value();
   result.grid_step = step;
-  result.nodes_examined = grid.evaluations();
+  result.nodes_examined = grid.cells_examined();
   // Zones make the grid so fine that it pays to leave out what lies in a larger sphere.
   result.spheres = zones.empty() ? grid.reached_spheres() : grid.reached_spheres_that_count();
   const std::vector<FloodGrid::Frontier> frontier = grid.frontier();
@@ -337,8 +338,7 @@ ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
   }
   // What does not meet the box, or by rounding only, as beside a face of the box that is one of the
   // mesh, takes nothing from S.
-  const double magnitude =
-      result.box.min().cwiseAbs().cwiseMax(result.box.max().cwiseAbs()).maxCoeff();
+  const double magnitude = internal::largest_coordinate(result.box);
   std::erase_if(result.spheres, [&](const Sphere& s) {
     return result.box.exteriorDistance(s.center) + kBoxRounding * (magnitude + s.radius) >=
            s.radius;

@@ -207,9 +207,7 @@ FloodGrid::OwnSphere FloodGrid::own_sphere(const Entry& cell) const {
   const double step = std::ldexp(shape_.step, -rho.halvings);
   // Larger ones are held by no two balls, and a finest one has no finer ones.
   if (edge(cell.level) > rho.least || edge(cell.level) < 1.5 * step) return {};
-  const PlaceCell place{.center = middle,
-                        .half_edge = half_edge(cell.level),
-                        .rounding = rounding(),
+  const PlaceCell place{.box = {middle, Eigen::Vector3d::Constant(half_edge(cell.level))},
                         .rho = rho.least,
                         .step = step,
                         .surface_at_most = cell.clearance + padding_ + widest_bounds_};

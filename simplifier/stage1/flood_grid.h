@@ -83,7 +83,7 @@ class FloodGrid {
   std::vector<Frontier> frontier() const;
 
   // Cells examined; all of them are kept, 24 bytes each.
-  std::size_t evaluations() const { return cells_.size(); }
+  std::size_t cells_examined() const { return cells_.size(); }
 
  private:
   // Morton codes have room for 21.

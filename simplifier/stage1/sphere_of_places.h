@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/mesh_distance.h"
+#include "simplifier/solid/box_cell.h"
 #include "spheretree/sphere.h"
 
 #include <Eigen/Core>
@@ -13,9 +14,7 @@ namespace spherule::internal {
 // A cubic cell of the flood, and what is requested there. A *place* is a point from which the
 // surface is at least rho + padding away.
 struct PlaceCell {
-  Eigen::Vector3d center;
-  double half_edge;        // rounded up
-  double rounding;         // bound on that of a coordinate
+  BoxCell box;             // a cube
   double rho;              // no more than any point of the cell requires
   double step;             // of the grid there: shorter than an edge of the cell
   double surface_at_most;  // upper bound of the distance of the surface from the centre

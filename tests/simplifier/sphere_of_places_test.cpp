@@ -30,9 +30,9 @@ Vector3d corner_of_unit(int k) {
 // Points of a cell: its corners, and random ones.
 std::vector<Vector3d> points_of(const PlaceCell& cell, Random& random) {
   std::vector<Vector3d> points;
-  for (int k = 0; k < 8; ++k) points.push_back(cell.center + cell.half_edge * corner_of_unit(k));
-  const Vector3d half = Vector3d::Constant(cell.half_edge);
-  const Eigen::AlignedBox3d box(cell.center - half, cell.center + half);
+  const auto& [center, half] = cell.box;
+  for (int k = 0; k < 8; ++k) points.push_back(center + half[0] * corner_of_unit(k));
+  const Eigen::AlignedBox3d box(center - half, center + half);
   for (int n = 0; n < 40; ++n) {
     points.push_back(random.in_box(box));
   }
@@ -57,9 +57,7 @@ TEST(SphereOfPlaces, HoldsEveryPlaceOfTheCellAndIsFree) {
       const Vector3d away = (start - nearest.closest).normalized();
       if (!away.allFinite()) continue;
       const Vector3d center = nearest.closest + random.between(0.4, 1.6) * rho * away;
-      const PlaceCell cell{.center = center,
-                           .half_edge = half_edge,
-                           .rounding = 1e-15,
+      const PlaceCell cell{.box = {center, Vector3d::Constant(half_edge)},
                            .rho = rho,
                            .step = 2.0 * half_edge / (n % 3 == 0 ? 4.0 : 2.0),
                            .surface_at_most = distance(center).upper};
@@ -100,9 +98,7 @@ TEST(SphereOfPlaces, ACellWithPlacesBelowTheSphereHasNone) {
       }
     }
     const MeshDistance distance(mesh);
-    const PlaceCell cell{.center = {0, 0, half_edge},
-                         .half_edge = half_edge,
-                         .rounding = 1e-15,
+    const PlaceCell cell{.box = {{0, 0, half_edge}, Vector3d::Constant(half_edge)},
                          .rho = 1.0,
                          .step = half_edge / 2.0,
                          .surface_at_most = half_edge};
@@ -122,10 +118,11 @@ ExternalSpheres placed(const TriangleMesh& mesh) {
 }
 
 // A turned cube of side 1, whose faces are none of its box.
+Eigen::Isometry3d turn() {
+  return Eigen::Isometry3d(Eigen::AngleAxisd(0.5, Vector3d(1, 2, 3).normalized()));
+}
 TriangleMesh turned_cube() {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = Eigen::AngleAxisd(0.5, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-  return moved(cube_mesh(), pose);
+  return moved(cube_mesh(), turn());
 }
 
 // As many cells as a uniform grid takes for three layers beside the cube, instead of some seven.
@@ -139,14 +136,12 @@ TEST(SphereOfPlaces, FewCellsAndSpheresAreNeededBesideFlatFaces) {
 // Near a face, S ends where it does with the finest cells.
 TEST(SphereOfPlaces, TheyLeaveNoHigherScallops) {
   Random random(82);
-  const TriangleMesh cube = turned_cube();
-  const ExternalSpheres external = placed(cube);
+  const ExternalSpheres external = placed(turned_cube());
+  const Vector3d normal = turn().linear() * Vector3d::UnitZ();
   double highest = 0.0;
   for (int n = 0; n < effort(400, 50); ++n) {
     const Vector3d on_face(random.between(0.1, 0.9), random.between(0.1, 0.9), 1.0);
-    const Eigen::AngleAxisd turn(0.5, Vector3d(1, 2, 3).normalized());
-    const Vector3d foot = turn * on_face;
-    const Vector3d normal = turn * Vector3d::UnitZ();
+    const Vector3d foot = turn() * on_face;
     double height = 0.0;
     while (is_in_solid(foot + height * normal, external)) height += 0.002 * kMaxError;
     highest = std::max(highest, height);
