@@ -7,6 +7,7 @@
 #include "cli/files/result_warnings.h"
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
+#include "cli/options/threads_option.h"
 #include "cli/parts/audit_bodies.h"
 #include "cli/parts/audit_proof.h"
 #include "cli/text/exit_code.h"
@@ -82,6 +83,7 @@ Repaired repaired(const AuditArguments& arguments, const ModelFile& model,
                           .zones = options.zones,
                           .seed = options.seed,
                           .effort = std::min(options.effort, SimplifyOptions{}.effort),
+                          .threads = options.threads,
                           .progress = options.progress});
   result.certificate = certify(model.mesh, result.repair.spheres, certify_options);
   result.file = {.spheres = result.repair.spheres,
@@ -201,6 +203,7 @@ int audit(const AuditArguments& arguments) {
   const ModelFile model = read_model(arguments.models.front(), reading);
   const TriangleMesh& mesh = model.mesh;
 
+  options.threads = arguments.threads;
   options.progress = bar.callback();
   const bool has_diameter = take_min_external(arguments.min_external, options);
   std::optional<SolidProof> proof;
@@ -261,6 +264,7 @@ void add_audit(CLI::App& app, int& exit_code) {
   arguments->lengths.add_positive(
       *command, "--min-external", arguments->min_external,
       "D, against which simplified solid (default: as the spheres were fitted)");
+  add_threads_option(*command, arguments->threads);
   command->add_flag("--json", arguments->json, "Print the certificate as JSON");
   CLI::Option* repair =
       command

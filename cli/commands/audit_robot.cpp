@@ -9,6 +9,7 @@
 #include "cli/help/help.h"
 #include "cli/options/length_options.h"
 #include "cli/options/robot_options.h"
+#include "cli/options/threads_option.h"
 #include "cli/pages/page_output.h"
 #include "cli/pages/view_robot.h"
 #include "cli/robots/audit_robot_report.h"
@@ -46,11 +47,12 @@ struct AuditRobotArguments {
   std::string link;
   std::optional<std::size_t> level;
   std::string repaired;
-  PairSources pairs;
+  PairSources pairs{.srdf = {}, .pairs = {}, .proves = true};
   bool ignores_unknown_links = false;
   std::optional<double> max_error;
   LengthOptions lengths;
   std::optional<double> min_external;
+  int threads = 0;
   bool json = false;
   std::string view;
 };
@@ -162,7 +164,8 @@ int audit(const AuditRobotArguments& arguments) {
   if (mend) check_repair(arguments, report.file, is_shrunk);
   RobotAuditOptions options{.geometry = geometry,
                             .min_external_diameter = arguments.min_external.value_or(0.0),
-                            .configurations = configurations_of(arguments.poses, robot.model)};
+                            .configurations = configurations_of(arguments.poses, robot.model),
+                            .threads = arguments.threads};
   if (arguments.max_error) options.max_error = *arguments.max_error;
   {
     ProgressBar bar;
@@ -173,11 +176,12 @@ int audit(const AuditRobotArguments& arguments) {
       report.repair = repair_robot(robot, spheres.links,
                                    {.geometry = geometry,
                                     .max_error = arguments.max_error.value_or(0.0),
+                                    .threads = arguments.threads,
                                     .progress = options.progress});
     });
   }
   if (!arguments.pairs.is_empty()) {
-    report.pairs = pair_kinds(robot, spheres, geometry, arguments.pairs, true);
+    report.pairs = pair_kinds(robot, spheres, geometry, arguments.pairs);
   }
   if (mend) {
     write_uninterrupted([&] { write_repaired(arguments, report); });
@@ -262,6 +266,7 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
                       "Whose spheres they are, if the file names no link");
   command->add_option("--level", arguments->level,
                       "Which level of a file with levels, 0 the coarsest (default: the finest)");
+  add_threads_option(*command, arguments->threads);
   command->add_flag("--json", arguments->json, "Print the certificates as JSON");
   command
       ->add_option("--view", arguments->view,
@@ -296,6 +301,7 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
                     "mended.yml --json"}}));
   command->callback([arguments, &exit_code] {
     arguments->lengths.convert(metres());
+    arguments->pairs.threads = arguments->threads;
     exit_code = audit(*arguments);
   });
 }

@@ -7,6 +7,7 @@
 #include "cli/options/length_options.h"
 #include "cli/options/robot_options.h"
 #include "cli/options/shard.h"
+#include "cli/options/threads_option.h"
 #include "cli/pages/check_view.h"
 #include "cli/pages/page_output.h"
 #include "cli/robots/check_report.h"
@@ -333,8 +334,7 @@ void add_check(CLI::App& app, int& exit_code) {
                       "Which of the robot's geometries stands for it (default: collision)",
                       arguments->geometry);
   add_package_option(*command, arguments->packages);
-  command->add_option("--threads", arguments->cover.threads, "Threads, 0: all (default)")
-      ->check(CLI::NonNegativeNumber);
+  add_threads_option(*command, arguments->cover.threads);
   command->add_flag("--json", arguments->json, "Print the result as JSON");
   command
       ->add_option("--view", arguments->view,

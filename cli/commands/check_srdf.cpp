@@ -5,6 +5,7 @@
 #include "cli/help/help.h"
 #include "cli/options/check_number.h"
 #include "cli/options/robot_options.h"
+#include "cli/options/threads_option.h"
 #include "cli/robots/pair_report.h"
 #include "cli/text/exit_code.h"
 #include "cli/text/progress.h"
@@ -149,19 +150,17 @@ void add_check_srdf(CLI::App& app, int& exit_code) {
                    "Prove for so long at most; pairs that are left are unknown (default: no limit)")
       ->check(CLI::PositiveNumber)
       ->check(check_not_negative);
-  command
-      ->add_option("--threads", arguments->options.threads,
-                   "Threads, 0: all; without --seconds the result is the same")
-      ->check(CLI::NonNegativeNumber);
+  add_threads_option(*command, arguments->options.threads,
+                     "without --seconds the result is the same");
   command->add_flag("--json", arguments->json, "Print the verdicts as JSON");
   command->footer(to_text(
       {.text =
            "A pair is proved never to touch within the limits of the joints, by the meshes with "
-           "their insides, or a posture is shown in which it does. Touching is wrong for pairs "
-           "with the reason Never or none, and for Adjacent ones that no joint joins; Default, "
-           "Always and User are decisions.",
-       .exit_codes = "0 every pair that is not disabled by decision is proved never to touch; 1 "
-                     "some touch, or nothing is proved of them",
+           "their insides, or a posture is shown in which it does. The reasons Default, Always and "
+           "User are decisions; every other one, and none, says that the links are apart, and "
+           "touching is then wrong but for links that a joint joins.",
+       .exit_codes = "0 every pair that is said to be apart is proved never to touch; 1 some "
+                     "touch, or nothing is proved of them",
        .examples = {"spherule check-srdf robot.urdf robot.srdf",
                     "spherule check-srdf robot.urdf robot.srdf --geometry visual --json"}}));
   command->callback([arguments, &exit_code] { exit_code = check_srdf(*arguments); });

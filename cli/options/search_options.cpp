@@ -2,6 +2,7 @@
 #include "cli/options/search_options.h"
 
 #include "cli/options/check_number.h"
+#include "cli/options/threads_option.h"
 
 #include <CLI/CLI.hpp>
 
@@ -27,8 +28,7 @@ void add_search_options(CLI::App& command, const SearchOptions& options,
       ->check(CLI::PositiveNumber)
       ->check(check_not_negative)
       ->excludes(effort);
-  command.add_option("--threads", options.threads, "Threads, 0: all; the result is the same")
-      ->check(CLI::NonNegativeNumber);
+  add_threads_option(command, options.threads);
 }
 
 }  // namespace spherule

@@ -259,7 +259,7 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
   }
   if (first_spheres) {
     scene.robot["pairs"] = view_pairs(
-        pair_kinds(robot, *first_spheres, geometry_named(options.geometry.front()), pairs, false));
+        pair_kinds(robot, *first_spheres, geometry_named(options.geometry.front()), pairs));
   } else if (!pairs.is_empty()) {
     throw Error(*urdf, "pairs of its links are told apart with its spheres: name a file of them");
   }

@@ -100,6 +100,7 @@ class Auditor {
     } catch (const Error& error) {
       throw Error(arguments_.spheres, record.name + ": " + error.what());
     }
+    options.threads = arguments_.threads;
     const bool has_diameter = take_min_external(arguments_.min_external, options) ||
                               record.options.contains("min-external");
     const SolidProof proof(mesh, options, has_diameter);

@@ -22,6 +22,7 @@ struct AuditArguments {
   std::optional<double> max_error;
   LengthOptions lengths;
   std::string repaired;
+  int threads = 0;
   bool json = false;
 };
 

@@ -15,6 +15,7 @@ SolidProof::SolidProof(const TriangleMesh& mesh, const SimplifyOptions& options,
 SolidProof::SolidProof(const SimplifyOptions& options, std::optional<ExternalSpheres> external)
     : external_(std::move(external)), zones_(options.zones) {
   options_.padding = options.padding;
+  options_.threads = options.threads;
   options_.progress = options.progress;
   if (!external_) return;
   options_.external = &*external_;

@@ -3,6 +3,7 @@
 
 #include "cli/files/interruption.h"
 #include "cli/files/output.h"
+#include "cli/options/threads_option.h"
 #include "cli/text/exit_code.h"
 #include "cli/text/message.h"
 #include "cli/text/print.h"
@@ -118,8 +119,7 @@ std::vector<std::string> add_sphere_baselines(CLI::App& baseline, int& exit_code
                            "The mesh grown by this much is to be covered (default: 0)");
     command->add_flag("--conservative", arguments->conservative,
                       "Grow every sphere by the proved uncovered depth, so that they cover");
-    command->add_option("--threads", arguments->threads, "Threads, 0: all; the result is the same")
-        ->check(CLI::NonNegativeNumber);
+    add_threads_option(*command, arguments->threads);
     examples.emplace_back(method.text.example);
     command->callback(
         [&method, arguments, &exit_code] { exit_code = run_method(method, *arguments); });

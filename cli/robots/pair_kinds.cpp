@@ -29,14 +29,15 @@ RobotModel model_of(const RobotDescription& robot, std::span<const LinkSpheres> 
 }
 
 std::shared_ptr<const LinkPairs> proofs_of(const RobotDescription& robot, LinkGeometry geometry,
-                                           const PairSources& sources, bool proves) {
-  if (sources.pairs.empty() && !proves) return nullptr;
+                                           const PairSources& sources) {
+  if (sources.pairs.empty() && !sources.proves) return nullptr;
   const std::vector<LinkBody> bodies = link_bodies(robot, {.geometry = geometry});
   if (!sources.pairs.empty()) {
     return std::make_shared<const LinkPairs>(load_link_pairs(sources.pairs, robot.model, bodies));
   }
   ProgressBar bar;
   LinkPairOptions options;
+  options.threads = sources.threads;
   options.progress = bar.callback();
   return std::make_shared<const LinkPairs>(prove_link_pairs(robot.model, bodies, options));
 }
@@ -48,9 +49,9 @@ bool is_joined(const PairStatus& pair) {
 }  // namespace
 
 PairKinds pair_kinds(const RobotDescription& robot, const RobotSpheres& spheres,
-                     LinkGeometry geometry, const PairSources& sources, bool proves) {
+                     LinkGeometry geometry, const PairSources& sources) {
   PairKinds kinds{.model = model_of(robot, spheres.links),
-                  .proofs = proofs_of(robot, geometry, sources, proves)};
+                  .proofs = proofs_of(robot, geometry, sources)};
   std::vector<DisabledPair> given;
   add_missing_pairs(spheres.self_collision_ignore, robot.model, given);
   if (!sources.srdf.empty()) {

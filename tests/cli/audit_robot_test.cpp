@@ -55,8 +55,9 @@ TEST_F(AuditRobotCommand, Json) {
   write("leaks.yml", spheres(0.09, 0.05) +
                          "      ghost:\n      - {center: [0, 0, 0], radius: 1}\n"
                          "      - {center: [0, 0, 0], radius: -1}\n");
-  const Outcome result =
-      run({"audit-robot", "two.urdf", "leaks.yml", "--json", "--ignore-unknown-links"});
+  const std::vector<std::string> command = {"audit-robot", "two.urdf", "leaks.yml", "--json",
+                                            "--ignore-unknown-links"};
+  const Outcome result = run(command);
   EXPECT_EQ(result.exit_code, 1) << result.err;
   const json report = json::parse(result.out);
   EXPECT_EQ(report.at("links_covered"), false);
@@ -69,6 +70,9 @@ TEST_F(AuditRobotCommand, Json) {
   EXPECT_GE(base.at("certificate").at("uncovered_depth_surface").at(1), depth - 1e-9);
   EXPECT_EQ(base.at("warnings"), json::array());
   EXPECT_EQ(report.at("links").at(1).at("certificate").at("covered"), true);
+  std::vector<std::string> with_one_thread = command;
+  with_one_thread.insert(with_one_thread.end(), {"--threads", "1"});
+  EXPECT_EQ(run(with_one_thread).out, result.out);
 }
 
 TEST_F(AuditRobotCommand, TableSaysWhatWasLeftOut) {
@@ -295,6 +299,7 @@ TEST_F(AuditRobotCommand, BadInput) {
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--degrees"}, "--degrees");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--geometry", "other"}, "--geometry");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--max-error", "-1"}, "--max-error");
+  expect_refusal({"audit-robot", "two.urdf", "good.yml", "--threads", "-1"}, "--threads");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--repair", "good.yml"}, "good.yml");
   EXPECT_EQ(run({"audit-robot", "two.urdf", "one.json", "--link", "arm"}).exit_code, 1);
 }

@@ -72,6 +72,17 @@ TEST_F(AuditTest, ScaleOverrides) {
   EXPECT_EQ(run({"audit", "bar.stl", "ball.json", "--scale", "0.1"}).exit_code, 0);
 }
 
+TEST_F(AuditTest, TheAnswerDoesNotDependOnThreads) {
+  write_spheres("ball.json", {{1, 1, 1, 1.5}});
+  const auto audit = [&](const std::string& threads) {
+    const std::string out = run({"audit", "box.stl", "ball.json", "--json", "--repair",
+                                 "mended.json", "--max-error", "0.4", "--threads", threads})
+                                .out;
+    return out + read("mended.json");
+  };
+  EXPECT_EQ(audit("1"), audit("2"));
+}
+
 TEST_F(AuditTest, BadInput) {
   write_spheres("ball.json", {{1, 1, 1, 1.75}});
   write("broken.json", "{\"format\":\"spherule-spheres\"");
@@ -83,6 +94,7 @@ TEST_F(AuditTest, BadInput) {
   expect_refusal({"audit", "box.stl", "ball.json", "--min-external", "-1"}, "--min-external: ");
   expect_refusal({"audit", "box.stl", "ball.json", "--min-external", "nan"}, "--min-external: ");
   expect_refusal({"audit", "box.stl", "ball.json", "--scale", "0"}, "scale");
+  expect_refusal({"audit", "box.stl", "ball.json", "--threads", "-1"}, "--threads");
 }
 
 // What is wrong with a file is said with its name, however late it shows.
