@@ -11,6 +11,7 @@
 #include "simplifier/stage2/paper/internal_spheres.h"
 #include "simplifier/support/stopwatch.h"
 #include "simplifier/support/thread_limit.h"
+#include "spheretree/rounding_mode.h"
 
 #include <cstddef>
 #include <optional>
@@ -30,6 +31,7 @@ SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
 SphereCover internal::cover(const TriangleMesh& mesh, const MeshDistance& distance,
                             const internal::Clearance& clearance, const CoverOptions& options,
                             std::size_t most_cells) {
+  require_rounding_to_nearest();
   check_options(options);
   const ThreadLimit threads(options.threads);
   if (options.method == CoverMethod::kPaper) {

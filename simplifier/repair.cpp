@@ -15,6 +15,7 @@
 #include "simplifier/support/usable_spheres.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
+#include "spheretree/rounding_mode.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -106,6 +107,7 @@ std::vector<Sphere> inflated_spheres(const internal::Clearance& clearance,
 
 Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
               std::span<const Sphere> spheres, const RepairOptions& options) {
+  require_rounding_to_nearest();
   validate(mesh, "mesh");
   check(spheres, options);
   const internal::ThreadLimit threads(options.threads);

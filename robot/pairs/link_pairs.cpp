@@ -9,6 +9,7 @@
 #include "robot/pairs/internal/pair_witness.h"
 #include "spheretree/crc64.h"
 #include "spheretree/error.h"
+#include "spheretree/rounding_mode.h"
 
 #include <algorithm>
 #include <bit>
@@ -159,6 +160,7 @@ namespace {
 // Of all pairs, or those of a link that a tool stands for (-1: all).
 LinkPairs prove_pairs_of(int only, const RobotModel& robot, std::span<const LinkBody> bodies,
                          const LinkPairOptions& options) {
+  require_rounding_to_nearest();
   check(robot, bodies, options);
   const Clock::time_point end =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(

@@ -9,6 +9,7 @@
 #include "spheretree/error.h"
 #include "tests/robot/box_robots.h"
 #include "tests/support/effort.h"
+#include "tests/support/rounding_mode.h"
 
 #include <gtest/gtest.h>
 
@@ -299,6 +300,7 @@ TEST(LinkPairs, RefusesWhatItCannotUse) {
   EXPECT_THROW(prove_link_pairs(robot, beyond), Error);
   EXPECT_THROW(prove_link_pairs(robot, {}, {.seconds = -1.0}), Error);
   EXPECT_TRUE(prove_link_pairs(robot, {}).pairs().empty());
+  expect_rounding_to_nearest_is_needed([&] { prove_link_pairs(robot, {}); }, "prove_link_pairs");
 }
 
 }  // namespace
