@@ -53,10 +53,10 @@ function(spherule_shared_settings target)
 endfunction()
 
 # Declares the library spherule::NAME from HEADERS (public), SOURCES (everything else; a library of
-# headers has none), APART (sources that have local names in common with others: not joined with
-# them, SPHERULE_PRECOMPILE) and LINKS (public dependencies), and installs it as the component NAME of the
-# package. Headers are reached as "spheretree/sphere.h" from inside the repository and as
-# <spherule/spheretree/sphere.h> by users.
+# headers has none), APART (sources that have local names in common with others, or that alone need a
+# large library: not joined with them, SPHERULE_PRECOMPILE) and LINKS (public dependencies), and
+# installs it as the component NAME of the package. Headers are reached as "spheretree/sphere.h" from
+# inside the repository and as <spherule/spheretree/sphere.h> by users.
 function(spherule_library name)
   cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES;APART;LINKS" ${ARGN})
   set(target spherule_${name})
