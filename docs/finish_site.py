@@ -41,7 +41,7 @@ class Site:
         relative = path.resolve().relative_to(self.sources.resolve())
         if str(relative) == "README.md":
             return "index.html"
-        return "md_" + "_".join(relative.with_suffix("").parts) + ".html"
+        return "md_" + "_".join(relative.with_suffix("").parts).replace("-", "_") + ".html"
 
     def target_of(self, page, link):
         """Where a link to a file of the project leads in the site; None if it is no such link."""
