@@ -99,7 +99,7 @@ std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& 
                                             const Primitive& solid, const Pose& world_from_solid);
 
 // Upper bound of what the exact distance may exceed the clearance by where within() answers true,
-// and collides() for a clearance of 0: about 5e-14 of the size of the scene, which is the reach of
+// and collides() for a clearance of 0: about 4e-14 of the size of the scene, which is the reach of
 // the spheres in their frame, the sizes of the solid and the distance of the two frames.
 double primitive_slack(const SphereTree& tree, const Pose& world_from_tree, const Primitive& solid,
                        const Pose& world_from_solid, double clearance = 0.0);

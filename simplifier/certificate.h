@@ -34,8 +34,9 @@ namespace spherule {
 
 // What spheres are certified against, and how closely.
 struct CertifyOptions {
-  // The simplified solid to certify against. Without it |M| itself is certified: its complement is
-  // flooded with cells of size `resolution`, and what the flood does not reach counts as inside.
+  // The simplified solid to certify against. Without it |M| itself is certified: what a sphere of
+  // 1/128 of the box diagonal cannot reach from outside counts as inside, so that spheres that
+  // leave a narrower gap of M open are not proved to cover.
   const ExternalSpheres* external = nullptr;
   // With `external`: zones in which the protrusion is bounded apart.
   std::span<const Zone> zones = {};

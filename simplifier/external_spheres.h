@@ -58,7 +58,7 @@ struct ExternalOptions {
   // / 8 high. ExternalSpheres::grid_step is the one that was used.
   double grid_step = 0.0;
   static constexpr std::size_t kManyCells = std::size_t{1} << 24;
-  // Cells of the grid at most, about 30 bytes each; from 1 to kMostCells.
+  // Cells of the grid at most, 24 bytes each; from 1 to kMostCells.
   static constexpr std::size_t kMostCells = std::size_t{1} << 27;
   std::size_t max_cells = kMostCells;
   // E: chooses the grid step and, with `keep_concave_edges`, the zones (0: those of E = D / 4).

@@ -97,7 +97,6 @@ const std::vector<Room>& rooms() {
        kSimplifier,
        {"Eigen", "tbb"},
        {{"meshoptimizer", "simplifier/baseline/decimation.cpp"},
-        {"OpenMesh", "simplifier/baseline/decimation.cpp"},
         {"openvdb", "simplifier/baseline/level_set_packing.cpp"},
         {"qhull", "simplifier/baseline/convex_hull.cpp"},
         {"qhull", "simplifier/baseline/internal/voronoi.cpp"},

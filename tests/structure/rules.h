@@ -9,7 +9,7 @@
 namespace spherule {
 
 // Checks the sources of the project against its rules: who may include whom, which third party is
-// seen by which file (the table stands in rules.cpp), SPDX line first, at most kMaxLines lines,
+// seen by which file (the table stands in rooms.cpp), SPDX line first, at most kMaxLines lines,
 // `#pragma once` in headers.
 inline constexpr std::size_t kMaxLines = 400;
 
