@@ -35,8 +35,8 @@ namespace spherule {
 // What spheres are certified against, and how closely.
 struct CertifyOptions {
   // The simplified solid to certify against. Without it |M| itself is certified: what a sphere of
-  // 1/128 of the box diagonal cannot reach from outside counts as inside, so that spheres that
-  // leave a narrower gap of M open are not proved to cover.
+  // 1/128 of the box diagonal cannot reach from outside counts as inside (on a grid: gaps of up to
+  // 1/54 may), so that spheres that leave such a gap of M open are not proved to cover.
   const ExternalSpheres* external = nullptr;
   // With `external`: zones in which the protrusion is bounded apart.
   std::span<const Zone> zones = {};

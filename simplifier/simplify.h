@@ -148,8 +148,8 @@ std::string broken_promises(const Simplification& simplification);
 
 // D for a tool that is a union of spheres: the diameter of the smallest. If all of them are free of
 // M at a place to which the tool gets from outside, they are external spheres themselves, so that
-// it does not meet S either (docs/guarantee.md, up to the grid's tightness: it has to get there
-// with room to spare all around, 1.74 of ExternalSpheres::grid_step). Throws Error with the subject
+// it does not meet S either (docs/guarantee.md: it has to get there with room to spare all around,
+// 1.74 of ExternalSpheres::grid_step). Throws Error with the subject
 // "tool" if there is no sphere, one is not usable, or has the radius 0.
 double tool_diameter(std::span<const Sphere> tool);
 

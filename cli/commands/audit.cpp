@@ -276,7 +276,7 @@ void add_audit(CLI::App& app, int& exit_code) {
   arguments->lengths
       .add_positive(*command, "--max-error", arguments->max_error,
                     "How far a repaired sphere may protrude (default: as the spheres were fitted, "
-                    "or as far as half of them do)")
+                    "or as far as half of them do, and at least 1 % of the box diagonal)")
       ->needs(repair);
   command->footer(to_text(
       {.text = "Any spheres will do: {\"format\": \"spherule-spheres\", \"version\": 1, "

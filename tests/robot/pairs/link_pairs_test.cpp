@@ -301,6 +301,9 @@ TEST(LinkPairs, RefusesWhatItCannotUse) {
   EXPECT_THROW(prove_link_pairs(robot, {}, {.seconds = -1.0}), Error);
   EXPECT_TRUE(prove_link_pairs(robot, {}).pairs().empty());
   expect_rounding_to_nearest_is_needed([&] { prove_link_pairs(robot, {}); }, "prove_link_pairs");
+  const SphereTree tool = build_tree(std::vector<Sphere>{{{0, 0, 0}, 1.0}});
+  const LinkBody held{.link = 0, .spheres = std::make_shared<const SphereTree>(tool)};
+  expect_rounding_to_nearest_is_needed([&] { prove_attached_pairs(robot, {}, held); }, "tool");
 }
 
 }  // namespace
