@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -73,20 +74,26 @@ struct Simplex {
 
 HullDirection hull_direction(std::span<const Vector3d> first, std::span<const Vector3d> second,
                              const Eigen::Matrix3d& first_from_second,
-                             const Vector3d& origin_of_second, const Vector3d& start) {
-  HullDirection best{start.stableNormalized(), -std::numeric_limits<double>::infinity()};
+                             const Vector3d& origin_of_second, const Vector3d& start,
+                             double enough) {
+  HullDirection best{.direction = start.stableNormalized(),
+                     .gap = -std::numeric_limits<double>::infinity()};
   Vector3d way = best.direction;
   Simplex simplex;
   for (int step = 0; step < kSteps; ++step) {
     const double length = way.norm();
-    if (!(length > 1e-12)) break;  // they overlap
+    if (simplex.size > 0) best.distance = std::min(best.distance, length);
+    if (!(length > 1e-12) || best.distance <= enough) break;
     const Vector3d axis = way / length;
     const Vector3d corner =
         first[least_along(first, axis)] -
         (first_from_second * second[least_along(second, first_from_second.transpose() * -axis)] +
          origin_of_second);
     const double gap = axis.dot(corner);
-    if (gap > best.gap) best = {axis, gap};
+    if (gap > best.gap) {
+      best.direction = axis;
+      best.gap = gap;
+    }
     // As far as it gets: the hulls are not farther apart than `length`.
     if (simplex.size > 0 && gap > 0.0 && length - best.gap <= 1e-3 * length) break;
     for (std::size_t i = 0; i < simplex.size; ++i) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include <limits>
 #include <span>
 
 namespace spherule::internal {
@@ -13,13 +14,17 @@ struct HullDirection {
   Eigen::Vector3d direction =
       Eigen::Vector3d::UnitX();  // of unit length, from the second to the first
   double gap = 0.0;              // least along it of the first, minus the most of the second
+  // Two points of the hulls are so far apart: the hulls are no farther.
+  double distance = std::numeric_limits<double>::infinity();
 };
 
 // Gilbert, Johnson and Keerthi's iteration for the nearest points of the hulls, started along
-// `start`. Points of the second hull are given in the frame of the first.
+// `start`, until they are known to be no farther apart than `enough`. Points of the second hull are
+// given in the frame of the first.
 HullDirection hull_direction(std::span<const Eigen::Vector3d> first,
                              std::span<const Eigen::Vector3d> second,
                              const Eigen::Matrix3d& first_from_second,
-                             const Eigen::Vector3d& origin_of_second, const Eigen::Vector3d& start);
+                             const Eigen::Vector3d& origin_of_second, const Eigen::Vector3d& start,
+                             double enough = 0.0);
 
 }  // namespace spherule::internal

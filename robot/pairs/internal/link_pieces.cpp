@@ -3,8 +3,11 @@
 
 #include "collide/solid_within.h"
 #include "collide/within.h"
+#include "robot/pairs/internal/hull_corners.h"
 #include "spheretree/median_split.h"
 #include "spheretree/rounding.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +25,8 @@ using Eigen::Vector3d;
 constexpr std::size_t kTrianglesOfPiece = 8;
 // Meshes whose corners stand before their triangles by less are treated as convex, in metres.
 constexpr double kConvexDefect = 0.001;
+// How near the hull of few corners is to that of all, as a share of their box diagonal.
+constexpr double kHullTolerance = 0.001;
 
 // A triangle, or a sphere of which only the first corner counts.
 struct Element {
@@ -38,6 +43,12 @@ bool before(const Vector3d& a, const Vector3d& b) {
 void make_unique(std::vector<Vector3d>& points) {
   std::sort(points.begin(), points.end(), before);
   points.erase(std::unique(points.begin(), points.end()), points.end());
+}
+
+double diagonal_of(std::span<const Vector3d> points) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& point : points) box.extend(point);
+  return box.diagonal().norm();
 }
 
 std::vector<Element> elements_of(std::span<const LinkBody> bodies) {
@@ -172,6 +183,10 @@ LinkPieces make_link_pieces(std::span<const LinkBody> bodies) {
     }
   }
   make_unique(result.hull);
+  const double tolerance = std::min(kHullTolerance * diagonal_of(result.hull), kConvexDefect / 2.0);
+  HullCorners few = hull_corners(result.hull, tolerance);
+  result.hull = std::move(few.corners);
+  result.hull_radius = add_up(result.hull_radius, few.radius);
   result.is_convex = seems_convex(elements, result.hull);
   Builder(std::move(elements), result).build();
   return result;

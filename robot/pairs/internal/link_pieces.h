@@ -27,8 +27,8 @@ struct LinkPieces {
 
   std::vector<Node> nodes;              // the root first
   std::vector<Eigen::Vector3d> points;  // of the pieces
-  // The corners that can be extreme: each point of any body lies within hull_radius of their convex
-  // hull.
+  // Corners of the bodies, of fine meshes few (hull_corners.h): each point of any body lies within
+  // hull_radius of their convex hull.
   std::vector<Eigen::Vector3d> hull;
   double hull_radius = 0.0;
   double reach = 0.0;  // no point of the bodies is farther from the origin of the frame

@@ -35,7 +35,8 @@ void PairBound::place(std::span<const Pose> world_from_link, std::span<const dou
   }
 }
 
-void PairBound::losses(std::size_t side, const Vector3d& p, const Vector3d& n, Losses& loss) const {
+void PairBound::losses(std::size_t side, const Vector3d& p, double spread, const Vector3d& n,
+                       Losses& loss) const {
   double first_order = 0.0;
   double bend = 0.0;
   double paths = 0.0;  // sum of h r
@@ -48,9 +49,9 @@ void PairBound::losses(std::size_t side, const Vector3d& p, const Vector3d& n, L
     double along = 0.0;
     if (axis.turns) {
       const Vector3d way = axis.direction.cross(p - axis.origin);
-      distance = way.norm() + 8.0 * error_;
+      distance = std::max(way.norm() + spread, 0.0) + 8.0 * error_;
       reach = distance + telescope;
-      along = std::abs(n.dot(way));
+      along = std::max(std::abs(n.dot(way)) + spread, 0.0);
       bend += axis.half * (0.5 * axis.half * reach + paths);
     } else {
       along = std::abs(n.dot(axis.direction));
@@ -60,6 +61,31 @@ void PairBound::losses(std::size_t side, const Vector3d& p, const Vector3d& n, L
     telescope += axis.chord * distance;
     loss[i + 1] = std::min(first_order + bend, telescope) * (1.0 + kRelativeSlack);
   }
+}
+
+PairBound::Range PairBound::range_of_least(std::size_t side, const Vector3d& n,
+                                           const Pose& world_from_link,
+                                           std::span<const Vector3d> points) const {
+  Vector3d middle = Vector3d::Zero();
+  for (const Vector3d& point : points) middle += point;
+  middle /= static_cast<double>(points.size());
+  double squared = 0.0;
+  double along = std::numeric_limits<double>::infinity();
+  const Vector3d center = world_from_link * middle;
+  for (const Vector3d& point : points) {
+    const Vector3d p = world_from_link * point;
+    squared = std::max(squared, (p - center).squaredNorm());
+    along = std::min(along, n.dot(p));
+  }
+  const double spread = std::sqrt(squared) * (1.0 + kRelativeSlack) + error_;
+  Range range;
+  losses(side, center, spread, n, range.lower);
+  losses(side, center, -spread, n, range.upper);
+  for (std::size_t i = 0; i <= axes_[side].size(); ++i) {
+    range.lower[i] = along - range.lower[i];
+    range.upper[i] = along - range.upper[i];
+  }
+  return range;
 }
 
 void PairBound::least(std::size_t side, const Vector3d& n, const Pose& world_from_link,
@@ -84,23 +110,36 @@ void PairBound::least(std::size_t side, const Vector3d& n, const Pose& world_fro
       }
       if (along - telescope * (1.0 + kRelativeSlack) > result[0]) return;
     }
-    losses(side, p, n, loss);
+    losses(side, p, 0.0, n, loss);
     for (std::size_t i = 0; i <= count; ++i) result[i] = std::min(result[i], along - loss[i]);
   };
   visit(*first);
-  for (const Vector3d& point : points) visit(point);
+  for (auto point = points.begin(); point != points.end(); ++point) {
+    if (point != first) visit(*point);
+  }
 }
 
 bool PairBound::are_apart(const Vector3d& n, const Pose& world_from_first,
                           std::span<const Vector3d> first, const Pose& world_from_second,
                           std::span<const Vector3d> second, double radii) const {
+  const double needed = radii + slack();
+  if (first.size() > 1 || second.size() > 1) {
+    const Range of_first = range_of_least(0, n, world_from_first, first);
+    const Range of_second = range_of_least(1, -n, world_from_second, second);
+    if (any_above(needed, of_first.lower, of_second.lower)) return true;
+    if (!any_above(needed, of_first.upper, of_second.upper)) return false;
+  }
   Losses of_first;
   Losses of_second;
   least(0, n, world_from_first, first, of_first);
   least(1, -n, world_from_second, second, of_second);
+  return any_above(needed, of_first, of_second);
+}
+
+bool PairBound::any_above(double least, const Losses& of_first, const Losses& of_second) const {
   const std::size_t count = joints_.size();
   for (std::size_t s = 0; s <= count; ++s) {
-    if (of_first[s] + of_second[count - s] > radii + slack()) return true;
+    if (of_first[s] + of_second[count - s] > least) return true;
   }
   return false;
 }

@@ -27,6 +27,11 @@
 // The smaller of the two is the loss of p for this s. The same holds for the second link from the
 // other side.
 //
+// Points together. Of points within q of a place c, d_j is at most that of c + q, and |n . w_j| at
+// most that of c + q where joint j turns: with these no point's loss is more than the one for c
+// and q. That decides for most pieces; where it does not, and with - q in the place of + q could,
+// each point counts by itself.
+//
 // Hulls. n is fixed in the observer's frame. A point of a convex hull is the same mixture of its
 // corners in every configuration, so the least of n . p over the hull is that of a corner, and
 //     min over corners a of (n . a - loss(a)) - max over corners b of (n . b + loss(b)) - radii
@@ -41,7 +46,8 @@
 // images of points at the middle are within e of those of the exact mechanism, 40 u (|p| + |t|) for
 // the image included: 40 u of reach and length beside the (60 n + 10) u reach + (60 n + 85) u L of
 // e, whose budget uses 54 n + 8 and 54 n + 79 of these, so that 2 e covers both. So d_j and n . w_j
-// err by less than 4 (2 e) (the argument of path_reach.cpp), which are added to each. The sums that
+// err by less than 4 (2 e) (the argument of path_reach.cpp), which are added to each; q, a distance
+// of two images, by less than 8 u (reach + L) < e, which is added to it. The sums that
 // follow are of positive terms, with at most 3 k^2 + 40 roundings, k <= 16: less than
 // kRelativeSlack = 1e-9 of them, which is added, and which covers sines, mimics' factors (4 u), and
 // |n| = 1 +- 4 u in the products with losses.
@@ -95,12 +101,24 @@ class PairBound {
   };
   using Losses = std::array<double, kMostJoints + 1>;
 
-  // Of a point of the first (0) or second (1) link, when so many joints move it.
-  void losses(std::size_t side, const Eigen::Vector3d& p, const Eigen::Vector3d& n,
+  // Of any points of a side, the least of n . p - loss for each number of joints that move it is
+  // between these two.
+  struct Range {
+    Losses lower;
+    Losses upper;
+  };
+
+  // When so many joints move them, no point of the first (0) or second (1) link that is within
+  // `spread` of p loses more; with a spread below 0, none within its magnitude loses less.
+  void losses(std::size_t side, const Eigen::Vector3d& p, double spread, const Eigen::Vector3d& n,
               Losses& loss) const;
+  Range range_of_least(std::size_t side, const Eigen::Vector3d& n, const Pose& world_from_link,
+                       std::span<const Eigen::Vector3d> points) const;
   // For each number of joints that move it, the least of n . p - loss over the points of a side.
   void least(std::size_t side, const Eigen::Vector3d& n, const Pose& world_from_link,
              std::span<const Eigen::Vector3d> points, Losses& result) const;
+  // Whether the two together are above `least` for any distribution of the joints.
+  bool any_above(double least, const Losses& of_first, const Losses& of_second) const;
 
   const RobotModel& robot_;
   std::vector<int> joints_;

@@ -51,8 +51,21 @@ bool clear_front(const PlacedPair& pair, std::vector<PieceNodes>& front) {
   const LinkPieces& b = pair.of_second;
   std::vector<PieceNodes> todo = std::move(front);
   front.clear();
-  std::size_t open_leaves = 0;
-  while (!todo.empty() && open_leaves < kMostOpenLeaves) {
+  std::vector<PieceNodes> open_leaves;
+  const auto gap = [&](const PieceNodes& nodes) {
+    const Sphere& of_a = a.nodes[static_cast<std::size_t>(nodes.first)].sphere;
+    const Sphere& of_b = b.nodes[static_cast<std::size_t>(nodes.second)].sphere;
+    return (pair.world_from_first * of_a.center - pair.world_from_second * of_b.center).norm() -
+           of_a.radius - of_b.radius;
+  };
+  // What is nearest comes first: it is the likeliest to stay open, and then the rest need not be
+  // examined.
+  const auto add = [&](const PieceNodes& one, const PieceNodes& other) {
+    const bool is_nearer = gap(one) < gap(other);
+    todo.push_back(is_nearer ? other : one);
+    todo.push_back(is_nearer ? one : other);
+  };
+  while (!todo.empty() && open_leaves.size() < kMostOpenLeaves) {
     const PieceNodes nodes = todo.back();
     todo.pop_back();
     const auto& of_a = a.nodes[static_cast<std::size_t>(nodes.first)];
@@ -71,18 +84,16 @@ bool clear_front(const PlacedPair& pair, std::vector<PieceNodes>& front) {
     const bool is_leaf = of_a.first_child < 0;
     const bool other_is_leaf = of_b.first_child < 0;
     if (is_leaf && other_is_leaf) {
-      front.push_back(nodes);
-      ++open_leaves;
+      open_leaves.push_back(nodes);
     } else if (other_is_leaf || (!is_leaf && of_a.sphere.radius > of_b.sphere.radius)) {
-      todo.push_back({of_a.first_child, nodes.second});
-      todo.push_back({of_a.first_child + 1, nodes.second});
+      add({of_a.first_child, nodes.second}, {of_a.first_child + 1, nodes.second});
     } else {
-      todo.push_back({nodes.first, of_b.first_child});
-      todo.push_back({nodes.first, of_b.first_child + 1});
+      add({nodes.first, of_b.first_child}, {nodes.first, of_b.first_child + 1});
     }
   }
-  if (front.empty()) return true;
-  front.insert(front.end(), todo.begin(), todo.end());
+  if (open_leaves.empty()) return true;
+  front = std::move(todo);
+  front.insert(front.end(), open_leaves.begin(), open_leaves.end());
   if (front.size() > kLongestFront) front = {{0, 0}};
   return false;
 }

@@ -10,6 +10,7 @@
 #include "tests/robot/box_robots.h"
 #include "tests/support/effort.h"
 #include "tests/support/rounding_mode.h"
+#include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
 
@@ -184,6 +185,21 @@ TEST(LinkPairs, PiecesProveWhatHullsDoNot) {
   robot.add_boxes(1, {box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})});
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
   EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kNever);
+}
+
+// Two fine spheres, of whose hulls few corners count, pass each other at a distance.
+TEST(LinkPairs, FineMeshesPassAtAHairsBreadth) {
+  const auto ball = [](int link, double radius, double height) {
+    TriangleMesh mesh = icosphere(3);
+    for (Vector3d& vertex : mesh.vertices) vertex = radius * vertex + Vector3d(1.0, height, 0.0);
+    return LinkBody{.link = link, .mesh = std::make_shared<const SolidMesh>(mesh)};
+  };
+  for (const double gap : {0.0015, -0.01}) {
+    BoxRobot robot = with_sliding_part(0.5);
+    robot.bodies = {ball(0, 1.0, 0.0), ball(1, 0.3, 1.3 + gap)};
+    const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
+    EXPECT_EQ(pairs.pairs()[0].verdict, gap > 0.0 ? PairVerdict::kNever : PairVerdict::kTouching);
+  }
 }
 
 TEST(LinkPairs, ContinuousJointsTakeEveryTurn) {
