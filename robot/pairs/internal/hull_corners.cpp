@@ -12,10 +12,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kFew = 200;
+// Each time that so many corners are kept the tolerance doubles, so that meshes that are very fine
+// for their size do not take time in proportion to the square of their points.
+constexpr std::size_t kMany = 2000;
 
-// What HullDirection::distance may lack by rounding, of the coordinates: it is the length of a
-// combination of corners whose weights are at least 0 and add up to 1 within 4 u, in sums of four
-// terms, whatever the weights are: less than 40 u.
+// What HullDirection::distance may lack by rounding, of the largest norm of a point: it is the
+// length of a combination of up to four corners whose weights add up to 1, none below -4 u, however
+// they were found: less than 40 u.
 constexpr double kRounding = 1e-14;
 
 class Chooser {
@@ -62,6 +65,7 @@ class Chooser {
     if (is_kept_[index]) return;
     is_kept_[index] = true;
     corners_.push_back(points_[index]);
+    if (corners_.size() % kMany == 0) tolerance_ *= 2.0;
   }
 
   std::span<const Vector3d> points_;

@@ -14,8 +14,8 @@ struct HullCorners {
   double radius = 0.0;
 };
 
-// Few corners with a radius of little more than the tolerance at most; all points, and 0, where
-// these are few already.
+// Few corners with a radius of little more than the tolerance at most (twice that for each two
+// thousand corners that were needed); all points, and 0, where these are few already.
 HullCorners hull_corners(std::span<const Eigen::Vector3d> points, double tolerance);
 
 }  // namespace spherule::internal

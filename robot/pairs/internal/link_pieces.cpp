@@ -136,15 +136,16 @@ class Builder {
   LinkPieces& pieces_;
 };
 
-// Whether no corner stands before the plane of a triangle by more than kConvexDefect.
-bool seems_convex(const std::vector<Element>& elements, const std::vector<Vector3d>& hull) {
+// Whether no corner stands before the plane of a triangle by more than the defect.
+bool seems_convex(const std::vector<Element>& elements, const std::vector<Vector3d>& hull,
+                  double defect) {
   return std::all_of(elements.begin(), elements.end(), [&](const Element& element) {
     const Vector3d normal =
         (element.corners[1] - element.corners[0]).cross(element.corners[2] - element.corners[0]);
     const double length = normal.norm();
     if (element.corner_count == 1) return elements.size() == 1;
     return length < 1e-12 || std::all_of(hull.begin(), hull.end(), [&](const Vector3d& p) {
-             return normal.dot(p - element.corners[0]) <= kConvexDefect * length;
+             return normal.dot(p - element.corners[0]) <= defect * length;
            });
   });
 }
@@ -183,11 +184,11 @@ LinkPieces make_link_pieces(std::span<const LinkBody> bodies) {
     }
   }
   make_unique(result.hull);
-  const double tolerance = std::min(kHullTolerance * diagonal_of(result.hull), kConvexDefect / 2.0);
+  const double tolerance = std::min(kHullTolerance * diagonal_of(result.hull), kConvexDefect / 4.0);
   HullCorners few = hull_corners(result.hull, tolerance);
   result.hull = std::move(few.corners);
   result.hull_radius = add_up(result.hull_radius, few.radius);
-  result.is_convex = seems_convex(elements, result.hull);
+  result.is_convex = seems_convex(elements, result.hull, kConvexDefect - 2.0 * few.radius);
   Builder(std::move(elements), result).build();
   return result;
 }

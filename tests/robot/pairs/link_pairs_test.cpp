@@ -4,6 +4,7 @@
 #include "robot/pairs/link_pairs.h"
 
 #include "robot/model/kinematics.h"
+#include "robot/pairs/internal/link_pieces.h"
 #include "robot/pairs/internal/pair_space.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
@@ -14,6 +15,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -187,18 +189,33 @@ TEST(LinkPairs, PiecesProveWhatHullsDoNot) {
   EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kNever);
 }
 
-// Two fine spheres, of whose hulls few corners count, pass each other at a distance.
-TEST(LinkPairs, FineMeshesPassAtAHairsBreadth) {
-  const auto ball = [](int link, double radius, double height) {
-    TriangleMesh mesh = icosphere(3);
-    for (Vector3d& vertex : mesh.vertices) vertex = radius * vertex + Vector3d(1.0, height, 0.0);
+// Two fine spheres pass each other, vertex at vertex. Of the hull of the first few corners count,
+// and this vertex is none of them.
+TEST(LinkPairs, CornersThatAreNotKeptCount) {
+  constexpr double kRadius = 0.1;
+  const TriangleMesh unit = icosphere(4);
+  const auto ball = [&](int link, const Vector3d& center) {
+    TriangleMesh mesh = unit;
+    for (Vector3d& vertex : mesh.vertices) vertex = kRadius * vertex + center;
     return LinkBody{.link = link, .mesh = std::make_shared<const SolidMesh>(mesh)};
   };
-  for (const double gap : {0.0015, -0.01}) {
+  const std::vector<LinkBody> first{ball(0, Vector3d::Zero())};
+  const internal::LinkPieces pieces = internal::make_link_pieces(first);
+  EXPECT_LT(pieces.hull.size(), unit.vertices.size());
+  EXPECT_GT(pieces.hull_radius, 1e-5);
+  const auto left_out =
+      std::find_if(unit.vertices.begin(), unit.vertices.end(), [&](const Vector3d& vertex) {
+        return std::abs(vertex.x()) < 0.5 && std::ranges::none_of(pieces.hull, [&](const auto& p) {
+                 return (p - kRadius * vertex).norm() < 1e-9;
+               });
+      });
+  ASSERT_NE(left_out, unit.vertices.end());
+  for (const double gap : {0.0015, -2e-5}) {
     BoxRobot robot = with_sliding_part(0.5);
-    robot.bodies = {ball(0, 1.0, 0.0), ball(1, 0.3, 1.3 + gap)};
+    robot.bodies = {first.front(), ball(1, (2.0 * kRadius + gap) * left_out->normalized())};
     const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
-    EXPECT_EQ(pairs.pairs()[0].verdict, gap > 0.0 ? PairVerdict::kNever : PairVerdict::kTouching);
+    EXPECT_EQ(pairs.pairs()[0].verdict == PairVerdict::kNever, gap > 0.0);
+    EXPECT_EQ(pairs.is_free(0, 1, Configuration{0.0}), gap > 0.0);
   }
 }
 
