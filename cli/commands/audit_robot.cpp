@@ -181,7 +181,7 @@ int audit(const AuditRobotArguments& arguments) {
     });
   }
   if (!arguments.pairs.is_empty()) {
-    report.pairs = pair_kinds(robot, spheres, geometry, arguments.pairs);
+    report.pairs = pair_kinds(robot, spheres, geometry, arguments.pairs, arguments.threads);
   }
   if (mend) {
     write_uninterrupted([&] { write_repaired(arguments, report); });
@@ -301,7 +301,6 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
                     "mended.yml --json"}}));
   command->callback([arguments, &exit_code] {
     arguments->lengths.convert(metres());
-    arguments->pairs.threads = arguments->threads;
     exit_code = audit(*arguments);
   });
 }

@@ -29,7 +29,7 @@ RobotModel model_of(const RobotDescription& robot, std::span<const LinkSpheres> 
 }
 
 std::shared_ptr<const LinkPairs> proofs_of(const RobotDescription& robot, LinkGeometry geometry,
-                                           const PairSources& sources) {
+                                           const PairSources& sources, int threads) {
   if (sources.pairs.empty() && !sources.proves) return nullptr;
   const std::vector<LinkBody> bodies = link_bodies(robot, {.geometry = geometry});
   if (!sources.pairs.empty()) {
@@ -37,7 +37,7 @@ std::shared_ptr<const LinkPairs> proofs_of(const RobotDescription& robot, LinkGe
   }
   ProgressBar bar;
   LinkPairOptions options;
-  options.threads = sources.threads;
+  options.threads = threads;
   options.progress = bar.callback();
   return std::make_shared<const LinkPairs>(prove_link_pairs(robot.model, bodies, options));
 }
@@ -49,9 +49,9 @@ bool is_joined(const PairStatus& pair) {
 }  // namespace
 
 PairKinds pair_kinds(const RobotDescription& robot, const RobotSpheres& spheres,
-                     LinkGeometry geometry, const PairSources& sources) {
+                     LinkGeometry geometry, const PairSources& sources, int threads) {
   PairKinds kinds{.model = model_of(robot, spheres.links),
-                  .proofs = proofs_of(robot, geometry, sources)};
+                  .proofs = proofs_of(robot, geometry, sources, threads)};
   std::vector<DisabledPair> given;
   add_missing_pairs(spheres.self_collision_ignore, robot.model, given);
   if (!sources.srdf.empty()) {

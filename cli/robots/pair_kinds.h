@@ -20,7 +20,6 @@ struct PairSources {
   std::string srdf;
   std::string pairs;    // NAME.pairs of `robot`
   bool proves = false;  // without that file: by proving
-  int threads = 0;      // of that proof, 0: all
 
   bool is_empty() const { return srdf.empty() && pairs.empty(); }
 };
@@ -35,9 +34,10 @@ struct PairKinds {
 
 // The pairs of the links that have spheres. What the SRDF disables and what the file of the spheres
 // ignores is given, but for what either ignores because it was proved, where there are proofs; of
-// both, what the robot has not got is passed over. Throws Error as the readers do.
+// both, what the robot has not got is passed over. Proves, where it does, on so many threads, 0:
+// all. Throws Error as the readers do.
 PairKinds pair_kinds(const RobotDescription& robot, const RobotSpheres& spheres,
-                     LinkGeometry geometry, const PairSources& sources);
+                     LinkGeometry geometry, const PairSources& sources, int threads = 0);
 
 // A count of each kind and a table of all pairs but those that are rigid or adjacent.
 std::string describe(const PairKinds& kinds);

@@ -29,36 +29,29 @@ class Chooser {
   HullCorners run() {
     for (int face = 0; face < 27; ++face) {
       const Vector3d direction(face % 3 - 1, face / 3 % 3 - 1, face / 9 - 1);
-      if (!direction.isZero()) keep(farthest(direction));
+      if (!direction.isZero()) keep(least_along(points_, -direction));
     }
     double radius = 0.0;
     double reach = 0.0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       reach = std::max(reach, points_[i].lpNorm<1>());
-      radius = std::max(radius, brought_near(i));
+      radius = std::max(radius, keep_until_near(i));
     }
     return {std::move(corners_), radius + kRounding * reach};
   }
 
  private:
   // Keeps points until the hull of those that are kept is near to this one; how far it then is.
-  double brought_near(std::size_t index) {
+  double keep_until_near(std::size_t index) {
     while (!is_kept_[index]) {
       const HullDirection found =
           hull_direction(points_.subspan(index, 1), corners_, Eigen::Matrix3d::Identity(),
                          Vector3d::Zero(), points_[index] - corners_.front(), tolerance_);
       if (found.distance <= tolerance_) return found.distance;
-      const std::size_t beyond = farthest(found.direction);
+      const std::size_t beyond = least_along(points_, -found.direction);
       keep(is_kept_[beyond] ? index : beyond);
     }
     return 0.0;
-  }
-
-  std::size_t farthest(const Vector3d& direction) const {
-    const auto found = std::max_element(
-        points_.begin(), points_.end(),
-        [&](const Vector3d& a, const Vector3d& b) { return direction.dot(a) < direction.dot(b); });
-    return static_cast<std::size_t>(found - points_.begin());
   }
 
   void keep(std::size_t index) {

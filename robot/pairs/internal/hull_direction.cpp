@@ -15,18 +15,6 @@ using Eigen::Vector3d;
 
 constexpr int kSteps = 24;
 
-std::size_t least_along(std::span<const Vector3d> points, const Vector3d& axis) {
-  std::size_t least = 0;
-  double value = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double along = axis.dot(points[i]);
-    if (along >= value) continue;
-    value = along;
-    least = i;
-  }
-  return least;
-}
-
 // Up to four corners of the difference of the two hulls.
 struct Simplex {
   std::array<Vector3d, 4> corners;
@@ -71,6 +59,18 @@ struct Simplex {
 };
 
 }  // namespace
+
+std::size_t least_along(std::span<const Vector3d> points, const Vector3d& axis) {
+  std::size_t least = 0;
+  double value = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double along = axis.dot(points[i]);
+    if (along >= value) continue;
+    value = along;
+    least = i;
+  }
+  return least;
+}
 
 HullDirection hull_direction(std::span<const Vector3d> first, std::span<const Vector3d> second,
                              const Eigen::Matrix3d& first_from_second,

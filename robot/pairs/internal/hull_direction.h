@@ -3,10 +3,14 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <limits>
 #include <span>
 
 namespace spherule::internal {
+
+// The index of the first of the points that are least along an axis; 0 without points.
+std::size_t least_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& axis);
 
 // A direction along which two convex hulls of points are far apart, and by how much, up to
 // rounding: nothing is proved here, whoever uses the direction proves what it needs.

@@ -3,6 +3,7 @@
 
 #include "robot/model/internal/path_reach.h"
 #include "robot/pairs/free_boxes.h"
+#include "robot/pairs/internal/hull_direction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -95,10 +96,7 @@ void PairBound::least(std::size_t side, const Vector3d& n, const Pose& world_fro
   Losses loss;
   // The point that is least at the middle comes first: a point that stands behind it by more than
   // it can lose itself, by any number of joints, is no least one.
-  const Vector3d local = world_from_link.matrix().transpose() * n;
-  const auto first = std::min_element(
-      points.begin(), points.end(),
-      [&](const Vector3d& a, const Vector3d& b) { return local.dot(a) < local.dot(b); });
+  const std::size_t first = least_along(points, world_from_link.matrix().transpose() * n);
   const auto visit = [&](const Vector3d& point) {
     const Vector3d p = world_from_link * point;
     const double along = n.dot(p);
@@ -113,9 +111,9 @@ void PairBound::least(std::size_t side, const Vector3d& n, const Pose& world_fro
     losses(side, p, 0.0, n, loss);
     for (std::size_t i = 0; i <= count; ++i) result[i] = std::min(result[i], along - loss[i]);
   };
-  visit(*first);
-  for (auto point = points.begin(); point != points.end(); ++point) {
-    if (point != first) visit(*point);
+  visit(points[first]);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i != first) visit(points[i]);
   }
 }
 

@@ -52,11 +52,13 @@ bool clear_front(const PlacedPair& pair, std::vector<PieceNodes>& front) {
   std::vector<PieceNodes> todo = std::move(front);
   front.clear();
   std::vector<PieceNodes> open_leaves;
+  const auto way_between = [&pair](const Sphere& of_a, const Sphere& of_b) -> Vector3d {
+    return pair.world_from_first * of_a.center - pair.world_from_second * of_b.center;
+  };
   const auto gap = [&](const PieceNodes& nodes) {
     const Sphere& of_a = a.nodes[static_cast<std::size_t>(nodes.first)].sphere;
     const Sphere& of_b = b.nodes[static_cast<std::size_t>(nodes.second)].sphere;
-    return (pair.world_from_first * of_a.center - pair.world_from_second * of_b.center).norm() -
-           of_a.radius - of_b.radius;
+    return way_between(of_a, of_b).norm() - of_a.radius - of_b.radius;
   };
   // What is nearest comes first: it is the likeliest to stay open, and then the rest need not be
   // examined.
@@ -70,8 +72,7 @@ bool clear_front(const PlacedPair& pair, std::vector<PieceNodes>& front) {
     todo.pop_back();
     const auto& of_a = a.nodes[static_cast<std::size_t>(nodes.first)];
     const auto& of_b = b.nodes[static_cast<std::size_t>(nodes.second)];
-    const Vector3d way =
-        pair.world_from_first * of_a.sphere.center - pair.world_from_second * of_b.sphere.center;
+    const Vector3d way = way_between(of_a.sphere, of_b.sphere);
     const double length = way.norm();
     const double radii = add_up(of_a.sphere.radius, of_b.sphere.radius);
     if (length > radii &&

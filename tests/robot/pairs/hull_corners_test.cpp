@@ -45,7 +45,7 @@ std::vector<Vector3d> points_of(int count, const std::function<Vector3d()>& poin
 
 TEST(HullCorners, HoldAllPointsUpToTheirRadius) {
   SceneRandom random(83);
-  const auto ball = [&] { return direction(random); };
+  const auto sphere = [&] { return direction(random); };
   const auto inside = [&] { return Vector3d(random.uniform(0, 1) * direction(random)); };
   const auto rod = [&] {
     const double angle = random.uniform(0.0, 6.3);
@@ -54,7 +54,7 @@ TEST(HullCorners, HoldAllPointsUpToTheirRadius) {
   const auto plate = [&] { return Vector3d(random.uniform(0, 1), random.uniform(0, 1), 0.25); };
   const auto line = [&] { return Vector3d(random.uniform(0, 1), 0.5, 0.25); };
   const auto far = [&] { return Vector3d(direction(random) + Vector3d(1e6, -2e6, 3e6)); };
-  const std::vector<std::function<Vector3d()>> families{ball, inside, rod, plate, line, far};
+  const std::vector<std::function<Vector3d()>> families{sphere, inside, rod, plate, line, far};
   for (const auto& family : families) {
     const std::vector<Vector3d> points = points_of(effort(3000, 400), family);
     for (const double tolerance : {0.1, 0.003}) {
@@ -77,9 +77,9 @@ TEST(HullCorners, HoldAllPointsUpToTheirRadius) {
 
 TEST(HullCorners, AreFew) {
   SceneRandom random(84);
-  const std::vector<Vector3d> ball = points_of(5000, [&] { return direction(random); });
-  EXPECT_LT(hull_corners(ball, 0.01).corners.size(), 700U);
-  EXPECT_LT(hull_corners(ball, 0.1).corners.size(), 100U);
+  const std::vector<Vector3d> sphere = points_of(5000, [&] { return direction(random); });
+  EXPECT_LT(hull_corners(sphere, 0.01).corners.size(), 700U);
+  EXPECT_LT(hull_corners(sphere, 0.1).corners.size(), 100U);
 }
 
 TEST(HullCorners, OfFewPointsAreAll) {

@@ -189,17 +189,17 @@ TEST(LinkPairs, PiecesProveWhatHullsDoNot) {
   EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kNever);
 }
 
-// Two fine spheres pass each other, vertex at vertex. Of the hull of the first few corners count,
-// and this vertex is none of them.
+// Two finely tessellated spheres pass each other, vertex at vertex. Few vertices are kept of the
+// convex hull of the first one, and this vertex is none of them.
 TEST(LinkPairs, CornersThatAreNotKeptCount) {
   constexpr double kRadius = 0.1;
   const TriangleMesh unit = icosphere(4);
-  const auto ball = [&](int link, const Vector3d& center) {
+  const auto sphere = [&](int link, const Vector3d& center) {
     TriangleMesh mesh = unit;
     for (Vector3d& vertex : mesh.vertices) vertex = kRadius * vertex + center;
     return LinkBody{.link = link, .mesh = std::make_shared<const SolidMesh>(mesh)};
   };
-  const std::vector<LinkBody> first{ball(0, Vector3d::Zero())};
+  const std::vector<LinkBody> first{sphere(0, Vector3d::Zero())};
   const internal::LinkPieces pieces = internal::make_link_pieces(first);
   EXPECT_LT(pieces.hull.size(), unit.vertices.size());
   EXPECT_GT(pieces.hull_radius, 1e-5);
@@ -212,7 +212,7 @@ TEST(LinkPairs, CornersThatAreNotKeptCount) {
   ASSERT_NE(left_out, unit.vertices.end());
   for (const double gap : {0.0015, -2e-5}) {
     BoxRobot robot = with_sliding_part(0.5);
-    robot.bodies = {first.front(), ball(1, (2.0 * kRadius + gap) * left_out->normalized())};
+    robot.bodies = {first.front(), sphere(1, (2.0 * kRadius + gap) * left_out->normalized())};
     const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
     EXPECT_EQ(pairs.pairs()[0].verdict == PairVerdict::kNever, gap > 0.0);
     EXPECT_EQ(pairs.is_free(0, 1, Configuration{0.0}), gap > 0.0);
