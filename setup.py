@@ -41,7 +41,7 @@ class BuildByCMake(build_ext):
             "-DSPHERULE_BENCH=OFF",
             "-DSPHERULE_FCL=OFF",
             "-DSPHERULE_OMPL=OFF",
-            "-DSPHERULE_PRECOMPILE=ALL",
+            "-DSPHERULE_PRECOMPILE=ON",
             *shlex.split(os.environ.get("CMAKE_ARGS", "")),
         ]
         jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1))

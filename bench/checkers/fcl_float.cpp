@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/checkers/fcl_float.h"
 
-namespace fcl {
-
-template class DynamicAABBTreeCollisionManager<float>;
-template std::size_t collide(const CollisionGeometry<float>* a,
-                             const Transform3<float>& world_from_a,
-                             const CollisionGeometry<float>* b,
-                             const Transform3<float>& world_from_b,
-                             const CollisionRequest<float>& request,
-                             CollisionResult<float>& result);
-template float distance(const CollisionGeometry<float>* a, const Transform3<float>& world_from_a,
-                        const CollisionGeometry<float>* b, const Transform3<float>& world_from_b,
-                        const DistanceRequest<float>& request, DistanceResult<float>& result);
-
-}  // namespace fcl
+template class fcl::DynamicAABBTreeCollisionManager<float>;
+template std::size_t fcl::collide(const fcl::CollisionGeometry<float>* a,
+                                  const fcl::Transform3<float>& world_from_a,
+                                  const fcl::CollisionGeometry<float>* b,
+                                  const fcl::Transform3<float>& world_from_b,
+                                  const fcl::CollisionRequest<float>& request,
+                                  fcl::CollisionResult<float>& result);
+template float fcl::distance(const fcl::CollisionGeometry<float>* a,
+                             const fcl::Transform3<float>& world_from_a,
+                             const fcl::CollisionGeometry<float>* b,
+                             const fcl::Transform3<float>& world_from_b,
+                             const fcl::DistanceRequest<float>& request,
+                             fcl::DistanceResult<float>& result);

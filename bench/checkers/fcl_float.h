@@ -9,20 +9,16 @@
 
 // FCL in single precision, which Debian's library does not hold. fcl_float.cpp instantiates it once
 // for all: a call of fcl::collide() makes the code for each pair of FCL's shapes.
-namespace fcl {
-
-extern template class DynamicAABBTreeCollisionManager<float>;
-extern template std::size_t collide(const CollisionGeometry<float>* a,
-                                    const Transform3<float>& world_from_a,
-                                    const CollisionGeometry<float>* b,
-                                    const Transform3<float>& world_from_b,
-                                    const CollisionRequest<float>& request,
-                                    CollisionResult<float>& result);
-extern template float distance(const CollisionGeometry<float>* a,
-                               const Transform3<float>& world_from_a,
-                               const CollisionGeometry<float>* b,
-                               const Transform3<float>& world_from_b,
-                               const DistanceRequest<float>& request,
-                               DistanceResult<float>& result);
-
-}  // namespace fcl
+extern template class fcl::DynamicAABBTreeCollisionManager<float>;
+extern template std::size_t fcl::collide(const fcl::CollisionGeometry<float>* a,
+                                         const fcl::Transform3<float>& world_from_a,
+                                         const fcl::CollisionGeometry<float>* b,
+                                         const fcl::Transform3<float>& world_from_b,
+                                         const fcl::CollisionRequest<float>& request,
+                                         fcl::CollisionResult<float>& result);
+extern template float fcl::distance(const fcl::CollisionGeometry<float>* a,
+                                    const fcl::Transform3<float>& world_from_a,
+                                    const fcl::CollisionGeometry<float>* b,
+                                    const fcl::Transform3<float>& world_from_b,
+                                    const fcl::DistanceRequest<float>& request,
+                                    fcl::DistanceResult<float>& result);

@@ -254,7 +254,7 @@ void CompiledPlan<Real>::compile_obstacles(const PlanSource& source, const Reach
 // plans of the same source have the same tests.
 template <class Real>
 void CompiledPlan<Real>::compile_tests(const PlanSource& source, const Reach& reach) {
-  constexpr double kSlack = 1e-6;  // far above all roundings
+  constexpr double kReachSlack = 1e-6;  // far above all roundings
   std::vector<PlanBoxes<double>> exact_boxes;
   for (const PlanSource::Obstacle& obstacle : source.obstacles) {
     exact_boxes.push_back(compiled_box<double>(obstacle, reach.largest));
@@ -266,7 +266,7 @@ void CompiledPlan<Real>::compile_tests(const PlanSource& source, const Reach& re
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Sphere around = reachable(source, b, reach.reach[b]);
-    const double limit = around.radius + kSlack * reach.reach[b] + 4.0 * source.pose_error;
+    const double limit = around.radius + kReachSlack * reach.reach[b] + 4.0 * source.pose_error;
     bodies_[b].first_group = static_cast<std::int32_t>(groups_.size());
     int lane = kPlanLanes;
     for (const std::size_t t : obstacle_tests[b]) {

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Headers of others that most sources include, compiled once, and the sources of a target
-# joined to few (option SPHERULE_PRECOMPILE). Both hide a missing include. So the build of ci does not join
-# the sources of libraries, where it finds one of ours that is missing; of those precompiled here,
-# tests/structure finds the usual ones by their names (standard_headers.cpp). GCC lets sources share such a
+# joined to few (option SPHERULE_PRECOMPILE). Both hide a missing include, which tests/structure finds by
+# the names that a source uses (own_headers.cpp, standard_headers.cpp). GCC lets sources share such a
 # header only where they have the same code model and the same macros that it looks at, hence one for
 # each KIND: library, program, test. What defines objects in each source stays out (CLI11).
 
@@ -33,22 +32,20 @@ function(spherule_declare_precompiled kind)
   endif()
 endfunction()
 
-# Lets the sources of TARGET use the precompiled headers of KIND, and joins them (of libraries with ALL
-# only): they share the code of templates. Sources of a target that have local names in common are kept apart
-# (SKIP_UNITY_BUILD_INCLUSION).
+# Lets the sources of TARGET use the precompiled headers of KIND, and joins them: they share the code of
+# templates. Sources of a target that have local names in common are kept apart (SKIP_UNITY_BUILD_INCLUSION).
 function(spherule_precompile target kind)
   if(NOT TARGET spherule_precompiled_${kind})
     spherule_declare_precompiled(${kind})
   endif()
   target_precompile_headers(${target} REUSE_FROM spherule_precompiled_${kind})
-  if(kind STREQUAL library AND NOT SPHERULE_PRECOMPILE STREQUAL ALL)
-    return()
-  endif()
   # Twice as many together as by default: a fifth less to compile.
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
   if(kind STREQUAL library)
-    # A local name of one source hides that of a header which only another one includes.
-    target_compile_options(${target} PRIVATE -Wno-shadow)
+    # To Clang a local name of one source hides that of a header which only another one includes. To g++ a
+    # class of a source that is joined may be one of a header.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>
+                           $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
   if(kind STREQUAL test)
     # What Boost::headers defines, so that tests without it have the same macros.

@@ -4,6 +4,7 @@
 #include "mesh/io/internal/scene_budget.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/mesh/read_files.h"
+#include "tests/mesh/scene_files.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>

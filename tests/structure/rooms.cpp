@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/structure/rooms.h"
 
+#include <algorithm>
 #include <initializer_list>
 
 namespace spherule {
@@ -197,6 +198,12 @@ bool holds(std::string_view folder, std::string_view path) {
 }
 
 }  // namespace
+
+bool may_include(const Room* from, const Room* to) {
+  if (!from || !to) return false;
+  return from == to ||
+         std::find(from->rooms.begin(), from->rooms.end(), to->folder) != from->rooms.end();
+}
 
 const Room* room_of(std::string_view path) {
   const Room* best = nullptr;

@@ -23,6 +23,9 @@ struct Room {
 // The arrows of the project's plan: what each room may include.
 const std::vector<Room>& rooms();
 
+// Whether headers of `to` may be included by the files of `from`; false if there is no such room.
+bool may_include(const Room* from, const Room* to);
+
 // The innermost room that holds `path`, or null.
 const Room* room_of(std::string_view path);
 

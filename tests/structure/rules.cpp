@@ -77,7 +77,7 @@ bool contains(const Range& range, std::string_view value) {
 std::string check_own_include(const Room& room, std::string_view target) {
   const Room* included = room_of(target);
   if (!included) return "does not start at the root of the project";
-  if (included != &room && !contains(room.rooms, included->folder)) {
+  if (!may_include(&room, included)) {
     return "points the wrong way: " + std::string(room.folder) + " may not include " +
            std::string(included->folder);
   }
