@@ -8,6 +8,7 @@
 #include "spheretree/error.h"
 #include "tests/collide/exact_triangles.h"
 #include "tests/collide/trees.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -87,7 +88,7 @@ TEST(MeshTree, ContactWithADegenerateTriangleIsNeverMissed) {
 TEST(MeshTree, FindsThePairsOfAllPairs) {
   SceneRandom random(2);
   int hits = 0;
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < effort(20, 6); ++i) {
     const SphereTree a = build_tree(random_spheres(random, 30, 1.0, 0.2));
     const MeshTree b(random_mesh(random, 20, 0.5, 0.5));
     const Pose world_from_a = random.pose(0.5);
@@ -109,7 +110,7 @@ TEST(MeshTree, FindsThePairsOfAllPairs) {
       }
     }
   }
-  EXPECT_GT(hits, 30);
+  EXPECT_GT(hits, effort(30, 8));
 }
 
 TEST(MeshTree, ASphereInsideAClosedMeshDoesNotMeetItsSurface) {

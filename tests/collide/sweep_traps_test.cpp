@@ -55,7 +55,7 @@ std::vector<Sphere> rod() {
 
 TEST(Sweep, ARodThatTurnsManyTimes) {
   SceneRandom random(4);
-  for (int i = 0; i < effort(100, 25); ++i) {
+  for (int i = 0; i < effort(100, 12); ++i) {
     const double rho = random.uniform(0.1, 1.0);
     const double at = random.uniform(0.3, 2.0 * kPi - 0.3);
     const int turns = random.whole(0, 6);
@@ -130,7 +130,7 @@ TEST(Sweep, StartsOrEndsInContact) {
 
 TEST(Sweep, TouchingForAnInstantIsContact) {
   SceneRandom random(5);
-  for (int i = 0; i < effort(400, 60); ++i) {
+  for (int i = 0; i < effort(400, 20); ++i) {
     // A sphere passes another whose surface it touches at exactly one instant; the numbers are
     // exact.
     const double when = random.uniform(0.0, 1.0);

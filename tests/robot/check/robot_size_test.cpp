@@ -6,6 +6,7 @@
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "tests/collide/trees.h"
+#include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -33,7 +34,7 @@ RobotModel star(int bodies) {
 }
 
 TEST(RobotSize, AllTouchingPairsAreToldOnce) {
-  constexpr int kBodies = 40;
+  constexpr int kBodies = effort(40, 15);
   const RobotModel robot = star(kBodies);
   const RobotChecker checker = RobotScene(robot).snapshot();
   RobotChecker::Scratch scratch(checker);
@@ -61,6 +62,7 @@ TEST(RobotSize, TooManyPairsAreRefused) {
 
 // Each pair moves by all joints between its bodies.
 TEST(RobotSize, TooManyJointsBetweenPairsAreRefused) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   RobotModel robot("link_0");
   const auto tree = one_sphere_tree({0, 0, 0}, 0.1);
   for (int i = 1; i < 480; ++i) {
@@ -73,6 +75,7 @@ TEST(RobotSize, TooManyJointsBetweenPairsAreRefused) {
 }
 
 TEST(RobotSize, RegionsOfTooManySpheresAreRefused) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   RobotModel robot("base");
   SceneRandom random(19);
   robot.attach("base", std::make_shared<const SphereTree>(

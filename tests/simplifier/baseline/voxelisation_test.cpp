@@ -50,7 +50,7 @@ TriangleMesh on_lattice(TriangleMesh mesh) {
 // The voxels of the surface are those that a triangle intersects in rational arithmetic.
 TEST(Voxelise, FindsTheCubesThatTheSurfaceIntersects) {
   for (const std::string& name :
-       effort(std::vector<std::string>{"l bracket", "thin sheet", "soup", "cube", "needles"}, 3)) {
+       effort(std::vector<std::string>{"soup", "l bracket", "thin sheet", "cube", "needles"}, 1)) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = on_lattice(name == "cube"         ? cube_mesh()
                                          : name == "l bracket"  ? l_bracket()
@@ -204,7 +204,9 @@ TEST(Voxelise, RefusesWithNumbers) {
     EXPECT_NE(error.reason().find("16777216"), std::string::npos) << error.reason();
   }
   // Few cells of the octree, but too many voxels inside.
-  EXPECT_THROW(voxelise(cube_mesh(500.0), {.step = 1.0}), Error);
+  if (!kSanitized) {
+    EXPECT_THROW(voxelise(cube_mesh(500.0), {.step = 1.0}), Error);
+  }
   EXPECT_THROW(voxelise(cube_mesh(), {}), Error);
   EXPECT_THROW(voxelise(cube_mesh(), {.step = 0.1, .max_error = 0.1}), Error);
   EXPECT_THROW(voxelise(cube_mesh(), {.step = -1.0}), Error);
