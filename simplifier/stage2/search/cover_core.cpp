@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/search/cover_core.h"
 
+#include <algorithm>
 #include <array>
 
 namespace spherule::internal {
@@ -26,7 +27,7 @@ CoverCore::CoverCore(const SetCoverInstance& instance,
   }
   for (const std::uint32_t row : known.rows) {
     row_number_[row] = static_cast<std::uint32_t>(lists_.size());
-    lists_.emplace_back();
+    lists_.emplace_back().reserve(std::min(columns_of[row].size(), kFew));
   }
   for (const std::size_t c : start) add_column(static_cast<std::uint32_t>(c));
   for (const std::uint32_t row : known.rows) add_best_columns(row);

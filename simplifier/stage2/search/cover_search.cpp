@@ -96,12 +96,14 @@ void CoverSearch::add(std::uint32_t column) {
       score_[column] += row.weight;
     } else if (row.times == 1) {
       score_[row.covered_by] -= row.weight;
+      by_loss_.touch(chosen_.position(row.covered_by));
     }
     ++row.times;
     row.covered_by += column;
   }
   moved_at_[column] = clock_;
   chosen_.insert(column);
+  by_loss_.touch(chosen_.position(column));
 }
 
 void CoverSearch::remove(std::uint32_t column) {
@@ -120,25 +122,29 @@ void CoverSearch::remove(std::uint32_t column) {
       score_[column] -= row.weight;
     } else if (row.times == 1) {
       score_[row.covered_by] += row.weight;
+      by_loss_.touch(chosen_.position(row.covered_by));
     }
   }
   moved_at_[column] = clock_;
   may_enter_[column] = 0;
+  by_loss_.touch(chosen_.position(column));
   chosen_.erase(column);
+  by_loss_.touch(static_cast<std::uint32_t>(chosen_.items().size()));  // the last took its place
 }
 
-std::uint32_t CoverSearch::least_missed() const {
-  std::uint32_t best = chosen_.items().front();
-  bool found = false;
-  for (const std::uint32_t c : chosen_.items()) {
-    if (c == entered_last_) continue;
-    if (!found || score_[c] < score_[best] ||
-        (score_[c] == score_[best] && moved_at_[c] < moved_at_[best])) {
-      best = c;
-      found = true;
-    }
-  }
-  return best;
+std::uint32_t CoverSearch::least_missed() {
+  const std::span<const std::uint32_t> chosen = chosen_.items();
+  const auto less = [&](std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t first = chosen[a], second = chosen[b];
+    if (score_[first] != score_[second]) return score_[first] < score_[second];
+    if (moved_at_[first] != moved_at_[second]) return moved_at_[first] < moved_at_[second];
+    return a < b;
+  };
+  const bool has_last = entered_last_ < score_.size();
+  const std::uint32_t position =
+      by_loss_.least(static_cast<std::uint32_t>(chosen.size()),
+                     has_last ? chosen_.position(entered_last_) : IndexSet::kAbsent, less);
+  return position == Tournament::kNone ? chosen.front() : chosen[position];
 }
 
 std::uint32_t CoverSearch::best_for(std::uint32_t row) const {

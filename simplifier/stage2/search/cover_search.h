@@ -2,6 +2,7 @@
 #pragma once
 
 #include "simplifier/stage2/search/set_cover.h"
+#include "simplifier/stage2/search/tournament.h"
 
 #include <atomic>
 #include <cstddef>
@@ -55,17 +56,20 @@ class CoverSearch {
     void insert(std::uint32_t i);
     void erase(std::uint32_t i);
     bool contains(std::uint32_t i) const { return position_[i] != kAbsent; }
+    // kAbsent for what is not in the set.
+    std::uint32_t position(std::uint32_t i) const { return position_[i]; }
     std::span<const std::uint32_t> items() const { return items_; }
 
-   private:
     static constexpr std::uint32_t kAbsent = ~std::uint32_t{0};
+
+   private:
     std::vector<std::uint32_t> items_;
     std::vector<std::uint32_t> position_;
   };
 
   void add(std::uint32_t column);
   void remove(std::uint32_t column);
-  std::uint32_t least_missed() const;
+  std::uint32_t least_missed();
   std::uint32_t best_for(std::uint32_t row) const;
   void weigh_open_rows();
 
@@ -99,6 +103,7 @@ class CoverSearch {
   std::vector<std::uint64_t> moved_at_;
   std::vector<char> may_enter_;
   IndexSet chosen_;
+  Tournament by_loss_;  // of the positions in `chosen_`
   IndexSet open_;
   std::vector<std::uint32_t> best_columns_;
   std::uint32_t entered_last_;
