@@ -30,9 +30,10 @@ std::vector<Vector3d> random_points(Random& random, std::size_t count, const Vec
 TEST(PointGrid, FindsWhatALookAtAllFinds) {
   Random random(1);
   std::size_t count = 0;
-  for (const Vector3d& shift : {Vector3d(0.0, 0.0, 0.0), Vector3d(-1e3, 7e5, 1.0 / 3.0)}) {
+  for (const Vector3d& shift :
+       {Vector3d(0.0, 0.0, 0.0), Vector3d(-1e3 - 1.0 / 3.0, 7e5, 1.0 / 3.0)}) {
     for (const std::size_t size : {0U, 1U, 7U, 300U}) {
-      for (const double edge : {0.01, 0.25, 0.3, 9.0}) {
+      for (const double edge : {1e-300, 1e-9, 0.01, 0.25, 0.3, 9.0}) {
         const std::vector<Vector3d> points = random_points(random, size, shift);
         const internal::PointGrid grid(points, edge);
         for (const Vector3d& center : random_points(random, 30, shift)) {
@@ -51,6 +52,15 @@ TEST(PointGrid, FindsWhatALookAtAllFinds) {
     }
   }
   EXPECT_GT(count, 10000U);
+}
+
+// Next to a place that its cube does not reach.
+TEST(PointGrid, RoundingOfAPlaceLosesNoPoint) {
+  const std::vector<Vector3d> points = {{0, 0, 0}, {1.0 - 0x1p-53, 0, 0}, {9, 0, 0}};
+  const internal::PointGrid grid(points, 1.0);
+  std::vector<std::uint32_t> found;
+  grid.find({4, 0, 0}, 3.0, found);
+  EXPECT_EQ(found, std::vector<std::uint32_t>{1});
 }
 
 }  // namespace

@@ -35,10 +35,12 @@ TEST(Tournament, FindsWhatALookAtAllFinds) {
       EXPECT_LT(b, keys.size());
       return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
     };
+    bool was_full = false;
     for (int question = 0; question < 2000; ++question) {
+      was_full = was_full || keys.size() == most;
       for (std::size_t change = random.index(12); change > 0; --change) {
         const std::size_t what = random.index(4);
-        if (what == 0 && keys.size() < most) {
+        if ((what == 0 || (what == 2 && !was_full)) && keys.size() < most) {
           keys.push_back(random.index(50));
           tournament.touch(static_cast<std::uint32_t>(keys.size() - 1));
         } else if (what == 1 && !keys.empty()) {
@@ -59,6 +61,7 @@ TEST(Tournament, FindsWhatALookAtAllFinds) {
       ASSERT_EQ(tournament.least(static_cast<std::uint32_t>(keys.size()), except, less),
                 least_of(keys, except));
     }
+    EXPECT_TRUE(was_full);
   }
 }
 

@@ -1,30 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/io/internal/weld_within.h"
 
-#include "mesh/geometry/mesh_box.h"
 #include "mesh/geometry/point_grid.h"
 #include "mesh/geometry/weld.h"
 #include "spheretree/rounding.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace spherule::internal {
-namespace {
-
-// Of the box diagonal: the grid's cubes are counted in integers.
-constexpr double kFinestCube = 0x1p-20;
-
-}  // namespace
 
 TriangleMesh weld_within(const TriangleMesh& input, double tolerance) {
   TriangleMesh mesh = weld(input);
   if (tolerance == 0.0 || mesh.triangles.empty()) return mesh;
-  const double edge = std::max(tolerance, kFinestCube * box_of(mesh).diagonal().norm());
   const std::vector<Eigen::Vector3d> places = mesh.vertices;
-  const PointGrid grid(places, edge);
+  const PointGrid grid(places, tolerance);
   std::vector<char> is_placed(places.size(), 0);
   std::vector<std::uint32_t> near;
   for (std::size_t i = 0; i < places.size(); ++i) {

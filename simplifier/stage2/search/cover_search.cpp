@@ -127,9 +127,9 @@ void CoverSearch::remove(std::uint32_t column) {
   }
   moved_at_[column] = clock_;
   may_enter_[column] = 0;
-  by_loss_.touch(chosen_.position(column));
+  by_loss_.touch(chosen_.position(column));  // the last takes it
   chosen_.erase(column);
-  by_loss_.touch(static_cast<std::uint32_t>(chosen_.items().size()));  // the last took its place
+  by_loss_.touch(static_cast<std::uint32_t>(chosen_.items().size()));
 }
 
 std::uint32_t CoverSearch::least_missed() {

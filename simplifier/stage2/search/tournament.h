@@ -49,7 +49,8 @@ class Tournament {
     return b >= size || less(a, b) ? a : b;
   }
 
-  // Up to where another item still wins: what is above does not depend on this one.
+  // Up to where another item still wins: what is above does not depend on this one, and another
+  // winner that is touched has an update of its own.
   template <class Less>
   void update(std::uint32_t position, std::uint32_t size, const Less& less) {
     std::size_t node = leaves_ + position;
