@@ -5,6 +5,8 @@
 #include "python/bindings/bindings.h"
 #include "spheretree/error.h"
 
+#include <exception>
+
 namespace spherule::python {
 namespace {
 

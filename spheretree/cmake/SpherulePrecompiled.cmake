@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Headers of others that most sources include, compiled once, and the sources of a target
-# joined to few (option SPHERULE_PRECOMPILE). Both hide a missing include, which tests/structure finds by
-# the names that a source uses (own_headers.cpp, standard_headers.cpp). GCC lets sources share such a
+# joined to few (option SPHERULE_PRECOMPILE). Both hide a missing include; tests/structure looks for those
+# by the names that a source uses (own_headers.cpp, standard_headers.cpp). GCC lets sources share such a
 # header only where they have the same code model and the same macros that it looks at, hence one for
 # each KIND: library, program, test. What defines objects in each source stays out (CLI11).
 
@@ -42,8 +42,8 @@ function(spherule_precompile target kind)
   # Twice as many together as by default: a fifth less to compile.
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
   if(kind STREQUAL library)
-    # To Clang a local name of one source hides that of a header which only another one includes. To g++ a
-    # class of a source that is joined may be one of a header.
+    # In Clang a local name of one source hides that of a header which only another one includes; g++ takes
+    # classes of joined sources for those of headers.
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>
                            $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()

@@ -15,6 +15,7 @@
 
 #include <csignal>
 #include <cstddef>
+#include <exception>
 #include <limits>
 #include <random>
 #include <string>

@@ -3,6 +3,8 @@
 #include "tests/cli/command_test_support.h"
 #include "tests/support/effort.h"
 
+#include <sstream>
+
 namespace spherule {
 namespace {
 

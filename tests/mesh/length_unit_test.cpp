@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <utility>
 
 namespace spherule::test {
 namespace {

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace spherule::test {

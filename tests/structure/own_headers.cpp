@@ -6,8 +6,8 @@
 #include "tests/structure/source_names.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
-#include <regex>
 #include <set>
 
 namespace spherule {
@@ -20,12 +20,10 @@ struct Source {
 using Sources = std::map<std::string, Source>;
 
 Source read(const std::filesystem::path& file) {
-  // Users of the installed package write <spherule/...>.
-  static const std::regex kInclude(R"re((?:^|\n) *# *include +(?:"|<spherule/)([^">]+)[">])re");
   const std::string text = text_of(file);
   Source source{names_in(text), {}};
-  for (std::sregex_iterator at(text.begin(), text.end(), kInclude), end; at != end; ++at) {
-    source.includes.push_back((*at)[1]);
+  for (const Include& include : includes_of(text)) {
+    if (include.is_ours) source.includes.push_back(include.target);
   }
   return source;
 }

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <functional>
 #include <set>
+#include <string>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -18,13 +20,8 @@ namespace fs = std::filesystem;
 
 TEST(OwnHeaders, AreIncludedByTheSourcesThatUseTheirNames) {
   std::vector<std::string> files;
-  for (const char* folder : {"adapters", "bench", "cli", "collide", "examples", "mesh", "python",
-                             "robot", "simplifier", "spheretree", "tests"}) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kRoot / folder)) {
-      const fs::path file = entry.path();
-      if (file.extension() != ".h" && file.extension() != ".cpp") continue;
-      files.push_back(fs::relative(file, kRoot).generic_string());
-    }
+  for (const std::string& file : files_of_sources(kRoot)) {
+    if (is_cpp(file)) files.push_back(file);
   }
   EXPECT_GT(files.size(), 800u);
   for (const std::string& what : missing_own_headers(kRoot, files)) ADD_FAILURE() << what;
@@ -59,7 +56,7 @@ TEST(OwnHeaders, ThatAreMissingAreFound) {
 TEST(OwnHeaders, NamesAreDeclaredOrUsed) {
   const SourceNames names = names_in(R"(#define Skipped /* none */
 enum class Kind { kNone, kMany };
-using fcl::Request;
+using other::Request;
 template <class T, typename... Parts>
 int sum(const Parts&... parts);
 int width_of(const Box& box) {

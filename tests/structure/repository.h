@@ -2,9 +2,9 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace spherule {
 
@@ -12,9 +12,18 @@ namespace spherule {
 inline const std::filesystem::path kRoot = SPHERULE_SOURCE_DIR;
 
 // Empty if the file cannot be read.
-inline std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+std::string text_of(const std::filesystem::path& file);
+
+// All files in the folders of sources below `root`, relative to it and sorted, but for what
+// bench/run writes.
+std::vector<std::string> files_of_sources(const std::filesystem::path& root);
+
+bool is_cpp(std::string_view path);
+
+struct Include {
+  std::string target;  // relative to the root, if it is ours
+  bool is_ours;        // "..." or, as users of the installed package write, <spherule/...>
+};
+std::vector<Include> includes_of(const std::string& text);
 
 }  // namespace spherule

@@ -5,7 +5,6 @@
 #include "tests/structure/rooms.h"
 
 #include <algorithm>
-#include <array>
 #include <initializer_list>
 #include <iterator>
 #include <map>
@@ -117,10 +116,6 @@ std::string check_foreign_include(const std::string& path, const Room& room,
   return standard ? "" : "is not a header that the rules know";
 }
 
-bool is_cpp(std::string_view path) {
-  return path.ends_with(".h") || path.ends_with(".cpp");
-}
-
 bool is_source(const fs::path& path) {
   static const std::set<std::string> kExtensions = {".h",   ".cpp", ".cmake", ".in", ".py",
                                                     ".pyi", ".js",  ".css",   ".sh"};
@@ -217,16 +212,13 @@ std::vector<std::string> check_public_headers(const std::string& folder, std::st
 }
 
 std::vector<std::string> check_sources(const fs::path& root, std::size_t& files) {
-  static constexpr std::array kTop = {".ci",     "adapters",   "bench",      "cli",
-                                      "collide", "examples",   "mesh",       "python",
-                                      "robot",   "simplifier", "spheretree", "tests"};
   std::vector<std::string> problems;
   files = 0;
   std::map<std::string, std::string> libraries;  // CMakeLists.txt of each, by folder
   std::vector<std::string> headers;
-  const auto check = [&](const fs::path& path) {
+  const auto check = [&](const std::string& name) {
+    const fs::path path = root / name;
     const std::string text = text_of(path);
-    const std::string name = fs::relative(path, root).generic_string();
     auto found = check_file(name, text);
     problems.insert(problems.end(), found.begin(), found.end());
     if (name.ends_with(".cpp") && fs::exists(fs::path(path).replace_extension(".h"))) {
@@ -239,13 +231,9 @@ std::vector<std::string> check_sources(const fs::path& root, std::size_t& files)
       libraries.emplace(fs::path(name).parent_path().generic_string(), text);
     }
   };
-  check(root / "CMakeLists.txt");
-  for (const char* folder : kTop) {
-    for (auto entry = fs::recursive_directory_iterator(root / folder);
-         entry != fs::recursive_directory_iterator(); ++entry) {
-      if (entry->path() == root / "bench" / "out") entry.disable_recursion_pending();
-      if (entry->is_regular_file() && is_source(entry->path())) check(entry->path());
-    }
+  check("CMakeLists.txt");
+  for (const std::string& file : files_of_sources(root)) {
+    if (is_source(file)) check(file);
   }
   std::map<std::string, std::vector<std::string>> headers_of;
   for (const std::string& header : headers) {

@@ -185,10 +185,10 @@ class Reader {
 
   bool is_use() const {
     const std::string_view before = near(-1);
-    if (before == "." || before == "->" || before == "namespace" || near(1) == "::") return false;
+    if (before == "." || before == "->" || before == "namespace") return false;
     if (before == "::") return is_one_of(near(-2), kNamespaces);
-    // The names of a test.
-    return !near(-2).starts_with("TEST") && !near(-4).starts_with("TEST");
+    // The names of a test; the first of TEST_F is that of a class.
+    return near(-2) != "TEST" && !near(-4).starts_with("TEST");
   }
 
   std::vector<Token> tokens_;

@@ -30,7 +30,13 @@ constexpr Header kHeaders[] = {
      "transform unique upper_bound"},
     {"array", "array get to_array"},
     {"atomic", "atomic"},
+    {"bit",
+     "bit_cast bit_ceil bit_floor bit_width countl_zero countr_one countr_zero endian "
+     "has_single_bit popcount"},
+    {"bitset", "bitset"},
+    {"charconv", "chars_format from_chars to_chars"},
     {"chrono", "chrono"},
+    {"condition_variable", "condition_variable"},
     {"cmath",
      "nan abs acos asin atan atan2 cbrt ceil copysign cos exp fabs floor fma fmod frexp hypot "
      "isfinite "
@@ -38,31 +44,68 @@ constexpr Header kHeaders[] = {
      "sqrt tan trunc"},
     {"cstddef", "byte max_align_t ptrdiff_t size_t"},
     {"cstdint", "int16_t int32_t int64_t int8_t uint16_t uint32_t uint64_t uint8_t"},
-    {"cstdio", "size_t"},
-    {"cstdlib", "abs size_t"},
-    {"cstring", "size_t"},
-    {"ctime", "size_t"},
+    {"cstdio", "fclose fflush fopen fprintf fputs printf puts remove rename size_t snprintf"},
+    {"cstdlib", "abort abs atexit exit getenv size_t strtod strtol system"},
+    {"cstring", "memchr memcmp memcpy memset size_t strcmp strerror strlen"},
+    {"ctime", "size_t time time_t"},
+    {"deque", "deque"},
+    {"exception", "current_exception exception exception_ptr rethrow_exception terminate"},
     {"filesystem", "filesystem"},
+    {"fstream", "fstream ifstream ofstream"},
     {"functional", "cref function greater hash invoke less plus ref reference_wrapper"},
+    {"future", "async future promise"},
     {"initializer_list", "initializer_list"},
+    {"iomanip", "quoted setfill setprecision setw"},
+    {"iostream", "cerr cin cout"},
+    {"iterator",
+     "back_inserter distance inserter istream_iterator istreambuf_iterator make_move_iterator next "
+     "ostream_iterator prev"},
     {"limits", "numeric_limits"},
+    {"list", "list"},
     {"map", "map multimap"},
     {"memory",
      "addressof enable_shared_from_this make_shared make_unique shared_ptr unique_ptr weak_ptr"},
+    {"mutex", "call_once lock_guard mutex once_flag scoped_lock unique_lock"},
+    {"numbers", "numbers"},
+    {"numeric",
+     "accumulate exclusive_scan gcd inclusive_scan inner_product iota lcm partial_sum reduce"},
     {"optional", "nullopt nullopt_t optional"},
+    {"queue", "priority_queue queue"},
+    {"random",
+     "mt19937 mt19937_64 normal_distribution uniform_int_distribution uniform_real_distribution"},
+    {"regex", "regex regex_match regex_replace regex_search smatch sregex_iterator"},
     {"set", "multiset set"},
     {"span", "span"},
     {"sstream", "istringstream ostringstream stringstream"},
+    {"stdexcept",
+     "domain_error invalid_argument logic_error out_of_range range_error runtime_error"},
+    {"stop_token", "stop_callback stop_source stop_token"},
     {"string", "getline size_t stod stoi string to_string"},
     {"string_view", "string_view"},
+    {"system_error",
+     "errc error_code error_condition make_error_code system_category system_error"},
+    {"thread", "jthread this_thread thread"},
     {"tuple", "get make_tuple tie tuple"},
     {"type_traits",
      "conditional_t decay_t enable_if_t is_base_of_v is_convertible_v is_floating_point_v "
      "is_integral_v "
      "is_invocable_v is_same_v remove_const_t remove_cvref_t remove_reference_t"},
+    {"unordered_map", "unordered_map"},
+    {"unordered_set", "unordered_set"},
     {"utility", "as_const exchange forward get initializer_list make_pair move pair swap"},
     {"variant", "get get_if holds_alternative monostate variant visit"},
     {"vector", "vector"}};
+
+// The namespaces of others, and how their headers begin.
+struct Others {
+  std::string_view name;
+  std::string_view headers;
+};
+constexpr Others kOthers[] = {
+    {"CLI", "CLI/"},     {"YAML", "yaml-cpp/"},   {"benchmark", "benchmark/"},
+    {"boost", "boost/"}, {"fcl", "fcl/"},         {"nlohmann", "nlohmann/"},
+    {"ompl", "ompl/"},   {"openvdb", "openvdb/"}, {"pybind11", "pybind11/"},
+    {"tbb", "tbb/"},     {"testing", "gtest/"},   {"tinyxml2", "tinyxml2.h"}};
 
 // The headers that declare a name; none for a name that is not listed.
 const std::map<std::string, std::set<std::string>>& declaring() {
@@ -81,13 +124,11 @@ const std::map<std::string, std::set<std::string>>& declaring() {
 void collect_includes(const fs::path& root, const fs::path& file, std::set<fs::path>& seen,
                       std::set<std::string>& headers) {
   if (!seen.insert(file).second || !fs::exists(root / file)) return;
-  static const std::regex kInclude(R"re((?:^|\n) *# *include +([<"])([^>"]+))re");
-  const std::string text = text_of(root / file);
-  for (std::sregex_iterator at(text.begin(), text.end(), kInclude), end; at != end; ++at) {
-    if ((*at)[1] == "<") {
-      headers.insert((*at)[2]);
+  for (const Include& include : includes_of(text_of(root / file))) {
+    if (include.is_ours) {
+      collect_includes(root, include.target, seen, headers);
     } else {
-      collect_includes(root, (*at)[2].str(), seen, headers);
+      headers.insert(include.target);
     }
   }
 }
@@ -113,6 +154,23 @@ std::vector<std::string> missing_standard_headers(const fs::path& root, const fs
     const auto is_there = [&](const std::string& header) { return headers.contains(header); };
     if (std::any_of(choice.begin(), choice.end(), is_there)) continue;
     missing.push_back("std::" + name + " needs <" + *choice.begin() + ">");
+  }
+  for (const Others& others : kOthers) {
+    const std::regex use("(^|[^:\\w])" + std::string(others.name) + "::");
+    if (!std::regex_search(code, use)) continue;
+    const auto is_theirs = [&](const std::string& header) {
+      return header.starts_with(others.headers);
+    };
+    // Classes of theirs may be declared for themselves.
+    const std::regex opened("\nnamespace " + std::string(others.name) + "( \\{|::)");
+    const auto opens = [&](const fs::path& ours) {
+      return std::regex_search(text_of(root / ours), opened);
+    };
+    if (std::none_of(headers.begin(), headers.end(), is_theirs) &&
+        std::none_of(seen.begin(), seen.end(), opens)) {
+      missing.push_back(std::string(others.name) + ":: needs <" + std::string(others.headers) +
+                        "...>");
+    }
   }
   static const std::regex kGeometry(
       R"re(Eigen::(AlignedBox|AngleAxis|Isometry|Quaternion|Translation)|\.cross\()re");

@@ -7,11 +7,11 @@
 
 namespace spherule {
 
-// Of a source or header below `root` (its path relative to that): the headers of others that are
-// compiled before it in some builds (spheretree/cmake/SpherulePrecompiled.cmake), that it uses
-// names of, and that neither it nor a header of ours that it includes, directly or not, does
-// include. A build without precompiled headers may then fail. Goes by a list of names, the usual
-// ones. A line each, "std::span needs <span>".
+// Of a source or header below `root` (its path relative to that): the headers of the language and
+// of others that it uses names of, and that neither it nor a header of ours that it includes,
+// directly or not, does include. Where headers are precompiled or sources joined
+// (spheretree/cmake/SpherulePrecompiled.cmake), no compiler notices. Goes by a list of names, the
+// usual ones. A line each, "std::span needs <span>".
 std::vector<std::string> missing_standard_headers(const std::filesystem::path& root,
                                                   const std::filesystem::path& file);
 

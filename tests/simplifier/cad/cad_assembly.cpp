@@ -13,6 +13,7 @@
 #include <gp_Ax1.hxx>
 #include <gp_Trsf.hxx>
 #include <stdexcept>
+#include <utility>
 
 namespace spherule::test {
 
