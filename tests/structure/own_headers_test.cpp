@@ -78,6 +78,7 @@ TEST(Suite, Name) { 1'000; '"'; R"x("Raw)x"; }
        {"Skipped", "none", "size", "away", "Comment", "Text", "Raw", "Suite", "Inner"}) {
     EXPECT_FALSE(names.used.contains(name) || names.declared.contains(name)) << name;
   }
+  EXPECT_EQ(names.of_scope.at("other"), (std::set<std::string>{"Request", "away"}));
   for (const char* name : {"Request", "T", "Parts", "parts", "box", "low", "high", "Named"}) {
     EXPECT_TRUE(names.declared.contains(name)) << name;
   }

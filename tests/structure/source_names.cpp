@@ -127,6 +127,11 @@ class Reader {
   SourceNames run() {
     for (at_ = 0; at_ < tokens_.size(); ++at_) {
       const std::string_view name = tokens_[at_].text;
+      if (is_name(name) && near(-1) == "::") {
+        names_.of_scope[std::string(first_scope())].emplace(name);
+      } else if (near(-1) == "." || near(-1) == "->") {
+        names_.of_scope["."].emplace(name);
+      }
       if (!is_name(name) || is_one_of(name, kWords) || is_one_of(name, kNamespaces)) continue;
       if (is_declaration()) {
         names_.declared.emplace(name);
@@ -171,6 +176,12 @@ class Reader {
     int back = -1;
     while (near(back) == "::" || (is_name(near(back)) && near(back + 1) == "::")) --back;
     return near(back) == "using";
+  }
+
+  std::string_view first_scope() const {
+    int back = -2;
+    while (near(back - 1) == "::") back -= 2;
+    return near(back);
   }
 
   void offer(std::string_view name) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -21,6 +22,9 @@ struct SourceNames {
   // are those of them that a bracket follows. Some words of the language are among them.
   std::set<std::string, std::less<>> used;
   std::set<std::string, std::less<>> called;
+  // Names behind `scope::`, by the first scope: `size` of std::ranges::size for std. Members
+  // (`a.name`) are those of the scope `.`.
+  std::map<std::string, std::set<std::string>, std::less<>> of_scope;
 };
 
 SourceNames names_in(std::string_view text);

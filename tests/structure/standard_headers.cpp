@@ -2,9 +2,10 @@
 #include "tests/structure/standard_headers.h"
 
 #include "tests/structure/repository.h"
+#include "tests/structure/source_names.h"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -26,7 +27,8 @@ constexpr Header kHeaders[] = {
      "all_of any_of binary_search clamp copy copy_if copy_n count count_if equal equal_range "
      "fill fill_n find find_if for_each generate is_sorted lexicographical_compare lower_bound max "
      "max_element merge min min_element minmax minmax_element move none_of nth_element partition "
-     "pop_heap push_heap make_heap remove_if replace reverse rotate shuffle sort stable_sort "
+     "pop_heap push_heap make_heap remove remove_if replace reverse rotate shuffle sort "
+     "stable_sort "
      "transform unique upper_bound"},
     {"array", "array get to_array"},
     {"atomic", "atomic"},
@@ -107,6 +109,10 @@ constexpr Others kOthers[] = {
     {"ompl", "ompl/"},   {"openvdb", "openvdb/"}, {"pybind11", "pybind11/"},
     {"tbb", "tbb/"},     {"testing", "gtest/"},   {"tinyxml2", "tinyxml2.h"}};
 
+// Begin the names of Eigen that <Eigen/Core> does not declare.
+constexpr std::string_view kGeometry[] = {"AlignedBox", "AngleAxis", "Isometry", "Quaternion",
+                                          "Translation"};
+
 // The headers that declare a name; none for a name that is not listed.
 const std::map<std::string, std::set<std::string>>& declaring() {
   static const auto kDeclaring = [] {
@@ -139,15 +145,13 @@ std::vector<std::string> missing_standard_headers(const fs::path& root, const fs
   std::set<fs::path> seen;
   std::set<std::string> headers;
   collect_includes(root, file, seen, headers);
-  static const std::regex kNoCode(R"re(//[^\n]*|"(\\.|[^"\\\n])*")re");
-  static const std::regex kName(R"re(std::(?:ranges::)?(\w+))re");
-  const std::string code = std::regex_replace(text_of(root / file), kNoCode, "");
-  std::set<std::string> names;
-  for (std::sregex_iterator at(code.begin(), code.end(), kName), end; at != end; ++at) {
-    names.insert((*at)[1]);
-  }
+  const SourceNames used = names_in(text_of(root / file));
+  const auto names_of = [&](std::string_view scope) {
+    const auto found = used.of_scope.find(scope);
+    return found == used.of_scope.end() ? std::set<std::string>() : found->second;
+  };
   std::vector<std::string> missing;
-  for (const std::string& name : names) {
+  for (const std::string& name : names_of("std")) {
     const auto known = declaring().find(name);
     if (known == declaring().end()) continue;
     const std::set<std::string>& choice = known->second;
@@ -155,32 +159,33 @@ std::vector<std::string> missing_standard_headers(const fs::path& root, const fs
     if (std::any_of(choice.begin(), choice.end(), is_there)) continue;
     missing.push_back("std::" + name + " needs <" + *choice.begin() + ">");
   }
+  const auto includes = [&](std::string_view start) {
+    return std::any_of(headers.begin(), headers.end(),
+                       [&](const std::string& header) { return header.starts_with(start); });
+  };
   for (const Others& others : kOthers) {
-    const std::regex use("(^|[^:\\w])" + std::string(others.name) + "::");
-    if (!std::regex_search(code, use)) continue;
-    const auto is_theirs = [&](const std::string& header) {
-      return header.starts_with(others.headers);
-    };
+    if (names_of(others.name).empty() || includes(others.headers)) continue;
     // Classes of theirs may be declared for themselves.
     const std::regex opened("\nnamespace " + std::string(others.name) + "( \\{|::)");
     const auto opens = [&](const fs::path& ours) {
       return std::regex_search(text_of(root / ours), opened);
     };
-    if (std::none_of(headers.begin(), headers.end(), is_theirs) &&
-        std::none_of(seen.begin(), seen.end(), opens)) {
+    if (std::none_of(seen.begin(), seen.end(), opens)) {
       missing.push_back(std::string(others.name) + ":: needs <" + std::string(others.headers) +
                         "...>");
     }
   }
-  static const std::regex kGeometry(
-      R"re(Eigen::(AlignedBox|AngleAxis|Isometry|Quaternion|Translation)|\.cross\()re");
-  if (std::regex_search(code, kGeometry)) {
-    if (!headers.contains("Eigen/Geometry") && !headers.contains("Eigen/Dense")) {
+  const std::set<std::string> of_eigen = names_of("Eigen");
+  const auto is_geometry = [](const std::string& name) {
+    return std::any_of(std::begin(kGeometry), std::end(kGeometry),
+                       [&](std::string_view start) { return name.starts_with(start); });
+  };
+  if (std::any_of(of_eigen.begin(), of_eigen.end(), is_geometry) ||
+      names_of(".").contains("cross")) {
+    if (!includes("Eigen/Geometry") && !includes("Eigen/Dense")) {
       missing.emplace_back("Eigen:: needs <Eigen/Geometry>");
     }
-  } else if (code.find("Eigen::") != std::string::npos &&
-             std::none_of(headers.begin(), headers.end(),
-                          [](const std::string& header) { return header.starts_with("Eigen/"); })) {
+  } else if (!of_eigen.empty() && !includes("Eigen/")) {
     missing.emplace_back("Eigen:: needs <Eigen/Core>");
   }
   return missing;
