@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/structure/own_headers.h"
 
-#include "tests/structure/repository.h"
 #include "tests/structure/rooms.h"
-#include "tests/structure/source_names.h"
 
 #include <algorithm>
 #include <functional>
@@ -11,36 +9,7 @@
 #include <set>
 
 namespace spherule {
-namespace {
-
-struct Source {
-  SourceNames names;
-  std::vector<std::string> includes;
-};
-using Sources = std::map<std::string, Source>;
-
-Source read(const std::filesystem::path& file) {
-  const std::string text = text_of(file);
-  Source source{names_in(text), {}};
-  for (const Include& include : includes_of(text)) {
-    if (include.is_ours) source.includes.push_back(include.target);
-  }
-  return source;
-}
-
-// A file and what it includes, as far as it is among the sources.
-void collect(const std::string& name, const Sources& sources, std::set<const Source*>& seen) {
-  const auto source = sources.find(name);
-  if (source == sources.end() || !seen.insert(&source->second).second) return;
-  for (const std::string& included : source->second.includes) collect(included, sources, seen);
-}
-
-}  // namespace
-
-std::vector<std::string> missing_own_headers(const std::filesystem::path& root,
-                                             const std::vector<std::string>& files) {
-  Sources sources;
-  for (const std::string& file : files) sources.emplace(file, read(root / file));
+std::vector<std::string> missing_own_headers(const Sources& sources) {
   std::map<std::string, std::vector<std::string>, std::less<>> headers_of;
   std::map<std::string, std::vector<std::string>, std::less<>> headers_of_function;
   for (const auto& [name, source] : sources) {
@@ -52,8 +21,7 @@ std::vector<std::string> missing_own_headers(const std::filesystem::path& root,
   }
   std::vector<std::string> missing;
   for (const auto& [file, source] : sources) {
-    std::set<const Source*> seen;
-    collect(file, sources, seen);
+    const std::set<const Source*> seen = with_included(sources, file);
     const auto look = [&, &file = file](const auto& uses, const auto& headers) {
       for (const std::string& name : uses) {
         const auto known = headers.find(name);

@@ -19,12 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(OwnHeaders, AreIncludedByTheSourcesThatUseTheirNames) {
-  std::vector<std::string> files;
-  for (const std::string& file : files_of_sources(kRoot)) {
-    if (is_cpp(file)) files.push_back(file);
-  }
-  EXPECT_GT(files.size(), 800u);
-  for (const std::string& what : missing_own_headers(kRoot, files)) ADD_FAILURE() << what;
+  const Sources sources = all_sources(kRoot);
+  EXPECT_GT(sources.size(), 800u);
+  for (const std::string& what : missing_own_headers(sources)) ADD_FAILURE() << what;
 }
 
 TEST(OwnHeaders, ThatAreMissingAreFound) {
@@ -46,7 +43,7 @@ TEST(OwnHeaders, ThatAreMissingAreFound) {
       "Known* known(Part* part);\n");
   const std::vector<std::string> files = {"spheretree/ball.h", "spheretree/near.h",
                                           "collide/part.h", "mesh/good.cpp", "mesh/bad.cpp"};
-  EXPECT_EQ(missing_own_headers(folder.path(), files),
+  EXPECT_EQ(missing_own_headers(read_sources(folder.path(), files)),
             (std::vector<std::string>{"mesh/bad.cpp: Ball needs spheretree/ball.h",
                                       "mesh/bad.cpp: kLargest needs spheretree/ball.h",
                                       "mesh/bad.cpp: made needs spheretree/ball.h",

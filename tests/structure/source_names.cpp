@@ -131,6 +131,8 @@ class Reader {
         names_.of_scope[std::string(first_scope())].emplace(name);
       } else if (near(-1) == "." || near(-1) == "->") {
         names_.of_scope["."].emplace(name);
+      } else if (near(-1) == "namespace" && near(-2) != "using") {
+        names_.namespaces.emplace(name);
       }
       if (!is_name(name) || is_one_of(name, kWords) || is_one_of(name, kNamespaces)) continue;
       if (is_declaration()) {

@@ -25,6 +25,8 @@ struct SourceNames {
   // Names behind `scope::`, by the first scope: `size` of std::ranges::size for std. Members
   // (`a.name`) are those of the scope `.`.
   std::map<std::string, std::set<std::string>, std::less<>> of_scope;
+  // Namespaces in which something is declared, the first part of each.
+  std::set<std::string, std::less<>> namespaces;
 };
 
 SourceNames names_in(std::string_view text);

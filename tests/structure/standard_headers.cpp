@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/structure/standard_headers.h"
 
-#include "tests/structure/repository.h"
-#include "tests/structure/source_names.h"
-
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <string_view>
 
 namespace spherule {
 namespace {
-
-namespace fs = std::filesystem;
 
 // The names of a header that our sources are likely to use, with blanks between.
 struct Header {
@@ -126,26 +120,17 @@ const std::map<std::string, std::set<std::string>>& declaring() {
   return kDeclaring;
 }
 
-// The headers in angle brackets that a file includes, or that ours do which it includes.
-void collect_includes(const fs::path& root, const fs::path& file, std::set<fs::path>& seen,
-                      std::set<std::string>& headers) {
-  if (!seen.insert(file).second || !fs::exists(root / file)) return;
-  for (const Include& include : includes_of(text_of(root / file))) {
-    if (include.is_ours) {
-      collect_includes(root, include.target, seen, headers);
-    } else {
-      headers.insert(include.target);
-    }
-  }
-}
-
 }  // namespace
 
-std::vector<std::string> missing_standard_headers(const fs::path& root, const fs::path& file) {
-  std::set<fs::path> seen;
+std::vector<std::string> missing_standard_headers(const Sources& sources, const std::string& file) {
+  const std::set<const Source*> seen = with_included(sources, file);
   std::set<std::string> headers;
-  collect_includes(root, file, seen, headers);
-  const SourceNames used = names_in(text_of(root / file));
+  for (const Source* source : seen) {
+    for (const Include& include : source->includes) {
+      if (!include.is_ours) headers.insert(include.target);
+    }
+  }
+  const SourceNames& used = sources.at(file).names;
   const auto names_of = [&](std::string_view scope) {
     const auto found = used.of_scope.find(scope);
     return found == used.of_scope.end() ? std::set<std::string>() : found->second;
@@ -166,9 +151,8 @@ std::vector<std::string> missing_standard_headers(const fs::path& root, const fs
   for (const Others& others : kOthers) {
     if (names_of(others.name).empty() || includes(others.headers)) continue;
     // Classes of theirs may be declared for themselves.
-    const std::regex opened("\nnamespace " + std::string(others.name) + "( \\{|::)");
-    const auto opens = [&](const fs::path& ours) {
-      return std::regex_search(text_of(root / ours), opened);
+    const auto opens = [&](const Source* source) {
+      return source->names.namespaces.contains(others.name);
     };
     if (std::none_of(seen.begin(), seen.end(), opens)) {
       missing.push_back(std::string(others.name) + ":: needs <" + std::string(others.headers) +

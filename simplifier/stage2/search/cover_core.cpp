@@ -25,22 +25,25 @@ CoverCore::CoverCore(const SetCoverInstance& instance,
   for (std::size_t i = 0; i < known.rows.size(); ++i) {
     for (const std::uint32_t c : columns_of[known.rows[i]]) weight_[c] += known.weights[i];
   }
-  for (const std::uint32_t row : known.rows) {
-    row_number_[row] = static_cast<std::uint32_t>(lists_.size());
-    lists_.emplace_back().reserve(std::min(columns_of[row].size(), kFew));
-  }
+  for (const std::uint32_t row : known.rows) add_list(row);
   for (const std::size_t c : start) add_column(static_cast<std::uint32_t>(c));
   for (const std::uint32_t row : known.rows) add_best_columns(row);
 }
 
 void CoverCore::add_row(std::uint32_t row) {
-  row_number_[row] = static_cast<std::uint32_t>(lists_.size());
-  std::vector<std::uint32_t>& list = lists_.emplace_back();
+  std::vector<std::uint32_t>& list = add_list(row);
   for (const std::uint32_t c : columns_of_[row]) {
     if (column_number_[c] != kNone) list.push_back(column_number_[c]);
   }
   entries_ += list.size();
   add_best_columns(row);
+}
+
+std::vector<std::uint32_t>& CoverCore::add_list(std::uint32_t row) {
+  row_number_[row] = static_cast<std::uint32_t>(lists_.size());
+  std::vector<std::uint32_t>& list = lists_.emplace_back();
+  list.reserve(std::min(columns_of_[row].size(), kFew));
+  return list;
 }
 
 void CoverCore::add_best_columns(std::uint32_t row) {

@@ -41,6 +41,7 @@ class CoverCore {
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
+  std::vector<std::uint32_t>& add_list(std::uint32_t row);
   void add_best_columns(std::uint32_t row);
   void add_column(std::uint32_t column);
 

@@ -55,7 +55,6 @@ class CoverSearch {
     explicit IndexSet(std::size_t universe) : position_(universe, kAbsent) {}
     void insert(std::uint32_t i);
     void erase(std::uint32_t i);
-    bool contains(std::uint32_t i) const { return position_[i] != kAbsent; }
     // kAbsent for what is not in the set.
     std::uint32_t position(std::uint32_t i) const { return position_[i]; }
     std::span<const std::uint32_t> items() const { return items_; }

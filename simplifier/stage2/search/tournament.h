@@ -72,8 +72,8 @@ class Tournament {
   }
 
   std::size_t leaves_ = 0;  // a power of two; those without an item come last
-  std::vector<std::uint32_t>
-      winner_;  // the root is at 1, the children of a node at 2 n and 2 n + 1
+  // The root is at 1, the children of a node at 2 n and 2 n + 1.
+  std::vector<std::uint32_t> winner_;
   std::vector<std::uint32_t> touched_;
   std::vector<char> is_touched_;
 };
