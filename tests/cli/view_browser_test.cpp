@@ -75,12 +75,14 @@ class ViewBrowserTest : public CommandTest {
     return shown;
   }
 
-  // The page with script that runs once it has drawn itself; frames come by the clock.
+  // The page with script that runs once it has drawn itself; for the page frames are 16 ms apart,
+  // however long the browser takes.
   Shown act(const std::string& script, const std::string& state) {
     std::string page = read("page.html");
     page.insert(page.rfind("</body>"),
-                "<script>window.requestAnimationFrame = (call) => setTimeout(() =>"
-                " call(performance.now()), 16);\nconst on = (type, x, y) => "
+                "<script>let frame_time = performance.now();\n"
+                "window.requestAnimationFrame = (call) => setTimeout(() =>"
+                " call(frame_time += 16), 16);\nconst on = (type, x, y) => "
                 "document.getElementById('canvas')"
                 ".dispatchEvent(new PointerEvent(type, {clientX: x, clientY: y, bubbles: true,"
                 " pointerId: 1}));\nconst click = (x, y) => { on('pointerdown', x, y);"
