@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/io/internal/mesh_readers.h"
 
+#include "mesh/io/internal/polygon_triangles.h"
 #include "spheretree/error.h"
 
 #include <limits>
+#include <vector>
 
 namespace spherule::internal {
 
@@ -22,10 +24,20 @@ void add_polygon(TriangleMesh& mesh, std::span<const std::int64_t> corners,
                                std::to_string(vertex_count));
     }
   }
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    mesh.triangles.emplace_back(static_cast<int>(corners[0]), static_cast<int>(corners[i - 1]),
-                                static_cast<int>(corners[i]));
+  if (corners.size() == 3) {
+    mesh.triangles.emplace_back(static_cast<int>(corners[0]), static_cast<int>(corners[1]),
+                                static_cast<int>(corners[2]));
+    return;
   }
+  std::vector<int> numbers;
+  numbers.reserve(corners.size());
+  for (const std::int64_t corner : corners) numbers.push_back(static_cast<int>(corner));
+  const auto triangles = polygon_triangles(mesh.vertices, numbers);
+  if (!triangles) {
+    throw Error(subject, "a face of " + std::to_string(corners.size()) +
+                             " corners that is not convex takes too long to divide into triangles");
+  }
+  mesh.triangles.insert(mesh.triangles.end(), triangles->begin(), triangles->end());
 }
 
 std::array<std::int64_t, 3> strip_triangle(std::span<const std::int64_t> strip, std::size_t last) {

@@ -25,11 +25,11 @@ TriangleMesh read_ply(std::string_view bytes, const std::string& subject);
 // The size in micrometres of the unit that a 3MF file states. Throws Error.
 double unit_of_3mf(std::string_view bytes, const std::string& subject);
 
-// Appends the polygon as a fan about its first corner. The winding number of a fan is that of the
-// polygon, so a planar polygon that is not convex is covered too. Points and lines (fewer than
-// three corners) are no surface and are left out. Throws Error for an index that is not below
-// `vertex_count`, and for more corners than four times as many: no polygon comes by its vertices
-// that often, even where bridges lead to its holes.
+// Appends the triangles of a polygon (polygon_triangles.h), whose vertices are there. Points and
+// lines (fewer than three corners) are no surface and are left out. Throws Error for an index that
+// is not below `vertex_count`, for more corners than four times as many (no polygon comes by its
+// vertices that often, even where bridges lead to its holes), and for a polygon that takes too long
+// to divide.
 void add_polygon(TriangleMesh& mesh, std::span<const std::int64_t> corners,
                  std::size_t vertex_count, const std::string& subject);
 
