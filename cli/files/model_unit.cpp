@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -80,6 +81,15 @@ ModelUnit model_unit(const std::string& file, const UnitArguments& arguments) {
       origin_of(name_of_size(stated->own_micrometres), name_of_size(stated->micrometres),
                 stated->by_format ? "format" : "file", result.scale);
   return result;
+}
+
+std::string unit_choice(const ModelUnit& unit) {
+  if (!unit.micrometres) return {};
+  const LengthUnit* const known = unit_of_size(*unit.micrometres);
+  const std::vector<std::string> choices = unit_choices();
+  const auto found =
+      known == nullptr ? choices.end() : std::ranges::find(choices, std::string(known->symbol));
+  return found == choices.end() ? std::string() : *found;
 }
 
 LengthContext length_context(const std::string& file, const ModelUnit& unit) {

@@ -63,7 +63,8 @@ void print(const SphereArguments& arguments, Json figures, const ConservativeSph
 
 int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
   check_outputs({arguments.output, arguments.tree_file}, {arguments.mesh});
-  const double scale = converted_unit(arguments).scale;
+  const ModelUnit unit = converted_unit(arguments);
+  const double scale = unit.scale;
   const TriangleMesh mesh = read_mesh(arguments.mesh, {.scale = scale});
   double making = 0.0;
   double certifying = 0.0;
@@ -83,7 +84,7 @@ int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
   SphereFile file = {result.spheres, record(result.certificate), std::move(made.options)};
   file.options["baseline"] = std::string(method.text.name);
   file.options["scale"] = scale;
-  if (!arguments.unit.units.empty()) file.options["units"] = arguments.unit.units;
+  if (const std::string units = unit_choice(unit); !units.empty()) file.options["units"] = units;
   file.options["padding"] = arguments.padding;
   Json figures = {{"method", method.text.name}, {"sphere_count", result.spheres.size()}};
   figures.update(made.figures);

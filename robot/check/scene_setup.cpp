@@ -4,13 +4,13 @@
 #include "collide/point_cloud.h"
 #include "collide/solid_mesh.h"
 #include "robot/cover/link_mesh.h"
+#include "robot/files/internal/spheres_in_metres.h"
 #include "robot/files/point_cloud_file.h"
 #include "robot/files/srdf.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
-#include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 
 #include <array>
@@ -175,8 +175,9 @@ class Preparation {
   ObstacleShape shape_of(const std::string&, const TreeSource& source) { return tree_of(source); }
 
   SharedTree tree_of(const SpheresSource& source) {
-    return spheres_.get(key_of(source.path),
-                        [&] { return shared(build_tree(load_spheres(source.path).spheres)); });
+    return spheres_.get(key_of(source.path), [&] {
+      return shared(build_tree(internal::load_spheres_in_metres(source.path)));
+    });
   }
   SharedTree tree_of(const TreeSource& source) {
     return trees_.get(key_of(source.path), [&] { return shared(load_tree(source.path)); });

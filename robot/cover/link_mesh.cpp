@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/link_mesh.h"
 
+#include "mesh/io/length_unit.h"
 #include "mesh/io/mesh_io.h"
+#include "mesh/parsing/input_file.h"
 #include "robot/cover/internal/primitive_mesh.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -10,7 +12,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -22,6 +26,14 @@ double size_of(const TriangleMesh& mesh) {
   double size = 0.0;
   for (const Eigen::Vector3d& v : mesh.vertices) size = std::max(size, norm_upper(v));
   return size;
+}
+
+// Of the numbers of a 3MF file, which read_mesh() leaves as they are; of the others that state a
+// unit it makes metres.
+double metres_per_unit(const std::filesystem::path& path) {
+  constexpr double kMicrometres = 1e6;
+  if (internal::lower_extension(path) != "3mf") return 1.0;
+  return stated_unit(path)->micrometres / kMicrometres;
 }
 
 // A factor is off by 2^-53 of itself as it was read from text, and the product by as much.
@@ -63,7 +75,13 @@ struct MeshOf {
     if (!file.scale.allFinite() || file.scale.cwiseAbs().minCoeff() == 0.0) {
       throw Error(subject, "the scale of " + file.path.string() + " must be finite and not 0");
     }
-    TriangleMesh mesh = read_mesh(file.path, {.weld = weld / file.scale.cwiseAbs().maxCoeff()});
+    const double unit = metres_per_unit(file.path);
+    TriangleMesh mesh =
+        read_mesh(file.path, {.scale = unit, .weld = weld / file.scale.cwiseAbs().maxCoeff()});
+    // The unit is off by 2^-53 of itself.
+    if (unit != 1.0) {
+      mesh.vertex_error = add_up(mesh.vertex_error, 2.0 * kUnitRoundoff * size_of(mesh));
+    }
     scale(mesh, file.scale);
     validate(mesh, file.path.string() + " as scaled");
     return mesh;

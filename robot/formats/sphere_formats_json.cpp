@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "robot/files/internal/spheres_in_metres.h"
 #include "robot/formats/internal/sphere_documents.h"
 #include "spheretree/error.h"
 #include "spheretree/parse_json.h"
-#include "spheretree/sphere_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -217,7 +217,7 @@ SphereFormatFile read_sphere_json(std::string_view text, const std::filesystem::
     if (*named == kOneMeshFormat) {
       format = SphereFormat::kSphereFile;
       one_mesh();
-      reader.gathered.spheres.links.back().spheres = load_spheres(path).spheres;
+      reader.gathered.spheres.links.back().spheres = load_spheres_in_metres(path);
     } else {
       format = SphereFormat::kSpherule;
       reader.gathered.unless(*named != "spherule-scene", {},

@@ -26,8 +26,9 @@
 
 namespace spherule {
 
-// A mesh in a file, in the file's own unit: times `scale`, coordinate by coordinate, it is in
-// metres. A negative factor mirrors.
+// A mesh in a file. Times `scale`, coordinate by coordinate, it is in metres: of formats that state
+// a unit (DAE, 3MF, glTF) what is scaled is in metres before, of others the file's own numbers are.
+// A negative factor mirrors.
 struct MeshFile {
   std::filesystem::path path;
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();

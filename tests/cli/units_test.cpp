@@ -51,7 +51,7 @@ TEST_F(UnitsTest, AFormatThatStatesItsUnitIsConverted) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("unit: metre (stated by the format)\n"), std::string::npos);
   EXPECT_EQ(options().at("max-error"), 0.004);
-  EXPECT_FALSE(options().contains("units"));
+  EXPECT_EQ(options().at("units"), "m");
   outcome = fit("part.glb", {"--units", "mm", "--max-error", "4", "--report", "report.json"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("size 40 x 20 x 20"), std::string::npos) << outcome.out;

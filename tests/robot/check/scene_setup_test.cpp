@@ -80,6 +80,22 @@ TEST(PrepareScene, AttachedMeshesHaveTheirOwnErrorAndD) {
   EXPECT_TRUE(is_free());
 }
 
+TEST(PrepareScene, SpheresInAnotherUnitAreRefused) {
+  const TempDir folder;
+  const auto obstacle = [&](const std::string& units) {
+    SceneDescription scene;
+    scene.obstacles.push_back(
+        {.name = "part",
+         .shape = SpheresSource{folder.write(
+             "part.json",
+             "{\"format\": \"spherule-spheres\", \"version\": 1, \"options\": {\"units\": \"" +
+                 units + "\"}, \"spheres\": [{\"center\": [0, 0, 0], \"radius\": 1}]}")}});
+    return scene;
+  };
+  EXPECT_NO_THROW(prepare_scene(RobotModel("base"), obstacle("m"), {}));
+  EXPECT_THROW(prepare_scene(RobotModel("base"), obstacle("mm"), {}), Error);
+}
+
 TEST(PrepareScene, SharesWhatIsNamedAgain) {
   const TempDir folder;
   std::ostringstream obj;

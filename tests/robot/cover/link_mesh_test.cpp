@@ -4,6 +4,7 @@
 #include "mesh/io/mesh_io.h"
 #include "mesh/mesh_report.h"
 #include "spheretree/error.h"
+#include "tests/mesh/mesh_files.h"
 #include "tests/robot/cover/cover_oracle.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
@@ -51,6 +52,22 @@ WidePoint unmove(const Pose& pose, const WidePoint& point) {
   const Eigen::Quaterniond q = pose.rotation();
   const Eigen::Quaternion<Wide> wide(q.w(), q.x(), q.y(), q.z());
   return wide.normalized().conjugate() * (point - pose.translation().cast<Wide>());
+}
+
+// As DAE files are; the scale comes on top.
+TEST(LinkMesh, AFileThatStatesItsUnitIsInMetres) {
+  const TempDir folder;
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {20, 0, 0}, {0, 20, 0}, {0, 0, 20}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  const auto file = folder.write("part.3mf", threemf_bytes(threemf_model(mesh)));
+  for (const double scale : {1.0, 3.0}) {
+    const auto read = link_mesh(link_of(file, Eigen::Vector3d::Constant(scale)));
+    ASSERT_TRUE(read);
+    EXPECT_NEAR(mesh_report(*read).box.sizes().x(), 0.02 * scale, 1e-12);
+    EXPECT_GE(read->vertex_error, 0.02 * scale * 0x1p-53);
+    EXPECT_LE(read->vertex_error, 1e-15);
+  }
 }
 
 // The mesh is convex, so that a point is in it if it is behind every face.
