@@ -13,6 +13,7 @@
 #include <numeric>
 #include <set>
 #include <utility>
+#include <variant>
 
 namespace spherule {
 namespace {
@@ -22,13 +23,25 @@ using Eigen::Vector3d;
 constexpr std::size_t kSharePoints = 20000;
 // Up to which positions kinematics_error_bound() holds.
 constexpr double kLargestPosition = 100.0;
+// Chord errors of the meshes around curved primitives: at first, and where no more than that is in
+// doubt.
+constexpr double kChordError = LinkMeshOptions{}.chord_error;
+constexpr double kFineChordError = kChordError / 16.0;
 
 struct LinkParts {
   std::string link;
   std::size_t index = 0;  // of the link in the description
   std::optional<TriangleMesh> mesh;
+  double chord_error = 0.0;  // of the mesh, which holds what it stands for; 0 without curved shapes
   std::vector<Sphere> spheres;
 };
+
+bool has_curved_shapes(const LinkDescription& link, LinkGeometry geometry) {
+  return std::ranges::any_of(link_shapes(link, geometry), [](const LinkShape& shape) {
+    const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
+    return primitive != nullptr && !std::holds_alternative<Box>(*primitive);
+  });
+}
 
 // Meshes and spheres of all links, checked; the links that the robot has not got go to `unknown`.
 std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
@@ -37,7 +50,11 @@ std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const L
   std::map<std::string, std::size_t> index;
   for (const LinkDescription& link : robot.links) {
     index[link.name] = parts.size();
-    parts.push_back({link.name, parts.size(), link_mesh(link, {.geometry = geometry}), {}});
+    parts.push_back({link.name,
+                     parts.size(),
+                     link_mesh(link, {.geometry = geometry, .chord_error = kChordError}),
+                     has_curved_shapes(link, geometry) ? kChordError : 0.0,
+                     {}});
   }
   if (std::none_of(parts.begin(), parts.end(), [](const auto& part) { return part.mesh; })) {
     throw Error("robot \"" + robot.name + "\"", geometry == LinkGeometry::kVisual
@@ -140,9 +157,9 @@ class PlacedRobot {
     return mesh;
   }
 
-  // By how much a leak that is found may be shallower on the exact mechanism.
+  // By how much a leak that is found may be shallower on the exact mechanism, and at curved shapes.
   double error_of_leak(const LinkParts& part) const {
-    return add_up(errors_[part.index], largest_error_);
+    return add_up(add_up(errors_[part.index], largest_error_), part.chord_error);
   }
 
   std::span<const Sphere> spheres() const { return spheres_; }
@@ -191,12 +208,35 @@ auto of_link(const std::string& link, Work work) {
   }
 }
 
+// What is proved of a mesh holds of a set within it that comes within the chord error of all its
+// points: leaks are that much shallower at most, and spheres protrude by that much more at most.
+Certificate certify_within(const TriangleMesh& mesh, double chord_error,
+                           std::span<const Sphere> spheres, int threads) {
+  Certificate result = certify(mesh, spheres, {.threads = threads});
+  for (Bounds* depth : {&result.surface_depth, &result.solid_depth, &result.uncovered_depth}) {
+    depth->lower = std::max(0.0, sub_down(depth->lower, chord_error));
+  }
+  if (result.protrusion_over_mesh) {
+    result.protrusion_over_mesh->upper = add_up(result.protrusion_over_mesh->upper, chord_error);
+  }
+  return result;
+}
+
 // The certificate and the warnings of a link with geometry.
 void certify_link(const LinkParts& part, const LinkDescription& link,
                   const RobotAuditOptions& options, LinkAudit& audit) {
-  audit.certificate = certify(*part.mesh, part.spheres, {.threads = options.threads});
+  audit.certificate = certify_within(*part.mesh, part.chord_error, part.spheres, options.threads);
   const Certificate& of_mesh = *audit.certificate;
-  if (of_mesh.covered || of_mesh.uncovered_depth.lower > 0.0 || part.spheres.empty()) return;
+  const auto is_decided = [&] {
+    return of_mesh.covered || of_mesh.uncovered_depth.lower > 0.0 || part.spheres.empty();
+  };
+  if (is_decided()) return;
+  if (part.chord_error > 0.0) {
+    const auto fine =
+        link_mesh(link, {.geometry = options.geometry, .chord_error = kFineChordError});
+    audit.certificate = certify_within(*fine, kFineChordError, part.spheres, options.threads);
+    if (is_decided()) return;
+  }
   const auto mesh = link_mesh(
       link, {.geometry = options.geometry, .chord_error = options.max_error * kChordErrorOfError});
   const internal::LinkSolid solid(*mesh, {.max_error = options.max_error,

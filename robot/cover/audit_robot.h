@@ -52,8 +52,10 @@ struct RobotAuditOptions {
 struct LinkAudit {
   std::string link;
   std::size_t spheres = 0;
-  // Of the mesh and its inside, as written in the mesh files; of S (see the options) if that is
-  // what is proved. Absent for a link without geometry.
+  // Of the mesh and its inside, as written in the mesh files, and of primitives as they are; of S
+  // (see the options) if that is what is proved. The point of the deepest leak is within 0.5 mm of
+  // a point of the link where that has curved primitives, of the link elsewhere. Absent for a link
+  // without geometry.
   std::optional<Certificate> certificate = std::nullopt;
   // Share of the surface that no sphere holds, estimated from points spread evenly over it.
   double uncovered_share = 0.0;
@@ -66,8 +68,9 @@ struct LinkAudit {
 struct ConfigurationAudit {
   Bounds uncovered_depth;    // over all links, of their meshes and insides
   std::string deepest_link;  // by the lower bound, else by the upper; empty if all are covered
-  // A point of it that is no less deep than the lower bound, in the frame of the root; absent
-  // unless that is above 0.
+  // A point of it that is no less deep than the lower bound, or where the link has curved
+  // primitives one within 0.5 mm of such a point, in the frame of the root; absent unless that is
+  // above 0.
   std::optional<Eigen::Vector3d> deepest_leak = std::nullopt;
 };
 

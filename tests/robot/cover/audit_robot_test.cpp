@@ -45,6 +45,28 @@ class AuditRobot : public ::testing::Test {
   RobotDescription robot_;
 };
 
+// A ball is judged as it is, not by the mesh around it, which stands out of it by up to 0.5 mm.
+TEST_F(AuditRobot, CurvedShapesAreJudgedAsTheyAre) {
+  const RobotDescription ball = read_urdf(folder_.write(
+      "ball.urdf",
+      R"(<robot name="ball"><link name="ball"><collision><geometry><sphere radius="0.1"/></geometry>
+</collision></link></robot>)"));
+  const auto audited = [&](double radius) {
+    const std::vector<LinkSpheres> spheres{{"ball", {{Vector3d::Zero(), radius}}}};
+    return *audit_robot(ball, spheres).links.front().certificate;
+  };
+  EXPECT_TRUE(audited(0.1001).covered);
+  const Certificate touching = audited(0.1);
+  EXPECT_EQ(touching.uncovered_depth.lower, 0.0);
+  const Certificate less = audited(0.09);
+  EXPECT_LE(less.uncovered_depth.lower, 0.01);
+  EXPECT_GE(less.uncovered_depth.lower, 0.0085);
+  EXPECT_GE(less.uncovered_depth.upper, 0.01);
+  const Certificate more = audited(0.2);
+  EXPECT_TRUE(more.covered);
+  EXPECT_GE(more.protrusion_over_mesh->upper, 0.1);
+}
+
 std::vector<Vector3d> corners_of(const Vector3d& half) {
   std::vector<Vector3d> corners;
   for (int corner = 0; corner < 8; ++corner) {
