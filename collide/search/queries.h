@@ -131,7 +131,8 @@ CollisionResult all_pairs(const SphereTree& a, const SphereTree& b, const Relati
   result.cost.leaf_tests = a.is_leaf(0) && b.is_leaf(0) ? 1 : 0;
 
   if (pose.may_touch(a.sphere(0), b.sphere(0)) && !boxes_apart(a, b, pose)) {
-    result.complete = traverse(a, b, pose, query);
+    // Between two leaves nothing is left to cut short but the pair itself.
+    result.complete = traverse(a, b, pose, query) && !(query.found() && request.max_pairs == 0);
   } else {
     query.pruned(std::max(pose.gap(a.sphere(0), b.sphere(0)), box_gap(a, b, pose)));
     result.complete = true;

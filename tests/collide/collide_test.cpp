@@ -213,6 +213,7 @@ TEST(Collide, WithoutRoomForAPairSaysOnlyWhether) {
   const CollisionResult hit = collide(sphere, Pose(), sphere, Pose(), {.max_pairs = 0});
   EXPECT_EQ(hit.verdict, Verdict::kCollision);
   EXPECT_TRUE(hit.pairs.empty());
+  EXPECT_FALSE(hit.complete);
 }
 
 TEST(Collide, BoundsTheDistanceFromBelow) {
