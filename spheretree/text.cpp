@@ -11,24 +11,41 @@
 namespace spherule::internal {
 namespace {
 
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-  Number value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, fault] = std::from_chars(text.data(), end, value);
-  return fault == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+// Of a decimal number that no double is near to: whether it is too small, not too large. It is
+// below 1 if its exponent does not make up for the place of its first digit.
+bool is_too_small(std::string_view text) {
+  const std::size_t end = std::min(text.find_first_of("eE"), text.size());
+  const std::string_view digits = text.substr(0, end);
+  std::string_view exponent = text.substr(std::min(end + 1, text.size()));
+  if (exponent.starts_with('+')) exponent.remove_prefix(1);
+  const auto point = static_cast<std::int64_t>(std::min(digits.find('.'), digits.size()));
+  const auto first = static_cast<std::int64_t>(digits.find_first_of("123456789"));
+  const std::int64_t needed = first < point ? first - point + 1 : first - point;
+  if (exponent.empty()) return 0 < needed;
+  const std::optional<std::int64_t> value = whole_number(exponent);
+  return value ? *value < needed : exponent.starts_with('-');
 }
 
 }  // namespace
 
 std::optional<double> finite_number(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  const std::optional<double> value = parse<double>(text);
-  return value && std::isfinite(*value) ? value : std::nullopt;
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, fault] = std::from_chars(text.data(), end, value);
+  if (text.empty() || stop != end) return std::nullopt;
+  if (fault == std::errc::result_out_of_range) {
+    if (!is_too_small(text)) return std::nullopt;
+    return text.starts_with('-') ? -0.0 : 0.0;
+  }
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 std::optional<std::int64_t> whole_number(std::string_view text) {
-  return parse<std::int64_t>(text);
+  std::int64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, fault] = std::from_chars(text.data(), end, value);
+  return fault == std::errc() && stop == end ? std::optional(value) : std::nullopt;
 }
 
 std::string number_text(double number) {

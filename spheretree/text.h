@@ -23,8 +23,8 @@
 namespace spherule::internal {
 
 // The value of a text that is one decimal number and nothing else, with or without an exponent; the
-// nearest double. Nothing for other texts, infinities and what is out of the range of a double,
-// next to zero, too.
+// nearest double, which is zero for what is at most 2^-1075. Nothing for other texts, infinities
+// and what is too large for a double.
 std::optional<double> finite_number(std::string_view text);
 
 // The value of a text that is one whole number and nothing else: digits only, with a minus sign

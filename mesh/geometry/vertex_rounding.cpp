@@ -24,7 +24,9 @@ double largest_coordinate(const TriangleMesh& mesh) {
 
 double rounding_distance(double largest, double relative) {
   constexpr double kRootOfThree = 1.7320508075688774;  // rounded up
-  return kRootOfThree * largest * relative * (1.0 + 0x1p-50);
+  // Of the smallest numbers rounding changes more, and so does that of the product.
+  constexpr double kSmallest = 0x1p-960;
+  return kRootOfThree * std::max(largest, kSmallest) * relative * (1.0 + 0x1p-50);
 }
 
 void check_scale(double scale) {

@@ -11,7 +11,8 @@ namespace spherule::internal {
 double largest_coordinate(const TriangleMesh& mesh);
 
 // Bound on the distance by which a point moves when each coordinate, of magnitude up to `largest`,
-// changes by `relative` of it: sqrt(3) largest relative, rounded up.
+// changes by `relative` of it: sqrt(3) largest relative, rounded up. A coordinate below 2^-960 may
+// change by `relative` 2^-960.
 double rounding_distance(double largest, double relative);
 
 // Throws Error unless the factor is positive and finite.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <random>
 #include <span>
 #include <string>
@@ -26,10 +27,41 @@ TEST(Text, FiniteNumber) {
   EXPECT_EQ(finite_number("0.1"), 0.1);
   EXPECT_EQ(finite_number("4.9406564584124654e-324"), 0x1p-1074);
   EXPECT_EQ(finite_number("1.7976931348623157e308"), 0x1.fffffffffffffp1023);
-  const char* const faults[] = {"",    " 1",  "1 ",   "1,5",      "0x1",   "1e",     "--1",
-                                "+-1", "+",   "1e+-", "one",      "1e999", "-1e999", "1e-999",
-                                "nan", "inf", "-inf", "infinity", "1f",    "1..",    "1\n"};
+  const char* const faults[] = {"",    " 1",   "1 ",       "1,5", "0x1",   "1e",     "--1",
+                                "+-1", "+",    "1e+-",     "one", "1e999", "-1e999", "nan",
+                                "inf", "-inf", "infinity", "1f",  "1..",   "1\n"};
   for (const std::string text : faults) EXPECT_FALSE(finite_number(text)) << text;
+}
+
+// Next to zero the nearest double is zero or the smallest one; half of that is
+// 2.4703282292062327208e-324. What is too large is no number, however it is written.
+TEST(Text, NumbersThatUnderflow) {
+  const std::string zeros(400, '0');
+  const std::string many(25, '9');
+  for (const std::string& text :
+       std::vector<std::string>{"1e-400", "2e-324", "2.4703282292062327e-324", "1E-999", "0e-999",
+                                "0e999", "0.0e+999"}) {
+    EXPECT_EQ(finite_number(text), 0.0) << text;
+  }
+  for (const std::string& text : std::vector<std::string>{
+           "0." + zeros + "1", "." + zeros + "1e+1", "1e-" + many, "123456.7e-0000999",
+           "0." + zeros + "1e70", "1" + zeros + "e-1000"}) {
+    EXPECT_EQ(finite_number(text), 0.0) << text;
+    EXPECT_EQ(finite_number("+" + text), 0.0) << text;
+    const std::optional<double> negative = finite_number("-" + text);
+    ASSERT_TRUE(negative) << text;
+    EXPECT_TRUE(*negative == 0.0 && std::signbit(*negative)) << text;
+  }
+  for (const std::string text : {"3e-324", "2.4703282292062328e-324"}) {
+    EXPECT_EQ(finite_number(text), 0x1p-1074) << text;
+  }
+  EXPECT_EQ(finite_number("1" + zeros + "e-400"), 1.0);
+  EXPECT_EQ(finite_number("0." + zeros + "1e401"), 1.0);
+  for (const std::string& text : std::vector<std::string>{
+           "1" + zeros, "1" + zeros + "e-1", "0." + zeros + "1e999", "1e" + many, "1e+" + many,
+           ".1e400", "-1" + zeros + ".0", "1e-400x", "1e-"}) {
+    EXPECT_FALSE(finite_number(text)) << text;
+  }
 }
 
 TEST(Text, WholeNumber) {
