@@ -128,6 +128,63 @@ TEST_F(SceneFormats, ColladaNodesEndSomewhere) {
                       "too deep"));
 }
 
+// An asset of a part would override the one of the document.
+TEST_F(SceneFormats, ColladaOfSeveralUnitsIsRefused) {
+  const std::string good = test::dae_text(cube_, Eigen::Matrix4d::Identity(), "0.01");
+  const std::string why = "differs from that of the whole file";
+  for (const std::string place :
+       {"<library_geometries>", "<geometry id=\"g\">", "<library_visual_scenes>",
+        "<visual_scene id=\"s\">", "<node id=\"n\">"}) {
+    const auto with = [&](const std::string& stated) {
+      return replaced(good, place, place + "<asset>" + stated + "</asset>");
+    };
+    EXPECT_EQ(error("dae", with("<created/>")), "");
+    EXPECT_EQ(error("dae", with("<unit meter=\"1e-2\"/><up_axis> Z_UP </up_axis>")), "");
+    EXPECT_TRUE(refused("dae", with("<unit meter=\"0.001\"/>"), "<unit> " + why)) << place;
+    EXPECT_TRUE(refused("dae", with("<unit/>"), why)) << place;  // metres
+    EXPECT_TRUE(refused("dae", with("<unit meter=\"x\"/>"), "no usable size")) << place;
+    EXPECT_TRUE(refused("dae", with("<up_axis>Y_UP</up_axis>"), "<up_axis> " + why)) << place;
+    EXPECT_EQ(error("dae", replaced(good, place,
+                                    place + "<extra><asset><unit meter=\"3\"/></asset>"
+                                            "</extra>")),
+              "");
+  }
+  EXPECT_TRUE(refused("dae", replaced(good, "<geometry id", "<asset>\n<unit/></asset><geometry id"),
+                      "line 5: <unit>"));
+  // What a document does not state is one metre and Y_UP.
+  const std::string bare = replaced(replaced(good, "<unit name=\"unit\" meter=\"0.01\"/>", ""),
+                                    "<up_axis>Z_UP</up_axis>", "");
+  const auto with = [&](const std::string& stated) {
+    return replaced(bare, "<geometry id", "<asset>" + stated + "</asset><geometry id");
+  };
+  EXPECT_EQ(error("dae", with("<unit meter=\"1\"/><up_axis>Y_UP</up_axis>")), "");
+  EXPECT_TRUE(refused("dae", with("<unit meter=\"0.01\"/>"), why));
+  EXPECT_TRUE(refused("dae", with("<up_axis>Z_UP</up_axis>"), why));
+}
+
+// Data of other programs, comments, and the places of cameras.
+TEST_F(SceneFormats, ColladaPassesOverWhatIsNoShape) {
+  const std::string good = test::dae_text(cube_, Eigen::Matrix4d::Identity());
+  const AlignedBox3d expected = box("dae", good);
+  const std::string extra =
+      "<extra><technique profile=\"p\" xmlns:a=\"u\"><a:b id=\"g\"/></technique></extra>";
+  for (const std::string& text :
+       {replaced(good, "</node>", extra + "</node>"),
+        replaced(good, "<technique_common>",
+                 "<technique profile=\"p\"><a:b/></technique>"
+                 "<technique_common>"),
+        replaced(good, "\">0 0 0 1 0", "\"><!-- c -->0 0 0 <!--\n9-->1<!-- --> 0"),
+        replaced(good, "<p>0 2 3", "<p>0 2 <!-- 1 -->3"),
+        replaced(good, "</visual_scene>",
+                 "<node><lookat>0 0 1 0 0 0 0 1 0</lookat>"
+                 "<instance_camera url=\"#c\"/></node></visual_scene>")}) {
+    EXPECT_EQ(error("dae", text), "");
+    EXPECT_TRUE(box("dae", text).isApprox(expected));
+    EXPECT_EQ(read("dae", text).triangles.size(), 12u);
+  }
+  EXPECT_TRUE(refused("dae", replaced(good, "<mesh>", "<a:b/><mesh>"), "prefix"));
+}
+
 TEST_F(SceneFormats, ColladaRefusesWhatItCannotPlace) {
   const std::string good = test::dae_text(cube_, Eigen::Matrix4d::Identity());
   for (const char* transform :
@@ -173,6 +230,14 @@ TEST_F(SceneFormats, Gltf) {
   EXPECT_TRUE(refused("gltf", replaced(good, "[1]", "[0]"), "two parents"));
   EXPECT_TRUE(refused("gltf", replaced(good, "[1]", "[7]"), "not there"));
   EXPECT_TRUE(refused("gltf", replaced(good, "\"2.0\"", "\"1.0\""), "version 2"));
+  // Minor versions may be read as older ones unless the file says from which on.
+  const auto with_version = [&](const std::string& version) {
+    return replaced(good, "\"2.0\"", version);
+  };
+  EXPECT_EQ(error("gltf", with_version("\"2.1\"")), "");
+  EXPECT_EQ(error("gltf", with_version(R"("2.1","minVersion":"2.0")")), "");
+  EXPECT_TRUE(refused("gltf", with_version(R"("2.1","minVersion":"2.1")"), "version '2.1' of"));
+  EXPECT_TRUE(refused("gltf", with_version(R"("2.0","minVersion":2)"), "is not a text"));
   // Names within an object are unique (the specification, "JSON Encoding").
   EXPECT_TRUE(refused("gltf", replaced(good, "\"scene\":0", "\"scene\":0,\"scene\":0"),
                       "\"scene\" appears twice"));

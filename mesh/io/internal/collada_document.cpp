@@ -45,7 +45,10 @@ ColladaDocument::ColladaDocument(std::string_view text, const std::string& subje
 void ColladaDocument::index(const Element& element) {
   for (const Element* at = element.FirstChildElement(); at != nullptr;
        at = at->NextSiblingElement()) {
-    if (local_name(*at) != at->Name()) fail(*at, "a namespace prefix is not supported");
+    const std::string_view name = at->Name();
+    if (name == "extra" || name == "technique") continue;
+    if (local_name(*at) != name) fail(*at, "a namespace prefix is not supported");
+    if (name == "asset") assets_.push_back(at);
     if (const char* id = at->Attribute("id")) {
       const auto [it, is_new] = ids_.try_emplace({at->Name(), id}, at);
       if (!is_new) it->second = nullptr;
@@ -115,26 +118,28 @@ std::size_t ColladaDocument::whole_attribute(const Element& element, const char*
   return static_cast<std::size_t>(*value);
 }
 
-std::string_view ColladaDocument::text(const Element& element) const {
-  const tinyxml2::XMLNode* const content = element.FirstChild();
-  if (content == nullptr) return {};
-  if (content->ToText() == nullptr || content->NextSibling() != nullptr) {
-    fail(element, "holds something between its numbers");
+std::string ColladaDocument::text(const Element& element) const {
+  std::string result;
+  for (auto* at = element.FirstChild(); at != nullptr; at = at->NextSibling()) {
+    budget_.take_steps(1);
+    if (at->ToComment() != nullptr) continue;
+    if (at->ToText() == nullptr) fail(element, "holds something between its numbers");
+    budget_.take_steps(steps_for(at->Value()));
+    result += at->Value();
   }
-  return content->Value();
+  return result;
 }
 
-std::vector<std::string_view> ColladaDocument::split(const Element& element) const {
-  const std::string_view content = text(element);
-  budget_.take_steps(steps_for(content));
-  std::vector<std::string_view> words = words_of(content);
+std::vector<std::string_view> ColladaDocument::split(std::string_view text) const {
+  std::vector<std::string_view> words = words_of(text);
   budget_.take_steps(words.size());
   return words;
 }
 
 std::vector<double> ColladaDocument::numbers(const Element& element) const {
+  const std::string content = text(element);
   std::vector<double> result;
-  for (const std::string_view word : split(element)) {
+  for (const std::string_view word : split(content)) {
     const std::optional<double> value = finite_number(word);
     if (!value) fail(element, in_quotes(word) + " is not a finite number");
     result.push_back(*value);
@@ -143,8 +148,9 @@ std::vector<double> ColladaDocument::numbers(const Element& element) const {
 }
 
 std::vector<std::int64_t> ColladaDocument::whole_numbers(const Element& element) const {
+  const std::string content = text(element);
   std::vector<std::int64_t> result;
-  for (const std::string_view word : split(element)) {
+  for (const std::string_view word : split(content)) {
     const std::optional<std::int64_t> value = whole_number(word);
     if (!value) fail(element, in_quotes(word) + " is not a whole number");
     result.push_back(*value);
@@ -153,7 +159,8 @@ std::vector<std::int64_t> ColladaDocument::whole_numbers(const Element& element)
 }
 
 std::vector<std::string> ColladaDocument::words(const Element& element) const {
-  const std::vector<std::string_view> found = split(element);
+  const std::string content = text(element);
+  const std::vector<std::string_view> found = split(content);
   return {found.begin(), found.end()};
 }
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 // The XML of a COLLADA file (Khronos, "COLLADA - Digital Asset Schema Release 1.5.0"), with checked
-// access.
+// access. What stands in <extra> and <technique> is data of other programs, and is not looked at.
 
 namespace spherule::internal {
 
@@ -26,6 +26,8 @@ class ColladaDocument {
   ColladaDocument(std::string_view text, const std::string& subject, SceneBudget& budget);
 
   const Element& root() const { return *root_; }
+  // Every <asset>, the document's too.
+  const std::vector<const Element*>& assets() const { return assets_; }
 
   // The element of this name whose id a reference "#id" names. Throws Error if there is none or
   // more than one, and for a reference into another file.
@@ -40,7 +42,8 @@ class ColladaDocument {
   // A whole number that is not negative, `absent` if there is no such attribute.
   std::size_t whole_attribute(const Element& element, const char* name, std::size_t absent) const;
 
-  // What stands in an element, nothing but white space between. Each is a step of the budget.
+  // What stands in an element, nothing but white space and comments between. Each is a step of the
+  // budget.
   std::vector<double> numbers(const Element& element) const;
   std::vector<std::int64_t> whole_numbers(const Element& element) const;
   std::vector<std::string> words(const Element& element) const;
@@ -50,13 +53,14 @@ class ColladaDocument {
 
  private:
   void index(const Element& element);
-  std::string_view text(const Element& element) const;
-  std::vector<std::string_view> split(const Element& element) const;
+  std::string text(const Element& element) const;
+  std::vector<std::string_view> split(std::string_view text) const;
 
   const std::string& subject_;
   SceneBudget& budget_;
   tinyxml2::XMLDocument document_;
   const Element* root_ = nullptr;
+  std::vector<const Element*> assets_;
   // By name and id; null if several elements share them.
   std::map<std::pair<std::string, std::string>, const Element*> ids_;
 };

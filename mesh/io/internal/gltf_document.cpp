@@ -2,6 +2,7 @@
 #include "mesh/io/internal/gltf_document.h"
 
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <array>
 #include <cmath>
@@ -34,6 +35,11 @@ GltfDocument::GltfDocument(std::string_view bytes, const std::string& subject) :
   if (!root().is_object()) fail("not a glTF file");
   const Json* const asset = member(root(), "asset");
   if (asset == nullptr || !text(*asset, "version").starts_with("2.")) fail("not glTF of version 2");
+  // Later versions 2.x can be read as 2.0 unless the file says otherwise.
+  if (asset->contains("minVersion") && text(*asset, "minVersion") != "2.0") {
+    fail("it requires version " + in_quotes(text(*asset, "minVersion")) +
+         " of glTF, and 2.0 is supported");
+  }
   check_extensions();
 }
 

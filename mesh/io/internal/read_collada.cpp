@@ -47,10 +47,29 @@ class ColladaReader {
     return std::move(result_);
   }
 
-  // What the file states of its unit.
+  // What the file states of its unit. An asset of a part of the file would override it there, and
+  // the axes, too: the ones that differ are refused.
   static double metres(const ColladaDocument& document) {
     const Element* const asset = document.root().FirstChildElement("asset");
-    const Element* const unit = asset == nullptr ? nullptr : asset->FirstChildElement("unit");
+    const auto stated = [&](const char* name) {
+      return asset == nullptr ? nullptr : asset->FirstChildElement(name);
+    };
+    const double unit = metres_of(document, stated("unit"));
+    const std::vector<std::string> axis = axis_of(document, stated("up_axis"));
+    for (const Element* other : document.assets()) {
+      for (const Element* at : document.children(*other)) {
+        const std::string_view name = at->Name();
+        if ((name == "unit" && metres_of(document, at) != unit) ||
+            (name == "up_axis" && axis_of(document, at) != axis)) {
+          document.fail(*at, "differs from that of the whole file, which is not supported");
+        }
+      }
+    }
+    return unit;
+  }
+
+ private:
+  static double metres_of(const ColladaDocument& document, const Element* unit) {
     const char* const text = unit == nullptr ? nullptr : unit->Attribute("meter");
     if (text == nullptr) return 1.0;
     const double size = finite_number(text).value_or(0.0);
@@ -58,7 +77,10 @@ class ColladaReader {
     return size;
   }
 
- private:
+  static std::vector<std::string> axis_of(const ColladaDocument& document, const Element* axis) {
+    return axis == nullptr ? std::vector<std::string>{"Y_UP"} : document.words(*axis);
+  }
+
   const Element& shown_scene() const {
     if (const Element* const scene = document_.root().FirstChildElement("scene")) {
       return document_.referred("visual_scene", document_.child(*scene, "instance_visual_scene"),
@@ -94,6 +116,7 @@ class ColladaReader {
 
   void visit(const Element& node) {
     budget_.take_node();
+    if (!may_have_surface(node)) return;
     const std::size_t before = chain_.size();
     const std::vector<Affine>& own = transforms_of(node);
     chain_.insert(chain_.end(), own.begin(), own.end());
@@ -103,6 +126,15 @@ class ColladaReader {
     visit_children(node);
     open_.pop_back();
     chain_.erase(chain_.begin() + static_cast<std::ptrdiff_t>(before), chain_.end());
+  }
+
+  // Cameras and lights have none, and their transforms do not matter.
+  bool may_have_surface(const Element& node) const {
+    return std::ranges::any_of(document_.children(node), [](const Element* at) {
+      const std::string_view name = at->Name();
+      return name == "node" || name == "instance_node" || name == "instance_geometry" ||
+             name == "instance_controller";
+    });
   }
 
   // The results of the following are kept: each element is parsed once however often it is shown.
