@@ -26,6 +26,7 @@ PlyData::PlyData(std::string_view bytes, const std::string& subject)
 void PlyData::read_header() {
   if (in_.token() != "ply") in_.fail("not a PLY file: it does not begin with 'ply'");
   in_.expect_line_end();
+  const std::size_t first_end = in_.position();
   bool has_format = false;
   for (std::string_view word = in_.token(); word != "end_header"; word = in_.token()) {
     if (word == "comment" || word == "obj_info") {
@@ -52,7 +53,9 @@ void PlyData::read_header() {
   }
   in_.expect_line_end();
   at_ = in_.position();
-  at_ += bytes_.substr(at_).starts_with("\r\n") ? 2 : at_ < bytes_.size() ? 1 : 0;
+  // Where lines end in CR alone, a line feed after the last one is data.
+  const bool may_be_two = bytes_.substr(first_end, 1) != "\r" || bytes_[first_end + 1] == '\n';
+  at_ += may_be_two && bytes_.substr(at_).starts_with("\r\n") ? 2 : at_ < bytes_.size() ? 1 : 0;
 }
 
 void PlyData::read_format() {

@@ -19,19 +19,33 @@ bool is_space(char c) {
 
 }  // namespace
 
-TextScanner::TextScanner(std::string_view text, std::string subject, char comment)
-    : text_(text), subject_(std::move(subject)), comment_(comment) {
+TextScanner::TextScanner(std::string_view text, std::string subject, TextSyntax syntax)
+    : text_(text), subject_(std::move(subject)), syntax_(syntax) {
   if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // byte order mark
+}
+
+bool TextScanner::is_comment() const {
+  return syntax_.comment != '\0' && text_[at_] == syntax_.comment;
+}
+
+std::size_t TextScanner::continuation() const {
+  if (!syntax_.has_continued_lines || text_[at_] != '\\') return 0;
+  const std::string_view after = text_.substr(at_ + 1, 2);
+  if (after.empty() || !is_line_end(after[0])) return 0;
+  return after == "\r\n" ? 3 : 2;
+}
+
+void TextScanner::skip_to_line_end() {
+  while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;
 }
 
 void TextScanner::skip_space(bool across_lines) {
   while (at_ < text_.size()) {
     const char c = text_[at_];
-    if (comment_ != '\0' && c == comment_) {
-      while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;
-    } else if (c == '\\' && at_ + 1 < text_.size() && is_line_end(text_[at_ + 1])) {
-      const bool two = text_[at_ + 1] == '\r' && at_ + 2 < text_.size() && text_[at_ + 2] == '\n';
-      at_ += two ? 3 : 2;
+    if (is_comment()) {
+      skip_to_line_end();
+    } else if (const std::size_t size = continuation(); size > 0) {
+      at_ += size;
     } else if (is_space(c) && (across_lines || !is_line_end(c))) {
       ++at_;
     } else {
@@ -43,8 +57,12 @@ void TextScanner::skip_space(bool across_lines) {
 std::string_view TextScanner::token() {
   skip_space(true);
   const std::size_t begin = at_;
-  while (at_ < text_.size() && !is_space(text_[at_]) &&
-         (comment_ == '\0' || text_[at_] != comment_)) {
+  while (at_ < text_.size() && !is_space(text_[at_]) && !is_comment()) {
+    if (const std::size_t size = continuation(); size > 0) {
+      const std::size_t next = at_ + size;
+      if (next < text_.size() && !is_space(text_[next])) fail("a word goes on in the next line");
+      break;
+    }
     ++at_;
   }
   return text_.substr(begin, at_ - begin);
@@ -56,7 +74,10 @@ std::string_view TextScanner::token_on_line() {
 }
 
 void TextScanner::skip_line() {
-  while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;
+  while (at_ < text_.size() && !is_line_end(text_[at_]) && !is_comment()) {
+    at_ += std::max<std::size_t>(continuation(), 1);
+  }
+  skip_to_line_end();
 }
 
 void TextScanner::expect_line_end() {

@@ -33,8 +33,9 @@ std::string base64(const std::string& bytes);
 
 // How an archive holds its files: as they are, or deflated with the sizes in ZIP64 records.
 enum class Zip { kStored, kDeflated64 };
-// 3MF; `model` is the XML of the model part.
-std::string threemf_bytes(const std::string& model, Zip form = Zip::kStored);
+// 3MF; `model` is the XML of the model part, to which the package refers by `target`.
+std::string threemf_bytes(const std::string& model, Zip form = Zip::kStored,
+                          const std::string& target = "/3D/3dmodel.model");
 std::string threemf_model(const TriangleMesh& mesh, const std::string& item_transform = "");
 
 }  // namespace spherule::test

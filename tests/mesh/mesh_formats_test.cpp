@@ -109,6 +109,62 @@ TEST_F(Formats, ObjIndices) {
   EXPECT_TRUE(refused("obj", vertices + "surf 0 1 0 1 1 2 3\n", "not supported"));
 }
 
+// All patches and curves, those of old versions too, and what only sets how they are drawn.
+TEST_F(Formats, ObjOfOtherThanPolygonsIsRefused) {
+  const std::string good = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+  for (const std::string word : {"surf", "curv", "call", "bsp", "bzp", "cdc", "cdp", "res"}) {
+    EXPECT_TRUE(
+        refused("obj", good + word + " 1 2 3\n", "line 5: '" + word + "' is not supported"));
+  }
+}
+
+// A backslash at the end of a line continues every statement, and no comment.
+TEST_F(Formats, ObjLinesAreContinued) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  const std::string face = "f 1 2 3\n";
+  const auto count = [&](const std::string& text) {
+    return read("obj", vertices + text).triangles.size();
+  };
+  EXPECT_EQ(count("g a \\\nf 1 3 4\n" + face), 1u);
+  EXPECT_EQ(count("usemtl a\\\r\nf 1 3 4\\\nf 1 2 4\n" + face), 1u);
+  EXPECT_EQ(count("# C:\\\nf 1 3 4\n" + face), 2u);
+  EXPECT_EQ(count("g a # C:\\\nf 1 3 4\n" + face), 2u);
+  EXPECT_EQ(count("g a\\b\nf 1 3 4\n" + face), 2u);
+  EXPECT_EQ(count("f 1 3\\\n 4\n" + face), 2u);
+  EXPECT_EQ(count("f 1 3\\\r\n\t4 \\\n\n" + face), 2u);
+  EXPECT_TRUE(refused("obj", vertices + "f 1 2 3 \\", "not a whole number"));
+  EXPECT_TRUE(refused("obj", vertices + "f 1 3\\\n4\n", "a word goes on in the next line"));
+  EXPECT_TRUE(refused("obj", vertices + "f\\\n1 3 4\n" + face, "a word goes on"));
+  // Other formats have no such thing.
+  EXPECT_EQ(read("stl", test::text_stl(cube_, "C:\\")).triangles.size(), 12u);
+  const std::string ply = test::ply_bytes(cube_, test::PlyForm::kText, false);
+  EXPECT_EQ(read("ply", replaced(ply, "comment", "comment C:\\\ncomment")).triangles.size(), 12u);
+  EXPECT_TRUE(refused("ply", replaced(ply, "vertex 8", "vertex \\\n8"), "not a whole number"));
+}
+
+TEST_F(Formats, TextStlWithAFacetInTheLineOfTheName) {
+  const std::string good = test::text_stl(cube_, "x");
+  for (const char* name : {"solid", "solid x", "solid a facet of x", "SOLID facet"}) {
+    std::string joined = replaced(good, "solid x", name);
+    EXPECT_EQ(read("stl", joined).triangles.size(), 12u) << name;
+    joined.replace(joined.find('\n'), 1, " ");
+    EXPECT_EQ(read("stl", joined).triangles.size(), 12u) << name;
+  }
+  std::string one_line = good;
+  for (char& c : one_line) c = c == '\n' ? ' ' : c;
+  EXPECT_EQ(read("stl", one_line).triangles.size(), 12u);
+  EXPECT_TRUE(refused("stl", one_line + one_line, "a facet in the line of 'endsolid'"));
+}
+
+TEST_F(Formats, NumbersThatUnderflowAreNearlyZero) {
+  const TriangleMesh mesh = read("obj", "v 0 1e-400 0\nv 1 0 0\nv 1 1 -2e-324\nf 1 2 3\n");
+  EXPECT_EQ(mesh.vertices[0], Eigen::Vector3d::Zero());
+  EXPECT_GT(mesh.vertex_error, 0.0);
+  const TriangleMesh tiny = read("obj", "v 0 0 1e-400\nv 5e-324 0 0\nv 0 7e-324 0\nf 1 2 3\n");
+  EXPECT_GE(tiny.vertex_error, 0x1p-1073);
+  EXPECT_LT(tiny.vertex_error, 1e-300);
+}
+
 TEST_F(Formats, PolygonsAreFans) {
   // A pentagon, and a dart, whose fan about its first corner reaches outside but covers it.
   const TriangleMesh pentagon =
@@ -172,6 +228,16 @@ TEST_F(Formats, Ply) {
   const std::string binary = test::ply_bytes(cube_, test::PlyForm::kLittleEndian, true);
   EXPECT_TRUE(refused("ply", binary.substr(0, binary.size() - 1), "cut short"));
   EXPECT_TRUE(refused("ply", binary + "x", "more data"));
+  // A line ends as the first one does: data may begin with the byte of a line feed.
+  const std::string header = binary.substr(0, binary.find("end_header\n") + 11);
+  std::string first_is_ten = binary;
+  first_is_ten[header.size()] = '\n';
+  for (const std::string line_end : {"\n", "\r", "\r\n"}) {
+    std::string bytes;
+    for (const char c : header) c == '\n' ? bytes += line_end : bytes += c;
+    bytes += first_is_ten.substr(header.size());
+    EXPECT_EQ(read("ply", bytes).triangles.size(), 12u);
+  }
   // A strip of four corners, a break, and one of three.
   const TriangleMesh strip = read(
       "ply",
@@ -208,6 +274,19 @@ TEST_F(Formats, ThreeMf) {
   EXPECT_GT(turned.vertex_error, 0.0);
   EXPECT_LT(turned.vertex_error, 1e-12);
 
+  for (const char* target : {"3D/3dmodel.model", "./3D/3dmodel.model"}) {
+    const std::string bytes = test::threemf_bytes(model, test::Zip::kStored, target);
+    EXPECT_EQ(read("3mf", bytes).triangles.size(), 12u) << target;
+  }
+  // As XML Schema has numbers.
+  const TriangleMesh schema = read_model(
+      replaced(replaced(replaced(model, "v3=\"3\"", "v3=\" +3 \""), "z=\"1\"", "z=\"\t+1 \""),
+               "objectid=\"1\"", "objectid=\"\n1\""));
+  EXPECT_TRUE(mesh_report(schema).closed);
+  EXPECT_EQ(mesh_report(schema).box.max(), Eigen::Vector3d(11, 21, 31));
+  EXPECT_TRUE(refused_model("v3=\"3\"", "v3=\"+-3\"", "not a whole number"));
+  EXPECT_TRUE(refused_model("v3=\"3\"", "v3=\" \"", "number is missing"));
+  EXPECT_TRUE(refused_model("z=\"1\"", "z=\"1 1\"", "not a finite number"));
   EXPECT_TRUE(refused_model("v3=\"3\"", "v3=\"8\"", "vertex 8"));
   EXPECT_TRUE(refused_model("v3=\"3\"", "v3=\"-1\"", "vertex -1"));
   EXPECT_TRUE(refused_model("v3=\"3\"", "", "no attribute 'v3'"));

@@ -84,6 +84,7 @@ std::string model_text(std::string_view bytes, const std::string& subject) {
   parse_xml(read_zip_member(bytes, "_rels/.rels", subject), subject, root);
   // Absolute or relative to the root of the package, which is the same here.
   if (root.target.starts_with('/')) root.target.erase(0, 1);
+  while (root.target.starts_with("./")) root.target.erase(0, 2);
   if (root.target.empty()) throw Error(subject, "the package names no 3MF model");
   return read_zip_member(bytes, root.target, subject);
 }
@@ -104,9 +105,8 @@ class ModelReader : public XmlHandler {
       object_->mesh.vertices.emplace_back(number(attributes, "x"), number(attributes, "y"),
                                           number(attributes, "z"));
     } else if (at({"model", "resources", "object", "mesh", "triangles", "triangle"})) {
-      triangles_.push_back({in_.integer(required(attributes, "v1")),
-                            in_.integer(required(attributes, "v2")),
-                            in_.integer(required(attributes, "v3"))});
+      triangles_.push_back(
+          {integer(attributes, "v1"), integer(attributes, "v2"), integer(attributes, "v3")});
     } else if (at({"model", "resources", "object", "components", "component"})) {
       object_->components.push_back(component(attributes));
     } else if (at({"model", "build", "item"})) {
@@ -134,10 +134,19 @@ class ModelReader : public XmlHandler {
     return std::equal(path_.begin(), path_.end(), path.begin(), path.end());
   }
 
+  // XML Schema lets a number have blanks around it, and a plus sign.
   std::string_view required(const XmlAttributes& attributes, std::string_view name) const {
     const std::optional<std::string_view> value = attributes.find(name);
     if (!value) in_.fail("there is no attribute " + in_quotes(name));
-    return *value;
+    constexpr std::string_view kBlanks = " \t\r\n";
+    const std::size_t begin = std::min(value->find_first_not_of(kBlanks), value->size());
+    return value->substr(begin, value->find_last_not_of(kBlanks) + 1 - begin);
+  }
+
+  std::int64_t integer(const XmlAttributes& attributes, std::string_view name) const {
+    std::string_view text = required(attributes, name);
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+    return in_.integer(text);
   }
 
   double number(const XmlAttributes& attributes, std::string_view name) const {
@@ -153,7 +162,7 @@ class ModelReader : public XmlHandler {
   }
 
   void begin_object(const XmlAttributes& attributes) {
-    const std::int64_t id = in_.integer(required(attributes, "id"));
+    const std::int64_t id = integer(attributes, "id");
     const auto [entry, is_new] = objects_.try_emplace(id);
     if (!is_new) in_.fail("object " + std::to_string(id) + " is there twice");
     object_ = &entry->second;
@@ -175,7 +184,7 @@ class ModelReader : public XmlHandler {
 
   Component component(const XmlAttributes& attributes) const {
     if (attributes.find(kPath)) in_.fail("an object in another part is not supported");
-    const std::int64_t id = in_.integer(required(attributes, "objectid"));
+    const std::int64_t id = integer(attributes, "objectid");
     const auto object = objects_.find(id);
     if (object == objects_.end() || id == open_id_) {
       in_.fail("it shows object " + std::to_string(id) + ", which is not there before");

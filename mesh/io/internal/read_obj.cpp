@@ -6,10 +6,18 @@
 #include "spheretree/text.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace spherule::internal {
 namespace {
+
+// Statements of curves and surfaces, those of old versions of the format too, and of other files.
+constexpr std::array<std::string_view, 8> kUnsupported = {"surf", "curv", "call", "bsp",
+                                                          "bzp",  "cdc",  "cdp",  "res"};
 
 void read_vertex(TextScanner& in, TriangleMesh& mesh) {
   const double x = in.number(), y = in.number(), z = in.number();
@@ -35,7 +43,7 @@ std::int64_t read_corner(const TextScanner& in, std::string_view token, std::siz
 }  // namespace
 
 TriangleMesh read_obj(std::string_view bytes, const std::string& subject) {
-  TextScanner in(bytes, subject, '#');
+  TextScanner in(bytes, subject, {.comment = '#', .has_continued_lines = true});
   TriangleMesh mesh;
   std::vector<std::vector<std::int64_t>> faces;
   for (std::string_view word = in.token(); !word.empty(); word = in.token()) {
@@ -47,7 +55,7 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& subject) {
       for (std::string_view t = in.token_on_line(); !t.empty(); t = in.token_on_line()) {
         corners.push_back(read_corner(in, t, mesh.vertices.size()));
       }
-    } else if (word == "surf" || word == "curv" || word == "call") {
+    } else if (std::ranges::find(kUnsupported, word) != kUnsupported.end()) {
       in.fail(in_quotes(word) + " is not supported; only polygons are");
     }
     in.skip_line();

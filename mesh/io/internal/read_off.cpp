@@ -21,7 +21,7 @@ std::size_t read_count(TextScanner& in, std::size_t text_size) {
 }  // namespace
 
 TriangleMesh read_off(std::string_view bytes, const std::string& subject) {
-  TextScanner in(bytes, subject, '#');
+  TextScanner in(bytes, subject, {.comment = '#'});
   const std::string_view keyword = in.token();
   // Texture coordinates, colours and normals follow the coordinates and are skipped.
   const bool known = keyword == "OFF" || keyword == "COFF" || keyword == "NOFF" ||

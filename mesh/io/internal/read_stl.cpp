@@ -88,17 +88,30 @@ void read_facet(TextScanner& in, TriangleMesh& mesh) {
   add_polygon(mesh, corners, mesh.vertices.size(), in.subject());
 }
 
+// Passes over the name of a solid, which ends with the line or where a facet begins; whether one
+// does. Then what follows is what follows "facet".
+bool skip_name(TextScanner& in) {
+  for (std::string_view word = in.token_on_line(); !word.empty(); word = in.token_on_line()) {
+    if (!is_word(word, "facet")) continue;
+    const std::size_t after = in.position();
+    const bool begins = is_word(in.token(), "normal");
+    in.seek(after);
+    if (begins) return true;
+  }
+  return false;
+}
+
 TriangleMesh read_text(std::string_view text, const std::string& subject) {
   TextScanner in(text, subject);
   TriangleMesh mesh;
   for (std::string_view solid = in.token(); !solid.empty(); solid = in.token()) {
     if (!is_word(solid, "solid")) in.fail("'solid' expected");
-    in.skip_line();  // its name
+    if (skip_name(in)) read_facet(in, mesh);
     std::string_view token = in.token();
     for (; is_word(token, "facet"); token = in.token()) read_facet(in, mesh);
     if (token.empty()) in.fail("the file is cut short: 'endsolid' is missing");
     if (!is_word(token, "endsolid")) in.fail("'facet' or 'endsolid' expected");
-    in.skip_line();
+    if (skip_name(in)) in.fail("a facet in the line of 'endsolid'");
   }
   mesh.vertex_error = rounding_distance(largest_coordinate(mesh), kUnitRoundoff);
   return mesh;
