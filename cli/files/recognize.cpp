@@ -36,10 +36,7 @@ constexpr std::array kJsonMarks = {
     Mark{"\"radii\"", FileKind::kRobotSpheres},
     Mark{"\"spheres\"", FileKind::kRobotSpheres},
 };
-constexpr std::array kMarkupMarks = {
-    Mark{"name=\"generator\" content=\"spherule\"", FileKind::kPage},
-    Mark{"<COLLADA", FileKind::kMesh},
-};
+constexpr std::string_view kPageMark = "name=\"generator\" content=\"spherule\"";
 // Both describe a robot; a group of an SRDF has links, too.
 constexpr std::array kRobotMarks = {
     Mark{"<link_sphere_approximation", FileKind::kSrdf},
@@ -81,10 +78,37 @@ std::size_t after_mark_of_utf8(std::string_view text) {
   return text.starts_with(kMark) ? kMark.size() : 0;
 }
 
-FileKind kind_of_markup(std::string_view text) {
-  const FileKind kind = first_of(kMarkupMarks, text);
-  const bool is_of_robot = text.find("<robot") != std::string_view::npos;
-  return kind == FileKind::kUnknown && is_of_robot ? first_of(kRobotMarks, text) : kind;
+std::string without_comments(std::string_view text) {
+  std::string result;
+  for (;;) {
+    const std::size_t begin = text.find("<!--");
+    result += text.substr(0, begin);
+    if (begin == std::string_view::npos) return result;
+    text.remove_prefix(begin + 4);
+    const std::size_t end = text.find("-->");
+    if (end == std::string_view::npos) return result;
+    text.remove_prefix(end + 3);
+  }
+}
+
+// The name of the first element, without a prefix; before it come declarations ("<?", "<!").
+std::string_view root_of(std::string_view text) {
+  std::size_t at = text.find('<');
+  while (at < text.size() && text.substr(at + 1, 1).find_first_of("?!") == 0) {
+    at = text.find('<', at + 1);
+  }
+  if (at == std::string_view::npos) return {};
+  const std::string_view name = text.substr(at + 1);
+  const std::string_view whole = name.substr(0, name.find_first_of(" \t\r\n/>"));
+  return whole.substr(whole.rfind(':') + 1);
+}
+
+FileKind kind_of_markup(std::string_view bytes) {
+  const std::string text = without_comments(bytes);
+  const std::string_view root = root_of(text);
+  if (root == "COLLADA") return FileKind::kMesh;
+  if (root == "robot") return first_of(kRobotMarks, text);
+  return text.find(kPageMark) != std::string::npos ? FileKind::kPage : FileKind::kUnknown;
 }
 
 }  // namespace
@@ -98,7 +122,11 @@ FileKind recognize(const std::filesystem::path& path) {
   const std::size_t start = bytes.find_first_not_of(" \t\r\n", after_mark_of_utf8(bytes));
   const char first = start == std::string::npos ? '\0' : bytes[start];
   FileKind kind = FileKind::kUnknown;
-  if (first == '{' || first == '[') kind = first_of(kJsonMarks, bytes);
+  if (first == '{' || first == '[') {
+    // The names of what is in a scene are anything.
+    const bool is_gltf = ending == ".gltf" && bytes.find("\"asset\"") != std::string::npos;
+    kind = is_gltf ? FileKind::kMesh : first_of(kJsonMarks, bytes);
+  }
   if (first == '<') kind = ending == ".xacro" ? FileKind::kUrdf : kind_of_markup(bytes);
   if (ending == ".yml" || ending == ".yaml" || ending == ".xrdf") {
     kind = first_of(kYamlMarks, bytes);

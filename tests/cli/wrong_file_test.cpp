@@ -34,6 +34,28 @@ TEST_F(WrongFileTest, TheRightCommandIsNamed) {
   expect_refusal({"audit", "part.stl", "part.tree"}, tree);
 }
 
+// Names in a mesh, and comments, may be anything.
+TEST_F(WrongFileTest, WhatAMeshSaysIsNotTakenForItsKind) {
+  write("part.gltf",
+        R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"name":"radii",
+"mesh":0}],"meshes":[{"name":"spheres","primitives":[{"attributes":{"POSITION":0}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
+"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":
+"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+  expect_info("part.gltf", "1 triangle,");
+  write("part.dae", R"(<?xml version="1.0"?><!-- <robot> name="generator" content="spherule" -->
+<COLLADA><library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" count="9">
+0 0 0 1 0 0 0 1 0</float_array><technique_common><accessor source="#a" count="3" stride="3">
+<param name="X"/><param name="Y"/><param name="Z"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles>
+<input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>
+</library_geometries><library_visual_scenes><visual_scene id="s"><node>
+<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes></COLLADA>)");
+  expect_info("part.dae", "1 triangle,");
+  EXPECT_EQ(run({"view", "part.stl"}).exit_code, 0);
+  expect_info("part.html", "a page of spherule view");
+}
+
 // A file of the right kind that is broken is no other kind; a name that is not there is none at
 // all.
 TEST_F(WrongFileTest, OtherErrorsStayAsTheyAre) {
@@ -71,6 +93,8 @@ TEST_F(WrongFileTest, RobotsHaveTheirOwnCommands) {
 <collision><geometry><mesh filename="part.stl"/></geometry></collision></link>
 <link name="tip"/><joint name="lift" type="prismatic"><parent link="base"/><child link="tip"/>
 <axis xyz="0 0 1"/><limit lower="-1" upper="2" effort="0" velocity="0"/></joint></robot>)");
+  write("noted.urdf", "<!-- <group> of --><robot name=\"arm\"><link name=\"base\"/></robot>");
+  expect_info("noted.urdf", "links: 1,");
   write("arm.srdf", R"(<robot name="arm"><group name="all"><link name="base"/></group>
 <disable_collisions link1="base" link2="tip" reason="Adjacent"/></robot>)");
   write("arm.yml", "collision_spheres:\n  base:\n    - center: [1, 0.5, 0.5]\n      radius: 2\n");
