@@ -158,9 +158,10 @@ void add_check_srdf(CLI::App& app, int& exit_code) {
            "A pair is proved never to touch within the limits of the joints, by the meshes with "
            "their insides, or a posture is shown in which it does. The reasons Default, Always and "
            "User are decisions; every other one, and none, says that the links are apart, and "
-           "touching is then wrong but for links that a joint joins.",
-       .exit_codes = "0 every pair that is said to be apart is proved never to touch; 1 some "
-                     "touch, or nothing is proved of them",
+           "touching is then wrong but for links that one joint joins, or none moves against each "
+           "other.",
+       .exit_codes = "0 every pair that is said to be apart, but for these, is proved never to "
+                     "touch; 1 some touch, or nothing is proved of them",
        .examples = {"spherule check-srdf robot.urdf robot.srdf",
                     "spherule check-srdf robot.urdf robot.srdf --geometry visual --json"}}));
   command->callback([arguments, &exit_code] { exit_code = check_srdf(*arguments); });

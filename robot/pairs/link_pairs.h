@@ -46,10 +46,11 @@ struct LinkBody {
 };
 
 // What is known of two links, wherever the limits let the joints be. Continuous joints take every
-// position.
+// position; a joint that mimics another one is where that puts it, whatever its own limits say.
 enum class PairVerdict : std::uint8_t {
   kNever,     // proved: they have no point in common in any configuration
-  kTouching,  // they have one in the configuration `witness`, up to the rounding of mesh tests
+  kTouching,  // they have one in the configuration `witness`, up to the rounding of mesh tests, by
+              // the meshes that stand for them
   kUnknown,   // neither was found
 };
 

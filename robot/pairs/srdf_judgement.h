@@ -29,7 +29,7 @@ namespace spherule {
 
 // What is true of two links that an SRDF disables.
 enum class DisabledVerdict : std::uint8_t {
-  kTouches,     // they do, in a posture within the limits
+  kTouches,     // they do, in a posture within the limits (PairVerdict::kTouching)
   kUnknown,     // neither a contact nor a proof was found
   kNever,       // proved: they never do within the limits
   kAdjacent,    // one joint joins them, directly or past links without bodies
