@@ -64,6 +64,23 @@ std::vector<std::string_view> words_of(std::string_view text) {
   return words;
 }
 
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+  const std::string_view line = text.substr(0, end);
+  const bool has_both = text.substr(end).starts_with("\r\n");
+  text.remove_prefix(std::min(end + (has_both ? 2 : 1), text.size()));
+  return line;
+}
+
+std::size_t count_line_ends(std::string_view text) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_first_of_two = text[i] == '\r' && i + 1 < text.size() && text[i + 1] == '\n';
+    if (text[i] == '\n' || (text[i] == '\r' && !is_first_of_two)) ++count;
+  }
+  return count;
+}
+
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t kLongest = 60;
   std::string result("'");

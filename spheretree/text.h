@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What all readers of text share: numbers, words, and quotes for messages. Does not depend on the
-// locale.
+// What all readers of text share: numbers, words, lines, and quotes for messages. Does not depend
+// on the locale.
 //
 // @code{.cpp}
 // #include <spherule/spheretree/text.h>
@@ -12,8 +12,12 @@
 // assert(!spherule::internal::finite_number("1.5 mm"));
 // assert(spherule::internal::number_text(0.1) == "0.1");
 // assert(spherule::internal::words_of("v 0.5  1 2").size() == 4);
+// std::string_view text = "one\r\ntwo\rthree\n";
+// assert(spherule::internal::count_line_ends(text) == 3);
+// assert(spherule::internal::take_line(text) == "one" && text == "two\rthree\n");
 // @endcode
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -36,6 +40,13 @@ std::string number_text(double number);
 
 // The words of a text, apart by blanks, tabs and ends of lines.
 std::vector<std::string_view> words_of(std::string_view text);
+
+// Takes the first line off a text and returns it without its end: a line feed, a carriage return,
+// or both in this order.
+std::string_view take_line(std::string_view& text);
+
+// How many such ends of lines a text has.
+std::size_t count_line_ends(std::string_view text);
 
 // A text in quotes for a message; of a long one the first 60 characters.
 std::string in_quotes(std::string_view text);

@@ -60,7 +60,7 @@ bool is_table(std::string_view text) {
     const std::size_t sign = text.front() == '-' || text.front() == '+' ? 1 : 0;
     if (sign < text.size() && (std::isdigit(static_cast<unsigned char>(text[sign])) != 0))
       return true;
-    text.remove_prefix(std::min(text.find('\n'), text.size()));
+    text.remove_prefix(std::min(text.find_first_of("\r\n"), text.size()));
   }
   return false;
 }

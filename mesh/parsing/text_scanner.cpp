@@ -108,8 +108,7 @@ std::int64_t TextScanner::integer(std::string_view token) const {
 }
 
 void TextScanner::fail(const std::string& reason) const {
-  const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, text_.size()));
-  const auto lines = std::count(text_.begin(), end, '\n');
+  const std::size_t lines = count_line_ends(text_.substr(0, at_));
   throw Error(subject_, "line " + std::to_string(lines + 1) + ": " + reason);
 }
 

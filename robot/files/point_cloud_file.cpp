@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,21 +33,35 @@ double point_error(bool is_rounded, bool is_scaled, double largest) {
   return roundings == 0 ? 0.0 : 2.0 * roundings * kUnitRoundoff * largest + kUnderflow;
 }
 
-std::vector<Vector3d> text_points(std::string_view text, const std::string& file) {
+// Files named .pts begin with the number of their points, as scanners write them; others do not.
+enum class FirstLine { kPoint, kPointOrCount };
+
+Vector3d point_of(const internal::TextLines& lines) {
+  if (lines.words().size() < 3) lines.refuse("has no x, y and z");
+  Vector3d point;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::optional<double> number = internal::finite_number(lines.words()[k]);
+    if (!number) lines.refuse(internal::in_quotes(lines.words()[k]) + " is not a finite number");
+    point[static_cast<Eigen::Index>(k)] = *number;
+  }
+  return point;
+}
+
+std::vector<Vector3d> text_points(std::string_view text, const std::string& file,
+                                  FirstLine first_line) {
   std::vector<Vector3d> points;
-  internal::TextLines lines(text);
-  while (lines.next()) {
-    const auto refuse = [&](const std::string& reason) {
-      throw Error(file, "line " + std::to_string(lines.number()) + ": " + reason);
-    };
-    if (lines.words().size() < 3) refuse("has no x, y and z");
-    Vector3d point;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::optional<double> number = internal::finite_number(lines.words()[k]);
-      if (!number) refuse(internal::in_quotes(lines.words()[k]) + " is not a finite number");
-      point[static_cast<Eigen::Index>(k)] = *number;
+  std::optional<std::int64_t> count;
+  internal::TextLines lines(text, file);
+  for (bool is_first = true; lines.next(); is_first = false) {
+    if (is_first && first_line == FirstLine::kPointOrCount && lines.words().size() == 1) {
+      count = internal::whole_number(lines.words()[0]);
+      if (count) continue;
     }
-    points.push_back(point);
+    points.push_back(point_of(lines));
+  }
+  if (count && *count != static_cast<std::int64_t>(points.size())) {
+    throw Error(file, "its first line says " + std::to_string(*count) + " points, but it has " +
+                          std::to_string(points.size()));
   }
   return points;
 }
@@ -93,7 +108,8 @@ PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale)
     cloud.points = ply_points(data);
     is_rounded = data.is_text();
   } else {
-    cloud.points = text_points(content, file);
+    cloud.points = text_points(content, file,
+                               extension == ".pts" ? FirstLine::kPointOrCount : FirstLine::kPoint);
   }
   if (cloud.points.empty()) throw Error(file, "it has no points");
   double largest = 0.0;

@@ -30,7 +30,7 @@ class Reader {
 
   Trajectory read(std::string_view text) {
     trajectory_.width = static_cast<std::size_t>(robot_.variable_count());
-    internal::TextLines lines(text);
+    internal::TextLines lines(text, file_);
     bool first = true;
     while (lines.next()) {
       line_ = lines.number();

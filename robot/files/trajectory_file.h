@@ -44,10 +44,10 @@ enum class AngleUnit { kRadians, kDegrees };
 inline constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 // Reads a trajectory: text with a configuration on each line, numbers in radians and metres that
-// are separated by commas, semicolons or blanks. If the first line has a word that is no number, it
-// names the joints, in any order: each that moves and mimics no other once; a column named "time"
-// is passed over. Without it the numbers are those of a configuration, in their order. Empty lines
-// and what follows a # are passed over.
+// are separated by commas, semicolons or blanks, their decimals after a point. If the first line
+// has a word that is no number, it names the joints, in any order: each that moves and mimics no
+// other once; a column named "time" is passed over. Without it the numbers are those of a
+// configuration, in their order. Empty lines and what follows a # are passed over.
 //
 // Degrees are those of joints that turn, revolute and continuous ones; lengths stay metres. They
 // become radians as rounded to doubles, each within 4e-16 of itself of the exact ones: what is read
@@ -55,7 +55,8 @@ inline constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 //
 // Throws Error, whose subject is the file and whose reason names the line: for a file that cannot
 // be read, a joint that is unknown, fixed, a mimic, missing or there twice, a line with too few or
-// too many numbers, what is no finite number, and a file without configurations.
+// too many numbers, what is no finite number, a line with commas beside semicolons or beside blanks
+// that separate (they may be those of decimals), and a file without configurations.
 Trajectory read_trajectory(const std::filesystem::path& path, const RobotModel& robot,
                            AngleUnit angles = AngleUnit::kRadians);
 

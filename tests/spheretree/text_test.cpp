@@ -81,6 +81,18 @@ TEST(Text, NumbersAndTheirTexts) {
   EXPECT_EQ(internal::number_text(30.0), "30");
 }
 
+TEST(Text, Lines) {
+  const std::string text = "a\nb\r\n\rc\n\n\r\r\nd";
+  std::vector<std::string_view> lines;
+  std::string_view rest = text;
+  while (!rest.empty()) lines.push_back(internal::take_line(rest));
+  EXPECT_EQ(lines, (std::vector<std::string_view>{"a", "b", "", "c", "", "", "", "d"}));
+  EXPECT_EQ(internal::count_line_ends(text), 7U);
+  EXPECT_EQ(internal::count_line_ends("a\r"), 1U);
+  EXPECT_EQ(internal::count_line_ends(""), 0U);
+  EXPECT_EQ(internal::take_line(rest), "");
+}
+
 TEST(Text, WordsAndQuotes) {
   using Words = std::vector<std::string_view>;
   EXPECT_EQ(internal::words_of(" one\ttwo\r\n\nthree"), (Words{"one", "two", "three"}));

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/internal/text_lines.h"
 
+#include "spheretree/error.h"
+#include "spheretree/text.h"
+
 #include <algorithm>
 
 namespace spherule::internal {
@@ -13,6 +16,19 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlanks);
   if (first == text.npos) return {};
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+// Whether a comma may be the decimal one of a number, as in "0,5; 1,5" and "0,5 1,5": another mark
+// or a blank separates, too.
+bool has_doubtful_commas(std::string_view line) {
+  if (line.find(',') == line.npos) return false;
+  if (line.find(';') != line.npos) return true;
+  while (!line.empty()) {
+    const std::size_t mark = std::min(line.find(','), line.size());
+    if (trimmed(line.substr(0, mark)).find_first_of(kBlanks) != line.npos) return true;
+    line.remove_prefix(std::min(mark + 1, line.size()));
+  }
+  return false;
 }
 
 void split(std::string_view line, std::vector<std::string_view>& words) {
@@ -35,16 +51,23 @@ void split(std::string_view line, std::vector<std::string_view>& words) {
 bool TextLines::next() {
   while (!rest_.empty()) {
     ++number_;
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-    std::string_view line = rest_.substr(0, end);
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    std::string_view line = take_line(rest_);
     line = trimmed(line.substr(0, std::min(line.find('#'), line.size())));
     if (line.empty()) continue;
+    if (has_doubtful_commas(line)) {
+      refuse(
+          "has commas beside other separators; numbers are separated by commas, by semicolons or "
+          "by blanks, and their decimals are after a point");
+    }
     words_.clear();
     split(line, words_);
     return true;
   }
   return false;
+}
+
+void TextLines::refuse(const std::string& reason) const {
+  throw Error(file_, "line " + std::to_string(number_) + ": " + reason);
 }
 
 }  // namespace spherule::internal

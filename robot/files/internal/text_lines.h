@@ -2,28 +2,34 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace spherule::internal {
 
 // The lines of a text table that have something on them: words apart by blanks, tabs, commas or
 // semicolons; what follows a # is no part of a line. An empty cell, between two commas, is an empty
-// word. A byte order mark at the beginning is passed over.
+// word. A byte order mark at the beginning is passed over. Lines end as take_line() says.
 class TextLines {
  public:
-  explicit TextLines(std::string_view text) : rest_(text) {
+  TextLines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {
     if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
   }
 
-  // The next line with words; false at the end.
+  // The next line with words; false at the end. Throws Error for a line in which commas may be
+  // those of decimals: beside semicolons, or beside blanks that separate.
   bool next();
   // Of that line, counted from 1.
   std::size_t number() const { return number_; }
   const std::vector<std::string_view>& words() const { return words_; }
+  // Throws Error naming the file and that line.
+  [[noreturn]] void refuse(const std::string& reason) const;
 
  private:
   std::string_view rest_;
+  std::string file_;
   std::size_t number_ = 0;
   std::vector<std::string_view> words_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/internal/format_text.h"
 #include "robot/formats/internal/sphere_documents.h"
+#include "spheretree/text.h"
 
 #include <vector>
 
@@ -8,13 +9,6 @@ namespace spherule::internal {
 namespace {
 
 constexpr std::size_t kMostNodes = 100'000'000;
-
-std::string_view next_line(std::string_view& text) {
-  const std::size_t end = std::min(text.find('\n'), text.size());
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  return line;
-}
 
 bool is_count(double value) {
   return value >= 1.0 && value <= 64.0 && value == static_cast<double>(static_cast<int>(value));
@@ -32,13 +26,13 @@ std::optional<std::pair<std::size_t, std::size_t>> heading(std::string_view line
 }  // namespace
 
 bool is_bradshaw(std::string_view text) {
-  return heading(next_line(text)).has_value();
+  return heading(take_line(text)).has_value();
 }
 
 RobotSpheres read_bradshaw(std::string_view text, const std::string& file,
                            const SphereReadOptions& options) {
   SphereGatherer gathered(file);
-  const auto [levels, branch] = *heading(next_line(text));
+  const auto [levels, branch] = *heading(take_line(text));
   const std::size_t level = options.level.value_or(levels - 1);
   gathered.unless(level < levels, {}, "has only " + std::to_string(levels) + " levels");
   gathered.begin_link(options.link, {});
@@ -49,7 +43,7 @@ RobotSpheres read_bradshaw(std::string_view text, const std::string& file,
     for (std::size_t node = 0; node < width; ++node, ++line) {
       const std::string place = "line " + std::to_string(line);
       gathered.unless(!text.empty(), place, "a node is missing");
-      const auto row = numbers_of(next_line(text));
+      const auto row = numbers_of(take_line(text));
       gathered.unless(row && row->size() >= 5, place, "is not \"x y z r occupancy\"");
       // A node that is not used has a negative radius; it is none that is switched off.
       if (here != level || (*row)[3] < 0.0) continue;

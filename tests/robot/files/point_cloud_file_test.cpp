@@ -54,6 +54,48 @@ TEST_F(PointCloudFileTest, Text) {
   EXPECT_LE(cloud.point_error, 1e6 * 0x1p-50);
 }
 
+// A lone CR ends a line, as it does where old programs wrote the file; CR LF is one end.
+TEST_F(PointCloudFileTest, LinesEndWithEitherCharacterOrBoth) {
+  const std::vector<Vector3d> points = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  for (const std::string end : {"\n", "\r", "\r\n"}) {
+    EXPECT_EQ(read("scan.xyz", "# x y z" + end + "1 2 3" + end + "4 5 6" + end + "7 8 9").points,
+              points);
+    EXPECT_EQ(fault("scan.xyz", "1 2 3" + end + end + "4 5 6 # a" + end + "7 8" + end),
+              "line 4: has no x, y and z");
+    EXPECT_EQ(fault("scan.ply", "ply" + end + "format ascii 2.0" + end + "end_header" + end),
+              "line 2: '2.0' is not version 1.0 of the format");
+  }
+  EXPECT_EQ(read("scan.xyz", "1 2 3\r4 5 6\n7 8 9\r\n").points, points);
+}
+
+TEST_F(PointCloudFileTest, CommasThatMayBeOfDecimalsAreRefused) {
+  const std::string reason =
+      "has commas beside other separators; numbers are separated by commas, by semicolons or by "
+      "blanks, and their decimals are after a point";
+  for (const std::string line : {"0,300;0,010;0,020", "0,300 0,010 0,020", "0,300\t0,010\t0,020",
+                                 "0,3 ; 0,1 ; 0,2", "1 2,3"}) {
+    EXPECT_EQ(fault("scan.csv", "1 2 3\n" + line + "\n"), "line 2: " + reason) << line;
+  }
+  for (const std::string line : {"1,2,3", "1, 2 ,\t3", "1;2;3", "1 ; 2; 3", "1 2 3 # 4,5;6"}) {
+    EXPECT_EQ(read("scan.csv", line).points, std::vector{Vector3d(1, 2, 3)}) << line;
+  }
+}
+
+// As scanners write these files, and no others.
+TEST_F(PointCloudFileTest, PtsMayBeginWithTheirNumber) {
+  const std::vector<Vector3d> points = {{1, 2, 3}, {4, 5, 6}};
+  EXPECT_EQ(read("scan.pts", "2\n1 2 3 -1200 9 9 9\n4 5 6 -1200 9 9 9\n").points, points);
+  EXPECT_EQ(read("scan.PTS", " 2 \r1 2 3\r4 5 6").points, points);
+  EXPECT_EQ(read("scan.pts", "1 2 3\n4 5 6\n").points, points);
+  for (const std::string count : {"1", "3", "-2"}) {
+    EXPECT_EQ(fault("scan.pts", count + "\n1 2 3\n4 5 6\n"),
+              "its first line says " + count + " points, but it has 2");
+  }
+  EXPECT_EQ(fault("scan.pts", "2.5\n1 2 3\n"), "line 1: has no x, y and z");
+  EXPECT_EQ(fault("scan.pts", "1\n1 2 3\n1\n1 2 3\n"), "line 3: has no x, y and z");
+  EXPECT_EQ(fault("scan.xyz", "2\n1 2 3\n4 5 6\n"), "line 1: has no x, y and z");
+}
+
 TEST_F(PointCloudFileTest, ScalesAndSaysWhatThatCosts) {
   const PointCloudFile cloud = read("scan.txt", "1 2 3\n", 0.001);
   EXPECT_EQ(cloud.points[0], Vector3d(1.0, 2.0, 3.0) * 0.001);

@@ -86,6 +86,14 @@ TEST_F(TrajectoryFileTest, WithAHeaderInAnyOrder) {
   EXPECT_EQ(path.lines, (std::vector<std::size_t>{2, 3}));
 }
 
+TEST_F(TrajectoryFileTest, LinesEndWithEitherCharacterOrBoth) {
+  for (const std::string end : {"\n", "\r", "\r\n"}) {
+    const Trajectory path = read("time,c,a" + end + "0,1,2" + end + end + "0.1,3,4" + end);
+    EXPECT_EQ(path.positions, (std::vector<double>{2, 1, 4, 3}));
+    EXPECT_EQ(path.lines, (std::vector<std::size_t>{2, 4}));
+  }
+}
+
 // A column of that name is of the joint where there is one.
 TEST_F(TrajectoryFileTest, AJointMayBeCalledTime) {
   RobotModel robot("base");
@@ -102,6 +110,8 @@ TEST_F(TrajectoryFileTest, RefusesWithTheLine) {
   EXPECT_EQ(fault("time,a,c\n1,2\n"), "line 2: has 2 numbers instead of 3");
   EXPECT_EQ(fault("1,2\n3,x\n"), "line 2: 'x' is not a finite number");
   EXPECT_EQ(fault("1,2\n3,\n"), "line 2: '' is not a finite number");
+  EXPECT_TRUE(fault("1,5;2\n").starts_with("line 1: has commas beside other separators"));
+  EXPECT_TRUE(fault("1 2\n1 ,5 2\n").starts_with("line 2: has commas beside other separators"));
   EXPECT_EQ(fault("1,nan\n"), "line 1: 'nan' is not a finite number");
   EXPECT_EQ(fault("1,-inf\n"), "line 1: '-inf' is not a finite number");
   EXPECT_EQ(fault("1,2\n1e999,2\n"), "line 2: '1e999' is not a finite number");
