@@ -89,6 +89,8 @@ int run_guarded(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Beyond a limit of file sizes a write is an error then, which names the file.
   std::signal(SIGXFSZ, SIG_IGN);
+  // Where the parent ignores it, nobody learns how the readers of STEP files and xacro end.
+  std::signal(SIGCHLD, SIG_DFL);
   spherule::keep_memory_reserve();
   return spherule::run_guarded(argc, argv);
 }

@@ -207,4 +207,19 @@ std::string read_file(const fs::path& path) {
   }
 }
 
+void require_regular_file(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw Error(path.string(), "is not a regular file");
+  }
+}
+
+fs::path absolute_path(const fs::path& path) {
+  std::error_code error;
+  fs::path absolute = fs::absolute(path, error);
+  if (error) throw Error(path.string(), "no working directory: " + error.message());
+  return absolute;
+}
+
 }  // namespace spherule

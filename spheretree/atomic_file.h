@@ -38,4 +38,12 @@ void check_writable(const std::filesystem::path& path);
 // All bytes of a file (regular, or a pipe up to its end). Throws Error naming the file.
 std::string read_file(const std::filesystem::path& path);
 
+// For names that stand in other files: throws Error naming the file, before it is opened, if it is
+// there and, links followed, no regular file. A pipe could be waited for without an end.
+void require_regular_file(const std::filesystem::path& path);
+
+// The path from the root on. Throws Error naming it, where it begins in the working directory and
+// that is no longer there.
+std::filesystem::path absolute_path(const std::filesystem::path& path);
+
 }  // namespace spherule

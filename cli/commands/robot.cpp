@@ -59,17 +59,19 @@ RobotFilePlan plan_of(const RobotArguments& arguments) {
 
 // Refuses places that cannot be written, before long work is done for nothing. A folder that is not
 // there is made, but only once there is something to put into it.
-void check_places(const RobotArguments& arguments, const std::vector<fs::path>& outputs) {
-  std::vector<fs::path> inputs = {arguments.urdf, arguments.srdf, arguments.curobo, arguments.xrdf};
-  check_outputs({arguments.view}, inputs);
+void check_places(const RobotArguments& arguments, std::vector<fs::path> outputs) {
+  std::vector<fs::path> inputs = zone_files(arguments.links);
+  inputs.insert(inputs.end(), {arguments.urdf, arguments.srdf, arguments.curobo, arguments.xrdf,
+                               arguments.false_alarms.poses.file});
   std::error_code fault;
   if (fs::exists(arguments.folder, fault)) {
     if (!fs::is_directory(arguments.folder, fault)) {
       throw Error(arguments.folder, "is not a folder");
     }
+    outputs.emplace_back(arguments.view);
     check_outputs(outputs, inputs);
   } else {
-    check_outputs({arguments.folder}, inputs);
+    check_outputs({arguments.folder, arguments.view}, inputs);
   }
 }
 

@@ -15,8 +15,9 @@ namespace fs = std::filesystem;
 
 fs::path place_of(const fs::path& path) {
   std::error_code error;
-  const fs::path place = fs::weakly_canonical(fs::absolute(path), error);
-  return error ? fs::absolute(path).lexically_normal() : place;
+  const fs::path absolute = absolute_path(path);
+  const fs::path place = fs::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : place;
 }
 
 }  // namespace
@@ -29,7 +30,7 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
   for (const fs::path& output : outputs) {
     if (output.empty()) continue;
     std::error_code error;
-    const fs::path folder = fs::absolute(output).parent_path();
+    const fs::path folder = absolute_path(output).parent_path();
     if (!fs::is_directory(folder, error))
       throw Error(output.string(), "no such folder; make it first");
     if (fs::is_directory(output, error)) throw Error(output.string(), "is a folder");

@@ -14,6 +14,8 @@
 namespace spherule {
 namespace {
 
+constexpr const char* kZones = "zones";
+
 // Splits at the first `separator`; nothing where either side is empty.
 std::optional<std::pair<std::string, std::string>> split(const std::string& text, char separator) {
   const std::size_t at = text.find(separator);
@@ -37,7 +39,7 @@ void set(LinkCoverOptions& options, const std::string& setting, const std::strin
   const auto pair = split(setting, '=');
   if (!pair) throw Error(subject, "'" + setting + "' is not NAME=VALUE");
   const auto& [name, value] = *pair;
-  if (name == "zones") {
+  if (name == kZones) {
     if (!options.zones.empty()) throw Error(subject, "zones is given twice");
     options.zones = read_zones(value);
     return;
@@ -128,6 +130,19 @@ std::map<std::string, LinkCoverOptions> link_options(const std::vector<std::stri
     }
   }
   return links;
+}
+
+std::vector<std::filesystem::path> zone_files(const std::vector<std::string>& texts) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& text : texts) {
+    const auto link = split(text, ':');
+    if (!link) continue;
+    for (const std::string& setting : parts(link->second)) {
+      const auto pair = split(setting, '=');
+      if (pair && pair->first == kZones) files.emplace_back(pair->second);
+    }
+  }
+  return files;
 }
 
 }  // namespace spherule

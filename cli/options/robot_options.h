@@ -4,6 +4,7 @@
 #include "robot/cover/robot_spheres.h"
 #include "robot/files/urdf.h"
 
+#include <filesystem>
 #include <map>
 #include <span>
 #include <string>
@@ -44,5 +45,8 @@ LinkGeometry geometry_named(const std::string& name);
 // link add up. Throws Error for a text that is not of this form, a value that is no number, one
 // given twice, and as read_zones().
 std::map<std::string, LinkCoverOptions> link_options(const std::vector<std::string>& texts);
+
+// The files of zones that such texts name.
+std::vector<std::filesystem::path> zone_files(const std::vector<std::string>& texts);
 
 }  // namespace spherule

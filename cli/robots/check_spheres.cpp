@@ -37,6 +37,7 @@ SphereRobot read_sphere_robot(const std::string& file, const RobotDescription& r
   if (is_of_one_mesh(spheres)) throw Error(file, kNameItsLink);
   RobotSpheres read = std::move(spheres.spheres);
   require_known_links(robot.model, file, read, ignores_unknown_links);
+  warn_of_other_geometry(file, read);
   const auto is_unknown = [&](const std::string& link) { return robot.model.find_link(link) < 0; };
   std::erase_if(read.links, [&](const LinkSpheres& link) { return is_unknown(link.link); });
   std::erase_if(read.self_collision_ignore, [&](const DisabledPair& pair) {

@@ -6,12 +6,12 @@
 #include "robot/pairs/link_pairs_file.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 #include "spheretree/tree_file.h"
 
 #include <climits>
 
 #include <algorithm>
-#include <cstdlib>
 #include <optional>
 #include <system_error>
 
@@ -22,9 +22,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* kTree = "tree";
 
-std::string checked_name(const std::string& name) {
+std::string checked_name(const std::string& name, const fs::path& urdf) {
   if (name.empty() || name.find_first_of(std::string("/\0", 2)) != std::string::npos) {
-    throw Error("'" + name + "'", "cannot be part of the name of a file");
+    throw Error(urdf.string(),
+                "the name " + internal::in_quotes(name) + " cannot be part of that of a file");
   }
   return name;
 }
@@ -54,18 +55,6 @@ std::string last_link(const RobotModel& model) {
   }
 }
 
-SphereFileContext context_of(const RobotFilePlan& plan, const RobotDescription& robot) {
-  SphereFileContext context;
-  context.base_link = robot.model.links().front().name;
-  context.tool_link = plan.tool_link.empty() ? last_link(robot.model) : plan.tool_link;
-  context.joint_positions = rest_posture(robot.model).configuration;
-  for (const int index : robot.model.variable_joints()) {
-    const Joint& joint = robot.model.joints()[static_cast<std::size_t>(index)];
-    context.joint_names.push_back(joint.name);
-  }
-  return context;
-}
-
 fs::path original(const RobotFilePlan& plan, SphereFormat format) {
   switch (format) {
     case SphereFormat::kSrdf:
@@ -79,6 +68,21 @@ fs::path original(const RobotFilePlan& plan, SphereFormat format) {
   }
 }
 
+SphereFileContext context_of(const RobotFilePlan& plan, const RobotDescription& robot,
+                             SphereFormat format) {
+  SphereFileContext context;
+  context.urdf = format == SphereFormat::kCurobo ? plan.curobo_urdf(robot) : plan.urdf;
+  context.original = original(plan, format);
+  context.base_link = robot.model.links().front().name;
+  context.tool_link = plan.tool_link.empty() ? last_link(robot.model) : plan.tool_link;
+  context.joint_positions = rest_posture(robot.model).configuration;
+  for (const int index : robot.model.variable_joints()) {
+    const Joint& joint = robot.model.joints()[static_cast<std::size_t>(index)];
+    context.joint_names.push_back(joint.name);
+  }
+  return context;
+}
+
 bool writes(const RobotFilePlan& plan, SphereFormat format) {
   return std::ranges::any_of(
       plan.formats, [&](const std::string& name) { return sphere_format_named(name) == format; });
@@ -87,36 +91,6 @@ bool writes(const RobotFilePlan& plan, SphereFormat format) {
 bool is_for_xacro(const fs::path& urdf) {
   return urdf.extension() == ".xacro";
 }
-
-// The text with one folder in the place of another.
-std::string moved(std::string text, const fs::path& from, const fs::path& to) {
-  for (std::size_t at = text.find(from.string()); at != std::string::npos;
-       at = text.find(from.string(), at + to.string().size())) {
-    text.replace(at, from.string().size(), to.string());
-  }
-  return text;
-}
-
-// An empty folder that vanishes with the object.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string pattern = (fs::temp_directory_path() / "spherule-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw Error(pattern, "cannot be made");
-    path_ = pattern;
-  }
-  ~ScratchFolder() {
-    std::error_code fault;
-    fs::remove_all(path_, fault);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 }  // namespace
 
@@ -134,15 +108,15 @@ bool RobotFilePlan::names_xacro_for_curobo(const RobotDescription& robot) const 
 }
 
 fs::path RobotFilePlan::report(const RobotDescription& robot) const {
-  return folder / (checked_name(robot.name) + ".report.json");
+  return folder / (checked_name(robot.name, urdf) + ".report.json");
 }
 
 fs::path RobotFilePlan::pairs(const RobotDescription& robot) const {
-  return folder / (checked_name(robot.name) + ".pairs");
+  return folder / (checked_name(robot.name, urdf) + ".pairs");
 }
 
 fs::path RobotFilePlan::tree(const RobotDescription& robot, const std::string& link) const {
-  return folder / (checked_name(robot.name) + "." + checked_name(link) + ".tree");
+  return folder / (checked_name(robot.name, urdf) + "." + checked_name(link, urdf) + ".tree");
 }
 
 std::vector<fs::path> RobotFilePlan::all(const RobotDescription& robot,
@@ -168,10 +142,6 @@ std::vector<fs::path> RobotFilePlan::all(const RobotDescription& robot,
 
 void rehearse_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
                           const std::vector<std::string>& links) {
-  const ScratchFolder folder;
-  RobotFilePlan rehearsal = plan;
-  rehearsal.folder = folder.path();
-  std::erase(rehearsal.formats, kTree);
   RobotSpheres spheres;
   spheres.robot = robot.name;
   for (const std::string& link : links) {
@@ -180,11 +150,11 @@ void rehearse_robot_files(const RobotFilePlan& plan, const RobotDescription& rob
     }
     spheres.links.push_back({link, {Sphere{Eigen::Vector3d::Zero(), 1.0}}});
   }
-  try {
-    write_robot_files(rehearsal, robot, spheres, nullptr);
-  } catch (const Error& error) {
-    throw Error(moved(error.subject(), folder.path(), plan.folder),
-                moved(error.reason(), folder.path(), plan.folder));
+  for (const std::string& name : plan.formats) {
+    const std::optional<SphereFormat> format = sphere_format_named(name);
+    if (!format) continue;  // trees and proofs can always be written
+    check_robot_spheres(spheres, *format, context_of(plan, robot, *format),
+                        plan.folder / sphere_file_name(robot.name, *format));
   }
 }
 
@@ -193,7 +163,6 @@ void write_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
   std::error_code fault;
   fs::create_directory(plan.folder, fault);
   if (fault) throw Error(plan.folder.string(), fault.message());
-  SphereFileContext context = context_of(plan, robot);
   for (const std::string& name : plan.formats) {
     if (name == kTree) {
       for (const LinkSpheres& link : spheres.links) {
@@ -207,9 +176,7 @@ void write_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
       continue;
     }
     const SphereFormat format = *sphere_format_named(name);
-    context.urdf = format == SphereFormat::kCurobo ? plan.curobo_urdf(robot) : plan.urdf;
-    context.original = original(plan, format);
-    write_robot_spheres(spheres, format, context,
+    write_robot_spheres(spheres, format, context_of(plan, robot, format),
                         plan.folder / sphere_file_name(robot.name, format));
   }
 }

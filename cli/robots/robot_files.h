@@ -43,9 +43,8 @@ struct RobotFilePlan {
 };
 
 // Throws what write_robot_files() would throw whatever the spheres, before long work is done for
-// nothing: for a file to be kept that cannot be read, a name that a format cannot hold. It writes
-// files of one sphere a link, in which all pairs are ignored, into a folder of its own and removes
-// them; errors name them where they are to be.
+// nothing: for a file to be kept that cannot be read, a name that a format cannot hold. It makes
+// the texts of files of one sphere a link, in which all pairs are ignored, and writes none.
 void rehearse_robot_files(const RobotFilePlan& plan, const RobotDescription& robot,
                           const std::vector<std::string>& links);
 

@@ -56,9 +56,17 @@ void require_known_links(const RobotModel& robot, const std::string& file,
   warn(file + ": " + what + "; they are left out");
 }
 
+void warn_of_other_geometry(const std::string& file, const RobotSpheres& spheres) {
+  if (spheres.self_collision_geometry.empty()) return;
+  warn(file + ": the geometry " + internal::in_quotes(spheres.self_collision_geometry) +
+       " that it names for self-collisions is not read: these are checked with the spheres of the "
+       "geometry for collisions, too");
+}
+
 SphereInput read_spheres_of(const RobotDescription& robot, LinkGeometry geometry,
                             const std::string& file, const SphereReadOptions& options) {
   SphereInput input{read_robot_spheres(file, options)};
+  warn_of_other_geometry(file, input.file.spheres);
   if (is_of_one_mesh(input.file)) {
     input.file.spheres.links.front().link = only_link(robot, geometry, file);
     input.names_links = false;

@@ -32,8 +32,11 @@ void add_unknown_links_flag(CLI::App& command, bool& ignores);
 void require_known_links(const RobotModel& robot, const std::string& file,
                          const RobotSpheres& spheres, bool ignores);
 
-// As read_robot_spheres(). Spheres of one mesh are those of the only link with such geometry.
-// Throws Error if none has it, or several.
+// Warns if the file names another geometry for self-collisions, which no command reads.
+void warn_of_other_geometry(const std::string& file, const RobotSpheres& spheres);
+
+// As read_robot_spheres(), with that warning. Spheres of one mesh are those of the only link with
+// such geometry. Throws Error if none has it, or several.
 SphereInput read_spheres_of(const RobotDescription& robot, LinkGeometry geometry,
                             const std::string& file, const SphereReadOptions& options = {});
 

@@ -8,6 +8,7 @@
 #include "robot/files/point_cloud_file.h"
 #include "robot/files/srdf.h"
 #include "robot/pairs/allowed_collisions.h"
+#include "spheretree/atomic_file.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -132,6 +133,7 @@ class Preparation {
  private:
   void allow_disabled_pairs() {
     if (!description_.srdf) return;
+    require_regular_file(*description_.srdf);
     AllowedCollisions allowed = scene_.allowed_collisions();
     for (const DisabledPair& pair : read_srdf(*description_.srdf).disabled_pairs) {
       const RobotModel& robot = scene_.robot();
@@ -176,11 +178,15 @@ class Preparation {
 
   SharedTree tree_of(const SpheresSource& source) {
     return spheres_.get(key_of(source.path), [&] {
+      require_regular_file(source.path);
       return shared(build_tree(internal::load_spheres_in_metres(source.path)));
     });
   }
   SharedTree tree_of(const TreeSource& source) {
-    return trees_.get(key_of(source.path), [&] { return shared(load_tree(source.path)); });
+    return trees_.get(key_of(source.path), [&] {
+      require_regular_file(source.path);
+      return shared(load_tree(source.path));
+    });
   }
 
   template <class Source>
@@ -227,6 +233,7 @@ class Preparation {
 }  // namespace
 
 std::vector<Sphere> point_spheres(const PointsSource& source) {
+  require_regular_file(source.path);
   const PointCloudFile cloud = read_point_cloud(source.path, source.scale);
   return point_cloud_spheres(cloud.points, add_up(source.radius, cloud.point_error),
                              {.voxel = source.voxel});

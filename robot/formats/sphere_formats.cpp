@@ -117,6 +117,13 @@ std::string written(const RobotSpheres& spheres, SphereFormat format,
   }
 }
 
+std::string checked_text(const RobotSpheres& spheres, SphereFormat format,
+                         const SphereFileContext& context, const fs::path& path) {
+  check_writable(spheres, format, path.string());
+  check_context(context, format, path.string());
+  return written(spheres, format, context, path);
+}
+
 // An SRDF's pairs and spheres; a radius of zero is its way to say that there is none.
 RobotSpheres read_sphere_srdf(const fs::path& path) {
   const SemanticDescription semantics = read_srdf(path);
@@ -205,9 +212,12 @@ std::vector<LinkSpheres> shrunk_by_buffers(const RobotSpheres& spheres) {
 
 void write_robot_spheres(const RobotSpheres& spheres, SphereFormat format,
                          const SphereFileContext& context, const fs::path& path) {
-  check_writable(spheres, format, path.string());
-  check_context(context, format, path.string());
-  write_file_atomically(path, written(spheres, format, context, path));
+  write_file_atomically(path, checked_text(spheres, format, context, path));
+}
+
+void check_robot_spheres(const RobotSpheres& spheres, SphereFormat format,
+                         const SphereFileContext& context, const fs::path& path) {
+  checked_text(spheres, format, context, path);
 }
 
 }  // namespace spherule

@@ -40,6 +40,9 @@ struct RobotSpheres {
   std::vector<DisabledPair> self_collision_ignore = {};
   // By how much the spheres of a link are grown in self-collision checks, metres; cuRobo and XRDF.
   std::map<std::string, double> self_collision_buffer = {};
+  // The geometry that is meant for self-collision checks where it is another one than that of
+  // `links`, which is all that is read; XRDF alone has it.
+  std::string self_collision_geometry = {};
   // By how much they are grown in checks against the world: all (cuRobo), or each link's (XRDF; of
   // cuRobo where it is not one number).
   double collision_buffer = 0.0;
@@ -103,7 +106,8 @@ struct SphereFormatFile {
 //   radius is grown by the bound of the rounding, so that the sphere read contains the sphere
 //   meant. Links that have other shapes and no sphere are not in `links`.
 // - cuRobo: also a file whose `collision_spheres` names another file, relative to it.
-// - XRDF: the geometry that `collision` names.
+// - XRDF: the geometry that `collision` names. One that `self_collision` names has to be there,
+// too.
 // - A radius of zero or below switches a sphere off, and so does its link's absence from cuRobo's
 //   collision_link_names: it is left out and counted. (In SRDF a radius of zero says that the link
 //   has no spheres, and one below zero is refused; in our own formats only the latter.) Shapes that
@@ -154,6 +158,11 @@ struct SphereFileContext {
 // links that the URDF does not have, an SRDF whose text cannot be kept as it is not well-formed
 // XML, and files that cannot be read or written.
 void write_robot_spheres(const RobotSpheres& spheres, SphereFormat format,
+                         const SphereFileContext& context, const std::filesystem::path& path);
+
+// Throws the Error that write_robot_spheres() would throw for what it is given, but for the place
+// of the file; writes nothing.
+void check_robot_spheres(const RobotSpheres& spheres, SphereFormat format,
                          const SphereFileContext& context, const std::filesystem::path& path);
 
 }  // namespace spherule

@@ -102,7 +102,7 @@ void move_files(XMLElement& element, const fs::path& old_folder, const fs::path&
 }
 
 fs::path folder_of(const fs::path& file) {
-  return fs::weakly_canonical(fs::absolute(file).parent_path());
+  return fs::weakly_canonical(absolute_path(file).parent_path());
 }
 
 }  // namespace

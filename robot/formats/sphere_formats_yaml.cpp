@@ -98,6 +98,7 @@ void read_curobo(const YamlMembers& root, const fs::path& path, SphereGatherer& 
     const fs::path side = path.parent_path() / spheres->Scalar();
     const std::string text = [&] {
       try {
+        require_regular_file(side);
         return read_file(side);
       } catch (const Error& error) {
         gathered.refuse("\"collision_spheres\"", error.what());
@@ -147,6 +148,12 @@ void read_xrdf(const YamlMembers& root, SphereGatherer& gathered) {
   gathered.spheres.self_collision_buffer =
       read_buffers(members_if_there(self, "buffer_distance", gathered), gathered);
   read_ignored(members_if_there(self, "ignore", gathered), gathered);
+  const auto own = find_member(self, "geometry");
+  if (!own) return;
+  const std::string own_name = yaml_scalar(*own, "the name of a geometry", gathered);
+  gathered.unless(find_member(geometries, own_name).has_value(), place_of(*own),
+                  "has no geometry \"" + own_name + "\"");
+  if (own_name != name) gathered.spheres.self_collision_geometry = own_name;
 }
 
 }  // namespace

@@ -380,6 +380,18 @@ TEST_F(RobotTest, NothingThatIsReadIsOverwritten) {
   expect_refusal({"robot", "arm_1.spheres.urdf", "-o", ".", "--package", "parts=parts"},
                  "arm_1.spheres.urdf: is named twice");
   EXPECT_EQ(read("arm_1.spheres.urdf"), kRobot);
+  const auto expect_kept = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> line = {"robot", "arm_1.spheres.urdf", "-o",
+                                     "out",   "--package",          "parts=parts"};
+    line.insert(line.end(), more.begin(), more.end());
+    expect_refusal(line, file + ": is named twice");
+  };
+  expect_kept("poses.csv", {"--poses", "poses.csv", "--view", "poses.csv"});
+  write("z.json", R"({"format":"spherule-zones","version":1,"zones":[
+    {"shape":"ball","center":[0,0,0],"radius":0.1,"max_error":0.005}]})");
+  expect_kept("./z.json", {"--link", "base:padding=0.01,zones=z.json", "--view", "./z.json"});
+  fs::create_directory(folder_ / "out");
+  expect_kept("out/arm_1.report.json", {"--view", "out/arm_1.report.json"});
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Commands on a robot whose URDF the program xacro makes: a stand-in for it on the PATH.
 #include "tests/cli/command_test_support.h"
+#include "tests/support/child_process.h"
 #include "tests/support/effort.h"
 
 #include <cstdlib>
@@ -80,6 +81,14 @@ TEST_F(XacroCommand, TheCuroboFileNamesTheUrdfThatIsWritten) {
   write("mine.yml", read("alone/arm.curobo.yml"));
   EXPECT_EQ(run_with({"-o", "kept", "--format", "curobo", "--curobo", "mine.yml"}).find("cuRobo"),
             std::string::npos);
+}
+
+// Some managers of services ignore the ends of their children, which is inherited.
+TEST_F(XacroCommand, RunsWhereTheParentIgnoresTheEndsOfChildren) {
+  const Outcome outcome = finish(start_process(
+      "/usr/bin/env", {"--ignore-signal=CHLD", SPHERULE_COMMAND, "info", "arm.urdf.xacro"},
+      {.folder = folder_, .out = ".out", .error = ".err"}));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
 }  // namespace

@@ -164,5 +164,20 @@ TEST_F(AtomicFile, ReadRefusesWhatIsNoFile) {
   }
 }
 
+TEST_F(AtomicFile, OnlyRegularFilesAreForNamesInFiles) {
+  write_file_atomically(path("file"), "old");
+  fs::create_symlink("file", path("link"));
+  fs::create_symlink("pipe", path("link to pipe"));
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  for (const fs::path& good : {path("file"), path("link"), path("missing")}) {
+    EXPECT_NO_THROW(require_regular_file(good)) << good;
+  }
+  for (const fs::path& bad :
+       {path("pipe"), path("link to pipe"), path(""), fs::path("/dev/zero")}) {
+    EXPECT_EQ(error_of([&] { require_regular_file(bad); }),
+              bad.string() + ": is not a regular file");
+  }
+}
+
 }  // namespace
 }  // namespace spherule::test

@@ -2,6 +2,7 @@
 #include "robot/files/internal/mesh_path.h"
 
 #include "robot/files/internal/xml_file.h"
+#include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ std::string package_name(const fs::path& folder) {
 }  // namespace
 
 MeshPaths::MeshPaths(const fs::path& urdf, const UrdfOptions& options)
-    : folder_(fs::absolute(urdf).parent_path()), packages_(options.packages) {}
+    : folder_(absolute_path(urdf).parent_path()), packages_(options.packages) {}
 
 fs::path MeshPaths::package_root(const std::string& package) {
   if (!missing_.contains(package)) {

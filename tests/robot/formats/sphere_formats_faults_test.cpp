@@ -140,6 +140,10 @@ TEST_F(SphereFormatFaults, Yaml) {
                  "no geometry \"g\"");
   expect_refusal("format: xrdf\nformat_version: 1.0\ncollision: {geometry: g}\ngeometry: {g: {}}",
                  "the geometry has no spheres");
+  expect_refusal(
+      "format: xrdf\nformat_version: 1.0\ncollision: {geometry: g}\n"
+      "geometry: {g: {spheres: {}}}\nself_collision: {geometry: h}",
+      "line 5: has no geometry \"h\"");
 }
 
 TEST_F(SphereFormatFaults, Json) {

@@ -10,6 +10,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -46,6 +47,9 @@ TEST(ReadSpheres, OfOneMesh) {
       "1 1 1 8 1\n1 1 1 8 1\n1 1 1 8 1\n";
   expect_two(tree, 1);
   EXPECT_EQ(read(tree).links[0].spheres.size(), 6U);
+  std::string old = tree;
+  std::replace(old.begin(), old.end(), '\n', '\r');
+  expect_two(old, 1);
 }
 
 TEST(ReadSpheres, ByLinks) {
@@ -158,6 +162,18 @@ TEST(ReadSpheres, LinksThatAreNoSpheres) {
       "fixed");
   EXPECT_EQ(off.switched_off, 1U);
   EXPECT_EQ(off.links[0].spheres.size(), 1U);
+}
+
+// Only the spheres of the geometry for collisions are read; that another one is meant is told.
+TEST(ReadSpheres, AnotherGeometryForSelfCollisions) {
+  const auto geometry_for = [](const std::string& self_collision) {
+    return read("format: xrdf\nformat_version: 1.0\ncollision: {geometry: g}\n" + self_collision +
+                "geometry:\n  g: {spheres: {a: []}}\n  own: {spheres: {b: []}}\n")
+        .self_collision_geometry;
+  };
+  EXPECT_EQ(geometry_for(""), "");
+  EXPECT_EQ(geometry_for("self_collision: {geometry: g}\n"), "");
+  EXPECT_EQ(geometry_for("self_collision: {geometry: own}\n"), "own");
 }
 
 TEST(ShrunkByBuffers, TakesTheOwnBufferBeforeTheCommonOne) {
