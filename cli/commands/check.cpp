@@ -117,10 +117,11 @@ std::string advice(const CheckArguments& arguments, const CheckReport& report) {
   if (pairs.empty()) return {};
   std::string text;
   for (const TouchingPair& pair : pairs) {
-    text += pair.first.contact.first.name + " and " + pair.first.contact.second.name +
+    text += one_line(pair.first.contact.first.name + " and " + pair.first.contact.second.name) +
             " touch all the time\n";
   }
-  text += "where they may, name them under \"allowed_contacts\" in " + arguments.scene + "\n";
+  text +=
+      "where they may, name them under \"allowed_contacts\" in " + one_line(arguments.scene) + "\n";
   if (!arguments.spheres.empty()) return text;  // how coarse they are is not known
   const CheckArguments defaults;
   std::vector<std::string> finer = {"check", arguments.urdf, arguments.scene,

@@ -8,6 +8,7 @@
 #include "cli/options/threads_option.h"
 #include "cli/robots/pair_report.h"
 #include "cli/text/exit_code.h"
+#include "cli/text/message.h"
 #include "cli/text/progress.h"
 #include "cli/text/units.h"
 #include "robot/cover/link_bodies.h"
@@ -90,7 +91,8 @@ std::string describe(const SrdfJudgement& judgement, const RobotModel& robot) {
     out << "could be disabled, too (proved never to touch):\n";
   }
   for (const auto& [first, second] : judgement.could_be_added) {
-    out << "  " << link_name(robot, first) << " and " << link_name(robot, second) << "\n";
+    out << "  " << one_line(link_name(robot, first)) << " and "
+        << one_line(link_name(robot, second)) << "\n";
   }
   return out.str();
 }

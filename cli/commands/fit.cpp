@@ -141,7 +141,7 @@ void print_result(const std::string& file, const Simplification& result,
     std::cout << "zones along sharp concave edges: " << result.external.concave_edges.size()
               << "\n";
   }
-  std::cout << file << ": " << result.cover.spheres.size() << " spheres\n"
+  std::cout << one_line(file) << ": " << result.cover.spheres.size() << " spheres\n"
             << (result.interrupted ? std::string(kInterruptedSearch) + "\n" : "")
             << describe(result.certificate, "the simplified solid") << describe(result.levels)
             << (breakdown ? describe(*breakdown) : "") << describe_lower_bound(result)

@@ -9,6 +9,7 @@
 #include "cli/robots/info_robot.h"
 #include "cli/text/exit_code.h"
 #include "cli/text/json.h"
+#include "cli/text/message.h"
 #include "mesh/mesh_report.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/check.h"
@@ -23,6 +24,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <variant>
 
@@ -46,15 +48,17 @@ void print_spheres(const SphereFile& file) {
   if (file.interrupted) std::cout << kInterruptedSearch << "\n";
   if (!file.bodies.empty()) std::cout << "bodies: " << file.bodies.size() << "\n";
   for (const BodyRecord& body : file.bodies) {
-    std::cout << "  " << body.name << ": " << body.sphere_count << " spheres, "
+    std::cout << "  " << one_line(body.name) << ": " << body.sphere_count << " spheres, "
               << (body.certificate && body.certificate->covered ? "covered" : "not covered");
-    if (body.copy) std::cout << ", copy of " << file.bodies[body.copy->of].name;
+    if (body.copy) std::cout << ", copy of " << one_line(file.bodies[body.copy->of].name);
     if (body.interrupted) std::cout << ", interrupted";
     std::cout << "\n";
   }
   for (const auto& [name, value] : file.options) {
-    std::cout << "option " << name << ": ";
-    std::visit([](const auto& v) { std::cout << v << "\n"; }, value);
+    std::ostringstream text;
+    text << "option " << name << ": ";
+    std::visit([&](const auto& v) { text << v; }, value);
+    std::cout << one_line(text.str()) << "\n";
   }
   if (!file.certificate) {
     std::cout << "certificate: none\n";
@@ -129,11 +133,11 @@ int info(const std::string& file) {
       print_model(file);
       break;
     case FileKind::kReport:
-      std::cout << offer_for(kind, file) << "\n";
+      std::cout << one_line(offer_for(kind, file)) << "\n";
       if (is_interrupted_report(file)) std::cout << kInterruptedSearch << "\n";
       break;
     default:
-      std::cout << offer_for(kind, file) << "\n";
+      std::cout << one_line(offer_for(kind, file)) << "\n";
   }
   return kYes;
 }

@@ -5,6 +5,7 @@
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
 #include "cli/text/exit_code.h"
+#include "cli/text/message.h"
 #include "cli/text/next_step.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
@@ -33,8 +34,9 @@ int make_tree(TreeArguments& arguments) {
   if (file.spheres.empty()) throw Error(arguments.spheres, "holds no spheres");
   const SphereTree tree = build_tree(file.spheres);
   write_uninterrupted([&] { save_tree(tree, arguments.tree); });
-  std::cout << arguments.tree << ": " << tree.spheres().size() << " spheres, " << tree.node_count()
-            << " nodes, depth " << tree.depth() << ", branching " << tree.branching() << "\n"
+  std::cout << one_line(arguments.tree) << ": " << tree.spheres().size() << " spheres, "
+            << tree.node_count() << " nodes, depth " << tree.depth() << ", branching "
+            << tree.branching() << "\n"
             << describe(
                    {{{"collide", arguments.tree, "OTHER.tree", "--pose-b", "x y z qx qy qz qw"},
                      "does it touch another part?"}});

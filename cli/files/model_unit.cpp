@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/model_unit.h"
 
+#include "cli/text/message.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
@@ -105,7 +106,7 @@ void note_cad_unit(const std::string& stated, ModelUnit& unit) {
 
 std::string describe(const ModelUnit& unit) {
   if (!unit.micrometres) return {};
-  return "unit: " + name_of_size(*unit.micrometres) + " (" + unit.origin + ")\n";
+  return "unit: " + name_of_size(*unit.micrometres) + " (" + one_line(unit.origin) + ")\n";
 }
 
 Json to_json(const ModelUnit& unit) {

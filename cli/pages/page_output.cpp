@@ -2,6 +2,7 @@
 #include "cli/pages/page_output.h"
 
 #include "cli/files/interruption.h"
+#include "cli/text/message.h"
 #include "spheretree/atomic_file.h"
 
 #include <filesystem>
@@ -14,8 +15,8 @@ void write_page(const std::string& page, const ViewScene& scene) {
 }
 
 std::string page_line(const std::string& page) {
-  return "page: " + page + " (" + std::to_string(std::filesystem::file_size(page) / 1024) +
-         " KiB); open it in a browser\n";
+  return "page: " + one_line(page) + " (" +
+         std::to_string(std::filesystem::file_size(page) / 1024) + " KiB); open it in a browser\n";
 }
 
 }  // namespace spherule

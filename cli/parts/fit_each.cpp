@@ -71,12 +71,12 @@ int fit_each(FitArguments& arguments, const std::function<int(FitArguments&)>& f
   for (std::size_t i = 0; i < models.size(); ++i) {
     if (!is_dealt_to(arguments.shard, i)) continue;
     if (arguments.skips_existing && has_cover(outputs[i])) {
-      std::cout << outputs[i] << ": is there\n";
+      std::cout << one_line(outputs[i]) << ": is there\n";
       continue;
     }
     arguments.models = {models[i]};
     arguments.spheres = outputs[i];
-    std::cout << models[i] << ":\n";
+    std::cout << one_line(models[i]) << ":\n";
     try {
       exit_code = std::max(exit_code, fit(arguments));
     } catch (const Error& error) {

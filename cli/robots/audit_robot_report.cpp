@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/audit_robot_report.h"
 
+#include "cli/text/message.h"
 #include "cli/text/print.h"
 #include "cli/text/units.h"
 
@@ -53,20 +54,20 @@ void put_notes(std::ostream& out, const RobotAuditReport& report) {
     out << "left out: " << spheres.other_shapes << " collision shapes that are no spheres\n";
   }
   for (const std::string& link : report.audit.unknown_links) {
-    out << "left out: the spheres of " << link << ", which is no link of the robot\n";
+    out << "left out: the spheres of " << one_line(link) << ", which is no link of the robot\n";
   }
 }
 
 void put_links(std::ostream& out, const std::vector<LinkAudit>& links) {
   std::size_t width = 4;
-  for (const LinkAudit& link : links) width = std::max(width, link.link.size());
+  for (const LinkAudit& link : links) width = std::max(width, one_line(link.link).size());
   const auto row = [&](const std::string& name, const std::string& spheres,
                        const std::string& surface, const std::string& inside,
                        const std::string& share, const std::string& protrusion,
                        const std::string& covered) {
-    out << std::left << std::setw(static_cast<int>(width)) << name << std::right << std::setw(8)
-        << spheres << std::setw(18) << surface << std::setw(18) << inside << std::setw(11) << share
-        << std::setw(18) << protrusion << std::setw(9) << covered << "\n";
+    out << std::left << std::setw(static_cast<int>(width)) << one_line(name) << std::right
+        << std::setw(8) << spheres << std::setw(18) << surface << std::setw(18) << inside
+        << std::setw(11) << share << std::setw(18) << protrusion << std::setw(9) << covered << "\n";
   };
   row("link", "spheres", "leak surface", "leak inside", "uncovered", "protrusion", "covered");
   std::size_t spheres = 0;
@@ -111,12 +112,12 @@ void put_places(std::ostream& out, const std::vector<LinkAudit>& links) {
 
 void put_repair(std::ostream& out, const RobotAuditReport& report) {
   if (!report.repair) return;
-  out << "repaired into " << report.repaired_file << "\n";
+  out << "repaired into " << one_line(report.repaired_file) << "\n";
   for (const LinkRepair& link : report.repair->links) {
-    out << "  " << link.link << ": " << link.repair.inflated << " spheres grown, by at most "
-        << in_mm(link.repair.largest_inflation) << ", and " << link.repair.added
-        << " added; these protrude by at most " << in_mm(link.repair.max_error) << ", all by "
-        << in_mm(link.repair.protrusion_after)
+    out << "  " << one_line(link.link) << ": " << link.repair.inflated
+        << " spheres grown, by at most " << in_mm(link.repair.largest_inflation) << ", and "
+        << link.repair.added << " added; these protrude by at most " << in_mm(link.repair.max_error)
+        << ", all by " << in_mm(link.repair.protrusion_after)
         << " (before: " << in_mm(link.repair.protrusion_before) << "); "
         << (link.certificate.covered ? "covered (proved)" : "NOT proved to cover") << "\n";
   }
@@ -147,7 +148,7 @@ std::string audit_table(const RobotAuditReport& report) {
       out << "all links are covered (proved)\n";
     } else {
       out << "leak " << in_mm(configuration.uncovered_depth) << ", at "
-          << configuration.deepest_link;
+          << one_line(configuration.deepest_link);
       if (configuration.deepest_leak) {
         out << ", " << in_mm(*configuration.deepest_leak) << " in the frame of the root";
       }

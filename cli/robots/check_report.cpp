@@ -3,6 +3,7 @@
 
 #include "cli/robots/trajectory_input.h"
 #include "cli/text/json.h"
+#include "cli/text/message.h"
 #include "cli/text/print.h"
 #include "cli/text/units.h"
 
@@ -158,10 +159,10 @@ std::string overlap_in_mm(double metres) {
 void put_proved_free(std::ostream& out, const CheckReport& report) {
   for (const TouchingPair& pair : report.proved_free) {
     const CheckedContact& worst = pair.worst.contact;
-    out << "free though spheres overlap: " << worst.first.name << " and " << worst.second.name
-        << (pair.kind.empty() ? "" : " (" + pair.kind + ")") << ", in " << pair.count << " of "
-        << report.explained << " configurations, up to " << overlap_in_mm(worst.overlap_depth)
-        << " mm\n";
+    out << "free though spheres overlap: " << one_line(worst.first.name) << " and "
+        << one_line(worst.second.name) << (pair.kind.empty() ? "" : " (" + pair.kind + ")")
+        << ", in " << pair.count << " of " << report.explained << " configurations, up to "
+        << overlap_in_mm(worst.overlap_depth) << " mm\n";
   }
 }
 
@@ -236,7 +237,7 @@ std::string describe(const TurningMotions& turning, bool in_degrees) {
   std::ostringstream text;
   text << turning.count << (turning.count == 1 ? " motion turns" : " motions turn")
        << " a continuous joint by more than half a turn, the first from line " << turning.line
-       << " to line " << turning.to_line << ": joint " << turning.joint << " by "
+       << " to line " << turning.to_line << ": joint " << one_line(turning.joint) << " by "
        << angle_text(turning.step, in_degrees);
   return text.str();
 }
@@ -253,7 +254,7 @@ std::string check_table(const CheckReport& report) {
     text << ", " << report.colliding << " of them collide\n";
   }
   if (!report.given_spheres.empty()) {
-    text << "this is about the spheres of " << report.given_spheres
+    text << "this is about the spheres of " << one_line(report.given_spheres)
          << " as given; whether they cover the robot is for spherule audit-robot to prove\n";
   }
   put_continuous(text, report);

@@ -2,6 +2,7 @@
 #include "cli/robots/false_alarm_report.h"
 
 #include "cli/robots/pair_report.h"
+#include "cli/text/message.h"
 #include "cli/text/print.h"
 #include "cli/text/units.h"
 
@@ -72,9 +73,10 @@ void describe_pairs(const FalseAlarms& alarms, const RobotModel& robot, const Ro
   };
   for (std::size_t i = 0; i < std::min(kShownPairs, alarms.pairs.size()); ++i) {
     const PairAlarms& pair = alarms.pairs[i];
-    out << "  " << link_name(robot, pair.first) << " and " << link_name(robot, pair.second) << ": "
-        << of_free(pair.refused) << ", " << of_free(pair.refused_alone) << " alone, meshes "
-        << millimetres(pair.median_gap) << " apart; " << remedy(pair, cover) << "\n";
+    out << "  " << one_line(link_name(robot, pair.first)) << " and "
+        << one_line(link_name(robot, pair.second)) << ": " << of_free(pair.refused) << ", "
+        << of_free(pair.refused_alone) << " alone, meshes " << millimetres(pair.median_gap)
+        << " apart; " << remedy(pair, cover) << "\n";
   }
   if (alarms.pairs.size() > kShownPairs) {
     out << "  and " << alarms.pairs.size() - kShownPairs << " more pairs\n";
@@ -150,8 +152,9 @@ std::string describe_false_alarms(const MeasuredCover& measured, const RobotMode
   }
   out << "\n";
   for (const auto& [first, second] : alarms.always_touching) {
-    out << "  not counted: the meshes of " << link_name(robot, first) << " and "
-        << link_name(robot, second) << " touch in all postures; disable the pair (--srdf)\n";
+    out << "  not counted: the meshes of " << one_line(link_name(robot, first)) << " and "
+        << one_line(link_name(robot, second))
+        << " touch in all postures; disable the pair (--srdf)\n";
   }
   if (measured.choice) describe_choice(measured, out);
   describe_pairs(alarms, robot, measured.cover, out);

@@ -2,6 +2,7 @@
 #include "cli/robots/info_robot.h"
 
 #include "cli/files/result_warnings.h"
+#include "cli/text/message.h"
 #include "robot/files/srdf.h"
 #include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
@@ -20,7 +21,7 @@ std::size_t count_joints(const RobotModel& robot, JointType type) {
 
 std::string describe_joint(const Joint& joint) {
   std::ostringstream text;
-  text << "  " << joint.name;
+  text << "  " << one_line(joint.name);
   if (joint.type == JointType::kContinuous) {
     text << ": continuous";
   } else {
@@ -48,7 +49,7 @@ std::string describe_urdf(const std::string& file) {
     collision += link.collision.empty() ? 0 : 1;
   }
   std::ostringstream text;
-  text << "robot: " << robot.name << "\n"
+  text << "robot: " << one_line(robot.name) << "\n"
        << "links: " << robot.links.size() << ", " << collision << " with collision geometry, "
        << visual << " with visual geometry\n"
        << "joints: " << robot.model.joints().size() << ", "
@@ -63,7 +64,7 @@ std::string describe_urdf(const std::string& file) {
 std::string describe_srdf(const std::string& file) {
   const SemanticDescription semantics = read_srdf(file);
   std::ostringstream text;
-  text << "SRDF of robot: " << semantics.robot_name << "\n"
+  text << "SRDF of robot: " << one_line(semantics.robot_name) << "\n"
        << "groups: " << semantics.groups.size()
        << ", named states: " << semantics.group_states.size()
        << ", end effectors: " << semantics.end_effectors.size() << "\n"
@@ -77,12 +78,12 @@ std::string describe_robot_spheres(const std::string& file) {
   const RobotSpheres& spheres = read.spheres;
   std::ostringstream text;
   text << "spheres of a robot (" << name_of(read.format) << ")"
-       << (spheres.robot.empty() ? "" : ": " + spheres.robot) << "\n"
+       << (spheres.robot.empty() ? "" : ": " + one_line(spheres.robot)) << "\n"
        << "spheres: " << count_spheres(spheres.links) << " on " << spheres.links.size()
        << " links\n";
   if (spheres.interrupted) text << kInterruptedSearch << "\n";
   for (const LinkSpheres& link : spheres.links) {
-    text << "  " << link.link << ": " << link.spheres.size() << "\n";
+    text << "  " << one_line(link.link) << ": " << link.spheres.size() << "\n";
   }
   if (spheres.switched_off > 0) text << "switched off: " << spheres.switched_off << "\n";
   if (!spheres.self_collision_ignore.empty()) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/pair_report.h"
 
+#include "cli/text/message.h"
 #include "cli/text/units.h"
 
 #include <algorithm>
@@ -74,7 +75,7 @@ Json to_json(const JudgedPair& judged, const RobotModel& robot) {
 
 std::string describe(const DisabledPair& pair) {
   const std::string reason = pair.reason.empty() ? "no reason" : "\"" + pair.reason + "\"";
-  return pair.link_a + " and " + pair.link_b + " (" + reason + ")";
+  return one_line(pair.link_a + " and " + pair.link_b + " (" + reason + ")");
 }
 
 std::vector<std::string> wrong_pairs(const SrdfJudgement& judgement, const RobotModel& robot) {
@@ -109,7 +110,7 @@ std::string describe_posture(const RobotModel& robot, const std::vector<double>&
   std::ostringstream out;
   for (std::size_t i = 0; i < configuration.size(); ++i) {
     const Joint& joint = joint_of(robot, i);
-    out << (i == 0 ? "" : ", ") << joint.name << " " << std::fixed;
+    out << (i == 0 ? "" : ", ") << one_line(joint.name) << " " << std::fixed;
     if (joint.turns()) {
       out << std::setprecision(1) << configuration[i] * 180.0 / std::numbers::pi << " deg";
     } else {

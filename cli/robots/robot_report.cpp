@@ -3,6 +3,7 @@
 
 #include "cli/files/result_warnings.h"
 #include "cli/options/robot_options.h"
+#include "cli/text/message.h"
 #include "cli/text/units.h"
 
 #include <algorithm>
@@ -155,7 +156,7 @@ Json robot_report(const Json& summary, const RobotCover& cover, ReportContent co
 
 std::string robot_table(const RobotCover& cover, double seconds) {
   std::size_t width = 5;  // of "total"
-  for (const LinkCover& link : cover.links) width = std::max(width, link.link.size());
+  for (const LinkCover& link : cover.links) width = std::max(width, one_line(link.link).size());
   const auto padded = [&](std::string name) {
     name.resize(width, ' ');
     return name;
@@ -168,10 +169,11 @@ std::string robot_table(const RobotCover& cover, double seconds) {
       << "    [mm]                           [mm]        [mm]       [mm]            [l]\n";
   for (const LinkCover& link : cover.links) {
     if (!link.fit) {
-      out << padded(link.link) << "  no " << name_of(cover.options.geometry) << " geometry\n";
+      out << padded(one_line(link.link)) << "  no " << name_of(cover.options.geometry)
+          << " geometry\n";
       continue;
     }
-    write_row(out, padded(link.link), link.fit->options.max_error, Totals({&link, 1}));
+    write_row(out, padded(one_line(link.link)), link.fit->options.max_error, Totals({&link, 1}));
     const std::optional<double>& volume = link.fit->certificate.volume_ratio;
     if (volume) {
       out << Cell(*volume, 8, 2);

@@ -96,10 +96,11 @@ std::string describe(const OutsideLimits& outside, std::size_t configurations, b
   std::ostringstream text;
   text << outside.count << " of " << configurations << " configurations "
        << (outside.count == 1 ? "is" : "are") << " outside the joint limits, the first in line "
-       << outside.line << ": joint " << outside.joint << " at " << scale * outside.position << unit
-       << ", " << std::setprecision(3) << scale * std::abs(outside.position - limit) << unit
-       << std::setprecision(6) << (is_above ? " above its upper" : " below its lower")
-       << " limit of " << scale * limit << unit;
+       << outside.line << ": joint " << one_line(outside.joint) << " at "
+       << scale * outside.position << unit << ", " << std::setprecision(3)
+       << scale * std::abs(outside.position - limit) << unit << std::setprecision(6)
+       << (is_above ? " above its upper" : " below its lower") << " limit of " << scale * limit
+       << unit;
   return text.str();
 }
 

@@ -2,9 +2,34 @@
 #include "cli/text/json.h"
 
 #include <cmath>
+#include <cstddef>
+#include <string_view>
 #include <variant>
 
 namespace spherule {
+namespace {
+
+// Escapes the control characters that JSON allows in texts but terminals obey: DEL and those of two
+// bytes (U+0080 to U+009F). Outside of texts there are none.
+std::string without_controls(std::string_view json) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string result;
+  result.reserve(json.size());
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    unsigned code = static_cast<unsigned char>(json[i]);
+    if (code == 0xC2U && i + 1 < json.size()) code = static_cast<unsigned char>(json[i + 1]);
+    const bool is_of_two = code >= 0x80U && code < 0xA0U && json[i] == '\xC2';
+    if (is_of_two || code == 0x7FU) {
+      result.append("\\u00").append({kDigits[code >> 4U], kDigits[code & 15U]});
+      i += is_of_two ? 1 : 0;
+    } else {
+      result += json[i];
+    }
+  }
+  return result;
+}
+
+}  // namespace
 
 Json to_json(double value) {
   if (std::isfinite(value)) return value;
@@ -84,7 +109,7 @@ Json to_json(const ExternalSpheres& external, ReportContent content) {
 
 std::string to_text(const Json& json, Layout layout) {
   const int indent = layout == Layout::kIndented ? 2 : -1;
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+  return without_controls(json.dump(indent, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
 }  // namespace spherule

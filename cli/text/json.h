@@ -37,7 +37,7 @@ Json to_json(const std::optional<T>& value) {
 enum class Layout { kIndented, kCompact };
 
 // The text of a JSON document, with a line break at its end. File names that are not UTF-8 are
-// written with replacement characters.
+// written with replacement characters, all control characters as \u00XX.
 std::string to_text(const Json& json, Layout layout = Layout::kIndented);
 
 }  // namespace spherule

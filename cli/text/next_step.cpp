@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/text/next_step.h"
 
+#include "cli/text/message.h"
 #include "spheretree/text.h"
 
 #include <cctype>
@@ -23,13 +24,25 @@ std::string shell_word(const std::string& word) {
   return is_plain ? word : quoted + "'";
 }
 
+// A word with control characters, which a terminal must not see, as bash and zsh read it back.
+std::string escaped_word(const std::string& word) {
+  std::string result = "$'";
+  for (const char c : word) {
+    if (c == '\\' || c == '\'') result += '\\';
+    result += c;
+  }
+  return one_line(result) + "'";
+}
+
 }  // namespace
 
 std::string describe(const std::vector<NextStep>& steps) {
   std::string text;
   for (const NextStep& step : steps) {
     text += text.empty() ? "next: spherule" : "      spherule";
-    for (const std::string& word : step.words) text.append(" ").append(shell_word(word));
+    for (const std::string& word : step.words) {
+      text.append(" ").append(one_line(word) == word ? shell_word(word) : escaped_word(word));
+    }
     text.append("    # ").append(step.purpose).append("\n");
   }
   return text;

@@ -24,7 +24,7 @@ enum class Rounding { kDown, kUp };
 std::string three_digits(double value, Rounding rounding);
 
 // A table of rows of as many cells each, of which there is one at least: columns as wide as their
-// widest cell, no blanks at the ends of lines.
-std::string aligned(const std::vector<std::vector<std::string>>& rows);
+// widest cell, no blanks at the ends of lines; each cell as one_line() says.
+std::string aligned(std::vector<std::vector<std::string>> rows);
 
 }  // namespace spherule

@@ -3,10 +3,12 @@
 // with the file in which a person has to look; and what they do not need.
 
 #include "tests/cli/command_test_support.h"
+#include "tests/support/child_process.h"
 #include "tests/support/effort.h"
 
 #include <algorithm>
 #include <string>
+#include <sys/stat.h>
 #include <vector>
 
 namespace spherule {
@@ -122,6 +124,10 @@ TEST_F(MessagesTest, NameTheUsersFile) {
         urdf_of("<link name=\"base\"><collision>" + std::string(kCube) + "</collision></link>",
                 "a/b"));
   expect_refusal({"robot", "robot.urdf", "-o", "out"}, "spherule: robot.urdf: ");
+  write("slash.urdf",
+        urdf_of("<link name=\"../b\"><collision>" + std::string(kCube) + "</collision></link>"));
+  expect_refusal({"robot", "slash.urdf", "-o", "out"},
+                 "spherule: slash.urdf: the name '../b' cannot be part of that of a file\n");
   write("huge.urdf", urdf_of(R"(<link name="base"><collision><geometry><box size="1e4 1e4 1e4"/>
     </geometry></collision></link>)"));
   expect_refusal({"robot", "huge.urdf", "-o", "out"}, "spherule: huge.urdf: link 'base': is ");
@@ -229,6 +235,102 @@ TEST_F(MessagesTest, WhatIsNotThereAndHasNoSpheresIsNoFault) {
   EXPECT_EQ(check.exit_code, 0) << check.err;
   EXPECT_EQ(check.err,
             "spherule: warning: cube.yml: 1 spheres are switched off: they are not checked\n");
+}
+
+// Whatever names a file holds, what the command prints of it has no character that a terminal
+// obeys, and no line but its own.
+TEST_F(MessagesTest, StandardOutputHasNoControlCharacters) {
+  const auto shown = [&](const std::vector<std::string>& arguments, const std::string& part) {
+    const Outcome outcome = run(arguments);
+    EXPECT_LE(outcome.exit_code, 1) << outcome.err;
+    EXPECT_TRUE(std::all_of(outcome.out.begin(), outcome.out.end(), [](char c) {
+      return c == '\n' || (static_cast<unsigned char>(c) >= 0x20 && c != 0x7F);
+    })) << outcome.out;
+    EXPECT_EQ(outcome.out.find("\xc2\x9b"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << outcome.out;
+    return outcome.out;
+  };
+  write("arm.urdf", urdf_of(R"(<link name="base"/><link name="ha&#10;nd"><collision>)" +
+                                std::string(kCube) + R"(</collision></link>
+    <joint name="sl&#127;ide" type="prismatic"><parent link="base"/><child link="ha&#10;nd"/>
+      <axis xyz="1 0 0"/><limit lower="-0.5" upper="0.5" effort="1" velocity="1"/></joint>)",
+                            "r&#27;[31mX&#7;"));
+  write("arm.json", R"({"format": "spherule-robot-spheres", "version": 1, "robot": "r\u001b",
+    "links": [{"link": "ha\nnd", "spheres": [{"center": [0, 0, 0], "radius": 0.05}]}]})");
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "wa\u009bll\u007f", "box": {"size": [1, 1, 1]}}]})");
+  shown({"info", "arm.urdf"}, "robot: r\\x1b[31mX\\x07\n");
+  shown({"info", "arm.urdf"}, "  sl\\x7fide: -0.5 to 0.5 m\n");
+  shown({"info", "arm.json"}, ": r\\x1b\n");
+  shown({"info", "arm.json"}, "  ha\\nnd: 1\n");
+  std::vector<std::string> check = {"check",     "arm.urdf", "cell.json",       "path.csv",
+                                    "--spheres", "arm.json", "--enforce-limits"};
+  EXPECT_NE(shown(check, "ha\\nnd  wa\\xc2\\x9bll\\x7f").find("joint sl\\x7fide at 1 m"),
+            std::string::npos);
+  check.push_back("--json");
+  EXPECT_EQ(nlohmann::json::parse(shown(check, "wa\\u009bll\\u007f"))["pairs"][0]["second"],
+            "wa\xc2\x9bll\x7f");
+  shown({"audit-robot", "arm.urdf", "arm.json"}, "\nha\\nnd ");
+  write("arm.srdf", R"(<robot name="r&#27;"><disable_collisions link1="base" link2="ha&#10;nd"/>
+    <disable_collisions link1="a&#27;" link2="b"/></robot>)");
+  shown({"info", "arm.srdf"}, "SRDF of robot: r\\x1b\n");
+  write_spheres("spheres.json", {{0.0, 0.0, 0.0, 0.1}});
+  shown({"tree", "spheres.json", "-o", "a'\a.tree"},
+        "a'\\x07.tree: 1 spheres, 1 nodes, depth 0, branching ");
+  shown({"tree", "spheres.json", "-o", "a'\a.tree"}, "next: spherule collide $'a\\'\\x07.tree' ");
+}
+
+// A pipe that a file names would be waited for without an end; on the command line it is meant.
+TEST_F(MessagesTest, OnlyRegularFilesAreReadForNamesInFiles) {
+  for (const char* pipe : {"pipe", "pipe.xyz", "pipe.json"}) {
+    ASSERT_EQ(::mkfifo((folder_ / pipe).c_str(), 0600), 0);
+  }
+  const std::string reason = " is not a regular file\n";
+  write("side.yml", "collision_spheres: pipe\n");
+  expect_refusal({"info", "side.yml"}, "spherule: side.yml: \"collision_spheres\": pipe:" + reason);
+  for (const std::string shape :
+       {R"("spheres": {"file": "pipe.json"})", R"("tree": {"file": "pipe"})",
+        R"("points": {"file": "pipe.xyz", "radius": 0.1})", R"("mesh": {"file": "pipe"})"}) {
+    write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+      {"name": "a", )" + shape +
+                           "}]}");
+    expect_refusal({"check", "cube.urdf", "cell.json", "path.csv", "--spheres", "hand.json"},
+                   reason);
+  }
+  write("cell.json", R"({"format": "spherule-scene", "version": 1, "robot": {"srdf": "pipe"}})");
+  expect_refusal({"check", "cube.urdf", "cell.json", "path.csv", "--spheres", "hand.json"},
+                 "spherule: pipe:" + reason);
+}
+
+// Nothing is written but what is asked for, so that there is nothing to leave behind.
+TEST_F(MessagesTest, NoFolderForTemporaryFilesIsNeeded) {
+  const auto run_in_shell = [&](const std::string& script) {
+    return finish(start_process("/bin/sh", {"-c", script, SPHERULE_COMMAND},
+                                {.folder = folder_, .out = ".out", .error = ".err"}));
+  };
+  const Outcome robot = run_in_shell(
+      "TMPDIR=/nonexistent exec \"$0\" robot cube.urdf -o out --max-error 0.04 --effort 0 --format "
+      "urdf --proofs none --postures 5");
+  EXPECT_EQ(robot.exit_code, 0) << robot.err;
+  write_spheres("spheres.json", {{0.0, 0.0, 0.0, 0.1}});
+  const Outcome tree = run_in_shell(
+      "here=$PWD; mkdir gone; cd gone; rmdir ../gone; exec \"$0\" tree \"$here/spheres.json\" -o "
+      "x.tree");
+  EXPECT_EQ(tree.exit_code, 2);
+  EXPECT_EQ(tree.err, "spherule: x.tree: no working directory: No such file or directory\n");
+}
+
+TEST_F(MessagesTest, AnotherGeometryForSelfCollisionsIsTold) {
+  write("cube.xrdf",
+        "format: xrdf\nformat_version: 1.0\ncollision: {geometry: g}\n"
+        "self_collision: {geometry: own}\ngeometry:\n"
+        "  g: {spheres: {hand: [{center: [0, 0, 0], radius: 0.1}]}}\n  own: {spheres: {}}\n");
+  const Outcome check =
+      run({"check", "cube.urdf", "empty.json", "path.csv", "--spheres", "cube.xrdf"});
+  EXPECT_EQ(check.exit_code, 0) << check.err;
+  EXPECT_EQ(check.err,
+            "spherule: warning: cube.xrdf: the geometry 'own' that it names for self-collisions is "
+            "not read: these are checked with the spheres of the geometry for collisions, too\n");
 }
 
 }  // namespace
