@@ -227,16 +227,6 @@ TEST_F(SphereFormatFaults, LevelsAndFormatsOfOneMesh) {
   EXPECT_EQ(one.spheres.links[0].spheres.size(), 1u);
 }
 
-TEST_F(SphereFormatFaults, SpheresOfAMeshAreInMetres) {
-  const auto in = [](const std::string& units) {
-    return "{\"format\": \"spherule-spheres\", \"version\": 1, \"options\": {\"units\": " + units +
-           "}, \"spheres\": [{\"center\": [0, 0, 0], \"radius\": 1}]}";
-  };
-  EXPECT_EQ(read(in("\"m\"")).spheres.links[0].spheres[0].radius, 1.0);
-  expect_refusal(in("\"mm\""), "has its lengths in 'mm'");
-  expect_refusal(in("7"), "has its lengths in an unknown unit");
-}
-
 TEST_F(SphereFormatFaults, CuroboSwitchesSpheresOff) {
   const std::string text =
       "robot_cfg:\n  kinematics:\n    collision_link_names: [a]\n    collision_spheres:\n"

@@ -2,6 +2,7 @@
 // What is read of files as other programs write them: every number, name and buffer in its place.
 
 #include "robot/formats/sphere_formats.h"
+#include "spheretree/error.h"
 #include "tests/robot/formats/sphere_sets.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
@@ -50,6 +51,24 @@ TEST(ReadSpheres, OfOneMesh) {
   std::string old = tree;
   std::replace(old.begin(), old.end(), '\n', '\r');
   expect_two(old, 1);
+}
+
+TEST(ReadSpheres, OfOneMeshAreInMetres) {
+  const auto in = [](const std::string& units) {
+    return R"({"format": "spherule-spheres", "version": 1, "options": {"units": )" + units +
+           R"(}, "spheres": [{"center": [0, 0, 0], "radius": 1}]})";
+  };
+  const auto refusal = [&](const std::string& units) {
+    try {
+      read(in(units));
+    } catch (const Error& error) {
+      return error.reason();
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(refusal(R"("m")"), "none");
+  EXPECT_TRUE(refusal(R"("mm")").starts_with("has its lengths in 'mm'"));
+  EXPECT_TRUE(refusal("7").starts_with("has its lengths in an unknown unit"));
 }
 
 TEST(ReadSpheres, ByLinks) {
