@@ -18,6 +18,9 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Of smaller cells the number may be infinite: every point then has one of its own.
+constexpr double kLeastVoxel = 1e-290;
+
 void require_length(double length, const char* subject) {
   if (!(length >= 0.0 && length <= kMaxCoordinate)) {
     throw Error(subject, "it is not a number from 0 to 1e15");
@@ -64,7 +67,7 @@ std::vector<Sphere> point_cloud_spheres(std::span<const Vector3d> points, double
   require_length(options.voxel, "side of the cells");
   require_points(points);
   std::vector<Vector3d> sorted(points.begin(), points.end());
-  const bool has_cells = options.voxel > 0.0;
+  const bool has_cells = options.voxel >= kLeastVoxel;
   const auto by_cell = [&](const Vector3d& a, const Vector3d& b) {
     return before(cell_of(a, options.voxel), cell_of(b, options.voxel));
   };
