@@ -184,7 +184,7 @@ TEST(PolygonTriangles, AFileOfPolygonsIsThePart) {
                     {4, 4}, {4, 6},  {6, 6},   {6, 4},  {4, 4}};
   std::ostringstream obj;
   for (const int z : {0, 1}) {
-    for (const std::size_t i : {0, 1, 2, 3, 5, 6, 7, 8}) {
+    for (const std::size_t i : std::vector<std::size_t>{0, 1, 2, 3, 5, 6, 7, 8}) {
       obj << "v " << top[i].x() << ' ' << top[i].y() << ' ' << z << '\n';
     }
   }
