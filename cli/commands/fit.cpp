@@ -163,7 +163,7 @@ int fit(FitArguments& arguments) {
   SimplifyOptions options = fit_options(arguments, length_context(file, unit));
   ModelReadOptions& read_options = arguments.reading;
   read_options.scale = unit.scale;
-  read_options.units = unit_choice(unit);
+  read_options.units = symbol_of(unit);
 
   ProgressBar reading;
   reading.announce("reading");

@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -84,13 +83,9 @@ ModelUnit model_unit(const std::string& file, const UnitArguments& arguments) {
   return result;
 }
 
-std::string unit_choice(const ModelUnit& unit) {
-  if (!unit.micrometres) return {};
-  const LengthUnit* const known = unit_of_size(*unit.micrometres);
-  const std::vector<std::string> choices = unit_choices();
-  const auto found =
-      known == nullptr ? choices.end() : std::ranges::find(choices, std::string(known->symbol));
-  return found == choices.end() ? std::string() : *found;
+std::string symbol_of(const ModelUnit& unit) {
+  const LengthUnit* const known = unit.micrometres ? unit_of_size(*unit.micrometres) : nullptr;
+  return known == nullptr ? "" : known->symbol;
 }
 
 LengthContext length_context(const std::string& file, const ModelUnit& unit) {

@@ -39,9 +39,8 @@ struct ModelUnit {
 // does not lead from the unit that the file states to --units; and as stated_unit().
 ModelUnit model_unit(const std::string& file, const UnitArguments& arguments);
 
-// The name that --units has for the unit of the output; empty where that is not known, or is none
-// of those.
-std::string unit_choice(const ModelUnit& unit);
+// Of the unit of the output; empty where that is not known or has none.
+std::string symbol_of(const ModelUnit& unit);
 
 // What lengths on the command line are to be converted to.
 LengthContext length_context(const std::string& file, const ModelUnit& unit);

@@ -84,7 +84,7 @@ int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
   SphereFile file = {result.spheres, record(result.certificate), std::move(made.options)};
   file.options["baseline"] = std::string(method.text.name);
   file.options["scale"] = scale;
-  if (const std::string units = unit_choice(unit); !units.empty()) file.options["units"] = units;
+  if (const std::string units = symbol_of(unit); !units.empty()) file.options["units"] = units;
   file.options["padding"] = arguments.padding;
   Json figures = {{"method", method.text.name}, {"sphere_count", result.spheres.size()}};
   figures.update(made.figures);

@@ -177,7 +177,7 @@ int fit_bodies(FitArguments& arguments) {
   if (!arguments.levels.empty()) throw Error("--levels", "are of one body, not of several");
   std::vector<ModelUnit> units = model_units(arguments.models, arguments.unit);
   SimplifyOptions options = fit_options(arguments, length_context(arguments.models, units));
-  arguments.reading.units = unit_choice(units.front());
+  arguments.reading.units = symbol_of(units.front());
 
   ProgressBar bar;
   bar.announce("reading");

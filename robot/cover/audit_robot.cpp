@@ -11,6 +11,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <utility>
 #include <variant>
@@ -80,7 +81,8 @@ std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const L
 
 // Points spread over the surface: one in every equal share of its area, the place in the triangle
 // by a sequence that fills the unit square evenly.
-double uncovered_share(const TriangleMesh& mesh, std::span<const Sphere> spheres) {
+double uncovered_share(const LinkParts& part) {
+  const TriangleMesh& mesh = *part.mesh;
   std::vector<double> area_up_to;
   double area = 0.0;
   const auto corner = [&](const Eigen::Vector3i& triangle, int k) -> const Vector3d& {
@@ -106,8 +108,9 @@ double uncovered_share(const TriangleMesh& mesh, std::span<const Sphere> spheres
     const Eigen::Vector3i& t = mesh.triangles[triangle];
     const Vector3d point =
         corner(t, 0) + u * (corner(t, 1) - corner(t, 0)) + v * (corner(t, 2) - corner(t, 0));
-    const bool held = std::any_of(spheres.begin(), spheres.end(), [&](const Sphere& sphere) {
-      return (point - sphere.center).squaredNorm() <= sphere.radius * sphere.radius;
+    // The mesh may stand out of curved shapes by the chord error.
+    const bool held = std::ranges::any_of(part.spheres, [&](const Sphere& sphere) {
+      return (point - sphere.center).norm() <= sphere.radius + part.chord_error;
     });
     outside += held ? 0 : 1;
   }
@@ -208,18 +211,32 @@ auto of_link(const std::string& link, Work work) {
   }
 }
 
-// What is proved of a mesh holds of a set within it that comes within the chord error of all its
-// points: leaks are that much shallower at most, and spheres protrude by that much more at most.
+// What is proved of a mesh around curved shapes holds of these, which are in it and come within the
+// chord error of all its points: leaks are that much shallower at most, spheres protrude by that
+// much more at most, and so much deeper their surface may leak, but not deeper than the whole.
 Certificate certify_within(const TriangleMesh& mesh, double chord_error,
                            std::span<const Sphere> spheres, int threads) {
   Certificate result = certify(mesh, spheres, {.threads = threads});
   for (Bounds* depth : {&result.surface_depth, &result.solid_depth, &result.uncovered_depth}) {
     depth->lower = std::max(0.0, sub_down(depth->lower, chord_error));
   }
+  Bounds& surface = result.surface_depth;
+  surface.upper = std::min(add_up(surface.upper, chord_error), result.uncovered_depth.upper);
   if (result.protrusion_over_mesh) {
     result.protrusion_over_mesh->upper = add_up(result.protrusion_over_mesh->upper, chord_error);
   }
   return result;
+}
+
+// Of a link with curved shapes, unless they are too large for that.
+std::optional<TriangleMesh> fine_mesh(const LinkParts& part, const LinkDescription& link,
+                                      LinkGeometry geometry) {
+  if (part.chord_error == 0.0) return std::nullopt;
+  try {
+    return link_mesh(link, {.geometry = geometry, .chord_error = kFineChordError});
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
 
 // The certificate and the warnings of a link with geometry.
@@ -231,9 +248,7 @@ void certify_link(const LinkParts& part, const LinkDescription& link,
     return of_mesh.covered || of_mesh.uncovered_depth.lower > 0.0 || part.spheres.empty();
   };
   if (is_decided()) return;
-  if (part.chord_error > 0.0) {
-    const auto fine =
-        link_mesh(link, {.geometry = options.geometry, .chord_error = kFineChordError});
+  if (const auto fine = fine_mesh(part, link, options.geometry)) {
     audit.certificate = certify_within(*fine, kFineChordError, part.spheres, options.threads);
     if (is_decided()) return;
   }
@@ -298,7 +313,7 @@ RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSphere
     if (part.mesh) {
       of_link(part.link, [&] { certify_link(part, robot.links[part.index], options, audit); });
       if (!audit.certificate->covered) {
-        audit.uncovered_share = uncovered_share(*part.mesh, part.spheres);
+        audit.uncovered_share = uncovered_share(part);
         result.links_covered = false;
       }
     }

@@ -49,9 +49,9 @@ std::span<const LinkShape> link_shapes(const LinkDescription& link, LinkGeometry
 
 // All shapes of a link in the frame of the link, in metres, as one mesh; empty for a link without
 // such geometry. Mesh files are read as read_mesh() does it (a DAE file in its own unit turned to
-// metres, its axes as they stand) and a 3MF file, too, turned to metres, then scaled, by other
-// factors along each axis and mirrored where the description says so, the triangles turned so that
-// they face as before.
+// metres, its axes as they stand), 3MF files are turned to metres, too, then all are scaled, by
+// other factors along each axis and mirrored where the description says so, the triangles turned so
+// that they face as before.
 //
 // With M the mesh returned and t its `vertex_error`: M grown by t contains every point of the
 // meshes as written in their files, scaled and posed in exact arithmetic, and |M| grown by t every

@@ -33,7 +33,8 @@ double point_error(bool is_rounded, bool is_scaled, double largest) {
   return roundings == 0 ? 0.0 : 2.0 * roundings * kUnitRoundoff * largest + kUnderflow;
 }
 
-// Files named .pts begin with the number of their points, as scanners write them; others do not.
+// Files named .pts may begin with the number of their points, as scanners write them; others do
+// not.
 enum class FirstLine { kPoint, kPointOrCount };
 
 Vector3d point_of(const internal::TextLines& lines) {
@@ -51,7 +52,7 @@ std::vector<Vector3d> text_points(std::string_view text, const std::string& file
                                   FirstLine first_line) {
   std::vector<Vector3d> points;
   std::optional<std::int64_t> count;
-  internal::TextLines lines(text, file);
+  internal::TextLines lines(text, file, 3);
   for (bool is_first = true; lines.next(); is_first = false) {
     if (is_first && first_line == FirstLine::kPointOrCount && lines.words().size() == 1) {
       count = internal::whole_number(lines.words()[0]);

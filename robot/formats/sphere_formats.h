@@ -106,8 +106,8 @@ struct SphereFormatFile {
 //   radius is grown by the bound of the rounding, so that the sphere read contains the sphere
 //   meant. Links that have other shapes and no sphere are not in `links`.
 // - cuRobo: also a file whose `collision_spheres` names another file, relative to it.
-// - XRDF: the geometry that `collision` names. One that `self_collision` names has to be there,
-// too.
+// - XRDF: the geometry that `collision` names. One that `self_collision` names has to be there as
+//   well.
 // - A radius of zero or below switches a sphere off, and so does its link's absence from cuRobo's
 //   collision_link_names: it is left out and counted. (In SRDF a radius of zero says that the link
 //   has no spheres, and one below zero is refused; in our own formats only the latter.) Shapes that

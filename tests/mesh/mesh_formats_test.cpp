@@ -165,14 +165,15 @@ TEST_F(Formats, NumbersThatUnderflowAreNearlyZero) {
   EXPECT_LT(tiny.vertex_error, 1e-300);
 }
 
-TEST_F(Formats, PolygonsAreFans) {
-  // A pentagon, and a dart, whose fan about its first corner reaches outside but covers it.
+TEST_F(Formats, PolygonsAreDivided) {
+  // A pentagon, and a dart, which a fan about its first corner would reach out of.
   const TriangleMesh pentagon =
       read("obj", "v 0 0 0\nv 2 0 0\nv 3 1 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n");
   EXPECT_EQ(pentagon.triangles.size(), 3u);
   EXPECT_DOUBLE_EQ(mesh_report(pentagon).area, 5.0);
   const TriangleMesh dart = read("off", "OFF 4 1 0\n2 0 0\n0 1 0\n1 0 0\n0 -1 0\n4 0 1 2 3\n");
   EXPECT_EQ(dart.triangles.size(), 2u);
+  EXPECT_DOUBLE_EQ(mesh_report(dart).area, 1.0);
   const std::string many = [] {
     std::string text = "OFF\n40 1 0\n";
     for (int i = 0; i < 40; ++i) {

@@ -171,6 +171,13 @@ TEST(PolygonTriangles, OneThatCrossesItselfStaysAFan) {
 
 TEST(PolygonTriangles, ManyCorners) {
   Random random(4);
+  // An L, and from its end there and back a line.
+  Polygon spike{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}};
+  const int half = effort(20000, 2000);
+  for (int i = 1; i <= half; ++i) spike.emplace_back(1.0, 2.0 + i);
+  for (int i = half; i-- > 1;) spike.emplace_back(1.0, 2.0 + i);
+  spike.insert(spike.end(), {{1, 2}, {0, 2}});
+  EXPECT_EQ(divided(spike, random).size(), spike.size() - 2);
   EXPECT_EQ(divided(comb(1000, 0.0), random).size(), 4000u);
   EXPECT_EQ(divided(star(random, 3000), random).size(), 2998u);
   if (kSanitized) return;

@@ -122,7 +122,10 @@ std::string ColladaDocument::text(const Element& element) const {
   std::string result;
   for (auto* at = element.FirstChild(); at != nullptr; at = at->NextSibling()) {
     budget_.take_steps(1);
-    if (at->ToComment() != nullptr) continue;
+    if (at->ToComment() != nullptr) {
+      result += ' ';
+      continue;
+    }
     if (at->ToText() == nullptr) fail(element, "holds something between its numbers");
     budget_.take_steps(steps_for(at->Value()));
     result += at->Value();

@@ -21,9 +21,10 @@ using Eigen::Vector3i;
 // line.
 constexpr double kTurned = 1e-9;
 constexpr double kOnLine = 1e-12;
-// Corners that are compared with ears: at most, and at most for each pair of corners.
+// Ears that are tried, and corners that are compared with them: at most, and for each corner of the
+// polygon, so that a file takes time in proportion to its size.
 constexpr std::uint64_t kMostWork = std::uint64_t{1} << 26;
-constexpr std::uint64_t kWorkOfPair = 64;
+constexpr std::uint64_t kWorkOfCorner = std::uint64_t{1} << 12;
 
 // Twice the area, positive where a, b, c turn left.
 double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
@@ -60,7 +61,7 @@ class EarClipping {
   EarClipping(std::span<const Vector2d> points, double area)
       : points_(points),
         on_line_(kOnLine * area),
-        most_work_(std::min(kMostWork, kWorkOfPair * points.size() * points.size())),
+        most_work_(std::min(kMostWork, kWorkOfCorner * points.size())),
         next_(points.size()),
         previous_(points.size()),
         is_left_(points.size(), 1) {
@@ -83,22 +84,25 @@ class EarClipping {
     std::size_t at = 0;
     std::size_t in_vain = 0;
     Rule rule = kStrict;
+    bool has_clipped_flat = false;
     while (left > 3) {
       if (work_ > most_work_) return false;
       if (is_ear(at, rule)) {
         clip(at);
+        has_clipped_flat = rule == kFlat;
         if (--left < sorted_.size() / 2) {
           std::erase_if(sorted_, [&](const Place& place) { return !is_left_[place.corner]; });
         }
         at = next_[next_[at]];
         in_vain = 0;
-        rule = kStrict;
+        if (rule != kFlat) rule = kStrict;
         continue;
       }
       at = next_[at];
       if (++in_vain < left) continue;
-      if (rule == kFlat) return false;
-      rule = static_cast<Rule>(rule + 1);
+      if (rule == kFlat && !has_clipped_flat) return false;
+      rule = rule == kFlat ? kStrict : static_cast<Rule>(rule + 1);
+      has_clipped_flat = false;
       in_vain = 0;
     }
     triangles_.push_back({previous_[at], at, next_[at]});
@@ -114,6 +118,7 @@ class EarClipping {
   enum Rule { kStrict, kInside, kFlat };
 
   bool is_ear(std::size_t at, Rule rule) {
+    ++work_;
     const Vector2d& a = points_[previous_[at]];
     const Vector2d& b = points_[at];
     const Vector2d& c = points_[next_[at]];

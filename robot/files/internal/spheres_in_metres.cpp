@@ -19,8 +19,8 @@ std::vector<Sphere> load_spheres_in_metres(const std::filesystem::path& path) {
     if (name == nullptr || *name != "m") {
       throw Error(path.string(), "has its lengths in " +
                                      (name == nullptr ? "an unknown unit" : in_quotes(*name)) +
-                                     ", as its options say; robots and scenes are in metres (fit "
-                                     "with --units m)");
+                                     ", as its options say; robots and scenes are in metres (see "
+                                     "--units and --scale of fit)");
     }
   }
   return std::move(file.spheres);

@@ -54,13 +54,17 @@ bool TextLines::next() {
     std::string_view line = take_line(rest_);
     line = trimmed(line.substr(0, std::min(line.find('#'), line.size())));
     if (line.empty()) continue;
+    words_.clear();
+    split(line, words_);
+    if (words_.size() > columns_) {
+      const std::string_view last = words_[columns_ - 1];
+      line = line.substr(0, static_cast<std::size_t>(last.data() - line.data()) + last.size());
+    }
     if (has_doubtful_commas(line)) {
       refuse(
           "has commas beside other separators; numbers are separated by commas, by semicolons or "
           "by blanks, and their decimals are after a point");
     }
-    words_.clear();
-    split(line, words_);
     return true;
   }
   return false;

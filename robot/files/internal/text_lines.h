@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,12 +15,16 @@ namespace spherule::internal {
 // word. A byte order mark at the beginning is passed over. Lines end as take_line() says.
 class TextLines {
  public:
-  TextLines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {
+  // Of a line with more words than `columns` only so many are of interest.
+  TextLines(std::string_view text, std::string file,
+            std::size_t columns = std::numeric_limits<std::size_t>::max())
+      : rest_(text), file_(std::move(file)), columns_(columns) {
     if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
   }
 
   // The next line with words; false at the end. Throws Error for a line in which commas may be
-  // those of decimals: beside semicolons, or beside blanks that separate.
+  // those of decimals, as far as it is of interest: beside semicolons, or beside blanks that
+  // separate.
   bool next();
   // Of that line, counted from 1.
   std::size_t number() const { return number_; }
@@ -30,6 +35,7 @@ class TextLines {
  private:
   std::string_view rest_;
   std::string file_;
+  std::size_t columns_;
   std::size_t number_ = 0;
   std::vector<std::string_view> words_;
 };

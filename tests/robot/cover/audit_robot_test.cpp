@@ -64,7 +64,16 @@ TEST_F(AuditRobot, CurvedShapesAreJudgedAsTheyAre) {
   EXPECT_GE(less.uncovered_depth.upper, 0.01);
   const Certificate more = audited(0.2);
   EXPECT_TRUE(more.covered);
-  EXPECT_GE(more.protrusion_over_mesh->upper, 0.1);
+  EXPECT_GE(more.protrusion_over_mesh->upper, 0.1 + 0.0005 / 16.0);
+  // Of a ball too large for the fine mesh something is said, too.
+  const RobotDescription large = read_urdf(folder_.write(
+      "large.urdf",
+      R"(<robot name="ball"><link name="ball"><collision><geometry><sphere radius="10"/></geometry>
+</collision></link></robot>)"));
+  const std::vector<LinkSpheres> equal{{"ball", {{Vector3d::Zero(), 10.0}}}};
+  const LinkAudit link = audit_robot(large, equal).links.front();
+  EXPECT_EQ(link.certificate->uncovered_depth.lower, 0.0);
+  EXPECT_EQ(link.uncovered_share, 0.0);
 }
 
 std::vector<Vector3d> corners_of(const Vector3d& half) {

@@ -76,7 +76,8 @@ TEST_F(PointCloudFileTest, CommasThatMayBeOfDecimalsAreRefused) {
                                  "0,3 ; 0,1 ; 0,2", "1 2,3"}) {
     EXPECT_EQ(fault("scan.csv", "1 2 3\n" + line + "\n"), "line 2: " + reason) << line;
   }
-  for (const std::string line : {"1,2,3", "1, 2 ,\t3", "1;2;3", "1 ; 2; 3", "1 2 3 # 4,5;6"}) {
+  for (const std::string line : {"1,2,3", "1, 2 ,\t3", "1;2;3", "1 ; 2; 3", "1 2 3 # 4,5;6",
+                                 "1 2 3 4,5", "1,2,3,panel of a wall; 7"}) {
     EXPECT_EQ(read("scan.csv", line).points, std::vector{Vector3d(1, 2, 3)}) << line;
   }
 }
