@@ -364,7 +364,7 @@ TEST_F(Formats, ThreeMfArchives) {
   EXPECT_TRUE(refused("3mf", with_size(model.size() - 1), "damaged"));
   EXPECT_TRUE(refused("3mf", with_size(model.size() + 1), "damaged"));
   EXPECT_TRUE(refused("3mf", with_size(std::uint64_t{1} << 29), "damaged"));
-  EXPECT_TRUE(refused("3mf", with_size(~std::uint64_t{0}), "larger than 2^30"));
+  EXPECT_TRUE(refused("3mf", with_size(~std::uint64_t{0}), "larger than 2^29"));
 }
 
 }  // namespace

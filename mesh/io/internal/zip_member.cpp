@@ -61,7 +61,7 @@ class Archive {
     const std::uint64_t skipped = field(entry.offset + 26, 2) + field(entry.offset + 28, 2);
     const std::string_view packed = part(entry.offset + kLocalSize + skipped, entry.packed);
     if (entry.size > kMaxMemberSize || entry.packed > kMaxMemberSize) {
-      fail("a part of it is larger than 2^30 bytes");
+      fail("a part of it is larger than 2^29 bytes");
     }
     std::string result;
     if (entry.method == kStored) {

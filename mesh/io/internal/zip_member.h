@@ -8,7 +8,7 @@
 namespace spherule::internal {
 
 // No member of an archive may unpack to more than this.
-inline constexpr std::size_t kMaxMemberSize = std::size_t{1} << 30;
+inline constexpr std::size_t kMaxMemberSize = std::size_t{1} << 29;
 
 // The content of one file of a ZIP archive (ZIP64 too; stored or deflated). Upper and lower case of
 // ASCII letters in `name` are one, as in the names of OPC packages. The size that the archive
