@@ -24,10 +24,8 @@ using Eigen::Vector3d;
 constexpr std::size_t kSharePoints = 20000;
 // Up to which positions kinematics_error_bound() holds.
 constexpr double kLargestPosition = 100.0;
-// Chord errors of the meshes around curved primitives: at first, and where no more than that is in
-// doubt.
+// Chord error of the meshes around curved primitives.
 constexpr double kChordError = LinkMeshOptions{}.chord_error;
-constexpr double kFineChordError = kChordError / 16.0;
 
 struct LinkParts {
   std::string link;
@@ -214,9 +212,7 @@ auto of_link(const std::string& link, Work work) {
 // What is proved of a mesh around curved shapes holds of these, which are in it and come within the
 // chord error of all its points: leaks are that much shallower at most, spheres protrude by that
 // much more at most, and so much deeper their surface may leak, but not deeper than the whole.
-Certificate certify_within(const TriangleMesh& mesh, double chord_error,
-                           std::span<const Sphere> spheres, int threads) {
-  Certificate result = certify(mesh, spheres, {.threads = threads});
+Certificate within_chord_error(Certificate result, double chord_error) {
   for (Bounds* depth : {&result.surface_depth, &result.solid_depth, &result.uncovered_depth}) {
     depth->lower = std::max(0.0, sub_down(depth->lower, chord_error));
   }
@@ -228,30 +224,14 @@ Certificate certify_within(const TriangleMesh& mesh, double chord_error,
   return result;
 }
 
-// Of a link with curved shapes, unless they are too large for that.
-std::optional<TriangleMesh> fine_mesh(const LinkParts& part, const LinkDescription& link,
-                                      LinkGeometry geometry) {
-  if (part.chord_error == 0.0) return std::nullopt;
-  try {
-    return link_mesh(link, {.geometry = geometry, .chord_error = kFineChordError});
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
 // The certificate and the warnings of a link with geometry.
 void certify_link(const LinkParts& part, const LinkDescription& link,
                   const RobotAuditOptions& options, LinkAudit& audit) {
-  audit.certificate = certify_within(*part.mesh, part.chord_error, part.spheres, options.threads);
+  const Certificate around = certify(*part.mesh, part.spheres, {.threads = options.threads});
+  audit.certificate = within_chord_error(around, part.chord_error);
   const Certificate& of_mesh = *audit.certificate;
-  const auto is_decided = [&] {
-    return of_mesh.covered || of_mesh.uncovered_depth.lower > 0.0 || part.spheres.empty();
-  };
-  if (is_decided()) return;
-  if (const auto fine = fine_mesh(part, link, options.geometry)) {
-    audit.certificate = certify_within(*fine, kFineChordError, part.spheres, options.threads);
-    if (is_decided()) return;
-  }
+  // S holds the mesh around curved shapes, too.
+  if (of_mesh.covered || around.uncovered_depth.lower > 0.0 || part.spheres.empty()) return;
   const auto mesh = link_mesh(
       link, {.geometry = options.geometry, .chord_error = options.max_error * kChordErrorOfError});
   const internal::LinkSolid solid(*mesh, {.max_error = options.max_error,
