@@ -11,6 +11,13 @@
 namespace spherule::internal {
 namespace {
 
+template <class Number>
+std::errc parse(std::string_view text, Number& value) {
+  const char* const end = text.data() + text.size();
+  const auto [stop, fault] = std::from_chars(text.data(), end, value);
+  return stop == end ? fault : std::errc::bad_message;
+}
+
 // Of a decimal number that no double is near to: whether it is too small, not too large. It is
 // below 1 if its exponent does not make up for the place of its first digit.
 bool is_too_small(std::string_view text) {
@@ -31,21 +38,16 @@ bool is_too_small(std::string_view text) {
 std::optional<double> finite_number(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, fault] = std::from_chars(text.data(), end, value);
-  if (text.empty() || stop != end) return std::nullopt;
-  if (fault == std::errc::result_out_of_range) {
-    if (!is_too_small(text)) return std::nullopt;
+  const std::errc fault = parse(text, value);
+  if (fault == std::errc::result_out_of_range && is_too_small(text)) {
     return text.starts_with('-') ? -0.0 : 0.0;
   }
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  return fault == std::errc() && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 std::optional<std::int64_t> whole_number(std::string_view text) {
   std::int64_t value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, fault] = std::from_chars(text.data(), end, value);
-  return fault == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+  return parse(text, value) == std::errc() ? std::optional(value) : std::nullopt;
 }
 
 std::string number_text(double number) {

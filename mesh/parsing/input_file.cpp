@@ -23,7 +23,7 @@ std::string read_regular_file(const std::filesystem::path& path) {
   if (status.type() == std::filesystem::file_type::not_found) throw Error(subject, "no such file");
   if (error) throw Error(subject, error.message());
   if (std::filesystem::is_directory(status)) throw Error(subject, "is a directory");
-  if (!std::filesystem::is_regular_file(status)) throw Error(subject, "is not a regular file");
+  require_regular_file(path);
   std::string bytes = read_file(path);
   if (bytes.empty()) throw Error(subject, "the file is empty");
   return bytes;

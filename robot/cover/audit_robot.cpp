@@ -213,6 +213,7 @@ auto of_link(const std::string& link, Work work) {
 // chord error of all its points: leaks are that much shallower at most, spheres protrude by that
 // much more at most, and so much deeper their surface may leak, but not deeper than the whole.
 Certificate within_chord_error(Certificate result, double chord_error) {
+  if (chord_error == 0.0) return result;
   for (Bounds* depth : {&result.surface_depth, &result.solid_depth, &result.uncovered_depth}) {
     depth->lower = std::max(0.0, sub_down(depth->lower, chord_error));
   }

@@ -194,7 +194,6 @@ std::optional<std::vector<Vector3i>> polygon_triangles(std::span<const Vector3d>
     }
     return triangles;
   };
-  if (corners.size() == 3) return fan();
   const std::vector<Vector2d> points = projected(vertices, corners);
   double area = 0.0;
   double turned = 0.0;
