@@ -2,6 +2,7 @@
 #include "robot/cover/audit_robot.h"
 
 #include "robot/cover/internal/link_solid.h"
+#include "robot/cover/internal/shapes_in_spheres.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/error.h"
 
@@ -230,7 +231,14 @@ void certify_link(const LinkParts& part, const LinkDescription& link,
                   const RobotAuditOptions& options, LinkAudit& audit) {
   const Certificate around = certify(*part.mesh, part.spheres, {.threads = options.threads});
   audit.certificate = within_chord_error(around, part.chord_error);
-  const Certificate& of_mesh = *audit.certificate;
+  Certificate& of_mesh = *audit.certificate;
+  if (!of_mesh.covered &&
+      internal::lie_in_single_spheres(link_shapes(link, options.geometry), part.spheres)) {
+    of_mesh.covered = true;
+    of_mesh.surface_depth = of_mesh.solid_depth = of_mesh.uncovered_depth = Bounds{};
+    of_mesh.deepest_leak.setZero();
+    return;
+  }
   // S holds the mesh around curved shapes, too.
   if (of_mesh.covered || around.uncovered_depth.lower > 0.0 || part.spheres.empty()) return;
   const auto mesh = link_mesh(

@@ -86,6 +86,12 @@ WidePoint move(const Pose& pose, const WidePoint& point) {
   return wide.normalized() * point + pose.translation().cast<Wide>();
 }
 
+WidePoint unmove(const Pose& pose, const WidePoint& point) {
+  const Eigen::Quaterniond q = pose.rotation();
+  const Eigen::Quaternion<Wide> wide(q.w(), q.x(), q.y(), q.z());
+  return wide.normalized().conjugate() * (point - pose.translation().cast<Wide>());
+}
+
 Primitive random_primitive(Random& random, double size) {
   const auto length = [&] { return size * random.between(0.2, 1.0); };
   switch (random.index(4)) {

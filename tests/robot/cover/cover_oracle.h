@@ -18,8 +18,9 @@ namespace spherule::test {
 using Wide = long double;
 using WidePoint = Eigen::Matrix<Wide, 3, 1>;
 
-// The motion that the pose stands for.
+// The motion that the pose stands for, and back.
 WidePoint move(const Pose& pose, const WidePoint& point);
+WidePoint unmove(const Pose& pose, const WidePoint& point);
 
 // Any primitive but a half-space, some 2 `size` across at most, and a pose that moves it about as
 // far.

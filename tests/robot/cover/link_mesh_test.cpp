@@ -48,12 +48,6 @@ Wide outside_of_convex(const TriangleMesh& mesh, const WidePoint& point) {
   return outside;
 }
 
-WidePoint unmove(const Pose& pose, const WidePoint& point) {
-  const Eigen::Quaterniond q = pose.rotation();
-  const Eigen::Quaternion<Wide> wide(q.w(), q.x(), q.y(), q.z());
-  return wide.normalized().conjugate() * (point - pose.translation().cast<Wide>());
-}
-
 // As DAE files are; the scale comes on top.
 TEST(LinkMesh, AFileThatStatesItsUnitIsInMetres) {
   const TempDir folder;
