@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/text/json.h"
 
+#include "cli/text/control_character.h"
+
 #include <cmath>
 #include <cstddef>
 #include <string_view>
@@ -9,18 +11,17 @@
 namespace spherule {
 namespace {
 
-// Escapes the control characters that JSON allows in texts but terminals obey: DEL and those of two
-// bytes (U+0080 to U+009F). Outside of texts there are none.
+// Escapes the control characters that JSON allows in texts but terminals obey: DEL and C1. Outside
+// of texts there are none but line feeds, and JSON escapes C0 itself.
 std::string without_controls(std::string_view json) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
+  constexpr char kFirstOfC1 = '\xC2';  // of the two bytes, the second of which is the code point
   std::string result;
   result.reserve(json.size());
   for (std::size_t i = 0; i < json.size(); ++i) {
-    unsigned code = static_cast<unsigned char>(json[i]);
-    if (code == 0xC2U && i + 1 < json.size()) code = static_cast<unsigned char>(json[i + 1]);
-    const bool is_of_two = code >= 0x80U && code < 0xA0U && json[i] == '\xC2';
-    if (is_of_two || code == 0x7FU) {
-      result.append("\\u00").append({kDigits[code >> 4U], kDigits[code & 15U]});
+    const bool is_of_two = json[i] == kFirstOfC1 && i + 1 < json.size();
+    const unsigned code = static_cast<unsigned char>(json[is_of_two ? i + 1 : i]);
+    if (is_control_character(code) && (is_of_two || code == 0x7FU)) {
+      result.append("\\u00").append(hex(code));
       i += is_of_two ? 1 : 0;
     } else {
       result += json[i];

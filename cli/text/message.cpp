@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/text/message.h"
 
+#include "cli/text/control_character.h"
+
 #include <cstddef>
 #include <iostream>
 
@@ -16,13 +18,14 @@ bool continues(unsigned byte) {
 }
 
 // How many bytes the character of UTF-8 that begins at `at` has; 0 if none does (RFC 3629), and for
-// control characters, those of two bytes (U+0080 to U+009F) included.
+// control characters.
 std::size_t length_of_character(std::string_view text, std::size_t at) {
   const unsigned first = byte_at(text, at);
   const unsigned second = byte_at(text, at + 1);
-  if (first < 0x80) return first >= 0x20 && first != 0x7F ? 1 : 0;
+  if (first < 0x80) return is_control_character(first) ? 0 : 1;
   if (!continues(second)) return 0;
-  if (first == 0xC2) return second >= 0xA0 ? 2 : 0;
+  // The first byte of U+0080 to U+00BF, whose second is the code point.
+  if (first == 0xC2) return is_control_character(second) ? 0 : 2;
   if (first > 0xC2 && first < 0xE0) return 2;
   if (!continues(byte_at(text, at + 2))) return 0;
   if (first >= 0xE0 && first < 0xF0) {
@@ -37,11 +40,10 @@ std::size_t length_of_character(std::string_view text, std::size_t at) {
 }
 
 std::string escaped(unsigned byte) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
   if (byte == '\n') return "\\n";
   if (byte == '\t') return "\\t";
   if (byte == '\r') return "\\r";
-  return {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15U]};
+  return "\\x" + hex(byte);
 }
 
 // Without its middle where it is long: files may hold names and texts of any length.
