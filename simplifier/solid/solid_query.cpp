@@ -2,7 +2,10 @@
 #include "simplifier/solid/solid_query.h"
 
 #include "simplifier/solid/medial_ascent.h"
+#include "simplifier/solid/nearest_sphere.h"
 #include "spheretree/rounding.h"
+
+#include <algorithm>
 
 namespace spherule::internal {
 namespace {
@@ -11,6 +14,33 @@ using Eigen::Vector3d;
 
 // Steps towards S are at least this share of it.
 constexpr double kLeastStep = 1.0 / 32.0;
+// Of directions that are tried from a place.
+constexpr int kMostDirections = 24;
+
+// Where external spheres meet at an acute angle, S is a groove whose edge the steps of an ascent,
+// away from one contact at a time, do not leave. Straight ways do: in the direction of the shortest
+// vector of the convex hull of the contacts' normals, the least rate at which the clearances to
+// them grow is greatest. It is approached by one contact at a time, the one that grows least of
+// those met on the way (Gilbert's algorithm).
+std::optional<Vector3d> solid_point_in_groove(const Clearance& clearance, const Vector3d& start,
+                                              double first_step, double within) {
+  Vector3d shortest = clearance(start).away;
+  for (int i = 0; i < kMostDirections && shortest.norm() > kLeastNorm; ++i) {
+    const Vector3d direction = shortest.normalized();
+    Vector3d least = shortest;
+    for (double step = first_step; step <= within && least.dot(direction) > 0.0; step *= 2.0) {
+      const Vector3d point = start + step * direction;
+      if (distance_upper(start, point) > within) break;
+      const ClearanceAt at = clearance(point);
+      if (at.lower >= 0.0) return point;
+      if (at.away.dot(direction) < least.dot(direction)) least = at.away;
+    }
+    const Vector3d change = least - shortest;
+    if (change.norm() <= kLeastNorm) return std::nullopt;
+    shortest += std::clamp(-shortest.dot(change) / change.squaredNorm(), 0.0, 1.0) * change;
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -33,15 +63,14 @@ double mesh_point_error(const MeshDistance& distance) {
   return 256.0 * kUnitRoundoff * largest_coordinate(distance.box());
 }
 
-std::optional<Vector3d> solid_point_near(const Clearance& clearance, const BoxCell& cell,
-                                         double within) {
-  const double reach = cell.reach();
-  for (const AscentStep& step :
-       ascend(clearance, cell.center, {.first_step = reach, .least_step = kLeastStep * reach})) {
-    if (distance_upper(cell.center, step.point) > within) break;
+std::optional<Vector3d> solid_point_near(const Clearance& clearance, const Vector3d& start,
+                                         double first_step, double within) {
+  for (const AscentStep& step : ascend(
+           clearance, start, {.first_step = first_step, .least_step = kLeastStep * first_step})) {
+    if (distance_upper(start, step.point) > within) break;
     if (step.clearance >= 0.0) return step.point;
   }
-  return std::nullopt;
+  return solid_point_in_groove(clearance, start, first_step, within);
 }
 
 }  // namespace spherule::internal

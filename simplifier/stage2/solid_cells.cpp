@@ -143,7 +143,9 @@ std::optional<SolidCells::Leak> SolidCells::leak_in(const Cell& cell, const Near
   if (reach > finest) return std::nullopt;
   if (const auto on_mesh = mesh_point_in(distance_, cell.box)) return Leak{*on_mesh, true};
   if (reach > kFinestOutside * finest) return std::nullopt;
-  if (const auto near = solid_point_near(clearance_, cell.box, finest)) return Leak{*near, true};
+  if (const auto near = solid_point_near(clearance_, cell.box.center, reach, finest)) {
+    return Leak{*near, true};
+  }
   if (reach > std::max(kFinestPinch * finest, least_reach(clearance_.box()))) return std::nullopt;
   return Leak{cell.box.center, false};
 }
