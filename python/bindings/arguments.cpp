@@ -12,13 +12,20 @@
 namespace spherule::python {
 
 std::string path_of(py::handle value, const char* name) {
-  const auto path = py::reinterpret_steal<py::object>(PyOS_FSPath(value.ptr()));
-  if (!path) {
-    PyErr_Clear();
-    throw py::type_error(std::string(name) + ": it is not a path (str or os.PathLike)");
+  PyObject* bytes = nullptr;
+  if (PyUnicode_FSConverter(value.ptr(), &bytes) != 0) {
+    return std::string(py::reinterpret_steal<py::bytes>(bytes));
   }
-  return py::isinstance<py::bytes>(path) ? std::string(py::bytes(path))
-                                         : std::string(py::str(path));
+  if (PyErr_ExceptionMatches(PyExc_TypeError) == 0) throw py::error_already_set();
+  PyErr_Clear();
+  throw py::type_error(std::string(name) + ": it is not a path (str or os.PathLike)");
+}
+
+py::str path_object(const std::string& path) {
+  auto text = py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeFSDefaultAndSize(path.data(), static_cast<py::ssize_t>(path.size())));
+  if (!text) throw py::error_already_set();
+  return text;
 }
 
 std::shared_ptr<const TriangleMesh> mesh_of(py::handle value, const char* name) {

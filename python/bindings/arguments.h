@@ -35,8 +35,9 @@ class Help {
 std::shared_ptr<const TriangleMesh> mesh_of(py::handle value, const char* name);
 // A Pose, a matrix of shape (4, 4), or None: the identity.
 Pose pose_of(py::handle value, const char* name);
-// A str or os.PathLike.
+// A str or os.PathLike, in the encoding of file names, which need not be UTF-8; and back.
 std::string path_of(py::handle value, const char* name);
+py::str path_object(const std::string& path);
 
 // A class of the package's _types.py, and one made with named fields.
 const py::object& result_class(const char* name);

@@ -6,9 +6,16 @@
 #include "spheretree/error.h"
 
 #include <exception>
+#include <string>
 
 namespace spherule::python {
 namespace {
+
+// Names of files in it need not be UTF-8.
+py::str message_of(const std::string& text) {
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "backslashreplace"));
+}
 
 // spherule.Error takes the two parts of what an Error says.
 void translate(std::exception_ptr exception) {
@@ -16,7 +23,7 @@ void translate(std::exception_ptr exception) {
     if (exception) std::rethrow_exception(exception);
   } catch (const Error& error) {
     const py::object type = result_class("Error");
-    const py::tuple parts = py::make_tuple(error.subject(), error.reason());
+    const py::tuple parts = py::make_tuple(message_of(error.subject()), message_of(error.reason()));
     PyErr_SetObject(type.ptr(), parts.ptr());
   }
 }

@@ -19,7 +19,7 @@ py::object shape_object(const LinkShape& shape) {
   py::object geometry;
   if (const auto* file = std::get_if<MeshFile>(&shape.geometry)) {
     const Eigen::Vector3d& scale = file->scale;
-    geometry = make_result("MeshFile", file->path.string(),
+    geometry = make_result("MeshFile", path_object(file->path.string()),
                            py::make_tuple(scale.x(), scale.y(), scale.z()));
   } else {
     geometry = object_of(std::get<Primitive>(shape.geometry));

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What cannot be used is refused, and the message names it."""
 
+import os
+
 import numpy as np
 import pytest
 import spherule
@@ -103,3 +105,22 @@ def test_other_layouts_are_converted(checker):
     single = strided.astype(np.float32)
     assert np.array_equal(checker.check_configs(single), checker.check_configs(single.astype(float)))
     assert checker.check_configs(np.zeros((0, checker.dof))).shape == (0,)
+
+
+def test_paths_are_whole(tmp_path):
+    """What stands behind a null character is not left out of a name."""
+    path = tmp_path / "five.tree"
+    spherule.save_tree(TREE, path)
+    for call in (spherule.load_tree, lambda name: spherule.save_tree(TREE, name), spherule.read_mesh):
+        with pytest.raises(ValueError, match="null"):
+            call(str(path) + "\0.tree")
+
+
+def test_paths_need_not_be_utf_8(tmp_path):
+    folder = os.fsencode(tmp_path)
+    path = os.fsdecode(folder + b"/\xff.tree")
+    spherule.save_tree(TREE, path)
+    assert os.listdir(folder) == [b"\xff.tree"]
+    assert spherule.load_tree(path) == TREE and spherule.load_tree(os.fsencode(path)) == TREE
+    with pytest.raises(spherule.Error, match="fe"):
+        spherule.load_tree(os.fsdecode(folder + b"/\xfe.tree"))
