@@ -316,8 +316,11 @@ void bind_edges(py::class_<CheckerOfScene, CheckerPointer>& checker) {
 
 }  // namespace
 
-CheckerPointer snapshot(const RobotScene& scene, bool enforce_limits,
-                        const py::object& instructions, const py::object& meshes) {
+CheckerPointer snapshot(const RobotScene& given, bool enforce_limits,
+                        const py::object& instructions, const py::object& meshes_in) {
+  // Other threads may edit the scene while this one does not hold the lock.
+  const RobotScene scene = given;
+  const py::tuple meshes(meshes_in);
   RobotCheckerOptions options;
   options.enforce_limits = enforce_limits;
   if (!instructions.is_none()) {
@@ -331,7 +334,7 @@ CheckerPointer snapshot(const RobotScene& scene, bool enforce_limits,
   }();
   return std::make_shared<CheckerOfScene>(
       CheckerOfScene{.scene = scene,
-                     .options = py::make_tuple(enforce_limits, instructions, py::tuple(meshes)),
+                     .options = py::make_tuple(enforce_limits, instructions, meshes),
                      .checker = std::move(checker),
                      .dof = static_cast<std::size_t>(scene.robot().variable_count())});
 }

@@ -176,9 +176,10 @@ void allow_disabled(AllowedOfRobot& self, const py::object& pairs) {
 }
 
 py::object allow_by_samples(AllowedOfRobot& self, std::size_t configurations, std::uint64_t seed) {
-  SampledCollisions found = [&] {
+  // Other threads may edit them while this one does not hold the lock.
+  SampledCollisions found = [&, allowed = self.allowed] {
     const WithoutLock unlocked;
-    return sample_collisions(self.robot, self.allowed, {configurations, seed});
+    return sample_collisions(self.robot, allowed, {configurations, seed});
   }();
   allow_sampled(found, self.allowed);
   return py::int_(found.configurations);

@@ -83,8 +83,10 @@ def test_confirmed_checkers_keep_their_meshes(cube, fit):
     robot.attach("car", tree)
     scene = spherule.RobotScene(robot)
     scene.add("other", tree)
-    exact = again(scene.snapshot(meshes=[spherule.CoveredMesh(cube, tree)]))
-    assert exact.check_config([1.01]) and not exact.check_config([0.99])
+    mesh = spherule.CoveredMesh(cube, tree)
+    for meshes in ([mesh], iter([mesh])):
+        exact = again(scene.snapshot(meshes=meshes))
+        assert exact.check_config([1.01]) and not exact.check_config([0.99])
 
 
 def answers(checker, configurations):

@@ -29,6 +29,28 @@ def test_threads_share_a_checker(checker, robot):
     assert all(np.array_equal(f, free) for f in many)
 
 
+def test_scenes_are_edited_while_others_take_snapshots(robot):
+    """A snapshot is of the scene as it was when it was called."""
+    scene = spherule.RobotScene(robot)
+    is_done = threading.Event()
+
+    def edit():
+        while not is_done.is_set():
+            for k in range(300):
+                scene.add(f"box {k}", spherule.Box((0.1, 0.1, 0.1)), spherule.Pose((9.0, 0.0, 0.1 * k)))
+            for k in range(300):
+                scene.remove(f"box {k}")
+
+    editor = threading.Thread(target=edit)
+    editor.start()
+    try:
+        for _ in range(300):
+            assert "variables" in repr(scene.snapshot())
+    finally:
+        is_done.set()
+        editor.join()
+
+
 def test_others_run_meanwhile():
     """A thread that counts goes on while another one fits: the lock is released."""
     is_done = threading.Event()
