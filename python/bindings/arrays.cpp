@@ -83,6 +83,10 @@ Numbers table(py::handle value, std::size_t columns, const char* name) {
   return all;
 }
 
+std::size_t row_count(const Numbers& table) {
+  return table.array.ndim() == 2 ? static_cast<std::size_t>(table.array.shape(0)) : 0;
+}
+
 Numbers row(py::handle value, std::size_t count, const char* name) {
   Numbers all = numbers(value, name);
   if (all.array.ndim() != 1 || all.size != count) {

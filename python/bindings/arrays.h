@@ -39,6 +39,8 @@ Numbers numbers(py::handle value, const char* name);
 Numbers table(py::handle value, std::size_t columns, const char* name);
 // Of shape (count,).
 Numbers row(py::handle value, std::size_t count, const char* name);
+// How many rows a table() has, of no columns, too.
+std::size_t row_count(const Numbers& table);
 // "(3, 4)".
 std::string shape_text(const py::array& array);
 

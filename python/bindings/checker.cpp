@@ -100,7 +100,7 @@ bool check_one(CheckerOfScene& self, const py::object& configuration) {
 
 py::array check_many(CheckerOfScene& self, const py::object& configurations, int threads) {
   const Numbers all = table(configurations, self.dof, "configurations");
-  const std::size_t count = self.dof > 0 ? all.size / self.dof : 0;
+  const std::size_t count = row_count(all);
   py::array_t<bool> free(static_cast<py::ssize_t>(count));
   auto* const answers = reinterpret_cast<std::uint8_t*>(free.mutable_data());
   Scratches scratches(self, threads);
@@ -141,12 +141,12 @@ py::object check_many_edges(CheckerOfScene& self, const py::object& from, const 
                             const py::object& max_configurations, int threads) {
   const Numbers a = table(from, self.dof, "start");
   const Numbers b = table(to, self.dof, "end");
-  if (a.size != b.size) {
+  const std::size_t count = row_count(a);
+  if (row_count(b) != count) {
     throw Error("end",
                 "its shape is " + shape_text(b.array) + ", that of start " + shape_text(a.array));
   }
   const EdgeRequest request = edge_request(resolution, first, continuous, max_configurations);
-  const std::size_t count = self.dof > 0 ? a.size / self.dof : 0;
   std::vector<std::int32_t> verdicts(count);
   std::vector<double> free_until(count);
   std::vector<double> contact_at(count);
@@ -154,8 +154,12 @@ py::object check_many_edges(CheckerOfScene& self, const py::object& from, const 
   in_parts(count, [&](std::size_t at, std::size_t size) {
     const std::size_t begin = at * self.dof;
     const std::size_t numbers = size * self.dof;
-    const auto found = self.checker.check_edges(
-        {a.data + begin, numbers}, {b.data + begin, numbers}, scratches.all(), request);
+    // Of a robot that does not move the library cannot tell how many there are.
+    const auto found =
+        self.dof > 0
+            ? self.checker.check_edges({a.data + begin, numbers}, {b.data + begin, numbers},
+                                       scratches.all(), request)
+            : std::vector(size, self.checker.check_edge({}, {}, scratches.all().front(), request));
     for (std::size_t i = 0; i < size; ++i) {
       verdicts[at + i] = static_cast<std::int32_t>(found[i].verdict);
       free_until[at + i] = found[i].free_until;
@@ -203,7 +207,7 @@ py::object clearance_of(CheckerOfScene& self, const py::object& configuration) {
 
 py::array clearances_of(CheckerOfScene& self, const py::object& configurations) {
   const Numbers all = table(configurations, self.dof, "configurations");
-  const std::size_t count = self.dof > 0 ? all.size / self.dof : 0;
+  const std::size_t count = row_count(all);
   py::array_t<double> bounds({static_cast<py::ssize_t>(count), py::ssize_t{2}});
   double* const answers = bounds.mutable_data();
   LentScratch scratch(self);

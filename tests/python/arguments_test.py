@@ -107,6 +107,25 @@ def test_other_layouts_are_converted(checker):
     assert checker.check_configs(np.zeros((0, checker.dof))).shape == (0,)
 
 
+def test_robots_that_do_not_move():
+    """One answer for each row, though a row has no numbers."""
+    robot = spherule.RobotModel()
+    robot.attach("base_link", TREE)
+    scene = spherule.RobotScene(robot)
+    scene.add("other", TREE)
+    checker = scene.snapshot()
+    rows = np.zeros((3, 0))
+    assert not checker.check_config([])
+    assert checker.check_configs(rows).tolist() == [False] * 3
+    assert checker.clearances(rows).tolist() == [[0.0, 0.0]] * 3
+    edges = checker.check_edges(rows, rows)
+    assert edges.free.tolist() == [False] * 3 and edges.verdict[0] == checker.check_edge([], []).verdict
+    with pytest.raises(spherule.Error, match="end: "):
+        checker.check_edges(rows, rows[1:])
+    scene.remove("other")
+    assert scene.snapshot().check_edges(rows, rows, threads=2).free.tolist() == [True] * 3
+
+
 def test_paths_are_whole(tmp_path):
     """What stands behind a null character is not left out of a name."""
     path = tmp_path / "five.tree"
