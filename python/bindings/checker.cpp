@@ -41,12 +41,14 @@ class LentScratch {
   RobotChecker::Scratch scratch_;
 };
 
-// The same of one for each thread.
+// The same of one for each thread, of which no more than these are of use, nor more than the cores.
+constexpr std::size_t kUsefulThreads = 64;
 class Scratches {
  public:
   Scratches(CheckerOfScene& self, int threads) : self_(self) {
+    const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
     std::size_t count = static_cast<std::size_t>(std::max(threads, 0));
-    if (count == 0) count = std::max(1U, std::thread::hardware_concurrency());
+    count = count == 0 ? cores : std::min(count, std::max(cores, kUsefulThreads));
     while (lent_.size() < count) lent_.push_back(LentScratch::taken(self));
   }
   ~Scratches() {

@@ -126,6 +126,12 @@ def test_robots_that_do_not_move():
     assert scene.snapshot().check_edges(rows, rows, threads=2).free.tolist() == [True] * 3
 
 
+def test_more_threads_than_are_of_use(checker):
+    configurations = np.random.default_rng(2).uniform(-1, 1, (40, checker.dof))
+    free = checker.check_configs(configurations)
+    assert np.array_equal(checker.check_configs(configurations, threads=2**31 - 1), free)
+
+
 def test_paths_are_whole(tmp_path):
     """What stands behind a null character is not left out of a name."""
     path = tmp_path / "five.tree"
