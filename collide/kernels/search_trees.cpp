@@ -3,10 +3,42 @@
 
 #include "collide/solids/solid_spheres.h"
 #include "spheretree/build.h"
+#include "spheretree/rounding.h"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace spherule::internal {
+namespace {
+
+// What search trees are made of, and whether kept ones are of this: an object may have been
+// assigned to since, and then holds other spheres in the same place.
+struct SpheresOfTree {
+  const SphereTree& tree;
+
+  std::span<const Sphere> operator()() const { return tree.spheres(); }
+  bool are(std::span<const Sphere> kept) const { return std::ranges::equal(kept, tree.spheres()); }
+};
+
+struct SpheresOfSolid {
+  const SolidMesh& solid;
+
+  std::vector<Sphere> operator()() const { return spheres_around(solid); }
+  // Those around the triangles come first.
+  bool are(std::span<const Sphere> kept) const {
+    const std::span<const Sphere> triangles = solid.mesh().tree().spheres();
+    const double inflation = solid.inflation();
+    const auto is_grown = [&](const Sphere& around, const Sphere& sphere) {
+      return around.center == sphere.center &&
+             sphere.radius == (inflation > 0.0 ? add_up(around.radius, inflation) : around.radius);
+    };
+    return triangles.size() <= kept.size() &&
+           std::equal(triangles.begin(), triangles.end(), kept.begin(), is_grown);
+  }
+};
+
+}  // namespace
 
 SearchTrees::SearchTrees(std::span<const Sphere> spheres)
     : narrow(build_tree(spheres, {.branching = kNarrow})),
@@ -21,7 +53,10 @@ std::shared_ptr<const SearchTrees> SearchTreeCache::find(const std::shared_ptr<c
     const std::lock_guard lock(mutex_);
     std::erase_if(entries_, [](const auto& entry) { return entry.second.owner.expired(); });
     const auto found = entries_.find(owner.get());
-    if (found != entries_.end()) return found->second.trees;
+    if (found != entries_.end()) {
+      if (spheres_of.are(found->second.trees->narrow.spheres())) return found->second.trees;
+      entries_.erase(found);
+    }
   }
   auto trees = std::make_shared<const SearchTrees>(spheres_of());
   const std::lock_guard lock(mutex_);
@@ -30,12 +65,12 @@ std::shared_ptr<const SearchTrees> SearchTreeCache::find(const std::shared_ptr<c
 
 std::shared_ptr<const SearchTrees> SearchTreeCache::of(
     const std::shared_ptr<const SphereTree>& tree) {
-  return find(tree, [&] { return tree->spheres(); });
+  return find(tree, SpheresOfTree{*tree});
 }
 
 std::shared_ptr<const SearchTrees> SearchTreeCache::of(
     const std::shared_ptr<const SolidMesh>& solid) {
-  return find(solid, [&] { return spheres_around(*solid); });
+  return find(solid, SpheresOfSolid{*solid});
 }
 
 }  // namespace spherule::internal

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Straight motions in joint space, against many configurations on them.
 
+#include "collide/solid_mesh.h"
+#include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
+#include "spheretree/refit.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/check/edge_oracle.h"
@@ -14,7 +17,9 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace spherule::test {
@@ -302,6 +307,40 @@ TEST(RobotEdge, RefusesBadInput) {
     EXPECT_THROW(checker.check_edge(good, good, scratch, {.resolution = bad}), Error);
     EXPECT_THROW(standing.check_edge(good, good, other, {.resolution = bad}), Error);
   }
+}
+
+// A checker keeps nothing of what stood in a tree or a mesh before it was assigned to, although the
+// robot keeps what was computed of it for the next one.
+TEST(RobotEdge, WhatWasAssignedToAnObstacleCounts) {
+  RobotModel robot("base");
+  robot.add_link("arm", "base",
+                 {.name = "turn", .type = JointType::kRevolute, .lower = -3.0, .upper = 3.0});
+  robot.attach("arm", one_sphere_tree({1, 0, 0}, 0.1));
+  const auto mesh_at = [](double x) {
+    return TriangleMesh{{{x, 0, 0}, {x + 0.1, 0, 0}, {x, 0.1, 0}, {x, 0, 0.1}},
+                        {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+  };
+  const auto tree = std::make_shared<SphereTree>(*one_sphere_tree({9, 0, 0}, 0.1));
+  const auto mesh = std::make_shared<SolidMesh>(mesh_at(9.0));
+  RobotScene of_tree(robot);
+  of_tree.add("post", std::shared_ptr<const SphereTree>(tree));
+  of_tree.attach("tool", "arm", one_sphere_tree({1.5, 0, 0}, 0.1));
+  RobotScene of_mesh = of_tree;
+  of_mesh.remove("post");
+  of_mesh.add("post", std::shared_ptr<const SolidMesh>(mesh));
+  const auto verdicts = [&] {
+    std::vector<Verdict> result;
+    for (const RobotScene* scene : {&of_tree, &of_mesh}) {
+      const RobotChecker checker = scene->snapshot();
+      RobotChecker::Scratch scratch(checker);
+      result.push_back(checker.check_edge(std::vector{-1.0}, std::vector{1.0}, scratch).verdict);
+    }
+    return result;
+  };
+  EXPECT_EQ(verdicts(), std::vector(2, Verdict::kFree));
+  *tree = refit(std::move(*tree), std::vector<Sphere>{{{1, 0, 0}, 0.1}});
+  *mesh = SolidMesh(mesh_at(1.0));
+  EXPECT_EQ(verdicts(), std::vector(2, Verdict::kCollision));
 }
 
 }  // namespace
