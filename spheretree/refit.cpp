@@ -4,6 +4,7 @@
 #include "spheretree/check.h"
 #include "spheretree/error.h"
 #include "spheretree/internal/node_spheres.h"
+#include "spheretree/moved_from.h"
 
 #include <algorithm>
 #include <cassert>
@@ -15,6 +16,7 @@
 namespace spherule {
 
 SphereTree refit(SphereTree tree, std::span<const Sphere> moved) {
+  internal::require_content(tree.node_count() > 0, "SphereTree");
   SphereTreeData& data = tree.data_;
   if (moved.size() != data.spheres.size()) {
     throw Error("sphere tree", std::to_string(moved.size()) + " moved spheres for a tree over " +

@@ -3,6 +3,7 @@
 
 #include "robot/model/internal/mimic_error.h"
 #include "spheretree/error.h"
+#include "spheretree/moved_from.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -66,6 +67,7 @@ Pose move(const Pose& world_from_parent, const Quaterniond& parent_rotation, con
 
 void forward_kinematics(const RobotModel& robot, std::span<const double> configuration,
                         std::vector<Pose>& world_from_link, const Pose& world_from_root) {
+  internal::require_content(!robot.links().empty(), "RobotModel");
   if (configuration.size() != static_cast<std::size_t>(robot.variable_count())) {
     throw Error("configuration", "it has " + std::to_string(configuration.size()) +
                                      " numbers where the robot has " +

@@ -12,11 +12,13 @@
 #include "collide/within.h"
 #include "mesh/mesh_distance.h"
 #include "robot/check/robot_scene.h"
+#include "robot/model/kinematics.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/free_boxes.h"
 #include "robot/pairs/link_pairs.h"
 #include "spheretree/error.h"
 #include "spheretree/level_tree.h"
+#include "spheretree/refit.h"
 #include "tests/collide/tetrahedra.h"
 #include "tests/collide/trees.h"
 
@@ -61,6 +63,7 @@ TEST(MovedFrom, SphereTree) {
   EXPECT_TRUE(tree.spheres().empty());
   EXPECT_THROW(tree.level(0), Error);
   EXPECT_THROW(cut(tree, 3), Error);
+  EXPECT_THROW(refit(tree, {}), Error);
   // Wherever they stand: it must not count as free because nothing is there.
   for (const Pose& pose : {kHere, kFar}) {
     EXPECT_THROW(collide(tree, pose, other, kHere), Error);
@@ -176,6 +179,8 @@ TEST(MovedFrom, RobotCheckerAndScene) {
   EXPECT_THROW(robot.attach("base_link", around_it()), Error);
   EXPECT_THROW(RobotScene(robot).snapshot(), Error);
   EXPECT_THROW(robot.check_cache(), Error);
+  std::vector<Pose> poses;
+  EXPECT_THROW(forward_kinematics(robot, {}, poses), Error);
 }
 
 TEST(MovedFrom, AllowedCollisions) {
