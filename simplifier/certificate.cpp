@@ -9,6 +9,7 @@
 #include "simplifier/proof/volume_ratio.h"
 #include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/clearance.h"
+#include "simplifier/solid/usable_external.h"
 #include "simplifier/support/thread_limit.h"
 #include "simplifier/support/usable_spheres.h"
 #include "spheretree/error.h"
@@ -184,6 +185,7 @@ Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                     const CertifyOptions& options) {
   validate(mesh, "mesh");
   check_options(spheres, options);
+  if (options.external != nullptr) internal::check_external(*options.external);
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);
   if (options.external != nullptr) {

@@ -102,8 +102,8 @@ struct Certificate {
 // Certifies any set of spheres against a mesh, ours or not (docs/guarantee.md, G1 and G2).
 // Independent of how the spheres were found. Throws Error for a mesh that validate() refuses, for
 // spheres that are not usable or reach more than 2^24 times as far from the origin as mesh and S,
-// and for options out of range; an empty set of spheres is certified
-// (as covering nothing).
+// for external spheres that stage 1 cannot have made, and for options out of range; an empty set of
+// spheres is certified (as covering nothing).
 Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                     const CertifyOptions& options = {});
 

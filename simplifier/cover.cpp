@@ -5,6 +5,7 @@
 #include "mesh/triangle_mesh.h"
 #include "simplifier/internal/stages.h"
 #include "simplifier/solid/clearance.h"
+#include "simplifier/solid/usable_external.h"
 #include "simplifier/stage2/cover_blocks.h"
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/cover_fitter.h"
@@ -22,6 +23,7 @@ namespace spherule {
 SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                   const CoverOptions& options) {
   validate(mesh, "mesh");
+  internal::check_external(external);
   internal::check_options(options);
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);

@@ -5,11 +5,13 @@
 #include "mesh/mesh_distance.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/solid/cube.h"
+#include "simplifier/solid/usable_external.h"
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/local_error.h"
 #include "simplifier/stage2/solid_cells.h"
 #include "simplifier/support/parallel.h"
 #include "simplifier/support/thread_limit.h"
+#include "simplifier/support/usable_spheres.h"
 
 #include <Eigen/Geometry>
 
@@ -148,6 +150,8 @@ bool is_thin_at(const internal::Clearance& clearance, const Vector3d& center, do
 CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& external,
                                std::span<const Sphere> spheres, double max_error, int threads) {
   validate(mesh, "mesh");
+  internal::check_external(external);
+  internal::check_usable(spheres);
   internal::check_max_error(max_error);
   const internal::ThreadLimit limit(threads);
   const MeshDistance distance(mesh);
@@ -185,6 +189,8 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
 
 std::size_t spheres_in_thin_parts(const ExternalSpheres& external, std::span<const Sphere> spheres,
                                   double max_error) {
+  internal::check_external(external);
+  internal::check_usable(spheres);
   internal::check_max_error(max_error);
   const internal::Clearance clearance(external);
   return static_cast<std::size_t>(std::ranges::count_if(

@@ -48,7 +48,8 @@ struct CoverBreakdown {
 // 2 elsewhere; no proof. An edge is sharp where its faces meet at 150 degrees or less, or where a
 // sheet ends; convex where S does not go on beyond it. (Along such an edge the best sphere covers
 // no more than a few E, so these spheres only become fewer with a larger E.) Deterministic. Throws
-// Error for a mesh that validate() refuses and for a max_error that is not positive and finite.
+// Error for a mesh that validate() refuses, spheres that are not usable (external ones, too) and
+// for a max_error that is not positive and finite.
 CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& external,
                                std::span<const Sphere> spheres, double max_error, int threads = 0);
 
@@ -57,7 +58,8 @@ CoverBreakdown cover_breakdown(const TriangleMesh& mesh, const ExternalSpheres& 
 // larger than the wall. Of these there are many: a plate of area A and thickness t takes A / (2.6
 // (E^2 + E t)) even if discs cover it perfectly. "Sphere packing is not suited to models which are
 // long, wide and narrow such as a thin plate" (the paper, section III). cover_breakdown() looks
-// closer, at both sides of the wall. Throws Error for a max_error that is not positive and finite.
+// closer, at both sides of the wall. Throws Error for spheres that are not usable (external ones,
+// too) and for a max_error that is not positive and finite.
 std::size_t spheres_in_thin_parts(const ExternalSpheres& external, std::span<const Sphere> spheres,
                                   double max_error);
 

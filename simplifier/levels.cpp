@@ -5,6 +5,7 @@
 #include "simplifier/internal/stages.h"
 #include "simplifier/proof/protrusion.h"
 #include "simplifier/solid/clearance.h"
+#include "simplifier/solid/usable_external.h"
 #include "simplifier/stage2/level_fitter.h"
 #include "simplifier/support/thread_limit.h"
 #include "spheretree/build.h"
@@ -42,6 +43,7 @@ std::vector<CoverLevel> fit_levels(const TriangleMesh& mesh, const ExternalSpher
                                    std::span<const double> max_errors,
                                    const CoverOptions& options) {
   validate(mesh, "mesh");
+  internal::check_external(external);
   if (check_levels(max_errors).empty()) return {};
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);

@@ -5,6 +5,7 @@
 #include "mesh/mesh_distance.h"
 #include "simplifier/proof/protrusion.h"
 #include "simplifier/solid/clearance.h"
+#include "simplifier/solid/usable_external.h"
 #include "simplifier/stage2/cover_checks.h"
 #include "simplifier/stage2/cover_fitter.h"
 #include "simplifier/stage2/local_error.h"
@@ -109,6 +110,7 @@ Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
               std::span<const Sphere> spheres, const RepairOptions& options) {
   require_rounding_to_nearest();
   validate(mesh, "mesh");
+  internal::check_external(external);
   check(spheres, options);
   const internal::ThreadLimit threads(options.threads);
   const MeshDistance distance(mesh);

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What certify() refuses, and what it does not come to an end with unless it does.
 #include "simplifier/certificate.h"
+#include "simplifier/cover.h"
+#include "simplifier/cover_breakdown.h"
+#include "simplifier/external_spheres.h"
+#include "simplifier/levels.h"
+#include "simplifier/repair.h"
 #include "spheretree/error.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/support/zoo.h"
@@ -44,6 +49,43 @@ TEST(Certificate, BadSpheresAndOptionsAreRefusedByName) {
     EXPECT_EQ(refused({good}, {.padding = bad}), "padding");
   }
   EXPECT_EQ(refused({good}, {}, {}), "mesh");
+}
+
+// Without an end if they were not.
+TEST(Certificate, ExternalSpheresThatNobodyPlacedAreRefused) {
+  const std::vector<Sphere> good{{kMiddle, 1.0}};
+  const ExternalSpheres box =
+      place_external_spheres(cube_mesh(), {.placement = ExternalPlacement::kNone});
+  std::vector<ExternalSpheres> all(8, box);
+  all[0] = {};
+  all[1].box.min().x() = kNan;
+  all[2].box.max().y() = kInfinity;
+  all[3].box.max().z() = -1.0;
+  all[4].padding = kNan;
+  all[5].padding = -1.0;
+  all[6].spheres.push_back({{0, kNan, 0}, 1.0});
+  all[7].spheres.push_back({{9, 9, 9}, -1.0});
+  const auto refused_by = [](const auto& run) -> std::string {
+    try {
+      run();
+    } catch (const Error& error) {
+      return error.subject();
+    }
+    return "accepted";
+  };
+  for (const ExternalSpheres& bad : all) {
+    const TriangleMesh mesh = cube_mesh();
+    const std::vector<double> levels{0.5};
+    EXPECT_EQ(refused_by([&] { certify(mesh, good, {.external = &bad}); }), "external spheres");
+    EXPECT_EQ(refused_by([&] { cover(mesh, bad, {.max_error = 0.2}); }), "external spheres");
+    EXPECT_EQ(refused_by([&] { repair(mesh, bad, good, {.max_error = 0.2}); }), "external spheres");
+    EXPECT_EQ(refused_by([&] { fit_levels(mesh, bad, good, levels, {}); }), "external spheres");
+    EXPECT_EQ(refused_by([&] { cover_breakdown(mesh, bad, good, 0.2); }), "external spheres");
+    EXPECT_EQ(refused_by([&] { spheres_in_thin_parts(bad, good, 0.2); }), "external spheres");
+  }
+  const std::vector<Sphere> bad{{kMiddle, kNan}};
+  EXPECT_EQ(refused_by([&] { cover_breakdown(cube_mesh(), box, bad, 0.2); }), "sphere 0");
+  EXPECT_EQ(refused_by([&] { spheres_in_thin_parts(box, bad, 0.2); }), "sphere 0");
 }
 
 // The gap to a sphere that grazes the mesh is known to the rounding of its radius only; halving
