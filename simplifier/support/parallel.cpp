@@ -34,6 +34,19 @@ std::size_t thread_count() {
   return std::min(allowed, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
 }
 
+namespace {
+
+// More are of no use on any machine, and tbb allocates memory for as many as it is allowed.
+constexpr std::size_t kMostThreads = 4096;
+
+std::size_t allowed_threads(int requested) {
+  const auto allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return requested > 0 ? std::min(static_cast<std::size_t>(requested), kMostThreads) : allowed;
+}
+
+}  // namespace
+
 struct ThreadLimit::Control {
   explicit Control(std::size_t threads)
       : control(tbb::global_control::max_allowed_parallelism, threads) {}
@@ -42,10 +55,7 @@ struct ThreadLimit::Control {
 };
 
 ThreadLimit::ThreadLimit(int threads)
-    : control_(std::make_unique<Control>(
-          threads > 0
-              ? static_cast<std::size_t>(threads)
-              : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))) {}
+    : control_(std::make_unique<Control>(allowed_threads(threads))) {}
 
 ThreadLimit::~ThreadLimit() = default;
 

@@ -130,6 +130,7 @@ def test_more_threads_than_are_of_use(checker):
     configurations = np.random.default_rng(2).uniform(-1, 1, (40, checker.dof))
     free = checker.check_configs(configurations)
     assert np.array_equal(checker.check_configs(configurations, threads=2**31 - 1), free)
+    assert spherule.simplify(CUBE, max_error=0.3, effort=0, threads=2**31 - 1).certificate.covered
 
 
 def test_paths_are_whole(tmp_path):
