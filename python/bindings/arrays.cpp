@@ -127,6 +127,25 @@ std::vector<Eigen::Vector3i> triples(py::handle value, const char* name) {
   return result;
 }
 
+std::vector<std::int32_t> indices(py::handle value, const char* name) {
+  const py::array array = as_array(value, name);
+  require_kind(array, "iu", name);
+  if (array.ndim() != 1) refuse_shape(array, "(n,)", name);
+  const auto all =
+      py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
+  if (!all) throw py::error_already_set();
+  std::vector<std::int32_t> result;
+  for (py::ssize_t i = 0; i < all.size(); ++i) {
+    const auto index = static_cast<std::int32_t>(all.data()[i]);
+    if (index != all.data()[i]) {
+      throw Error(name,
+                  "row " + std::to_string(i) + " has the index " + std::to_string(all.data()[i]));
+    }
+    result.push_back(index);
+  }
+  return result;
+}
+
 Eigen::Vector3d vector3(py::handle value, const char* name) {
   const Numbers all = row(value, 3, name);
   return {all.data[0], all.data[1], all.data[2]};

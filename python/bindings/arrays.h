@@ -58,6 +58,8 @@ Spheres spheres(py::handle value, const char* name);
 std::vector<Eigen::Vector3d> points(py::handle value, const char* name);
 // Whole numbers of shape (n, 3), each within 32 bits.
 std::vector<Eigen::Vector3i> triples(py::handle value, const char* name);
+// Whole numbers of shape (n,), each within 32 bits.
+std::vector<std::int32_t> indices(py::handle value, const char* name);
 // Three numbers.
 Eigen::Vector3d vector3(py::handle value, const char* name);
 // A sphere of four numbers.

@@ -122,13 +122,8 @@ void bind_tree_class(py::module_& module) {
 std::vector<SphereLevel> levels_of(const py::sequence& levels) {
   std::vector<SphereLevel> result;
   for (const py::handle level : levels) {
-    const Spheres all = spheres(level.attr("spheres"), "levels");
-    const auto parents =
-        py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>::ensure(
-            level.attr("parent_of"));
-    if (!parents) throw py::error_already_set();
-    result.push_back(
-        {all.copy(), {parents.data(), parents.data() + static_cast<std::size_t>(parents.size())}});
+    result.push_back({spheres(level.attr("spheres"), "levels").copy(),
+                      indices(level.attr("parent_of"), "parent_of")});
   }
   return result;
 }

@@ -2,6 +2,7 @@
 """What cannot be used is refused, and the message names it."""
 
 import os
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,12 @@ from conftest import make_cube, random_spheres
 
 TREE = spherule.build_tree(random_spheres(5, 1))
 CUBE = make_cube()
+
+
+def level_with(parent):
+    """A sphere, and a level of one that holds it, whose number the parent is meant to be."""
+    sphere = np.array([[0.0, 0.0, 0.0, 1.0]])
+    return sphere, [SimpleNamespace(spheres=2 * sphere, parent_of=np.array([parent]))]
 
 
 @pytest.mark.parametrize(
@@ -37,6 +44,7 @@ CUBE = make_cube()
         (lambda: spherule.read_mesh("no such file.stl"), "no such file.stl"),
         (lambda: spherule.load_tree("no such.tree"), "no such.tree"),
         (lambda: TREE.level(99), "level"),
+        (lambda: spherule.build_tree_from_levels(*level_with(2**32)), "parent_of: row 0"),
         (lambda: spherule.sweep(TREE, spherule.Motion.still(None), TREE, spherule.Motion.still(None), resolution=-1.0), "resolution"),
     ],
 )
@@ -65,6 +73,7 @@ def test_bad_values(call, text):
         (lambda: spherule.with_spheres(TREE, {}), "robot"),
         (lambda: spherule.repair(CUBE, None, np.zeros((1, 4))), "external"),
         (lambda: spherule.simplify(CUBE, zones=[1]), "zones"),
+        (lambda: spherule.build_tree_from_levels(*level_with(0.7)), "parent_of: .*float64"),
     ],
 )
 def test_wrong_types(call, text):
