@@ -6,6 +6,7 @@
 #include "python/bindings/bindings.h"
 #include "python/bindings/certificates.h"
 #include "python/bindings/long_run.h"
+#include "spheretree/error.h"
 
 #include <pybind11/stl.h>
 #include <type_traits>
@@ -38,8 +39,11 @@ SimplifyOptions options_of(const py::kwargs& given) {
     try {
       value = given[name].cast<Value>();
     } catch (const py::cast_error&) {
-      throw py::type_error(std::string(name) + ": its type is " +
-                           std::string(py::str(py::type::handle_of(given[name]).attr("__name__"))));
+      const std::string type = py::str(py::type::handle_of(given[name]).attr("__name__"));
+      if (std::is_arithmetic_v<Value> && type == "int") {
+        throw Error(name, std::string(py::str(py::object(given[name]))) + " is out of range");
+      }
+      throw py::type_error(std::string(name) + ": its type is " + type);
     }
   };
   take("max_error", o.max_error);

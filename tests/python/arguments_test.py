@@ -44,6 +44,8 @@ def level_with(parent):
         (lambda: spherule.read_mesh("no such file.stl"), "no such file.stl"),
         (lambda: spherule.load_tree("no such.tree"), "no such.tree"),
         (lambda: TREE.level(99), "level"),
+        (lambda: spherule.simplify(CUBE, threads=2**31), "threads: 2147483648 is out of range"),
+        (lambda: spherule.simplify(CUBE, seed=-1), "seed: -1 is out of range"),
         (lambda: spherule.build_tree_from_levels(*level_with(2**32)), "parent_of: row 0"),
         (lambda: spherule.sweep(TREE, spherule.Motion.still(None), TREE, spherule.Motion.still(None), resolution=-1.0), "resolution"),
     ],
