@@ -7,6 +7,10 @@
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/long_run.h"
+#include "spheretree/error.h"
+#include "spheretree/rounding.h"
+
+#include <string>
 
 namespace spherule::python {
 namespace {
@@ -70,6 +74,10 @@ py::object mesh_report_of(const py::object& mesh, bool self_intersections) {
 py::array distances(const py::object& mesh, const py::object& points_in) {
   const auto kept = mesh_of(mesh, "mesh");
   std::vector<Eigen::Vector3d> all = points(points_in, "points");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (is_usable_point(all[i])) continue;
+    throw Error("points", "row " + std::to_string(i) + " has a number that is not up to 1e15");
+  }
   struct Pair {
     double lower, upper;
   };

@@ -44,6 +44,8 @@ def level_with(parent):
         (lambda: spherule.read_mesh("no such file.stl"), "no such file.stl"),
         (lambda: spherule.load_tree("no such.tree"), "no such.tree"),
         (lambda: TREE.level(99), "level"),
+        (lambda: spherule.mesh_distance(CUBE, [[0, 0, 0], [0, np.nan, 0]]), "points: row 1"),
+        (lambda: spherule.mesh_distance(CUBE, [[1e300, 0, 0]]), "points: row 0"),
         (lambda: spherule.simplify(CUBE, threads=2**31), "threads: 2147483648 is out of range"),
         (lambda: spherule.simplify(CUBE, seed=-1), "seed: -1 is out of range"),
         (lambda: spherule.build_tree_from_levels(*level_with(2**32)), "parent_of: row 0"),
