@@ -64,6 +64,15 @@ Pose pose_of(py::handle value, const char* name) {
   return Pose::from_isometry(Eigen::Isometry3d(matrix));
 }
 
+double number_of(py::handle object, const char* attribute) {
+  const py::object value = object.attr(attribute);
+  try {
+    return value.cast<double>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(std::string(attribute) + ": it is no number");
+  }
+}
+
 const py::object& result_class(const char* name) {
   // Kept for ever: classes are gone before statics are.
   static auto* const classes = new std::map<std::string, py::object, std::less<>>();

@@ -39,6 +39,9 @@ Pose pose_of(py::handle value, const char* name);
 std::string path_of(py::handle value, const char* name);
 py::str path_object(const std::string& path);
 
+// A number that an object has under that name. TypeError naming it for what is none.
+double number_of(py::handle object, const char* attribute);
+
 // A class of the package's _types.py, and one made with named fields.
 const py::object& result_class(const char* name);
 template <class... Fields>

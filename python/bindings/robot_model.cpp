@@ -27,8 +27,8 @@ Joint joint_of(const py::object& object) {
       choice(object.attr("type"), {"fixed", "revolute", "prismatic", "continuous"}, "type"));
   joint.parent_from_joint = pose_of(object.attr("parent_from_joint"), "parent_from_joint");
   joint.axis = vector3(object.attr("axis"), "axis");
-  joint.lower = object.attr("lower").cast<double>();
-  joint.upper = object.attr("upper").cast<double>();
+  joint.lower = number_of(object, "lower");
+  joint.upper = number_of(object, "upper");
   return joint;
 }
 

@@ -23,10 +23,6 @@ struct KeptCoveredMesh : CoveredMesh {
 };
 using CoveredPointer = std::shared_ptr<KeptCoveredMesh>;
 
-double number_of(py::handle value, const char* attribute) {
-  return value.attr(attribute).cast<double>();
-}
-
 SolidPointer made_solid(const py::object& mesh) {
   return run_long(py::none(), [kept = mesh_of(mesh, "mesh")](const LongRun&) {
     return std::make_shared<SolidMesh>(*kept);

@@ -16,10 +16,15 @@ py::tuple triple(const Eigen::Vector3d& point) {
   return py::make_tuple(point.x(), point.y(), point.z());
 }
 
+std::optional<double> number_or_none(py::handle object, const char* attribute) {
+  if (object.attr(attribute).is_none()) return std::nullopt;
+  return number_of(object, attribute);
+}
+
 ZoneShape zone_shape_of(const py::object& shape) {
   const py::handle type = py::type::handle_of(shape);
   if (type.is(result_class("ZoneSphere"))) {
-    return Sphere{vector3(shape.attr("center"), "center"), shape.attr("radius").cast<double>()};
+    return Sphere{vector3(shape.attr("center"), "center"), number_of(shape, "radius")};
   }
   if (type.is(result_class("ZoneBox"))) {
     return Eigen::AlignedBox3d(vector3(shape.attr("min"), "min"),
@@ -27,7 +32,7 @@ ZoneShape zone_shape_of(const py::object& shape) {
   }
   if (type.is(result_class("ZoneCapsule"))) {
     return ZoneCapsule{vector3(shape.attr("start"), "start"), vector3(shape.attr("end"), "end"),
-                       shape.attr("radius").cast<double>()};
+                       number_of(shape, "radius")};
   }
   throw py::type_error("zones: the shape is no ZoneSphere, ZoneBox or ZoneCapsule");
 }
@@ -52,9 +57,8 @@ std::vector<Zone> zones_of(const py::object& zones) {
       throw py::type_error("zones: an element is no Zone");
     }
     result.push_back({.shape = zone_shape_of(zone.attr("shape")),
-                      .max_error = zone.attr("max_error").cast<std::optional<double>>(),
-                      .min_external_diameter =
-                          zone.attr("min_external_diameter").cast<std::optional<double>>()});
+                      .max_error = number_or_none(zone, "max_error"),
+                      .min_external_diameter = number_or_none(zone, "min_external_diameter")});
   }
   return result;
 }

@@ -77,6 +77,10 @@ def test_bad_values(call, text):
         (lambda: spherule.with_spheres(TREE, {}), "robot"),
         (lambda: spherule.repair(CUBE, None, np.zeros((1, 4))), "external"),
         (lambda: spherule.simplify(CUBE, zones=[1]), "zones"),
+        (lambda: spherule.simplify(CUBE, zones=[spherule.Zone(spherule.ZoneSphere((0, 0, 0), "a"))]), "radius"),
+        (lambda: spherule.simplify(CUBE, zones=[spherule.Zone(spherule.ZoneSphere((0, 0, 0), 1.0), "a")]), "max_error"),
+        (lambda: spherule.collides(TREE, None, spherule.SolidSphere("a"), None), "radius"),
+        (lambda: spherule.RobotModel().add_link("a", "base_link", spherule.Joint("j", "revolute", lower="a")), "lower"),
         (lambda: spherule.build_tree_from_levels(*level_with(0.7)), "parent_of: .*float64"),
     ],
 )
