@@ -113,11 +113,13 @@ struct Steps {
 // A cube around the box that leaves a sphere of radius rho and three steps of room on every side.
 // Zones halve the step up to `halvings` times.
 FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double step, int halvings) {
+  constexpr int kMostLevels = 20;
   const double edge = box.sizes().maxCoeff() + 2.0 * (rho + 3.0 * step);
   FloodGrid::Shape shape{.origin = Vector3d::Zero(), .step = step};
-  while (std::ldexp(step, shape.levels) < edge) ++shape.levels;
+  // A step that has vanished, of the least diameters there are, never gets there.
+  while (shape.levels <= kMostLevels && std::ldexp(step, shape.levels) < edge) ++shape.levels;
   const double magnitude = internal::largest_coordinate(box) + edge;
-  if (shape.levels + halvings > 20 ||
+  if (shape.levels + halvings > kMostLevels ||
       std::ldexp(step, -halvings) < 1e6 * kUnitRoundoff * magnitude) {
     throw Error("grid step",
                 "too fine for a model of this size, which is " + std::to_string(edge / step) +

@@ -328,6 +328,7 @@ TEST(ExternalSpheres, BadOptionsAreRefusedByName) {
     EXPECT_EQ(refused(options), "max cells") << bad;
   }
   EXPECT_EQ(refused(options_for(ExternalPlacement::kReachable, 1e-9)), "grid step");
+  EXPECT_EQ(refused(options_for(ExternalPlacement::kReachable, 5e-324)), "grid step");
   EXPECT_EQ(refused(options_for(ExternalPlacement::kReachable, 0.5), {}), "mesh");
   TriangleMesh broken = cube_mesh();
   broken.vertices[3].y() = kNan;
