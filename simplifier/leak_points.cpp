@@ -4,9 +4,12 @@
 #include "mesh/geometry/mesh_box.h"
 #include "mesh/geometry/point_grid.h"
 #include "simplifier/proof/surface_piece.h"
+#include "simplifier/solid/box_cell.h"
 #include "simplifier/solid/sphere_hierarchy.h"
 #include "simplifier/support/usable_spheres.h"
 #include "spheretree/error.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +22,9 @@ namespace {
 using Eigen::Vector3d;
 using internal::SphereHierarchy;
 using internal::SurfacePiece;
+
+// Of the largest coordinate: halves of smaller pieces are mostly rounding, and need not be smaller.
+constexpr double kLeastSpacing = 0x1p-40;
 
 void check_share(double share, const std::string& name) {
   if (!(share > 0.0) || !std::isfinite(share)) throw Error(name, "must be positive and finite");
@@ -93,9 +99,11 @@ std::vector<LeakPoint> leak_points(const TriangleMesh& mesh, std::span<const Sph
   check_share(options.spacing, "spacing");
   check_share(options.separation, "separation");
   if (spheres.empty()) return {};
-  const double size = internal::box_of(mesh).diagonal().norm();
+  const Eigen::AlignedBox3d box = internal::box_of(mesh);
+  const double size = box.diagonal().norm();
   const SphereHierarchy hierarchy(spheres);
-  Sampler sampler(hierarchy, options.spacing * size);
+  Sampler sampler(hierarchy, std::max(options.spacing * size,
+                                      kLeastSpacing * internal::largest_coordinate(box)));
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
     const SurfacePiece piece = internal::piece_of(mesh, triangle);
     for (const Vector3d& corner : piece.corner) sampler.add_point(corner);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace spherule::test {
 namespace {
@@ -101,6 +102,13 @@ TEST(LeakPointsTest, RefusesBadInput) {
     EXPECT_THROW(leak_points(cube_mesh(), sphere, {.spacing = share}), Error);
     EXPECT_THROW(leak_points(cube_mesh(), sphere, {.separation = share}), Error);
   }
+}
+
+// Far from the origin the samples that are requested are closer than coordinates are to each other.
+TEST(LeakPoints, PiecesThatRoundingCannotHalveAreNotHalved) {
+  TriangleMesh mesh = cube_mesh();
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex.x() += 9e14;
+  EXPECT_FALSE(leak_points(mesh, std::vector<Sphere>{{{5, 0, 0}, 0.3}}).empty());
 }
 
 }  // namespace
