@@ -23,19 +23,32 @@ const Kinds kModel = {FileKind::kMesh, FileKind::kCad};
 const Kinds kRobotSets = {FileKind::kRobotSpheres, FileKind::kUrdf, FileKind::kSrdf,
                           FileKind::kSpheres};
 
-// What each command takes, by the names of its arguments. `view` and `info` take everything.
+// What each command takes, by the names of its arguments and options. `view` and `info` take
+// everything.
 const std::map<std::string, std::map<std::string, Kinds>, std::less<>> kTakes = {
-    {"fit", {{"mesh", kModel}}},
+    {"fit", {{"mesh", kModel}, {"--tool", {FileKind::kSpheres}}, {"--zones", {FileKind::kZones}}}},
     {"audit", {{"mesh", kModel}, {"spheres", {FileKind::kSpheres}}}},
     {"tree", {{"spheres", {FileKind::kSpheres}}}},
     {"collide", {{"a", {FileKind::kTree}}, {"b", {FileKind::kTree}}}},
-    {"robot", {{"urdf", {FileKind::kUrdf}}}},
-    {"audit-robot", {{"urdf", {FileKind::kUrdf}}, {"spheres", kRobotSets}}},
+    {"robot",
+     {{"urdf", {FileKind::kUrdf}},
+      {"--srdf", {FileKind::kSrdf}},
+      {"--curobo", {FileKind::kRobotSpheres}},
+      {"--xrdf", {FileKind::kRobotSpheres}},
+      {"--poses", {FileKind::kTable}}}},
+    {"audit-robot",
+     {{"urdf", {FileKind::kUrdf}},
+      {"spheres", kRobotSets},
+      {"--srdf", {FileKind::kSrdf}},
+      {"--pairs", {FileKind::kPairs}},
+      {"--poses", {FileKind::kTable}}}},
     {"check-srdf", {{"urdf", {FileKind::kUrdf}}, {"srdf", {FileKind::kSrdf}}}},
     {"check",
      {{"urdf", {FileKind::kUrdf}},
       {"scene", {FileKind::kScene}},
-      {"trajectory", {FileKind::kTable}}}},
+      {"trajectory", {FileKind::kTable}},
+      {"--spheres", kRobotSets},
+      {"--pairs", {FileKind::kPairs}}}},
     {"baseline", {{"mesh", {FileKind::kMesh}}}},
 };
 

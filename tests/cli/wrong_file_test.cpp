@@ -32,6 +32,7 @@ TEST_F(WrongFileTest, TheRightCommandIsNamed) {
   expect_refusal({"fit", "part.json", "-o", "out.json"}, spheres);
   expect_refusal({"fit", "part.tree", "-o", "out.json"}, tree);
   expect_refusal({"audit", "part.stl", "part.tree"}, tree);
+  expect_refusal({"fit", "part.stl", "--tool", "part.tree", "-o", "out.json"}, tree);
 }
 
 // Names in a mesh, and comments, may be anything.
@@ -104,6 +105,18 @@ TEST_F(WrongFileTest, RobotsHaveTheirOwnCommands) {
   expect_refusal({"robot", "arm.srdf", "-o", "out"}, "it is an SRDF (spherule check-srdf");
   expect_refusal({"check", "arm.urdf", "arm.yml", "path.csv"}, "it is a file of a robot's spheres");
   expect_refusal({"audit-robot", "arm.urdf", "cell.json"}, "it is a scene (spherule check");
+  write("path.csv", "0\n");
+  expect_refusal({"check", "arm.urdf", "cell.json", "path.csv", "--spheres", "part.stl"},
+                 "it is a mesh (spherule fit part.stl");
+  expect_refusal(
+      {"check", "arm.urdf", "cell.json", "path.csv", "--spheres", "arm.yml", "--pairs", "arm.srdf"},
+      "it is an SRDF (spherule check-srdf");
+  expect_refusal({"robot", "arm.urdf", "--srdf", "arm.yml", "-o", "out"},
+                 "it is a file of a robot's spheres");
+  expect_refusal({"robot", "arm.urdf", "--curobo", "arm.srdf", "-o", "out"},
+                 "it is an SRDF (spherule check-srdf");
+  expect_refusal({"audit-robot", "arm.urdf", "arm.yml", "--poses", "cell.json"},
+                 "it is a scene (spherule check");
 
   expect_info("arm.urdf", "links: 2, 1 with collision geometry, 0 with visual geometry\n");
   expect_info("arm.urdf", "  lift: -1 to 2 m\n");
