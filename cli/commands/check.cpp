@@ -294,14 +294,15 @@ void add_check(CLI::App& app, int& exit_code) {
                    "Configurations, one a line, with or without a line of joint names")
       ->required()
       ->type_name(kFile);
-  command->add_flag("--edges", arguments->trajectory.has_motions,
-                    "Prove every motion from one configuration to the next");
+  CLI::Option* edges = command->add_flag("--edges", arguments->trajectory.has_motions,
+                                         "Prove every motion from one configuration to the next");
   command
       ->add_option("--continuous", arguments->continuous,
-                   "With --edges: the way that continuous joints turn from one configuration to "
-                   "the next: as-given, straight from number to number (default), or shortest, by "
-                   "at most half a turn, as OMPL's SO2 goes")
-      ->check(CLI::IsMember({kAsGiven, kShortest}));
+                   "The way that continuous joints turn from one configuration to the next: "
+                   "as-given, straight from number to number (default), or shortest, by at most "
+                   "half a turn, as OMPL's SO2 goes")
+      ->check(CLI::IsMember({kAsGiven, kShortest}))
+      ->needs(edges);
   add_degrees_flag(*command, "Angles of the trajectory are in degrees, lengths in metres",
                    arguments->trajectory);
   command->add_flag("--enforce-limits", arguments->enforces_limits,
@@ -310,9 +311,10 @@ void add_check(CLI::App& app, int& exit_code) {
                    "Only the I-th of N equal parts of the trajectory, for batch systems: counts of "
                    "all parts add up to those of the whole",
                    arguments->trajectory.shard);
-  arguments->lengths.add(
-      *command, "--resolution", arguments->resolution,
-      "With --edges: how closely motions are examined, in metres (default 1e-4)");
+  arguments->lengths
+      .add(*command, "--resolution", arguments->resolution,
+           "How closely motions are examined, in metres (default 1e-4)")
+      ->needs(edges);
   command
       ->add_option("--spheres", arguments->spheres,
                    "Spheres of the robot, in any format that audit-robot reads, taken as they are: "

@@ -267,6 +267,8 @@ TEST_F(CheckTest, RefusesBadInput) {
   expect_refusal(command({"--edges"}), "path.csv: line 3: joint turn is at a position beyond 100");
   write("path.csv", "0 0\n");
   expect_refusal(command({"--edges", "--resolution", "0"}), "resolution");
+  expect_refusal(command({"--resolution", "0.01"}), "--edges");
+  expect_refusal(command({"--continuous", "shortest"}), "--edges");
   write("cell.json", wall_and(R"("obstacle": [])"));
   refused("cell.json: the key 'obstacle' is not known here");
   write("cell.json", wall_and(R"("allowed_contacts": [{"body": "arm", "other": "wall"}])"));
