@@ -54,8 +54,8 @@ int run(int argc, char** argv) {
   app.footer(to_text(
       {.text = "`spherule COMMAND --help` lists the options of a command, with examples.",
        .exit_codes = "0 done; 1 not proved to cover (fit, robot, baseline), a leak or not proved "
-                     "(audit, audit-robot), a collision (collide), a collision or not proved "
-                     "(check)",
+                     "(audit, audit-robot), pairs that touch or are not proved apart (check-srdf), "
+                     "a collision (collide), a collision or not proved (check)",
        .examples = {"spherule fit part.stl -o part.json --max-error 1",
                     "spherule audit part.stl part.json", "spherule robot robot.urdf -o spheres"}}));
   try {
