@@ -29,12 +29,12 @@ struct SpheresOfSolid {
   bool are(std::span<const Sphere> kept) const {
     const std::span<const Sphere> triangles = solid.mesh().tree().spheres();
     const double inflation = solid.inflation();
-    const auto is_grown = [&](const Sphere& around, const Sphere& sphere) {
+    const auto is_inflated = [&](const Sphere& around, const Sphere& sphere) {
       return around.center == sphere.center &&
              sphere.radius == (inflation > 0.0 ? add_up(around.radius, inflation) : around.radius);
     };
     return triangles.size() <= kept.size() &&
-           std::equal(triangles.begin(), triangles.end(), kept.begin(), is_grown);
+           std::equal(triangles.begin(), triangles.end(), kept.begin(), is_inflated);
   }
 };
 
