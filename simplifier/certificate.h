@@ -34,9 +34,10 @@ namespace spherule {
 
 // What spheres are certified against, and how closely.
 struct CertifyOptions {
-  // The simplified solid to certify against. Without it |M| itself is certified: what a sphere of
-  // 1/128 of the box diagonal cannot reach from outside counts as inside (on a grid: gaps of up to
-  // 1/54 may), so that spheres that leave such a gap of M open are not proved to cover.
+  // The simplified solid to certify against, of this mesh: that it holds M grown by its padding is
+  // proved by stage 1, which made it, and not again. Without it |M| itself is certified: what a
+  // sphere of 1/128 of the box diagonal cannot reach from outside counts as inside (on a grid: gaps
+  // of up to 1/54 may), so that spheres that leave such a gap of M open are not proved to cover.
   const ExternalSpheres* external = nullptr;
   // With `external`: zones in which the protrusion is bounded apart.
   std::span<const Zone> zones = {};

@@ -28,7 +28,8 @@ py::str path_object(const std::string& path) {
   return text;
 }
 
-std::shared_ptr<const TriangleMesh> mesh_of(py::handle value, const char* name) {
+std::shared_ptr<const TriangleMesh> mesh_of(py::handle value, const char* name,
+                                            const char* others) {
   if (py::isinstance<TriangleMesh>(value)) {
     return value.cast<std::shared_ptr<TriangleMesh>>();
   }
@@ -39,8 +40,8 @@ std::shared_ptr<const TriangleMesh> mesh_of(py::handle value, const char* name) 
     });
   }
   if (!py::hasattr(value, "vertices") || !py::hasattr(value, "faces")) {
-    throw py::type_error(std::string(name) +
-                         ": it is no TriangleMesh, path, or object with .vertices and .faces");
+    throw py::type_error(std::string(name) + ": it is no " + others +
+                         "TriangleMesh, path, or object with .vertices and .faces");
   }
   auto mesh = std::make_shared<TriangleMesh>();
   mesh->vertices = points(value.attr("vertices"), "vertices");

@@ -32,7 +32,9 @@ class Help {
 };
 
 // A TriangleMesh, the file of one (str or os.PathLike), or anything with `vertices` and `faces`.
-std::shared_ptr<const TriangleMesh> mesh_of(py::handle value, const char* name);
+// `others` names what else the caller takes, for the TypeError, each with a comma after it.
+std::shared_ptr<const TriangleMesh> mesh_of(py::handle value, const char* name,
+                                            const char* others = "");
 // A Pose, a matrix of shape (4, 4), or None: the identity.
 Pose pose_of(py::handle value, const char* name);
 // A str or os.PathLike, in the encoding of file names, which need not be UTF-8; and back.

@@ -132,7 +132,8 @@ ObstacleShape obstacle_of(py::handle shape) {
   if (py::isinstance<SphereTree>(shape)) return shape.cast<std::shared_ptr<SphereTree>>();
   if (py::isinstance<SolidMesh>(shape)) return shape.cast<std::shared_ptr<SolidMesh>>();
   if (const auto primitive = primitive_of(shape)) return *primitive;
-  return std::make_shared<const SolidMesh>(*mesh_of(shape, "shape"));
+  return std::make_shared<const SolidMesh>(*mesh_of(
+      shape, "shape", "SphereTree, SolidMesh, Box, SolidSphere, Cylinder, Capsule, HalfSpace, "));
 }
 
 }  // namespace spherule::python

@@ -82,6 +82,7 @@ def test_bad_values(call, text):
         (lambda: spherule.collides(TREE, None, spherule.SolidSphere("a"), None), "radius"),
         (lambda: spherule.RobotModel().add_link("a", "base_link", spherule.Joint("j", "revolute", lower="a")), "lower"),
         (lambda: spherule.build_tree_from_levels(*level_with(0.7)), "parent_of: .*float64"),
+        (lambda: spherule.RobotScene(spherule.RobotModel()).add("wall", 3), "shape: .* Box, .* TriangleMesh"),
     ],
 )
 def test_wrong_types(call, text):
