@@ -53,10 +53,11 @@ struct LinkAudit {
   std::string link;
   std::size_t spheres = 0;
   // Of the mesh and its inside, as written in the mesh files, and of primitives as they are; of S
-  // (see the options) if that is what is proved. Primitives that each lie in a single sphere are
-  // proved to be covered by that alone, however little larger the sphere is. The point of the
-  // deepest leak is within 0.5 mm of a point of the link where that has curved primitives, of the
-  // link elsewhere. Absent for a link without geometry.
+  // (see the options) if that is what is proved. A link of primitives alone is proved to be covered
+  // where each lies in a single sphere, however little larger that is, unless one of these spheres
+  // overlaps more than two others of them. The point of the deepest leak is within 0.5 mm of a
+  // point of the link where that has curved primitives, of the link elsewhere. Absent for a link
+  // without geometry.
   std::optional<Certificate> certificate = std::nullopt;
   // Share of the surface that no sphere holds, estimated from points spread evenly over it.
   double uncovered_share = 0.0;

@@ -21,8 +21,9 @@ double mapping_error(const Pose& pose, const Vector3d& point) {
   return mul_up(add_up(norm_upper(point), norm_upper(pose.translation())), 41.0 * kUnitRoundoff);
 }
 
-// Whether a primitive, placed by `link_from_shape`, is a subset of `sphere` in exact arithmetic; no
-// within a few units in the last place of the limit, except for a sphere about the same centre.
+// Whether a primitive, placed by `link_from_shape`, is a subset of `sphere` in exact arithmetic.
+// False also within a few units in the last place of the limit, except for a sphere about the same
+// centre.
 struct IsSubset {
   const Sphere& sphere;
   const Pose& link_from_shape;
@@ -79,15 +80,16 @@ bool is_subset(const LinkShape& shape, const Sphere& sphere) {
   return primitive != nullptr && std::visit(IsSubset{sphere, shape.link_from_shape}, *primitive);
 }
 
-// The nerve of the spheres (one corner for each, a simplex for those that have a point in common)
-// has the homology of their union. Where no sphere meets more than two others it consists of paths,
-// cycles and triangles: none of them bounds a cavity, which takes four spheres that meet. So no
-// point outside of the spheres is inside (G1).
-bool shut_nothing_in(std::span<const Sphere> spheres) {
+// The nerve of the spheres (one vertex for each, a simplex for those that have a point in common)
+// has the homology of their union. Where no sphere overlaps more than two others its components are
+// paths, cycles and single triangles. None of these encloses a cavity: that takes triangles which
+// form a closed surface, each vertex of which has three neighbours at least. So all of the space
+// outside of the spheres is connected, and no point of it is inside of what they hold (G1).
+bool enclose_no_cavity(std::span<const Sphere> spheres) {
   return std::ranges::all_of(spheres, [&](const Sphere& sphere) {
-    const auto met = std::ranges::count_if(
+    const auto overlapping = std::ranges::count_if(
         spheres, [&](const Sphere& other) { return possibly_overlap(sphere, other); });
-    return met <= 3;  // itself included
+    return overlapping <= 3;  // itself included
   });
 }
 
@@ -105,7 +107,7 @@ bool lie_in_single_spheres(std::span<const LinkShape> shapes, std::span<const Sp
   }
   std::vector<Sphere> chosen;
   for (const std::size_t holder : holders) chosen.push_back(spheres[holder]);
-  return shut_nothing_in(chosen);
+  return enclose_no_cavity(chosen);
 }
 
 }  // namespace spherule::internal

@@ -9,9 +9,10 @@
 namespace spherule::internal {
 
 // Whether every shape is a primitive that lies in a single one of the spheres, in exact arithmetic,
-// and the spheres that hold them shut nothing in: then these cover the shapes and their inside (G1)
-// without any tessellation. False may also mean that this is not proved: meshes are never, nor are
-// shapes whose spheres overlap with more than two others of them. The spheres are usable.
+// and the spheres that hold them enclose no cavity: then these cover the shapes and their inside
+// (G1), without any tessellation. False may also mean that this is not proved: it is not where a
+// shape is a mesh, nor where one of the spheres that hold them overlaps more than two others of
+// these. The spheres are usable.
 bool lie_in_single_spheres(std::span<const LinkShape> shapes, std::span<const Sphere> spheres);
 
 }  // namespace spherule::internal

@@ -99,7 +99,7 @@ TEST(ShapesInSpheres, AChainOfCapsules) {
 
 // Six spheres at the corners of an octahedron overlap in threes and leave a cavity between them,
 // which belongs to the inside and is covered by none.
-TEST(ShapesInSpheres, WhatTheyShutInIsNotHeld) {
+TEST(ShapesInSpheres, ACavityBetweenThemIsNotHeld) {
   std::vector<LinkShape> shapes;
   std::vector<Sphere> spheres;
   for (int axis = 0; axis < 3; ++axis) {
@@ -111,7 +111,7 @@ TEST(ShapesInSpheres, WhatTheyShutInIsNotHeld) {
   }
   EXPECT_FALSE(lie_in_single_spheres(shapes, spheres));
   EXPECT_TRUE(lie_in_single_spheres(std::span(shapes).first(3), spheres));
-  // One sphere that holds all of them shuts nothing in.
+  // One sphere that holds all of them encloses none.
   spheres.insert(spheres.begin(), {Vector3d::Zero(), 2.0});
   EXPECT_TRUE(lie_in_single_spheres(shapes, spheres));
 }
