@@ -122,7 +122,8 @@ struct SphereCover {
 // close S by a hair and no point of S is found, a sphere of 0.02 E may stand, and certify() says
 // how far it protrudes. Deterministic for equal input and options on any number of threads, unless
 // `seconds` is set or a stop is requested. Throws Error for a mesh that validate() refuses, for
-// options out of range, and for an E too small for the rounding of the coordinates.
+// external spheres that stage 1 cannot have made, for options out of range, and for an E too small
+// for the rounding of the coordinates.
 SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
                   const CoverOptions& options);
 

@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 using internal::SphereHierarchy;
 using internal::SurfacePiece;
 
-// Of the largest coordinate: halves of smaller pieces are mostly rounding, and need not be smaller.
+// Of the largest coordinate. Far smaller pieces could not be halved, for rounding.
 constexpr double kLeastSpacing = 0x1p-40;
 
 void check_share(double share, const std::string& name) {

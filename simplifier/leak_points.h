@@ -35,7 +35,7 @@ struct LeakPoint {
 // How closely leaks are searched for.
 struct LeakPointOptions {
   // How far the samples are apart and how far those returned, as shares of the diagonal of the
-  // mesh's box; positive.
+  // mesh's box; positive. Samples are no closer than 2^-40 of the largest coordinate.
   double spacing = 1.0 / 400.0;
   double separation = 1.0 / 25.0;
   std::size_t max_count = 500;  // the deepest are returned

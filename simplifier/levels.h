@@ -54,8 +54,8 @@ struct CoverLevel {
 // its children in exact arithmetic, with the reserve of SphereLevel. Spheres are shrunk to what
 // their children need. Uses seed, effort (at most the default where `seconds` is set), min_radius,
 // threads and progress of the options. Deterministic. Throws Error for a mesh that validate()
-// refuses, spheres that are not usable and errors that check_levels() refuses. Zones do not bind
-// levels above the cover.
+// refuses, spheres that are not usable (external ones that stage 1 cannot have made) and errors
+// that check_levels() refuses. Zones do not bind levels above the cover.
 std::vector<CoverLevel> fit_levels(const TriangleMesh& mesh, const ExternalSpheres& external,
                                    std::span<const Sphere> spheres,
                                    std::span<const double> max_errors, const CoverOptions& options);

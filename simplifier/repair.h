@@ -77,8 +77,8 @@ struct Repair {
 // Spheres are not moved. On return S is proved to be covered, in the same way as by cover().
 // Spheres that cover S come back unchanged; without spheres this is a cover. Deterministic for
 // equal input on any number of threads. Throws Error for a mesh that validate() refuses, spheres
-// that are not usable, options out of range, and for a max_error too small for the rounding of the
-// coordinates.
+// that are not usable (external ones that stage 1 cannot have made), options out of range, and for
+// a max_error too small for the rounding of the coordinates.
 Repair repair(const TriangleMesh& mesh, const ExternalSpheres& external,
               std::span<const Sphere> spheres, const RepairOptions& options);
 

@@ -14,14 +14,14 @@ using Eigen::Vector3d;
 
 // Steps towards S are at least this share of it.
 constexpr double kLeastStep = 1.0 / 32.0;
-// Of directions that are tried from a place.
+// Of directions that are tried from a point.
 constexpr int kMostDirections = 24;
 
 // Where external spheres meet at an acute angle, S is a groove whose edge the steps of an ascent,
-// away from one contact at a time, do not leave. Straight ways do: in the direction of the shortest
-// vector of the convex hull of the contacts' normals, the least rate at which the clearances to
-// them grow is greatest. It is approached by one contact at a time, the one that grows least of
-// those met on the way (Gilbert's algorithm).
+// away from one contact at a time, do not leave. Straight lines do: in the direction of the
+// shortest vector of the convex hull of the contacts' normals, the least rate at which the
+// clearances to them increase is greatest. It is approached by one contact at a time, the one whose
+// clearance increases least of those found along the line (Gilbert's algorithm).
 std::optional<Vector3d> solid_point_in_groove(const Clearance& clearance, const Vector3d& start,
                                               double first_step, double within) {
   Vector3d shortest = clearance(start).away;

@@ -50,7 +50,8 @@ std::optional<Eigen::Vector3d> mesh_point_in(const MeshDistance& distance, const
 double mesh_point_error(const MeshDistance& distance);
 
 // A point of S at most `within` from `start`, which is outside of S; found by moving away from the
-// contacts in steps from `first_step` on, so there may be one where none is returned.
+// contacts in steps from `first_step` on, which is positive, so there may be one where none is
+// returned.
 std::optional<Eigen::Vector3d> solid_point_near(const Clearance& clearance,
                                                 const Eigen::Vector3d& start, double first_step,
                                                 double within);
