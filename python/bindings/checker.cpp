@@ -41,8 +41,10 @@ class LentScratch {
   RobotChecker::Scratch scratch_;
 };
 
-// The same of one for each thread, of which no more than these are of use, nor more than the cores.
+// More threads are of no use, unless there are more cores.
 constexpr std::size_t kUsefulThreads = 64;
+
+// A scratch for each thread, lent likewise.
 class Scratches {
  public:
   Scratches(CheckerOfScene& self, int threads) : self_(self) {
