@@ -26,6 +26,7 @@
 #include "spheretree/moved_from.h"
 #include "spheretree/pose.h"
 
+#include <memory>
 #include <optional>
 
 namespace spherule {
@@ -58,6 +59,10 @@ class SolidMesh {
 
   // For queries.
   const internal::MeshInside& inside() const { return *inside_; }
+  // Copies of a solid share it, and no others do.
+  const std::shared_ptr<const internal::MeshInside>& shared_inside() const {
+    return inside_.pointer();
+  }
 
  private:
   friend class CoveredMesh;

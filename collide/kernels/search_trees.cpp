@@ -3,7 +3,7 @@
 
 #include "collide/solids/solid_spheres.h"
 #include "spheretree/build.h"
-#include "spheretree/rounding.h"
+#include "spheretree/moved_from.h"
 
 #include <algorithm>
 #include <utility>
@@ -13,28 +13,27 @@ namespace spherule::internal {
 namespace {
 
 // What search trees are made of, and whether kept ones are of this: an object may have been
-// assigned to since, and then holds other spheres in the same place.
-struct SpheresOfTree {
+// assigned to since, and then holds something else in the same place.
+struct ContentOfTree {
   const SphereTree& tree;
 
-  std::span<const Sphere> operator()() const { return tree.spheres(); }
-  bool are(std::span<const Sphere> kept) const { return std::ranges::equal(kept, tree.spheres()); }
+  std::span<const Sphere> spheres() const { return tree.spheres(); }
+  std::weak_ptr<const void> identity() const { return {}; }
+  bool is_that_of(const auto& kept) const {
+    return std::ranges::equal(kept.trees->narrow.spheres(), tree.spheres());
+  }
 };
 
-struct SpheresOfSolid {
+// The spheres around the triangles do not tell: the same ones may be around a surface that is open,
+// which has no inside.
+struct ContentOfSolid {
   const SolidMesh& solid;
 
-  std::vector<Sphere> operator()() const { return spheres_around(solid); }
-  // Those around the triangles come first.
-  bool are(std::span<const Sphere> kept) const {
-    const std::span<const Sphere> triangles = solid.mesh().tree().spheres();
-    const double inflation = solid.inflation();
-    const auto is_inflated = [&](const Sphere& around, const Sphere& sphere) {
-      return around.center == sphere.center &&
-             sphere.radius == (inflation > 0.0 ? add_up(around.radius, inflation) : around.radius);
-    };
-    return triangles.size() <= kept.size() &&
-           std::equal(triangles.begin(), triangles.end(), kept.begin(), is_inflated);
+  std::vector<Sphere> spheres() const { return spheres_around(solid); }
+  std::weak_ptr<const void> identity() const { return solid.shared_inside(); }
+  bool is_that_of(const auto& kept) const {
+    require_content(solid.mesh().tree().node_count() > 0, "SolidMesh");
+    return kept.identity.lock() == solid.shared_inside();
   }
 };
 
@@ -46,31 +45,33 @@ SearchTrees::SearchTrees(std::span<const Sphere> spheres)
       wide(build_tree(spheres)),
       wide_spheres(wide) {}
 
-template <class SpheresOf>
+template <class Content>
 std::shared_ptr<const SearchTrees> SearchTreeCache::find(const std::shared_ptr<const void>& owner,
-                                                         const SpheresOf& spheres_of) {
+                                                         const Content& content) {
+  Entry kept;
   {
     const std::lock_guard lock(mutex_);
     std::erase_if(entries_, [](const auto& entry) { return entry.second.owner.expired(); });
     const auto found = entries_.find(owner.get());
-    if (found != entries_.end()) {
-      if (spheres_of.are(found->second.trees->narrow.spheres())) return found->second.trees;
-      entries_.erase(found);
-    }
+    if (found != entries_.end()) kept = found->second;
   }
-  auto trees = std::make_shared<const SearchTrees>(spheres_of());
+  if (kept.trees != nullptr && content.is_that_of(kept)) return kept.trees;
+  auto trees = std::make_shared<const SearchTrees>(content.spheres());
   const std::lock_guard lock(mutex_);
-  return entries_.try_emplace(owner.get(), Entry{owner, std::move(trees)}).first->second.trees;
+  Entry& entry = entries_[owner.get()];
+  // Unless another thread was faster.
+  if (entry.trees == kept.trees) entry = {owner, content.identity(), std::move(trees)};
+  return entry.trees;
 }
 
 std::shared_ptr<const SearchTrees> SearchTreeCache::of(
     const std::shared_ptr<const SphereTree>& tree) {
-  return find(tree, SpheresOfTree{*tree});
+  return find(tree, ContentOfTree{*tree});
 }
 
 std::shared_ptr<const SearchTrees> SearchTreeCache::of(
     const std::shared_ptr<const SolidMesh>& solid) {
-  return find(solid, SpheresOfSolid{*solid});
+  return find(solid, ContentOfSolid{*solid});
 }
 
 }  // namespace spherule::internal

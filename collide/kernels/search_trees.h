@@ -29,19 +29,20 @@ struct SearchTrees {
 };
 
 // Keeps the search trees of sphere trees, and of spheres around solid meshes (solid_spheres.h), for
-// as long as these live. Threads may share it.
+// as long as these live and are not assigned to. Threads may share it.
 class SearchTreeCache {
  public:
   std::shared_ptr<const SearchTrees> of(const std::shared_ptr<const SphereTree>& tree);
   std::shared_ptr<const SearchTrees> of(const std::shared_ptr<const SolidMesh>& solid);
 
  private:
-  template <class SpheresOf>
+  template <class Content>
   std::shared_ptr<const SearchTrees> find(const std::shared_ptr<const void>& owner,
-                                          const SpheresOf& spheres_of);
+                                          const Content& content);
 
   struct Entry {
     std::weak_ptr<const void> owner;
+    std::weak_ptr<const void> identity;  // of the solid that was in it
     std::shared_ptr<const SearchTrees> trees;
   };
   std::mutex mutex_;

@@ -12,6 +12,7 @@
 #include "tests/robot/check/edge_oracle.h"
 #include "tests/robot/robots.h"
 #include "tests/support/effort.h"
+#include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
 
@@ -341,6 +342,42 @@ TEST(RobotEdge, WhatWasAssignedToAnObstacleCounts) {
   *tree = refit(std::move(*tree), std::vector<Sphere>{{{1, 0, 0}, 0.1}});
   *mesh = SolidMesh(mesh_at(1.0));
   EXPECT_EQ(verdicts(), std::vector(2, Verdict::kCollision));
+}
+
+// Spheres around right triangles do not tell where the right angle is, on which it may depend
+// whether a surface is closed.
+TEST(RobotEdge, TheInsideOfWhatWasAssignedToAnObstacleCounts) {
+  RobotModel robot("base");
+  robot.add_link("arm", "base",
+                 {.name = "turn", .type = JointType::kRevolute, .lower = -3.0, .upper = 3.0});
+  robot.attach("arm", one_sphere_tree({1, 0, 0}, 0.1));
+  const TriangleMesh closed = box_mesh(Eigen::Vector3d::Constant(-8), Eigen::Vector3d::Constant(8));
+  TriangleMesh open = closed;
+  Eigen::Vector3i& triangle = open.triangles.front();
+  const auto corner = [&](int k) { return closed.vertices[static_cast<std::size_t>(triangle[k])]; };
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d middle = 0.5 * (corner((k + 1) % 3) + corner((k + 2) % 3));
+    if ((corner(k) - middle).norm() > 1.01 * (corner((k + 1) % 3) - middle).norm()) continue;
+    open.vertices.push_back(0.5 * (corner(k) + middle));
+    triangle[k] = static_cast<int>(open.vertices.size()) - 1;
+    break;
+  }
+  const auto mesh = std::make_shared<SolidMesh>(open);
+  const auto spheres_of = [](const SolidMesh& solid) {
+    const auto spheres = solid.mesh().tree().spheres();
+    return std::vector<Sphere>(spheres.begin(), spheres.end());
+  };
+  ASSERT_EQ(spheres_of(*mesh), spheres_of(SolidMesh(closed)));
+  RobotScene scene(robot);
+  scene.add("shell", std::shared_ptr<const SolidMesh>(mesh));
+  const auto verdict = [&] {
+    const RobotChecker checker = scene.snapshot();
+    RobotChecker::Scratch scratch(checker);
+    return checker.check_edge(std::vector{-1.0}, std::vector{1.0}, scratch).verdict;
+  };
+  EXPECT_EQ(verdict(), Verdict::kFree);
+  *mesh = SolidMesh(closed);
+  EXPECT_EQ(verdict(), Verdict::kCollision);
 }
 
 }  // namespace
