@@ -32,7 +32,7 @@ double distance_to_solid(const Clearance& clearance, const MeshDistance& distanc
   }
   const double first_step = 0x1p-30 * nearest;
   if (first_step == 0.0) return nearest;
-  if (const auto near = solid_point_near(clearance, c, first_step, nearest)) {
+  if (const auto near = solid_point_in_groove(clearance, c, first_step, nearest)) {
     nearest = std::min(nearest, distance_upper(c, *near));
   }
   return nearest;

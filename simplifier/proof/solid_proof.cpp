@@ -73,10 +73,9 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
         note(*on_mesh, sub_down(spheres.hierarchy.nearest(*on_mesh).lower, rounding));
       }
       found.smallest = true;
-    } else if (const auto in_solid =
-                   reach <= kFinestOutside * finest
-                       ? solid_point_near(clearance, cell.box.center, reach, finest)
-                       : std::nullopt) {
+    } else if (const auto in_solid = reach <= kFinestOutside * finest
+                                         ? solid_point_near(clearance, cell.box, finest)
+                                         : std::nullopt) {
       note(*in_solid, spheres.hierarchy.nearest(*in_solid).lower);
       found.smallest = true;
     } else {

@@ -17,6 +17,38 @@ constexpr double kLeastStep = 1.0 / 32.0;
 // Of directions that are tried from a point.
 constexpr int kMostDirections = 24;
 
+}  // namespace
+
+double least_reach(const Eigen::AlignedBox3d& box) {
+  return 256.0 * kUnitRoundoff * largest_coordinate(box);
+}
+
+CellState classify(const Clearance& clearance, const BoxCell& cell) {
+  const double reach = cell.reach();
+  return state_of(clearance(cell.center, 2.0 * reach), reach);
+}
+
+std::optional<Vector3d> mesh_point_in(const MeshDistance& distance, const BoxCell& cell) {
+  const SurfaceDistance near = distance(cell.center, cell.reach());
+  if (near.triangle < 0) return std::nullopt;
+  return near.closest;
+}
+
+double mesh_point_error(const MeshDistance& distance) {
+  return 256.0 * kUnitRoundoff * largest_coordinate(distance.box());
+}
+
+std::optional<Vector3d> solid_point_near(const Clearance& clearance, const BoxCell& cell,
+                                         double within) {
+  const double reach = cell.reach();
+  for (const AscentStep& step :
+       ascend(clearance, cell.center, {.first_step = reach, .least_step = kLeastStep * reach})) {
+    if (distance_upper(cell.center, step.point) > within) break;
+    if (step.clearance >= 0.0) return step.point;
+  }
+  return std::nullopt;
+}
+
 // Where external spheres meet at an acute angle, S is a groove whose edge the steps of an ascent,
 // away from one contact at a time, do not leave. Straight lines do: in the direction of the
 // shortest vector of the convex hull of the contacts' normals, the least rate at which the
@@ -40,37 +72,6 @@ std::optional<Vector3d> solid_point_in_groove(const Clearance& clearance, const 
     shortest += std::clamp(-shortest.dot(change) / change.squaredNorm(), 0.0, 1.0) * change;
   }
   return std::nullopt;
-}
-
-}  // namespace
-
-double least_reach(const Eigen::AlignedBox3d& box) {
-  return 256.0 * kUnitRoundoff * largest_coordinate(box);
-}
-
-CellState classify(const Clearance& clearance, const BoxCell& cell) {
-  const double reach = cell.reach();
-  return state_of(clearance(cell.center, 2.0 * reach), reach);
-}
-
-std::optional<Vector3d> mesh_point_in(const MeshDistance& distance, const BoxCell& cell) {
-  const SurfaceDistance near = distance(cell.center, cell.reach());
-  if (near.triangle < 0) return std::nullopt;
-  return near.closest;
-}
-
-double mesh_point_error(const MeshDistance& distance) {
-  return 256.0 * kUnitRoundoff * largest_coordinate(distance.box());
-}
-
-std::optional<Vector3d> solid_point_near(const Clearance& clearance, const Vector3d& start,
-                                         double first_step, double within) {
-  for (const AscentStep& step : ascend(
-           clearance, start, {.first_step = first_step, .least_step = kLeastStep * first_step})) {
-    if (distance_upper(start, step.point) > within) break;
-    if (step.clearance >= 0.0) return step.point;
-  }
-  return solid_point_in_groove(clearance, start, first_step, within);
 }
 
 }  // namespace spherule::internal

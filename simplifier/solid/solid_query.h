@@ -49,11 +49,14 @@ CellState classify(const Clearance& clearance, const BoxCell& cell);
 std::optional<Eigen::Vector3d> mesh_point_in(const MeshDistance& distance, const BoxCell& cell);
 double mesh_point_error(const MeshDistance& distance);
 
-// A point of S at most `within` from `start`, which is outside of S; found by moving away from the
-// contacts in steps from `first_step` on, which is positive, so there may be one where none is
-// returned.
-std::optional<Eigen::Vector3d> solid_point_near(const Clearance& clearance,
-                                                const Eigen::Vector3d& start, double first_step,
+// A point of S at most `within` from the centre of the cell, which is outside of S; found by moving
+// away from the contacts, so there may be one where none is returned.
+std::optional<Eigen::Vector3d> solid_point_near(const Clearance& clearance, const BoxCell& cell,
                                                 double within);
+// The same from a point, also where external spheres meet at an acute angle: in steps from
+// `first_step` on, which is positive. It takes some hundred clearances where there is none.
+std::optional<Eigen::Vector3d> solid_point_in_groove(const Clearance& clearance,
+                                                     const Eigen::Vector3d& start,
+                                                     double first_step, double within);
 
 }  // namespace spherule::internal

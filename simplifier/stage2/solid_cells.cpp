@@ -143,10 +143,11 @@ std::optional<SolidCells::Leak> SolidCells::leak_in(const Cell& cell, const Near
   if (reach > finest) return std::nullopt;
   if (const auto on_mesh = mesh_point_in(distance_, cell.box)) return Leak{*on_mesh, true};
   if (reach > kFinestOutside * finest) return std::nullopt;
-  if (const auto near = solid_point_near(clearance_, cell.box.center, reach, finest)) {
+  if (const auto near = solid_point_near(clearance_, cell.box, finest)) return Leak{*near, true};
+  if (reach > std::max(kFinestPinch * finest, least_reach(clearance_.box()))) return std::nullopt;
+  if (const auto near = solid_point_in_groove(clearance_, cell.box.center, reach, finest)) {
     return Leak{*near, true};
   }
-  if (reach > std::max(kFinestPinch * finest, least_reach(clearance_.box()))) return std::nullopt;
   return Leak{cell.box.center, false};
 }
 

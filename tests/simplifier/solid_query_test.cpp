@@ -17,7 +17,7 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using internal::Clearance;
-using internal::solid_point_near;
+using internal::solid_point_in_groove;
 
 // External spheres that meet in the origin, whose clearance therefore is about 0, and leave a
 // groove or a pit open from there: along `opening` the clearances to all of them grow at a rate of
@@ -50,7 +50,7 @@ TEST(SolidQuery, TheSolidIsFoundBesideTheEdgeOfAnAcuteGroove) {
     const double away = within * std::pow(2.0, -random.between(8, 28));
     const Vector3d start = away * (random.direction() - opening);
     if (clearance(start).lower >= 0.0) continue;
-    const auto found = solid_point_near(clearance, start, away, within);
+    const auto found = solid_point_in_groove(clearance, start, away, within);
     ASSERT_TRUE(found) << "case " << i;
     ASSERT_GE(clearance(*found).lower, 0.0) << "case " << i;
     ASSERT_LE((*found - start).norm(), within) << "case " << i;
@@ -66,7 +66,8 @@ TEST(SolidQuery, NothingIsFoundWhereTheSolidIsFar) {
     for (std::size_t k = 0; k < 6; ++k) external.spheres.push_back({random.direction(), 1.2});
     const Clearance clearance(external);
     const double depth = -clearance(Vector3d::Zero()).upper;
-    ASSERT_FALSE(solid_point_near(clearance, Vector3d::Zero(), 1e-6, 0.99 * depth)) << "case " << i;
+    ASSERT_FALSE(solid_point_in_groove(clearance, Vector3d::Zero(), 1e-6, 0.99 * depth))
+        << "case " << i;
   }
 }
 

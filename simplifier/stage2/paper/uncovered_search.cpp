@@ -92,10 +92,15 @@ std::optional<UncoveredSearch::Peak> UncoveredSearch::peak_beside(const Cell& ce
   const auto on_mesh = mesh_point_in(distance_, cell.box);
   if (on_mesh && spheres.nearest(*on_mesh).lower > target_) return Peak{*on_mesh, cell.upper, 0.0};
   if (reach > kFinestOutside * tolerance_) return std::nullopt;
-  if (const auto near = solid_point_near(clearance_, cell.box.center, reach, kNear * target_)) {
-    return Peak{*near, cell.upper, std::max(0.0, spheres.nearest(*near).lower)};
-  }
+  const auto peak_at = [&](const Vector3d& point) {
+    return Peak{point, cell.upper, std::max(0.0, spheres.nearest(point).lower)};
+  };
+  const double within = kNear * target_;
+  if (const auto near = solid_point_near(clearance_, cell.box, within)) return peak_at(*near);
   if (reach > least_) return std::nullopt;
+  if (const auto near = solid_point_in_groove(clearance_, cell.box.center, reach, within)) {
+    return peak_at(*near);
+  }
   return Peak{cell.box.center, cell.upper, 0.0};
 }
 
