@@ -38,7 +38,7 @@ ExternalSpheres grooved(Random& random, std::size_t count, const Vector3d& openi
   return external;
 }
 
-// Beside its edge, an acute groove leaves a single contact's normal behind at once.
+// Away from one contact alone, a point beside the edge of an acute groove stays outside of S.
 TEST(SolidQuery, TheSolidIsFoundBesideTheEdgeOfAnAcuteGroove) {
   Random random(11);
   for (int i = 0; i < effort(2000, 300); ++i) {
