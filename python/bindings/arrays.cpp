@@ -37,6 +37,25 @@ void require_kind(const py::array& array, std::string_view kinds, const char* na
   throw Error(name, "its shape is " + shape_text(array) + ", not " + wanted);
 }
 
+using WholeNumbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+WholeNumbers whole_numbers(const py::array& array, const char* name) {
+  require_kind(array, "iu", name);
+  auto all = WholeNumbers::ensure(array);
+  if (!all) throw py::error_already_set();
+  return all;
+}
+
+// Number `i` of all, as one of 32 bits that is not below `least`; it stands in that row.
+std::int32_t index_in(const WholeNumbers& all, std::size_t i, std::size_t row, std::int32_t least,
+                      const char* name) {
+  const std::int64_t index = all.data()[i];
+  if (index < least || index > std::numeric_limits<std::int32_t>::max()) {
+    throw Error(name, "row " + std::to_string(row) + " has the index " + std::to_string(index));
+  }
+  return static_cast<std::int32_t>(index);
+}
+
 std::vector<py::ssize_t> strides_of(const std::vector<py::ssize_t>& shape, std::size_t item) {
   std::vector<py::ssize_t> strides(shape.size(), static_cast<py::ssize_t>(item));
   for (std::size_t i = shape.size(); i-- > 1;) strides[i - 1] = strides[i] * shape[i];
@@ -106,42 +125,26 @@ std::vector<Eigen::Vector3d> points(py::handle value, const char* name) {
 }
 
 std::vector<Eigen::Vector3i> triples(py::handle value, const char* name) {
-  py::array array = as_array(value, name);
-  require_kind(array, "iu", name);
+  const py::array array = as_array(value, name);
+  const WholeNumbers all = whole_numbers(array, name);
   if (array.size() > 0 && (array.ndim() != 2 || array.shape(1) != 3)) {
     refuse_shape(array, "(n, 3)", name);
   }
-  const auto all =
-      py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
-  if (!all) throw py::error_already_set();
-  constexpr std::int64_t kLargest = std::numeric_limits<std::int32_t>::max();
   const auto count = static_cast<std::size_t>(all.size()) / 3;
   std::vector<Eigen::Vector3i> result(count);
   for (std::size_t i = 0; i < 3 * count; ++i) {
-    const std::int64_t index = all.data()[i];
-    if (index < 0 || index > kLargest) {
-      throw Error(name, "row " + std::to_string(i / 3) + " has the index " + std::to_string(index));
-    }
-    result[i / 3][static_cast<Eigen::Index>(i % 3)] = static_cast<int>(index);
+    result[i / 3][static_cast<Eigen::Index>(i % 3)] = index_in(all, i, i / 3, 0, name);
   }
   return result;
 }
 
 std::vector<std::int32_t> indices(py::handle value, const char* name) {
   const py::array array = as_array(value, name);
-  require_kind(array, "iu", name);
+  const WholeNumbers all = whole_numbers(array, name);
   if (array.ndim() != 1) refuse_shape(array, "(n,)", name);
-  const auto all =
-      py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
-  if (!all) throw py::error_already_set();
-  std::vector<std::int32_t> result;
-  for (py::ssize_t i = 0; i < all.size(); ++i) {
-    const auto index = static_cast<std::int32_t>(all.data()[i]);
-    if (index != all.data()[i]) {
-      throw Error(name,
-                  "row " + std::to_string(i) + " has the index " + std::to_string(all.data()[i]));
-    }
-    result.push_back(index);
+  std::vector<std::int32_t> result(static_cast<std::size_t>(all.size()));
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i] = index_in(all, i, i, std::numeric_limits<std::int32_t>::min(), name);
   }
   return result;
 }

@@ -30,9 +30,7 @@ double distance_to_solid(const Clearance& clearance, const MeshDistance& distanc
        ascend(clearance, c, {.first_step = 0.01 * radius, .least_step = 1e-4 * radius})) {
     if (step.clearance >= 0.0) nearest = std::min(nearest, distance_upper(c, step.point));
   }
-  const double first_step = 0x1p-30 * nearest;
-  if (first_step == 0.0) return nearest;
-  if (const auto near = solid_point_in_groove(clearance, c, first_step, nearest)) {
+  if (const auto near = solid_point_in_groove(clearance, c, 0x1p-30 * nearest, nearest)) {
     nearest = std::min(nearest, distance_upper(c, *near));
   }
   return nearest;

@@ -55,6 +55,7 @@ TEST_F(AuditRobot, LeaksOfCurvedShapesAreTheirOwn) {
     const std::vector<LinkSpheres> spheres{{"ball", {{Vector3d::Zero(), radius}}}};
     return *audit_robot(ball, spheres).links.front().certificate;
   };
+  EXPECT_EQ(audited(0.0101).uncovered_depth.lower, 0.0);
   EXPECT_TRUE(audited(0.01).covered);
   EXPECT_EQ(audited(0.01).uncovered_depth.upper, 0.0);
   EXPECT_EQ(audited(0.0099).uncovered_depth.lower, 0.0);
