@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -59,26 +60,33 @@ LinkPair prove(const RobotModel& robot, int first, int second,
   const std::uint64_t seed = options.seed * 0x9E3779B97F4A7C15U +
                              static_cast<std::uint64_t>(first) * robot.links().size() +
                              static_cast<std::uint64_t>(second);
-  internal::PairWitness witness = internal::find_witness(*space, options.samples, seed);
-  internal::PairSearchLimits limits{.boxes = options.undecided_boxes,
-                                    .boxes_once_touching = options.boxes,
-                                    .is_touching = witness.touches(),
-                                    .smallest_motion = options.smallest_motion,
-                                    .is_over = is_over};
-  internal::PairSearchResult found = internal::search_free_boxes(*space, limits);
+  std::optional<internal::PairWitness> witness;
+  const auto search_witness = [&] {
+    witness = internal::find_witness(*space, options.samples, seed);
+    return witness->touches();
+  };
+  internal::PairSearchResult found =
+      internal::search_free_boxes(*space, {.boxes = options.undecided_boxes,
+                                           .boxes_once_touching = options.boxes,
+                                           .finds_contact = search_witness,
+                                           .smallest_motion = options.smallest_motion,
+                                           .is_over = is_over});
   result.searched_boxes = found.boxes;
   result.boxes = FreeBoxes(space->variables, found.nodes);
-  result.smallest_gap = witness.gap;
-  if (witness.touches()) result.witness = std::move(witness.configuration);
-  if (!found.witness.empty() && result.witness.empty()) {
+  if (result.boxes.is_all_free()) {
+    // A witness is within the rounding of the mesh test then.
+    if (internal::take_all_positions(robot, space->variables)) result.verdict = PairVerdict::kNever;
+    return result;
+  }
+  if (found.witness.empty() && !witness && !is_over()) search_witness();
+  if (witness) {
+    result.smallest_gap = witness->gap;
+    if (witness->touches()) found.witness = std::move(witness->configuration);
+  }
+  if (!found.witness.empty()) {
+    result.verdict = PairVerdict::kTouching;
     result.smallest_gap = 0.0;
     result.witness = std::move(found.witness);
-  }
-  if (result.boxes.is_all_free()) {
-    result.witness.clear();  // within the rounding of the mesh test, if there was one
-    if (internal::take_all_positions(robot, space->variables)) result.verdict = PairVerdict::kNever;
-  } else if (!result.witness.empty()) {
-    result.verdict = PairVerdict::kTouching;
   }
   return result;
 }

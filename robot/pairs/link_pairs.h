@@ -64,8 +64,8 @@ struct LinkPair {
   int second = 0;
   PairVerdict verdict = PairVerdict::kUnknown;
   std::vector<double> witness{};  // a configuration of the whole robot; empty unless they touch
-  // An upper bound of the smallest gap found, up to rounding, in metres; 0 where they touch. Of
-  // kUnknown, mainly: the search for a witness gives it.
+  // An upper bound of the smallest gap found, up to rounding, in metres; 0 where they touch,
+  // infinite where none was searched: for kNever.
   double smallest_gap = std::numeric_limits<double>::infinity();
   // Proved: in no configuration of these boxes the two have a point in common, of the exact
   // mechanism, or under the poses that forward_kinematics() computes with the root at the world's
@@ -78,8 +78,9 @@ struct LinkPair {
 // How long is searched. Equal options give equal results on any number of threads, unless `seconds`
 // is set or a stop is requested.
 struct LinkPairOptions {
-  // How many boxes of the joints' ranges are examined for a pair, at most: once a configuration is
-  // known in which it touches, and as long as none is.
+  // How many boxes of the joints' ranges are examined for a pair, at most: where a configuration is
+  // found in which it touches, or where more than a quarter of the ranges is not proved free after
+  // so many; and where a proof of all is near.
   std::size_t boxes = 8000;
   std::size_t undecided_boxes = 100000;
   std::size_t samples = 300;  // configurations from which a witness is searched

@@ -17,56 +17,80 @@ using Eigen::Vector3d;
 
 PairBound::PairBound(const RobotModel& robot, std::vector<int> joints, double error)
     : robot_(robot), joints_(std::move(joints)), error_(error) {
-  for (auto& axes : axes_) axes.resize(joints_.size());
+  const auto count = std::ssize(joints_);
+  for (Axes& axes : axes_) {
+    for (Axes::Row& row : axes.direction) row.resize(count);
+    for (Axes::Row& row : axes.origin) row.resize(count);
+    axes.half.resize(count);
+    axes.chord.resize(count);
+  }
 }
 
 void PairBound::place(std::span<const Pose> world_from_link, std::span<const double> half_widths) {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const Joint& joint = robot_.joints()[static_cast<std::size_t>(joints_[i])];
     const Pose& pose = world_from_link[static_cast<std::size_t>(joint.child_link)];
-    Axis& axis = axes_[0][i];
-    axis.direction = pose.matrix() * joint.axis;
-    axis.origin = pose.translation();
-    axis.turns = joint.turns();
-    const double half = half_widths[static_cast<std::size_t>(joint.variable)] + FreeBoxes::kMargin;
-    axis.half = joint.mimics < 0 ? half : std::abs(joint.multiplier) * half;
-    axis.chord =
-        axis.turns ? 2.0 * std::sin(0.5 * std::min(axis.half, std::numbers::pi)) : axis.half;
-    axes_[1][joints_.size() - 1 - i] = axis;
+    const Vector3d direction = pose.matrix() * joint.axis;
+    const double given = half_widths[static_cast<std::size_t>(joint.variable)] + FreeBoxes::kMargin;
+    const double half = joint.mimics < 0 ? given : std::abs(joint.multiplier) * given;
+    const double chord =
+        joint.turns() ? 2.0 * std::sin(0.5 * std::min(half, std::numbers::pi)) : half;
+    for (const std::size_t side : {0U, 1U}) {
+      const std::size_t place = side == 0 ? i : joints_.size() - 1 - i;
+      const auto row = static_cast<Eigen::Index>(place);
+      Axes& axes = axes_[side];
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        axes.direction[static_cast<std::size_t>(c)][row] = direction[c];
+        axes.origin[static_cast<std::size_t>(c)][row] = pose.translation()[c];
+      }
+      axes.turns[place] = joint.turns();
+      axes.half[row] = half;
+      axes.chord[row] = chord;
+    }
   }
 }
 
 void PairBound::losses(std::size_t side, const Vector3d& p, double spread, const Vector3d& n,
                        Losses& loss) const {
+  const Axes& axes = axes_[side];
+  const auto& [ax, ay, az] = axes.direction;
+  const Axes::Row x = p.x() - axes.origin[0];
+  const Axes::Row y = p.y() - axes.origin[1];
+  const Axes::Row z = p.z() - axes.origin[2];
+  const Axes::Row way_x = ay * z - az * y;
+  const Axes::Row way_y = az * x - ax * z;
+  const Axes::Row way_z = ax * y - ay * x;
+  const Axes::Row distances =
+      (way_x.square() + way_y.square() + way_z.square()).sqrt() + (spread + 8.0 * error_);
+  const Axes::Row alongs = (n.x() * way_x + n.y() * way_y + n.z() * way_z).abs() + spread;
   double first_order = 0.0;
   double bend = 0.0;
   double paths = 0.0;  // sum of h r
   double telescope = 0.0;
   loss[0] = 0.0;
-  for (std::size_t i = 0; i < axes_[side].size(); ++i) {
-    const Axis& axis = axes_[side][i];
+  for (Eigen::Index i = 0; i < axes.half.size(); ++i) {
+    const double half = axes.half[i];
     double distance = 1.0;
     double reach = 1.0;
     double along = 0.0;
-    if (axis.turns) {
-      const Vector3d way = axis.direction.cross(p - axis.origin);
-      distance = std::max(way.norm() + spread, 0.0) + 8.0 * error_;
+    if (axes.turns[static_cast<std::size_t>(i)]) {
+      distance = distances[i];
       reach = distance + telescope;
-      along = std::max(std::abs(n.dot(way)) + spread, 0.0);
-      bend += axis.half * (0.5 * axis.half * reach + paths);
+      along = alongs[i];
+      bend += half * (0.5 * half * reach + paths);
     } else {
-      along = std::abs(n.dot(axis.direction));
+      along = std::abs(n.x() * ax[i] + n.y() * ay[i] + n.z() * az[i]);
     }
-    first_order += axis.half * (along + 8.0 * error_);
-    paths += axis.half * reach;
-    telescope += axis.chord * distance;
-    loss[i + 1] = std::min(first_order + bend, telescope) * (1.0 + kRelativeSlack);
+    first_order += half * (along + 8.0 * error_);
+    paths += half * reach;
+    telescope += axes.chord[i] * distance;
+    loss[static_cast<std::size_t>(i) + 1] =
+        std::min(first_order + bend, telescope) * (1.0 + kRelativeSlack);
   }
 }
 
-PairBound::Range PairBound::range_of_least(std::size_t side, const Vector3d& n,
-                                           const Pose& world_from_link,
-                                           std::span<const Vector3d> points) const {
+void PairBound::least_of_ball(std::size_t side, const Vector3d& n, const Pose& world_from_link,
+                              std::span<const Vector3d> points, Losses& result) const {
   Vector3d middle = Vector3d::Zero();
   for (const Vector3d& point : points) middle += point;
   middle /= static_cast<double>(points.size());
@@ -79,41 +103,46 @@ PairBound::Range PairBound::range_of_least(std::size_t side, const Vector3d& n,
     along = std::min(along, n.dot(p));
   }
   const double spread = std::sqrt(squared) * (1.0 + kRelativeSlack) + error_;
-  Range range;
-  losses(side, center, spread, n, range.lower);
-  losses(side, center, -spread, n, range.upper);
-  for (std::size_t i = 0; i <= axes_[side].size(); ++i) {
-    range.lower[i] = along - range.lower[i];
-    range.upper[i] = along - range.upper[i];
-  }
-  return range;
+  losses(side, center, spread, n, result);
+  for (std::size_t i = 0; i <= joints_.size(); ++i) result[i] = along - result[i];
 }
 
-void PairBound::least(std::size_t side, const Vector3d& n, const Pose& world_from_link,
-                      std::span<const Vector3d> points, Losses& result) const {
-  const std::size_t count = axes_[side].size();
-  std::fill_n(result.begin(), count + 1, std::numeric_limits<double>::infinity());
-  Losses loss;
-  // The point that is least at the middle comes first: a point that stands behind it by more than
-  // it can lose itself, by any number of joints, is no least one.
-  const std::size_t first = least_along(points, world_from_link.matrix().transpose() * n);
-  const auto visit = [&](const Vector3d& point) {
-    const Vector3d p = world_from_link * point;
-    const double along = n.dot(p);
-    if (along > result[0]) {
-      double telescope = 0.0;
-      for (const Axis& axis : axes_[side]) {
-        telescope +=
-            axis.turns ? axis.chord * ((p - axis.origin).norm() + 8.0 * error_) : axis.chord;
-      }
-      if (along - telescope * (1.0 + kRelativeSlack) > result[0]) return;
+void PairBound::least_of_point(std::size_t side, const Vector3d& n, const Vector3d& p,
+                               Losses& result) const {
+  const double along = n.dot(p);
+  losses(side, p, 0.0, n, result);
+  for (std::size_t i = 0; i <= joints_.size(); ++i) result[i] = along - result[i];
+}
+
+bool PairBound::may_lower(std::size_t side, const Vector3d& n, const Vector3d& p,
+                          const Losses& least) const {
+  const double along = n.dot(p);
+  if (along < least[0]) return true;
+  const Axes& axes = axes_[side];
+  const Axes::Row lengths = ((p.x() - axes.origin[0]).square() + (p.y() - axes.origin[1]).square() +
+                             (p.z() - axes.origin[2]).square())
+                                .sqrt() +
+                            8.0 * error_;
+  double telescope = 0.0;
+  for (Eigen::Index i = 0; i < axes.chord.size(); ++i) {
+    telescope += axes.chord[i] * (axes.turns[static_cast<std::size_t>(i)] ? lengths[i] : 1.0);
+    if (along - telescope * (1.0 + kRelativeSlack) < least[static_cast<std::size_t>(i) + 1]) {
+      return true;
     }
-    losses(side, p, 0.0, n, loss);
-    for (std::size_t i = 0; i <= count; ++i) result[i] = std::min(result[i], along - loss[i]);
-  };
-  visit(points[first]);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i != first) visit(points[i]);
+  }
+  return false;
+}
+
+void PairBound::lower_to_least(std::size_t side, const Vector3d& n, const Pose& world_from_link,
+                               std::span<const Vector3d> points, Losses& result) const {
+  Losses of_point;
+  for (const Vector3d& point : points) {
+    const Vector3d p = world_from_link * point;
+    if (!may_lower(side, n, p, result)) continue;
+    least_of_point(side, n, p, of_point);
+    for (std::size_t i = 0; i <= joints_.size(); ++i) {
+      result[i] = std::min(result[i], of_point[i]);
+    }
   }
 }
 
@@ -121,16 +150,22 @@ bool PairBound::are_apart(const Vector3d& n, const Pose& world_from_first,
                           std::span<const Vector3d> first, const Pose& world_from_second,
                           std::span<const Vector3d> second, double radii) const {
   const double needed = radii + slack();
-  if (first.size() > 1 || second.size() > 1) {
-    const Range of_first = range_of_least(0, n, world_from_first, first);
-    const Range of_second = range_of_least(1, -n, world_from_second, second);
-    if (any_above(needed, of_first.lower, of_second.lower)) return true;
-    if (!any_above(needed, of_first.upper, of_second.upper)) return false;
-  }
+  const Vector3d n_in_first = world_from_first.matrix().transpose() * n;
+  const Vector3d n_in_second = world_from_second.matrix().transpose() * -n;
   Losses of_first;
   Losses of_second;
-  least(0, n, world_from_first, first, of_first);
-  least(1, -n, world_from_second, second, of_second);
+  least_of_point(0, n, world_from_first * first[least_along(first, n_in_first)], of_first);
+  least_of_point(1, -n, world_from_second * second[least_along(second, n_in_second)], of_second);
+  if (!any_above(needed, of_first, of_second)) return false;
+  if (first.size() == 1 && second.size() == 1) return true;
+  Losses of_ball;
+  Losses of_other_ball;
+  least_of_ball(0, n, world_from_first, first, of_ball);
+  least_of_ball(1, -n, world_from_second, second, of_other_ball);
+  if (any_above(needed, of_ball, of_other_ball)) return true;
+  lower_to_least(0, n, world_from_first, first, of_first);
+  if (!any_above(needed, of_first, of_second)) return false;
+  lower_to_least(1, -n, world_from_second, second, of_second);
   return any_above(needed, of_first, of_second);
 }
 
@@ -143,10 +178,14 @@ bool PairBound::any_above(double least, const Losses& of_first, const Losses& of
 }
 
 double PairBound::motion(std::size_t step, const Vector3d& first, const Vector3d& second) const {
-  const Axis& axis = axes_[0][step];
-  if (!axis.turns) return axis.half;
-  return axis.half * std::min(axis.direction.cross(first - axis.origin).norm(),
-                              axis.direction.cross(second - axis.origin).norm());
+  const Axes& axes = axes_[0];
+  const auto row = static_cast<Eigen::Index>(step);
+  if (!axes.turns[step]) return axes.half[row];
+  const auto& [ax, ay, az] = axes.direction;
+  const Vector3d direction(ax[row], ay[row], az[row]);
+  const Vector3d origin(axes.origin[0][row], axes.origin[1][row], axes.origin[2][row]);
+  return axes.half[row] *
+         std::min(direction.cross(first - origin).norm(), direction.cross(second - origin).norm());
 }
 
 }  // namespace spherule::internal

@@ -29,8 +29,8 @@
 //
 // Points together. Of points within q of a place c, d_j is at most that of c + q, and |n . w_j| at
 // most that of c + q where joint j turns: with these no point's loss is more than the one for c
-// and q. That decides for most pieces; where it does not, and with - q in the place of + q could,
-// each point counts by itself.
+// and q. That decides for most pieces that are apart; the point that comes nearest at the middle
+// decides for most that are not; for the rest each point counts by itself.
 //
 // Hulls. n is fixed in the observer's frame. A point of a convex hull is the same mixture of its
 // corners in every configuration, so the least of n . p over the hull is that of a corner, and
@@ -92,38 +92,42 @@ class PairBound {
   double slack() const { return kSlackOfError * error_; }
 
  private:
-  struct Axis {
-    Eigen::Vector3d direction;
-    Eigen::Vector3d origin;
-    bool turns = false;
-    double half = 0.0;   // h
-    double chord = 0.0;  // c
+  // Of the joints that move a side, the nearest to the link first: an array a coordinate, so that
+  // points are moved about all of them at once.
+  struct Axes {
+    using Row = Eigen::Array<double, Eigen::Dynamic, 1, 0, static_cast<int>(kMostJoints), 1>;
+    std::array<Row, 3> direction;
+    std::array<Row, 3> origin;
+    std::array<bool, kMostJoints> turns{};
+    Row half;   // h
+    Row chord;  // c
   };
   using Losses = std::array<double, kMostJoints + 1>;
 
-  // Of any points of a side, the least of n . p - loss for each number of joints that move it is
-  // between these two.
-  struct Range {
-    Losses lower;
-    Losses upper;
-  };
-
   // When so many joints move them, no point of the first (0) or second (1) link that is within
-  // `spread` of p loses more; with a spread below 0, none within its magnitude loses less.
+  // `spread` of p loses more.
   void losses(std::size_t side, const Eigen::Vector3d& p, double spread, const Eigen::Vector3d& n,
               Losses& loss) const;
-  Range range_of_least(std::size_t side, const Eigen::Vector3d& n, const Pose& world_from_link,
-                       std::span<const Eigen::Vector3d> points) const;
-  // For each number of joints that move it, the least of n . p - loss over the points of a side.
-  void least(std::size_t side, const Eigen::Vector3d& n, const Pose& world_from_link,
-             std::span<const Eigen::Vector3d> points, Losses& result) const;
+  // For each number of joints that move it, n . p - loss of a point of a side, and a lower bound of
+  // it for points, by a sphere around them.
+  void least_of_point(std::size_t side, const Eigen::Vector3d& n, const Eigen::Vector3d& p,
+                      Losses& result) const;
+  void least_of_ball(std::size_t side, const Eigen::Vector3d& n, const Pose& world_from_link,
+                     std::span<const Eigen::Vector3d> points, Losses& result) const;
+  // False only if p has no part in the least of points of which others have reached `least`: by the
+  // telescope, which is cheaper than losses().
+  bool may_lower(std::size_t side, const Eigen::Vector3d& n, const Eigen::Vector3d& p,
+                 const Losses& least) const;
+  // Lowers `result`, of some of the points, to the least over all.
+  void lower_to_least(std::size_t side, const Eigen::Vector3d& n, const Pose& world_from_link,
+                      std::span<const Eigen::Vector3d> points, Losses& result) const;
   // Whether the two together are above `least` for any distribution of the joints.
   bool any_above(double least, const Losses& of_first, const Losses& of_second) const;
 
   const RobotModel& robot_;
   std::vector<int> joints_;
   double error_;
-  std::array<std::vector<Axis>, 2> axes_;  // the nearest to each link first
+  std::array<Axes, 2> axes_;
 };
 
 }  // namespace spherule::internal

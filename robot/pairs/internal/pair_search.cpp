@@ -33,6 +33,7 @@ struct Box {
   Vector3d direction = Vector3d::UnitX();  // that separated the hulls at the middle of the whole
   std::vector<PieceNodes> front{{0, 0}};
   double worth = 1.0;
+  double share = 1.0;  // of the ranges
 
   // The heap's order: what is worth most first, then what came first.
   friend bool operator<(const Box& a, const Box& b) {
@@ -62,9 +63,9 @@ class Search {
     std::vector<Box> open;
     open.push_back(std::move(whole));
     bool always = true;
-    bool touching = limits_.is_touching;
-    while (!open.empty()) {
-      if (result.boxes >= (touching ? limits_.boxes_once_touching : limits_.boxes)) break;
+    while (!open.empty() && result.boxes < limits_.boxes) {
+      if (result.boxes >= limits_.boxes_once_touching && !result.witness.empty()) break;
+      if (result.boxes == limits_.boxes_once_touching && !is_proof_near()) break;
       if (result.boxes % 16 == 0 && limits_.is_over && limits_.is_over()) break;
       if (always && result.boxes >= kAlwaysTouching) break;
       std::pop_heap(open.begin(), open.end());
@@ -76,12 +77,10 @@ class Search {
       always &= outcome == Outcome::kTouching;
       if (outcome == Outcome::kFree) {
         tree_[box.node].state = FreeBoxes::kFree;
+        open_share_ -= box.share;
         continue;
       }
-      if (outcome == Outcome::kTouching && result.witness.empty()) {
-        result.witness = configuration_;
-        touching = true;
-      }
+      if (outcome == Outcome::kTouching && result.witness.empty()) result.witness = configuration_;
       box.worth *= outcome == Outcome::kTouching ? kHalf * kWhereTouching : kHalf;
       halve(std::move(box), open);
     }
@@ -97,6 +96,10 @@ class Search {
 
   const Pose& first_pose() const { return poses_[static_cast<std::size_t>(space_.first)]; }
   const Pose& second_pose() const { return poses_[static_cast<std::size_t>(space_.second)]; }
+
+  bool is_proof_near() const {
+    return open_share_ <= kHopeful && !(limits_.finds_contact && limits_.finds_contact());
+  }
 
   void place(const Box& box) {
     for (std::size_t i = 0; i < space_.variables.size(); ++i) {
@@ -155,6 +158,7 @@ class Search {
     if (!(box.lower[v] < middle && middle < box.upper[v])) return;
     tree_[box.node].state = static_cast<std::uint8_t>(FreeBoxes::kFirstHalving + v);
     tree_[box.node].first = tree_.size();
+    box.share *= 0.5;
     Box other = box;
     box.node = tree_.size();
     box.upper[v] = middle;
@@ -181,6 +185,7 @@ class Search {
   std::vector<double> half_widths_;
   std::vector<Pose> poses_;
   std::vector<Node> tree_;
+  double open_share_ = 1.0;  // of the ranges, not proved yet
 };
 
 }  // namespace

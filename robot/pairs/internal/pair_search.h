@@ -21,11 +21,18 @@ struct PairSearchResult {
 
 struct PairSearchLimits {
   std::size_t boxes = 0;
-  std::size_t boxes_once_touching = 0;  // as soon as there is a witness
-  bool is_touching = false;             // there is one already
-  double smallest_motion = 0.0;         // of boxes that are halved, metres
-  std::function<bool()> is_over{};      // no time is left
+  // Where the links touch, or where so many boxes leave more than kHopeful of the ranges open.
+  std::size_t boxes_once_touching = 0;
+  // Called at most once, after so many boxes of which no middle touches: whether another search
+  // finds that the links do.
+  std::function<bool()> finds_contact{};
+  double smallest_motion = 0.0;     // of boxes that are halved, metres
+  std::function<bool()> is_over{};  // no time is left
 };
+
+// What boxes leave open halves more and more slowly, the more joints there are. Where it is more
+// than this share of the ranges after LinkPairOptions::boxes, ten times as many do not finish it.
+inline constexpr double kHopeful = 0.25;
 
 // Proves boxes of the ranges free, the largest first, those around touching middles later: each box
 // that is not proved at its middle is halved, along the variable that moves the links most against

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -154,7 +155,39 @@ TEST_F(TwoBars, ContactAtTheLimitAloneIsFound) {
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
   ASSERT_EQ(pairs.pairs()[0].verdict, PairVerdict::kTouching);
   EXPECT_GE(pairs.pairs()[0].witness[0], angle - 1e-9);
+  EXPECT_EQ(pairs.pairs()[0].smallest_gap, 0.0);
   EXPECT_TRUE(pairs.is_free(0, 1, Configuration{angle - 0.01}));
+}
+
+TEST_F(TwoBars, AProofThatIsNearGoesOnBeyondTheBoxesOfOthers) {
+  const BoxRobot robot = bars(-2.0, contact_angle() - 1e-4);
+  const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies, {.boxes = 6});
+  EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kNever);
+  EXPECT_GT(pairs.pairs()[0].searched_boxes, 6U);
+  EXPECT_EQ(pairs.pairs()[0].smallest_gap, std::numeric_limits<double>::infinity());
+}
+
+// An arm of eight turning links whose end comes near its base only where all of them turn as far as
+// they can.
+TEST(LinkPairs, AProofThatIsFarEndsWithTheBoxesOfOthers) {
+  BoxRobot robot{RobotModel("base")};
+  robot.add_boxes(0, {box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})});
+  std::string parent = "base";
+  for (int i = 1; i <= 8; ++i) {
+    const std::string link = "link" + std::to_string(i);
+    robot.model.add_link(link, parent,
+                         {.name = "turn" + std::to_string(i),
+                          .type = JointType::kRevolute,
+                          .parent_from_joint = Pose::from_translation({i == 1 ? 0.0 : 1.0, 0, 0}),
+                          .lower = -0.75,
+                          .upper = 0.75});
+    parent = link;
+  }
+  robot.add_boxes(8, {box({0.9, -0.1, -0.1}, {1.1, 0.1, 0.1})});
+  const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies, {.boxes = 20, .samples = 0});
+  ASSERT_EQ(pairs.pairs().size(), 1U);
+  EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kUnknown);
+  EXPECT_EQ(pairs.pairs()[0].searched_boxes, 20U);
 }
 
 // A part that slides along x, from -0.5 on, in a link that has no body yet.
