@@ -68,7 +68,7 @@ class MotionValidator : public ompl::base::MotionValidator {
 
   // If the motion is not valid, lastValid.second is a fraction up to which it is proved free, hence
   // not beyond the first contact, and lastValid.first, where it is not null, is the state there,
-  // which is valid as well; s1 and 0 if nothing is proved.
+  // which is found free as well; s1 and 0 if nothing is proved.
   bool checkMotion(const ompl::base::State* s1, const ompl::base::State* s2,
                    std::pair<ompl::base::State*, double>& lastValid) const override {
     double free_until = 0.0;

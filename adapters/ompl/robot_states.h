@@ -26,10 +26,12 @@
 #include "robot/model/shortest_motion.h"
 #include "spheretree/error.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <numbers>
 #include <ompl/base/SpaceInformation.h>
 #include <ompl/base/StateSpace.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
@@ -46,7 +48,8 @@ namespace spherule {
 // The space is a RealVectorStateSpace, an SO2StateSpace (for a joint that turns), or a compound of
 // these and of such compounds. Their numbers, in their order, are those of a configuration. Motions
 // between states are those of these spaces' interpolate(): straight in real numbers, those of a
-// continuous joint included, and by the shorter way round in SO2, where half a turn goes as given.
+// continuous joint included, and by the shorter way round in SO2, where half a turn goes as given;
+// from a number beyond the bounds of SO2 one turn at most is taken off, as interpolate() does.
 // A class of the user's own that overrides interpolate() is not seen as such; its motions are not
 // those that are answered for.
 class RobotStates {
@@ -110,13 +113,16 @@ class RobotStates {
     append(*space_, state, configuration);
   }
 
-  // The end of a motion from `from`, such that the straight way to it is the motion's: where that
-  // leads over the ends of SO2, nearest_turn(), of which checks charge the rounding.
+  // The end of a motion from `from`, such that the straight way to it is the motion's: of SO2,
+  // where it is more than half a turn away, one turn less, as interpolate() has it. Within the
+  // bounds that is nearest_turn(). Checks charge its rounding, which is less than kTurnError.
   void read_end(const ompl::base::State* state, const std::vector<double>& from,
                 std::vector<double>& to) const {
     read(state, to);
     for (std::size_t i = 0; i < to.size(); ++i) {
-      if (turns_[i] != 0) to[i] = nearest_turn(from[i], to[i]);
+      const double step = to[i] - from[i];
+      if (turns_[i] == 0 || std::abs(step) <= std::numbers::pi) continue;
+      to[i] -= std::copysign(2.0 * std::numbers::pi, step);
     }
   }
 

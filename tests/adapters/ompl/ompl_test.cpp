@@ -173,6 +173,27 @@ TEST(OmplMotions, ContinuousJointsTurnTheShorterWay) {
   EXPECT_FALSE(planning.motions->checkMotion(left.get(), right.get()));
 }
 
+// OMPL's interpolate() takes one turn off, however far beyond the bounds a motion begins: from 7 to
+// -3 it turns back through 0, where the wall is. By the shorter way it would not.
+TEST(OmplMotions, BeyondTheBoundsTheyAreStillThoseOfTheSpace) {
+  const Planning planning(true);
+  test::Random random(8);
+  int free = 0, touching = 0;
+  for (int i = 0; i < test::effort(2000, 100); ++i) {
+    const auto s1 = planning.state(random_configuration(random, 30.0));
+    const auto s2 = planning.state(random_configuration(random, std::numbers::pi));
+    const double contact = planning.first_contact(s1.get(), s2.get(), test::effort(500, 200));
+    const bool is_free = planning.motions->checkMotion(s1.get(), s2.get());
+    EXPECT_FALSE(is_free && contact <= 1.0) << planning.configuration(s1.get())[0];
+    (contact > 1.0 ? free : touching) += 1;
+  }
+  EXPECT_GT(free, 0);
+  EXPECT_GT(touching, 0);
+  const auto turned = planning.state({7.0, 0.0, 0.0}), end = planning.state({-3.0, 0.0, 0.0});
+  EXPECT_LE(planning.first_contact(turned.get(), end.get(), 500), 1.0);
+  EXPECT_FALSE(planning.motions->checkMotion(turned.get(), end.get()));
+}
+
 // Of real numbers it goes straight, whatever is requested, because that is how the space moves.
 TEST(OmplMotions, RealNumbersGoStraight) {
   const Planning planning(false, {.continuous = ContinuousMotion::kShortest}, 4.0);
@@ -196,6 +217,7 @@ TEST(OmplStates, MotionsAreThoseOfTheSpace) {
     Configuration q2 = random_configuration(random, kPi);
     if (i % 4 == 0) q2[0] = q1[0] - std::copysign(kPi, q1[0]) + (i % 3 - 1) * 4.5e-16;
     if (i % 4 == 1) q1[0] = -kPi, q2[0] = i % 8 == 1 ? std::nextafter(kPi, 0.0) : 0.0;
+    if (i % 4 == 2) q1[0] *= 3.0;  // beyond the bounds
     s1 = q1;
     s2 = q2;
     Configuration from, to;
