@@ -18,6 +18,7 @@
 #include "adapters/fcl/conversions.h"
 #include "collide/mesh_contact.h"
 #include "simplifier/simplify.h"
+#include "spheretree/moved_from.h"
 #include "spheretree/sphere_tree.h"
 
 #include <fcl/geometry/collision_geometry.h>
@@ -63,9 +64,11 @@ CoveredPart cover_part(const TriangleMesh& mesh, const ModelOptions& options = {
 template <class S>
 class SphereModel final : public fcl::CollisionGeometry<S> {
  public:
-  // Throws Error without spheres and for a mesh with another cover.
+  // Throws Error without spheres, for a tree that was moved from, and for a mesh with another
+  // cover.
   explicit SphereModel(CoveredPart part) : part_(std::move(part)) {
     if (!part_.spheres) throw Error("sphere model", "there are no spheres");
+    spherule::internal::require_content(part_.spheres->node_count() > 0, "SphereTree");
     if (part_.mesh && &part_.mesh->cover() != part_.spheres.get()) {
       throw Error("sphere model", "the mesh is covered by other spheres");
     }
