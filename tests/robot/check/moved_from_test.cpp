@@ -11,6 +11,7 @@
 #include "collide/solid_within.h"
 #include "collide/within.h"
 #include "mesh/mesh_distance.h"
+#include "robot/check/robot_collision.h"
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
 #include "robot/pairs/allowed_collisions.h"
@@ -181,6 +182,10 @@ TEST(MovedFrom, RobotCheckerAndScene) {
   EXPECT_THROW(robot.check_cache(), Error);
   std::vector<Pose> poses;
   EXPECT_THROW(forward_kinematics(robot, {}, poses), Error);
+  forward_kinematics(taken_robot, {}, poses);
+  EXPECT_TRUE(robot_collides(taken_robot, poses, *around_it(), kHere));
+  EXPECT_DEATH(robot_collides(robot, poses, *around_it(), kHere),
+               "RobotModel: its content was moved");
 }
 
 TEST(MovedFrom, AllowedCollisions) {
