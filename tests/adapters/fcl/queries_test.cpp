@@ -9,6 +9,7 @@
 #include "tests/support/random.h"
 
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/distance.h>
 #include <gtest/gtest.h>
 
@@ -263,6 +264,10 @@ TEST(FclQueries, FclItselfRefusesSphereModels) {
   const auto bare = std::make_shared<fcl::Sphered>(1.0);
   const fcl::CollisionObjectd sphere(bare);
   EXPECT_THROW(fcl::collide(&sphere, &object, fcl::CollisionRequestd(), result), Error);
+  fcl::ContinuousCollisionResultd moving;
+  EXPECT_THROW(fcl::continuousCollide(&object, at(1, 0, 0), &object, at(0, 0, 0),
+                                      fcl::ContinuousCollisionRequestd(), moving),
+               Error);
 }
 
 TEST(FclQueries, ModelsNeedSpheres) {
