@@ -217,6 +217,8 @@ TEST_F(SphereFormats, UrdfKeepsTheRestAndFindsItsMeshes) {
       "<?xml version=\"1.0\"?>\n<!-- head --><robot name=\"r\" xmlns:x=\"y\"><link "
       "name=\"a\"><inertial/>"
       "<visual><geometry><mesh filename=\"m/a.dae\"/></geometry></visual>"
+      "<visual><geometry><mesh filename=\"file://m/b.dae\"/></geometry></visual>"
+      "<visual><geometry><mesh filename=\"file:///m/c.dae\"/></geometry></visual>"
       "<collision><geometry><box size=\"1 1 1\"/></geometry></collision><visual "
       "name=\"last\"/></link>"
       "<link name=\"b\"><collision><geometry><mesh filename=\"package://p/b.stl\"/></geometry>"
@@ -228,6 +230,8 @@ TEST_F(SphereFormats, UrdfKeepsTheRestAndFindsItsMeshes) {
   EXPECT_NE(text.find("<!-- head -->"), std::string::npos);
   EXPECT_NE(text.find("xmlns:x=\"y\""), std::string::npos);
   EXPECT_NE(text.find("filename=\"../m/a.dae\""), std::string::npos) << text;
+  EXPECT_NE(text.find("filename=\"file://../m/b.dae\""), std::string::npos) << text;
+  EXPECT_NE(text.find("filename=\"file:///m/c.dae\""), std::string::npos) << text;
   EXPECT_NE(text.find("filename=\"package://p/b.stl\""), std::string::npos);
   EXPECT_EQ(text.find("<box"), std::string::npos);
   EXPECT_LT(text.find("<sphere"), text.find("last"));  // where the old one was
