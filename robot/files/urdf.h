@@ -47,8 +47,10 @@ struct UrdfOptions {
 // that writes is read in its place; lines that errors name are then lines of that.
 //
 // Mesh files are named package://PACKAGE/..., file://..., or by a path from the URDF file's folder;
-// they must exist, as far as the options require it, and are not read. An axis that is not given is
-// (1, 0, 0), and a limit 0. Of a fixed joint, axis, limits and mimic mean nothing.
+// they must exist, as far as the options require it, and are not read. Where there is no file that
+// is called as what follows package://PACKAGE/ or file://, it is one that this escapes as URLs do
+// (%20). An axis that is not given is (1, 0, 0), and a limit 0. Of a fixed joint, axis, limits and
+// mimic mean nothing.
 //
 // Throws Error, whose subject is the file and whose reason names the line where there is one: for a
 // file that cannot be read, is no URDF, needs xacro (under another name), or is one for xacro where

@@ -33,6 +33,37 @@ std::string package_name(const fs::path& folder) {
   }
 }
 
+int hexadecimal_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+// With the characters that a URL writes as %20 and the like. None is the end of a path.
+std::string unescaped(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_escape = text[i] == '%' && i + 2 < text.size();
+    const int high = is_escape ? hexadecimal_digit(text[i + 1]) : -1;
+    const int low = is_escape ? hexadecimal_digit(text[i + 2]) : -1;
+    if (high < 0 || low < 0 || high + low == 0) {
+      result += text[i];
+    } else {
+      result += static_cast<char>(16 * high + low);
+      i += 2;
+    }
+  }
+  return result;
+}
+
+// The file `rest` below a folder: of that name or, as in a URL, of the name that it escapes.
+fs::path below(const fs::path& folder, std::string_view rest) {
+  const fs::path path = folder / rest;
+  const fs::path meant = folder / unescaped(rest);
+  return !is_file(path) && is_file(meant) ? meant : path;
+}
+
 }  // namespace
 
 MeshPaths::MeshPaths(const fs::path& urdf, const UrdfOptions& options)
@@ -66,9 +97,9 @@ fs::path MeshPaths::find(const std::string& name) {
     if (package.empty()) throw Error(name, "it names no package");
     auto root = packages_.find(package);
     if (root == packages_.end()) root = packages_.emplace(package, package_root(package)).first;
-    path = root->second / view.substr(std::min(slash + 1, view.size()));
+    path = below(root->second, view.substr(std::min(slash + 1, view.size())));
   } else if (view.starts_with(kFile)) {
-    path = folder_ / view.substr(kFile.size());
+    path = below(folder_, view.substr(kFile.size()));
   } else if (view.find("://") != std::string_view::npos) {
     throw Error(name, "only package:// and file:// can be followed");
   } else {
