@@ -5,6 +5,7 @@
 #include "collide/search/one_tree.h"
 #include "collide/search/sphere_space.h"
 #include "collide/solids/mesh_inside.h"
+#include "collide/solids/node_boxes.h"
 #include "collide/solids/spheres_inside.h"
 #include "collide/within.h"
 #include "mesh/point_triangle.h"
@@ -111,7 +112,8 @@ SolidMesh::SolidMesh(const TriangleMesh& mesh) : SolidMesh(mesh, mesh.vertex_err
 SolidMesh::SolidMesh(const TriangleMesh& mesh, double inflation)
     : mesh_(mesh),
       inflation_(inflation),
-      inside_(std::make_shared<const internal::MeshInside>(mesh)) {}
+      inside_(std::make_shared<const internal::MeshInside>(mesh)),
+      node_boxes_(std::make_shared<const internal::NodeBoxes>(mesh_)) {}
 
 bool SolidMesh::is_closed() const {
   return inside_->is_closed();

@@ -33,6 +33,7 @@ namespace spherule {
 
 namespace internal {
 class MeshInside;
+class NodeBoxes;
 }  // namespace internal
 
 // A mesh with its inside, as an obstacle. Immutable; threads may share it.
@@ -59,6 +60,7 @@ class SolidMesh {
 
   // For queries.
   const internal::MeshInside& inside() const { return *inside_; }
+  const internal::NodeBoxes& node_boxes() const { return *node_boxes_; }
   // Copies of a solid share it, and no others do.
   const std::shared_ptr<const internal::MeshInside>& shared_inside() const {
     return inside_.pointer();
@@ -71,6 +73,7 @@ class SolidMesh {
   MeshTree mesh_;
   double inflation_;
   internal::SharedContent<internal::MeshInside> inside_;
+  internal::SharedContent<internal::NodeBoxes> node_boxes_;
 };
 
 // Whether a set of spheres and a solid, rigidly placed, overlap.

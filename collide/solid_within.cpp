@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/solid_within.h"
 
+#include "collide/search/box_gap.h"
 #include "collide/search/one_tree.h"
 #include "collide/search/queries.h"
 #include "collide/solids/mesh_inside.h"
+#include "collide/solids/node_boxes.h"
 #include "collide/solids/solid_pose.h"
 #include "collide/solids/triangle_field.h"
 #include "collide/within.h"
@@ -38,16 +40,27 @@ double sum_up(double a, double b) {
 // those must touch canonically as well.
 class TrianglePairLeaves {
  public:
-  TrianglePairLeaves(const MeshTree& a, const Pose& world_from_a, const MeshTree& b,
+  TrianglePairLeaves(const SolidMesh& a, const Pose& world_from_a, const SolidMesh& b,
                      const Pose& world_from_b, const internal::RelativePose& pose, double clearance)
-      : a_(a),
-        b_(b),
+      : a_(a.mesh()),
+        b_(b.mesh()),
+        boxes_a_(a.node_boxes()),
+        boxes_b_(b.node_boxes()),
         pose_(pose),
+        b_from_a_(pose.b_from_a()),
         rotation_a_(world_from_a.matrix()),
         rotation_b_(world_from_b.matrix()),
         shift_(0.5 * (world_from_a.translation() - world_from_b.translation())),
         clearance_(clearance),
-        pad_(pose.leaf_pad() + clearance * (1.0 + 32.0 * kUnitRoundoff)) {}
+        pad_(pose.leaf_pad() + clearance * (1.0 + 32.0 * kUnitRoundoff)),
+        box_limit_(pose.slack() + clearance * internal::kMarginUp +
+                   internal::kBoxError * pose.scene_size() + 0x1p-160) {}
+
+  // True for all nodes below which triangles come within the clearance and the slack.
+  bool may_touch(internal::NodePair pair) const {
+    return internal::box_gap(boxes_a_.box(pair.index(0)), boxes_b_.box(pair.index(1)), b_from_a_) <=
+           box_limit_;
+  }
 
   bool touches(internal::NodePair pair) const {
     const std::int32_t i = a_.tree().sphere_index(pair.index(0));
@@ -99,12 +112,16 @@ class TrianglePairLeaves {
 
   const MeshTree& a_;
   const MeshTree& b_;
+  const internal::NodeBoxes& boxes_a_;
+  const internal::NodeBoxes& boxes_b_;
   const internal::RelativePose& pose_;
+  const internal::FrameChange b_from_a_;
   const Eigen::Matrix3d rotation_a_;
   const Eigen::Matrix3d rotation_b_;
   const Vector3d shift_;
   const double clearance_;
   const double pad_;
+  const double box_limit_;
   mutable Vector3d axis_ = Vector3d::UnitX();  // that separated two triangles last
 };
 
@@ -246,7 +263,7 @@ bool within(const SolidMesh& a, const Pose& world_from_a, const SolidMesh& b,
       HullSearch(a.mesh(), world_from_a, b.mesh(), world_from_b, pose, reach).finds_a_plane()) {
     return false;
   }
-  const TrianglePairLeaves leaves(a.mesh(), world_from_a, b.mesh(), world_from_b, pose, reach);
+  const TrianglePairLeaves leaves(a, world_from_a, b, world_from_b, pose, reach);
   if (internal::any_pair_within(tree_a, tree_b, pose, leaves, reach)) return true;
   const double error = kImageError * pose.scene_size() + kUnderflow;
   return holds_a_component(a, b, pose.a_from_b(), error) ||

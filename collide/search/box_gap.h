@@ -4,11 +4,13 @@
 // Two tests of a pair of trees before a traversal is set up: is the root sphere of one apart from
 // the box around the spheres of the other, and are the two boxes apart along one of their six axes?
 // Most pairs that are a fifth of their size from each other or more end here. The nine axes that
-// are products of two edges are left out, as is usual: they separate few pairs more.
+// are products of two edges are left out, as is usual: they separate few pairs more. The second
+// test also serves for the boxes of nodes.
 //
 // Error budget in the terms of relative_pose.h; boxes (c, h) are those of SphereTree::box(), of
 // which each coordinate has |c_j| + h_j <= reach (1 + 8 u) + 2^-1070, because a box is rounded
-// outward in its own way, so that |c| and |h| are below 1.74 reach.
+// outward in its own way, or of NodeBoxes, with reach (1 + 2^-21) + 2^-125; so |c| and |h| are
+// below 1.74 reach + 2^-124, and what the latter adds to the errors is below 2^-160.
 //   Boxes. Centre of a's box seen from that of b's, in b's frame: the image errs by 136 u |c| + 71
 //   u |d|, the difference by u (|ca| + |cb| + |d|) more: less than 240 u S. Each row of R errs by
 //   at most 129 u, so the reach of a's box along an axis of b errs by 129 u |h| and by its
@@ -73,11 +75,10 @@ inline bool far_apart(const SphereTree& a, const Pose& world_from_a, const Spher
                                clearance);
 }
 
-// No sphere of a is nearer to one of b: negative, and of no use, where no axis separates the boxes.
-inline double box_gap(const SphereTree& a, const SphereTree& b, const RelativePose& pose) {
-  const FrameChange b_from_a = pose.b_from_a();
-  const AxisAlignedBox& box_a = a.box();
-  const AxisAlignedBox& box_b = b.box();
+// No points of the two boxes are nearer to each other, but by kBoxError of S: negative, and of no
+// use, where no axis separates them.
+inline double box_gap(const AxisAlignedBox& box_a, const AxisAlignedBox& box_b,
+                      const FrameChange& b_from_a) {
   const Eigen::Vector3d apart = b_from_a(box_a.center) - box_b.center;
   double gaps_b[3], gaps_a[3];
   for (int i = 0; i < 3; ++i) {
@@ -92,9 +93,13 @@ inline double box_gap(const SphereTree& a, const SphereTree& b, const RelativePo
                 ((std::abs(r[0]) * box_b.half_size.x() + std::abs(r[3]) * box_b.half_size.y()) +
                  (std::abs(r[6]) * box_b.half_size.z() + box_a.half_size[i]));
   }
-  const double widest = std::max(std::max(std::max(gaps_b[0], gaps_b[1]), gaps_b[2]),
-                                 std::max(std::max(gaps_a[0], gaps_a[1]), gaps_a[2]));
-  return widest - (kBoxError * pose.scene_size() + kUnderflow);
+  return std::max(std::max(std::max(gaps_b[0], gaps_b[1]), gaps_b[2]),
+                  std::max(std::max(gaps_a[0], gaps_a[1]), gaps_a[2]));
+}
+
+// No sphere of a is nearer to one of b.
+inline double box_gap(const SphereTree& a, const SphereTree& b, const RelativePose& pose) {
+  return box_gap(a.box(), b.box(), pose.b_from_a()) - (kBoxError * pose.scene_size() + kUnderflow);
 }
 
 // The second test: true only if no sphere of a comes within the clearance of one of b by the

@@ -5,7 +5,9 @@
 //   bool touches(pair) const        the canonical test of two leaves;
 //   double gap(pair) const          their distance: above the exact one by at most gap_error() of
 //                                   RelativePose; below it by no more either, but for triangles
-//                                   (mesh_tree.h).
+//                                   (mesh_tree.h);
+//   bool may_touch(pair) const      only where it has one: false for nodes below which no leaves
+//                                   touch, though their spheres may.
 
 #include "collide/collide.h"
 #include "collide/search/box_gap.h"
@@ -31,6 +33,9 @@ class FindAny {
     return !found_;
   }
   bool found() const { return found_; }
+
+ protected:
+  const LeafTest& test() const { return test_; }
 
  private:
   const LeafTest& test_;
@@ -99,6 +104,10 @@ class FindNear : public FindAny<LeafTest> {
       : FindAny<LeafTest>(test), clearance_(clearance) {}
 
   double margin(NodePair) const noexcept { return clearance_; }
+  bool enters(NodePair pair) const noexcept requires requires(const LeafTest& leaves) {
+    leaves.may_touch(pair);
+  }
+  { return this->test().may_touch(pair); }
   bool nearest_first() const noexcept { return false; }
 
  private:

@@ -38,7 +38,15 @@ inline constexpr std::size_t kInlineStack = 2304;
 //                                      `pair` whose gap is at most that much is visited as well
 //                                      (relative_pose.h says how exactly). May change on the way;
 //   bool nearest_first()               beside margin(): whether the nearest child is visited first,
-//                                      which pays where what is found narrows the margin.
+//                                      which pays where what is found narrows the margin;
+//   bool enters(pair)                  only where the policy has one: false for a pair whose
+//   spheres
+//                                      may touch, but which is proved apart in another way.
+
+template <class Policy>
+concept ProvesPairsApart = requires(const Policy& policy, NodePair pair) {
+  policy.enters(pair);
+};
 
 template <class Policy>
 concept HasMargin = requires(const Policy& policy, NodePair pair) {
@@ -97,6 +105,12 @@ bool traverse_with(NodePair* stack, [[maybe_unused]] std::size_t capacity, const
       sphere_gaps(children, opened.first, opened.count, opened.sphere, gaps);
       for (std::int32_t i = 0; i < opened.count; ++i) {
         if (!(mask >> i & 1u)) policy.pruned(gaps[i]);
+      }
+    }
+    if constexpr (ProvesPairsApart<Policy>) {
+      for (std::uint32_t rest = mask; rest != 0; rest &= rest - 1) {
+        const std::int32_t i = std::countr_zero(rest);
+        if (!policy.enters(pair.with(opened.side, opened.first + i))) mask &= ~(1u << i);
       }
     }
     assert(top + static_cast<std::size_t>(std::popcount(mask)) <= capacity);
