@@ -46,7 +46,7 @@ double PlacedPair::direction_between(std::span<const Vector3d> first,
   return found.gap;
 }
 
-bool clear_front(const PlacedPair& pair, std::vector<PieceNodes>& front) {
+bool clear_front(const PlacedPair& pair, std::vector<PieceNodes>& front, std::size_t& tests) {
   const LinkPieces& a = pair.of_first;
   const LinkPieces& b = pair.of_second;
   std::vector<PieceNodes> todo = std::move(front);
@@ -68,6 +68,7 @@ bool clear_front(const PlacedPair& pair, std::vector<PieceNodes>& front) {
     todo.push_back(is_nearer ? one : other);
   };
   while (!todo.empty() && open_leaves.size() < kMostOpenLeaves) {
+    ++tests;
     const PieceNodes nodes = todo.back();
     todo.pop_back();
     const auto& of_a = a.nodes[static_cast<std::size_t>(nodes.first)];

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,7 +35,8 @@ struct PlacedPair {
 };
 
 // Takes from a front, pairs of nodes that hold all pairs of leaves not proved apart yet, what is
-// proved apart throughout the box, and opens the rest. True if nothing is left.
-bool clear_front(const PlacedPair& pair, std::vector<PieceNodes>& front);
+// proved apart throughout the box, and opens the rest. True if nothing is left. Adds to `tests` how
+// many pairs of nodes it examined.
+bool clear_front(const PlacedPair& pair, std::vector<PieceNodes>& front, std::size_t& tests);
 
 }  // namespace spherule::internal

@@ -63,9 +63,7 @@ class Search {
     std::vector<Box> open;
     open.push_back(std::move(whole));
     bool always = true;
-    while (!open.empty() && result.boxes < limits_.boxes) {
-      if (result.boxes >= limits_.boxes_once_touching && !result.witness.empty()) break;
-      if (result.boxes == limits_.boxes_once_touching && !is_proof_near()) break;
+    while (!open.empty() && !is_finished(result)) {
       if (result.boxes % 16 == 0 && limits_.is_over && limits_.is_over()) break;
       if (always && result.boxes >= kAlwaysTouching) break;
       std::pop_heap(open.begin(), open.end());
@@ -97,8 +95,16 @@ class Search {
   const Pose& first_pose() const { return poses_[static_cast<std::size_t>(space_.first)]; }
   const Pose& second_pose() const { return poses_[static_cast<std::size_t>(space_.second)]; }
 
-  bool is_proof_near() const {
-    return open_share_ <= kHopeful && !(limits_.finds_contact && limits_.finds_contact());
+  bool is_finished(const PairSearchResult& so_far) {
+    const auto is_reached = [&](std::size_t boxes) {
+      return so_far.boxes >= boxes || tests_ / kTestsOfBox >= boxes;
+    };
+    if (!so_far.witness.empty()) return is_reached(limits_.boxes_once_touching);
+    if (is_proof_near_) return is_reached(limits_.boxes);
+    if (!is_reached(std::min(limits_.boxes_once_touching, limits_.boxes))) return false;
+    is_proof_near_ = limits_.boxes_once_touching < limits_.boxes && open_share_ <= kHopeful &&
+                     !(limits_.finds_contact && limits_.finds_contact());
+    return !is_proof_near_;
   }
 
   void place(const Box& box) {
@@ -128,7 +134,7 @@ class Search {
     }
     if (gap > 0.0 && a.is_convex && b.is_convex) return Outcome::kOpen;
     if (gap <= 0.0 && touch_at_middle()) return Outcome::kTouching;
-    if (!clear_front(placed, box.front)) return Outcome::kOpen;
+    if (!clear_front(placed, box.front, tests_)) return Outcome::kOpen;
     return gap <= 0.0 || !touch_at_middle() ? Outcome::kFree : Outcome::kTouching;
   }
 
@@ -185,7 +191,9 @@ class Search {
   std::vector<double> half_widths_;
   std::vector<Pose> poses_;
   std::vector<Node> tree_;
+  std::size_t tests_ = 0;    // of pairs of pieces
   double open_share_ = 1.0;  // of the ranges, not proved yet
+  bool is_proof_near_ = false;
 };
 
 }  // namespace

@@ -19,6 +19,10 @@ struct PairSearchResult {
   std::vector<double> witness{};
 };
 
+// Where surfaces of fine meshes are near each other in most of a box, it takes thousands of tests
+// of pieces. So a search of n boxes also ends once its boxes have taken n times as many as this.
+inline constexpr std::size_t kTestsOfBox = 1000;
+
 struct PairSearchLimits {
   std::size_t boxes = 0;
   // Where the links touch, or where so many boxes leave more than kHopeful of the ranges open.
