@@ -100,7 +100,7 @@ bool RobotChecker::check_config(std::span<const double> configuration, Scratch& 
 // Of itself, and of all that is not a static tree.
 bool RobotChecker::is_free_of_itself(std::span<const double> configuration,
                                      Scratch& scratch) const {
-  if (parts_->pairs.tested() == 0) return true;
+  if (parts_->pairs.static_tree_pairs_begin() == 0) return true;
   Scratch::Memory& memory = *scratch.memory_;
   if (parts_->pairs.in_filter_range(configuration)) {
     return !parts_->lanes.touches(configuration, memory.lanes, memory.pairs);
@@ -120,7 +120,7 @@ void RobotChecker::check_configs(std::span<const double> configurations, Scratch
   Scratch::Memory& memory = *scratch.memory_;
   if (parts_->standing) {
     parts_->standing->touch(configurations, *memory.standing, free);
-    if (parts_->pairs.tested() == 0 && !parts_->enforces_limits) {
+    if (parts_->pairs.static_tree_pairs_begin() == 0 && !parts_->enforces_limits) {
       for (std::uint8_t& answer : free) answer ^= 1U;
       return;
     }
@@ -164,7 +164,8 @@ void RobotChecker::check_configs(std::span<const double> configurations,
   const std::size_t variables = internal::require_sizes(parts_->robot, configurations, free);
   for (const Scratch& scratch : scratches) require_own(scratch);
   const internal::Sharing sharing{
-      .piece = kPiece, .fewest = parts_->pairs.tested() == 0 ? kFewestShared : kPiece + 1};
+      .piece = kPiece,
+      .fewest = parts_->pairs.static_tree_pairs_begin() == 0 ? kFewestShared : kPiece + 1};
   internal::share_configurations(
       configurations, variables, sharing, scratches, free,
       [&](std::span<const double> piece, Scratch& scratch, std::span<std::uint8_t> its_answers) {
@@ -218,7 +219,7 @@ EdgeResult RobotChecker::check_within_limits(std::span<const double> from,
   Scratch::Memory& memory = *scratch.memory_;
   // Against standing trees alone, what the last motions have shown often decides the next one.
   if (end == 1.0 && request.max_configurations > 0 && parts_->standing &&
-      parts_->pairs.tested() == 0) {
+      parts_->pairs.static_tree_pairs_begin() == 0) {
     using Finding = internal::StaticTrees::AlongFinding;
     switch (parts_->standing->check_along(from, to, !request.first, *memory.standing)) {
       case Finding::kFree:

@@ -77,12 +77,12 @@ class RobotScene::Snapshot {
     }
     std::vector<RobotChecker::Parts::Named> names;
     for (const Body& body : bodies_) names.push_back({body.kind, body.name});
-    const std::size_t tested = pairs_.size();
+    const std::size_t static_tree_pairs_begin = pairs_.size();
     pairs_.insert(pairs_.end(), static_pairs_.begin(), static_pairs_.end());
     return std::make_shared<const RobotChecker::Parts>(
         scene_.robot_, options_,
         internal::BodyPairs(carrier_, scene_.world_from_root_, std::move(pieces_),
-                            std::move(shapes_), std::move(pairs_), tested),
+                            std::move(shapes_), std::move(pairs_), static_tree_pairs_begin),
         std::move(names), std::move(obstacle_names_));
   }
 

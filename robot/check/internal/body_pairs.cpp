@@ -114,13 +114,13 @@ std::vector<Pose> poses_at_zero(const RobotModel& robot) {
 
 BodyPairs::BodyPairs(RobotModel robot, const Pose& world_from_root,
                      std::vector<CheckedPiece> pieces, std::vector<PlacedShape> obstacles,
-                     std::vector<CheckedPair> pairs, std::size_t tested)
+                     std::vector<CheckedPair> pairs, std::size_t static_tree_pairs_begin)
     : robot_(std::move(robot)),
       world_from_root_(world_from_root),
       pieces_(std::move(pieces)),
       obstacles_(std::move(obstacles)),
       pairs_(std::move(pairs)),
-      tested_(tested) {
+      static_tree_pairs_begin_(static_tree_pairs_begin) {
   double scene = 0.0;
   for (const PlacedShape& obstacle : obstacles_) {
     scene = std::max(scene, obstacle.world_from_shape.translation().norm() +
@@ -242,8 +242,8 @@ bool BodyPairs::touches(std::size_t index, const Memory& memory) const {
 
 // A robot that touches often did so a moment ago, in the same place.
 bool BodyPairs::any_touches(Memory& memory) const {
-  if (memory.last < tested_ && touches(memory.last, memory)) return true;
-  for (std::size_t i = 0; i < tested_; ++i) {
+  if (memory.last < static_tree_pairs_begin_ && touches(memory.last, memory)) return true;
+  for (std::size_t i = 0; i < static_tree_pairs_begin_; ++i) {
     if (i == memory.last || !touches(i, memory)) continue;
     memory.last = i;
     return true;

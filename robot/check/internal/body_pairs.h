@@ -71,10 +71,12 @@ struct PairContact {
 
 class BodyPairs {
  public:
-  // Only the first `tested` pairs are queried by any_touches() and check_edge(). Indices must be in
+  // Pairs from `static_tree_pairs_begin` on are of pieces and static sphere trees: configurations
+  // test them through StaticTrees, motions through LaneCheck with all others. Indices must be in
   // range. Throws Error for what reaches beyond kMaxCoordinate.
   BodyPairs(RobotModel robot, const Pose& world_from_root, std::vector<CheckedPiece> pieces,
-            std::vector<PlacedShape> obstacles, std::vector<CheckedPair> pairs, std::size_t tested);
+            std::vector<PlacedShape> obstacles, std::vector<CheckedPair> pairs,
+            std::size_t static_tree_pairs_begin);
 
   struct Memory {
     std::vector<double> configuration{};
@@ -87,7 +89,7 @@ class BodyPairs {
   const std::vector<CheckedPiece>& pieces() const { return pieces_; }
   const std::vector<PlacedShape>& obstacles() const { return obstacles_; }
   const std::vector<CheckedPair>& pairs() const { return pairs_; }
-  std::size_t tested() const { return tested_; }
+  std::size_t static_tree_pairs_begin() const { return static_tree_pairs_begin_; }
   const RobotModel& robot() const { return robot_; }
   const Pose& world_from_root() const { return world_from_root_; }
   // From a piece to the root; of a pair: the joints between its two sides.
@@ -105,6 +107,7 @@ class BodyPairs {
 
   // By the canonical tests, which find nothing where the pair is proved free.
   bool touches(std::size_t pair, const Memory& memory) const;
+  // Of the pairs before static_tree_pairs_begin().
   bool any_touches(Memory& memory) const;
   // Whether a pair is proved free in the configuration that was taken.
   bool is_proved_free(std::size_t pair, const Memory& memory) const {
@@ -159,7 +162,7 @@ class BodyPairs {
   std::vector<CheckedPiece> pieces_;
   std::vector<PlacedShape> obstacles_;
   std::vector<CheckedPair> pairs_;
-  std::size_t tested_;
+  std::size_t static_tree_pairs_begin_;
   std::vector<Sphere> solid_spheres_;  // in the world, around each primitive; else of infinite size
   double size_ = 0.0;                  // bounds all coordinates within the usual range
   double pose_error_ = 0.0;

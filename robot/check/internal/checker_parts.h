@@ -32,7 +32,7 @@ struct RobotChecker::Parts {
         lanes(pairs, options.instructions),
         bodies(std::move(body_names)),
         obstacles(std::move(obstacle_names)) {
-    if (pairs.tested() == pairs.pairs().size()) return;
+    if (pairs.static_tree_pairs_begin() == pairs.pairs().size()) return;
     standing.emplace(pairs, options.instructions);
   }
   // `lanes` and `standing` refer to `pairs`.
@@ -41,13 +41,15 @@ struct RobotChecker::Parts {
 
   // Whether neither `standing` nor BodyPairs::in_filter_range() refuses numbers that are not
   // finite.
-  bool requires_finite() const { return enforces_limits || (!standing && pairs.tested() == 0); }
+  bool requires_finite() const {
+    return enforces_limits || (!standing && pairs.static_tree_pairs_begin() == 0);
+  }
 
   RobotModel robot;
   bool enforces_limits;
   ShortestMotion shortest;
-  // All pairs. Those behind pairs.tested() are of static trees: `standing` tests them in
-  // configurations.
+  // All pairs. Those from pairs.static_tree_pairs_begin() on are of static trees: `standing` tests
+  // them in configurations.
   internal::BodyPairs pairs;
   internal::LaneCheck lanes;  // of these
   std::optional<internal::StaticTrees> standing;

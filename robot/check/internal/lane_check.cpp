@@ -13,12 +13,13 @@ namespace spherule::internal {
 LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
     : pairs_(pairs), positions_(pairs.robot()), kernels_(plan_kernels_for(instructions)) {
   RobotPlanSource all = make_plan_source(pairs, pairs.pairs().size());
-  RobotPlanSource tested = make_plan_source(pairs, pairs.tested());
+  RobotPlanSource of_configurations = make_plan_source(pairs, pairs.static_tree_pairs_begin());
   single_ = std::make_shared<const CompiledPlan<float>>(all.source);
   exact_ = std::make_unique<const CompiledPlan<double>>(all.source);
-  const bool is_all = pairs.tested() == pairs.pairs().size();
-  configurations_ = is_all ? single_ : std::make_shared<const CompiledPlan<float>>(tested.source);
-  one_ = std::make_unique<const CompiledWidePlan>(tested.source, *configurations_);
+  const bool is_all = pairs.static_tree_pairs_begin() == pairs.pairs().size();
+  configurations_ =
+      is_all ? single_ : std::make_shared<const CompiledPlan<float>>(of_configurations.source);
+  one_ = std::make_unique<const CompiledWidePlan>(of_configurations.source, *configurations_);
   pair_of_test_ = std::move(all.pair_of_test);
   decide_fixed_pairs(all.fixed_pairs);
   find_never_ranges();
@@ -64,8 +65,8 @@ void LaneCheck::decide_fixed_pairs(std::span<const std::size_t> pairs) {
         pairs_.pieces()[static_cast<std::size_t>(pairs_.pairs()[pair].piece)];
     const bool is_static = frames.frame_of_link[static_cast<std::size_t>(piece.link)] < 0;
     if (is_static && pairs_.touches(pair, memory)) {
-      always_ = true;
-      always_tested_ = always_tested_ || pair < pairs_.tested();
+      motions_have_static_contact_ = true;
+      configs_have_static_contact_ |= pair < pairs_.static_tree_pairs_begin();
     }
     if (!is_static && pairs_.is_near(pair, kFar * pairs_.pose_error(), memory)) {
       rigid_pairs_.push_back(pair);
@@ -141,7 +142,7 @@ bool LaneCheck::rigid_pairs_touch(std::span<const double> configuration,
 unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurations,
                              Memory& memory, BodyPairs::Memory& exact) const {
   const unsigned all = (1U << configurations.size()) - 1;
-  if (always_tested_) return all;
+  if (configs_have_static_contact_) return all;
   unsigned rigid = 0;
   for (std::size_t i = 0; i < configurations.size() && !rigid_pairs_.empty(); ++i) {
     rigid |= (rigid_pairs_touch(configurations[i], exact) ? 1U : 0U) << i;
@@ -163,7 +164,7 @@ unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurat
 
 bool LaneCheck::touches(std::span<const double> configuration, Memory& memory,
                         BodyPairs::Memory& exact) const {
-  if (always_tested_ || rigid_pairs_touch(configuration, exact)) return true;
+  if (configs_have_static_contact_ || rigid_pairs_touch(configuration, exact)) return true;
   const CheckPlan<float>& plan = configurations_->plan();
   if (plan.test_count == 0) return false;
   const WideScratch& scratch = memory.one_.view();

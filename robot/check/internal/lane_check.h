@@ -58,8 +58,8 @@ class LaneCheck {
   // Configurations that are checked side by side.
   static constexpr std::size_t kLanes = kPlanLanes;
 
-  // A bit for each of up to kLanes configurations in which any of the first `tested()` pairs of
-  // BodyPairs touches, by the canonical tests. Each must be in_filter_range().
+  // A bit for each of up to kLanes configurations in which any of the pairs of BodyPairs before
+  // static_tree_pairs_begin() touches, by the canonical tests. Each must be in_filter_range().
   unsigned contacts(std::span<const std::span<const double>> configurations, Memory& memory,
                     BodyPairs::Memory& exact) const;
 
@@ -93,12 +93,13 @@ class LaneCheck {
   std::vector<std::size_t> rigid_pairs_;
   std::vector<std::size_t> pair_of_test_;  // of the source
   std::vector<Range> never_ranges_;
-  std::shared_ptr<const CompiledPlan<float>> configurations_;  // of the first tested() pairs
+  std::shared_ptr<const CompiledPlan<float>> configurations_;  // of pairs but static trees'
   std::unique_ptr<const CompiledWidePlan> one_;
   std::shared_ptr<const CompiledPlan<float>> single_;  // of all
   std::unique_ptr<const CompiledPlan<double>> exact_;
-  bool always_tested_ = false;  // a static pair among the first tested() touches
-  bool always_ = false;         // any static pair does
+  // Whether a pair touches of which both sides stand still: any; one that configurations test here.
+  bool motions_have_static_contact_ = false;
+  bool configs_have_static_contact_ = false;
 };
 
 }  // namespace spherule::internal

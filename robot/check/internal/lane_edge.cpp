@@ -48,7 +48,7 @@ class LaneCheck::Edge {
   }
 
   EdgeResult run() {
-    if (check_.always_ || check_.rigid_pairs_touch(from_, exact_)) {
+    if (check_.motions_have_static_contact_ || check_.rigid_pairs_touch(from_, exact_)) {
       result_ = {.verdict = Verdict::kCollision, .contact_at = 0.0};
       return result_;
     }

@@ -25,7 +25,7 @@ StaticTrees::StaticTrees(const BodyPairs& pairs, InstructionSet instructions)
   bool has_meshes = false;
   std::vector<int> body_of_piece(pairs.pieces().size(), -1);
   std::vector<int> obstacle_at(pairs.obstacles().size(), -1);
-  for (std::size_t i = pairs.tested(); i < pairs.pairs().size(); ++i) {
+  for (std::size_t i = pairs.static_tree_pairs_begin(); i < pairs.pairs().size(); ++i) {
     const CheckedPair& pair = pairs.pairs()[i];
     const auto index = static_cast<std::size_t>(pair.piece);
     const CheckedPiece& piece = pairs.pieces()[index];
@@ -229,7 +229,7 @@ bool StaticTrees::contains_component(const Memory& memory) const {
 
 bool StaticTrees::touch_exactly(std::span<const double> configuration, Memory& memory) const {
   pairs_.place(configuration, memory.placed_);
-  for (std::size_t i = pairs_.tested(); i < pairs_.pairs().size(); ++i) {
+  for (std::size_t i = pairs_.static_tree_pairs_begin(); i < pairs_.pairs().size(); ++i) {
     if (pairs_.touches(i, memory.placed_)) return true;
   }
   return false;

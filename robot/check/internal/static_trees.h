@@ -20,8 +20,9 @@
 
 namespace spherule::internal {
 
-// Of the pairs of BodyPairs from tested() on, does any touch? Exactly BodyPairs::touches(): no
-// instruction set changes an answer. The pairs are of pieces and sphere trees.
+// Of the pairs of BodyPairs from static_tree_pairs_begin() on, does any touch? Exactly
+// BodyPairs::touches(): no instruction set changes an answer. The pairs are of pieces and sphere
+// trees.
 class StaticTrees {
  private:
   // A contact that was confirmed: by a triangle of the piece's mesh and one of the obstacle's, or
