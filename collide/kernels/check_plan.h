@@ -259,8 +259,8 @@ using EvaluateParts = void (*)(const CheckPlan<Real>& plan, const PlanScratch<Re
                                PlanParts& parts, const PlanClient& client);
 
 struct PlanKernelSet {
-  EvaluateParts<float> evaluate_single;
-  EvaluateParts<double> evaluate_exact;
+  EvaluateParts<float> evaluate_float;
+  EvaluateParts<double> evaluate_double;
   // Lanes in whose configurations some test touches.
   unsigned (*check_lanes)(const CheckPlan<float>& plan, const PlanScratch<float>& scratch,
                           unsigned lanes, const PlanClient& client);

@@ -255,9 +255,9 @@ void CompiledPlan<Real>::compile_obstacles(const PlanSource& source, const Reach
 template <class Real>
 void CompiledPlan<Real>::compile_tests(const PlanSource& source, const Reach& reach) {
   constexpr double kReachSlack = 1e-6;  // far above all roundings
-  std::vector<PlanBoxes<double>> exact_boxes;
+  std::vector<PlanBoxes<double>> double_boxes;
   for (const PlanSource::Obstacle& obstacle : source.obstacles) {
-    exact_boxes.push_back(compiled_box<double>(obstacle, reach.largest));
+    double_boxes.push_back(compiled_box<double>(obstacle, reach.largest));
   }
   std::vector<std::vector<std::size_t>> obstacle_tests(bodies_.size());
   for (std::size_t t = 0; t < source.tests.size(); ++t) {
@@ -272,7 +272,7 @@ void CompiledPlan<Real>::compile_tests(const PlanSource& source, const Reach& re
     for (const std::size_t t : obstacle_tests[b]) {
       const PlanSource::Test& test = source.tests[t];
       const auto obstacle = static_cast<std::size_t>(test.other);
-      if (distance_from_box(around.center, exact_boxes[obstacle]) > limit) continue;
+      if (distance_from_box(around.center, double_boxes[obstacle]) > limit) continue;
       const PlanBoxes<Real>& box = obstacle_boxes_[obstacle];
       if (lane == kPlanLanes) {
         groups_.push_back(empty_boxes<Real>());

@@ -14,12 +14,13 @@ LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
     : pairs_(pairs), positions_(pairs.robot()), kernels_(plan_kernels_for(instructions)) {
   RobotPlanSource all = make_plan_source(pairs, pairs.pairs().size());
   RobotPlanSource of_configurations = make_plan_source(pairs, pairs.static_tree_pairs_begin());
-  single_ = std::make_shared<const CompiledPlan<float>>(all.source);
-  exact_ = std::make_unique<const CompiledPlan<double>>(all.source);
+  motion_plan_float_ = std::make_shared<const CompiledPlan<float>>(all.source);
+  motion_plan_double_ = std::make_unique<const CompiledPlan<double>>(all.source);
   const bool is_all = pairs.static_tree_pairs_begin() == pairs.pairs().size();
-  configurations_ =
-      is_all ? single_ : std::make_shared<const CompiledPlan<float>>(of_configurations.source);
-  one_ = std::make_unique<const CompiledWidePlan>(of_configurations.source, *configurations_);
+  config_plan_ = is_all ? motion_plan_float_
+                        : std::make_shared<const CompiledPlan<float>>(of_configurations.source);
+  wide_config_plan_ =
+      std::make_unique<const CompiledWidePlan>(of_configurations.source, *config_plan_);
   pair_of_test_ = std::move(all.pair_of_test);
   decide_fixed_pairs(all.fixed_pairs);
   find_never_ranges();
@@ -82,15 +83,19 @@ LaneCheck::Memory::Stage<Real>::Stage(const CompiledPlan<Real>& compiled, const 
       near(open.size()) {}
 
 LaneCheck::Memory::Memory(const LaneCheck& check)
-    : one_(check.configurations_->plan(), *check.one_),
-      configurations_(*check.configurations_, &check.one_->plan(), &one_.view()),
-      single_(*check.single_,
-              check.single_ == check.configurations_ ? &check.one_->plan() : nullptr, &one_.view()),
-      exact_(*check.exact_, nullptr, nullptr),
+    : wide_config_plan_(check.config_plan_->plan(), *check.wide_config_plan_),
+      config_plan_(*check.config_plan_, &check.wide_config_plan_->plan(),
+                   &wide_config_plan_.view()),
+      motion_plan_float_(*check.motion_plan_float_,
+                         check.motion_plan_float_ == check.config_plan_
+                             ? &check.wide_config_plan_->plan()
+                             : nullptr,
+                         &wide_config_plan_.view()),
+      motion_plan_double_(*check.motion_plan_double_, nullptr, nullptr),
       room_(check.positions_.room_for(kLanes)),
       proofs_(check.pairs_) {
   const auto positions =
-      static_cast<std::size_t>(std::max(1, check.single_->plan().position_count));
+      static_cast<std::size_t>(std::max(1, check.motion_plan_float_->plan().position_count));
   from_.resize(positions);
   to_.resize(positions);
   variables_.resize(static_cast<std::size_t>(check.pairs_.robot().variable_count()));
@@ -132,30 +137,30 @@ struct ConfigurationClient {
 }  // namespace
 
 bool LaneCheck::rigid_pairs_touch(std::span<const double> configuration,
-                                  BodyPairs::Memory& exact) const {
+                                  BodyPairs::Memory& canonical) const {
   if (rigid_pairs_.empty()) return false;
-  pairs_.place(configuration, exact);
+  pairs_.place(configuration, canonical);
   return std::any_of(rigid_pairs_.begin(), rigid_pairs_.end(),
-                     [&](std::size_t pair) { return pairs_.touches(pair, exact); });
+                     [&](std::size_t pair) { return pairs_.touches(pair, canonical); });
 }
 
 unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurations,
-                             Memory& memory, BodyPairs::Memory& exact) const {
+                             Memory& memory, BodyPairs::Memory& canonical) const {
   const unsigned all = (1U << configurations.size()) - 1;
   if (configs_have_static_contact_) return all;
   unsigned rigid = 0;
   for (std::size_t i = 0; i < configurations.size() && !rigid_pairs_.empty(); ++i) {
-    rigid |= (rigid_pairs_touch(configurations[i], exact) ? 1U : 0U) << i;
+    rigid |= (rigid_pairs_touch(configurations[i], canonical) ? 1U : 0U) << i;
   }
-  const CheckPlan<float>& plan = configurations_->plan();
+  const CheckPlan<float>& plan = config_plan_->plan();
   if (plan.test_count == 0) return rigid;
-  const PlanScratch<float>& scratch = memory.configurations_.view();
+  const PlanScratch<float>& scratch = memory.config_plan_.view();
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t i = std::min(lane, configurations.size() - 1);
     const std::span<const double> at = positions_.of(configurations[i], memory.room_, lane);
     for (std::size_t p = 0; p < at.size(); ++p) scratch.positions[p].lane[lane] = at[p];
   }
-  ConfigurationClient client{pairs_, *configurations_, pair_of_test_, configurations, exact};
+  ConfigurationClient client{pairs_, *config_plan_, pair_of_test_, configurations, canonical};
   const bool skips_never = std::all_of(
       configurations.begin(), configurations.end(),
       [&](std::span<const double> configuration) { return never_touch(configuration); });
@@ -163,15 +168,16 @@ unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurat
 }
 
 bool LaneCheck::touches(std::span<const double> configuration, Memory& memory,
-                        BodyPairs::Memory& exact) const {
-  if (configs_have_static_contact_ || rigid_pairs_touch(configuration, exact)) return true;
-  const CheckPlan<float>& plan = configurations_->plan();
+                        BodyPairs::Memory& canonical) const {
+  if (configs_have_static_contact_ || rigid_pairs_touch(configuration, canonical)) return true;
+  const CheckPlan<float>& plan = config_plan_->plan();
   if (plan.test_count == 0) return false;
-  const WideScratch& scratch = memory.one_.view();
+  const WideScratch& scratch = memory.wide_config_plan_.view();
   const std::span<const double> at = positions_.of(configuration, memory.room_);
   std::copy(at.begin(), at.end(), scratch.positions);
-  ConfigurationClient client{pairs_, *configurations_, pair_of_test_, {&configuration, 1}, exact};
-  return kernels_.check_one(plan, one_->plan(), scratch, client.client(never_touch(configuration)));
+  ConfigurationClient client{pairs_, *config_plan_, pair_of_test_, {&configuration, 1}, canonical};
+  return kernels_.check_one(plan, wide_config_plan_->plan(), scratch,
+                            client.client(never_touch(configuration)));
 }
 
 }  // namespace spherule::internal

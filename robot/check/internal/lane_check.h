@@ -43,10 +43,10 @@ class LaneCheck {
       std::vector<std::uint64_t> open;
       std::vector<std::uint64_t> near;
     };
-    WideMemory one_;
-    PlanMemory<float> configurations_;
-    Stage<float> single_;
-    Stage<double> exact_;
+    WideMemory wide_config_plan_;
+    PlanMemory<float> config_plan_;
+    Stage<float> motion_plan_float_;
+    Stage<double> motion_plan_double_;
     JointPositions::Room room_;
     std::vector<double> from_;  // positions
     std::vector<double> to_;
@@ -58,19 +58,22 @@ class LaneCheck {
   // Configurations that are checked side by side.
   static constexpr std::size_t kLanes = kPlanLanes;
 
+  // `canonical`, below, is what the canonical tests of BodyPairs write to.
+
   // A bit for each of up to kLanes configurations in which any of the pairs of BodyPairs before
   // static_tree_pairs_begin() touches, by the canonical tests. Each must be in_filter_range().
   unsigned contacts(std::span<const std::span<const double>> configurations, Memory& memory,
-                    BodyPairs::Memory& exact) const;
+                    BodyPairs::Memory& canonical) const;
 
   // The same of one configuration.
   bool touches(std::span<const double> configuration, Memory& memory,
-               BodyPairs::Memory& exact) const;
+               BodyPairs::Memory& canonical) const;
 
   // The straight motion up to the fraction `end`, all pairs of BodyPairs, as RobotChecker says of
   // check_edge(). Both ends must be in_filter_range(), the resolution above zero.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, double end,
-                        const EdgeRequest& request, Memory& memory, BodyPairs::Memory& exact) const;
+                        const EdgeRequest& request, Memory& memory,
+                        BodyPairs::Memory& canonical) const;
 
  private:
   class Edge;
@@ -84,7 +87,7 @@ class LaneCheck {
   void find_never_ranges();
   bool never_touch(std::span<const double> configuration) const;
   void decide_fixed_pairs(std::span<const std::size_t> pairs);
-  bool rigid_pairs_touch(std::span<const double> configuration, BodyPairs::Memory& exact) const;
+  bool rigid_pairs_touch(std::span<const double> configuration, BodyPairs::Memory& canonical) const;
 
   const BodyPairs& pairs_;
   JointPositions positions_;
@@ -93,10 +96,12 @@ class LaneCheck {
   std::vector<std::size_t> rigid_pairs_;
   std::vector<std::size_t> pair_of_test_;  // of the source
   std::vector<Range> never_ranges_;
-  std::shared_ptr<const CompiledPlan<float>> configurations_;  // of pairs but static trees'
-  std::unique_ptr<const CompiledWidePlan> one_;
-  std::shared_ptr<const CompiledPlan<float>> single_;  // of all
-  std::unique_ptr<const CompiledPlan<double>> exact_;
+  // Of the pairs before static_tree_pairs_begin(): configurations in lanes, and one alone.
+  std::shared_ptr<const CompiledPlan<float>> config_plan_;
+  std::unique_ptr<const CompiledWidePlan> wide_config_plan_;
+  // Of all pairs. What single precision leaves undecided is evaluated in double precision.
+  std::shared_ptr<const CompiledPlan<float>> motion_plan_float_;
+  std::unique_ptr<const CompiledPlan<double>> motion_plan_double_;
   // Whether a pair touches of which both sides stand still: any; one that configurations test here.
   bool motions_have_static_contact_ = false;
   bool configs_have_static_contact_ = false;

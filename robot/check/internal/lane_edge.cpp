@@ -30,7 +30,7 @@ constexpr double kUndecided = 4.0;
 class LaneCheck::Edge {
  public:
   Edge(const LaneCheck& check, std::span<const double> from, std::span<const double> to, double end,
-       const EdgeRequest& request, Memory& memory, BodyPairs::Memory& exact)
+       const EdgeRequest& request, Memory& memory, BodyPairs::Memory& canonical)
       : check_(check),
         pairs_(check.pairs_),
         from_(from),
@@ -38,7 +38,7 @@ class LaneCheck::Edge {
         end_(end),
         request_(request),
         memory_(memory),
-        exact_(exact) {
+        canonical_(canonical) {
     const std::span<const double> start = check_.positions_.of(from, memory.room_, 0);
     const std::span<const double> finish = check_.positions_.of(to, memory.room_, 1);
     std::copy(start.begin(), start.end(), memory.from_.begin());
@@ -48,12 +48,12 @@ class LaneCheck::Edge {
   }
 
   EdgeResult run() {
-    if (check_.motions_have_static_contact_ || check_.rigid_pairs_touch(from_, exact_)) {
+    if (check_.motions_have_static_contact_ || check_.rigid_pairs_touch(from_, canonical_)) {
       result_ = {.verdict = Verdict::kCollision, .contact_at = 0.0};
       return result_;
     }
     if (!check_.rigid_pairs_.empty()) unproved_from_ = 0.0;
-    if (check_.single_->plan().test_count > 0) prove<float>({0.0, end_}, nullptr);
+    if (check_.motion_plan_float_->plan().test_count > 0) prove<float>({0.0, end_}, nullptr);
     result_.free_until = std::min({unproved_from_, result_.contact_at, end_});
     result_.verdict = result_.contact_at <= 1.0 ? Verdict::kCollision
                       : unproved_from_ <= end_  ? Verdict::kUnknown
@@ -69,25 +69,25 @@ class LaneCheck::Edge {
   template <class Real>
   Memory::Stage<Real>& stage() {
     if constexpr (std::is_same_v<Real, float>) {
-      return memory_.single_;
+      return memory_.motion_plan_float_;
     } else {
-      return memory_.exact_;
+      return memory_.motion_plan_double_;
     }
   }
   template <class Real>
   const CompiledPlan<Real>& compiled() const {
     if constexpr (std::is_same_v<Real, float>) {
-      return *check_.single_;
+      return *check_.motion_plan_float_;
     } else {
-      return *check_.exact_;
+      return *check_.motion_plan_double_;
     }
   }
   template <class Real>
   EvaluateParts<Real> kernel() const {
     if constexpr (std::is_same_v<Real, float>) {
-      return check_.kernels_.evaluate_single;
+      return check_.kernels_.evaluate_float;
     } else {
-      return check_.kernels_.evaluate_exact;
+      return check_.kernels_.evaluate_double;
     }
   }
 
@@ -213,7 +213,7 @@ class LaneCheck::Edge {
     batch.all_contacts = request_.first;
     batch.enough = 0.5 * request_.resolution;
     if constexpr (std::is_same_v<Real, float>) {
-      batch.enough = std::max(batch.enough, kUndecided * check_.single_->center_error());
+      batch.enough = std::max(batch.enough, kUndecided * check_.motion_plan_float_->center_error());
     }
     place({parts.data(), count}, batch);
     Client<Real> client{*this};
@@ -263,7 +263,7 @@ class LaneCheck::Edge {
         unproved_from_ = std::min(unproved_from_, part.begin);
         return true;
       }
-      memory_.undecided_.assign(open, open + check_.single_->plan().word_count);
+      memory_.undecided_.assign(open, open + check_.motion_plan_float_->plan().word_count);
       const auto times = times_;
       const auto halves = halves_;
       const bool goes_on = prove<double>(part, memory_.undecided_.data());
@@ -284,10 +284,12 @@ class LaneCheck::Edge {
       if (at >= result_.contact_at) return;
       if (result_.configurations >= request_.max_configurations) return;
       ++result_.configurations;
-      const CheckPlan<double>& plan = check_.exact_->plan();
+      const CheckPlan<double>& plan = check_.motion_plan_double_->plan();
       for (std::int32_t test = 0; test < plan.test_count; ++test) {
         if ((open[test / 64] >> (test % 64) & 1U) == 0) continue;
-        if (check_.exact_->source_test(test) < 0 || !touches(at, *check_.exact_, test)) continue;
+        if (check_.motion_plan_double_->source_test(test) < 0 ||
+            !touches(at, *check_.motion_plan_double_, test))
+          continue;
         result_.contact_at = at;
         return;
       }
@@ -304,13 +306,13 @@ class LaneCheck::Edge {
   std::size_t pair_at(double at, const CompiledPlan<Real>& plan, std::int32_t test) {
     if (std::exchange(placed_, at) != at) {
       take_between(from_, to_, at, memory_.variables_);
-      pairs_.place(memory_.variables_, exact_);
+      pairs_.place(memory_.variables_, canonical_);
     }
     return pair_of(plan, test);
   }
   template <class Real>
   bool touches(double at, const CompiledPlan<Real>& plan, std::int32_t test) {
-    return pairs_.touches(pair_at(at, plan, test), exact_);
+    return pairs_.touches(pair_at(at, plan, test), canonical_);
   }
 
   // Those of the lanes in whose parts a test is not proved apart: of several at once, as far as one
@@ -329,7 +331,7 @@ class LaneCheck::Edge {
       longest = std::max(longest, std::abs(times_[lane] - middle) + halves_[lane]);
     }
     const std::size_t pair = pair_at(middle, plan, test);
-    if (!pairs_.is_near(pair, speed * longest * kLonger + pad_, exact_)) return 0;
+    if (!pairs_.is_near(pair, speed * longest * kLonger + pad_, canonical_)) return 0;
     if (std::has_single_bit(lanes)) return lanes;
     return near_lanes(plan, test, lanes & ~upper, speed) | near_lanes(plan, test, upper, speed);
   }
@@ -369,13 +371,13 @@ class LaneCheck::Edge {
   const double end_;
   const EdgeRequest& request_;
   Memory& memory_;
-  BodyPairs::Memory& exact_;
+  BodyPairs::Memory& canonical_;
   EdgeResult result_;
   bool skips_never_ = false;
   std::array<bool, 2> is_bounded_{};
   std::array<double, kPlanLanes> times_{};
   std::array<double, kPlanLanes> halves_{};
-  double placed_ = -1.0;  // the time whose configuration `exact_` has
+  double placed_ = -1.0;  // the time whose configuration `canonical_` has
   double pad_ = 0.0;
   double unproved_from_ = std::numeric_limits<double>::infinity();
   int given_up_ = 0;
@@ -383,8 +385,8 @@ class LaneCheck::Edge {
 
 EdgeResult LaneCheck::check_edge(std::span<const double> from, std::span<const double> to,
                                  double end, const EdgeRequest& request, Memory& memory,
-                                 BodyPairs::Memory& exact) const {
-  return Edge(*this, from, to, end, request, memory, exact).run();
+                                 BodyPairs::Memory& canonical) const {
+  return Edge(*this, from, to, end, request, memory, canonical).run();
 }
 
 }  // namespace spherule::internal
