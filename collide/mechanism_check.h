@@ -112,7 +112,7 @@ class MechanismCheck {
   };
 
   // The largest magnitude of a variable, in radians or the unit of the trees, for which collides()
-  // may be queried.
+  // may be called.
   static constexpr double kLargestVariable = 100.0;
   // Whether all variables are finite and none is larger than that in magnitude.
   static bool is_in_range(std::span<const double> variables);
@@ -120,7 +120,8 @@ class MechanismCheck {
   // True if two spheres of a pair touch for sure or `confirm`, given a MechanismContact, says so of
   // two that may; false if none do. is_in_range() must hold, for as many variables as the frames
   // name. The scratch remembers contacts and clearances from one configuration to the next, which
-  // changes no answer: near the last ones it may answer without asking. Allocates nothing.
+  // changes no answer: near the last ones it may answer without calling `confirm`. Allocates
+  // nothing.
   template <class Confirm>
   bool collides(std::span<const double> variables, Scratch& scratch, Confirm confirm) const {
     const ConfirmFunction confirm_function = [](void* context, int,
@@ -132,8 +133,9 @@ class MechanismCheck {
 
   // Whether no two spheres of a pair touch for any variables on the straight motion from one
   // configuration to another, in exact arithmetic: true only if so, false where that is not known
-  // soon. None where the motion does not follow in small steps what the scratch was queried last,
-  // as those of a path do. is_in_range() must hold for both ends. Allocates nothing.
+  // soon. None where the motion does not follow in small steps the configuration or motion that was
+  // checked last with the scratch, as those of a path do. is_in_range() must hold for both ends.
+  // Allocates nothing.
   std::optional<bool> is_free_along(std::span<const double> from, std::span<const double> to,
                                     Scratch& scratch) const;
 

@@ -27,8 +27,9 @@ struct PlanSource {
     int frame = -1;
     std::shared_ptr<const SearchTrees> trees{};
     Pose frame_from_trees{};
-    // Contacts of its spheres are for the caller to confirm: none is certain, and what is not apart
-    // all along a part of a motion is requested.
+    // Contacts of its spheres are for the caller to confirm: none is certain, and of tests that are
+    // not proved apart all along a part of a motion the caller decides whether they are
+    // (PlanClient::near).
     bool is_confirmed = false;
   };
 

@@ -82,12 +82,12 @@ CoherenceCache::CoherenceCache(const KernelProblem& problem, std::span<const dou
 bool CoherenceCache::check(const Kernels& kernels, const KernelProblem& problem,
                            const double* configuration, const KernelScratch& scratch,
                            ConfirmContact confirm, void* context) {
-  struct Asking {
-    explicit Asking(bool& flag) : is_querying(flag) { is_querying = true; }
-    ~Asking() { is_querying = false; }
-    bool& is_querying;
+  struct WhileConfirming {
+    explicit WhileConfirming(bool& flag) : is_confirming(flag) { is_confirming = true; }
+    ~WhileConfirming() { is_confirming = false; }
+    bool& is_confirming;
   };
-  const Asking asking(is_querying_);
+  const WhileConfirming guard(is_confirming_);
   return kernels.check(problem, configuration, scratch, confirm, context);
 }
 

@@ -46,14 +46,14 @@ class CoherenceCache {
                                     const double* from, const double* to, const double* middle,
                                     const KernelScratch& scratch);
 
-  // A sphere on a frame, in its coordinates, that touches for the configuration that was queried
-  // last, and wherever none of its points has moved by more than `depth` from there. Ignored unless
-  // is_following().
+  // A sphere on a frame, in its coordinates, that touches for the last configuration that was
+  // checked, and wherever none of its points has moved by more than `depth` from there. Ignored
+  // unless is_following().
   void remember_contact(std::int32_t frame, const Sphere& sphere, double depth,
                         const KernelScratch& scratch);
-  // Whether that is heard: while collides() confirms, if the last configurations were near each
-  // other.
-  bool is_following() const { return is_following_ && is_querying_; }
+  // Whether that is remembered: while collides() confirms, if the last configurations were near
+  // each other.
+  bool is_following() const { return is_following_ && is_confirming_; }
 
  private:
   struct Body {
@@ -91,7 +91,7 @@ class CoherenceCache {
   double queries_ = 0.0;
   bool was_near_ = false;
   bool is_following_ = false;
-  bool is_querying_ = false;
+  bool is_confirming_ = false;
   bool knows_ = false;
   MovedSphere contact_;
   double depth_ = -1.0;

@@ -140,21 +140,21 @@ SPHERULE_INLINE unsigned in_range(const double* exact, float* rounded) {
     reinterpret_cast<HalfFloatPart*>(rounded)[i] = __builtin_convertvector(x, HalfFloatPart);
   }
 #if defined(__AVX512F__)
-  unsigned usual = 0;
+  unsigned lanes_in_range = 0;
   for (int i = 0; i < 2; ++i) {
     const __m512d size = _mm512_abs_pd(_mm512_load_pd(exact + 8 * i));
     const __mmask8 set =
         _mm512_cmp_pd_mask(size, _mm512_set1_pd(kLargestKernelVariable), _CMP_LE_OQ);
-    usual |= static_cast<unsigned>(set) << (8 * i);
+    lanes_in_range |= static_cast<unsigned>(set) << (8 * i);
   }
-  return usual;
+  return lanes_in_range;
 #else
-  unsigned usual = 0;
+  unsigned lanes_in_range = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
-    const bool in_filter_range = __builtin_fabs(exact[lane]) <= kLargestKernelVariable;
-    usual |= (in_filter_range ? 1U : 0U) << lane;
+    const bool is_in_range = __builtin_fabs(exact[lane]) <= kLargestKernelVariable;
+    lanes_in_range |= (is_in_range ? 1U : 0U) << lane;
   }
-  return usual;
+  return lanes_in_range;
 #endif
 }
 
@@ -248,18 +248,18 @@ SPHERULE_INLINE unsigned gather(const KernelProblem& problem, const double* cons
 #pragma GCC unroll 16
     for (int lane = 0; lane < kLanes; ++lane) variables[i].exact[lane] = configurations[lane][i];
   }
-  unsigned usual = kAllLanes;
+  unsigned lanes_in_range = kAllLanes;
   for (std::int32_t i = 0; i < problem.variable_count; ++i) {
-    usual &= in_range(variables[i].exact, variables[i].rounded);
+    lanes_in_range &= in_range(variables[i].exact, variables[i].rounded);
   }
   for (std::int32_t i = 0; i < problem.variable_count; ++i) {
-    for (unsigned refused = kAllLanes & ~usual; refused != 0; refused &= refused - 1) {
+    for (unsigned refused = kAllLanes & ~lanes_in_range; refused != 0; refused &= refused - 1) {
       variables[i].exact[__builtin_ctz(refused)] = 0.0;
       variables[i].rounded[__builtin_ctz(refused)] = 0.0F;
     }
     reduce(variables[i].exact, variables[i].remainder, variables[i].quarter);
   }
-  return kAllLanes & ~usual;
+  return kAllLanes & ~lanes_in_range;
 }
 
 // The poses of all frames.

@@ -96,7 +96,8 @@ bool RobotChecker::within(std::span<const double> configuration, double clearanc
 
 // The pairs that may be nearest come first; a search ends where its pair cannot be nearer than the
 // nearest so far. What is apart under the computed poses is apart by no less than twice the error
-// of a pose under those of the exact mechanism, a bound that holds for usual positions alone.
+// of a pose under those of the exact mechanism, a bound that holds for positions
+// in_filter_range() alone.
 RobotClearance RobotChecker::clearance(std::span<const double> configuration, Scratch& scratch,
                                        const ClearanceRequest& request) const {
   require_own(scratch);

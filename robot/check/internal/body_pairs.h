@@ -164,7 +164,7 @@ class BodyPairs {
   std::vector<CheckedPair> pairs_;
   std::size_t static_tree_pairs_begin_;
   std::vector<Sphere> solid_spheres_;  // in the world, around each primitive; else of infinite size
-  double size_ = 0.0;                  // bounds all coordinates within the usual range
+  double size_ = 0.0;                  // bounds all coordinates while in_filter_range()
   double pose_error_ = 0.0;
   double middle_error_ = 0.0;
   std::vector<PathReach> paths_;      // of pieces to the root, then of pairs of pieces

@@ -179,8 +179,8 @@ StaticTrees::Finding StaticTrees::find(const MechanismContact& contact, Memory& 
 }
 
 // A robot that touches often did so a moment ago, by the same triangles or by others near to them.
-// What is not proved by the former alone is left to the test of the spheres, or to the contact that
-// is queried.
+// Where the depth at the former triangles proves nothing, two meshes are tested at the spheres
+// above those; after that, the contact that the MechanismCheck wants confirmed decides.
 bool StaticTrees::still_touches(const Touch& touch, Memory& memory) const {
   if (check_->is_following(memory.check_)) {
     const double depth = depth_of(touch, memory);
@@ -203,7 +203,8 @@ double StaticTrees::depth_of(const Touch& touch, const Memory& memory) const {
 }
 
 // The poses of forward_kinematics() are within pose_error() of those of the exact mechanism, now
-// and wherever the memory is requested; as much again covers the sphere's.
+// and at any configuration for which the MechanismCheck reuses the contact; as much again covers
+// the error of the sphere that it remembers.
 void StaticTrees::remember(const Touch& touch, double depth, Memory& memory) const {
   if (depth <= 3.0 * pairs_.pose_error()) return;
   const Body& body = body_of(touch.contact.pair);
